@@ -1,0 +1,7 @@
+"""rr-opt: find the best gait of a Roller Racer, and check it.
+
+The paper behind the names: A. Kilin, Yu. Karavaev and K. Yefremov, "Experimental
+investigations of the controlled motion of the Roller Racer robot".
+"""
+
+__version__ = "0.1.0"

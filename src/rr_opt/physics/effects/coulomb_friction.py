@@ -1,0 +1,38 @@
+"""Dry (Coulomb) friction at the wheels: a force that resists rolling, whatever the speed.
+
+The jump of the sign at u = 0 is smoothed to tanh(u/u0). At u0 = 2 mm/s the wheels of a robot
+that moves at decimetres per second spend a per cent of their time inside the smoothed part,
+and the equations stay differentiable, which the optimiser needs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import casadi as ca
+
+from rr_opt.physics.effects.effect import Effect, Parameter, Port
+from rr_opt.physics.kinematics import Mechanism, with_wheel_forces
+
+SMOOTHING_SPEED = 0.002
+"""u0, m/s."""
+
+
+def _enter(mechanism: Mechanism, values: Mapping[str, ca.SX]) -> Mechanism:
+    return with_wheel_forces(
+        mechanism,
+        lambda wheel, u: -values[f"force{wheel.platform}"] * ca.tanh(u / SMOOTHING_SPEED),
+    )
+
+
+EFFECT = Effect(
+    name="coulomb_friction",
+    family="rolling",
+    port=Port.FORCE,
+    parameters=(
+        Parameter("force1", "N", (0.0, 10.0), 0.02, aliases=("F1",)),
+        Parameter("force2", "N", (0.0, 10.0), 0.02, aliases=("F2",)),
+    ),
+    sentence="Each wheel resists rolling with a force that does not depend on its speed.",
+    enter=_enter,
+)

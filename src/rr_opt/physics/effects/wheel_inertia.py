@@ -1,0 +1,30 @@
+"""The wheels' own moment of inertia about their axles, which spins up as they roll."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import casadi as ca
+
+from rr_opt.physics.effects.effect import Effect, Parameter, Port
+from rr_opt.physics.kinematics import Mechanism
+
+
+def _enter(mechanism: Mechanism, values: Mapping[str, ca.SX]) -> Mechanism:
+    h = mechanism.parameters["h"]
+    spin = sum(
+        (values["J"] * (mechanism.rolling_speed(wheel) / h) ** 2 / 2 for wheel in mechanism.wheels),
+        start=mechanism.spin,
+    )
+    return replace(mechanism, spin=spin)
+
+
+EFFECT = Effect(
+    name="wheel_inertia",
+    family="rolling",
+    port=Port.MASS,
+    parameters=(Parameter("J", "kg m^2", (0.0, 1e-2), 1e-6),),
+    sentence="Turning the wheels about their axles takes energy of its own.",
+    enter=_enter,
+)

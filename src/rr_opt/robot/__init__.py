@@ -1,0 +1,1 @@
+"""What the robot is and what it is told to do: plain numbers in SI units."""

@@ -1,0 +1,114 @@
+"""The inertia ratio J20/J10: how it is defined, and how it is realised on the robot.
+
+The paper varies J20/J10 between 0.08 and 0.3 by hanging 66 g loads on platform 2 and does
+not say about which point the J are taken. Two definitions are offered: about the joint P
+(the default: with Table 1's values only this one is near the printed ratios), or about each
+platform's own centre of mass. Two ways of realising a ratio are offered: changing the moment
+of inertia I of platform 2 alone, or adding loads, which change its mass, centre of mass and
+inertia together.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Literal
+
+from rr_opt.outcome import InputError
+from rr_opt.robot.parameters import Platform, Robot
+
+About = Literal["joint", "centre"]
+By = Literal["inertia", "loads"]
+
+
+@dataclass(frozen=True)
+class Loads:
+    """Loads that can be hung on platform 2.
+
+    mass      of one load, kg (Table 1: 66 g)
+    distance  from the joint P to the loads along platform 2's axis, towards its axle, m
+    spread    of the loads to either side of the axis, m: they hang in a balanced way, so the
+              centre of mass stays on the axis and each adds mass*spread^2 of inertia
+    whole     True: only whole numbers of loads exist
+    """
+
+    mass: float = 0.066
+    distance: float = 0.0441
+    spread: float = 0.05
+    whole: bool = False
+
+
+def inertia_ratio(robot: Robot, about: About) -> float:
+    """J20/J10 of the robot as it is, dimensionless."""
+    if about == "joint":
+        return robot.platform2.joint_inertia / robot.platform1.joint_inertia
+    return robot.platform2.I / robot.platform1.I
+
+
+def with_load_count(platform: Platform, loads: Loads, count: float) -> Platform:
+    """Platform 2 carrying `count` loads (a real number >= 0): new m, I and a."""
+    added = count * loads.mass
+    m = platform.m + added
+    own = platform.joint_to_centre
+    centre = (platform.m * own + added * loads.distance) / m
+    reduced = platform.m * added / m
+    I = platform.I + reduced * (loads.distance - own) ** 2 + added * loads.spread**2  # noqa: E741
+    return replace(platform, m=m, I=I, a=platform.c - centre)
+
+
+def load_count(robot: Robot, ratio: float, about: About, loads: Loads) -> float:
+    """How many loads give J20/J10 = ratio; a real number, negative if the robot exceeds it.
+
+    About P the inertia grows linearly with the count. About the centre of mass the loads of
+    mass M = count*mass give I2 + M spread^2 + m2 M/(m2 + M) d^2, d the distance between the
+    centres, and the count is the root of a quadratic that is continuous with ratio.
+    """
+    platform = robot.platform2
+    if about == "joint":
+        excess = ratio * robot.platform1.joint_inertia - platform.joint_inertia
+        each = loads.mass * (loads.distance**2 + loads.spread**2)
+        return excess / each
+    excess = ratio * robot.platform1.I - platform.I
+    d2 = (loads.distance - platform.joint_to_centre) ** 2
+    s2 = loads.spread**2
+    # s2 M^2 + (m (s2 + d2) - excess) M - m excess = 0; the root that is 0 at excess = 0.
+    linear = platform.m * (s2 + d2) - excess
+    root = math.sqrt(max(linear**2 + 4 * s2 * platform.m * excess, 0.0))
+    if linear + root <= 0:
+        return math.inf if excess > 0 else -math.inf
+    return 2 * platform.m * excess / (linear + root) / loads.mass
+
+
+def with_inertia_ratio(
+    robot: Robot, ratio: float, about: About = "joint", by: By = "inertia", loads: Loads | None = None
+) -> Robot:
+    """The robot rebuilt so that J20/J10 = ratio.
+
+    Raises InputError when the ratio cannot be realised: an inertia that would not be
+    positive, or fewer than no loads.
+    """
+    if by == "loads":
+        loads = loads or Loads()
+        count = load_count(robot, ratio, about, loads)
+        if not 0 <= count + 1e-12 < math.inf:
+            own = inertia_ratio(robot, about)
+            raise InputError(
+                f"An inertia ratio J20/J10 = {ratio:.4g} cannot be reached with loads. The robot "
+                f"without loads has {own:.4g}, and loads only add to it. Ask for a ratio of at "
+                f"least {own:.4g}, or use `by: inertia`."
+            )
+        return replace(robot, platform2=with_load_count(robot.platform2, loads, max(count, 0.0)))
+    if about == "joint":
+        offset = robot.platform2.m * robot.platform2.joint_to_centre**2
+        inertia = ratio * robot.platform1.joint_inertia - offset
+    else:
+        offset = 0.0
+        inertia = ratio * robot.platform1.I
+    if inertia <= 0:
+        least = offset / robot.platform1.joint_inertia
+        raise InputError(
+            f"An inertia ratio J20/J10 = {ratio:.4g} about the joint needs a moment of inertia "
+            f"I2 = {inertia:.3g} kg m2. It must be positive. Ask for a ratio above {least:.4g}, "
+            "the part that platform 2's mass at its centre of mass already gives."
+        )
+    return replace(robot, platform2=replace(robot.platform2, I=inertia))

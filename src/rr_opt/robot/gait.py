@@ -1,0 +1,54 @@
+"""The gait: the angle phi(t) between the platforms that the servo is told to follow."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class SineGait:
+    """phi(t) = amplitude sin(2 pi t/period) + offset (the paper's equation 5).
+
+    amplitude (alpha) and offset (phi0) in rad, period (T) in s.
+    """
+
+    amplitude: float
+    period: float
+    offset: float = 0.0
+
+    shape = "sine"
+
+    @property
+    def angular_frequency(self) -> float:
+        """2 pi/T, rad/s."""
+        return 2 * math.pi / self.period
+
+    @property
+    def peak_angle(self) -> float:
+        """Largest |phi| over a period, rad."""
+        return abs(self.offset) + abs(self.amplitude)
+
+    @property
+    def peak_rate(self) -> float:
+        """Largest |dphi/dt| over a period, rad/s."""
+        return abs(self.amplitude) * self.angular_frequency
+
+    def angle(self, t: ArrayLike) -> Array:
+        """phi, rad, in the shape of t (s)."""
+        return self.amplitude * np.sin(self.angular_frequency * np.asarray(t, float)) + self.offset
+
+    def rate(self, t: ArrayLike) -> Array:
+        """dphi/dt, rad/s, in the shape of t (s)."""
+        turn = self.angular_frequency * np.asarray(t, float)
+        return self.amplitude * self.angular_frequency * np.cos(turn)
+
+    def acceleration(self, t: ArrayLike) -> Array:
+        """d2phi/dt2, rad/s2, in the shape of t (s)."""
+        turn = self.angular_frequency * np.asarray(t, float)
+        return -self.amplitude * self.angular_frequency**2 * np.sin(turn)
