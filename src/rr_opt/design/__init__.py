@@ -1,0 +1,1 @@
+"""Choosing the gait: seeds from a scan, then multiple shooting."""

@@ -1,0 +1,112 @@
+"""The free decisions of a gait problem on a unit box, and what limits do to their bounds.
+
+For a sine, three of the limits bound the amplitude alone once period and offset are chosen:
+
+    alpha <= rate T/(2 pi)      alpha <= angle - |phi0|      alpha <= phi_s - |phi0|
+
+with phi_s where S1 = c1 cos phi + c2 comes down to the singularity margin. So bounds on T and
+phi0 are tightened until every choice leaves an amplitude, and the amplitude is measured as a
+share of what is left. Every point of the box then keeps these limits; only the torque is open.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rr_opt.problem import Interval, Problem, RatioChoice
+from rr_opt.robot.ballast import load_count
+from rr_opt.robot.parameters import Robot
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Decisions:
+    """Bounds of the decisions of a problem, tightened by the limits.
+
+    period, offset   tightened intervals (s, rad); low > high where no gait keeps the limits
+    amplitude        the problem's bounds, rad
+    ballast          I2 (kg m2) or number of loads
+    reach            largest |phi| that angle and singularity allow, rad
+    """
+
+    period: Interval
+    offset: Interval
+    amplitude: Interval
+    ballast: Interval
+    reach: float
+    rate: float
+
+    @property
+    def empty(self) -> bool:
+        """No gait within the bounds keeps the limits on rate, angle and singularity."""
+        return self.period.low > self.period.high or self.offset.low > self.offset.high
+
+    @property
+    def free(self) -> list[int]:
+        """Which of (period, offset, amplitude, ballast) are free."""
+        intervals = (self.period, self.offset, self.amplitude, self.ballast)
+        return [i for i, interval in enumerate(intervals) if not interval.fixed]
+
+    @property
+    def mirrored(self) -> bool:
+        """Every gait of the box has its mirror image in the box."""
+        return not self.offset.fixed and self.offset.low == -self.offset.high
+
+    def physical(self, unit: Array) -> Array:
+        """Unit-box points (K, 4) -> amplitude, period, offset, ballast share, (4, K)."""
+        period = self.period.low * (self.period.high / self.period.low) ** unit[:, 0]
+        offset = self.offset.low + unit[:, 1] * (self.offset.high - self.offset.low)
+        most = np.minimum(
+            np.minimum(self.amplitude.high, self.reach - np.abs(offset)),
+            self.rate * period / (2 * math.pi),
+        )
+        low = self.amplitude.low
+        amplitude = low + unit[:, 2] * np.maximum(most - low, 0.0)
+        return np.array([amplitude, period, offset, unit[:, 3]])
+
+
+def decisions(problem: Problem) -> Decisions:
+    """The decisions of a problem with their bounds tightened by its limits."""
+    gait, limits = problem.gait, problem.limits
+    reach = min(limits.angle, reach_before_singularity(problem.robot, limits.singularity))
+    amplitude, period, offset = gait.amplitude, gait.period, gait.offset
+    least_period = 2 * math.pi * amplitude.low / limits.rate
+    room = reach - amplitude.low
+    return Decisions(
+        period=Interval(max(period.low, least_period), period.high),
+        offset=Interval(max(offset.low, -room), min(offset.high, room)),
+        amplitude=amplitude,
+        ballast=ballast_interval(problem.robot, problem.inertia_ratio),
+        reach=reach,
+        rate=limits.rate,
+    )
+
+
+def reach_before_singularity(robot: Robot, margin: float) -> float:
+    """Largest |phi| with c1 cos phi + c2 >= margin, rad; -inf if not even phi = 0 has it."""
+    cosine = (margin - robot.platform2.c) / robot.platform1.c
+    if cosine > 1:
+        return -math.inf
+    return math.acos(max(cosine, -1.0))
+
+
+def ballast_interval(robot: Robot, choice: RatioChoice | None) -> Interval:
+    """The range of I2 (kg m2), or of the number of loads, that gives the wanted ratios."""
+    if choice is None:
+        return Interval(robot.platform2.I, robot.platform2.I)
+    ends = (choice.bounds.low, choice.bounds.high)
+    if choice.by == "loads":
+        low, high = (load_count(robot, r, choice.about, choice.loads) for r in ends)
+        return Interval(max(low, 0.0), high)
+    two = robot.platform2
+    if choice.about == "joint":
+        offset, scale = two.m * two.joint_to_centre**2, robot.platform1.joint_inertia
+    else:
+        offset, scale = 0.0, robot.platform1.I
+    low, high = (r * scale - offset for r in ends)
+    return Interval(max(low, 1e-6 * scale), high)

@@ -1,0 +1,172 @@
+"""Speed and peak torque of many gaits at once, coarsely: where multiple shooting should start.
+
+The steady cycle of K gaits over N phases in whole-array arithmetic. Where friction is viscous
+vdot = a v + b, so each classical Runge-Kutta step is an affine map of v, known for all steps at
+once; the cycle closes at the fixed point of their product. Otherwise the map of one period is
+followed from two starts and Newton's method closes it.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, fields
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rr_opt.motion.tableau import RK4
+from rr_opt.physics.arrays import over_arrays
+from rr_opt.physics.dynamics import Dynamics
+from rr_opt.robot.ballast import By, Loads, with_load_count
+from rr_opt.robot.parameters import Robot
+
+Array = NDArray[np.float64]
+
+_NEWTON_STEPS = 8
+# Gaits times phases in one go: some arrays of this length fit the processor's cache.
+_BLOCK = 4096
+
+
+@dataclass(frozen=True)
+class Cycles:
+    """Steady cycles of K gaits at N phases: what a multiple-shooting start needs.
+
+    speed (K,) signed, m/s; torque (N, K) N m; v, chi (N, K) m/s, rad; turn (K,) rad;
+    mean (4, K) V and E as in `multiple_shooting`.
+    """
+
+    speed: Array
+    torque: Array
+    v: Array
+    chi: Array
+    turn: Array
+    mean: Array
+
+    @property
+    def peak_torque(self) -> Array:
+        """Largest |torque| at the phases, (K,), N m."""
+        return np.abs(self.torque).max(axis=0)
+
+
+class Landscape:
+    """The gaits of one robot, with its ballast running from `low` to `high`."""
+
+    def __init__(self, dynamics: Dynamics, robot: Robot, by: By, loads: Loads, low: float, high: float):
+        names = dynamics.motion.name_in()
+        self._rates = over_arrays(dynamics.motion.factory("rates", names, ["vdot", "w", "side"]))
+        self._torque = over_arrays(dynamics.motion.factory("torque", names, ["torque"]))
+        self._values = list(dynamics.values(robot))
+        self._names = dynamics.parameters
+        self.linear = dynamics.linear
+        self._robot, self._by, self._range = robot, by, (low, high)
+        self.loads = loads
+
+    def cycles(self, gaits: Array, nodes: int) -> Cycles:
+        """Steady cycles of gaits (4, K): amplitude, period, offset, ballast share."""
+        count = gaits.shape[1]
+        blocks = math.ceil(count * nodes / _BLOCK)
+        parts = [self._block(part, nodes) for part in np.array_split(gaits, blocks, axis=1)]
+        if len(parts) == 1:
+            return parts[0]
+        return Cycles(
+            *(
+                np.concatenate([getattr(part, field.name) for part in parts], axis=-1)
+                for field in fields(Cycles)
+            )
+        )
+
+    def _block(self, gaits: Array, nodes: int) -> Cycles:
+        amplitude, period, offset, share = gaits
+        p = self._parameters(share)
+        theta = 2 * math.pi * (np.arange(2 * nodes) / (2 * nodes))[:, None]
+        omega = 2 * math.pi / period
+        sine = amplitude * np.sin(theta)
+        angle = (sine + offset, amplitude * omega * np.cos(theta), -(omega**2) * sine)
+        h = period / nodes
+        at_nodes = [part[::2] for part in angle]
+        if self.linear:
+            pair = np.array([0.0, 1.0])[:, None, None]
+            vdot, w, side = self._rates(pair, *angle, *p)
+            v = _close_affine(vdot[1] - vdot[0], vdot[0], h)
+            w, side = (rate[0, ::2] + (rate[1, ::2] - rate[0, ::2]) * v for rate in (w, side))
+        else:
+            v = self._close_newton(*angle, p, h)
+            _, w, side = self._rates(v, *at_nodes, *p)
+        (torque,) = self._torque(v, *at_nodes, *p)
+        return _summary(v, w, side, torque, period)
+
+    def _parameters(self, share: Array) -> list:
+        low, high = self._range
+        amount = low + share * (high - low)
+        values = dict(zip(self._names, self._values, strict=True))
+        if self._by == "loads":
+            loaded = with_load_count(self._robot.platform2, self.loads, amount)
+            values |= {"m2": loaded.m, "I2": loaded.I, "a2": loaded.a}
+        else:
+            values["I2"] = amount
+        return list(values.values())
+
+    def _close_newton(self, phi: Array, dphi: Array, ddphi: Array, p: list, h: Array) -> Array:
+        """v at the nodes of the cycle, for friction that is not viscous."""
+        nodes = len(phi) // 2
+        shift = 1e-4
+
+        def rollout(start: Array) -> Array:
+            path = [start]
+            for k in range(nodes):
+
+                def rhs(fraction: float, v: Array, k: int = k) -> Array:
+                    i = (2 * k + round(2 * fraction)) % (2 * nodes)
+                    return self._rates(v, phi[i], dphi[i], ddphi[i], *p)[0]
+
+                path.append(RK4.step(rhs, path[-1], h))
+            return np.array(path)
+
+        start = np.zeros(phi.shape[1])
+        for _ in range(_NEWTON_STEPS):
+            path = rollout(np.array([start, start + shift]))
+            gap = path[-1, 0] - start
+            slope = (path[-1, 1] - path[-1, 0]) / shift - 1.0
+            start = start - gap / np.where(slope < -1e-9, slope, -1.0)
+            if np.all(np.abs(gap) < 1e-9):
+                break
+        return path[:-1, 0]
+
+
+def _close_affine(a: Array, b: Array, h: Array) -> Array:
+    """v at the nodes of the periodic solution of v' = a v + b, given at nodes and midpoints."""
+    a0, am, a1 = a[0::2], a[1::2], np.roll(a[0::2], -1, axis=0)
+    b0, bm, b1 = b[0::2], b[1::2], np.roll(b[0::2], -1, axis=0)
+    # The four slopes of the classical step as affine functions (gain, shift) of v.
+    g1, s1 = a0, b0
+    g2, s2 = am * (1 + h / 2 * g1), am * (h / 2 * s1) + bm
+    g3, s3 = am * (1 + h / 2 * g2), am * (h / 2 * s2) + bm
+    g4, s4 = a1 * (1 + h * g3), a1 * (h * s3) + b1
+    gain = 1 + h / 6 * (g1 + 2 * g2 + 2 * g3 + g4)
+    shift = h / 6 * (s1 + 2 * s2 + 2 * s3 + s4)
+    total_gain, total_shift = np.ones_like(gain[0]), np.zeros_like(gain[0])
+    for k in range(len(gain)):
+        total_gain, total_shift = gain[k] * total_gain, gain[k] * total_shift + shift[k]
+    v = np.empty_like(gain)
+    v[0] = total_shift / (1 - total_gain)
+    for k in range(len(gain) - 1):
+        v[k + 1] = gain[k] * v[k] + shift[k]
+    return v
+
+
+def _summary(v: Array, w: Array, side: Array, torque: Array, period: Array) -> Cycles:
+    turn = period * w.mean(axis=0)
+    rate = period * w - turn
+    # Integral over an interval of a periodic function from four nodes, order 4.
+    ahead, behind = np.roll(rate, -1, axis=0), np.roll(rate, 1, axis=0)
+    inner = 13 * (rate + ahead) - behind - np.roll(rate, -2, axis=0)
+    chi = np.cumsum(inner, axis=0) / (24 * len(v))
+    chi = np.concatenate([np.zeros((1, v.shape[1])), chi[:-1]])
+    cos, sin = np.cos(chi), np.sin(chi)
+    mean = np.array(
+        [(cos * v - sin * side).mean(0), (sin * v + cos * side).mean(0), cos.mean(0), sin.mean(0)]
+    )
+    forward = mean[0] * mean[2] + mean[1] * mean[3]
+    return Cycles(
+        np.copysign(np.hypot(mean[0], mean[1]), forward), torque, v, chi, turn, mean
+    )

@@ -1,0 +1,230 @@
+"""The gait problem as a nonlinear program: multiple shooting over one period.
+
+Phase theta in [0, 1) counts the period. At every node theta_k the speed v_k of axle 1 and the
+heading chi_k are unknowns, and a Runge-Kutta step must carry each node to the next and the last
+to the first. chi = psi - theta * turn is the heading seen from a frame that turns steadily with
+the gait, `turn` being the heading gained per period; so chi is periodic, straight gaits are no
+special case, and the average velocity
+
+    V = integral over theta of Rot(chi) (v, side)
+
+is the mean of P's velocity in that frame. Its length is the speed along the mean circle,
+R |turn|/T: with p the position of P from the centre, seen from the turning frame, V is the mean
+of dp/dt + Omega x p, and the first term vanishes as p is periodic. It depends neither on the
+phase at which the period is cut nor, unlike R, on a division by turn.
+
+Derivatives. V and the mean heading vector E are unknowns of their own, tied to the sums over
+the intervals by linear rows. The Lagrangian is then a sum of terms that each know one interval
+and the few decisions, so Jacobian and Hessian are assembled from one small function mapped over
+the intervals. (Left to itself, CasADi colours the whole graph and takes a hundred times longer.)
+
+Robot, limits and node phases are parameters: one compiled program serves every problem of its
+kind.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+
+import casadi as ca
+
+from rr_opt.motion.tableau import BUTCHER6, Tableau
+from rr_opt.physics.dynamics import derive
+from rr_opt.robot.ballast import By, Loads, with_load_count
+from rr_opt.robot.parameters import Platform
+
+DECISIONS = ("amplitude", "period", "offset", "ballast", "turn")
+"""alpha (rad), T (s), phi0 (rad), I2 (kg m2) or number of loads on a scale from 0 at its lower
+bound to 1 at its upper, heading per period (rad)."""
+
+LIMITS = ("rate", "angle+", "angle-", "singularity+", "singularity-", "direction")
+"""Rows of the program that hold once a period, in their order; torque holds at every node."""
+
+
+@dataclass(frozen=True)
+class Shooting:
+    """The program with `intervals` steps a period.
+
+    solver  nlpsol: x = (DECISIONS, V, E, v_0 .. , chi_0 ..), g = (continuity of v, of chi, of
+            V and E, LIMITS, torque at the nodes), p = (robot, loads, ballast range, direction,
+            node phases)
+    """
+
+    intervals: int
+    solver: ca.Function
+
+
+@lru_cache
+def shooting(
+    effects: tuple[str, ...], by: By, intervals: int, method: Tableau = BUTCHER6
+) -> Shooting:
+    """Build the program for robots with these effects and this way of changing the inertia."""
+    n, nz, nm = intervals, len(DECISIONS), 4
+    interval = _Interval(effects, by, method)
+    x = ca.MX.sym("x", nz + nm + 2 * n)
+    p = ca.MX.sym("p", interval.shared + 1 + n)
+    z, mean, vs, chis = ca.vertsplit(x, [0, nz, nz + nm, nz + nm + n, nz + nm + 2 * n])
+    fixed, sign, thetas = ca.vertsplit(p, [0, interval.shared, interval.shared + 1, p.numel()])
+    widths = ca.vertcat(thetas[1:], thetas[0] + 1) - thetas
+    per_node = (vs.T, chis.T, thetas.T, widths.T)
+
+    limits = interval.limits(z, mean, fixed, sign)
+    ends = interval.step.map(n)(*per_node, z, fixed)
+    following = ca.vertcat(vs[1:], vs[0]), ca.vertcat(chis[1:], chis[0])
+    f = -ca.sqrt(ca.sumsqr(mean[:2]))
+    g = ca.vertcat(
+        ends[0, :].T - following[0],
+        ends[1, :].T - following[1],
+        ca.sum2(ends[2:6, :]) - mean,
+        limits,
+        ends[6, :].T,
+    )
+
+    # Rows of `slopes` are the outputs of a step (v, chi, 4 sums, torque), column by column of
+    # (v, chi, decisions) for each interval in turn.
+    wrt = 2 + nz
+    slopes = interval.jacobian.map(n)(*per_node, z, fixed)
+
+    def block(row, column):
+        return slopes[row, column::wrt]
+
+    shift = ca.DM.eye(n)[[*range(1, n), 0], :]
+    empty = ca.MX(n, nm)
+    to_z = [ca.horzcat(*(block(row, 2 + j).T for j in range(nz))) for row in (0, 1, 6)]
+    sums_to_z = ca.horzcat(*(ca.sum2(slopes[2:6, 2 + j :: wrt]) for j in range(nz)))
+    limits_to_z, limits_to_mean = interval.limit_slopes(z, mean, fixed, sign)
+    jac_g = ca.vertcat(
+        ca.horzcat(to_z[0], empty, ca.diag(block(0, 0)) - shift, ca.MX(n, n)),
+        ca.horzcat(to_z[1], empty, ca.diag(block(1, 0)), ca.diag(block(1, 1)) - shift),
+        ca.horzcat(sums_to_z, -ca.DM.eye(nm), slopes[2:6, 0::wrt], slopes[2:6, 1::wrt]),
+        ca.horzcat(limits_to_z, limits_to_mean, ca.MX(len(LIMITS), 2 * n)),
+        ca.horzcat(to_z[2], empty, ca.diag(block(6, 0)), ca.MX(n, n)),
+    )
+
+    lam_f, lam_g = ca.MX.sym("lam_f"), ca.MX.sym("lam_g", g.numel())
+    on_v, on_chi, on_sums, on_limits, on_torque = ca.vertsplit(
+        lam_g, [0, n, 2 * n, 2 * n + nm, 2 * n + nm + len(LIMITS), g.numel()]
+    )
+    weights = ca.vertcat(on_v.T, on_chi.T, ca.repmat(on_sums, 1, n), on_torque.T)
+    curves = interval.hessian.map(n)(*per_node, z, fixed, weights)
+    z_z = sum(curves[2:, 2 + j :: wrt] @ ca.DM.ones(n) @ ca.DM.eye(nz)[j, :] for j in range(nz))
+    limit_z, limit_mean = interval.limit_curves(z, mean, fixed, sign, on_limits)
+    mean_mean = limit_mean + lam_f * ca.hessian(f, x)[0][nz : nz + nm, nz : nz + nm]
+    upper = ca.vertcat(
+        ca.horzcat(z_z + limit_z, ca.MX(nz, nm), curves[2:, 0::wrt], curves[2:, 1::wrt]),
+        ca.horzcat(ca.MX(nm, nz), mean_mean, ca.MX(nm, 2 * n)),
+        ca.horzcat(ca.MX(n, nz + nm), ca.diag(curves[0, 0::wrt]), ca.diag(curves[0, 1::wrt])),
+        ca.horzcat(ca.MX(n, nz + nm + n), ca.diag(curves[1, 1::wrt])),
+    )
+    given = {
+        "grad_f": ca.Function("grad_f", [x, p], [f, ca.gradient(f, x)], ["x", "p"], ["f", "grad_f_x"]),
+        "jac_g": ca.Function("jac_g", [x, p], [g, jac_g], ["x", "p"], ["g", "jac_g_x"]),
+        "hess_lag": ca.Function(
+            "hess_lag",
+            [x, p, lam_f, lam_g],
+            [ca.triu(upper)],
+            ["x", "p", "lam_f", "lam_g"],
+            ["triu_hess_gamma_x_x"],
+        ),
+    }
+    solver = ca.nlpsol("gait", "ipopt", {"x": x, "p": p, "f": f, "g": g}, {**_IPOPT, **given})
+    return Shooting(n, solver)
+
+
+class _Interval:
+    """What one interval, and the limits, contribute: values, first and second derivatives.
+
+    step       (v, chi, theta, width, z, fixed) -> v, chi, V, E at the end, torque at the start
+    shared     length of `fixed`: robot, loads and ballast range
+    """
+
+    def __init__(self, effects: tuple[str, ...], by: By, method: Tableau):
+        dynamics = derive(effects)
+        names = dynamics.parameters
+        z = ca.SX.sym("z", len(DECISIONS))
+        amplitude, T, offset, share, turn = ca.vertsplit(z)
+        fixed = ca.SX.sym("fixed", len(names) + 5)
+        values = _with_ballast(fixed, names, share, by)
+        v, chi, theta, width = (ca.SX.sym(name) for name in ("v", "chi", "theta", "width"))
+
+        def motion(theta: ca.SX, v: ca.SX) -> tuple[ca.SX, ...]:
+            omega = 2 * math.pi / T
+            swing = amplitude * ca.sin(2 * math.pi * theta)
+            rate = amplitude * omega * ca.cos(2 * math.pi * theta)
+            return dynamics.motion(v, swing + offset, rate, -(omega**2) * swing, values)
+
+        def rhs(fraction: float, y: ca.SX) -> ca.SX:
+            vdot, w, side, _ = motion(theta + fraction * width, y[0])
+            cos, sin = ca.cos(y[1]), ca.sin(y[1])
+            V = ca.vertcat(cos * y[0] - sin * side, sin * y[0] + cos * side)
+            return ca.vertcat(T * vdot, T * w - turn, V, cos, sin)
+
+        end = method.step(rhs, ca.vertcat(v, chi, 0, 0, 0, 0), width)
+        out = ca.cse(ca.vertcat(end, motion(theta, v)[3]))
+        inner = ca.vertcat(v, chi, z)
+        inputs = [v, chi, theta, width, z, fixed]
+        weights = ca.SX.sym("weights", out.numel())
+        slopes = ca.densify(ca.jacobian(out, inner))
+        curves = ca.densify(ca.hessian(ca.dot(weights, out), inner)[0])
+        self.shared = fixed.numel()
+        self.step = ca.Function("step", inputs, [out])
+        self.jacobian = ca.Function("jacobian", inputs, [ca.cse(slopes)])
+        self.hessian = ca.Function("hessian", [*inputs, weights], [ca.cse(curves)])
+
+        mean, sign = ca.SX.sym("mean", 4), ca.SX.sym("sign")
+        rows = _limit_rows(z, fixed, names, sign * ca.dot(mean[:2], mean[2:]))
+        lam = ca.SX.sym("lam", len(LIMITS))
+        inputs = [z, mean, fixed, sign]
+        self.limits = ca.Function("limits", inputs, [rows])
+        self.limit_slopes = ca.Function(
+            "limit_slopes", inputs, [ca.jacobian(rows, z), ca.jacobian(rows, mean)]
+        )
+        weighted = ca.dot(lam, rows)
+        self.limit_curves = ca.Function(
+            "limit_curves",
+            [*inputs, lam],
+            [ca.hessian(weighted, z)[0], ca.hessian(weighted, mean)[0]],
+        )
+
+
+_IPOPT = {
+    "print_time": False,
+    "error_on_fail": False,
+    "ipopt.print_level": 0,
+    "ipopt.sb": "yes",
+    "ipopt.tol": 1e-9,
+    "ipopt.max_iter": 200,
+    "ipopt.mu_init": 1e-3,
+    "ipopt.bound_relax_factor": 0.0,
+}
+
+
+def _limit_rows(z, fixed, names, forward):
+    """Rows of LIMITS; each is bounded by the limit of its name, so a row's multiplier is the
+    speed gained per unit of that limit."""
+    amplitude, period, offset = z[0], z[1], z[2]
+    c1, c2 = fixed[names.index("c1")], fixed[names.index("c2")]
+    return ca.vertcat(
+        2 * math.pi * amplitude / period,
+        offset + amplitude,
+        amplitude - offset,
+        c1 * ca.cos(offset + amplitude) + c2,
+        c1 * ca.cos(offset - amplitude) + c2,
+        forward,
+    )
+
+
+def _with_ballast(fixed: ca.SX, names: tuple[str, ...], share: ca.SX, by: By) -> ca.SX:
+    """The robot's parameter vector with platform 2 changed by the ballast."""
+    values = {name: fixed[i] for i, name in enumerate(names)}
+    mass, distance, spread, low, high = ca.vertsplit(fixed[len(names) :])
+    amount = low + share * (high - low)
+    if by == "loads":
+        bare = Platform(*(values[f"{symbol}2"] for symbol in "mIcab"), kappa=0.0)
+        loaded = with_load_count(bare, Loads(mass, distance, spread), amount)
+        values |= {"m2": loaded.m, "I2": loaded.I, "a2": loaded.a}
+    else:
+        values["I2"] = amount
+    return ca.vertcat(*values.values())

@@ -1,0 +1,81 @@
+"""What is wrong with a file, as data: one issue per problem, and the error that carries them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from difflib import get_close_matches
+from typing import Literal
+
+from rr_opt.outcome import InputError
+
+Level = Literal["error", "warning"]
+
+_LONGEST_SHOWN = 60
+
+
+@dataclass(frozen=True)
+class Issue:
+    """One problem of a file.
+
+    path     key path, such as `platform1.m` or `physics[0].name`; empty for the whole file
+    message  what was read, what was expected, what to do
+    line     line of the key (the first is 1), None if it is unknown
+    file     the file as the user named it
+    """
+
+    level: Level
+    path: str
+    message: str
+    line: int | None = None
+    file: str = ""
+
+    def __str__(self) -> str:
+        place = self.file if self.line is None else f"{self.file}:{self.line}"
+        head = "" if self.level == "error" else "warning: "
+        return ": ".join(part for part in (place, self.path, head + self.message) if part)
+
+
+class InvalidFileError(InputError):
+    """A file cannot be used; `issues` are all its problems, and str() lists them one a line."""
+
+    def __init__(self, issues: Iterable[Issue]):
+        self.issues = tuple(issues)
+        super().__init__("\n".join(str(issue) for issue in self.issues))
+
+
+def has_errors(issues: Iterable[Issue]) -> bool:
+    """True if one of the issues is an error and not only a warning."""
+    return any(issue.level == "error" for issue in issues)
+
+
+def shown(value: object) -> str:
+    """A value as a message quotes it: on one line, without control characters, not long."""
+    if value is None:
+        return "nothing"
+    if isinstance(value, dict):
+        return "a mapping" if value else "an empty mapping"
+    if isinstance(value, list):
+        inner = ", ".join(shown(item) for item in value[:4])
+        return f"[{inner}, ...]" if len(value) > 4 else f"[{inner}]"
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    text = repr(value) if isinstance(value, str) else str(value)
+    return text if len(text) <= _LONGEST_SHOWN else text[: _LONGEST_SHOWN - 4] + " ..."
+
+
+def nearest(word: str, known: Sequence[str]) -> str | None:
+    """The known word that `word` was most likely meant to be, if one is near."""
+    if len(word) > _LONGEST_SHOWN:
+        return None
+    folded = {name.casefold(): name for name in reversed(known)}
+    matches = get_close_matches(word, known, n=1, cutoff=0.5)
+    matches = matches or get_close_matches(word.casefold(), list(folded), n=1, cutoff=0.5)
+    return folded.get(matches[0].casefold(), matches[0]) if matches else None
+
+
+def unknown_word(word: str, known: Sequence[str], kind: str) -> str:
+    """The message for a word that is none of those known, naming the nearest."""
+    near = nearest(word, known)
+    advice = f"Did you mean `{near}`?" if near else "Write one of these, or delete it."
+    return f"Read the {kind} {shown(word)}. Expected one of: {', '.join(known)}. {advice}"

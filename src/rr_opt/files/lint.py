@@ -1,0 +1,27 @@
+"""Every problem of a file at once, before anything is computed from it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from rr_opt.files.issue import InvalidFileError, Issue
+from rr_opt.files.kind import kind_of
+from rr_opt.files.problem_file import problem_from
+from rr_opt.files.problem_sources import problem_sources
+from rr_opt.files.robot_file import robot_from
+from rr_opt.files.source import problem_path, read_document
+
+
+def lint_file(path: str | Path) -> list[Issue]:
+    """All issues of a robot or problem file, and of the robot file that a problem names.
+
+    A folder stands for its problem.yaml. The kind of the file is told from its keys. Nothing
+    is raised: a file that cannot be read is an issue too.
+    """
+    try:
+        document = read_document(problem_path(Path(path)))
+        if kind_of(document) == "robot":
+            return robot_from(document)[1]
+        return problem_from(problem_sources(path))[1]
+    except InvalidFileError as error:
+        return list(error.issues)

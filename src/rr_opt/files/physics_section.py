@@ -1,0 +1,109 @@
+"""The robot file's `physics`: effects of the catalogue with the values of their parameters."""
+
+from __future__ import annotations
+
+from types import MappingProxyType
+from typing import Any
+
+from rr_opt.files.document import Document
+from rr_opt.files.issue import Issue, shown, unknown_word
+from rr_opt.files.quantity import Quantity
+from rr_opt.outcome import InputError
+from rr_opt.physics.effects import CATALOGUE, Effect, Parameter
+from rr_opt.robot.parameters import EffectUse
+
+
+def read_effects(document: Document) -> tuple[tuple[EffectUse, ...], list[Issue]]:
+    """The effects under `physics` of a robot; a parameter that is not given is neutral."""
+    entries = document.data["physics"]
+    if not isinstance(entries, list):
+        message = (
+            f"Read {shown(entries)}. Expected a list of effects, each with a name and its "
+            "parameters. Write for example `- {name: coulomb_friction, F1: 0.02, F2: 0.02}`."
+        )
+        return (), [document.issue("error", ("physics",), message)]
+    uses: dict[str, EffectUse] = {}
+    issues: list[Issue] = []
+
+    def note(path: tuple[str | int, ...], message: str, level: Any = "error") -> None:
+        issues.append(document.issue(level, ("physics", *path), message))
+
+    for index, entry in enumerate(entries):
+        if not isinstance(entry, dict):
+            note((index,), f"Read {shown(entry)}. Expected {{name: ..., and its parameters}}.")
+            continue
+        name = entry.get("name")
+        effect = CATALOGUE.get(name) if isinstance(name, str) else None
+        if effect is None:
+            message = (
+                unknown_word(name, list(CATALOGUE), "effect")
+                if isinstance(name, str)
+                else (
+                    f"Read {shown(name)}. Expected the name of an effect: {', '.join(CATALOGUE)}."
+                )
+            )
+            note((index, "name"), message)
+            continue
+        if effect.name in uses:
+            note((index, "name"), f"Read `{name}` a second time. Keep one, with all parameters.")
+            continue
+        values, wrong = _values(effect, entry)
+        for key, message in wrong:
+            note((index, key), message)
+        uses[effect.name] = EffectUse(effect.name, MappingProxyType(values))
+        if not wrong and len(entry) == 1:
+            keys = ", ".join(q.name for q in effect.parameters)
+            note((index,), f"No parameter is given, so it does nothing. Add {keys}.", "warning")
+    return tuple(uses.values()), issues
+
+
+def _values(effect: Effect, entry: dict[str, Any]) -> tuple[dict[str, float], list[Any]]:
+    values = {q.name: q.neutral for q in effect.parameters}
+    named = {key: q for q in effect.parameters for key in (q.name, *q.aliases)}
+    given: dict[str, str] = {}
+    wrong: list[Any] = []
+    for key, value in entry.items():
+        parameter = named.get(key)
+        if key == "name":
+            continue
+        if parameter is None:
+            wrong.append((key, unknown_word(key, ["name", *named], "key")))
+            continue
+        if parameter.name in given:
+            other = given[parameter.name]
+            wrong.append((key, f"`{key}` and `{other}` are the same parameter. Keep one."))
+        given[parameter.name] = key
+        try:
+            values[parameter.name] = _quantity(parameter).read(value)
+        except InputError as error:
+            wrong.append((key, str(error)))
+    return values, wrong
+
+
+def _quantity(parameter: Parameter) -> Quantity:
+    low, high = parameter.bounds
+    unit = parameter.unit.replace("dimensionless", "")
+    return Quantity(unit, f"{parameter.typical:g}", at_least=low, at_most=high)
+
+
+def effects_json_schema() -> dict[str, Any]:
+    """JSON Schema of the list of effects, one alternative for each effect of the catalogue."""
+    return {"type": "array", "items": {"oneOf": [_json_schema(e) for e in CATALOGUE.values()]}}
+
+
+def _json_schema(effect: Effect) -> dict[str, Any]:
+    parameters = {
+        key: {
+            **_quantity(parameter).json_schema(),
+            "description": f"{parameter.name}, {parameter.unit or 'dimensionless'}",
+        }
+        for parameter in effect.parameters
+        for key in (parameter.name, *parameter.aliases)
+    }
+    return {
+        "type": "object",
+        "description": effect.sentence,
+        "properties": {"name": {"const": effect.name}, **parameters},
+        "required": ["name"],
+        "additionalProperties": False,
+    }

@@ -1,0 +1,64 @@
+"""Values of a robot that are possible, and probably not meant."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from rr_opt.robot.ballast import inertia_ratio
+from rr_opt.robot.parameters import Platform, Robot
+
+_LARGEST_LENGTH = 5.0
+"""Longer platforms are taken for millimetres written as metres, m."""
+
+
+def doubts(robot: Robot) -> Iterator[tuple[tuple[str, ...], str]]:
+    """Key path and message of every value that looks like a slip of the pen."""
+    for key, platform in (("platform1", robot.platform1), ("platform2", robot.platform2)):
+        for name, message in _platform_doubts(platform):
+            yield (key, name), message
+    ratio = inertia_ratio(robot, "joint")
+    if not 0.01 <= ratio <= 100:
+        yield (
+            ("platform2", "I"),
+            f"The inertia ratio J20/J10 about the joint is {ratio:.3g}. Expected 0.01 to 100: the "
+            "platforms hardly belong together. Check the units of m, I, c and a of both.",
+        )
+    if robot.singular_angle < robot.servo.angle_limit:
+        limit, singular = robot.servo.angle_limit, robot.singular_angle
+        yield (
+            ("servo", "angle_limit"),
+            f"Within {limit:.4g} rad lies the singular posture |phi| = arccos(-c2/c1) = "
+            f"{singular:.4g} rad, where a model without side slip means nothing. Keep a distance "
+            "with the problem's `limits.singularity`.",
+        )
+
+
+def _platform_doubts(platform: Platform) -> Iterator[tuple[str, str]]:
+    longest = max(platform.c, abs(platform.a), platform.b)
+    gyration = math.sqrt(platform.I / platform.m)
+    if platform.a > platform.c:
+        yield (
+            "a",
+            (
+                f"a = {platform.a:.4g} m puts the centre of mass beyond the joint (c = "
+                f"{platform.c:.4g} m). a counts from the axle towards the joint; check that it is not "
+                "the distance from the joint."
+            ),
+        )
+    if longest > _LARGEST_LENGTH:
+        yield (
+            "c",
+            (
+                f"The platform is {longest:.4g} m long. Plain numbers are metres: write `186 mm` "
+                "for millimetres."
+            ),
+        )
+    if gyration > 3 * longest:
+        yield (
+            "I",
+            (
+                f"The radius of gyration sqrt(I/m) is {gyration:.3g} m, more than three times the "
+                f"platform's largest length, {longest:.3g} m. Check the units of I (kg m2), m, c and b."
+            ),
+        )

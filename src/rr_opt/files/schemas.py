@@ -1,0 +1,43 @@
+"""The JSON Schemas of the input files, with which editors complete and check them."""
+
+from __future__ import annotations
+
+from typing import Any, Literal, get_args
+
+from pydantic import BaseModel
+
+from rr_opt.files.issue import unknown_word
+from rr_opt.files.problem_model import ProblemModel
+from rr_opt.files.robot_model import RobotModel
+from rr_opt.outcome import InputError
+
+FileKind = Literal["robot", "problem"]
+
+_DIALECT = "https://json-schema.org/draft/2020-12/schema"
+_MODELS: dict[str, type[BaseModel]] = {"robot": RobotModel, "problem": ProblemModel}
+
+
+def schema(kind: str) -> dict[str, Any]:
+    """The JSON Schema (2020-12) of a kind of file: robot or problem.
+
+    Every field carries a description with its unit; the SI unit alone is under `x-unit`.
+    Raises InputError for any other kind.
+    """
+    if kind not in _MODELS:
+        raise InputError(unknown_word(kind, get_args(FileKind), "kind of file"))
+    generated = _MODELS[kind].model_json_schema()
+    return {"$schema": _DIALECT, "title": f"rr-opt {kind} file", **_tidied(generated)}
+
+
+def _tidied(node: Any) -> Any:
+    """Without pydantic's titles, and without null as the default of a key that may be absent."""
+    if isinstance(node, list):
+        return [_tidied(item) for item in node]
+    if not isinstance(node, dict):
+        return node
+    return {
+        key: _tidied(value)
+        for key, value in node.items()
+        if not (key == "default" and value is None)
+        and not (key == "title" and isinstance(value, str))
+    }

@@ -1,0 +1,148 @@
+"""A number, or a number with its unit, to SI.
+
+`30 rpm` is pi rad/s. pint knows what a unit is worth and is loaded only when one is written.
+It never sees the text itself: the text is split here into names and small whole powers, so
+that a hostile expression such as `9**9**9**9` is refused and not computed.
+
+Angles are kept apart from plain numbers: 30 Hz is not 30 rad/s, and 5 % is not an angle.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from functools import lru_cache
+
+from rr_opt.files.issue import nearest, shown
+from rr_opt.outcome import InputError
+
+LONGEST = 60
+"""Longest text read as a quantity, characters."""
+
+_NUMBER = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
+_QUANTITY = re.compile(rf"\s*({_NUMBER})\s*(.*)", re.DOTALL)
+_TOKEN = re.compile(
+    r"(?P<name>[A-Za-zµμΩ°%]+)(?:(?:\*\*|\^)?(?P<power>-?[1-9])(?![0-9.])|(?P<script>[²³]))?"
+    r"|(?P<sign>[*·/()1])|\s+"
+)
+_SPELLINGS = {"Nm": "N m", "Nms": "N m s", "Ns": "N s", "RPM": "rpm", "°": "deg", "Nmm": "N mm"}
+_COMMON = ("m", "cm", "mm", "kg", "g", "s", "ms", "min", "rad", "deg", "mrad", "rpm", "N", "kgf")
+# A moment may be written per radian: the angle it is divided by says how it is used.
+_ALSO = {"N m s": ("N m s/rad",), "N m": ("N m/rad",)}
+
+
+def to_si(value: object, unit: str) -> float:
+    """The value in `unit`, which must be an SI unit such as `rad/s`; "" is dimensionless.
+
+    A plain number is taken to be in `unit` already. Infinity is passed through if it was
+    given as a number. Raises InputError for anything that is not a number of that dimension.
+    """
+    if isinstance(value, bool) or not isinstance(value, int | float | str):
+        raise InputError(f"Read {shown(value)}. Expected {_wanted(unit)}.")
+    if isinstance(value, str):
+        number, written = _split(value, unit)
+        value = number * _worth(written, unit, value) if written else number
+        if math.isinf(value):
+            raise InputError(f"Read a number that is too large. Expected {_wanted(unit)}.")
+    try:
+        result = float(value)
+    except OverflowError:
+        raise InputError(f"Read a number that is too large. Expected {_wanted(unit)}.") from None
+    if math.isnan(result):
+        raise InputError(f"Read `.nan`, not a number. Expected {_wanted(unit)}.")
+    return result
+
+
+def _wanted(unit: str) -> str:
+    return f"a number, or a number with a unit, in {unit}" if unit else "a number without a unit"
+
+
+def _split(text: str, unit: str) -> tuple[float, str]:
+    match = _QUANTITY.fullmatch(text) if len(text) <= LONGEST else None
+    if match is None:
+        raise InputError(f"Read the text {shown(text)}. Expected {_wanted(unit)}.")
+    return float(match[1]), match[2].strip()
+
+
+def _worth(written: str, unit: str, text: str) -> float:
+    """How many `unit` make one `written`."""
+    factor, dimension = _base(written, text)
+    for accepted in (unit, *_ALSO.get(unit, ())):
+        expected_factor, expected = _base(accepted, text)
+        if dimension == expected:
+            return factor / expected_factor
+    advice = ""
+    if unit == "rad/s" and dimension == _base("Hz", text)[1]:
+        advice = " Turns per second or radians per second? Write rpm, rad/s or deg/s."
+    raise InputError(
+        f"Read {shown(text)}, which is {_in_words(dimension)}. Expected {_wanted(unit)}.{advice}"
+    )
+
+
+def _in_words(dimension: str) -> str:
+    return f"in {dimension}" if dimension else "a plain number"
+
+
+@lru_cache
+def _registry():  # noqa: ANN202 - pint's type cannot be named without importing pint
+    import pint  # noqa: PLC0415 - half a second that most files can do without
+
+    return pint.UnitRegistry()
+
+
+@lru_cache(maxsize=256)
+def _base(written: str, text: str) -> tuple[float, str]:
+    """What one `written` is worth in base units, and those base units as text."""
+    registry = _registry()
+    total = registry.Unit("dimensionless")
+    for name, power in _factors(written, text):
+        total = total * _named(name, text) ** power
+    factor, base = registry.get_base_units(total)
+    return float(factor), f"{base:~P}"
+
+
+def _named(name: str, text: str):  # noqa: ANN202
+    registry = _registry()
+    try:
+        unit = registry.parse_units(name)
+        # Zero degrees Celsius or decibel is not nothing: such scales have no factor.
+        if registry.Quantity(0.0, unit).to_base_units().magnitude == 0.0:
+            return unit
+    except (AttributeError, ValueError, TypeError):
+        pass
+    near = nearest(name, _COMMON)
+    advice = f" Did you mean `{near}`?" if near else ""
+    raise InputError(f"Read {shown(text)}, whose unit {shown(name)} is not known.{advice}")
+
+
+def _factors(written: str, text: str) -> list[tuple[str, int]]:
+    """`kg m^2/(N s)` -> [(kg, 1), (m, 2), (N, -1), (s, -1)]."""
+    for spelling, meant in _SPELLINGS.items():
+        written = re.sub(rf"(?<![A-Za-z]){spelling}(?![A-Za-z])", meant, written)
+    factors: list[tuple[str, int]] = []
+    signs, sign, position = [1], 1, 0
+    while position < len(written):
+        token = _TOKEN.match(written, position)
+        if token is None:
+            break
+        position = token.end()
+        if token["name"]:
+            script = {"²": 2, "³": 3}.get(token["script"], 1)
+            power = int(token["power"]) if token["power"] else script
+            factors.append((token["name"], power * signs[-1] * sign))
+            sign = 1
+        elif token["sign"] == "/":
+            sign = -1
+        elif token["sign"] == "(":
+            signs.append(signs[-1] * sign)
+            sign = 1
+        elif token["sign"] == ")":
+            signs.pop()
+            if not signs:
+                break
+    if position < len(written) or len(signs) != 1 or sign != 1:
+        raise InputError(
+            f"Read {shown(text)}, whose unit cannot be understood. "
+            "Write units such as `kg m^2`, `N*s/m`, `rpm` or `14 kgf*cm`."
+        )
+    return factors

@@ -1,0 +1,157 @@
+"""YAML text to plain data, refusing whatever could mean something else than it says.
+
+Refused: repeated keys, anchors and aliases (a few lines can expand to gigabytes), tags,
+several documents, deep nesting, other encodings than UTF-8. Plain words follow YAML 1.2:
+`1e-5` is a number, `on` and `12:30` are texts.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import yaml
+
+from rr_opt.files.document import Document, Path, path_text
+from rr_opt.files.issue import InvalidFileError, Issue, shown
+
+LARGEST = 1_000_000
+"""Largest file read, bytes."""
+DEEPEST = 20
+MOST_VALUES = 10_000
+
+_NUMBER = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?")
+_WORDS: dict[str, Any] = {"": None, "~": None}
+_WORDS |= {spell("null"): None for spell in (str, str.title, str.upper)}
+_WORDS |= {spell("true"): True for spell in (str, str.title, str.upper)}
+_WORDS |= {spell("false"): False for spell in (str, str.title, str.upper)}
+_WORDS |= {sign + ".inf": float(sign + "inf") for sign in ("", "+", "-")}
+_WORDS |= {".nan": float("nan"), ".NaN": float("nan"), ".Inf": float("inf")}
+
+
+def parse_yaml(content: bytes, file: str) -> Document:
+    """The data of a YAML file whose content is one mapping.
+
+    Raises InvalidFileError, naming `file`, with everything that was found wrong.
+    """
+    if len(content) > LARGEST:
+        _refuse(file, f"The file is larger than {LARGEST / 1e6:g} MB. Expected a short YAML file.")
+    try:
+        text = content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        _refuse(file, "The text is not UTF-8. Save the file with the encoding UTF-8.", line)
+    return _Reading(text, file).document()
+
+
+def _refuse(file: str, message: str, line: int | None = None) -> Any:
+    raise InvalidFileError([Issue("error", "", message, line, file)])
+
+
+class _Reading:
+    """One pass over the events of a text; `issues` gathers what does not stop it."""
+
+    def __init__(self, text: str, file: str):
+        self.file = file
+        self.events = yaml.parse(text, Loader=yaml.SafeLoader)
+        self.lines: dict[Path, int] = {}
+        self.issues: list[Issue] = []
+        self.values = 0
+
+    def document(self) -> Document:
+        try:
+            data, line = self._only_document()
+        except yaml.MarkedYAMLError as error:
+            mark = error.problem_mark or error.context_mark
+            why = ": ".join(part for part in (error.context, error.problem) if part)
+            self._stop(f"The text is not YAML: {why}.", mark.line + 1 if mark else None)
+        except yaml.reader.ReaderError as error:
+            code = error.character if isinstance(error.character, int) else ord(error.character)
+            self._stop(f"The text has a character (code {code}) that YAML does not allow.")
+        except (yaml.YAMLError, ValueError, OverflowError) as error:
+            self._stop(f"The text is not YAML: {shown(str(error))}.")
+        if not isinstance(data, dict):
+            read = "The file is empty" if data is None else f"Read {shown(data)}"
+            self._stop(f"{read}. Expected keys with values, such as `h: 0.020`.", line)
+        if self.issues:
+            raise InvalidFileError(self.issues)
+        return Document(self.file, data, self.lines)
+
+    def _only_document(self) -> tuple[Any, int | None]:
+        next(self.events)
+        if isinstance(next(self.events), yaml.StreamEndEvent):
+            return None, None
+        first = next(self.events)
+        data = self._value(first, ())
+        next(self.events)
+        after = next(self.events)
+        if not isinstance(after, yaml.StreamEndEvent):
+            line = after.start_mark.line + 1
+            self._stop("A second document begins here. Expected one document per file.", line)
+        return data, first.start_mark.line + 1
+
+    def _stop(self, message: str, line: int | None = None, path: Path = ()) -> Any:
+        self._note(message, line, path)
+        raise InvalidFileError(self.issues)
+
+    def _note(self, message: str, line: int | None, path: Path) -> None:
+        self.issues.append(Issue("error", path_text(path), message, line, self.file))
+
+    def _value(self, event: Any, path: Path) -> Any:
+        line = event.start_mark.line + 1
+        self.values += 1
+        if self.values > MOST_VALUES or len(path) > DEEPEST:
+            most = f"{MOST_VALUES} values in {DEEPEST} levels"
+            self._stop(f"The file holds too much. Expected at most {most}.", line)
+        if isinstance(event, yaml.AliasEvent):
+            self._note(f"Read the alias `*{event.anchor}`. Write the value itself.", line, path)
+            return None
+        if event.anchor is not None:
+            self._note(f"Read the anchor `&{event.anchor}`. Delete it.", line, path)
+        if event.tag is not None:
+            self._note(f"Read the tag {shown(event.tag)}. Delete it.", line, path)
+        if isinstance(event, yaml.SequenceStartEvent):
+            return self._sequence(path)
+        if isinstance(event, yaml.MappingStartEvent):
+            return self._mapping(path)
+        return self._scalar(event, path)
+
+    def _scalar(self, event: Any, path: Path) -> Any:
+        text: str = event.value
+        if any("\ud800" <= letter <= "\udfff" for letter in text):
+            self._note("The text holds half a character.", event.start_mark.line + 1, path)
+            return None
+        if event.style is not None:
+            return text
+        if text in _WORDS:
+            return _WORDS[text]
+        if _NUMBER.fullmatch(text):
+            small = len(text) <= 15 and text.lstrip("+-").isdecimal()
+            return int(text) if small else float(text)
+        return text
+
+    def _sequence(self, path: Path) -> list[Any]:
+        items: list[Any] = []
+        while not isinstance(event := next(self.events), yaml.SequenceEndEvent):
+            here = (*path, len(items))
+            self.lines[here] = event.start_mark.line + 1
+            items.append(self._value(event, here))
+        return items
+
+    def _mapping(self, path: Path) -> dict[str, Any]:
+        data: dict[str, Any] = {}
+        while not isinstance(event := next(self.events), yaml.MappingEndEvent):
+            line = event.start_mark.line + 1
+            key = event.value if isinstance(event, yaml.ScalarEvent) else None
+            if key is None:
+                self._stop("A key is a list or a mapping. Expected a word.", line, path)
+            self._value(event, path)
+            here = (*path, key)
+            value = self._value(next(self.events), here)
+            if key in data:
+                first = self.lines[here]
+                self._note(f"Read this key again; it is on line {first}. Keep one.", line, here)
+                continue
+            self.lines[here] = line
+            data[key] = value
+        return data

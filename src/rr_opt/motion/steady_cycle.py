@@ -1,0 +1,89 @@
+"""The steady cycle: the one speed v(0) that a period carries back to itself.
+
+The period maps v(0) to v(T); where friction is viscous the map is affine and one Newton step
+from anywhere is exact, otherwise Newton's method goes on until it stands still.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rr_opt.motion.cycle import Cycle, cycle_of
+from rr_opt.motion.integrator import cvodes, fixed_steps
+from rr_opt.outcome import NotConvergedError
+from rr_opt.physics.dynamics import dynamics_of
+from rr_opt.robot.gait import SineGait
+from rr_opt.robot.parameters import Robot
+
+Array = NDArray[np.float64]
+
+_NEWTON_STEPS = 50
+
+
+@dataclass(frozen=True)
+class SteadyCycle:
+    """One steady period at N + 1 equal steps: t (s), phi (rad), v (m/s), psi (rad), x, y (m),
+    torque (N m), and the cycle they make."""
+
+    gait: SineGait
+    t: Array
+    phi: Array
+    v: Array
+    psi: Array
+    x: Array
+    y: Array
+    torque: Array
+    cycle: Cycle
+
+    @property
+    def speed(self) -> float:
+        """Average speed, m/s, positive along platform 1."""
+        return self.cycle.speed
+
+
+def steady_cycle(robot: Robot, gait: SineGait, *, steps: int = 512) -> SteadyCycle:
+    """The steady cycle by fixed steps of order 6.
+
+    Raises NotConvergedError if there is none: without friction, say, or in a singular posture.
+    """
+    return _close(robot, gait, lambda v0: fixed_steps(robot, gait, v0, steps=steps))
+
+
+def reference_cycle(robot: Robot, gait: SineGait, *, samples: int = 2048) -> SteadyCycle:
+    """The steady cycle by cvodes at tight tolerance. Raises as steady_cycle."""
+    times = np.linspace(0.0, gait.period, samples + 1)
+    return _close(robot, gait, lambda v0: cvodes(robot, gait, v0, times))
+
+
+def _close(robot: Robot, gait: SineGait, rollout: Callable[[float], Array]) -> SteadyCycle:
+    v0 = 0.0
+    for _ in range(_NEWTON_STEPS):
+        path = rollout(v0)
+        gap, slope = path[0, -1] - v0, path[4, -1] - 1.0
+        if not np.isfinite(gap) or not -slope > 1e-12:
+            break
+        if abs(gap) <= 1e-13 + 1e-12 * np.abs(path[0]).max():
+            return _cycle(robot, gait, path)
+        v0 -= gap / slope
+    raise NotConvergedError(
+        f"No steady cycle was found for amplitude {gait.amplitude:.4g} rad, period "
+        f"{gait.period:.4g} s, offset {gait.offset:.4g} rad. A robot needs friction to settle, "
+        "and no gait settles that reaches the singular posture. Check kappa and the angle."
+    )
+
+
+def _cycle(robot: Robot, gait: SineGait, path: Array) -> SteadyCycle:
+    dynamics = dynamics_of(robot)
+    v, psi, x, y, _ = path
+    t = np.linspace(0.0, gait.period, len(v))
+    phi = gait.angle(t)
+    values = np.tile(dynamics.values(robot)[:, None], len(t))
+    torque = dynamics.motion(
+        v[None], phi[None], gait.rate(t)[None], gait.acceleration(t)[None], values
+    )[3]
+    made = cycle_of(gait.period, x, y, psi)
+    return SteadyCycle(gait, t, phi, v, psi, x, y, np.asarray(torque).ravel(), made)

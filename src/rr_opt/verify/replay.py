@@ -1,0 +1,60 @@
+"""Replay: the winner, simulated by cvodes at tight tolerance, as if nothing were known of it.
+
+The steady cycle is found anew, the speed measured from P's path, and every limit looked at
+between the optimiser's nodes too.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from rr_opt.motion.steady_cycle import SteadyCycle, reference_cycle
+from rr_opt.problem import Limits
+from rr_opt.robot.gait import SineGait
+from rr_opt.robot.parameters import Robot
+
+
+@dataclass(frozen=True)
+class Replay:
+    """What the simulation says.
+
+    speed      m/s, signed
+    error      |speed - claimed| / |claimed|
+    reached    extreme of each limited quantity over the cycle: rate (rad/s), angle (rad),
+               torque (N m), singularity (least S1, m)
+    excess     by how much the worst limit is broken, relative to it; negative if all are kept
+    """
+
+    speed: float
+    error: float
+    reached: dict[str, float]
+    excess: float
+    steady: SteadyCycle
+
+
+def replay(robot: Robot, gait: SineGait, limits: Limits, claimed: float) -> Replay:
+    """Simulate the steady cycle of a gait and hold it against the claim and the limits.
+
+    Raises NotConvergedError if the gait has no steady cycle.
+    """
+    steady = reference_cycle(robot, gait)
+    t = steady.t
+    # A spline through 2048 samples finds peaks between them.
+    dense = np.linspace(t[0], t[-1], 16 * (len(t) - 1) + 1)
+    torque = CubicSpline(t, steady.torque)(dense)
+    phi = gait.angle(dense)
+    S1 = robot.platform1.c * np.cos(phi) + robot.platform2.c
+    reached = {
+        "rate": float(np.abs(gait.rate(dense)).max()),
+        "angle": float(np.abs(phi).max()),
+        "torque": float(np.abs(torque).max()),
+        "singularity": float(S1.min()),
+    }
+    excess = max(
+        *(reached[name] / getattr(limits, name) - 1 for name in ("rate", "angle", "torque")),
+        1 - reached["singularity"] / limits.singularity,
+    )
+    return Replay(steady.speed, abs(steady.speed - claimed) / abs(claimed), reached, excess, steady)

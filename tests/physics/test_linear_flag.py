@@ -1,0 +1,36 @@
+"""The model says it is linear exactly when vdot is affine in v."""
+
+import pytest
+from hypothesis import find, given
+
+from rr_opt.physics.dynamics import derive
+from rr_opt.physics.effects import CATALOGUE
+from tests.physics.cases import FIRST_FOUND, REPEATABLE, cases, motion
+
+CHOICES = [(), *((name,) for name in CATALOGUE)]
+HIDDEN = pytest.mark.xfail(strict=True, reason="terms in v^2 that cancel are taken for real ones")
+
+
+def bend(case) -> float:
+    """Second difference of vdot over v, relative to the values."""
+    robot, state = case
+    values = [motion(robot, state._replace(v=state.v + step)).vdot for step in (-0.2, 0.0, 0.2)]
+    return abs(values[0] - 2 * values[1] + values[2]) / (sum(map(abs, values)) + 1e-6)
+
+
+@pytest.mark.parametrize(
+    "effects",
+    [pytest.param(c, marks=HIDDEN if c in ((), ("wheel_inertia",)) else ()) for c in CHOICES],
+    ids="+".join,
+)
+def test_flag_tells(effects):
+    if not derive(effects).linear:
+        find(cases(effects), lambda case: bend(case) > 1e-3, settings=FIRST_FOUND)
+        return
+
+    @REPEATABLE
+    @given(cases(effects))
+    def straight(case):
+        assert bend(case) < 1e-10
+
+    straight()
