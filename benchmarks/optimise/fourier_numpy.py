@@ -40,11 +40,14 @@ class Cycle(NamedTuple):
 class Performance(NamedTuple):
     """Per gait: signed mean speed (m/s), turn per period (rad), least S1 (m), |torque| (N m).
 
+    `along` is the part of the mean speed that lies along platform 1's mean axis, -1 to 1. Near 0
+    (the heading swings by more than 2 rad) the sign of the speed means little: it may jump.
     `torques` (gaits, windows) holds the peak in each part of the period, `torque` the largest.
     """
 
     speed: Array
     turn: Array
+    along: Array
     s1: Array
     torques: Array
 
@@ -105,8 +108,8 @@ def steady_cycle(one: Body, two: Body, gait: Sequence[Array], nodes: int, torque
     return Cycle(v, vdot, w, tau)
 
 
-def mean_speed(cycle: Cycle, T: Array, c1: float) -> tuple[Array, Array]:
-    """Signed mean speed (m/s) and turn (rad) per period, whatever phase the cycle begins at.
+def mean_speed(cycle: Cycle, T: Array, c1: float) -> tuple[Array, Array, Array]:
+    """Signed mean speed (m/s), turn (rad) and `along`, whatever phase the cycle begins at.
 
     In the frame that turns steadily at turn/T the heading chi is periodic, and so is P's path
     about the fixed centre: the mean of P's velocity there has length R |turn|/T.
@@ -116,10 +119,11 @@ def mean_speed(cycle: Cycle, T: Array, c1: float) -> tuple[Array, Array]:
     turn = T[:, 0] * wk[:, 0].real / nodes
     wk[:, 0] = 0.0
     wk[:, 1:] /= 2j * np.pi / T * np.arange(1, nodes // 2 + 1)
-    heading = np.exp(1j * irfft(wk, nodes))
-    velocity = np.mean(heading * (cycle.v - 1j * c1 * cycle.w), axis=1)
-    along = (velocity * np.conj(heading.mean(axis=1))).real
-    return np.copysign(np.abs(velocity), along), turn
+    axis = np.exp(1j * irfft(wk, nodes))
+    velocity = np.mean(axis * (cycle.v - 1j * c1 * cycle.w), axis=1)
+    speed = np.abs(velocity)
+    along = (velocity * np.conj(axis.mean(axis=1))).real / np.maximum(speed, 1e-300)
+    return np.copysign(speed, along), turn, along
 
 
 def peaks(signal: Array, finer: int, windows: int) -> Array:
@@ -154,14 +158,16 @@ def evaluate(
     gaits = np.broadcast_arrays(*(np.atleast_1d(np.asarray(x, float)) for x in gaits))
     alpha, T, phi0, ratio = (x[:, None] for x in gaits)
     two = body(robot.platform2, robot.k2) if choice is None else loaded_body(robot, choice, ratio)
-    cycle = steady_cycle(body(robot.platform1, robot.k1), two, (alpha, T, phi0), nodes, torque)
+    one = body(robot.platform1, robot.k1)
+    with np.errstate(over="ignore", invalid="ignore"):  # nan: too near the singular posture
+        cycle = steady_cycle(one, two, (alpha, T, phi0), nodes, torque)
     c1, c2 = robot.platform1.c, robot.platform2.c
-    speed, turn = mean_speed(cycle, T, c1)
+    speed, turn, along = mean_speed(cycle, T, c1)
     largest = np.minimum(np.abs(alpha) + np.abs(phi0), np.pi)[:, 0]
     s1 = c1 * np.cos(largest) + c2
     if cycle.torque is None:
-        return Performance(speed, turn, s1, np.full((len(speed), 1), np.nan))
-    return Performance(speed, turn, s1, peaks(cycle.torque, finer, windows))
+        return Performance(speed, turn, along, s1, np.full((len(speed), 1), np.nan))
+    return Performance(speed, turn, along, s1, peaks(cycle.torque, finer, windows))
 
 
 if __name__ == "__main__":

@@ -1,6 +1,14 @@
-"""From a point near a best gait to the best gait itself: SLSQP on the numpy steady cycle."""
+"""From a point near a best gait to the best gait itself: SLSQP on the numpy steady cycle.
+
+The variables are alpha, T, phi0 and J20/J10 themselves, so that every limit is a smooth
+constraint; alpha + |phi0| <= posture is two. The torque counts by its logarithm, as it grows a
+hundredfold near the singular posture, and by its peak in each part of the cycle, as the largest
+of several peaks has a kink where they change places.
+"""
 
 from __future__ import annotations
+
+import math
 
 import numpy as np
 from scipy import optimize
@@ -9,55 +17,78 @@ from benchmarks.optimise.fourier_numpy import Array
 from benchmarks.optimise.space import Box
 
 STEP = 1e-5  # of each variable's range, for central differences
+LEAST = 1e-3  # of the torque's limit: below it a peak does not count
 
 
 class Local:
-    """Gain, torque margins and their derivatives at a point, from one batch of cycles."""
+    """Gain, margins to the limits and their derivatives, from one batch of cycles a point.
+
+    z in [0, 1] are the free ones of (alpha, T, phi0, ratio), scaled by their ranges.
+    """
 
     def __init__(self, box: Box, nodes: int, finer: int, windows: int):
         self.box, self.how = box, (nodes, finer, windows)
+        self.range = (box.most - box.least)[box.free]
         self.evaluations = 0
         self.key = b""
 
-    def look(self, x: Array) -> tuple[Array, Array]:
-        """Values (1 + windows) and slopes (1 + windows, variables) at x."""
-        if x.tobytes() != self.key:
-            ahead = np.minimum(x + STEP * (self.box.high - self.box.low), self.box.high)
-            behind = np.maximum(x - STEP * (self.box.high - self.box.low), self.box.low)
-            points = np.tile(x, (2 * len(x) + 1, 1))
-            np.fill_diagonal(points[1 : len(x) + 1], ahead)
-            np.fill_diagonal(points[len(x) + 1 :], behind)
-            gain, done = self.box.performance(points, *self.how)
-            margins = 1 - done.torques.T / self.box.problem.limits.torque
-            both = np.vstack([gain, np.nan_to_num(margins, nan=1.0)])
-            self.slopes = (both[:, 1 : len(x) + 1] - both[:, len(x) + 1 :]) / (ahead - behind)
-            self.values, self.key = both[:, 0], x.tobytes()
+    def gaits(self, Z: Array) -> Array:
+        """(alpha, T, phi0, ratio), one column for each row of Z."""
+        full = np.repeat(self.box.least[:, None], len(Z), axis=1)
+        full[self.box.free] += (Z * self.range).T
+        return full
+
+    def values(self, Z: Array) -> Array:
+        """Gain, then the margins that must not be negative, (1 + margins, points)."""
+        gaits, limits = self.gaits(Z), self.box.problem.limits
+        alpha, T, phi0, _ = gaits
+        gain, done = self.box.drive(gaits, *self.how)
+        rows = [gain, self.box.posture - alpha - phi0, self.box.posture - alpha + phi0]
+        if math.isfinite(limits.rate):
+            rows.append(limits.rate * T / (2 * np.pi) - alpha)
+        if math.isfinite(limits.torque):
+            rows.extend(-np.log(np.maximum(done.torques.T / limits.torque, LEAST)))
+        return np.array(rows)
+
+    def look(self, z: Array) -> tuple[Array, Array]:
+        """Values (1 + margins) and slopes (1 + margins, variables) at z."""
+        if z.tobytes() != self.key:
+            n = len(z)
+            ahead, behind = np.minimum(z + STEP, 1.0), np.maximum(z - STEP, 0.0)
+            points = np.tile(z, (2 * n + 1, 1))
+            np.fill_diagonal(points[1 : n + 1], ahead)
+            np.fill_diagonal(points[n + 1 :], behind)
+            values = self.values(points)
+            slopes = (values[:, 1 : n + 1] - values[:, n + 1 :]) / (ahead - behind)
+            self.known, self.key = (values[:, 0], slopes), z.tobytes()
             self.evaluations += len(points)
-        return self.values, self.slopes
+        return self.known
 
 
 def polish(
     box: Box, x: Array, nodes: int, *, finer: int = 4, windows: int = 8, tolerance: float = 1e-12
 ) -> tuple[Array, int]:
-    """The local optimum near x, or x where none better was found; and the cycles it took."""
+    """The local optimum near the point x of the box, or x where none better was found.
+
+    With it the number of cycles that it took.
+    """
     local = Local(box, nodes, finer, windows)
-    margin = {
-        "type": "ineq",
-        "fun": lambda x: local.look(x)[0][1:],
-        "jac": lambda x: local.look(x)[1][1:],
-    }
-    before = local.look(x)[0].copy()
+    begin = (box.gaits(x[None])[0][box.free, 0] - box.least[box.free]) / local.range
     found = optimize.minimize(
-        lambda x: -local.look(x)[0][0],
-        x,
-        jac=lambda x: -local.look(x)[1][0],
-        bounds=box.bounds,
-        constraints=[margin] if np.isfinite(box.problem.limits.torque) else [],
+        lambda z: -local.look(z)[0][0],
+        begin,
+        jac=lambda z: -local.look(z)[1][0],
+        bounds=[(0.0, 1.0)] * len(begin),
+        constraints={
+            "type": "ineq",
+            "fun": lambda z: local.look(z)[0][1:],
+            "jac": lambda z: local.look(z)[1][1:],
+        },
         method="SLSQP",
         options={"ftol": tolerance, "maxiter": 100},
     )
-    end = np.clip(found.x, box.low, box.high)
-    after = local.look(end)[0]
-    violated = after[1:].min() < -1e-7
-    worse = before[1:].min() >= 0 and after[0] <= before[0]
-    return (x if violated or worse else end), local.evaluations
+    end = box.point(local.gaits(np.clip(found.x, 0.0, 1.0)[None])[:, 0])
+    gain, done = box.performance(np.array([x, end]), nodes, finer)
+    fits = ~(done.torque > box.problem.limits.torque * (1 + 1e-7))
+    worse = fits[0] and gain[1] <= gain[0]
+    return (x if worse or not fits[1] else end), local.evaluations

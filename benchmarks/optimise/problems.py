@@ -59,7 +59,7 @@ PROBLEMS: dict[str, Problem] = {
     "no_rate_limit": Problem(robot(), limits(rate=math.inf), gait(WIDE), CENTRE),
     "no_rate_limit_turning": Problem(robot(), limits(0.2, math.inf), gait(WIDE, FREE), CENTRE),
     "no_rate_limit_backward": Problem(
-        robot(), limits(1.5, math.inf), gait(WIDE, FREE), CENTRE, "backward"
+        prototype(), limits(0.2, math.inf), gait(WIDE, FREE), ratio(0.12, 0.6), "backward"
     ),
     "paper": Problem(prototype(), limits(), gait(PAPER), ratio(0.12, 0.3)),
     "paper_forward": Problem(prototype(), limits(), gait(PAPER), ratio(0.12, 0.3), "forward"),

@@ -37,6 +37,7 @@ class Gait:
     ratio: float | None
     speed: float
     torque: float
+    along: float
 
 
 class Box:
@@ -44,43 +45,61 @@ class Box:
 
     def __init__(self, problem: Problem):
         gait, choice = problem.gait, problem.inertia_ratio
-        reach = gait.amplitude if gait.amplitude.fixed else Interval(0.0, 1.0)
         ratio = choice.bounds if choice else Interval(0.0, 0.0)
-        intervals = (reach, gait.period, gait.offset, ratio)
         self.problem = problem
         self.posture = largest_posture(problem)
-        self.fixed = np.array([i.low for i in intervals])
-        self.free = np.flatnonzero([not i.fixed for i in intervals])
-        self.low = self.fixed[self.free]
-        self.high = np.array([intervals[n].high for n in self.free])
+        self.least, self.most = (
+            np.array([getattr(i, end) for i in (gait.amplitude, gait.period, gait.offset, ratio)])
+            for end in ("low", "high")
+        )
+        self.free = np.flatnonzero(self.least < self.most)
+        self.low, self.high = self.least[self.free], self.most[self.free]
+        if not gait.amplitude.fixed:
+            self.low[0], self.high[0] = 0.0, 1.0
 
     @property
     def bounds(self) -> list[tuple[float, float]]:
         """(low, high) of each free variable."""
         return list(zip(self.low, self.high, strict=True))
 
+    def largest(self, T: Array, offset: Array) -> Array:
+        """The largest amplitude allowed at T and phi0, rad."""
+        rate = T * self.problem.limits.rate / (2 * np.pi)
+        return np.minimum(np.minimum(self.most[0], rate), self.posture - np.abs(offset))
+
     def gaits(self, X: Array) -> tuple[Array, Array]:
         """(alpha, T, phi0, ratio) for the points X (points, free), and by how much none fits."""
-        full = np.repeat(self.fixed[:, None], len(X), axis=1)
+        full = np.repeat(self.least[:, None], len(X), axis=1)
         full[self.free] = X.T
-        reach, T, offset, _ = full
-        bound, low = self.problem.gait.amplitude, self.problem.gait.amplitude.low
-        rate = T * self.problem.limits.rate / (2 * np.pi)
-        most = np.minimum(np.minimum(bound.high, rate), self.posture - np.abs(offset))
-        full[0] = low if bound.fixed else low + reach * np.maximum(most - low, 0.0)
+        low, most = self.least[0], self.largest(full[1], full[2])
+        full[0] = low
+        if self.free[0] == 0:
+            full[0] += X[:, 0] * np.maximum(most - low, 0.0)
         return full, np.maximum(low - most - 1e-12, 0.0)
 
-    def performance(
-        self, X: Array, nodes: int, finer: int = 4, windows: int = 1
+    def point(self, gait: Array) -> Array:
+        """The point of the box at or next to (alpha, T, phi0, ratio)."""
+        x = np.clip(gait, self.least, self.most)
+        span = self.largest(x[1], x[2]) - self.least[0]
+        if self.free[0] == 0 and span > 0:
+            x[0] = (x[0] - self.least[0]) / span
+        return np.clip(x[self.free], self.low, self.high)
+
+    def drive(
+        self, gaits: Array, nodes: int, finer: int = 4, windows: int = 1
     ) -> tuple[Array, Performance]:
-        """Gains (speed in the wanted direction) and the rest, for the points X."""
-        gaits, excess = self.gaits(X)
-        robot, choice = self.problem.robot, self.problem.inertia_ratio
+        """Gains (speed in the wanted direction) and the rest, of (alpha, T, phi0, ratio)."""
         load = math.isfinite(self.problem.limits.torque)
         how = {"nodes": nodes, "torque": load, "finer": finer, "windows": windows}
-        done = evaluate(robot, choice, gaits, **how)
+        done = evaluate(self.problem.robot, self.problem.inertia_ratio, gaits, **how)
         sign = {"forward": 1.0, "backward": -1.0}.get(self.problem.direction)
-        gain = np.abs(done.speed) if sign is None else sign * done.speed
+        return (np.abs(done.speed) if sign is None else sign * done.speed), done
+
+    def performance(self, X: Array, nodes: int, finer: int = 4) -> tuple[Array, Performance]:
+        """The same for the points X, with a cost where no amplitude is allowed."""
+        gaits, excess = self.gaits(X)
+        gain, done = self.drive(gaits, nodes, finer)
+        gain = np.where(np.isfinite(gain), gain, -INFEASIBLE)
         return np.where(excess > 0, -INFEASIBLE * (1 + excess), gain), done
 
     def gait(self, x: Array, nodes: int, finer: int = 16) -> Gait:
@@ -88,4 +107,5 @@ class Box:
         _, done = self.performance(x[None], nodes, finer)
         alpha, T, offset, ratio = (float(g) for g in self.gaits(x[None])[0][:, 0])
         named = ratio if self.problem.inertia_ratio else None
-        return Gait(alpha, T, offset, named, float(done.speed[0]), float(done.torque[0]))
+        did = (float(y[0]) for y in (done.speed, done.torque, done.along))
+        return Gait(alpha, T, offset, named, *did)

@@ -32,7 +32,7 @@ def solve(
     J                 moment of inertia of each wheel about its axle, kg m2
     """
     one, two = robot.platform1, robot.platform2
-    law = law or (lambda number, u: -(robot.k1, robot.k2)[number - 1] * u)
+    law = law or (lambda number, u: -(one.kappa, two.kappa)[number - 1] / robot.h**2 * u)
     psi, th = q[2], q[2] + q[3]
     dpsi, dth = qd[2], qd[2] + qd[3]
     e1, n1 = np.array([np.cos(psi), np.sin(psi)]), np.array([-np.sin(psi), np.cos(psi)])

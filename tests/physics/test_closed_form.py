@@ -21,8 +21,8 @@ PRINTED = (+1, +1, -1, -1)
 def terms(robot: Robot, state: State, signs: tuple[int, ...]) -> np.ndarray:
     """The terms of equation (3), whose sum is vdot; symbols as in the paper."""
     one, two = robot.platform1, robot.platform2
-    m1, I1, c1, a1, b1, k1 = one.m, one.I, one.c, one.a, one.b, robot.k1
-    m2, I2, c2, a2, b2, k2 = two.m, two.I, two.c, two.a, two.b, robot.k2
+    m1, I1, c1, a1, b1, k1 = one.m, one.I, one.c, one.a, one.b, one.kappa / robot.h**2
+    m2, I2, c2, a2, b2, k2 = two.m, two.I, two.c, two.a, two.b, two.kappa / robot.h**2
     v, phi, dphi, ddphi = state
     M = m1 + m2
     delta = c1 * a2 * m2 + c2 * a1 * m1

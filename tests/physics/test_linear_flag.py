@@ -8,7 +8,6 @@ from rr_opt.physics.effects import CATALOGUE
 from tests.physics.cases import FIRST_FOUND, REPEATABLE, cases, motion
 
 CHOICES = [(), *((name,) for name in CATALOGUE)]
-HIDDEN = pytest.mark.xfail(strict=True, reason="terms in v^2 that cancel are taken for real ones")
 
 
 def bend(case) -> float:
@@ -18,11 +17,7 @@ def bend(case) -> float:
     return abs(values[0] - 2 * values[1] + values[2]) / (sum(map(abs, values)) + 1e-6)
 
 
-@pytest.mark.parametrize(
-    "effects",
-    [pytest.param(c, marks=HIDDEN if c in ((), ("wheel_inertia",)) else ()) for c in CHOICES],
-    ids="+".join,
-)
+@pytest.mark.parametrize("effects", CHOICES, ids="+".join)
 def test_flag_tells(effects):
     if not derive(effects).linear:
         find(cases(effects), lambda case: bend(case) > 1e-3, settings=FIRST_FOUND)

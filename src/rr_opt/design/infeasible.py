@@ -82,7 +82,7 @@ def _torque(problem: Problem, box: Decisions, landscapes: list[Landscape]) -> li
     limit = problem.limits.torque
     if math.isinf(limit):
         return []
-    least = min(least_torque(landscape, box)[0] for landscape in landscapes)
+    least = min(least_torque(landscape, box) for landscape in landscapes)
     if least <= limit:
         return []
     return [

@@ -18,23 +18,26 @@ from numpy.typing import NDArray
 from rr_opt.design.decisions import Decisions, decisions
 from rr_opt.design.infeasible import explain
 from rr_opt.design.landscape import Landscape
-from rr_opt.design.mesh import dense, finer, with_nodes_at
-from rr_opt.design.seeds import Seed, find_seeds
+from rr_opt.design.mesh import Dense, dense, finer, with_nodes_at
+from rr_opt.design.climb import Seed
+from rr_opt.design.seeds import find_seeds
 from rr_opt.design.solve import Candidate, Setting, solve
+from rr_opt.motion.steady_cycle import steady_cycle
 from rr_opt.outcome import Status
 from rr_opt.physics.dynamics import dynamics_of
 from rr_opt.problem import Interval, Problem
 from rr_opt.robot.ballast import Loads, inertia_ratio, with_load_count
+from rr_opt.robot.gait import SineGait
 from rr_opt.robot.parameters import Robot
 
 Array = NDArray[np.float64]
 Progress = Callable[[str], None]
 
-COARSE = 24
+COARSE = 36
 SAME_SPEED = 1e-5
 """Optima whose speeds differ by less, relative, are one or a tie."""
 
-_CLAIM = 1e-7
+_CLAIM = 3e-7
 _PEAK = 1e-6
 _REFINEMENTS = 8
 
@@ -85,22 +88,36 @@ def maximize_speed(problem: Problem, progress: Progress = lambda _: None) -> Opt
     if reason:
         return Optimum(Status.INFEASIBLE, reason, problem)
     signs = {"forward": (1,), "backward": (-1,), "either": (1, -1)}[problem.direction]
-    found: list[tuple[Setting, Candidate]] = []
     progress("scanning for starts")
     starts: list[tuple[Setting, Seed]] = []
     for setting in settings:
-        inside = _scanned(setting, box)
-        starts += [
-            (setting, seed)
-            for seed in find_seeds(setting.landscape, inside, problem.limits.torque, signs)
-        ]
+        seeds = find_seeds(
+            setting.landscape, _scanned(setting, box), problem.limits.torque, signs
+        )
+        starts += [(setting, seed) for seed in seeds]
+    found: list[tuple[Setting, Candidate]] = []
     for number, (setting, seed) in enumerate(starts, 1):
         progress(f"start {number} of {len(starts)}")
-        gait = box.physical(seed.point[None])[:, 0]
+        amplitude, period, offset, share = box.physical(seed.point[None])[:, 0]
         if setting.fixed_share is not None:
-            gait[3] = setting.fixed_share
-        found.append((setting, solve(setting, seed.sign, gait, np.arange(COARSE) / COARSE)))
+            share = setting.fixed_share
+        found.append((setting, _solve(setting, seed.sign, SineGait(amplitude, period, offset), share)))
     return _answer(problem, found, progress)
+
+
+def _solve(setting: Setting, sign: int, gait: SineGait, share: float) -> Candidate:
+    """Solve from a gait on a mesh that is fine enough for its cycle."""
+    robot = robot_of(setting, share)
+    seen = dense(setting.landscape, robot, gait, share)
+    coarse = steady_cycle(robot, gait, steps=COARSE).speed
+    intervals = finer(COARSE, abs(coarse - seen.speed) / abs(seen.speed), _CLAIM / 2)
+    return solve(setting, sign, gait, share, _phases(setting, intervals, seen))
+
+
+def _phases(setting: Setting, intervals: int, seen: Dense) -> Array:
+    """Equal phases, with nodes moved onto the torque's peaks where its limit is near."""
+    near = seen.peak > 0.97 * setting.problem.limits.torque
+    return with_nodes_at(intervals, seen.peaks if near else np.array([]))
 
 
 def _answer(
@@ -114,7 +131,7 @@ def _answer(
         setting, best = good[0]
         progress("refining the best")
         refined = _refine(setting, best)
-        iterations += refined.iterations
+        iterations += refined.iterations - best.iterations
         if not (refined.feasible and refined.success):
             failures += (refined.sentence,)
             good.pop(0)
@@ -207,17 +224,18 @@ def _same(one: Candidate, other: Candidate) -> bool:
 def _refine(setting: Setting, candidate: Candidate) -> Candidate:
     """Solve again until the mesh claims the true speed and no torque peaks between nodes."""
     limit = setting.problem.limits.torque
-    iterations = 0
+    iterations = candidate.iterations
     for _ in range(_REFINEMENTS):
         gait, share = candidate.gait, candidate.share
         seen = dense(setting.landscape, robot_of(setting, share), gait, share)
-        error = abs(candidate.speed - seen.speed) / abs(seen.speed)
-        near = seen.peak > 0.99 * limit
-        if error <= _CLAIM and (not near or seen.peak <= limit * (1 + _PEAK)):
+        error = abs(abs(candidate.speed) - abs(seen.speed)) / abs(seen.speed)
+        if error <= _CLAIM and seen.peak <= limit * (1 + _PEAK):
             break
-        intervals = finer(len(candidate.phases), error, _CLAIM / 4)
-        phases = with_nodes_at(intervals, seen.peaks if near else np.array([]))
-        start = np.array([gait.amplitude, gait.period, gait.offset, share])
-        candidate = solve(setting, candidate.sign, start, phases)
+        intervals = finer(len(candidate.phases), error, _CLAIM / 2)
+        candidate = solve(
+            setting, candidate.sign, gait, share, _phases(setting, intervals, seen)
+        )
         iterations += candidate.iterations
+        if not (candidate.feasible and candidate.success):
+            break
     return replace(candidate, iterations=iterations)

@@ -20,7 +20,7 @@ from rr_opt.robot.parameters import Robot
 
 Array = NDArray[np.float64]
 
-LADDER = (24, 36, 48, 72, 96, 144, 192, 288, 384, 768)
+LADDER = (36, 48, 72, 96, 144, 192, 288, 384, 768)
 """Meshes to choose from, so that few programs are ever built."""
 
 _SAMPLES = 1024

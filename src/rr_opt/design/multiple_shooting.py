@@ -196,7 +196,13 @@ _IPOPT = {
     "ipopt.sb": "yes",
     "ipopt.tol": 1e-9,
     "ipopt.max_iter": 200,
-    "ipopt.mu_init": 1e-3,
+    # Starts are steady cycles, near an optimum and often on a limit: IPOPT shall not push them
+    # far inside, nor begin with a barrier that does.
+    "ipopt.mu_init": 1e-5,
+    "ipopt.bound_push": 1e-6,
+    "ipopt.bound_frac": 1e-6,
+    "ipopt.slack_bound_push": 1e-6,
+    "ipopt.slack_bound_frac": 1e-6,
     "ipopt.bound_relax_factor": 0.0,
 }
 

@@ -31,6 +31,9 @@ _SENTENCES = {
 }
 """IPOPT's own word for how it ended; CasADi's unified status folds several of them together."""
 
+_AHEAD = 1e-6
+# Least V . E in the wanted direction, m/s: at 0 a gait would go neither forward nor backward.
+
 FEASIBLE = 1e-6
 """Largest violation of a row that still counts as kept."""
 
@@ -83,8 +86,8 @@ class Setting:
     fixed_share: float | None = None
 
 
-def solve(setting: Setting, sign: int, gait: Array, phases: Array) -> Candidate:
-    """Maximise the speed in direction `sign` from gait (amplitude, period, offset, share).
+def solve(setting: Setting, sign: int, gait: SineGait, share: float, phases: Array) -> Candidate:
+    """Maximise the speed in direction `sign` from a gait and a share of the ballast.
 
     phases (N,): nodes in [0, 1), increasing; the first is 0.
     """
@@ -102,7 +105,7 @@ def solve(setting: Setting, sign: int, gait: Array, phases: Array) -> Candidate:
         ]
     )
     lbx, ubx, lbg, ubg = _bounds(setting, n)
-    x0 = _start(setting.landscape, gait, phases)
+    x0 = _start(setting.landscape, gait, share, phases)
     result = program.solver(x0=np.clip(x0, lbx, ubx), p=p, lbx=lbx, ubx=ubx, lbg=lbg, ubg=ubg)
     stats = program.solver.stats()
     x = np.array(result["x"]).ravel()
@@ -131,18 +134,16 @@ def solve(setting: Setting, sign: int, gait: Array, phases: Array) -> Candidate:
     )
 
 
-def _start(landscape: Landscape, gait: Array, phases: Array) -> Array:
+def _start(landscape: Landscape, gait: SineGait, share: float, phases: Array) -> Array:
     """The vector of unknowns on the steady cycle of a gait."""
     fine = 4 * len(phases)
-    cycle = landscape.cycles(gait[:, None], fine)
+    point = [gait.amplitude, gait.period, gait.offset, share]
+    cycle = landscape.cycles(np.array(point)[:, None], fine)
     theta = np.arange(fine + 1) / fine
     v, chi = (
         np.interp(phases, theta, np.append(path[:, 0], path[0, 0])) for path in (cycle.v, cycle.chi)
     )
-    amplitude, period, offset, share = gait
-    return np.concatenate(
-        [[amplitude, period, offset, share, cycle.turn[0]], cycle.mean[:, 0], v, chi]
-    )
+    return np.concatenate([[*point, cycle.turn[0]], cycle.mean[:, 0], v, chi])
 
 
 def _bounds(setting: Setting, n: int) -> tuple[Array, Array, Array, Array]:
@@ -160,7 +161,7 @@ def _bounds(setting: Setting, n: int) -> tuple[Array, Array, Array, Array]:
     first_chi = len(DECISIONS) + 4 + n
     lbx[first_chi] = ubx[first_chi] = 0.0
     tight = np.zeros(2 * n + 4)
-    low = {"singularity+": limits.singularity, "singularity-": limits.singularity, "direction": 0.0}
+    low = {"singularity+": limits.singularity, "singularity-": limits.singularity, "direction": _AHEAD}
     high = {"rate": limits.rate, "angle+": limits.angle, "angle-": limits.angle}
     lbg = [tight, [low.get(name, -np.inf) for name in LIMITS], np.full(n, -limits.torque)]
     ubg = [tight, [high.get(name, np.inf) for name in LIMITS], np.full(n, limits.torque)]

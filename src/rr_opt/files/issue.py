@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
@@ -51,17 +52,22 @@ def has_errors(issues: Iterable[Issue]) -> bool:
 
 def shown(value: object) -> str:
     """A value as a message quotes it: on one line, without control characters, not long."""
+    text = _written(value)
+    return text if len(text) <= _LONGEST_SHOWN else text[: _LONGEST_SHOWN - 4] + " ..."
+
+
+def _written(value: object) -> str:
     if value is None:
         return "nothing"
     if isinstance(value, dict):
         return "a mapping" if value else "an empty mapping"
     if isinstance(value, list):
-        inner = ", ".join(shown(item) for item in value[:4])
-        return f"[{inner}, ...]" if len(value) > 4 else f"[{inner}]"
+        return f"[{', '.join(_written(item) for item in value)}]"
     if isinstance(value, bool):
         return "true" if value else "false"
-    text = repr(value) if isinstance(value, str) else str(value)
-    return text if len(text) <= _LONGEST_SHOWN else text[: _LONGEST_SHOWN - 4] + " ..."
+    if isinstance(value, float) and not math.isfinite(value):
+        return f"{value}".replace("inf", ".inf").replace("nan", ".nan")
+    return repr(value) if isinstance(value, str) else str(value)
 
 
 def nearest(word: str, known: Sequence[str]) -> str | None:
@@ -77,5 +83,10 @@ def nearest(word: str, known: Sequence[str]) -> str | None:
 def unknown_word(word: str, known: Sequence[str], kind: str) -> str:
     """The message for a word that is none of those known, naming the nearest."""
     near = nearest(word, known)
-    advice = f"Did you mean `{near}`?" if near else "Write one of these, or delete it."
-    return f"Read the {kind} {shown(word)}. Expected one of: {', '.join(known)}. {advice}"
+    advice = f"Did you mean `{near}`?" if near else "Correct it, or delete it."
+    return f"Read the {kind} {shown(word)}. Expected {one_of(known)}. {advice}"
+
+
+def one_of(words: Sequence[str]) -> str:
+    """The words as a message offers them."""
+    return f"one of: {', '.join(words)}" if len(words) > 1 else f"`{words[0]}`"

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from rr_opt.files.document import Document
 from rr_opt.files.issue import InvalidFileError, Issue
 from rr_opt.files.kind import kind_of
 from rr_opt.files.problem_file import problem_from
 from rr_opt.files.problem_sources import problem_sources
 from rr_opt.files.robot_file import robot_from
+from rr_opt.files.robot_sense import singular_posture
 from rr_opt.files.source import problem_path, read_document
 
 
@@ -21,7 +23,16 @@ def lint_file(path: str | Path) -> list[Issue]:
     try:
         document = read_document(problem_path(Path(path)))
         if kind_of(document) == "robot":
-            return robot_from(document)[1]
+            return _robot_issues(document)
         return problem_from(problem_sources(path))[1]
     except InvalidFileError as error:
         return list(error.issues)
+
+
+def _robot_issues(document: Document) -> list[Issue]:
+    """Those of a robot that stands alone, without a problem to keep it from singular postures."""
+    robot, issues = robot_from(document)
+    notice = singular_posture(robot) if robot else None
+    if notice:
+        issues.append(document.issue("warning", ("servo", "angle_limit"), notice))
+    return issues

@@ -7,7 +7,7 @@ from typing import Any, TypeVar, get_args
 from pydantic import BaseModel, ValidationError
 
 from rr_opt.files.document import Document
-from rr_opt.files.issue import Issue, shown, unknown_word
+from rr_opt.files.issue import Issue, one_of, shown, unknown_word
 
 Model = TypeVar("Model", bound=BaseModel)
 
@@ -35,7 +35,7 @@ def _message(model: type[BaseModel], found: Any) -> str:
         return unknown_word(str(path[-1]), list(owner.model_fields), "key")
     if kind == "missing":
         description = owner.model_fields[path[-1]].description
-        return f"This key is missing. Expected: {description} Add it."
+        return f"This key is missing. Add it. Expected: {description}"
     if kind == "value_error":
         return str(found["ctx"]["error"])
     if kind == "literal_error":
@@ -43,7 +43,7 @@ def _message(model: type[BaseModel], found: Any) -> str:
         return (
             unknown_word(value, choices, "word")
             if isinstance(value, str)
-            else (f"Read {shown(value)}. Expected one of: {', '.join(choices)}.")
+            else (f"Read {shown(value)}. Expected {one_of(choices)}.")
         )
     if kind in _EXPECTED:
         return f"Read {shown(value)}. Expected {_EXPECTED[kind]}. Write it, or delete the key."

@@ -93,7 +93,8 @@ def _contradictions(
     if ratio:
         for level, key, message in ratio_findings(ratio, robot):
             yield document.issue(level, ("inertia_ratio", key), message)
-        if ratio.by == "inertia" and "loads" in model.inertia_ratio.model_fields_set:
+        written = document.data["inertia_ratio"]
+        if ratio.by == "inertia" and isinstance(written, dict) and "loads" in written:
             message = "Loads are given and not used. Write `by: loads`, or delete them."
             yield document.issue("warning", ("inertia_ratio", "loads"), message)
     servo = robot.servo

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, SkipValidation, model_validator
+from pydantic import Field, GetJsonSchemaHandler, JsonValue, SkipValidation, model_validator
+from pydantic_core import CoreSchema
 
 from rr_opt.files.quantity import FixedOrBounded, Quantity
 from rr_opt.files.robot_model import ANGLE, RATE, TORQUE, FileModel, Length, Mass, RobotModel
@@ -14,7 +15,8 @@ from rr_opt.robot.ballast import About, By, Loads
 Amplitude = Annotated[Interval, FixedOrBounded(Quantity("rad", "0.5", at_least=0))]
 Period = Annotated[Interval, FixedOrBounded(Quantity("s", "1.2 s", above=0))]
 Offset = Annotated[Interval, FixedOrBounded(Quantity("rad", "10 deg"))]
-Ratio = Annotated[Interval, FixedOrBounded(Quantity("", "0.2", above=0))]
+RATIO = FixedOrBounded(Quantity("", "0.2", above=0))
+Ratio = Annotated[Interval, RATIO]
 OptionalAngle = Annotated[float | None, ANGLE]
 OptionalRate = Annotated[float | None, RATE]
 OptionalTorque = Annotated[float | None, TORQUE]
@@ -23,7 +25,7 @@ Distance = Annotated[float, Quantity("m", "44.1 mm", at_least=0)]
 
 def _bounds(default: Interval, description: str) -> Any:
     """A field with an interval for its default, which JSON Schema shows as a number or a pair."""
-    written = default.low if default.fixed else [default.low, default.high]
+    written: JsonValue = default.low if default.fixed else [default.low, default.high]
     return Field(
         default_factory=lambda: default,
         description=f"{description} A number fixes it, a pair [low, high] bounds it.",
@@ -34,7 +36,7 @@ def _bounds(default: Interval, description: str) -> Any:
 class GaitModel(FileModel):
     """phi(t) = amplitude sin(2 pi t/period) + offset."""
 
-    shape: Literal["sine"] = Field("sine", description="The shape of phi(t).")
+    shape: Literal["sine"] = Field(default="sine", description="The shape of phi(t).")
     amplitude: Amplitude = _bounds(GaitBounds.amplitude, "Amplitude, rad.")
     period: Period = _bounds(GaitBounds.period, "Period, s.")
     offset: Offset = _bounds(
@@ -45,14 +47,14 @@ class GaitModel(FileModel):
 class LoadsModel(FileModel):
     """Loads that can be hung on platform 2."""
 
-    mass: Mass = Field(Loads.mass, description="Mass of one load, kg.")
+    mass: Mass = Field(default=Loads.mass, description="Mass of one load, kg.")
     distance: Distance = Field(
-        Loads.distance, description="From the joint P to the loads, towards the axle, m."
+        default=Loads.distance, description="From the joint P to the loads, towards the axle, m."
     )
     spread: Distance = Field(
-        Loads.spread, description="Of the loads to either side of the platform's axis, m."
+        default=Loads.spread, description="Of the loads to either side of the platform's axis, m."
     )
-    whole: bool = Field(Loads.whole, description="true: only whole numbers of loads exist.")
+    whole: bool = Field(default=Loads.whole, description="true: only whole numbers of loads exist.")
 
 
 class InertiaRatioModel(FileModel):
@@ -62,9 +64,9 @@ class InertiaRatioModel(FileModel):
         description="J20/J10, dimensionless. A number fixes it, a pair [low, high] bounds it."
     )
     about: About = Field(
-        "joint", description="The J are taken about the joint P, or each centre of mass."
+        default="joint", description="The J are taken about the joint P, or each centre of mass."
     )
-    by: By = Field("inertia", description="Realised by I of platform 2 alone, or by loads.")
+    by: By = Field(default="inertia", description="Realised by I of platform 2 alone, or by loads.")
     loads: LoadsModel = Field(
         default_factory=LoadsModel, description="The loads, if the ratio is realised by loads."
     )
@@ -75,14 +77,27 @@ class InertiaRatioModel(FileModel):
         return {"bounds": value} if isinstance(value, int | float | str | list) else value
 
 
+class _OrBoundsAlone:
+    """The JSON schema of `inertia_ratio`, which may be its bounds alone."""
+
+    def __get_pydantic_json_schema__(
+        self, inner: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        return {"anyOf": [handler(inner), RATIO.json_schema()]}
+
+
 class LimitsModel(FileModel):
     """What a gait may ask of the robot. What is not given is what the robot's servo can do."""
 
-    angle: OptionalAngle = Field(None, description="Largest |phi|, rad, below pi.")
-    rate: OptionalRate = Field(None, description="Largest |dphi/dt|, rad/s; .inf: no limit.")
-    torque: OptionalTorque = Field(None, description="Largest |torque|, N m; .inf: no limit.")
+    angle: OptionalAngle = Field(default=None, description="Largest |phi|, rad, below pi.")
+    rate: OptionalRate = Field(
+        default=None, description="Largest |dphi/dt|, rad/s; .inf: no limit."
+    )
+    torque: OptionalTorque = Field(
+        default=None, description="Largest |torque|, N m; .inf: no limit."
+    )
     singularity: Length = Field(
-        Limits.singularity, description="The least S1 = c1 cos phi + c2 allowed, m."
+        default=Limits.singularity, description="The least S1 = c1 cos phi + c2 allowed, m."
     )
 
 
@@ -90,15 +105,15 @@ class ProblemModel(FileModel):
     """Which gait drives the robot fastest? Plain numbers are SI; a text may carry a unit."""
 
     robot: Annotated[str | RobotModel | None, SkipValidation] = Field(
-        None,
+        default=None,
         description="A robot file, relative to this file, or the robot itself. "
         "Without it: the paper's prototype.",
     )
     gait: GaitModel = Field(default_factory=GaitModel, description="Which gaits are allowed.")
-    inertia_ratio: InertiaRatioModel | None = Field(
-        None, description="J20/J10 as a choice. Without it: the robot as it is."
+    inertia_ratio: Annotated[InertiaRatioModel | None, _OrBoundsAlone()] = Field(
+        default=None, description="J20/J10 as a choice. Without it: the robot as it is."
     )
     limits: LimitsModel = Field(
         default_factory=LimitsModel, description="What a gait may ask of the robot."
     )
-    direction: Direction = Field("either", description="Which way the robot shall go.")
+    direction: Direction = Field(default="either", description="Which way the robot shall go.")

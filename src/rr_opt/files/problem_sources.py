@@ -57,7 +57,7 @@ def _shipped_problem_with(robot: Document, file: Path) -> Sources:
     problem = read_document(SHIPPED / "problem.yaml")
     limits = problem.section("limits").without("angle", "rate", "torque").data
     data = {**problem.without("robot").data, "limits": limits}
-    shipped = Document(problem.file, data, problem.lines)
+    shipped = Document(f"the shipped problem, with {file}", data, problem.lines)
     return Sources((SHIPPED / "problem.yaml", file), shipped, robot)
 
 

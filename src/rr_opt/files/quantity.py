@@ -35,7 +35,10 @@ class Quantity:
 
     def read(self, value: object) -> float:
         """The value in `unit`. Raises InputError if it is not one, or out of its range."""
-        number = to_si(value, self.unit)
+        try:
+            number = to_si(value, self.unit)
+        except InputError as error:
+            raise InputError(f"{error} Write for example `{self.example}`.") from None
         inside = (
             (self.above is None or number > self.above)
             and (self.at_least is None or number >= self.at_least)
@@ -113,15 +116,19 @@ class FixedOrBounded:
             )
         return Interval(low, high)
 
+    def json_schema(self) -> dict[str, Any]:
+        """JSON Schema: what the quantity may be, or a list of two of them."""
+        one = self.quantity.json_schema()
+        pair = {"type": "array", "items": {"anyOf": one["anyOf"]}, "minItems": 2, "maxItems": 2}
+        return {**one, "anyOf": [*one["anyOf"], pair]}
+
     def __get_pydantic_core_schema__(self, _: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         return core_schema.no_info_plain_validator_function(_raising_value_error(self.read))
 
     def __get_pydantic_json_schema__(
         self, _: CoreSchema, handler: GetJsonSchemaHandler
     ) -> dict[str, Any]:
-        one = self.quantity.json_schema()
-        pair = {"type": "array", "items": {"anyOf": one["anyOf"]}, "minItems": 2, "maxItems": 2}
-        return {**one, "anyOf": [*one["anyOf"], pair], "examples": [self.quantity.example]}
+        return self.json_schema()
 
 
 def _raising_value_error(read: Any) -> Any:

@@ -44,7 +44,7 @@ class PlatformModel(FileModel):
     )
 
     m: Mass = Field(description="Mass, kg.")
-    I: Inertia = Field(  # noqa: E741
+    I: Inertia = Field(
         description="Moment of inertia about the vertical through the centre of mass, kg m2."
     )
     c: Length = Field(description="Distance from the axle's centre to the joint P, m.")
@@ -53,22 +53,24 @@ class PlatformModel(FileModel):
     )
     b: Length = Field(description="Half track: from the axle's centre to each wheel, m.")
     kappa: OptionalWheelFriction = Field(
-        None, description="Viscous friction of one wheel about its axle, N m s."
+        default=None, description="Viscous friction of one wheel about its axle, N m s."
     )
     k: OptionalFloorFriction = Field(
-        None, description="Viscous friction of one wheel along the floor, kappa/h^2, N s/m."
+        default=None, description="Viscous friction of one wheel along the floor, kappa/h^2, N s/m."
     )
 
 
 class ServoModel(FileModel):
     """What the servo can do."""
 
-    angle_limit: Angle = Field(Servo.angle_limit, description="Largest |phi|, rad, below pi.")
+    angle_limit: Angle = Field(
+        default=Servo.angle_limit, description="Largest |phi|, rad, below pi."
+    )
     rate_limit: Rate = Field(
-        Servo.rate_limit, description="Largest |dphi/dt|, rad/s; .inf: no limit."
+        default=Servo.rate_limit, description="Largest |dphi/dt|, rad/s; .inf: no limit."
     )
     torque_limit: Torque = Field(
-        Servo.torque_limit, description="Largest |torque|, N m; .inf: no limit."
+        default=Servo.torque_limit, description="Largest |torque|, N m; .inf: no limit."
     )
 
 
@@ -87,11 +89,11 @@ class _EffectsSchema:
 class RobotModel(FileModel):
     """A Roller Racer. Plain numbers are SI; a text may carry a unit, such as 186 mm."""
 
-    name: str = Field("", description="What people call this robot.")
+    name: str = Field(default="", description="What people call this robot.")
     platform1: PlatformModel = Field(description="The platform whose heading is psi.")
     platform2: PlatformModel = Field(description="The platform that the servo turns by phi.")
     h: OptionalLength = Field(
-        None,
+        default=None,
         description="Wheel radius, m. Needed with kappa or physics; else 20 mm, without effect.",
     )
     servo: ServoModel = Field(default_factory=ServoModel, description="The servo's limits.")

@@ -24,14 +24,18 @@ def doubts(robot: Robot) -> Iterator[tuple[tuple[str, ...], str]]:
             f"The inertia ratio J20/J10 about the joint is {ratio:.3g}. Expected 0.01 to 100: the "
             "platforms hardly belong together. Check the units of m, I, c and a of both.",
         )
-    if robot.singular_angle < robot.servo.angle_limit:
-        limit, singular = robot.servo.angle_limit, robot.singular_angle
-        yield (
-            ("servo", "angle_limit"),
-            f"Within {limit:.4g} rad lies the singular posture |phi| = arccos(-c2/c1) = "
-            f"{singular:.4g} rad, where a model without side slip means nothing. Keep a distance "
-            "with the problem's `limits.singularity`.",
-        )
+
+
+def singular_posture(robot: Robot) -> str | None:
+    """What to say if the servo can reach the posture where S1 = c1 cos phi + c2 vanishes."""
+    limit, singular = robot.servo.angle_limit, robot.singular_angle
+    if singular >= limit:
+        return None
+    return (
+        f"Within {limit:.4g} rad lies the singular posture |phi| = arccos(-c2/c1) = "
+        f"{singular:.4g} rad, where a model without side slip means nothing. A problem keeps "
+        "its distance with `limits.singularity`."
+    )
 
 
 def _platform_doubts(platform: Platform) -> Iterator[tuple[str, str]]:
@@ -42,8 +46,8 @@ def _platform_doubts(platform: Platform) -> Iterator[tuple[str, str]]:
             "a",
             (
                 f"a = {platform.a:.4g} m puts the centre of mass beyond the joint (c = "
-                f"{platform.c:.4g} m). a counts from the axle towards the joint; check that it is not "
-                "the distance from the joint."
+                f"{platform.c:.4g} m). a counts from the axle towards the "
+                "joint; check that it is not the distance from the joint."
             ),
         )
     if longest > _LARGEST_LENGTH:
@@ -59,6 +63,7 @@ def _platform_doubts(platform: Platform) -> Iterator[tuple[str, str]]:
             "I",
             (
                 f"The radius of gyration sqrt(I/m) is {gyration:.3g} m, more than three times the "
-                f"platform's largest length, {longest:.3g} m. Check the units of I (kg m2), m, c and b."
+                f"platform's largest length, {longest:.3g} m. Check the "
+                "units of I (kg m2), m, c and b."
             ),
         )

@@ -12,6 +12,7 @@ from __future__ import annotations
 import math
 import re
 from functools import lru_cache
+from typing import Any
 
 from rr_opt.files.issue import nearest, shown
 from rr_opt.outcome import InputError
@@ -64,44 +65,46 @@ def _split(text: str, unit: str) -> tuple[float, str]:
     return float(match[1]), match[2].strip()
 
 
+class _UnitError(ValueError):
+    """The text after the number is not a unit; says why."""
+
+
 def _worth(written: str, unit: str, text: str) -> float:
     """How many `unit` make one `written`."""
-    factor, dimension = _base(written, text)
+    try:
+        factor, dimension = _base(written)
+    except _UnitError as error:
+        raise InputError(f"Read {shown(text)}. {error} Expected {_wanted(unit)}.") from None
     for accepted in (unit, *_ALSO.get(unit, ())):
-        expected_factor, expected = _base(accepted, text)
+        expected_factor, expected = _base(accepted)
         if dimension == expected:
             return factor / expected_factor
+    what = f"a quantity in {dimension}" if dimension else "a plain number"
     advice = ""
-    if unit == "rad/s" and dimension == _base("Hz", text)[1]:
+    if unit == "rad/s" and dimension == _base("Hz")[1]:
         advice = " Turns per second or radians per second? Write rpm, rad/s or deg/s."
-    raise InputError(
-        f"Read {shown(text)}, which is {_in_words(dimension)}. Expected {_wanted(unit)}.{advice}"
-    )
-
-
-def _in_words(dimension: str) -> str:
-    return f"in {dimension}" if dimension else "a plain number"
+    raise InputError(f"Read {shown(text)}, {what}. Expected {_wanted(unit)}.{advice}")
 
 
 @lru_cache
-def _registry():  # noqa: ANN202 - pint's type cannot be named without importing pint
-    import pint  # noqa: PLC0415 - half a second that most files can do without
+def _registry() -> Any:
+    import pint  # noqa: PLC0415 - half a second that files without units can do without
 
     return pint.UnitRegistry()
 
 
 @lru_cache(maxsize=256)
-def _base(written: str, text: str) -> tuple[float, str]:
+def _base(written: str) -> tuple[float, str]:
     """What one `written` is worth in base units, and those base units as text."""
     registry = _registry()
     total = registry.Unit("dimensionless")
-    for name, power in _factors(written, text):
-        total = total * _named(name, text) ** power
+    for name, power in _factors(written):
+        total = total * _named(name) ** power
     factor, base = registry.get_base_units(total)
     return float(factor), f"{base:~P}"
 
 
-def _named(name: str, text: str):  # noqa: ANN202
+def _named(name: str) -> Any:
     registry = _registry()
     try:
         unit = registry.parse_units(name)
@@ -112,16 +115,16 @@ def _named(name: str, text: str):  # noqa: ANN202
         pass
     near = nearest(name, _COMMON)
     advice = f" Did you mean `{near}`?" if near else ""
-    raise InputError(f"Read {shown(text)}, whose unit {shown(name)} is not known.{advice}")
+    raise _UnitError(f"The unit {shown(name)} is not known.{advice}")
 
 
-def _factors(written: str, text: str) -> list[tuple[str, int]]:
+def _factors(written: str) -> list[tuple[str, int]]:
     """`kg m^2/(N s)` -> [(kg, 1), (m, 2), (N, -1), (s, -1)]."""
     for spelling, meant in _SPELLINGS.items():
         written = re.sub(rf"(?<![A-Za-z]){spelling}(?![A-Za-z])", meant, written)
     factors: list[tuple[str, int]] = []
     signs, sign, position = [1], 1, 0
-    while position < len(written):
+    while position < len(written) and signs:
         token = _TOKEN.match(written, position)
         if token is None:
             break
@@ -130,19 +133,14 @@ def _factors(written: str, text: str) -> list[tuple[str, int]]:
             script = {"²": 2, "³": 3}.get(token["script"], 1)
             power = int(token["power"]) if token["power"] else script
             factors.append((token["name"], power * signs[-1] * sign))
-            sign = 1
-        elif token["sign"] == "/":
-            sign = -1
         elif token["sign"] == "(":
             signs.append(signs[-1] * sign)
-            sign = 1
         elif token["sign"] == ")":
             signs.pop()
-            if not signs:
-                break
+        if token["sign"] != "1" and token[0].strip():
+            sign = -1 if token["sign"] == "/" else 1
     if position < len(written) or len(signs) != 1 or sign != 1:
-        raise InputError(
-            f"Read {shown(text)}, whose unit cannot be understood. "
-            "Write units such as `kg m^2`, `N*s/m`, `rpm` or `14 kgf*cm`."
+        raise _UnitError(
+            "Its unit cannot be understood; units look like `kg m^2`, `N*s/m` or `rpm`."
         )
     return factors

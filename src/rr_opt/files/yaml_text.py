@@ -8,7 +8,8 @@ several documents, deep nesting, other encodings than UTF-8. Plain words follow 
 from __future__ import annotations
 
 import re
-from typing import Any
+from collections.abc import Iterator
+from typing import Any, NoReturn
 
 import yaml
 
@@ -44,7 +45,7 @@ def parse_yaml(content: bytes, file: str) -> Document:
     return _Reading(text, file).document()
 
 
-def _refuse(file: str, message: str, line: int | None = None) -> Any:
+def _refuse(file: str, message: str, line: int | None = None) -> NoReturn:
     raise InvalidFileError([Issue("error", "", message, line, file)])
 
 
@@ -53,7 +54,7 @@ class _Reading:
 
     def __init__(self, text: str, file: str):
         self.file = file
-        self.events = yaml.parse(text, Loader=yaml.SafeLoader)
+        self.events: Iterator[Any] = yaml.parse(text, Loader=yaml.SafeLoader)
         self.lines: dict[Path, int] = {}
         self.issues: list[Issue] = []
         self.values = 0
@@ -90,7 +91,7 @@ class _Reading:
             self._stop("A second document begins here. Expected one document per file.", line)
         return data, first.start_mark.line + 1
 
-    def _stop(self, message: str, line: int | None = None, path: Path = ()) -> Any:
+    def _stop(self, message: str, line: int | None = None, path: Path = ()) -> NoReturn:
         self._note(message, line, path)
         raise InvalidFileError(self.issues)
 
@@ -142,10 +143,10 @@ class _Reading:
         data: dict[str, Any] = {}
         while not isinstance(event := next(self.events), yaml.MappingEndEvent):
             line = event.start_mark.line + 1
-            key = event.value if isinstance(event, yaml.ScalarEvent) else None
-            if key is None:
+            if not isinstance(event, yaml.ScalarEvent):
                 self._stop("A key is a list or a mapping. Expected a word.", line, path)
             self._value(event, path)
+            key: str = event.value
             here = (*path, key)
             value = self._value(next(self.events), here)
             if key in data:

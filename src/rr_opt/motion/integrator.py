@@ -34,7 +34,7 @@ def fixed_steps(
 ) -> Array:
     """States (5, steps + 1) at equal steps from t = 0 to `end` (one period), from v(0) = v0."""
     dynamics = dynamics_of(robot)
-    path = _stepper(dynamics.effects, method).mapaccum(steps)
+    path = _path(dynamics.effects, method, steps)
     h = (end or gait.period) / steps
     start = np.array([v0, 0.0, 0.0, 0.0, 1.0])
     t = np.arange(steps) * h
@@ -73,6 +73,11 @@ def _stepper(effects: tuple[str, ...], method: Tableau) -> ca.Function:
     h = ca.SX.sym("h")
     end = method.step(lambda fraction, y: slope(y, t + fraction * h, p), state, h)
     return ca.Function("step", [state, t, h, p], [ca.cse(end)])
+
+
+@lru_cache
+def _path(effects: tuple[str, ...], method: Tableau, steps: int) -> ca.Function:
+    return _stepper(effects, method).mapaccum(steps)
 
 
 @lru_cache

@@ -1,18 +1,16 @@
 """The equation of motion and the servo torque, by Kane's method, for any set of effects.
 
-Speeds. Any motion of the mechanism is named by four quasi-speeds: u = (v, s1, s2, dphi), the
-speed of axle 1 along its rolling direction, the side speeds of both axles, and the servo's
-rate. Velocities are linear in them, qd = G(q) u, with G the inverse of the rows that define
-the speeds. Without side slip s1 = s2 = 0 (the paper's constraints 1 and 2).
+With u = (v, s1, s2, dphi) the speeds of `kinematics`, every velocity and rate of the mechanism is
+a function of phi and u, linear in u. A body of mass m whose centre moves at V, seen from a
+platform that turns at w, accelerates by dV/dt + w x V; a rotor of inertia I turning at w by
+dw/dt. Kane's equation for speed j equates what they need with what forces F and the servo give:
 
-Equations. With T(q, qd) the kinetic energy and Q the generalised applied forces,
-
-    G' [ d/dt dT/dqd - dT/dq - Q ] = (0, F1, F2, torque)
+    sum m (dV/dt + w x V) . dV/du_j + sum I dw/dt dw/du_j = sum F . dV/du_j + (0, F1, F2, torque)_j
 
 Row v is the equation of motion, rows s1 and s2 give the side forces that hold the axles, and
-row dphi gives the servo torque, which acts on platform 2 and reacts on platform 1. Nothing is
-transcribed: `tests/physics` holds the result against the paper's closed form, whose printed
-equation (3) has sign errors, and against a model with Lagrange multipliers.
+row dphi gives the servo torque, which acts on platform 2 and reacts on platform 1. All partial
+velocities and rates of change are CasADi's; `tests/physics` holds the result against the paper's
+closed form, whose printed equation (3) has sign errors, and against Lagrange multipliers.
 """
 
 from __future__ import annotations
@@ -25,7 +23,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rr_opt.physics.effects import CATALOGUE
-from rr_opt.physics.kinematics import ROBOT_PARAMETERS, Mechanism, mechanism, robot_values
+from rr_opt.physics.kinematics import (
+    ROBOT_PARAMETERS,
+    SPEEDS,
+    Mechanism,
+    mechanism,
+    robot_values,
+)
 from rr_opt.robot.parameters import Robot
 
 
@@ -83,51 +87,49 @@ def derive(effects: tuple[str, ...] = ()) -> Dynamics:
 def _kane(
     robot: Mechanism, effects: tuple[str, ...], names: tuple[str, ...], p: ca.SX
 ) -> Dynamics:
-    q, qd = robot.q, robot.qd
-    W = _speed_rows(robot)
-    kinetic = robot.spin + sum(
-        body.mass * ca.sumsqr(robot.velocity(body.centre)) / 2
-        + body.inertia * ca.jtimes(body.angle, q, qd) ** 2 / 2
-        for body in robot.bodies
-    )
-    momentum = ca.gradient(kinetic, qd)
-    M = ca.jacobian(momentum, qd)
-    bias = ca.jtimes(momentum, q, qd) - ca.gradient(kinetic, q)
-    speeds = [robot.velocity(force.point) for force in robot.forces]
-    Q = sum(
-        ca.jtimes(speed, qd, force.vector, True)
-        for speed, force in zip(speeds, robot.forces, strict=True)
-    )
-    power = sum(
-        ca.dot(speed, force.vector) for speed, force in zip(speeds, robot.forces, strict=True)
-    )
-    drift = ca.jtimes(W @ qd, q, qd)
+    phi, u = robot.phi, robot.speeds
+    vdot, ddphi = ca.SX.sym("vdot"), ca.SX.sym("ddphi")
+    udot = ca.vertcat(vdot, 0, 0, ddphi)
 
-    # Nothing depends on where the robot stands or heads, so take x = y = psi = 0: what is left
-    # after CasADi has folded the zeros and ones is the motion seen from platform 1.
-    v, phi, dphi, ddphi = (ca.SX.sym(name) for name in ("v", "phi", "dphi", "ddphi"))
-    here = ca.vertcat(0, 0, 0, phi)
-    G = ca.inv_minor(ca.substitute(W, q, here))
-    speed = ca.vertcat(v, 0, 0, dphi)
-    M, bias, Q, drift, kinetic, power = (
-        ca.substitute(part, ca.vertcat(q, qd), ca.vertcat(here, G @ speed))
-        for part in (M, bias, Q, drift, kinetic, power)
-    )
-    forward = G[:, 0]
-    rest = M @ (G @ (ca.vertcat(0, 0, 0, ddphi) - drift)) + bias - Q
-    vdot = -ca.dot(forward, rest) / ca.dot(forward, M @ forward)
-    needed = G.T @ (rest + M @ forward * vdot)
-    velocity = G @ speed
+    def change(quantity: ca.SX) -> ca.SX:
+        return ca.jtimes(quantity, phi, u[SPEEDS.index("dphi")]) + ca.jtimes(quantity, u, udot)
 
-    vdot, w, side, torque = _tidy(vdot, velocity[2], velocity[1], needed[3])
+    needed = ca.SX.zeros(len(SPEEDS))
+    kinetic = ca.SX(0)
+    for body in robot.bodies:
+        frame = robot.frames[body.platform]
+        V = frame.velocity(body.point)
+        acceleration = change(V) + frame.rate * ca.vertcat(-V[1], V[0])
+        needed += ca.jtimes(V, u, body.mass * acceleration, True)
+        kinetic += body.mass * ca.sumsqr(V) / 2
+    for rotor in robot.rotors:
+        needed += ca.jtimes(rotor.rate, u, rotor.inertia * change(rotor.rate), True)
+        kinetic += rotor.inertia * rotor.rate**2 / 2
+    power = ca.SX(0)
+    for force in robot.forces:
+        V = robot.frames[force.platform].velocity(force.point)
+        needed -= ca.jtimes(V, u, force.vector, True)
+        power += ca.dot(V, force.vector)
+
+    # The axles do not slip: s1 = s2 = 0 from here on. Row v is linear in vdot.
+    here = [robot.frames[1].rate, robot.parameters["c1"] * -robot.frames[1].rate]
+    held = ca.vertcat(*(u[SPEEDS.index(name)] for name in sorted(robot.held)))
+    needed, kinetic, power, w, side = (
+        ca.substitute(part, held, ca.SX.zeros(held.numel()))
+        for part in (needed, kinetic, power, *here)
+    )
+    inertia = ca.jacobian(needed[0], vdot)
+    solved = -ca.substitute(needed[0], vdot, ca.SX(0)) / inertia
+    needed = ca.substitute(needed, vdot, solved)
+
+    v, dphi = u[0], u[SPEEDS.index("dphi")]
     inputs = [v, phi, dphi, ddphi, p]
     names_in = ["v", "phi", "dphi", "ddphi", "p"]
+    motion = _tidy(solved, w, side, needed[3])
     return Dynamics(
         effects=effects,
         parameters=names,
-        motion=ca.Function(
-            "motion", inputs, [vdot, w, side, torque], names_in, ["vdot", "w", "side", "torque"]
-        ),
+        motion=ca.Function("motion", inputs, motion, names_in, ["vdot", "w", "side", "torque"]),
         energy=ca.Function(
             "energy",
             [v, phi, dphi, p],
@@ -136,7 +138,7 @@ def _kane(
             ["kinetic", "dissipation"],
         ),
         sides=ca.Function("sides", inputs, _tidy(needed[1], needed[2]), names_in, ["F1", "F2"]),
-        linear=_affine(ca.Function("vdot", inputs, [vdot])),
+        linear=_affine(ca.Function("vdot", inputs, [solved])),
     )
 
 
@@ -152,19 +154,6 @@ def _affine(vdot: ca.Function) -> bool:
         if abs(low - 2 * middle + high) > 1e-9 * (abs(low) + abs(middle) + abs(high)):
             return False
     return True
-
-
-def _speed_rows(robot: Mechanism) -> ca.SX:
-    """W(q), 4x4, with u = W qd the quasi-speeds (v, s1, s2, dphi)."""
-    first, second = robot.axles
-    at_first = ca.jacobian(robot.velocity(first.centre), robot.qd)
-    at_second = ca.jacobian(robot.velocity(second.centre), robot.qd)
-    return ca.vertcat(
-        first.along.T @ at_first,
-        first.across.T @ at_first,
-        second.across.T @ at_second,
-        ca.SX([[0, 0, 0, 1]]),
-    )
 
 
 def _tidy(*expressions: ca.SX) -> list[ca.SX]:

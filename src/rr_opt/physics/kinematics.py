@@ -1,12 +1,23 @@
-"""Where everything on the robot is: points and directions as functions of q = (x, y, psi, phi).
+"""Where everything sits on the two platforms, and how fast each part of them moves.
 
-`P = (x, y)` is the joint, psi the heading of platform 1 (from P towards its axle), phi the
-angle of platform 2's axis relative to platform 1's (the paper's Fig. 1):
+Each platform has axes of its own: the origin at its axle's centre C, the first axis along the
+platform (from C towards where the paper draws its arrow: away from the joint P on platform 1,
+towards P on platform 2), the second to the left. Positions are fixed numbers in these axes:
 
-    C1 = P + c1 e1      A1 = C1 - a1 e1      e1 = (cos psi, sin psi)
-    C2 = P - c2 e2      A2 = C2 + a2 e2      e2 = (cos(psi + phi), sin(psi + phi))
+                     platform 1            platform 2
+    axle's centre    C1 = (0, 0)           C2 = (0, 0)
+    joint            P  = (-c1, 0)         P  = (c2, 0)
+    centre of mass   A1 = (-a1, 0)         A2 = (a2, 0)
+    wheels                (0, +-b1)             (0, +-b2)
 
-Only positions are written here; every velocity follows by differentiation in `dynamics`.
+Any motion is named by four speeds: u = (v, s1, s2, dphi), the speed of axle 1 along its rolling
+direction, the side speeds of both axles, and the servo's rate. A point r of platform i moves at
+V_i + w_i x r, and P belongs to both platforms, so with R the rotation by phi
+
+    (v, s1 - c1 w1) = R (u2, s2 + c2 w2),        w2 = w1 + dphi
+
+which gives the yaw rate w1 and the speed u2 of axle 2 along its own axis. With s1 = s2 = 0 these
+are the paper's constraints (1) and (2), and S1 = c1 cos phi + c2 is the divisor of w1.
 """
 
 from __future__ import annotations
@@ -25,6 +36,8 @@ ROBOT_PARAMETERS = (
     "h",
 )
 
+SPEEDS = ("v", "s1", "s2", "dphi")
+
 
 def robot_values(robot: Robot) -> tuple[float, ...]:
     """The numbers behind ROBOT_PARAMETERS, in their order, SI."""
@@ -37,94 +50,103 @@ def robot_values(robot: Robot) -> tuple[float, ...]:
 
 
 @dataclass(frozen=True)
-class Body:
-    """A rigid body: mass (kg), moment of inertia about `centre` (kg m2), centre (2), angle (rad)."""
+class Frame:
+    """A platform's motion: velocity of its origin in its own axes (2, m/s), yaw rate (rad/s)."""
 
-    mass: ca.SX
-    inertia: ca.SX
-    centre: ca.SX
-    angle: ca.SX
+    origin: ca.SX
+    rate: ca.SX
+
+    def velocity(self, point: ca.SX) -> ca.SX:
+        """Velocity (2, m/s) of a point (2, m) fixed on the platform, in the platform's axes."""
+        return self.origin + self.rate * ca.vertcat(-point[1], point[0])
 
 
 @dataclass(frozen=True)
-class Axle:
-    """A wheel pair's axle: its centre (2), and the unit vectors along which its wheels roll and
-    across which they may not slip."""
+class Body:
+    """A mass (kg) at a point (2, m) of platform 1 or 2."""
 
-    centre: ca.SX
-    along: ca.SX
-    across: ca.SX
+    platform: int
+    mass: ca.SX
+    point: ca.SX
+
+
+@dataclass(frozen=True)
+class Rotor:
+    """A moment of inertia (kg m2) that turns at a rate (rad/s) of its own."""
+
+    inertia: ca.SX
+    rate: ca.SX
 
 
 @dataclass(frozen=True)
 class Wheel:
-    """A wheel of platform 1 or 2, on its left (+1) or right (-1), its contact point (2) and the
-    direction in which it rolls (2)."""
+    """A wheel of platform 1 or 2, on its left (+1) or right (-1), at a point (2, m) of it."""
 
     platform: int
     side: int
-    contact: ca.SX
-    along: ca.SX
+    point: ca.SX
 
 
 @dataclass(frozen=True)
 class Force:
-    """A force (2, N) that acts at a point (2) of the mechanism."""
+    """A force (2, N) at a point (2, m) of platform 1 or 2, both in the platform's axes."""
 
+    platform: int
     point: ca.SX
     vector: ca.SX
 
 
 @dataclass(frozen=True)
 class Mechanism:
-    """The robot as points, bodies and forces over symbols; effects return a changed copy.
+    """The robot as bodies and forces over symbols; effects return a changed copy.
 
-    q, qd       (4,) x, y, psi, phi and their rates
-    parameters  symbol of every robot parameter by name
-    held        numbers of the axles whose side speed is held at zero
-    spin        kinetic energy beside that of `bodies`, J (wheels turning about their axles)
+    phi, speeds  the angle (rad) and SPEEDS (4,)
+    parameters   symbol of every robot parameter by name
+    frames       motion of platforms 1 and 2
+    held         the side speeds that are held at zero
     """
 
-    q: ca.SX
-    qd: ca.SX
+    phi: ca.SX
+    speeds: ca.SX
     parameters: Mapping[str, ca.SX]
+    frames: Mapping[int, Frame]
     bodies: tuple[Body, ...]
-    axles: tuple[Axle, Axle]
+    rotors: tuple[Rotor, ...]
     wheels: tuple[Wheel, ...]
     forces: tuple[Force, ...] = ()
-    held: frozenset[int] = frozenset({1, 2})
-    spin: ca.SX = ca.SX(0)
-
-    def velocity(self, point: ca.SX) -> ca.SX:
-        """Velocity (2, m/s) of a point given as a function of q."""
-        return ca.jtimes(point, self.q, self.qd)
+    held: frozenset[str] = frozenset({"s1", "s2"})
 
     def rolling_speed(self, wheel: Wheel) -> ca.SX:
         """Speed of the wheel's contact point along its rolling direction, m/s."""
-        return ca.dot(self.velocity(wheel.contact), wheel.along)
+        return self.frames[wheel.platform].velocity(wheel.point)[0]
 
 
 def mechanism() -> Mechanism:
     """The paper's robot: two bodies, four wheels, viscous friction k at each of them."""
-    q = ca.SX.sym("q", 4)
-    qd = ca.SX.sym("qd", 4)
     p = {name: ca.SX.sym(name) for name in ROBOT_PARAMETERS}
-    joint, psi, phi = q[:2], q[2], q[3]
-    e1, n1 = _axes(psi)
-    e2, n2 = _axes(psi + phi)
-    C1 = joint + p["c1"] * e1
-    C2 = joint - p["c2"] * e2
-    bodies = (
-        Body(p["m1"], p["I1"], C1 - p["a1"] * e1, psi),
-        Body(p["m2"], p["I2"], C2 + p["a2"] * e2, psi + phi),
-    )
-    wheels = tuple(
-        Wheel(number, side, C + side * p[f"b{number}"] * n, e)
-        for number, C, e, n in ((1, C1, e1, n1), (2, C2, e2, n2))
-        for side in (1, -1)
-    )
+    phi = ca.SX.sym("phi")
+    speeds = ca.vertcat(*(ca.SX.sym(name) for name in SPEEDS))
+    v, s1, s2, dphi = ca.vertsplit(speeds)
+    cos, sin = ca.cos(phi), ca.sin(phi)
+    c1, c2 = p["c1"], p["c2"]
+    w1 = (s1 * cos - v * sin - s2 - c2 * dphi) / (c1 * cos + c2)
+    u2 = v * cos + (s1 - c1 * w1) * sin
+    w2 = w1 + dphi
     bare = Mechanism(
-        q, qd, MappingProxyType(p), bodies, (Axle(C1, e1, n1), Axle(C2, e2, n2)), wheels
+        phi=phi,
+        speeds=speeds,
+        parameters=MappingProxyType(p),
+        frames={1: Frame(ca.vertcat(v, s1), w1), 2: Frame(ca.vertcat(u2, s2), w2)},
+        bodies=(
+            Body(1, p["m1"], ca.vertcat(-p["a1"], 0)),
+            Body(2, p["m2"], ca.vertcat(p["a2"], 0)),
+        ),
+        rotors=(Rotor(p["I1"], w1), Rotor(p["I2"], w2)),
+        wheels=tuple(
+            Wheel(number, side, ca.vertcat(0, side * p[f"b{number}"]))
+            for number in (1, 2)
+            for side in (1, -1)
+        ),
     )
     return with_wheel_forces(bare, lambda wheel, u: -p[f"k{wheel.platform}"] * u)
 
@@ -134,15 +156,11 @@ def with_wheel_forces(
 ) -> Mechanism:
     """Add at every wheel the rolling force law(wheel, u), N along the wheel, u its speed, m/s."""
     added = tuple(
-        Force(wheel.contact, law(wheel, mechanism.rolling_speed(wheel)) * wheel.along)
+        Force(
+            wheel.platform,
+            wheel.point,
+            ca.vertcat(law(wheel, mechanism.rolling_speed(wheel)), 0),
+        )
         for wheel in mechanism.wheels
     )
     return replace(mechanism, forces=mechanism.forces + added)
-
-
-def _axes(angle: ca.SX) -> tuple[ca.SX, ca.SX]:
-    """Unit vectors along and to the left of an axis at `angle`."""
-    return (
-        ca.vertcat(ca.cos(angle), ca.sin(angle)),
-        ca.vertcat(-ca.sin(angle), ca.cos(angle)),
-    )

@@ -8,16 +8,15 @@ from dataclasses import replace
 import casadi as ca
 
 from rr_opt.physics.effects.effect import Effect, Parameter, Port
-from rr_opt.physics.kinematics import Mechanism
+from rr_opt.physics.kinematics import Mechanism, Rotor
 
 
 def _enter(mechanism: Mechanism, values: Mapping[str, ca.SX]) -> Mechanism:
     h = mechanism.parameters["h"]
-    spin = sum(
-        (values["J"] * (mechanism.rolling_speed(wheel) / h) ** 2 / 2 for wheel in mechanism.wheels),
-        start=mechanism.spin,
+    wheels = tuple(
+        Rotor(values["J"], mechanism.rolling_speed(wheel) / h) for wheel in mechanism.wheels
     )
-    return replace(mechanism, spin=spin)
+    return replace(mechanism, rotors=mechanism.rotors + wheels)
 
 
 EFFECT = Effect(

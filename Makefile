@@ -1,0 +1,89 @@
+# GNU make and a POSIX shell. `make` alone lists the targets.
+
+MIN_PYTHON := 3.11
+ifeq ($(origin PYTHON),undefined)
+PYTHONS := python3 python3.14 python3.13 python3.12 python3.11
+else
+PYTHONS := $(PYTHON)
+endif
+WORKERS ?= 2
+
+VENV := .venv
+BIN := $(VENV)/bin
+PIP := PIP_DISABLE_PIP_VERSION_CHECK=1 PYTHONWARNINGS=ignore $(BIN)/python -m pip --no-input
+INSTALL := $(PIP) install -qq
+
+# A stamp carries the checksum of what was installed and where. Changed pins, or a checkout
+# that was moved, need a new environment; a touched file does not.
+checksum = $(shell { pwd; cat pyproject.toml $(1); } | cksum | cut -d' ' -f1)
+RUN := $(VENV)/run-$(call checksum,requirements/run.txt)
+DEV := $(VENV)/dev-$(call checksum,requirements/run.txt requirements/dev.txt)
+
+.DEFAULT_GOAL := help
+.PHONY: help run test check format-check lint types contracts format readme bench pins clean
+
+help: ## list the targets
+	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/\1|\2/p' $(MAKEFILE_LIST) | \
+	while IFS='|' read -r name what; do printf '  make %-13s %s\n' "$$name" "$$what"; done
+
+run: $(RUN) ## find the fastest gait of the paper's prototype
+	$(BIN)/rr-opt maximize-speed
+
+test: $(DEV) ## run the tests (WORKERS=2)
+	$(BIN)/python -m pytest -n $(WORKERS)
+
+check: format-check lint types contracts test ## everything a change has to pass
+
+format-check: $(DEV)
+	$(BIN)/ruff format --check .
+
+lint: $(DEV)
+	$(BIN)/ruff check .
+
+types: $(DEV)
+	$(BIN)/pyright
+
+contracts: $(DEV)
+	$(BIN)/lint-imports
+
+format: $(DEV) ## format the code and sort its imports
+	$(BIN)/ruff check --select I --fix .
+	$(BIN)/ruff format .
+
+readme: $(DEV) ## run every command of README.md
+	$(BIN)/python scripts/readme_commands.py README.md
+
+bench: $(DEV) ## measure against other ways to the same answer, into results/bench
+	$(BIN)/python -m benchmarks.optimise
+
+pins: $(RUN) ## pin the newest dependencies that pyproject.toml allows
+	$(BIN)/python scripts/pins.py
+
+clean: ## remove the environment and everything temporary
+	rm -rf $(VENV) build dist out .pytest_cache .hypothesis .ruff_cache .import_linter_cache
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +
+	rm -rf src/*.egg-info
+
+$(RUN): | requirements/run.txt
+	@for python in $(PYTHONS); do \
+	  if $$python -c 'import sys; sys.exit(sys.version_info < tuple(map(int, "$(MIN_PYTHON)".split("."))))' \
+	    2>/dev/null; then found=$$python; break; fi; \
+	done; \
+	if [ -z "$$found" ]; then \
+	  echo "Python $(MIN_PYTHON) or newer is needed. Looked for: $(PYTHONS)." >&2; \
+	  for python in $(PYTHONS); do \
+	    version=$$($$python -V 2>/dev/null) && echo "  $$python is $$version, too old." >&2; \
+	  done; \
+	  echo "Install one, or name it: make PYTHON=/path/to/python $(MAKECMDGOALS)" >&2; \
+	  exit 1; \
+	fi; \
+	echo "Setting up $(VENV) with $$($$found -V); once, a minute or two ..."; \
+	$$found -m venv --clear $(VENV)
+	@$(INSTALL) -r requirements/run.txt
+	@$(INSTALL) --no-deps --no-build-isolation -e .
+	@touch $@
+
+$(DEV): $(RUN)
+	@echo "Installing what tests and checks need ..."
+	@$(INSTALL) -r requirements/dev.txt
+	@touch $@

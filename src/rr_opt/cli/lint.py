@@ -1,0 +1,37 @@
+"""`rr-opt lint FILES`: every problem of the input files, before anything is computed."""
+
+from __future__ import annotations
+
+import json as json_format
+from dataclasses import asdict
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from rr_opt.outcome import EXIT_WRONG_INPUT
+
+
+def lint(
+    files: Annotated[
+        list[Path], typer.Argument(help="Robot or problem files, or folders with a problem.yaml.")
+    ],
+    json: Annotated[bool, typer.Option("--json", help="Print JSON on stdout.")] = False,
+) -> None:
+    """Check input files and print every problem of all of them. Exits 2 if one is an error."""
+    from rr_opt.files.issue import has_errors  # noqa: PLC0415
+    from rr_opt.files.lint import lint_file  # noqa: PLC0415
+
+    checked = {str(file): lint_file(file) for file in files}
+    wrong = any(has_errors(issues) for issues in checked.values())
+    if json:
+        found = [asdict(issue) for issues in checked.values() for issue in issues]
+        typer.echo(json_format.dumps({"ok": not wrong, "issues": found}, indent=2))
+    else:
+        for name, issues in checked.items():
+            for issue in issues:
+                typer.echo(str(issue))
+            if not has_errors(issues):
+                typer.echo(f"{name}: can be used")
+    if wrong:
+        raise typer.Exit(EXIT_WRONG_INPUT)

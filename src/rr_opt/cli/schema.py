@@ -1,0 +1,24 @@
+"""`rr-opt schema KIND`: the JSON Schema of an input file, for editors."""
+
+from __future__ import annotations
+
+import json
+from typing import Annotated
+
+import typer
+
+from rr_opt.outcome import InputError
+
+
+def schema(
+    kind: Annotated[str, typer.Argument(help="Which file: robot or problem.")],
+) -> None:
+    """Print the JSON Schema of a kind of input file, with which editors complete and check it."""
+    from rr_opt.files.schemas import schema as json_schema  # noqa: PLC0415
+
+    try:
+        found = json_schema(kind)
+    except InputError as error:
+        typer.echo(str(error), err=True)
+        raise typer.Exit(error.exit_code) from None
+    typer.echo(json.dumps(found, indent=2))

@@ -1,0 +1,142 @@
+"""Climb from many points of the unit box at once, along smooth slopes and along kinks.
+
+Each iteration lays a small stencil around every climber, evaluates all stencils in one call, and
+fits a quadratic to the speed and another to the torque. What is maximised is the speed less a
+penalty for torque beyond its limit: that has a kink where the limit begins, often right where
+the optimum is, so it is formed from the two quadratics and not fitted itself.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import combinations
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+_ITERATIONS = 14
+_LARGEST, _SMALLEST = 0.2, 2e-3
+_NEXT_TO = 0.06
+_SAMPLES = 256
+
+
+class Terrain(Protocol):
+    """points (K, 4), directions (K,) -> speed in that direction (K,), torque over its limit (K,)."""
+
+    def __call__(self, points: Array, sign: Array, /) -> tuple[Array, Array]: ...
+
+
+@dataclass(frozen=True)
+class Seed:
+    """A start: its direction (+1 forward, -1 backward), its point of the unit box (4,)."""
+
+    sign: int
+    point: Array
+
+
+def merit(speed: Array, torque: Array, penalty: float) -> Array:
+    """Speed less the penalty for torque beyond its limit; the torque is relative to the limit."""
+    return speed - penalty * np.maximum(torque - 1.0, 0.0)
+
+
+def climb(
+    x: Array, sign: Array, free: list[int], terrain: Terrain, penalty: float
+) -> list[tuple[Seed, float]]:
+    """Climb from x (K, 4) along the free coordinates; the tops and their merit, best first.
+
+    A climber that comes next to a better one gives up: both are on their way to the same top.
+    """
+    best = merit(*terrain(x, sign), penalty)
+    d = len(free)
+    stencil, design = _stencil(d)
+    size = np.full(len(x), 0.08)
+    for _ in range(_ITERATIONS if d else 0):
+        # Near a face the stencil moves inside; its quadratic still serves up to the face.
+        centre = np.clip(x[:, free], size[:, None], 1 - size[:, None])
+        trial = np.repeat(x[:, None, :], len(stencil) + 1, axis=1)
+        trial[:, :-1, free] = centre[:, None, :] + size[:, None, None] * stencil
+        speed, torque = _each(terrain, trial[:, :-1], sign)
+        models = (speed @ design.T, torque @ design.T)
+        trial[:, -1, free] = centre + size[:, None] * _best_step(models, centre, size, penalty)
+        last = _each(terrain, trial[:, -1:], sign)
+        values = merit(np.hstack([speed, last[0]]), np.hstack([torque, last[1]]), penalty)
+        rows, top = np.arange(len(x)), values.argmax(axis=1)
+        gain = np.maximum(values[rows, top] - best, 0.0)
+        aim = np.where((gain > 0)[:, None], trial[rows, top], x)
+        moved = np.abs(aim - x).max(axis=1)
+        size = np.where(moved > 1.5 * size, 1.4 * size, np.maximum(moved, size / 4) / 1.5)
+        size = np.clip(size, _SMALLEST, _LARGEST)
+        x, best = aim, best + gain
+        kept = _apart(x, best, sign)
+        x, sign, best, size, gain = x[kept], sign[kept], best[kept], size[kept], gain[kept]
+        if np.all((gain <= 1e-5 * np.abs(best)) & (size <= 0.02)):
+            break
+    return [(Seed(int(sign[i]), x[i]), float(best[i])) for i in np.argsort(-best)]
+
+
+def _each(terrain: Terrain, trial: Array, sign: Array) -> tuple[Array, Array]:
+    """Speed and torque of (K, M, 4) points, (K, M) each."""
+    speed, torque = terrain(trial.reshape(-1, 4), np.repeat(sign, trial.shape[1]))
+    return speed.reshape(trial.shape[:2]), torque.reshape(trial.shape[:2])
+
+
+def _monomials(s: Array) -> Array:
+    """1, s_i, s_i^2 and s_i s_j of steps (..., d), (..., M)."""
+    d = s.shape[-1]
+    mixed = [s[..., i] * s[..., j] for i, j in combinations(range(d), 2)]
+    parts = [np.ones_like(s[..., :1]), s, s**2]
+    return np.concatenate([*parts, np.stack(mixed, -1)] if mixed else parts, axis=-1)
+
+
+def _stencil(d: int) -> tuple[Array, Array]:
+    """Just enough points for a quadratic in d variables, and what turns values at them into its
+    coefficients."""
+    pairs = list(combinations(range(d), 2))
+    points = np.zeros((1 + 2 * d + len(pairs), d))
+    for i in range(d):
+        points[1 + 2 * i, i], points[2 + 2 * i, i] = 1.0, -1.0
+    for row, (i, j) in enumerate(pairs, start=1 + 2 * d):
+        points[row, [i, j]] = 1.0
+    return points, np.linalg.inv(_monomials(points))
+
+
+def _best_step(models: tuple[Array, Array], centre: Array, size: Array, penalty: float) -> Array:
+    """The best step (K, d), in stencils, of a cloud within two stencils and the unit box, then
+    of smaller clouds around that. A cloud serves kinks and slopes alike."""
+    low = np.maximum(-2.0, -centre / size[:, None])
+    high = np.minimum(2.0, (1 - centre) / size[:, None])
+    cloud = _cloud(centre.shape[1])
+    middle, reach = np.zeros_like(centre), 2.0
+    for _ in range(4):
+        steps = np.clip(middle[:, None] + reach * cloud, low[:, None], high[:, None])
+        basis = _monomials(steps)
+        speed, torque = (np.einsum("kmp,kp->km", basis, model) for model in models)
+        top = merit(speed, torque, penalty).argmax(axis=1)
+        middle, reach = steps[np.arange(len(steps)), top], reach / 3
+    return middle
+
+
+def _cloud(d: int) -> Array:
+    """The origin and low-discrepancy points of [-1.2, 1.2]^d."""
+    return np.concatenate([np.zeros((1, d)), 2.4 * (spread(_SAMPLES, d) - 0.5)])
+
+
+def spread(count: int, d: int) -> Array:
+    """Low-discrepancy points of the unit box, (count, d): Roberts' additive recurrence."""
+    golden = 2.0
+    for _ in range(40):
+        golden = (1 + golden) ** (1 / (d + 1))
+    steps = golden ** -np.arange(1.0, d + 1)
+    return (0.5 + np.outer(np.arange(1, count + 1), steps)) % 1.0
+
+
+def _apart(x: Array, values: Array, sign: Array) -> list[int]:
+    """Indices of climbers that are not next to a better one."""
+    kept: list[int] = []
+    for i in np.argsort(-values):
+        if all(sign[i] != sign[j] or np.abs(x[i] - x[j]).max() > _NEXT_TO for j in kept):
+            kept.append(int(i))
+    return kept

@@ -1,0 +1,103 @@
+"""An optimum with the evidence for it: what the replay and the sweep say, and so how it ends."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from rr_opt.design.maximize_speed import Optimum
+from rr_opt.outcome import Status
+from rr_opt.report.quantities import direction_text
+from rr_opt.verify.replay import Replay
+from rr_opt.verify.sweep import SweepCheck
+
+LARGEST_REPLAY_ERROR = 1e-6
+LARGEST_EXCESS = 1e-4
+LEAST_GAP = -1e-4
+"""How far the sweep may beat the optimum, relative, before the optimum is not believed."""
+
+
+@dataclass(frozen=True)
+class Check:
+    """One check: whether it was passed, and what it found in a sentence."""
+
+    passed: bool
+    sentence: str
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What `maximize-speed` has to tell.
+
+    name    of the problem
+    sha256  fingerprint of its files
+    replay, sweep   None where there is no optimum to check
+    """
+
+    name: str
+    sha256: str
+    optimum: Optimum
+    replay: Replay | None = None
+    sweep: SweepCheck | None = None
+
+    @property
+    def checks(self) -> list[Check]:
+        """The checks that were made."""
+        checks = []
+        if self.replay:
+            error, excess = self.replay.error, self.replay.excess
+            checks.append(
+                Check(
+                    error <= LARGEST_REPLAY_ERROR,
+                    f"Replay by CVODES: its speed is {1e3 * self.replay.speed:+.3f} mm/s, "
+                    f"{error:.1e} from the optimiser's, relative "
+                    f"(at most {LARGEST_REPLAY_ERROR:.0e} allowed).",
+                )
+            )
+            tail = f"(at most {LARGEST_EXCESS:.0e} allowed)."
+            found = (
+                f"the worst limit is broken by {excess:.1e} of it {tail}"
+                if excess > 0
+                else "no limit is broken."
+            )
+            checks.append(
+                Check(excess <= LARGEST_EXCESS, f"Limits over the whole cycle: {found}")
+            )
+        if self.sweep:
+            sweep = self.sweep
+            checks.append(Check(sweep.gap >= LEAST_GAP, _sweep_sentence(self.sweep)))
+        return checks
+
+    @property
+    def status(self) -> Status:
+        """As the optimiser ended, unless a check failed."""
+        if all(check.passed for check in self.checks):
+            return self.optimum.status
+        return Status.NOT_CONVERGED
+
+    @property
+    def message(self) -> str:
+        """The outcome in a paragraph; a failed check comes first."""
+        failed = [check.sentence for check in self.checks if not check.passed]
+        if failed:
+            return "The optimum was not confirmed. " + " ".join(failed)
+        best = self.optimum.best
+        if best is None:
+            return self.optimum.message
+        text = (
+            f"The fastest gait found drives {direction_text(best.speed)} at "
+            f"{abs(best.speed):.4f} m/s, and every check confirms it."
+        )
+        ties = len(self.optimum.ties)
+        if ties:
+            text += f" {ties} other gait{'s are' if ties > 1 else ' is'} as fast: a tie."
+        return text
+
+
+def _sweep_sentence(sweep: SweepCheck) -> str:
+    head = f"Sweep of {sweep.points} gaits: the best has {1e3 * sweep.best_speed:+.3f} mm/s, "
+    if sweep.gap >= 0:
+        return head + f"{100 * sweep.gap:.2g} % slower than the optimum."
+    return (
+        head + f"{-100 * sweep.gap:.2g} % faster than the optimum "
+        f"(at most {-100 * LEAST_GAP:g} % allowed)."
+    )

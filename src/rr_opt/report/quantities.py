@@ -1,0 +1,81 @@
+"""How quantities are written for people: the SI value, and the unit they think in."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A kind of quantity: its symbol, SI unit, and a second unit with its worth per SI unit.
+
+    `price_unit` is the second unit if prices are best told per that unit, else the SI unit.
+    """
+
+    words: str
+    symbol: str
+    unit: str
+    other: str = ""
+    factor: float = 1.0
+
+    @property
+    def common(self) -> tuple[str, float]:
+        """The unit people think in, and how many of it are one SI unit."""
+        return (self.other, self.factor) if self.other else (self.unit, 1.0)
+
+    def both(self, value: float | None) -> str:
+        """`3.142 rad/s (30 rpm)`; `no limit` for None and infinity."""
+        if value is None or math.isinf(value):
+            return "no limit"
+        first = with_unit(value, self.unit)
+        return f"{first} ({with_unit(value * self.factor, self.other)})" if self.other else first
+
+
+QUANTITIES = {
+    "angle": Quantity("largest joint angle", "|φ|", "rad", "deg", 180 / math.pi),
+    "rate": Quantity("largest joint rate", "|dφ/dt|", "rad/s", "rpm", 30 / math.pi),
+    "torque": Quantity("largest servo torque", "|τ|", "N m"),
+    "singularity": Quantity("least S1 = c1 cos φ + c2", "S1", "m", "mm", 1e3),
+    "amplitude": Quantity("amplitude", "α", "rad", "deg", 180 / math.pi),
+    "period": Quantity("period", "T", "s"),
+    "offset": Quantity("offset", "φ0", "rad", "deg", 180 / math.pi),
+    "inertia_ratio": Quantity("inertia ratio J20/J10", "J20/J10", ""),
+    "loads": Quantity("number of loads", "loads", ""),
+}
+"""By the name under which a limit or a decision stands in files and results."""
+
+
+def number(value: float, digits: int = 4) -> str:
+    """A number with so many significant digits, without an exponent where it is readable."""
+    if value == 0 or not math.isfinite(value):
+        return "0" if value == 0 else f"{value}"
+    size = math.floor(math.log10(abs(value)))
+    if -4 <= size < 6:
+        text = f"{value:.{max(digits - 1 - size, 0)}f}"
+        return text.rstrip("0").rstrip(".") if "." in text else text
+    return f"{value:.{digits - 1}e}"
+
+
+def with_unit(value: float, unit: str, digits: int = 4) -> str:
+    """A number and its unit."""
+    return f"{number(value, digits)} {unit}".strip()
+
+
+def speed_text(speed: float) -> str:
+    """A signed speed in m/s and mm/s."""
+    return f"{speed:+.5f} m/s ({1e3 * speed:+.1f} mm/s)"
+
+
+def direction_text(speed: float) -> str:
+    """Which way a signed speed goes."""
+    return "forward" if speed > 0 else "backward"
+
+
+def price_text(name: str, price: float) -> str:
+    """A shadow price, m/s per SI unit, as `+8.57 mm/s per rpm`."""
+    unit, factor = QUANTITIES[name].common
+    per = 1e3 * price / factor
+    if not unit:
+        return f"{number(per / 100, 3) if per < 0 else '+' + number(per / 100, 3)} mm/s per 0.01"
+    return f"{'' if per < 0 else '+'}{number(per, 3)} mm/s per {unit}"

@@ -1,0 +1,158 @@
+"""result.json: the answer for scripts. All numbers are SI, and null stands for `none`."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from rr_opt import __version__
+from rr_opt.design.solve import Candidate
+from rr_opt.report.answer import Answer
+from rr_opt.report.candidates import ratio_of
+from rr_opt.report.robot_record import finite, robot_record
+from rr_opt.report.rows import bound_rows, limit_rows
+from rr_opt.robot.ballast import load_count
+from rr_opt.robot.gait import SineGait
+
+UNITS = {
+    "angle": "rad",
+    "rate": "rad/s",
+    "torque": "N m",
+    "singularity": "m",
+    "amplitude": "rad",
+    "period": "s",
+    "offset": "rad",
+    "inertia_ratio": "1",
+    "speed": "m/s",
+    "dx": "m",
+    "dy": "m",
+    "dpsi": "rad",
+    "radius": "m",
+    "shadow_price": "m/s of |speed| per SI unit by which the limit or bound is raised",
+    "gap": "(|speed| - |sweep_best|)/|speed|",
+    "replay_error": "|replay speed - speed|/|speed|",
+    "limit_excess": "largest (value - limit)/limit over the replayed cycle",
+}
+
+
+def result(answer: Answer) -> dict[str, Any]:
+    """The content of result.json; the same keys whatever the outcome."""
+    optimum, best = answer.optimum, answer.optimum.best
+    record: dict[str, Any] = {
+        "status": answer.status.value,
+        "message": answer.message,
+        "problem": answer.name,
+        "gait": gait_record(best.gait) if best else None,
+        "inertia_ratio": optimum.ratio,
+        "speed": best.speed if best else None,
+        "cycle": _cycle(answer),
+        "limits": _limits(answer),
+        "bounds": _bounds(answer),
+        "check": _check(answer),
+        "solver": {
+            "starts": optimum.starts,
+            "iterations": optimum.iterations,
+            "intervals": optimum.intervals,
+            "distinct_optima": [_optimum(answer, one) for one in optimum.optima],
+            "ties": len(optimum.ties),
+            "failures": list(optimum.failures),
+        },
+        "robot": robot_record(optimum.robot or optimum.problem.robot),
+        "loads": _loads(answer),
+        "units": UNITS,
+        "version": __version__,
+        "input_sha256": answer.sha256,
+    }
+    return record
+
+
+def gait_record(gait: SineGait) -> dict[str, Any]:
+    """The gait under the keys of a problem file."""
+    return {
+        "shape": gait.shape,
+        "amplitude": gait.amplitude,
+        "period": gait.period,
+        "offset": gait.offset,
+    }
+
+
+def _cycle(answer: Answer) -> dict[str, Any] | None:
+    if answer.replay is None:
+        return None
+    cycle = answer.replay.steady.cycle
+    return {
+        "dx": cycle.dx,
+        "dy": cycle.dy,
+        "dpsi": cycle.dpsi,
+        "radius": cycle.radius if turns(answer) else None,
+    }
+
+
+def turns(answer: Answer) -> bool:
+    """Whether the robot goes round a circle: a radius of many kilometres is a straight line."""
+    return answer.replay is not None and abs(answer.replay.steady.cycle.dpsi) > 1e-7
+
+
+def _limits(answer: Answer) -> list[dict[str, Any]]:
+    if answer.replay is None:
+        limits = answer.optimum.problem.limits
+        return [
+            {"name": name, "value": None, "limit": finite(getattr(limits, name)), "unit": unit}
+            | {"active": None, "shadow_price": None}
+            for name, unit in list(UNITS.items())[:4]
+        ]
+    return [
+        {
+            "name": row.name,
+            "value": row.value,
+            "limit": finite(row.limit),
+            "unit": UNITS[row.name],
+            "active": row.active,
+            "shadow_price": row.price,
+        }
+        for row in limit_rows(answer.optimum, answer.replay)
+    ]
+
+
+def _bounds(answer: Answer) -> list[dict[str, Any]]:
+    return [
+        {
+            "name": row.name,
+            "value": row.value,
+            "low": row.low,
+            "high": row.high,
+            "active": row.side,
+            "shadow_price": row.price,
+        }
+        for row in bound_rows(answer.optimum)
+    ]
+
+
+def _check(answer: Answer) -> dict[str, Any] | None:
+    replay, sweep = answer.replay, answer.sweep
+    if replay is None or sweep is None:
+        return None
+    return {
+        "sweep_points": sweep.points,
+        "sweep_best": sweep.best_speed,
+        "sweep_gait": gait_record(sweep.best_gait),
+        "gap": finite(sweep.gap),
+        "replay_error": finite(replay.error),
+        "replay_speed": replay.speed,
+        "limit_excess": finite(replay.excess),
+    }
+
+
+def _optimum(answer: Answer, one: Candidate) -> dict[str, Any]:
+    return {
+        "speed": one.speed,
+        "gait": gait_record(one.gait),
+        "inertia_ratio": ratio_of(answer.optimum, one),
+    }
+
+
+def _loads(answer: Answer) -> float | None:
+    """How many loads the robot carries, where loads realise the inertia ratio."""
+    optimum, choice = answer.optimum, answer.optimum.problem.inertia_ratio
+    if choice is None or choice.by != "loads" or optimum.ratio is None:
+        return None
+    return load_count(optimum.problem.robot, optimum.ratio, choice.about, choice.loads)

@@ -1,0 +1,153 @@
+"""The answer as text for a terminal."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+from rr_opt.report.answer import Answer
+from rr_opt.report.candidates import ratio_of
+from rr_opt.report.quantities import (
+    QUANTITIES,
+    direction_text,
+    number,
+    price_text,
+    speed_text,
+    with_unit,
+)
+from rr_opt.report.result import turns
+from rr_opt.report.rows import bound_rows, limit_rows
+from rr_opt.robot.gait import SineGait
+
+_LEADS = {"forward": "platform 1 leads", "backward": "platform 2 leads"}
+
+
+def summary(answer: Answer, files: Iterable[Path]) -> str:
+    """The whole summary, with a newline at its end."""
+    blocks = [[f"{answer.name}: {answer.message}"]]
+    if answer.optimum.best and answer.replay:
+        blocks += [_gait(answer), _limits(answer), _bounds(answer), _checks(answer)]
+        blocks += [_optima(answer), _solver(answer)]
+    blocks.append(_columns([("files" if not i else "", str(f)) for i, f in enumerate(files)]))
+    return "\n\n".join("\n".join(block) for block in blocks if block) + "\n"
+
+
+def gait_lines(gait: SineGait) -> list[tuple[str, ...]]:
+    """Amplitude, period and offset with their units, a row each."""
+    return [
+        ("  amplitude", QUANTITIES["amplitude"].both(gait.amplitude)),
+        ("  period", f"{with_unit(gait.period, 's')} ({with_unit(1 / gait.period, 'Hz')})"),
+        ("  offset", QUANTITIES["offset"].both(gait.offset)),
+    ]
+
+
+def ratio_text(answer: Answer) -> str:
+    """J20/J10, about which point, and how it is realised."""
+    optimum, choice = answer.optimum, answer.optimum.problem.inertia_ratio
+    ratio, robot = optimum.ratio, optimum.robot
+    if ratio is None or robot is None:
+        return ""
+    about = choice.about if choice else "joint"
+    text = f"{number(ratio)} about {'the joint P' if about == 'joint' else 'the centres of mass'}"
+    if choice is None:
+        return text + ", the robot as it is"
+    means = "loads on platform 2" if choice.by == "loads" else "the inertia of platform 2"
+    return f"{text}, by {means} (I2 = {robot.platform2.I:.4g} kg m2)"
+
+
+def cycle_text(answer: Answer) -> str:
+    """What one period does: a step along a line or round a circle."""
+    if answer.replay is None:
+        return ""
+    cycle = answer.replay.steady.cycle
+    step = f"{1e3 * math.hypot(cycle.dx, cycle.dy):.1f} mm a period"
+    if not turns(answer):
+        return f"{step}, straight"
+    return (
+        f"{step}, round a circle of radius {with_unit(cycle.radius, 'm')}, "
+        f"turning {math.degrees(cycle.dpsi):+.2f} deg a period"
+    )
+
+
+def _gait(answer: Answer) -> list[str]:
+    best = answer.optimum.best
+    if best is None:
+        return []
+    way = direction_text(best.speed)
+    rows = [
+        ("gait", "phi(t) = amplitude sin(2 pi t/period) + offset"),
+        *gait_lines(best.gait),
+        ("  J20/J10", ratio_text(answer)),
+        ("speed", f"{speed_text(best.speed)}, {way}: {_LEADS[way]}"),
+        ("cycle", cycle_text(answer)),
+    ]
+    return _columns(rows)
+
+
+def _limits(answer: Answer) -> list[str]:
+    if answer.replay is None:
+        return []
+    rows = [("limit", "reached", "allowed", "active", "shadow price")]
+    for row in limit_rows(answer.optimum, answer.replay):
+        kind = QUANTITIES[row.name]
+        price = price_text(row.name, row.price) if row.active else "-"
+        active = "yes" if row.active else "no"
+        rows.append((f"  {row.name}", kind.both(row.value), kind.both(row.limit), active, price))
+    return _columns(rows)
+
+
+def _bounds(answer: Answer) -> list[str]:
+    rows = [("bounds that hold", "at", "", "shadow price")]
+    for row in bound_rows(answer.optimum):
+        if row.side in ("low", "high"):
+            side = "lower bound" if row.side == "low" else "upper bound"
+            price = "-" if row.price is None else price_text(row.name, row.price)
+            rows.append((f"  {row.name}", QUANTITIES[row.name].both(row.value), side, price))
+    return _columns(rows) if len(rows) > 1 else []
+
+
+def _checks(answer: Answer) -> list[str]:
+    rows = [("  ok" if check.passed else "  FAILED", check.sentence) for check in answer.checks]
+    return ["checks", *_columns(rows)]
+
+
+def _optima(answer: Answer) -> list[str]:
+    optima = answer.optimum.optima
+    if len(optima) < 2:
+        return []
+    ties = {id(one) for one in answer.optimum.ties}
+    rows = [("other optima", "amplitude", "period", "offset", "J20/J10", "")]
+    for one in optima[1:]:
+        gait, ratio = one.gait, number(ratio_of(answer.optimum, one))
+        rows.append(
+            (
+                f"  {1e3 * one.speed:+.2f} mm/s",
+                with_unit(gait.amplitude, "rad"),
+                with_unit(gait.period, "s"),
+                with_unit(gait.offset, "rad"),
+                ratio,
+                "a tie" if id(one) in ties else "",
+            )
+        )
+    return _columns(rows)
+
+
+def _solver(answer: Answer) -> list[str]:
+    optimum = answer.optimum
+    lines = [
+        f"solver  {optimum.starts} starts, {optimum.iterations} iterations, "
+        f"{len(optimum.optima)} distinct optima"
+    ]
+    if optimum.failures:
+        lines.append(f"        {len(optimum.failures)} of the starts ended without an optimum")
+    return lines
+
+
+def _columns(rows: Sequence[tuple[str, ...]]) -> list[str]:
+    """Rows of cells in columns as wide as their widest cell, at least 8."""
+    if not rows:
+        return []
+    count = max(len(row) for row in rows)
+    widths = [max([6, *(len(row[i]) for row in rows if i < len(row) - 1)]) for i in range(count)]
+    return ["  ".join(map(str.ljust, row, widths)).rstrip() for row in rows]

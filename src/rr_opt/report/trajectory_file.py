@@ -1,0 +1,60 @@
+"""A trajectory as a file: CSV with a header row, or netCDF with units."""
+
+from __future__ import annotations
+
+import io
+import warnings
+from dataclasses import fields
+from pathlib import Path
+
+import numpy as np
+
+from rr_opt import __version__
+from rr_opt.motion.rollout import Trajectory
+from rr_opt.outcome import InputError
+from rr_opt.report.archive import whole, write_text
+
+_COLUMNS = {
+    "t": ("s", "time"),
+    "x": ("m", "joint P along the floor's x axis"),
+    "y": ("m", "joint P along the floor's y axis"),
+    "psi": ("rad", "heading of platform 1"),
+    "phi": ("rad", "angle of platform 2 relative to platform 1"),
+    "v": ("m/s", "speed of axle 1 along platform 1"),
+    "torque": ("N m", "servo torque on platform 2"),
+}
+
+
+def write_csv(path: Path, trajectory: Trajectory) -> Path:
+    """Write t,x,y,psi,phi,v,torque in SI units under a header row."""
+    names = [field.name for field in fields(Trajectory)]
+    table = np.column_stack([getattr(trajectory, name) for name in names])
+    text = io.StringIO()
+    np.savetxt(text, table, fmt="%.9g", delimiter=",", header=",".join(names), comments="")
+    return write_text(path, text.getvalue())
+
+
+def write_netcdf(path: Path, trajectory: Trajectory) -> Path:
+    """Write the same as netCDF variables over t, with their units and meanings.
+
+    Raises InputError if xarray and h5netcdf are not installed.
+    """
+    try:
+        import h5netcdf  # noqa: F401, PLC0415
+        import xarray  # noqa: PLC0415
+    except ImportError:
+        raise InputError(
+            "netCDF files need xarray and h5netcdf, which are not installed. "
+            "Run `pip install 'rr-opt[netcdf]'`, or write CSV with --format csv."
+        ) from None
+    data = xarray.Dataset(
+        {name: ("t", getattr(trajectory, name)) for name in _COLUMNS if name != "t"},
+        coords={"t": trajectory.t},
+        attrs={"title": "Roller Racer trajectory", "source": f"rr-opt {__version__}"},
+    )
+    for name, (unit, meaning) in _COLUMNS.items():
+        data[name].attrs.update(units=unit, long_name=meaning)
+    with whole(path) as temporary, warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        data.to_netcdf(temporary, engine="h5netcdf")
+    return path

@@ -1,0 +1,71 @@
+"""`lint` and `schema` print their result on stdout and exit with 0, or 2 if the input is wrong."""
+
+from __future__ import annotations
+
+import json
+
+import typer
+from typer.testing import CliRunner
+
+from rr_opt.cli.lint import lint
+from rr_opt.cli.schema import schema
+from rr_opt.files.source import SHIPPED
+
+app = typer.Typer()
+app.command()(lint)
+app.command()(schema)
+
+
+def run(*arguments: object):
+    return CliRunner().invoke(app, [str(argument) for argument in arguments])
+
+
+def test_good_files():
+    result = run("lint", SHIPPED, SHIPPED / "problem.yaml")
+    assert result.exit_code == 0
+    assert result.stdout == f"{SHIPPED}: can be used\n{SHIPPED / 'problem.yaml'}: can be used\n"
+
+
+def test_a_warning_is_printed_and_exits_with_0():
+    result = run("lint", SHIPPED / "robot.yaml")
+    assert result.exit_code == 0
+    assert ": servo.angle_limit: warning: Within 2.6 rad" in result.stdout
+
+
+def test_errors_of_all_files(write):
+    one, two = write("a: 1\n", "one.yaml"), write("b: 1\n", "two.yaml")
+    result = run("lint", one, two, SHIPPED)
+    assert result.exit_code == 2
+    assert f"{one}:1: a: Read the key 'a'." in result.stdout
+    assert f"{two}:1: b: Read the key 'b'." in result.stdout
+
+
+def test_json(write):
+    path = write("a: 1\n")
+    result = run("lint", "--json", path, SHIPPED)
+    assert result.exit_code == 2
+    told = json.loads(result.stdout)
+    assert told["ok"] is False
+    (issue,) = told["issues"]
+    assert issue["message"].startswith("Read the key 'a'.")
+    del issue["message"]
+    assert issue == {"level": "error", "path": "a", "line": 1, "file": str(path)}
+
+
+def test_a_file_that_is_not_there():
+    result = run("lint", "nowhere.yaml")
+    assert result.exit_code == 2
+    assert result.stdout == "nowhere.yaml: There is no such file. Check its name and folder.\n"
+
+
+def test_schema():
+    result = run("schema", "robot")
+    assert result.exit_code == 0
+    assert json.loads(result.stdout)["title"] == "rr-opt robot file"
+
+
+def test_schema_of_another_kind():
+    result = run("schema", "robbot")
+    assert result.exit_code == 2
+    assert result.stdout == ""
+    assert "Did you mean `robot`?" in result.stderr

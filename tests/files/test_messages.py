@@ -1,0 +1,80 @@
+"""A message says what was read, what was expected and what to do."""
+
+from __future__ import annotations
+
+import pytest
+
+from rr_opt.files import lint_file
+
+MESSAGES = {
+    "gait: {amplitud: 1}": (
+        "Read the key 'amplitud'. Expected one of: shape, amplitude, period, offset. "
+        "Did you mean `amplitude`?"
+    ),
+    "zzz: 1": (
+        "Read the key 'zzz'. Expected one of: robot, gait, inertia_ratio, limits, direction. "
+        "Correct it, or delete it."
+    ),
+    "Direction: forward": "Did you mean `direction`?",
+    "gait: {shape: square}": "Read the word 'square'. Expected `sine`. Correct it, or delete it.",
+    "direction: 4": "Read 4. Expected one of: forward, backward, either.",
+    "inertia_ratio: {bounds: 0.2, about: center}": (
+        "Read the word 'center'. Expected one of: joint, centre. Did you mean `centre`?"
+    ),
+    "inertia_ratio: {by: loads}": "This key is missing. Add it. Expected: J20/J10, dimensionless.",
+    "inertia_ratio: {bounds: 0.2, by: loads, loads: {whole: 1}}": (
+        "Read 1. Expected true or false. Write it, or delete the key."
+    ),
+    "gait:": "Read nothing. Expected keys with values under it. Write it, or delete the key.",
+    "gait: {period: -1}": ("Read -1. Expected a number in s above 0. Write for example `1.2 s`."),
+    "gait: {period: -2 min}": (
+        "Read '-2 min', -120 s. Expected a number in s above 0. Write for example `1.2 s`."
+    ),
+    "gait: {period: .inf}": "Read .inf. Expected a number in s above 0.",
+    "gait: {offset: .inf}": "Read .inf. Expected a number in rad that is finite.",
+    "gait: {period: 3 m}": (
+        "Read '3 m', a quantity in m. Expected a number, or a number with a unit, in s. "
+        "Write for example `1.2 s`."
+    ),
+    "gait: {amplitude: [2, 1]}": (
+        "Read [2, 1], whose low end is above its high end. Write [1, 2]."
+    ),
+    "gait: {offset: [1, 2, 3]}": (
+        "Read [1, 2, 3], a list of 3. Expected one number, which fixes it, or a pair [low, high], "
+        "which bounds it."
+    ),
+    "limits: {rate: 0}": (
+        "Read 0. Expected a number in rad/s above 0, or .inf for no limit. "
+        "Write for example `30 rpm`."
+    ),
+    "limits: {angle: 200 deg}": (
+        "Read '200 deg', 3.49066 rad. Expected a number in rad above 0 and below 3.14159."
+    ),
+    "limits: {singularity: 0}": "Read 0. Expected a number in m above 0.",
+    "robot: 3": (
+        "Read 3. Expected the name of a robot file, or the robot itself. "
+        "Without this key the robot is the paper's prototype."
+    ),
+    "robot: nowhere.yaml": (
+        "Read 'nowhere.yaml'. There is no such file. Check its name and folder."
+    ),
+    "robot: .": "Read '.'. This is a folder. Expected a file.",
+    "recordings: []": (
+        "Read the keys of an experiment. Expected a problem or a robot. "
+        "Experiments are read by `rr-opt diagnose`."
+    ),
+}
+
+
+@pytest.mark.parametrize(("text", "message"), MESSAGES.items(), ids=MESSAGES)
+def test_message(write, text: str, message: str):
+    (issue,) = lint_file(write(text))
+    assert issue.level == "error"
+    assert message in issue.message
+
+
+def test_a_long_value_is_cut_and_its_control_characters_escaped(write):
+    (issue,) = lint_file(write('direction: "\\e[31m' + "x" * 500 + '"'))
+    assert issue.message.startswith("Read the word '\\x1b[31mxxx")
+    assert "xxx ... . Expected" in issue.message.replace("....", "... .")
+    assert len(issue.message) < 200
