@@ -30,9 +30,10 @@ from rr_opt.problem import Problem
 from rr_opt.robot.ballast import with_inertia_ratio
 
 STORE = Path(__file__).with_name("best_known.json")
-POINTS, CHUNK, STARTS, APART = 2**18, 2**12, 48, 0.08
+POINTS, CHUNK = 2**18, 2**12
+BEST, APART, SPREAD = 40, 0.08, 24  # starts: the best of each region, and some from anywhere
 COARSE, FINE = {"nodes": 96, "finer": 4}, {"nodes": 256, "finer": 16}
-TORQUE_SLACK = 1e-7  # of the limit
+TORQUE_SLACK = 1e-8  # of the limit
 
 
 def score(box: Box, X: Array, slack: float = TORQUE_SLACK, **how: int) -> Array:
@@ -61,8 +62,9 @@ def starts(box: Box, points: int, seed: int = 0) -> Array:
     for x in unit[order[: points // 2]]:
         if all(np.max(np.abs(x - y)) > APART for y in kept):
             kept.append(x)
-        if len(kept) == STARTS:
+        if len(kept) == BEST:
             break
+    kept.extend(unit[1 : 2 * SPREAD : 2])
     return box.low + np.array(kept) * (box.high - box.low)
 
 

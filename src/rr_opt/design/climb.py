@@ -8,7 +8,6 @@ the optimum is, so it is formed from the two quadratics and not fitted itself.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import combinations
 from typing import Protocol
 
@@ -17,8 +16,8 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-_ITERATIONS = 14
-_LARGEST, _SMALLEST = 0.2, 2e-3
+_ITERATIONS = 30
+_LARGEST, _FINE, _SMALLEST = 0.2, 0.006, 2e-3
 _NEXT_TO = 0.06
 _SAMPLES = 256
 
@@ -29,14 +28,6 @@ class Terrain(Protocol):
     def __call__(self, points: Array, sign: Array, /) -> tuple[Array, Array]: ...
 
 
-@dataclass(frozen=True)
-class Seed:
-    """A start: its direction (+1 forward, -1 backward), its point of the unit box (4,)."""
-
-    sign: int
-    point: Array
-
-
 def merit(speed: Array, torque: Array, penalty: float) -> Array:
     """Speed less the penalty for torque beyond its limit; the torque is relative to the limit."""
     return speed - penalty * np.maximum(torque - 1.0, 0.0)
@@ -44,8 +35,9 @@ def merit(speed: Array, torque: Array, penalty: float) -> Array:
 
 def climb(
     x: Array, sign: Array, free: list[int], terrain: Terrain, penalty: float
-) -> list[tuple[Seed, float]]:
-    """Climb from x (K, 4) along the free coordinates; the tops and their merit, best first.
+) -> tuple[Array, Array, Array]:
+    """Climb from x (K, 4) along the free coordinates; the tops, their directions and their merit,
+    best first.
 
     A climber that comes next to a better one gives up: both are on their way to the same top.
     """
@@ -67,14 +59,16 @@ def climb(
         gain = np.maximum(values[rows, top] - best, 0.0)
         aim = np.where((gain > 0)[:, None], trial[rows, top], x)
         moved = np.abs(aim - x).max(axis=1)
-        size = np.where(moved > 1.5 * size, 1.4 * size, np.maximum(moved, size / 4) / 1.5)
+        done = (gain <= 1e-5 * np.abs(best)) & (size <= _FINE)
+        size = np.where(moved > 1.5 * size, 1.4 * size, np.maximum(moved / 1.5, size / 4))
         size = np.clip(size, _SMALLEST, _LARGEST)
         x, best = aim, best + gain
         kept = _apart(x, best, sign)
-        x, sign, best, size, gain = x[kept], sign[kept], best[kept], size[kept], gain[kept]
-        if np.all((gain <= 1e-5 * np.abs(best)) & (size <= 0.02)):
+        x, sign, best, size = x[kept], sign[kept], best[kept], size[kept]
+        if done.all():
             break
-    return [(Seed(int(sign[i]), x[i]), float(best[i])) for i in np.argsort(-best)]
+    order = np.argsort(-best)
+    return x[order], sign[order], best[order]
 
 
 def _each(terrain: Terrain, trial: Array, sign: Array) -> tuple[Array, Array]:

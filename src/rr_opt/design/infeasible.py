@@ -14,14 +14,32 @@ from rr_opt.design.seeds import least_torque
 from rr_opt.problem import Problem
 
 
-def explain(problem: Problem, box: Decisions, landscapes: list[Landscape]) -> str:
-    """The clashes as a paragraph; empty if some gait keeps every limit but the direction."""
-    clashes = _angle(problem) + _rate(problem) + _ballast(box)
-    if not clashes and not box.empty:
-        clashes = _torque(problem, box, landscapes)
-    if not clashes:
+def posture_clashes(problem: Problem, box: Decisions) -> str:
+    """Why no gait keeps angle, rate and singularity; empty if some do."""
+    return _told(_angle(problem) + _rate(problem) + _ballast(box))
+
+
+def torque_clash(problem: Problem, box: Decisions, landscapes: list[Landscape]) -> str:
+    """Why no gait that keeps the other limits keeps the torque's; empty if some do."""
+    return _told(_torque(problem, box, landscapes))
+
+
+def direction_clash(problem: Problem, fastest: float) -> str:
+    """Why no gait goes the way it should; `fastest` is the best speed that way in a scan, m/s."""
+    if problem.direction == "either" or fastest > 0:
         return ""
-    return "No gait keeps all limits. " + " ".join(clashes)
+    other = "backward" if problem.direction == "forward" else "forward"
+    return _told(
+        [
+            f"`direction: {problem.direction}` clashes with the bounds: every gait tried that "
+            f"keeps the other limits drives {other}, the slowest at {abs(fastest):.3g} m/s. Allow "
+            f"`direction: {other}` or `either`, or widen the bounds on amplitude, period or offset."
+        ]
+    )
+
+
+def _told(clashes: list[str]) -> str:
+    return " ".join(["No gait keeps all limits.", *clashes]) if clashes else ""
 
 
 def _angle(problem: Problem) -> list[str]:

@@ -16,11 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rr_opt.design.decisions import Decisions, decisions
-from rr_opt.design.infeasible import explain
+from rr_opt.design.infeasible import direction_clash, posture_clashes, torque_clash
 from rr_opt.design.landscape import Landscape
 from rr_opt.design.mesh import Dense, dense, finer, with_nodes_at
-from rr_opt.design.climb import Seed
-from rr_opt.design.seeds import find_seeds
+from rr_opt.design.seeds import Seed, find_seeds
 from rr_opt.design.solve import Candidate, Setting, solve
 from rr_opt.motion.steady_cycle import steady_cycle
 from rr_opt.outcome import Status
@@ -83,26 +82,34 @@ def maximize_speed(problem: Problem, progress: Progress = lambda _: None) -> Opt
     Raises InputError for a robot that has no steady cycle to find.
     """
     box = decisions(problem)
-    settings = _settings(problem, box)
-    reason = explain(problem, box, [setting.landscape for setting in settings])
-    if reason:
-        return Optimum(Status.INFEASIBLE, reason, problem)
-    signs = {"forward": (1,), "backward": (-1,), "either": (1, -1)}[problem.direction]
+    clash = posture_clashes(problem, box)
+    if clash:
+        return Optimum(Status.INFEASIBLE, clash, problem)
     progress("scanning for starts")
+    signs = {"forward": (1,), "backward": (-1,), "either": (1, -1)}[problem.direction]
+    settings = _settings(problem, box)
     starts: list[tuple[Setting, Seed]] = []
+    fastest = -math.inf
     for setting in settings:
-        seeds = find_seeds(
-            setting.landscape, _scanned(setting, box), problem.limits.torque, signs
-        )
+        inside = _scanned(setting, box)
+        seeds, best = find_seeds(setting.landscape, inside, problem.limits.torque, signs)
         starts += [(setting, seed) for seed in seeds]
+        fastest = max(fastest, best)
     found: list[tuple[Setting, Candidate]] = []
     for number, (setting, seed) in enumerate(starts, 1):
         progress(f"start {number} of {len(starts)}")
-        amplitude, period, offset, share = box.physical(seed.point[None])[:, 0]
+        amplitude, period, offset, share = map(float, box.physical(seed.point[None])[:, 0])
         if setting.fixed_share is not None:
             share = setting.fixed_share
-        found.append((setting, _solve(setting, seed.sign, SineGait(amplitude, period, offset), share)))
-    return _answer(problem, found, progress)
+        gait = SineGait(amplitude, period, offset)
+        found.append((setting, _solve(setting, seed.sign, gait, share)))
+    optimum = _answer(problem, found, progress)
+    if optimum.status is Status.NOT_CONVERGED:
+        landscapes = [setting.landscape for setting in settings]
+        clash = torque_clash(problem, box, landscapes) or direction_clash(problem, fastest)
+        if clash:
+            return replace(optimum, status=Status.INFEASIBLE, message=clash)
+    return optimum
 
 
 def _solve(setting: Setting, sign: int, gait: SineGait, share: float) -> Candidate:

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from functools import partial
+
 import numpy as np
 from numpy.typing import NDArray
 
-from rr_opt.design.climb import Seed, climb, merit, spread
+from rr_opt.design.climb import climb, merit, spread
 from rr_opt.design.decisions import Decisions
 from rr_opt.design.landscape import Landscape
 
 Array = NDArray[np.float64]
 
-_NODES = 24
+# Phases of the scan and its climb, then of the climb that goes on from their tops: near the
+# singular posture the coarse landscape has ripples that hold climbers back.
+_NODES, _FINER_NODES = 24, 48
 _POINTS = {0: 1, 1: 48, 2: 160, 3: 320, 4: 512}
 _CLIMBERS = {0: 1, 1: 4, 2: 6, 3: 8, 4: 10}
 # A start this much slower than the best is not climbed from; a top, not solved from.
@@ -19,13 +24,22 @@ _PROMISING, _WORTH_SOLVING = 0.3, 0.5
 _APART = 0.3
 
 
+@dataclass(frozen=True)
+class Seed:
+    """A start: its direction (+1 forward, -1 backward), its point of the unit box (4,)."""
+
+    sign: int
+    point: Array
+
+
 def find_seeds(
     landscape: Landscape, decisions: Decisions, torque_limit: float, signs: tuple[int, ...]
-) -> list[Seed]:
-    """Starts that are each in a basin of their own as far as the scan can tell, best first."""
+) -> tuple[list[Seed], float]:
+    """Starts that are each in a basin of their own as far as the scan can tell, best first, and
+    the speed of the best, m/s: negative if it goes against its direction."""
 
-    def terrain(points: Array, sign: Array) -> tuple[Array, Array]:
-        cycles = landscape.cycles(decisions.physical(points), _NODES)
+    def terrain(points: Array, sign: Array, nodes: int = _NODES) -> tuple[Array, Array]:
+        cycles = landscape.cycles(decisions.physical(points), nodes)
         return sign * cycles.speed, cycles.peak_torque / torque_limit
 
     free = decisions.free
@@ -36,22 +50,27 @@ def find_seeds(
     sign = np.repeat(signs, len(points))
     values = np.concatenate([merit(direction * speed, torque, penalty) for direction in signs])
     chosen = _peaks(candidates[:, free], sign, values, _CLIMBERS[len(free)])
-    tops = climb(candidates[chosen], sign[chosen], free, terrain, penalty)
-    best = tops[0][1]
-    return [seed for seed, value in tops if value >= best - (1 - _WORTH_SOLVING) * abs(best)]
+    tops, sign, _ = climb(candidates[chosen], sign[chosen], free, terrain, penalty)
+    if decisions.mirrored:
+        tops[:, 1] = np.maximum(tops[:, 1], 1 - tops[:, 1])
+    finer = partial(terrain, nodes=_FINER_NODES)
+    tops, sign, values = climb(tops, sign, free, finer, penalty)
+    least = values[0] - (1 - _WORTH_SOLVING) * abs(values[0])
+    seeds = [Seed(int(sign[i]), tops[i]) for i in np.flatnonzero(values >= least)]
+    return seeds, float(values[0])
 
 
 def least_torque(landscape: Landscape, decisions: Decisions) -> float:
     """The smallest peak torque of any gait of the box, N m."""
 
     def terrain(points: Array, sign: Array) -> tuple[Array, Array]:
-        cycles = landscape.cycles(decisions.physical(points), 2 * _NODES)
+        cycles = landscape.cycles(decisions.physical(points), _FINER_NODES)
         return -cycles.peak_torque, np.zeros(len(sign))
 
     points, free = _scan(decisions), decisions.free
     sign = np.ones(len(points), int)
     chosen = _peaks(points[:, free], sign, terrain(points, sign)[0], _CLIMBERS[len(free)])
-    return -climb(points[chosen], sign[chosen], free, terrain, 0.0)[0][1]
+    return -float(climb(points[chosen], sign[chosen], free, terrain, 0.0)[2][0])
 
 
 def _scan(decisions: Decisions) -> Array:

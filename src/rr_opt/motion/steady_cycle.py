@@ -61,7 +61,9 @@ def reference_cycle(robot: Robot, gait: SineGait, *, samples: int = 2048) -> Ste
 
 def _close(robot: Robot, gait: SineGait, rollout: Callable[[float], Array]) -> SteadyCycle:
     v0 = 0.0
-    for _ in range(_NEWTON_STEPS):
+    # Beyond it a step can jump over the pole and close a cycle that does not exist.
+    reached = gait.peak_angle >= robot.singular_angle
+    for _ in range(0 if reached else _NEWTON_STEPS):
         path = rollout(v0)
         gap, slope = path[0, -1] - v0, path[4, -1] - 1.0
         if not np.isfinite(gap) or not -slope > 1e-12:

@@ -25,11 +25,14 @@ _LEADS = {"forward": "platform 1 leads", "backward": "platform 2 leads"}
 
 def summary(answer: Answer, files: Iterable[Path]) -> str:
     """The whole summary, with a newline at its end."""
-    blocks = [[f"{answer.name}: {answer.message}"]]
-    if answer.optimum.best and answer.replay:
+    best = answer.optimum.best
+    # Without a gait the message says all, and it goes to stderr.
+    words = answer.message if best else answer.status.value.replace("_", " ")
+    blocks = [[f"{answer.name}: {words}"]]
+    if best and answer.replay:
         blocks += [_gait(answer), _limits(answer), _bounds(answer), _checks(answer)]
         blocks += [_optima(answer), _solver(answer)]
-    blocks.append(_columns([("files" if not i else "", str(f)) for i, f in enumerate(files)]))
+    blocks.append(columns([("files" if not i else "", str(f)) for i, f in enumerate(files)]))
     return "\n\n".join("\n".join(block) for block in blocks if block) + "\n"
 
 
@@ -82,7 +85,7 @@ def _gait(answer: Answer) -> list[str]:
         ("speed", f"{speed_text(best.speed)}, {way}: {_LEADS[way]}"),
         ("cycle", cycle_text(answer)),
     ]
-    return _columns(rows)
+    return columns(rows)
 
 
 def _limits(answer: Answer) -> list[str]:
@@ -94,7 +97,7 @@ def _limits(answer: Answer) -> list[str]:
         price = price_text(row.name, row.price) if row.active else "-"
         active = "yes" if row.active else "no"
         rows.append((f"  {row.name}", kind.both(row.value), kind.both(row.limit), active, price))
-    return _columns(rows)
+    return columns(rows)
 
 
 def _bounds(answer: Answer) -> list[str]:
@@ -104,12 +107,12 @@ def _bounds(answer: Answer) -> list[str]:
             side = "lower bound" if row.side == "low" else "upper bound"
             price = "-" if row.price is None else price_text(row.name, row.price)
             rows.append((f"  {row.name}", QUANTITIES[row.name].both(row.value), side, price))
-    return _columns(rows) if len(rows) > 1 else []
+    return columns(rows) if len(rows) > 1 else []
 
 
 def _checks(answer: Answer) -> list[str]:
     rows = [("  ok" if check.passed else "  FAILED", check.sentence) for check in answer.checks]
-    return ["checks", *_columns(rows)]
+    return ["checks", *columns(rows)]
 
 
 def _optima(answer: Answer) -> list[str]:
@@ -130,7 +133,7 @@ def _optima(answer: Answer) -> list[str]:
                 "a tie" if id(one) in ties else "",
             )
         )
-    return _columns(rows)
+    return columns(rows)
 
 
 def _solver(answer: Answer) -> list[str]:
@@ -144,7 +147,7 @@ def _solver(answer: Answer) -> list[str]:
     return lines
 
 
-def _columns(rows: Sequence[tuple[str, ...]]) -> list[str]:
+def columns(rows: Sequence[tuple[str, ...]]) -> list[str]:
     """Rows of cells in columns as wide as their widest cell, at least 8."""
     if not rows:
         return []

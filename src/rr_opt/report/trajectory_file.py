@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import io
-import warnings
 from dataclasses import fields
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -34,11 +34,8 @@ def write_csv(path: Path, trajectory: Trajectory) -> Path:
     return write_text(path, text.getvalue())
 
 
-def write_netcdf(path: Path, trajectory: Trajectory) -> Path:
-    """Write the same as netCDF variables over t, with their units and meanings.
-
-    Raises InputError if xarray and h5netcdf are not installed.
-    """
+def netcdf_writer() -> Any:
+    """The module xarray. Raises InputError if it or h5netcdf is not installed."""
     try:
         import h5netcdf  # noqa: F401, PLC0415
         import xarray  # noqa: PLC0415
@@ -47,14 +44,18 @@ def write_netcdf(path: Path, trajectory: Trajectory) -> Path:
             "netCDF files need xarray and h5netcdf, which are not installed. "
             "Run `pip install 'rr-opt[netcdf]'`, or write CSV with --format csv."
         ) from None
-    data = xarray.Dataset(
+    return xarray
+
+
+def write_netcdf(path: Path, trajectory: Trajectory) -> Path:
+    """Write the same as netCDF variables over t, with their units and meanings."""
+    data = netcdf_writer().Dataset(
         {name: ("t", getattr(trajectory, name)) for name in _COLUMNS if name != "t"},
         coords={"t": trajectory.t},
         attrs={"title": "Roller Racer trajectory", "source": f"rr-opt {__version__}"},
     )
     for name, (unit, meaning) in _COLUMNS.items():
         data[name].attrs.update(units=unit, long_name=meaning)
-    with whole(path) as temporary, warnings.catch_warnings():
-        warnings.simplefilter("ignore")
+    with whole(path) as temporary:
         data.to_netcdf(temporary, engine="h5netcdf")
     return path

@@ -1,0 +1,89 @@
+"""`rr-opt simulate [FILE]`: a gait driven for some time, from rest or from the steady state."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from rr_opt.cli.problem_input import name_of
+from rr_opt.cli.steps import Steps
+
+if TYPE_CHECKING:
+    from rr_opt.robot.gait import SineGait
+    from rr_opt.robot.parameters import Robot
+
+
+class Start(StrEnum):
+    """How the motion begins."""
+
+    REST = "rest"
+    STEADY = "steady"
+
+
+class Format(StrEnum):
+    """How the trajectory is stored."""
+
+    CSV = "csv"
+    NETCDF = "netcdf"
+
+
+class Film(StrEnum):
+    """How the motion is shown."""
+
+    GIF = "gif"
+    MP4 = "mp4"
+
+
+def simulate(
+    source: Annotated[
+        Path | None,
+        typer.Argument(
+            metavar="[FILE]",
+            help="Robot file, problem file or result.json; the paper's prototype if left out.",
+        ),
+    ] = None,
+    amplitude: Annotated[
+        str | None, typer.Option(help="Amplitude, rad, or with a unit: '30 deg'.")
+    ] = None,
+    period: Annotated[str | None, typer.Option(help="Period, s, or with a unit.")] = None,
+    offset: Annotated[str | None, typer.Option(help="Offset, rad, or with a unit.")] = None,
+    seconds: Annotated[float, typer.Option(help="How long to drive, s.")] = 10.0,
+    start: Annotated[
+        Start, typer.Option(help="From rest, or from the speed that the gait settles to.")
+    ] = Start.REST,
+    rate: Annotated[float, typer.Option(help="Samples a second.")] = 100.0,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for the files.", show_default="out/NAME-motion")
+    ] = None,
+    kind: Annotated[Format, typer.Option("--format", help="Trajectory file.")] = Format.CSV,
+    animate: Annotated[Film | None, typer.Option(help="Also make a film.")] = None,
+) -> None:
+    """Simulate a gait; write its trajectory, a figure and, if asked for, a film."""
+    with Steps() as steps:
+        from rr_opt.cli.motion_input import robot_and_gait, with_options  # noqa: PLC0415
+        from rr_opt.motion.rollout import rollout  # noqa: PLC0415
+        from rr_opt.report.archive import folder_for_results  # noqa: PLC0415
+        from rr_opt.report.motion_summary import beyond_servo, motion_summary  # noqa: PLC0415
+        from rr_opt.report.simulated import check_wishes, write_motion  # noqa: PLC0415
+
+        robot, gait = robot_and_gait(source)
+        gait = with_options(gait, amplitude, period, offset)
+        film = animate.value if animate else None
+        check_wishes(kind.value, film)
+        folder = folder_for_results(out or Path("out") / f"{_name(source)}-motion")
+        steps("simulate by CVODES")
+        driven = rollout(robot, gait, seconds, start.value, rate)
+        written = write_motion(robot, driven, folder, kind.value, film, steps)
+    for warning in beyond_servo(robot, gait, driven):
+        typer.echo(warning, err=True)
+    typer.echo(motion_summary(gait, driven, start.value, written), nl=False)
+
+
+def _name(source: Path | None) -> str:
+    """A result is called as the folder it lies in."""
+    if source is not None and source.name == "result.json":
+        return source.resolve().parent.name
+    return name_of(source)

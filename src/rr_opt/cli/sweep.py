@@ -1,0 +1,3 @@
+"""stub"""
+def sweep() -> None:
+    """stub"""

@@ -1,0 +1,34 @@
+"""The grid behind the speed map, from the sweep's model."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from rr_opt.problem import GaitBounds, Interval, Problem
+from rr_opt.report.figures.speed_map import MapData
+from rr_opt.robot.gait import SineGait
+from rr_opt.robot.parameters import Robot
+
+POINTS = 120
+"""Gaits along each side of the map."""
+
+
+def map_data(problem: Problem, robot: Robot, best: SineGait, points: int = POINTS) -> MapData:
+    """Speed and peak torque around the optimum, over the problem's bounds.
+
+    A quantity that the problem fixes is shown from half to one and a half times its value.
+    """
+    from rr_opt.verify.sweep import speed_map  # noqa: PLC0415
+
+    shown = replace(
+        problem,
+        gait=GaitBounds(
+            _opened(problem.gait.amplitude), _opened(problem.gait.period), problem.gait.offset
+        ),
+    )
+    found = speed_map(shown, robot, best.offset, points)
+    return MapData(found.period, found.amplitude, found.speed, found.torque)
+
+
+def _opened(box: Interval) -> Interval:
+    return Interval(0.5 * box.low, 1.5 * box.high) if box.fixed else box
