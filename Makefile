@@ -20,7 +20,7 @@ RUN := $(VENV)/run-$(call checksum,requirements/run.txt)
 DEV := $(VENV)/dev-$(call checksum,requirements/run.txt requirements/dev.txt)
 
 .DEFAULT_GOAL := help
-.PHONY: help run test check format-check lint types contracts format readme bench pins clean
+.PHONY: help run test check format-check lint types contracts format readme results bench pins clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/\1|\2/p' $(MAKEFILE_LIST) | \
@@ -52,6 +52,11 @@ format: $(DEV) ## format the code and sort its imports
 
 readme: $(DEV) ## run every command of README.md
 	$(BIN)/python scripts/readme_commands.py README.md
+
+results: $(RUN) ## write the results that are kept in results/
+	$(BIN)/rr-opt maximize-speed --out results/prototype
+	$(BIN)/rr-opt maximize-speed problems/loads --out results/loads
+	$(BIN)/rr-opt maximize-speed problems/turning --out results/turning
 
 bench: $(DEV) ## measure against other ways to the same answer, into results/bench
 	$(BIN)/python -m benchmarks.optimise

@@ -40,9 +40,9 @@ PLANTED = [
 
 def lint_imports(root):
     """Exit code and text of import-linter on the copy of the package at `root`."""
+    command = "from importlinter.cli import lint_imports_command as run; run()"
     run = subprocess.run(
-        [sys.executable, "-c", "from importlinter.cli import lint_imports_command as c; c()"]
-        + ["--no-cache", "--config", str(root / "pyproject.toml")],
+        [sys.executable, "-c", command, "--no-cache", "--config", root / "pyproject.toml"],
         cwd=root / "src",
         env={**os.environ, "PYTHONPATH": str(root / "src"), "PYTHONDONTWRITEBYTECODE": "1"},
         capture_output=True,

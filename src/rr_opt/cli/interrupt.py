@@ -9,8 +9,12 @@ _seen = False
 
 
 def watch() -> None:
-    """From now on remember an interrupt beside raising KeyboardInterrupt for it."""
-    signal.signal(signal.SIGINT, _remember)
+    """From now on remember an interrupt beside raising KeyboardInterrupt for it.
+
+    A run that was started to ignore interrupts goes on ignoring them.
+    """
+    if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
+        signal.signal(signal.SIGINT, _remember)
 
 
 def seen() -> bool:

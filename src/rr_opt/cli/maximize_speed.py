@@ -12,6 +12,7 @@ from rr_opt.cli.steps import Steps
 from rr_opt.outcome import Status
 
 if TYPE_CHECKING:
+    from rr_opt.problem import Problem
     from rr_opt.report.answer import Answer
 
 
@@ -34,13 +35,17 @@ def maximize_speed(
 ) -> None:
     """Find the fastest gait of a problem, check it twice, and report."""
     with Steps() as steps:
-        answer = _answer(problem, steps)
+        steps("reading")
+        posed, sha256 = read(problem)
         from rr_opt.report.archive import folder_for_results, strict_json  # noqa: PLC0415
+
+        name = name_of(problem)
+        folder = folder_for_results(out or Path("out") / name)
+        answer = _answer(posed, name, sha256, steps)
         from rr_opt.report.files import write_results  # noqa: PLC0415
         from rr_opt.report.result import result  # noqa: PLC0415
         from rr_opt.report.summary import summary  # noqa: PLC0415
 
-        folder = folder_for_results(out or Path("out") / answer.name)
         written = write_results(answer, folder, figures=figures, progress=steps)
     if json:
         typer.echo(strict_json(result(answer)), nl=False)
@@ -51,21 +56,19 @@ def maximize_speed(
         raise typer.Exit(answer.status.exit_code)
 
 
-def _answer(path: Path | None, steps: Steps) -> Answer:
-    steps("reading")
-    problem, sha256 = read(path)
+def _answer(problem: Problem, name: str, sha256: str, steps: Steps) -> Answer:
+    """Optimise, then check what was found: by simulation, and against a plain sweep."""
     from rr_opt.design.maximize_speed import maximize_speed as solve  # noqa: PLC0415
     from rr_opt.report.answer import Answer  # noqa: PLC0415
     from rr_opt.verify.replay import replay  # noqa: PLC0415
     from rr_opt.verify.sweep import check_optimum  # noqa: PLC0415
 
     optimum = solve(problem, steps)
-    answer = Answer(name_of(path), sha256, optimum)
     best, robot, ratio = optimum.best, optimum.robot, optimum.ratio
     if best is None or robot is None or ratio is None:
-        return answer
+        return Answer(name, sha256, optimum)
     steps("replay by CVODES")
     replayed = replay(robot, best.gait, problem.limits, best.speed)
     steps("check against a sweep")
     swept = check_optimum(problem, best.gait, ratio, best.speed)
-    return Answer(answer.name, sha256, optimum, replayed, swept)
+    return Answer(name, sha256, optimum, replayed, swept)

@@ -4,16 +4,12 @@ from __future__ import annotations
 
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from rr_opt.cli.problem_input import name_of
 from rr_opt.cli.steps import Steps
-
-if TYPE_CHECKING:
-    from rr_opt.robot.gait import SineGait
-    from rr_opt.robot.parameters import Robot
 
 
 class Start(StrEnum):
@@ -45,6 +41,7 @@ def simulate(
             help="Robot file, problem file or result.json; the paper's prototype if left out.",
         ),
     ] = None,
+    *,
     amplitude: Annotated[
         str | None, typer.Option(help="Amplitude, rad, or with a unit: '30 deg'.")
     ] = None,
@@ -76,7 +73,7 @@ def simulate(
         folder = folder_for_results(out or Path("out") / f"{_name(source)}-motion")
         steps("simulate by CVODES")
         driven = rollout(robot, gait, seconds, start.value, rate)
-        written = write_motion(robot, driven, folder, kind.value, film, steps)
+        written = write_motion(robot, driven, folder, kind=kind.value, film=film, progress=steps)
     for warning in beyond_servo(robot, gait, driven):
         typer.echo(warning, err=True)
     typer.echo(motion_summary(gait, driven, start.value, written), nl=False)

@@ -1,3 +1,5 @@
 """stub"""
+
+
 def sweep() -> None:
     """stub"""

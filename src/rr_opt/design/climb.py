@@ -8,6 +8,7 @@ the optimum is, so it is formed from the two quadratics and not fitted itself.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from itertools import combinations
 from typing import Protocol
 
@@ -16,8 +17,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-_ITERATIONS = 30
-_LARGEST, _FINE, _SMALLEST = 0.2, 0.006, 2e-3
+_LARGEST, _SMALLEST = 0.2, 2e-3
 _NEXT_TO = 0.06
 _SAMPLES = 256
 
@@ -28,13 +28,28 @@ class Terrain(Protocol):
     def __call__(self, points: Array, sign: Array, /) -> tuple[Array, Array]: ...
 
 
+@dataclass(frozen=True)
+class Effort:
+    """How long to climb: at most so many iterations, with stencils of the `first` size until
+    nothing is gained with stencils of the `last`."""
+
+    iterations: int
+    first: float
+    last: float
+
+
 def merit(speed: Array, torque: Array, penalty: float) -> Array:
     """Speed less the penalty for torque beyond its limit; the torque is relative to the limit."""
     return speed - penalty * np.maximum(torque - 1.0, 0.0)
 
 
 def climb(
-    x: Array, sign: Array, free: list[int], terrain: Terrain, penalty: float
+    x: Array,
+    sign: Array,
+    free: list[int],
+    terrain: Terrain,
+    penalty: float,
+    effort: Effort,
 ) -> tuple[Array, Array, Array]:
     """Climb from x (K, 4) along the free coordinates; the tops, their directions and their merit,
     best first.
@@ -44,8 +59,8 @@ def climb(
     best = merit(*terrain(x, sign), penalty)
     d = len(free)
     stencil, design = _stencil(d)
-    size = np.full(len(x), 0.08)
-    for _ in range(_ITERATIONS if d else 0):
+    size = np.full(len(x), effort.first)
+    for _ in range(effort.iterations if d else 0):
         # Near a face the stencil moves inside; its quadratic still serves up to the face.
         centre = np.clip(x[:, free], size[:, None], 1 - size[:, None])
         trial = np.repeat(x[:, None, :], len(stencil) + 1, axis=1)
@@ -59,7 +74,7 @@ def climb(
         gain = np.maximum(values[rows, top] - best, 0.0)
         aim = np.where((gain > 0)[:, None], trial[rows, top], x)
         moved = np.abs(aim - x).max(axis=1)
-        done = (gain <= 1e-5 * np.abs(best)) & (size <= _FINE)
+        done = (gain <= 1e-5 * np.abs(best)) & (size <= effort.last)
         size = np.where(moved > 1.5 * size, 1.4 * size, np.maximum(moved / 1.5, size / 4))
         size = np.clip(size, _SMALLEST, _LARGEST)
         x, best = aim, best + gain

@@ -10,13 +10,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, fields
+from functools import lru_cache
 
+import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
 from rr_opt.motion.tableau import RK4
-from rr_opt.physics.arrays import over_arrays
-from rr_opt.physics.dynamics import Dynamics
+from rr_opt.physics.arrays import ArrayFunction, over_arrays
+from rr_opt.physics.dynamics import Dynamics, derive
 from rr_opt.robot.ballast import By, Loads, with_load_count
 from rr_opt.robot.parameters import Robot
 
@@ -52,9 +54,7 @@ class Landscape:
     """The gaits of one robot, with its ballast running from `low` to `high`."""
 
     def __init__(self, dynamics: Dynamics, robot: Robot, by: By, loads: Loads, low: float, high: float):
-        names = dynamics.motion.name_in()
-        self._rates = over_arrays(dynamics.motion.factory("rates", names, ["vdot", "w", "side"]))
-        self._torque = over_arrays(dynamics.motion.factory("torque", names, ["torque"]))
+        self._rates, self._torque, self._affine = _array_functions(dynamics.effects)
         self._values = list(dynamics.values(robot))
         self._names = dynamics.parameters
         self.linear = dynamics.linear
@@ -85,10 +85,12 @@ class Landscape:
         h = period / nodes
         at_nodes = [part[::2] for part in angle]
         if self.linear:
-            pair = np.array([0.0, 1.0])[:, None, None]
-            vdot, w, side = self._rates(pair, *angle, *p)
-            v = _close_affine(vdot[1] - vdot[0], vdot[0], h)
-            w, side = (rate[0, ::2] + (rate[1, ::2] - rate[0, ::2]) * v for rate in (w, side))
+            a, b, *rates = self._affine(*angle, *p)
+            v = _close_affine(a, b, h)
+            gains, shifts = rates[::2], rates[1::2]
+            w, side = (
+                gain[::2] * v + shift[::2] for gain, shift in zip(gains, shifts, strict=True)
+            )
         else:
             v = self._close_newton(*angle, p, h)
             _, w, side = self._rates(v, *at_nodes, *p)
@@ -131,6 +133,27 @@ class Landscape:
             if np.all(np.abs(gap) < 1e-9):
                 break
         return path[:-1, 0]
+
+
+@lru_cache
+def _array_functions(effects: tuple[str, ...]) -> tuple[ArrayFunction, ...]:
+    """Over arrays: vdot, w, side of (v, phi, dphi, ddphi, p); torque of the same; and, of
+    (phi, dphi, ddphi, p), the gain on v and the shift of vdot, w and side where those are affine."""
+    motion = derive(effects).motion
+    names = motion.name_in()
+    v, phi, dphi, ddphi = (ca.SX.sym(name) for name in names[:4])
+    p = ca.SX.sym("p", motion.numel_in(4))
+    parts = []
+    for rate in motion(v, phi, dphi, ddphi, p)[:3]:
+        parts += [ca.substitute(part, v, ca.SX(0)) for part in (ca.jacobian(rate, v), rate)]
+    affine = ca.Function(
+        "affine", [phi, dphi, ddphi, p], ca.vertsplit(ca.cse(ca.densify(ca.vertcat(*parts))))
+    )
+    return (
+        over_arrays(motion.factory("rates", names, ["vdot", "w", "side"])),
+        over_arrays(motion.factory("torque", names, ["torque"])),
+        over_arrays(affine),
+    )
 
 
 def _close_affine(a: Array, b: Array, h: Array) -> Array:

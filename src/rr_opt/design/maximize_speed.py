@@ -143,7 +143,7 @@ def _answer(
             failures += (refined.sentence,)
             good.pop(0)
             continue
-        good[0] = (setting, refined)
+        good = _distinct([(setting, refined), *good[1:]])
         others = good[1:]
         # A coarse mesh can put a close second first: it is refined too before the choice falls.
         if others and abs(others[0][1].speed) > abs(refined.speed):
@@ -217,13 +217,14 @@ def _distinct(ranked: list[tuple[Setting, Candidate]]) -> list[tuple[Setting, Ca
 
 
 def _same(one: Candidate, other: Candidate) -> bool:
+    """Before their meshes are refined, two finds of one optimum differ a little."""
     a, b = one.gait, other.gait
     return (
         one.sign == other.sign
-        and abs(one.speed - other.speed) <= SAME_SPEED * abs(one.speed)
-        and math.isclose(a.amplitude, b.amplitude, rel_tol=1e-3)
-        and math.isclose(a.period, b.period, rel_tol=1e-3)
-        and math.isclose(abs(a.offset), abs(b.offset), abs_tol=1e-3)
+        and math.isclose(one.speed, other.speed, rel_tol=1e-3)
+        and math.isclose(a.amplitude, b.amplitude, rel_tol=1e-2)
+        and math.isclose(a.period, b.period, rel_tol=1e-2)
+        and math.isclose(abs(a.offset), abs(b.offset), abs_tol=1e-2)
         and math.isclose(one.share, other.share, abs_tol=1e-2)
     )
 

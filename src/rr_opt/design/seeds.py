@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from rr_opt.design.climb import climb, merit, spread
+from rr_opt.design.climb import Effort, climb, merit, spread
 from rr_opt.design.decisions import Decisions
 from rr_opt.design.landscape import Landscape
 
@@ -22,6 +22,8 @@ _CLIMBERS = {0: 1, 1: 4, 2: 6, 3: 8, 4: 10}
 # A start this much slower than the best is not climbed from; a top, not solved from.
 _PROMISING, _WORTH_SOLVING = 0.3, 0.5
 _APART = 0.3
+_ROUGH = Effort(iterations=8, first=0.08, last=0.02)
+_THOROUGH = Effort(iterations=25, first=0.04, last=0.006)
 
 
 @dataclass(frozen=True)
@@ -50,11 +52,13 @@ def find_seeds(
     sign = np.repeat(signs, len(points))
     values = np.concatenate([merit(direction * speed, torque, penalty) for direction in signs])
     chosen = _peaks(candidates[:, free], sign, values, _CLIMBERS[len(free)])
-    tops, sign, _ = climb(candidates[chosen], sign[chosen], free, terrain, penalty)
+    tops, sign, values = climb(candidates[chosen], sign[chosen], free, terrain, penalty, _ROUGH)
+    worth = values >= values[0] - (1 - _WORTH_SOLVING) * abs(values[0])
+    tops, sign = tops[worth], sign[worth]
     if decisions.mirrored:
         tops[:, 1] = np.maximum(tops[:, 1], 1 - tops[:, 1])
     finer = partial(terrain, nodes=_FINER_NODES)
-    tops, sign, values = climb(tops, sign, free, finer, penalty)
+    tops, sign, values = climb(tops, sign, free, finer, penalty, _THOROUGH)
     least = values[0] - (1 - _WORTH_SOLVING) * abs(values[0])
     seeds = [Seed(int(sign[i]), tops[i]) for i in np.flatnonzero(values >= least)]
     return seeds, float(values[0])
@@ -70,7 +74,7 @@ def least_torque(landscape: Landscape, decisions: Decisions) -> float:
     points, free = _scan(decisions), decisions.free
     sign = np.ones(len(points), int)
     chosen = _peaks(points[:, free], sign, terrain(points, sign)[0], _CLIMBERS[len(free)])
-    return -float(climb(points[chosen], sign[chosen], free, terrain, 0.0)[2][0])
+    return -float(climb(points[chosen], sign[chosen], free, terrain, 0.0, _THOROUGH)[2][0])
 
 
 def _scan(decisions: Decisions) -> Array:

@@ -71,9 +71,7 @@ def rollout(robot: Robot, gait: SineGait, seconds: float, start: Start, rate: fl
 
 def one_period(steady: SteadyCycle) -> Trajectory:
     """The steady cycle as a trajectory."""
-    return Trajectory(
-        steady.t, steady.x, steady.y, steady.psi, steady.phi, steady.v, steady.torque
-    )
+    return Trajectory(steady.t, steady.x, steady.y, steady.psi, steady.phi, steady.v, steady.torque)
 
 
 def repeated(steady: SteadyCycle, cycles: int) -> Trajectory:
@@ -98,6 +96,4 @@ def repeated(steady: SteadyCycle, cycles: int) -> Trajectory:
     def again(part: Array) -> Array:
         return np.append(np.tile(part[:n], cycles), part[0])
 
-    return Trajectory(
-        t, x, y, psi, again(steady.phi), again(steady.v), again(steady.torque)
-    )
+    return Trajectory(t, x, y, psi, again(steady.phi), again(steady.v), again(steady.torque))

@@ -59,9 +59,7 @@ class Answer:
                 if excess > 0
                 else "no limit is broken."
             )
-            checks.append(
-                Check(excess <= LARGEST_EXCESS, f"Limits over the whole cycle: {found}")
-            )
+            checks.append(Check(excess <= LARGEST_EXCESS, f"Limits over the whole cycle: {found}"))
         if self.sweep:
             sweep = self.sweep
             checks.append(Check(sweep.gap >= LEAST_GAP, _sweep_sentence(self.sweep)))

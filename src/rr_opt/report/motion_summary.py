@@ -10,14 +10,12 @@ import numpy as np
 
 from rr_opt.motion.rollout import Trajectory
 from rr_opt.report.quantities import QUANTITIES, number, speed_text
-from rr_opt.report.summary import columns, gait_lines
+from rr_opt.report.text import columns, gait_lines
 from rr_opt.robot.gait import SineGait
 from rr_opt.robot.parameters import Robot
 
 
-def motion_summary(
-    gait: SineGait, driven: Trajectory, start: str, files: Iterable[Path]
-) -> str:
+def motion_summary(gait: SineGait, driven: Trajectory, start: str, files: Iterable[Path]) -> str:
     """The gait, how far it went and how fast at the end, and the files."""
     seconds = float(driven.t[-1])
     last = driven.t >= max(seconds - gait.period, 0.0)

@@ -1,4 +1,4 @@
-"""The page's tables: limits, bounds, other optima, and the robot with where its values come from."""
+"""The page's tables: limits, bounds, optima, and the robot with where its values come from."""
 
 from __future__ import annotations
 
@@ -44,9 +44,7 @@ def bounds_table(answer: Answer) -> str:
         kind = QUANTITIES[row.name]
         unit = kind.unit
         span = (
-            "fixed"
-            if row.side == "fixed"
-            else f"{number(row.low)} to {with_unit(row.high, unit)}"
+            "fixed" if row.side == "fixed" else f"{number(row.low)} to {with_unit(row.high, unit)}"
         )
         states = {"low": "at its least", "high": "at its most", "fixed": "fixed", None: "inside"}
         at_bound = row.side in ("low", "high")
@@ -100,8 +98,10 @@ def _parameters(robot: Robot) -> Iterator[tuple[str, str, str]]:
             yield f"{key}.{symbol}", words, with_unit(value * factor, unit)
     yield "h", "wheel radius", with_unit(1e3 * robot.h, "mm")
     for key, name in _SERVO.items():
-        yield f"servo.{key}", QUANTITIES[name].words, QUANTITIES[name].both(
-            getattr(robot.servo, key)
+        yield (
+            f"servo.{key}",
+            QUANTITIES[name].words,
+            QUANTITIES[name].both(getattr(robot.servo, key)),
         )
     for use in robot.physics:
         for parameter, value in use.values.items():

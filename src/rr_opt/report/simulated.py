@@ -24,15 +24,16 @@ def check_wishes(kind: Format, film: Film | None) -> None:
 
         netcdf_writer()
     if film:
-        from rr_opt.report.figures.animation import check_kind  # noqa: PLC0415
+        from rr_opt.report.film import check_film  # noqa: PLC0415
 
-        check_kind(film)
+        check_film(film)
 
 
 def write_motion(
     robot: Robot,
     trajectory: Trajectory,
     folder: Path,
+    *,
     kind: Format,
     film: Film | None,
     progress: Callable[[str], None],
@@ -50,7 +51,7 @@ def write_motion(
     with styled():
         written.append(write_text(folder / "motion.svg", svg(motion(robot, trajectory))))
     if film:
-        from rr_opt.report.figures.animation import animate  # noqa: PLC0415
+        from rr_opt.report.film import write_film  # noqa: PLC0415
 
-        written.append(animate(folder / f"motion.{film}", robot, trajectory, film, progress))
+        written.append(write_film(folder / f"motion.{film}", robot, trajectory, film, progress))
     return written

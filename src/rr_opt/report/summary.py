@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from pathlib import Path
 
 from rr_opt.report.answer import Answer
@@ -18,7 +18,7 @@ from rr_opt.report.quantities import (
 )
 from rr_opt.report.result import turns
 from rr_opt.report.rows import bound_rows, limit_rows
-from rr_opt.robot.gait import SineGait
+from rr_opt.report.text import columns, gait_lines
 
 _LEADS = {"forward": "platform 1 leads", "backward": "platform 2 leads"}
 
@@ -34,15 +34,6 @@ def summary(answer: Answer, files: Iterable[Path]) -> str:
         blocks += [_optima(answer), _solver(answer)]
     blocks.append(columns([("files" if not i else "", str(f)) for i, f in enumerate(files)]))
     return "\n\n".join("\n".join(block) for block in blocks if block) + "\n"
-
-
-def gait_lines(gait: SineGait) -> list[tuple[str, ...]]:
-    """Amplitude, period and offset with their units, a row each."""
-    return [
-        ("  amplitude", QUANTITIES["amplitude"].both(gait.amplitude)),
-        ("  period", f"{with_unit(gait.period, 's')} ({with_unit(1 / gait.period, 'Hz')})"),
-        ("  offset", QUANTITIES["offset"].both(gait.offset)),
-    ]
 
 
 def ratio_text(answer: Answer) -> str:
@@ -145,12 +136,3 @@ def _solver(answer: Answer) -> list[str]:
     if optimum.failures:
         lines.append(f"        {len(optimum.failures)} of the starts ended without an optimum")
     return lines
-
-
-def columns(rows: Sequence[tuple[str, ...]]) -> list[str]:
-    """Rows of cells in columns as wide as their widest cell, at least 8."""
-    if not rows:
-        return []
-    count = max(len(row) for row in rows)
-    widths = [max([6, *(len(row[i]) for row in rows if i < len(row) - 1)]) for i in range(count)]
-    return ["  ".join(map(str.ljust, row, widths)).rstrip() for row in rows]

@@ -35,13 +35,14 @@ def write_csv(path: Path, trajectory: Trajectory) -> Path:
 
 
 def netcdf_writer() -> Any:
-    """The module xarray. Raises InputError if it or h5netcdf is not installed."""
+    """The module xarray. Raises InputError if it, h5netcdf or h5py is not installed."""
     try:
         import h5netcdf  # noqa: F401, PLC0415
+        import h5py  # noqa: F401, PLC0415  # pyright: ignore[reportMissingImports]
         import xarray  # noqa: PLC0415
     except ImportError:
         raise InputError(
-            "netCDF files need xarray and h5netcdf, which are not installed. "
+            "netCDF files need xarray, h5netcdf and h5py, which are not all installed. "
             "Run `pip install 'rr-opt[netcdf]'`, or write CSV with --format csv."
         ) from None
     return xarray

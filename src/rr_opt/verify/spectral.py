@@ -1,8 +1,8 @@
 """Calculus on samples of periodic functions by Fourier series, many functions at once.
 
-Samples x (n, K): n equal steps along the first axis, over one `span` (K,), s, of K functions.
-A span is what a function repeats after. Over half a period of a straight gait some functions
-repeat and some change sign; the latter are `flipping` and repeat after two spans.
+Samples x (n, K): n equal steps (n even) along the first axis, over one `span` (K,), s, of K
+functions. A span is what a function repeats after. Over half a period of a straight gait some
+functions repeat and some change sign; the latter are `flipping` and repeat after two spans.
 """
 
 from __future__ import annotations
@@ -17,34 +17,21 @@ from scipy.fft import irfft, rfft
 Array = NDArray[np.float64]
 _Operation = Callable[[Array, bool], Array]
 
-FINER = 4
-"""How many times denser `resampled` is."""
-
 _DENSE = 64
 """Up to so many samples one matrix product is faster than the transforms it stands for."""
 
+_SMOOTH = 256
+"""At least so many samples show a peak well enough for a parabola."""
 
-def solve_linear(a: Array, b: Array, span: Array) -> tuple[Array, Array]:
-    """The repeating solution v (n, K) of dv/dt = a v + b, and the mean of a (K,).
 
-    With a = mean + dA/dt and A periodic, y = v exp(-A) obeys dy/dt = mean y + b exp(-A), whose
-    coefficient is constant: every harmonic of y is that of b exp(-A) over (i omega - mean).
-    """
-    n = len(a)
-    omega = _frequencies(n, span)
-    spectrum = rfft(a, axis=0)
-    mean = spectrum[0].real / n
-    spectrum[0] = 0.0
-    spectrum[1:] /= omega[1:]
-    growth = np.exp(irfft(spectrum, n, axis=0))
-    forcing = rfft(b / growth, axis=0)
-    forcing /= omega - mean
-    return growth * irfft(forcing, n, axis=0), mean
+def frequencies(n: int, span: Array) -> NDArray[np.complex128]:
+    """i omega of the harmonics of n samples, (n/2 + 1, K), rad/s."""
+    return 2j * np.pi / span * np.arange(n // 2 + 1)[:, None]
 
 
 def derivative(x: Array, span: Array) -> Array:
-    """dx/dt (n, K) of functions that repeat after the span; n is even."""
-    spectrum = rfft(x, axis=0) * _frequencies(len(x), span)
+    """dx/dt (n, K) of functions that repeat after the span."""
+    spectrum = rfft(x, axis=0) * frequencies(len(x), span)
     spectrum[-1] = 0.0
     return irfft(spectrum, len(x), axis=0)
 
@@ -54,18 +41,27 @@ def integral(x: Array, span: Array, flipping: bool) -> Array:
     return span * _apply(_integral, x, flipping)
 
 
-def resampled(x: Array, flipping: bool) -> Array:
-    """x at FINER n points, (FINER n, K): the spectrum padded with zeros."""
-    return _apply(_resampled, x, flipping)
+def refined(x: Array) -> Array:
+    """Functions that repeat after the span at twice as many samples, (2n, K)."""
+    return irfft(rfft(x, axis=0), 2 * len(x), axis=0) * 2
+
+
+def peak(x: Array, flipping: bool) -> Array:
+    """Largest |x| (K,), between the samples too.
+
+    The spectrum padded with zeros gives samples at least four times as dense, a parabola
+    through the largest of them and its neighbours the rest.
+    """
+    size = np.abs(_apply(_resampled, x, flipping))
+    top, column = size.argmax(axis=0), np.arange(size.shape[1])
+    left, middle, right = (size[(top + k) % len(size), column] for k in (-1, 0, 1))
+    bend = left - 2 * middle + right
+    return middle - (right - left) ** 2 / (8 * np.where(bend < 0, bend, -np.inf))
 
 
 def tail(x: Array, flipping: bool) -> Array:
     """Size of the fastest eighth of the harmonics, (K,), in the unit of x."""
     return np.abs(_apply(_tail, x, flipping)).max(axis=0)
-
-
-def _frequencies(n: int, span: Array) -> NDArray[np.complex128]:
-    return 2j * np.pi / span * np.arange(n // 2 + 1)[:, None]
 
 
 def _apply(operation: _Operation, x: Array, flipping: bool) -> Array:
@@ -92,9 +88,10 @@ def _integral(x: Array, flipping: bool) -> Array:
 
 
 def _resampled(x: Array, flipping: bool) -> Array:
+    factor = max(4, _SMOOTH // len(x))
     whole = _repeating(x, flipping)
-    dense = irfft(rfft(whole, axis=0), FINER * len(whole), axis=0) * FINER
-    return dense[: FINER * len(x)]
+    dense = irfft(rfft(whole, axis=0), factor * len(whole), axis=0) * factor
+    return dense[: factor * len(x)]
 
 
 def _tail(x: Array, flipping: bool) -> Array:

@@ -38,7 +38,7 @@ def against_limit(ax: Axes, t: ArrayLike, values: ArrayLike, limit: float, label
     values = np.asarray(values, float)
     ax.plot(t, values, color=FORWARD)
     ax.set_ylabel(label)
-    peak, unit = float(np.abs(values).max()), label.split(", ")[-1]
+    peak, unit = float(np.abs(values).max()), label.rsplit(", ", maxsplit=1)[-1]
     if not math.isfinite(limit):
         ax.margins(y=0.25)
         return ax

@@ -40,7 +40,7 @@ def _speed_map(answer: Answer) -> str:
         and math.isclose(one.share, best.share, abs_tol=1e-2)
     ]
     data = map_data(optimum.problem, optimum.robot, best.gait)
-    speed_map(drawn.add_subplot(), data, optimum.problem, optimum.robot, best.gait, others)
+    speed_map(drawn.add_subplot(), data, optimum.problem, optimum.robot, best.gait, others=others)
     return svg(drawn)
 
 

@@ -35,10 +35,9 @@ def path(ax: Axes, robot: Robot, motion: Trajectory, speed: float) -> Axes:
     ax.plot(motion.x, motion.y, color=colour_of(speed), lw=1.6, zorder=3, label="path of P")
     chosen = instants(motion, robot_length(robot))
     for order, i in enumerate(chosen):
-        alpha = 0.35 + 0.65 * order / max(len(chosen) - 1, 1)
-        pose = (motion.x[i], motion.y[i], motion.psi[i], motion.phi[i])
-        draw_robot(ax, robot, *map(float, pose), alpha=alpha)
-    _arrow(ax, motion, speed, robot_length(robot))
+        alpha = 1.0 - 0.65 * (len(chosen) - 1 - order) / max(len(chosen) - 1, 1)
+        draw_robot(ax, robot, motion, i, alpha=alpha)
+    _arrow(ax, motion, speed, robot)
     ax.set_aspect("equal", adjustable="datalim")
     ax.margins(0.06)
     ax.set_xlabel("x, m")
@@ -73,8 +72,9 @@ def along_travel(motion: Trajectory) -> Trajectory:
     )
 
 
-def _arrow(ax: Axes, motion: Trajectory, speed: float, length: float) -> None:
-    """Which way it goes, at the path's end."""
+def _arrow(ax: Axes, motion: Trajectory, speed: float, robot: Robot) -> None:
+    """Which way it goes, ahead of the last pose."""
+    length = robot_length(robot)
     at = np.array([motion.x, motion.y])
     back = at[:, -1:] - at
     far = np.flatnonzero(np.hypot(*back) >= 0.5 * length)
@@ -82,8 +82,9 @@ def _arrow(ax: Axes, motion: Trajectory, speed: float, length: float) -> None:
     size = math.hypot(*step)
     if size < 1e-6:
         return
-    start = at[:, -1] + step / size * 0.55 * length
-    end = start + step / size * 0.45 * length
+    leading = robot.platform1 if speed > 0 else robot.platform2
+    start = at[:, -1] + step / size * (leading.c + 3 * robot.h)
+    end = start + step / size * 0.3 * length
     style = {"arrowstyle": "-|>", "color": colour_of(speed), "lw": 2.0, "mutation_scale": 14}
     ax.annotate("", tuple(end), tuple(start), arrowprops=style)
     ax.update_datalim([tuple(end)])

@@ -14,7 +14,7 @@ from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from rr_opt.problem import Problem
-from rr_opt.report.figures.style import GREY, INK, LIMIT, OPTIMUM, PAPER, SIGNED
+from rr_opt.report.figures.style import INK, LIMIT, OPTIMUM, PAPER, SIGNED
 from rr_opt.report.quantities import number
 from rr_opt.robot.gait import SineGait
 from rr_opt.robot.parameters import Robot
@@ -59,6 +59,7 @@ def speed_map(
     problem: Problem,
     robot: Robot,
     best: SineGait,
+    *,
     others: Sequence[SineGait] = (),
 ) -> Axes:
     """Filled contours of the speed where all limits are kept; hatched where one is broken.
@@ -120,9 +121,7 @@ def _cover(ax: Axes, data: MapData, problem: Problem, robot: Robot, offset: floa
     )  # fmt: skip
 
 
-def _limit_lines(
-    ax: Axes, data: MapData, problem: Problem, robot: Robot, offset: float
-) -> None:
+def _limit_lines(ax: Axes, data: MapData, problem: Problem, robot: Robot, offset: float) -> None:
     """The edges of what is allowed, each with its name."""
     period, limits = data.period, problem.limits
     bottom, top = data.amplitude[0], data.amplitude[-1]
@@ -131,7 +130,7 @@ def _limit_lines(
         ax.plot(period, rate, color=LIMIT, lw=1.4, zorder=3)
         at = bottom + 0.6 * (min(top, rate[-1]) - bottom)
         where = 2 * math.pi * at / limits.rate
-        _name(ax, where, at, f"rate {number(limits.rate * 30 / math.pi, 3)} rpm", "right")
+        _name(ax, where, at, f"rate {number(limits.rate * 30 / math.pi, 3)} rpm", ha="right")
     lines = reach(problem, robot, offset)
     for name, line in lines.items():
         if line < top:
@@ -142,7 +141,7 @@ def _limit_lines(
                 else f"|φ| = {number(limits.angle, 3)} rad"
             )
             place = period[0] + 0.97 * (period[-1] - period[0])
-            _name(ax, place, line + 0.015 * (top - bottom), text, "right", "bottom")
+            _name(ax, place, line + 0.015 * (top - bottom), text, ha="right", va="bottom")
     _torque_line(ax, data, limits.torque, min(lines.values()))
 
 
@@ -157,11 +156,13 @@ def _torque_line(ax: Axes, data: MapData, limit: float, most: float) -> None:
         data.period, data.amplitude[rows], torque, levels=[limit], colors=[LIMIT],
         linewidths=1.4, linestyles=[(0, (4, 2))], zorder=3,
     )  # fmt: skip
-    line = max(drawn.get_paths()[0].to_polygons(closed_only=False), key=len)
+    line = max(
+        (np.asarray(one) for one in drawn.get_paths()[0].to_polygons(closed_only=False)), key=len
+    )
     x, y = line[len(line) // 2]
-    _name(ax, float(x), float(y), f" torque {number(limit, 3)} N m", "left")
+    _name(ax, float(x), float(y), f" torque {number(limit, 3)} N m", ha="left")
 
 
-def _name(ax: Axes, x: float, y: float, text: str, ha: str, va: str = "center") -> None:
+def _name(ax: Axes, x: float, y: float, text: str, *, ha: str, va: str = "center") -> None:
     halo = [withStroke(linewidth=3, foreground=PAPER, alpha=0.85)]
     ax.text(x, y, text + " ", color=LIMIT, fontsize=9, ha=ha, va=va, zorder=5, path_effects=halo)

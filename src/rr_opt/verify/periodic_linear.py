@@ -1,0 +1,73 @@
+"""The repeating solution of dv/dt = a v + b, with a and b sampled over a span.
+
+With dA/dt = a less its mean, A periodic, exp(-A) is the integrating factor. Two ways on: one
+exact for every harmonic, one that stays accurate however much A varies.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.fft import irfft, rfft
+
+from rr_opt.verify.spectral import frequencies
+
+Array = NDArray[np.float64]
+
+_NEAR = (-2, -1, 0, 1, 2, 3)
+"""Samples, counted from the start of a step, whose polynomial stands for the integrand."""
+
+
+def solve(a: Array, b: Array, span: Array) -> tuple[Array, Array]:
+    """v (n, K), and the mean of a (K,), harmonic by harmonic.
+
+    y = v exp(-A) obeys dy/dt = mean y + b exp(-A), whose coefficient is constant: every
+    harmonic of y is that of b exp(-A) over (i omega - mean).
+    """
+    omega = frequencies(len(a), span)
+    A, mean = _exponent(a, omega)
+    growth = np.exp(A)
+    forcing = rfft(b / growth, axis=0)
+    forcing /= omega - mean
+    return growth * irfft(forcing, len(a), axis=0), mean
+
+
+def solve_stiff(a: Array, b: Array, span: Array) -> tuple[Array, Array]:
+    """v (n, K), and the mean of a (K,), for an a that dry friction makes large and sudden.
+
+    exp(A) may then span more orders of magnitude than a float has digits, but over one step it
+    does not. So each step from sample to sample becomes a map v -> gain v + shift, with the
+    integral in it of order six; the maps of 1, 2, 4 .. n steps from every sample follow by
+    joining pairs, and the last of them close the cycle. n is a power of two.
+    """
+    n, h = len(a), span / len(a)
+    A, mean = _exponent(a, frequencies(n, span))
+    ahead = np.roll(A, -1, axis=0)
+    # Clipped: where a step is so stiff, the solution is only as good as the samples are dense.
+    gain = np.exp(np.clip(ahead - A + mean * h, -500.0, 1.0))
+    shift = np.zeros_like(a)
+    for k, weight in zip(_NEAR, _weights(), strict=True):
+        factor = np.clip(ahead - np.roll(A, -k, axis=0) + mean * h * (1 - k), -30.0, 30.0)
+        shift += weight * h * np.exp(factor) * np.roll(b, -k, axis=0)
+    steps = 1
+    while steps < n:
+        later = np.roll(gain, -steps, axis=0)
+        shift = later * shift + np.roll(shift, -steps, axis=0)
+        gain = later * gain
+        steps *= 2
+    return shift / (1 - gain), mean
+
+
+def _exponent(a: Array, omega: NDArray[np.complex128]) -> tuple[Array, Array]:
+    """A (n, K) and the mean of a (K,)."""
+    spectrum = rfft(a, axis=0)
+    mean = spectrum[0].real / len(a)
+    spectrum[0] = 0.0
+    spectrum[1:] /= omega[1:]
+    return irfft(spectrum, len(a), axis=0), mean
+
+
+def _weights() -> Array:
+    """Of the samples _NEAR in the integral over a step of length 1: exact for polynomials."""
+    powers = np.arange(len(_NEAR))
+    return np.linalg.solve(np.array(_NEAR, float) ** powers[:, None], 1 / (powers + 1.0))

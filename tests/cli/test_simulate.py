@@ -1,0 +1,87 @@
+"""simulate drives a gait and leaves trajectory, figure and film."""
+
+import csv
+import json
+
+import pytest
+
+COLUMNS = ["t", "x", "y", "psi", "phi", "v", "torque"]
+
+
+def rows(path):
+    with path.open() as file:
+        return list(csv.reader(file))
+
+
+def test_trajectory_has_its_columns_and_rate(run, tmp_path):
+    done = run("simulate", "--seconds", "0.5", "--rate", "200", "--out", "res")
+    assert done.exit_code == 0, done.stderr
+    table = rows(tmp_path / "res" / "trajectory.csv")
+    assert table[0] == COLUMNS
+    assert len(table) == 102
+    assert float(table[2][0]) == pytest.approx(0.005)
+    assert {path.name for path in (tmp_path / "res").iterdir()} == {"trajectory.csv", "motion.svg"}
+
+
+def test_options_take_units(run, tmp_path):
+    run("simulate", "--offset", "10 deg", "--period", "800 ms", "--seconds", "0.1", "--out", "res")
+    table = rows(tmp_path / "res" / "trajectory.csv")
+    assert float(table[1][4]) == pytest.approx(0.17453, abs=1e-4)
+
+
+def test_rest_and_steady_start_as_named(run, tmp_path):
+    first = {}
+    for start in ("rest", "steady"):
+        run("simulate", "--seconds", "0.1", "--start", start, "--out", start)
+        first[start] = float(rows(tmp_path / start / "trajectory.csv")[1][5])
+    assert first["rest"] == 0
+    assert first["steady"] < -0.01
+
+
+def test_a_gait_beyond_the_servo_is_told(run):
+    done = run("simulate", "--period", "0.5", "--seconds", "0.1")
+    assert "rate limit" in done.stderr
+    assert done.exit_code == 0
+
+
+def test_a_result_brings_its_robot_and_gait(run, quick, tmp_path):
+    run("maximize-speed", str(quick), "--out", "res", "--no-figures")
+    gait = json.loads((tmp_path / "res" / "result.json").read_text())["gait"]
+    done = run("simulate", "res/result.json", "--seconds", "1", "--start", "steady")
+    assert done.exit_code == 0, done.stderr
+    table = rows(tmp_path / "out" / "res-motion" / "trajectory.csv")
+    quarter = float(table[26][4])
+    assert quarter == pytest.approx(gait["amplitude"], rel=1e-3)
+
+
+def test_film_shows_every_moment(run, tmp_path):
+    image = pytest.importorskip("PIL.Image")
+    done = run("simulate", "--seconds", "0.3", "--animate", "gif", "--out", "res")
+    assert done.exit_code == 0, done.stderr
+    with image.open(tmp_path / "res" / "motion.gif") as film:
+        assert film.n_frames == 7
+
+
+def test_mp4_without_ffmpeg_says_what_to_do(run, monkeypatch):
+    monkeypatch.setenv("PATH", "")
+    done = run("simulate", "--animate", "mp4")
+    assert done.exit_code == 2
+    assert "ffmpeg" in done.stderr
+    assert "gif" in done.stderr
+
+
+def test_netcdf_without_its_libraries_says_what_to_do(run, monkeypatch):
+    monkeypatch.setitem(__import__("sys").modules, "h5netcdf", None)
+    done = run("simulate", "--format", "netcdf")
+    assert done.exit_code == 2
+    assert "rr-opt[netcdf]" in done.stderr
+
+
+def test_netcdf_carries_units(run, tmp_path):
+    pytest.importorskip("h5py")
+    xarray = pytest.importorskip("xarray")
+    done = run("simulate", "--seconds", "0.2", "--format", "netcdf", "--out", "res")
+    assert done.exit_code == 0, done.stderr
+    with xarray.open_dataset(tmp_path / "res" / "trajectory.nc", engine="h5netcdf") as data:
+        assert data["torque"].attrs["units"] == "N m"
+        assert data.sizes["t"] == 21

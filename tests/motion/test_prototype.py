@@ -1,0 +1,23 @@
+"""The shipped prototype moves at about the speeds that the paper measured on it.
+
+Nothing here is exact: what the paper does not give is assumed, and says so in the robot file.
+Its speeds are taken as magnitudes, as the paper's tables do not say which platform leads.
+"""
+
+import pytest
+from rr_opt.files import read_problem
+from rr_opt.motion.steady_cycle import steady_cycle
+from rr_opt.robot.ballast import with_inertia_ratio
+from rr_opt.robot.gait import SineGait
+
+from tests.reference import paper
+
+
+def test_table_3():
+    robot = with_inertia_ratio(read_problem(None).robot, 0.3)
+    inside = 0
+    for row in paper.TABLE_3:
+        speed = abs(steady_cycle(robot, SineGait(row.amplitude, row.period)).speed)
+        assert speed == pytest.approx(row.first_speed, abs=2 * row.half_width)
+        inside += abs(speed - row.first_speed) <= row.half_width
+    assert inside == 4
