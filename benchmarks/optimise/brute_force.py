@@ -118,7 +118,9 @@ def best_known(name: str, points: int = POINTS) -> dict:
     x, nodes = ends[int(np.argmax(worth))]
     by_grid, before = box.gait(x, nodes), max(worth)
 
-    answers = [differential_evolution.solve(problem, seed, popsize=32) for seed in range(3)]
+    answers = [
+        differential_evolution.solve(problem, seed, popsize=32, tol=1e-3) for seed in range(3)
+    ]
     better = [a for a in answers if a.feasible and abs(a.gait.speed) > before * (1 + 1e-7)]
     if better:
         most = max(better, key=lambda a: abs(a.gait.speed))

@@ -65,7 +65,7 @@ def search(box: Box, nodes: int, seed: int, popsize: int, tol: float) -> tuple[A
 
 
 def solve(
-    problem: Problem, seed: int = 0, *, nodes: int = 64, popsize: int = 15, tol: float = 1e-3
+    problem: Problem, seed: int = 0, *, nodes: int = 64, popsize: int = 15, tol: float = 1e-2
 ) -> Answer:
     """The fastest gait of `problem`, its speed resolved to 1e-6."""
     begin = time.process_time()

@@ -137,7 +137,7 @@ def peaks(signal: Array, finer: int, windows: int) -> Array:
     top = y.reshape(len(y), windows, part).argmax(axis=2) + part * np.arange(windows)
     row = np.arange(len(y))[:, None]
     left, mid, right = (y[row, (top + d) % y.shape[1]] for d in (-1, 0, 1))
-    slope, bend = (right - left) / 2, np.minimum(right + left - 2 * mid, -1e-300)
+    slope, bend = (right - left) / 2, np.minimum(right + left - 2 * mid, -1e-30 - 1e-12 * mid)
     return np.where((mid >= left) & (mid >= right), mid - slope**2 / (2 * bend), mid)
 
 

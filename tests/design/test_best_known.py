@@ -8,11 +8,11 @@ import json
 from pathlib import Path
 
 import pytest
+
+from benchmarks.optimise import problems
 from rr_opt.design.maximize_speed import maximize_speed
 from rr_opt.outcome import Status
 from rr_opt.verify.replay import replay
-
-from benchmarks.optimise import problems
 
 KNOWN = json.loads(Path(problems.__file__).with_name("best_known.json").read_text())
 

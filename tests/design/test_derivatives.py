@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
+
 from rr_opt.design.multiple_shooting import LIMITS, shooting
 from rr_opt.physics.dynamics import derive
-
 from tests.robots import BENCHMARK, DRY
 
 N = 8

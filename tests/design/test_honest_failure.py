@@ -1,11 +1,11 @@
 """A solver that stops short is reported as that, and never as a solution."""
 
 import pytest
+
+from benchmarks.optimise.problems import PROBLEMS
 from rr_opt.design import multiple_shooting
 from rr_opt.design.maximize_speed import maximize_speed
 from rr_opt.outcome import Status
-
-from benchmarks.optimise.problems import PROBLEMS
 
 
 @pytest.fixture

@@ -4,11 +4,11 @@ import math
 from dataclasses import replace
 
 import pytest
+
+from benchmarks.optimise.problems import PROBLEMS
 from rr_opt.design.maximize_speed import maximize_speed
 from rr_opt.outcome import Status
 from rr_opt.problem import Interval
-
-from benchmarks.optimise.problems import PROBLEMS
 
 STRAIGHT = PROBLEMS["straight"]
 

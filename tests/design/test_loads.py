@@ -3,19 +3,17 @@
 from dataclasses import replace
 
 import pytest
-from rr_opt.design.maximize_speed import maximize_speed
-from rr_opt.robot.ballast import inertia_ratio, load_count
 
 from benchmarks.optimise.problems import PROBLEMS
+from rr_opt.design.maximize_speed import maximize_speed
+from rr_opt.robot.ballast import inertia_ratio, load_count
 
 PROBLEM = PROBLEMS["paper_loads"]
 
 
 def with_loads(**changes):
     choice = PROBLEM.inertia_ratio
-    return replace(
-        PROBLEM, inertia_ratio=replace(choice, loads=replace(choice.loads, **changes))
-    )
+    return replace(PROBLEM, inertia_ratio=replace(choice, loads=replace(choice.loads, **changes)))
 
 
 def test_the_robot_carries_them():

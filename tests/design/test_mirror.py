@@ -3,10 +3,10 @@
 from dataclasses import replace
 
 import pytest
-from rr_opt.design.maximize_speed import maximize_speed
-from rr_opt.problem import Interval
 
 from benchmarks.optimise.problems import PROBLEMS
+from rr_opt.design.maximize_speed import maximize_speed
+from rr_opt.problem import Interval
 
 
 def test_offsets_of_either_sign():

@@ -1,6 +1,7 @@
 """Candidates are ranked by feasibility, then success, then speed."""
 
 import numpy as np
+
 from rr_opt.design.solve import Candidate
 from rr_opt.robot.gait import SineGait
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from rr_opt.motion.cycle import cycle_of
 
 

@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
+
 from rr_opt.motion.integrator import cvodes, fixed_steps
 from rr_opt.motion.tableau import BUTCHER6, RK4
 from rr_opt.robot.gait import SineGait
-
 from tests.robots import BENCHMARK
 
 GAIT = SineGait(0.7, 1.4, 0.2)

@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
+
 from rr_opt.motion.cycle import cycle_of
 from rr_opt.motion.steady_cycle import reference_cycle, steady_cycle
 from rr_opt.robot.gait import SineGait
-
 from tests.robots import BENCHMARK
 
 GAIT = SineGait(1.2, 2.4, 0.4)
@@ -35,7 +35,9 @@ def test_any_cut(steady, k):
 
 
 def test_the_chord_does_depend_on_the_cut(steady):
-    chords = [np.hypot(x[-1] - x[0], y[-1] - y[0]) for x, y, _ in (cut_at(steady, k) for k in (0, 256))]
+    chords = [
+        np.hypot(x[-1] - x[0], y[-1] - y[0]) for x, y, _ in (cut_at(steady, k) for k in (0, 256))
+    ]
     assert max(chords) > 1.1 * min(chords)
 
 

@@ -23,9 +23,11 @@ _SAMPLES = 256
 
 
 class Terrain(Protocol):
-    """points (K, 4), directions (K,) -> speed in that direction (K,), torque over its limit (K,)."""
+    """What is climbed."""
 
-    def __call__(self, points: Array, sign: Array, /) -> tuple[Array, Array]: ...
+    def __call__(self, points: Array, sign: Array, /) -> tuple[Array, Array]:
+        """points (K, 4), directions (K,) -> speed that way (K,), torque over its limit (K,)."""
+        ...
 
 
 @dataclass(frozen=True)

@@ -1,9 +1,9 @@
 """Speed and peak torque of many gaits at once, coarsely: where multiple shooting should start.
 
 The steady cycle of K gaits over N phases in whole-array arithmetic. Where friction is viscous
-vdot = a v + b, so each classical Runge-Kutta step is an affine map of v, known for all steps at
-once; the cycle closes at the fixed point of their product. Otherwise the map of one period is
-followed from two starts and Newton's method closes it.
+vdot = a v + b, so each step of an integrator is an affine map of v, known for all steps at once;
+the cycle closes at the fixed point of their product. Other friction is replaced by lines in v,
+and those again, until the cycle stands still.
 """
 
 from __future__ import annotations
@@ -16,15 +16,16 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
-from rr_opt.motion.tableau import RK4
 from rr_opt.physics.arrays import ArrayFunction, over_arrays
 from rr_opt.physics.dynamics import Dynamics, derive
+from rr_opt.problem import Interval
 from rr_opt.robot.ballast import By, Loads, with_load_count
 from rr_opt.robot.parameters import Robot
 
 Array = NDArray[np.float64]
 
-_NEWTON_STEPS = 8
+_SECANTS, _TANGENTS = 4, 10
+_TOO_SLOW, _SETTLED = 1e-9, 1e-7  # m/s
 # Gaits times phases in one go: some arrays of this length fit the processor's cache.
 _BLOCK = 4096
 
@@ -51,14 +52,15 @@ class Cycles:
 
 
 class Landscape:
-    """The gaits of one robot, with its ballast running from `low` to `high`."""
+    """The gaits of one robot, with its ballast running over an interval."""
 
-    def __init__(self, dynamics: Dynamics, robot: Robot, by: By, loads: Loads, low: float, high: float):
-        self._rates, self._torque, self._affine = _array_functions(dynamics.effects)
+    def __init__(self, dynamics: Dynamics, robot: Robot, by: By, loads: Loads, ballast: Interval):
+        functions = _array_functions(dynamics.effects)
+        self._rates, self._torque, self._affine, self._tangent = functions
         self._values = list(dynamics.values(robot))
         self._names = dynamics.parameters
         self.linear = dynamics.linear
-        self._robot, self._by, self._range = robot, by, (low, high)
+        self._robot, self._by, self._range = robot, by, (ballast.low, ballast.high)
         self.loads = loads
 
     def cycles(self, gaits: Array, nodes: int) -> Cycles:
@@ -86,13 +88,13 @@ class Landscape:
         at_nodes = [part[::2] for part in angle]
         if self.linear:
             a, b, *rates = self._affine(*angle, *p)
-            v = _close_affine(a, b, h)
+            v = _close_affine(a, b, h)[::2]
             gains, shifts = rates[::2], rates[1::2]
             w, side = (
                 gain[::2] * v + shift[::2] for gain, shift in zip(gains, shifts, strict=True)
             )
         else:
-            v = self._close_newton(*angle, p, h)
+            v = self._close_by_lines(angle, p, h)
             _, w, side = self._rates(v, *at_nodes, *p)
         (torque,) = self._torque(v, *at_nodes, *p)
         return _summary(v, w, side, torque, period)
@@ -108,37 +110,37 @@ class Landscape:
             values["I2"] = amount
         return list(values.values())
 
-    def _close_newton(self, phi: Array, dphi: Array, ddphi: Array, p: list, h: Array) -> Array:
-        """v at the nodes of the cycle, for friction that is not viscous."""
-        nodes = len(phi) // 2
-        shift = 1e-4
+    def _close_by_lines(self, angle: tuple[Array, ...], p: list, h: Array) -> Array:
+        """v at the nodes of the cycle, for friction that is not viscous.
 
-        def rollout(start: Array) -> Array:
-            path = [start]
-            for k in range(nodes):
-
-                def rhs(fraction: float, v: Array, k: int = k) -> Array:
-                    i = (2 * k + round(2 * fraction)) % (2 * nodes)
-                    return self._rates(v, phi[i], dphi[i], ddphi[i], *p)[0]
-
-                path.append(RK4.step(rhs, path[-1], h))
-            return np.array(path)
-
-        start = np.zeros(phi.shape[1])
-        for _ in range(_NEWTON_STEPS):
-            path = rollout(np.array([start, start + shift]))
-            gap = path[-1, 0] - start
-            slope = (path[-1, 1] - path[-1, 0]) / shift - 1.0
-            start = start - gap / np.where(slope < -1e-9, slope, -1.0)
-            if np.all(np.abs(gap) < 1e-9):
+        vdot is replaced by a line in v at every phase and the cycle closed, again and again: by
+        lines through v = 0 first, which settle from anywhere but slowly, then by tangents
+        (Newton-Kantorovich). Where the tangents have not settled the last of the former stand.
+        """
+        at_rest = self._tangent(np.zeros_like(angle[0]), *angle, *p)[0]
+        v = np.zeros_like(angle[0])
+        for _ in range(_SECANTS):
+            vdot, slope = self._tangent(v, *angle, *p)
+            moving = np.abs(v) > _TOO_SLOW
+            chord = (vdot - at_rest) / np.where(moving, v, 1.0)
+            v = _close_affine(np.where(moving, chord, slope), at_rest, h)
+        settled = v
+        change = np.zeros(v.shape[1])
+        for _ in range(_TANGENTS):
+            vdot, slope = self._tangent(v, *angle, *p)
+            closed = _close_affine(np.broadcast_to(slope, v.shape), vdot - slope * v, h)
+            change = np.abs(closed - v).max(axis=0)
+            v = closed
+            if np.all(change < _SETTLED):
                 break
-        return path[:-1, 0]
+        return np.where(change < _SETTLED, v, settled)[::2]
 
 
 @lru_cache
 def _array_functions(effects: tuple[str, ...]) -> tuple[ArrayFunction, ...]:
     """Over arrays: vdot, w, side of (v, phi, dphi, ddphi, p); torque of the same; and, of
-    (phi, dphi, ddphi, p), the gain on v and the shift of vdot, w and side where those are affine."""
+    (phi, dphi, ddphi, p), the gain on v and the shift of vdot, w and side where those are affine;
+    vdot and its slope in v of (v, phi, dphi, ddphi, p)."""
     motion = derive(effects).motion
     names = motion.name_in()
     v, phi, dphi, ddphi = (ca.SX.sym(name) for name in names[:4])
@@ -153,27 +155,34 @@ def _array_functions(effects: tuple[str, ...]) -> tuple[ArrayFunction, ...]:
         over_arrays(motion.factory("rates", names, ["vdot", "w", "side"])),
         over_arrays(motion.factory("torque", names, ["torque"])),
         over_arrays(affine),
+        over_arrays(motion.factory("tangent", names, ["vdot", "jac:vdot:v"])),
     )
 
 
 def _close_affine(a: Array, b: Array, h: Array) -> Array:
-    """v at the nodes of the periodic solution of v' = a v + b, given at nodes and midpoints."""
+    """v at nodes and midpoints of the periodic solution of v' = a v + b, given there.
+
+    Hermite-Simpson steps (Lobatto IIIA, order 4): with f = a v + b,
+
+        v_mid = (v_0 + v_1)/2 + h/8 (f_0 - f_1),    v_1 = v_0 + h/6 (f_0 + 4 f_mid + f_1)
+
+    solved for v_1. Explicit steps of that order cost as much and run away where dry friction
+    makes a large.
+    """
     a0, am, a1 = a[0::2], a[1::2], np.roll(a[0::2], -1, axis=0)
     b0, bm, b1 = b[0::2], b[1::2], np.roll(b[0::2], -1, axis=0)
-    # The four slopes of the classical step as affine functions (gain, shift) of v.
-    g1, s1 = a0, b0
-    g2, s2 = am * (1 + h / 2 * g1), am * (h / 2 * s1) + bm
-    g3, s3 = am * (1 + h / 2 * g2), am * (h / 2 * s2) + bm
-    g4, s4 = a1 * (1 + h * g3), a1 * (h * s3) + b1
-    gain = 1 + h / 6 * (g1 + 2 * g2 + 2 * g3 + g4)
-    shift = h / 6 * (s1 + 2 * s2 + 2 * s3 + s4)
+    divisor = 1 - h / 6 * (a1 + am * (2 - h / 2 * a1))
+    gain = (1 + h / 6 * (a0 + am * (2 + h / 2 * a0))) / divisor
+    shift = h / 6 * (b0 + 4 * bm + b1 + h / 2 * am * (b0 - b1)) / divisor
     total_gain, total_shift = np.ones_like(gain[0]), np.zeros_like(gain[0])
     for k in range(len(gain)):
         total_gain, total_shift = gain[k] * total_gain, gain[k] * total_shift + shift[k]
-    v = np.empty_like(gain)
+    v = np.empty_like(a)
     v[0] = total_shift / (1 - total_gain)
     for k in range(len(gain) - 1):
-        v[k + 1] = gain[k] * v[k] + shift[k]
+        v[2 * k + 2] = gain[k] * v[2 * k] + shift[k]
+    v0, v1 = v[0::2], np.roll(v[0::2], -1, axis=0)
+    v[1::2] = (v0 + v1) / 2 + h / 8 * (a0 * v0 + b0 - a1 * v1 - b1)
     return v
 
 
@@ -190,6 +199,4 @@ def _summary(v: Array, w: Array, side: Array, torque: Array, period: Array) -> C
         [(cos * v - sin * side).mean(0), (sin * v + cos * side).mean(0), cos.mean(0), sin.mean(0)]
     )
     forward = mean[0] * mean[2] + mean[1] * mean[3]
-    return Cycles(
-        np.copysign(np.hypot(mean[0], mean[1]), forward), torque, v, chi, turn, mean
-    )
+    return Cycles(np.copysign(np.hypot(mean[0], mean[1]), forward), torque, v, chi, turn, mean)

@@ -18,11 +18,11 @@ from numpy.typing import NDArray
 from rr_opt.design.decisions import Decisions, decisions
 from rr_opt.design.infeasible import direction_clash, posture_clashes, torque_clash
 from rr_opt.design.landscape import Landscape
-from rr_opt.design.mesh import Dense, dense, finer, with_nodes_at
+from rr_opt.design.mesh import LADDER, Dense, dense, finer, with_nodes_at
 from rr_opt.design.seeds import Seed, find_seeds
 from rr_opt.design.solve import Candidate, Setting, solve
 from rr_opt.motion.steady_cycle import steady_cycle
-from rr_opt.outcome import Status
+from rr_opt.outcome import NotConvergedError, Status
 from rr_opt.physics.dynamics import dynamics_of
 from rr_opt.problem import Interval, Problem
 from rr_opt.robot.ballast import Loads, inertia_ratio, with_load_count
@@ -96,14 +96,18 @@ def maximize_speed(problem: Problem, progress: Progress = lambda _: None) -> Opt
         starts += [(setting, seed) for seed in seeds]
         fastest = max(fastest, best)
     found: list[tuple[Setting, Candidate]] = []
+    lost: list[str] = []
     for number, (setting, seed) in enumerate(starts, 1):
         progress(f"start {number} of {len(starts)}")
         amplitude, period, offset, share = map(float, box.physical(seed.point[None])[:, 0])
         if setting.fixed_share is not None:
             share = setting.fixed_share
         gait = SineGait(amplitude, period, offset)
-        found.append((setting, _solve(setting, seed.sign, gait, share)))
-    optimum = _answer(problem, found, progress)
+        try:
+            found.append((setting, _solve(setting, seed.sign, gait, share)))
+        except NotConvergedError as error:
+            lost.append(str(error))
+    optimum = _answer(problem, found, lost, progress)
     if optimum.status is Status.NOT_CONVERGED:
         landscapes = [setting.landscape for setting in settings]
         clash = torque_clash(problem, box, landscapes) or direction_clash(problem, fastest)
@@ -116,8 +120,11 @@ def _solve(setting: Setting, sign: int, gait: SineGait, share: float) -> Candida
     """Solve from a gait on a mesh that is fine enough for its cycle."""
     robot = robot_of(setting, share)
     seen = dense(setting.landscape, robot, gait, share)
-    coarse = steady_cycle(robot, gait, steps=COARSE).speed
-    intervals = finer(COARSE, abs(coarse - seen.speed) / abs(seen.speed), _CLAIM / 2)
+    try:
+        coarse = steady_cycle(robot, gait, steps=COARSE).speed
+        intervals = finer(COARSE, abs(coarse - seen.speed) / abs(seen.speed), _CLAIM / 2)
+    except NotConvergedError:  # dry friction too steep for so coarse a mesh
+        intervals = LADDER[-1]
     return solve(setting, sign, gait, share, _phases(setting, intervals, seen))
 
 
@@ -128,10 +135,16 @@ def _phases(setting: Setting, intervals: int, seen: Dense) -> Array:
 
 
 def _answer(
-    problem: Problem, found: list[tuple[Setting, Candidate]], progress: Progress
+    problem: Problem,
+    found: list[tuple[Setting, Candidate]],
+    lost: list[str],
+    progress: Progress,
 ) -> Optimum:
     iterations = sum(candidate.iterations for _, candidate in found)
-    failures = tuple(one.sentence for _, one in found if not (one.feasible and one.success))
+    failures = (
+        *lost,
+        *(one.sentence for _, one in found if not (one.feasible and one.success)),
+    )
     good = [pair for pair in found if pair[1].feasible and pair[1].success]
     good = _distinct(sorted(good, key=lambda pair: pair[1].rank))
     while good:
@@ -159,7 +172,7 @@ def _answer(
             robot=robot,
             ratio=inertia_ratio(robot, about),
             optima=(refined, *(candidate for _, candidate in others)),
-            starts=len(found),
+            starts=len(found) + len(lost),
             iterations=iterations,
             failures=failures,
             intervals=len(refined.phases),
@@ -169,7 +182,7 @@ def _answer(
         Status.NOT_CONVERGED,
         message,
         problem,
-        starts=len(found),
+        starts=len(found) + len(lost),
         iterations=iterations,
         failures=failures,
     )
@@ -181,7 +194,7 @@ def _settings(problem: Problem, box: Decisions) -> list[Setting]:
     by, loads = (choice.by, choice.loads) if choice else ("inertia", Loads())
     dynamics = dynamics_of(problem.robot)
     low, high = box.ballast.low, box.ballast.high
-    landscape = Landscape(dynamics, problem.robot, by, loads, low, high)
+    landscape = Landscape(dynamics, problem.robot, by, loads, box.ballast)
     setting = Setting(problem, dynamics, landscape, box.ballast)
     if not (by == "loads" and loads.whole):
         return [setting]
@@ -240,9 +253,7 @@ def _refine(setting: Setting, candidate: Candidate) -> Candidate:
         if error <= _CLAIM and seen.peak <= limit * (1 + _PEAK):
             break
         intervals = finer(len(candidate.phases), error, _CLAIM / 2)
-        candidate = solve(
-            setting, candidate.sign, gait, share, _phases(setting, intervals, seen)
-        )
+        candidate = solve(setting, candidate.sign, gait, share, _phases(setting, intervals, seen))
         iterations += candidate.iterations
         if not (candidate.feasible and candidate.success):
             break

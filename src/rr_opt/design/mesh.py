@@ -70,7 +70,7 @@ def with_nodes_at(intervals: int, peaks: Array) -> Array:
     """Equal phases with the nearest node moved onto each peak; the first stays at 0."""
     phases = np.arange(intervals) / intervals
     for peak in peaks:
-        nearest = int(round(peak * intervals)) % intervals
+        nearest = round(peak * intervals) % intervals
         if nearest:
             phases[nearest] = peak
     return phases

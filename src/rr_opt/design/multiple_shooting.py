@@ -119,7 +119,9 @@ def shooting(
         ca.horzcat(ca.MX(n, nz + nm + n), ca.diag(curves[1, 1::wrt])),
     )
     given = {
-        "grad_f": ca.Function("grad_f", [x, p], [f, ca.gradient(f, x)], ["x", "p"], ["f", "grad_f_x"]),
+        "grad_f": ca.Function(
+            "grad_f", [x, p], [f, ca.gradient(f, x)], ["x", "p"], ["f", "grad_f_x"]
+        ),
         "jac_g": ca.Function("jac_g", [x, p], [g, jac_g], ["x", "p"], ["g", "jac_g_x"]),
         "hess_lag": ca.Function(
             "hess_lag",

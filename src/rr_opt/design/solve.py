@@ -161,7 +161,11 @@ def _bounds(setting: Setting, n: int) -> tuple[Array, Array, Array, Array]:
     first_chi = len(DECISIONS) + 4 + n
     lbx[first_chi] = ubx[first_chi] = 0.0
     tight = np.zeros(2 * n + 4)
-    low = {"singularity+": limits.singularity, "singularity-": limits.singularity, "direction": _AHEAD}
+    low = {
+        "singularity+": limits.singularity,
+        "singularity-": limits.singularity,
+        "direction": _AHEAD,
+    }
     high = {"rate": limits.rate, "angle+": limits.angle, "angle-": limits.angle}
     lbg = [tight, [low.get(name, -np.inf) for name in LIMITS], np.full(n, -limits.torque)]
     ubg = [tight, [high.get(name, np.inf) for name in LIMITS], np.full(n, limits.torque)]

@@ -68,7 +68,7 @@ def _close(robot: Robot, gait: SineGait, rollout: Callable[[float], Array]) -> S
         gap, slope = path[0, -1] - v0, path[4, -1] - 1.0
         if not np.isfinite(gap) or not -slope > 1e-12:
             break
-        if abs(gap) <= 1e-13 + 1e-12 * np.abs(path[0]).max():
+        if abs(gap) <= 1e-12 + 1e-10 * np.abs(path[0]).max():
             return _cycle(robot, gait, path)
         v0 -= gap / slope
     raise NotConvergedError(

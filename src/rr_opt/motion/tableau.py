@@ -30,7 +30,7 @@ class Tableau:
         return _combine(y, h, self.b, slopes)
 
 
-def _combine(y, h, weights, slopes):  # noqa: ANN - generic over the state's arithmetic
+def _combine(y, h, weights, slopes):
     for weight, slope in zip(weights, slopes, strict=True):
         if weight:
             y = y + (h * weight) * slope

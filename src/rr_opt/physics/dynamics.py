@@ -84,9 +84,7 @@ def derive(effects: tuple[str, ...] = ()) -> Dynamics:
     return _kane(robot, effects, tuple(names), ca.vertcat(*symbols))
 
 
-def _kane(
-    robot: Mechanism, effects: tuple[str, ...], names: tuple[str, ...], p: ca.SX
-) -> Dynamics:
+def _kane(robot: Mechanism, effects: tuple[str, ...], names: tuple[str, ...], p: ca.SX) -> Dynamics:
     phi, u = robot.phi, robot.speeds
     vdot, ddphi = ca.SX.sym("vdot"), ca.SX.sym("ddphi")
     udot = ca.vertcat(vdot, 0, 0, ddphi)

@@ -151,9 +151,7 @@ def mechanism() -> Mechanism:
     return with_wheel_forces(bare, lambda wheel, u: -p[f"k{wheel.platform}"] * u)
 
 
-def with_wheel_forces(
-    mechanism: Mechanism, law: Callable[[Wheel, ca.SX], ca.SX]
-) -> Mechanism:
+def with_wheel_forces(mechanism: Mechanism, law: Callable[[Wheel, ca.SX], ca.SX]) -> Mechanism:
     """Add at every wheel the rolling force law(wheel, u), N along the wheel, u its speed, m/s."""
     added = tuple(
         Force(

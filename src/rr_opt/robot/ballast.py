@@ -52,7 +52,7 @@ def with_load_count(platform: Platform, loads: Loads, count: float) -> Platform:
     own = platform.joint_to_centre
     centre = (platform.m * own + added * loads.distance) / m
     reduced = platform.m * added / m
-    I = platform.I + reduced * (loads.distance - own) ** 2 + added * loads.spread**2  # noqa: E741
+    I = platform.I + reduced * (loads.distance - own) ** 2 + added * loads.spread**2
     return replace(platform, m=m, I=I, a=platform.c - centre)
 
 
@@ -80,7 +80,11 @@ def load_count(robot: Robot, ratio: float, about: About, loads: Loads) -> float:
 
 
 def with_inertia_ratio(
-    robot: Robot, ratio: float, about: About = "joint", by: By = "inertia", loads: Loads | None = None
+    robot: Robot,
+    ratio: float,
+    about: About = "joint",
+    by: By = "inertia",
+    loads: Loads | None = None,
 ) -> Robot:
     """The robot rebuilt so that J20/J10 = ratio.
 

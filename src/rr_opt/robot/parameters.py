@@ -24,7 +24,7 @@ class Platform:
     """
 
     m: float
-    I: float  # noqa: E741 - the field's symbol
+    I: float
     c: float
     a: float
     b: float

@@ -13,7 +13,7 @@ POINTS = 120
 """Gaits along each side of the map."""
 
 
-def map_data(problem: Problem, robot: Robot, best: SineGait, points: int = POINTS) -> MapData:
+def map_data(problem: Problem, robot: Robot, best: SineGait) -> MapData:
     """Speed and peak torque around the optimum, over the problem's bounds.
 
     A quantity that the problem fixes is shown from half to one and a half times its value.
@@ -26,7 +26,7 @@ def map_data(problem: Problem, robot: Robot, best: SineGait, points: int = POINT
             _opened(problem.gait.amplitude), _opened(problem.gait.period), problem.gait.offset
         ),
     )
-    found = speed_map(shown, robot, best.offset, points)
+    found = speed_map(shown, robot, best.offset, POINTS)
     return MapData(found.period, found.amplitude, found.speed, found.torque)
 
 

@@ -1,0 +1,55 @@
+"""The page is one file that opens anywhere, says the verdict first, and escapes what it shows."""
+
+import re
+from dataclasses import replace
+from html.parser import HTMLParser
+
+from rr_opt.report.page import page
+
+SVG = {"path": "<svg/>"}
+
+
+def test_the_verdict_comes_first(answer):
+    text = page(answer, SVG)
+    title = re.search("<h1>(.*?)</h1>", text)
+    assert title
+    assert "mm/s" in title[1]
+    assert text.index("<h1>") < text.index("<figure") < text.index("<table")
+
+
+def test_nothing_is_fetched(answer):
+    text = page(answer, SVG)
+    assert "http" not in text
+    assert all(source.startswith("data:") for source in re.findall('src="(.*?)"', text))
+
+
+def test_every_tag_is_closed(answer):
+    open_tags = []
+
+    class Closing(HTMLParser):
+        def handle_starttag(self, tag, attrs):
+            if tag not in ("meta", "img"):
+                open_tags.append(tag)
+
+        def handle_endtag(self, tag):
+            assert open_tags.pop() == tag
+
+    Closing().feed(page(answer, SVG))
+    assert open_tags == []
+
+
+def test_a_failed_check_is_the_headline(answer):
+    doubtful = replace(answer, sweep=replace(answer.sweep, gap=-0.1))
+    text = page(doubtful, SVG)
+    assert "<h1>No confirmed optimum</h1>" in text
+    assert 'class="bad"' in text
+
+
+def test_names_are_escaped(answer):
+    assert "<script>" not in page(replace(answer, name="<script>"), SVG)
+
+
+def test_provenance_is_shown(answer):
+    text = page(answer, SVG)
+    assert 'badge measured">measured' in text
+    assert 'badge assumed">assumed' in text

@@ -1,0 +1,40 @@
+"""A reported price is the speed gained per unit: solving again with a moved limit shows it."""
+
+from dataclasses import replace
+
+import pytest
+
+from rr_opt.design.maximize_speed import maximize_speed
+from rr_opt.problem import Interval, RatioChoice
+from rr_opt.report.rows import bound_rows, limit_rows
+
+
+def speed(problem):
+    best = maximize_speed(problem).best
+    assert best is not None
+    return abs(best.speed)
+
+
+def test_price_of_the_rate_limit(answer):
+    problem = answer.optimum.problem
+    price = next(r.price for r in limit_rows(answer.optimum, answer.replay) if r.name == "rate")
+    step = 1e-3 * problem.limits.rate
+    more = replace(problem, limits=replace(problem.limits, rate=problem.limits.rate + step))
+    less = replace(problem, limits=replace(problem.limits, rate=problem.limits.rate - step))
+    assert price == pytest.approx((speed(more) - speed(less)) / (2 * step), rel=1e-3)
+
+
+@pytest.mark.parametrize("by", ["inertia", "loads"])
+def test_price_of_the_inertia_ratio_is_per_unit_of_the_ratio(answer, by):
+    problem = answer.optimum.problem
+
+    def with_most(high):
+        return replace(problem, inertia_ratio=RatioChoice(Interval(0.13, high), by=by))
+
+    row = next(
+        r for r in bound_rows(maximize_speed(with_most(0.2))) if r.name == "inertia_ratio"
+    )
+    assert row.side == "high"
+    step = 2e-4
+    slope = (speed(with_most(0.2 + step)) - speed(with_most(0.2 - step))) / (2 * step)
+    assert row.price == pytest.approx(slope, rel=1e-2)
