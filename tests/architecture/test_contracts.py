@@ -23,7 +23,6 @@ PLANTED = [
     ("layers", "files/planted.py", "import rr_opt.motion.cycle"),
     ("layers", "motion/planted.py", "import rr_opt.files.units"),
     ("layers", "design/planted.py", "import rr_opt.cli.main"),
-    ("layers", "unplaced.py", ""),
     ("check-apart-from-design", "verify/planted.py", "import rr_opt.design.solve"),
     ("check-apart-from-design", "design/planted.py", "import rr_opt.verify.replay"),
     ("sweep-apart-from-motion", "verify/sweep.py", "import rr_opt.motion.cycle"),
@@ -77,7 +76,15 @@ def test_a_planted_import_breaks(tree, contract, file, line):
     path.write_text(f"{old}\n{line}\n", encoding="utf-8")
     code, text = lint_imports(tree)
     assert code == 1, text
-    assert f"{CONTRACTS[contract]} BROKEN" in text or file == "unplaced.py"
+    assert f"{CONTRACTS[contract]} BROKEN" in text
+
+
+def test_a_package_without_a_layer_breaks(tree):
+    (tree / "src" / "rr_opt" / "unplaced.py").write_text('"""Planted."""\n', encoding="utf-8")
+    code, text = lint_imports(tree)
+    assert code == 1, text
+    assert f"{CONTRACTS['layers']} BROKEN" in text
+    assert "- rr_opt.unplaced" in text
 
 
 def test_no_contract_is_left_out():

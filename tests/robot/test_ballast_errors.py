@@ -50,4 +50,17 @@ def test_loads_on_the_axis_reach_only_so_far():
     inside = with_inertia_ratio(ROBOT, (0.1 * own + 0.9 * most) / J1, "centre", "loads", onaxis)
     expected = 0.1 * own + 0.9 * most
     assert inside.platform2.I / own == pytest.approx(expected / own)
-    assert "cannot be reached" in refusal(1.01 * most / J1, "centre", "loads", onaxis)
+    text = refusal(1.01 * most / J1, "centre", "loads", onaxis)
+    assert "cannot be reached" in text
+    assert "Ask for a smaller ratio" in text
+
+
+def test_loads_without_any_inertia_about_the_joint():
+    nothing = Loads(distance=0.0, spread=0.0)
+    assert "Ask for a smaller ratio" in refusal(0.5, "joint", "loads", nothing)
+
+
+def test_the_robots_own_ratio_needs_no_loads():
+    own = inertia_ratio(ROBOT, "centre")
+    there = Loads(distance=ROBOT.platform2.joint_to_centre, spread=0.0)
+    assert with_inertia_ratio(ROBOT, own, "centre", "loads", there) == ROBOT

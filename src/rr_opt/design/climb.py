@@ -111,7 +111,8 @@ def _stencil(d: int) -> tuple[Array, Array]:
         points[1 + 2 * i, i], points[2 + 2 * i, i] = 1.0, -1.0
     for row, (i, j) in enumerate(pairs, start=1 + 2 * d):
         points[row, [i, j]] = 1.0
-    return points, np.linalg.inv(_monomials(points))
+    design: Array = np.linalg.inv(_monomials(points)).astype(float)
+    return points, design
 
 
 def _best_step(models: tuple[Array, Array], centre: Array, size: Array, penalty: float) -> Array:

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from rr_opt.physics.arrays import ArrayFunction, over_arrays
 from rr_opt.physics.dynamics import Dynamics, derive
 from rr_opt.problem import Interval
-from rr_opt.robot.ballast import By, Loads, with_load_count
+from rr_opt.robot.ballast import By, Loads, hang
 from rr_opt.robot.parameters import Robot
 
 Array = NDArray[np.float64]
@@ -104,8 +104,9 @@ class Landscape:
         amount = low + share * (high - low)
         values = dict(zip(self._names, self._values, strict=True))
         if self._by == "loads":
-            loaded = with_load_count(self._robot.platform2, self.loads, amount)
-            values |= {"m2": loaded.m, "I2": loaded.I, "a2": loaded.a}
+            two = self._robot.platform2
+            m, I, reach = hang(two.m, two.I, two.joint_to_centre, self.loads.each, amount)
+            values |= {"m2": m, "I2": I, "a2": two.c - reach}
         else:
             values["I2"] = amount
         return list(values.values())

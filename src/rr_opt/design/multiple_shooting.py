@@ -27,13 +27,13 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any
 
 import casadi as ca
 
 from rr_opt.motion.tableau import BUTCHER6, Tableau
 from rr_opt.physics.dynamics import derive
-from rr_opt.robot.ballast import By, Loads, with_load_count
-from rr_opt.robot.parameters import Platform
+from rr_opt.robot.ballast import By, hang
 
 DECISIONS = ("amplitude", "period", "offset", "ballast", "turn")
 """alpha (rad), T (s), phi0 (rad), I2 (kg m2) or number of loads on a scale from 0 at its lower
@@ -151,7 +151,7 @@ class _Interval:
         values = _with_ballast(fixed, names, share, by)
         v, chi, theta, width = (ca.SX.sym(name) for name in ("v", "chi", "theta", "width"))
 
-        def motion(theta: ca.SX, v: ca.SX) -> tuple[ca.SX, ...]:
+        def motion(theta: ca.SX, v: ca.SX) -> Any:
             omega = 2 * math.pi / T
             swing = amplitude * ca.sin(2 * math.pi * theta)
             rate = amplitude * omega * ca.cos(2 * math.pi * theta)
@@ -230,9 +230,9 @@ def _with_ballast(fixed: ca.SX, names: tuple[str, ...], share: ca.SX, by: By) ->
     mass, distance, spread, low, high = ca.vertsplit(fixed[len(names) :])
     amount = low + share * (high - low)
     if by == "loads":
-        bare = Platform(*(values[f"{symbol}2"] for symbol in "mIcab"), kappa=0.0)
-        loaded = with_load_count(bare, Loads(mass, distance, spread), amount)
-        values |= {"m2": loaded.m, "I2": loaded.I, "a2": loaded.a}
+        m, I, c, a = (values[f"{symbol}2"] for symbol in ("m", "I", "c", "a"))
+        values["m2"], values["I2"], reach = hang(m, I, c - a, (mass, distance, spread), amount)
+        values["a2"] = c - reach
     else:
         values["I2"] = amount
     return ca.vertcat(*values.values())

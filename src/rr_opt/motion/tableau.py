@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TypeVar
+from typing import Any, TypeVar
 
 State = TypeVar("State")
 
@@ -19,7 +19,7 @@ class Tableau:
     a: tuple[tuple[float, ...], ...]
     b: tuple[float, ...]
 
-    def step(self, rhs: Callable[[float, State], State], y: State, h: float) -> State:
+    def step(self, rhs: Callable[[float, State], State], y: State, h: Any) -> State:
         """One step of length h from y; rhs(fraction, y) with fraction of the step in [0, 1].
 
         Works on whatever adds and scales: floats, arrays, CasADi expressions.

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Any, Literal
 
 from rr_opt.outcome import InputError
 from rr_opt.robot.parameters import Platform, Robot
@@ -37,6 +37,11 @@ class Loads:
     spread: float = 0.05
     whole: bool = False
 
+    @property
+    def each(self) -> tuple[float, float, float]:
+        """mass, distance and spread of one load."""
+        return self.mass, self.distance, self.spread
+
 
 def inertia_ratio(robot: Robot, about: About) -> float:
     """J20/J10 of the robot as it is, dimensionless."""
@@ -45,15 +50,26 @@ def inertia_ratio(robot: Robot, about: About) -> float:
     return robot.platform2.I / robot.platform1.I
 
 
+def hang(
+    m: Any, I: Any, reach: Any, each: tuple[Any, Any, Any], count: Any
+) -> tuple[Any, Any, Any]:
+    """Mass, moment of inertia and distance from P to the centre of mass, with loads hung on.
+
+    m, I, reach: the same without them. Works on whatever adds and divides: floats, arrays,
+    CasADi expressions.
+    """
+    mass, distance, spread = each
+    added = count * mass
+    total = m + added
+    centre = (m * reach + added * distance) / total
+    reduced = m * added / total
+    return total, I + reduced * (distance - reach) ** 2 + added * spread**2, centre
+
+
 def with_load_count(platform: Platform, loads: Loads, count: float) -> Platform:
     """Platform 2 carrying `count` loads (a real number >= 0): new m, I and a."""
-    added = count * loads.mass
-    m = platform.m + added
-    own = platform.joint_to_centre
-    centre = (platform.m * own + added * loads.distance) / m
-    reduced = platform.m * added / m
-    I = platform.I + reduced * (loads.distance - own) ** 2 + added * loads.spread**2
-    return replace(platform, m=m, I=I, a=platform.c - centre)
+    m, I, reach = hang(platform.m, platform.I, platform.joint_to_centre, loads.each, count)
+    return replace(platform, m=m, I=I, a=platform.c - reach)
 
 
 def load_count(robot: Robot, ratio: float, about: About, loads: Loads) -> float:
@@ -67,7 +83,7 @@ def load_count(robot: Robot, ratio: float, about: About, loads: Loads) -> float:
     if about == "joint":
         excess = ratio * robot.platform1.joint_inertia - platform.joint_inertia
         each = loads.mass * (loads.distance**2 + loads.spread**2)
-        return excess / each
+        return excess / each if each > 0 else _unreachable(excess)
     excess = ratio * robot.platform1.I - platform.I
     d2 = (loads.distance - platform.joint_to_centre) ** 2
     s2 = loads.spread**2
@@ -75,8 +91,13 @@ def load_count(robot: Robot, ratio: float, about: About, loads: Loads) -> float:
     linear = platform.m * (s2 + d2) - excess
     root = math.sqrt(max(linear**2 + 4 * s2 * platform.m * excess, 0.0))
     if linear + root <= 0:
-        return math.inf if excess > 0 else -math.inf
+        return _unreachable(excess)
     return 2 * platform.m * excess / (linear + root) / loads.mass
+
+
+def _unreachable(excess: float) -> float:
+    """The count where loads do not change the inertia enough, or at all."""
+    return math.copysign(math.inf, excess) if excess else 0.0
 
 
 def with_inertia_ratio(
@@ -88,14 +109,22 @@ def with_inertia_ratio(
 ) -> Robot:
     """The robot rebuilt so that J20/J10 = ratio.
 
+    The number of loads may be any real number here, `loads.whole` or not.
     Raises InputError when the ratio cannot be realised: an inertia that would not be
     positive, or fewer than no loads.
     """
     if by == "loads":
         loads = loads or Loads()
         count = load_count(robot, ratio, about, loads)
-        if not 0 <= count + 1e-12 < math.inf:
-            own = inertia_ratio(robot, about)
+        own = inertia_ratio(robot, about)
+        if count == math.inf:
+            raise InputError(
+                f"An inertia ratio J20/J10 = {ratio:.4g} cannot be reached with loads. At "
+                f"{loads.distance:.4g} m from the joint and {loads.spread:.4g} m to the sides, any "
+                "number of them stays below it. Ask for a smaller ratio, hang the loads further "
+                "out, or use `by: inertia`."
+            )
+        if not count >= -1e-12:
             raise InputError(
                 f"An inertia ratio J20/J10 = {ratio:.4g} cannot be reached with loads. The robot "
                 f"without loads has {own:.4g}, and loads only add to it. Ask for a ratio of at "
