@@ -7,10 +7,11 @@ from matplotlib.figure import Figure
 from rr_opt.motion.rollout import repeated
 from rr_opt.report.figures import map_data
 from rr_opt.report.figures.cycle import cycle
+from rr_opt.report.figures.map_data import MapData
 from rr_opt.report.figures.of_answer import draw
 from rr_opt.report.figures.path import along_travel, instants, path
 from rr_opt.report.figures.prices import gains, prices
-from rr_opt.report.figures.speed_map import MapData, allowed, speed_map
+from rr_opt.report.figures.speed_map import allowed, speed_map
 from rr_opt.report.rows import bound_rows, limit_rows
 
 
@@ -47,9 +48,10 @@ def test_speed_map_allows_what_the_rate_allows(answer, data):
 def test_path_ends_with_the_robot_and_keeps_poses_apart(answer):
     motion = along_travel(repeated(answer.replay.steady, 3))
     assert motion.y[-1] == pytest.approx(0.0, abs=1e-12)
+    best = answer.optimum.best.gait
     assert instants(motion, 0.2)[-1] == len(motion.x) - 1
     ax = axes()
-    assert path(ax, answer.optimum.robot, motion, answer.replay.speed) is ax
+    assert path(ax, answer.optimum.robot, motion, answer.replay.speed, best.period) is ax
     assert len(ax.patches) >= 9
 
 

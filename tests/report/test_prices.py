@@ -31,9 +31,7 @@ def test_price_of_the_inertia_ratio_is_per_unit_of_the_ratio(answer, by):
     def with_most(high):
         return replace(problem, inertia_ratio=RatioChoice(Interval(0.13, high), by=by))
 
-    row = next(
-        r for r in bound_rows(maximize_speed(with_most(0.2))) if r.name == "inertia_ratio"
-    )
+    row = next(r for r in bound_rows(maximize_speed(with_most(0.2))) if r.name == "inertia_ratio")
     assert row.side == "high"
     step = 2e-4
     slope = (speed(with_most(0.2 + step)) - speed(with_most(0.2 - step))) / (2 * step)

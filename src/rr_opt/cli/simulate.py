@@ -73,7 +73,9 @@ def simulate(
         folder = folder_for_results(out or Path("out") / f"{_name(source)}-motion")
         steps("simulate by CVODES")
         driven = rollout(robot, gait, seconds, start.value, rate)
-        written = write_motion(robot, driven, folder, kind=kind.value, film=film, progress=steps)
+        written = write_motion(
+            robot, gait, driven, folder, kind=kind.value, film=film, progress=steps
+        )
     for warning in beyond_servo(robot, gait, driven):
         typer.echo(warning, err=True)
     typer.echo(motion_summary(gait, driven, start.value, written), nl=False)

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from rr_opt.design.decisions import Decisions, decisions
 from rr_opt.design.infeasible import direction_clash, posture_clashes, torque_clash
 from rr_opt.design.landscape import Landscape
-from rr_opt.design.mesh import LADDER, Dense, dense, finer, with_nodes_at
+from rr_opt.design.mesh import LADDER, Dense, dense, mesh_for, with_nodes_at
 from rr_opt.design.seeds import Seed, find_seeds
 from rr_opt.design.solve import Candidate, Setting, solve
 from rr_opt.motion.steady_cycle import steady_cycle
@@ -32,7 +32,7 @@ from rr_opt.robot.parameters import Robot
 Array = NDArray[np.float64]
 Progress = Callable[[str], None]
 
-COARSE = 36
+TRIAL = 36
 SAME_SPEED = 1e-5
 """Optima whose speeds differ by less, relative, are one or a tie."""
 
@@ -121,8 +121,9 @@ def _solve(setting: Setting, sign: int, gait: SineGait, share: float) -> Candida
     robot = robot_of(setting, share)
     seen = dense(setting.landscape, robot, gait, share)
     try:
-        coarse = steady_cycle(robot, gait, steps=COARSE).speed
-        intervals = finer(COARSE, abs(coarse - seen.speed) / abs(seen.speed), _CLAIM / 2)
+        coarse = steady_cycle(robot, gait, steps=TRIAL).speed
+        error = abs(coarse - seen.speed) / abs(seen.speed)
+        intervals = mesh_for(TRIAL, error, _CLAIM / 2)
     except NotConvergedError:  # dry friction too steep for so coarse a mesh
         intervals = LADDER[-1]
     return solve(setting, sign, gait, share, _phases(setting, intervals, seen))
@@ -252,7 +253,9 @@ def _refine(setting: Setting, candidate: Candidate) -> Candidate:
         error = abs(abs(candidate.speed) - abs(seen.speed)) / abs(seen.speed)
         if error <= _CLAIM and seen.peak <= limit * (1 + _PEAK):
             break
-        intervals = finer(len(candidate.phases), error, _CLAIM / 2)
+        intervals = len(candidate.phases)
+        if error > _CLAIM:
+            intervals = mesh_for(intervals, error, _CLAIM / 4)
         candidate = solve(setting, candidate.sign, gait, share, _phases(setting, intervals, seen))
         iterations += candidate.iterations
         if not (candidate.feasible and candidate.success):

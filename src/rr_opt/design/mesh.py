@@ -20,7 +20,7 @@ from rr_opt.robot.parameters import Robot
 
 Array = NDArray[np.float64]
 
-LADDER = (36, 48, 72, 96, 144, 192, 288, 384, 768)
+LADDER = (16, 20, 24, 30, 36, 48, 72, 96, 144, 192, 288, 384, 768)
 """Meshes to choose from, so that few programs are ever built."""
 
 _SAMPLES = 1024
@@ -60,10 +60,11 @@ def dense(landscape: Landscape, robot: Robot, gait: SineGait, share: float) -> D
     return Dense(speed, float(height.max()), (at + shift) / _SAMPLES % 1.0)
 
 
-def finer(intervals: int, error: float, wanted: float, order: int = 6) -> int:
-    """The mesh of the ladder on which an error of this order comes down to the wanted one."""
-    needed = intervals * max(error / wanted, 1.0) ** (1 / order)
-    return next((n for n in LADDER if n >= needed * 0.999), LADDER[-1])
+def mesh_for(intervals: int, error: float, wanted: float, order: int = 6) -> int:
+    """The mesh of the ladder on which the error made with so many intervals, which falls with
+    this order, becomes the wanted one."""
+    needed = intervals * (error / wanted) ** (1 / order)
+    return next((n for n in LADDER if n >= needed), LADDER[-1])
 
 
 def with_nodes_at(intervals: int, peaks: Array) -> Array:

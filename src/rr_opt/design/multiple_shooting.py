@@ -62,7 +62,7 @@ def shooting(
 ) -> Shooting:
     """Build the program for robots with these effects and this way of changing the inertia."""
     n, nz, nm = intervals, len(DECISIONS), 4
-    interval = _Interval(effects, by, method)
+    interval = _interval(effects, by, method)
     x = ca.MX.sym("x", nz + nm + 2 * n)
     p = ca.MX.sym("p", interval.shared + 1 + n)
     z, mean, vs, chis = ca.vertsplit(x, [0, nz, nz + nm, nz + nm + n, nz + nm + 2 * n])
@@ -135,6 +135,11 @@ def shooting(
     return Shooting(n, solver)
 
 
+@lru_cache
+def _interval(effects: tuple[str, ...], by: By, method: Tableau) -> _Interval:
+    return _Interval(effects, by, method)
+
+
 class _Interval:
     """What one interval, and the limits, contribute: values, first and second derivatives.
 
@@ -194,6 +199,9 @@ class _Interval:
 _IPOPT = {
     "print_time": False,
     "error_on_fail": False,
+    # Prices of the program's parameters are not asked for, and cost more than a solve.
+    "calc_lam_p": False,
+    "no_nlp_grad": True,
     "ipopt.print_level": 0,
     "ipopt.sb": "yes",
     "ipopt.tol": 1e-9,

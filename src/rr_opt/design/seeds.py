@@ -57,8 +57,9 @@ def find_seeds(
     tops, sign = tops[worth], sign[worth]
     if decisions.mirrored:
         tops[:, 1] = np.maximum(tops[:, 1], 1 - tops[:, 1])
-    finer = partial(terrain, nodes=_FINER_NODES)
-    tops, sign, values = climb(tops, sign, free, finer, penalty, _THOROUGH)
+    if len(tops) > 1:
+        finer = partial(terrain, nodes=_FINER_NODES)
+        tops, sign, values = climb(tops, sign, free, finer, penalty, _THOROUGH)
     least = values[0] - (1 - _WORTH_SOLVING) * abs(values[0])
     seeds = [Seed(int(sign[i]), tops[i]) for i in np.flatnonzero(values >= least)]
     return seeds, float(values[0])

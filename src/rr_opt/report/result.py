@@ -155,4 +155,5 @@ def _loads(answer: Answer) -> float | None:
     optimum, choice = answer.optimum, answer.optimum.problem.inertia_ratio
     if choice is None or choice.by != "loads" or optimum.ratio is None:
         return None
-    return load_count(optimum.problem.robot, optimum.ratio, choice.about, choice.loads)
+    count = load_count(optimum.problem.robot, optimum.ratio, choice.about, choice.loads)
+    return round(count) if choice.loads.whole else count

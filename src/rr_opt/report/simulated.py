@@ -9,6 +9,7 @@ from typing import Literal
 from rr_opt.motion.rollout import Trajectory
 from rr_opt.report.archive import remove, write_text
 from rr_opt.report.trajectory_file import write_csv, write_netcdf
+from rr_opt.robot.gait import SineGait
 from rr_opt.robot.parameters import Robot
 
 Format = Literal["csv", "netcdf"]
@@ -31,6 +32,7 @@ def check_wishes(kind: Format, film: Film | None) -> None:
 
 def write_motion(
     robot: Robot,
+    gait: SineGait,
     trajectory: Trajectory,
     folder: Path,
     *,
@@ -49,7 +51,9 @@ def write_motion(
         written = [write_netcdf(folder / "trajectory.nc", trajectory)]
     progress("figure")
     with styled():
-        written.append(write_text(folder / "motion.svg", svg(motion(robot, trajectory))))
+        written.append(
+            write_text(folder / "motion.svg", svg(motion(robot, trajectory, gait.period)))
+        )
     if film:
         from rr_opt.report.film import write_film  # noqa: PLC0415
 

@@ -2,15 +2,33 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
 
 from rr_opt.problem import GaitBounds, Interval, Problem
-from rr_opt.report.figures.speed_map import MapData
 from rr_opt.robot.gait import SineGait
 from rr_opt.robot.parameters import Robot
 
+Array = NDArray[np.float64]
+
 POINTS = 120
 """Gaits along each side of the map."""
+
+
+@dataclass(frozen=True)
+class MapData:
+    """What the map shows, at one offset and inertia ratio.
+
+    period (T,) s; amplitude (A,) rad; speed (A, T) m/s signed; torque (A, T) N m, the peak.
+    Where the robot would pass its singular posture both are nan.
+    """
+
+    period: Array
+    amplitude: Array
+    speed: Array
+    torque: Array
 
 
 def map_data(problem: Problem, robot: Robot, best: SineGait) -> MapData:

@@ -11,11 +11,14 @@ from rr_opt.report.figures.style import INK, figure
 from rr_opt.robot.parameters import Robot
 
 
-def motion(robot: Robot, trajectory: Trajectory) -> Figure:
-    """Four axes, top to bottom: path (m), phi (rad), v (m/s), torque (N m)."""
+def motion(robot: Robot, trajectory: Trajectory, period: float) -> Figure:
+    """Four axes, top to bottom: path (m), phi (rad), v (m/s), torque (N m).
+
+    period: of the gait, s.
+    """
     drawn = figure(7.4, 8.6)
     axes = drawn.subplots(4, 1, gridspec_kw={"height_ratios": [2.4, 1, 1, 1]})
-    path(axes[0], robot, trajectory, float(trajectory.v.mean()))
+    path(axes[0], robot, trajectory, float(trajectory.v.mean()), period)
     axes[0].set_title("The path of P, and the robot at a few instants")
     t = trajectory.t
     against_limit(axes[1], t, trajectory.phi, robot.servo.angle_limit, "φ, rad")

@@ -53,7 +53,8 @@ def _path(answer: Answer) -> str:
     straight = abs(made.dpsi) < 1e-6
     drawn = figure(6.3, 3.0 if straight else 5.0)
     ax = drawn.add_subplot()
-    path(ax, robot, along_travel(motion) if straight else motion, replay.steady.speed)
+    shown = along_travel(motion) if straight else motion
+    path(ax, robot, shown, replay.steady.speed, replay.steady.gait.period)
     return svg(drawn)
 
 

@@ -27,17 +27,18 @@ def cycles_to_show(robot: Robot, cycle: Cycle) -> int:
     return min(max(count, 2), 24)
 
 
-def path(ax: Axes, robot: Robot, motion: Trajectory, speed: float) -> Axes:
+def path(ax: Axes, robot: Robot, motion: Trajectory, speed: float, period: float) -> Axes:
     """The path of P (m) and the robot at its last instant and at some before.
 
-    motion: turned as it should be drawn; speed: signed, m/s, gives the colour.
+    motion: turned as it should be drawn; speed: signed, m/s, gives the colour; period: of the
+    gait, s, over which the arrow takes its direction.
     """
     ax.plot(motion.x, motion.y, color=colour_of(speed), lw=1.6, zorder=3, label="path of P")
     chosen = instants(motion, robot_length(robot))
     for order, i in enumerate(chosen):
         alpha = 1.0 - 0.65 * (len(chosen) - 1 - order) / max(len(chosen) - 1, 1)
         draw_robot(ax, robot, motion, i, alpha=alpha)
-    _arrow(ax, motion, speed, robot)
+    _arrow(ax, robot, motion, speed, period)
     ax.set_aspect("equal", adjustable="datalim")
     ax.margins(0.06)
     ax.set_xlabel("x, m")
@@ -72,19 +73,17 @@ def along_travel(motion: Trajectory) -> Trajectory:
     )
 
 
-def _arrow(ax: Axes, motion: Trajectory, speed: float, robot: Robot) -> None:
+def _arrow(ax: Axes, robot: Robot, motion: Trajectory, speed: float, period: float) -> None:
     """Which way it goes, ahead of the last pose."""
-    length = robot_length(robot)
-    at = np.array([motion.x, motion.y])
-    back = at[:, -1:] - at
-    far = np.flatnonzero(np.hypot(*back) >= 0.5 * length)
-    step = back[:, far[-1] if len(far) else 0]
+    before = int(np.searchsorted(motion.t, motion.t[-1] - period * (1 + 1e-9)))
+    last = np.array([motion.x[-1], motion.y[-1]])
+    step = last - np.array([motion.x[before], motion.y[before]])
     size = math.hypot(*step)
     if size < 1e-6:
         return
     leading = robot.platform1 if speed > 0 else robot.platform2
-    start = at[:, -1] + step / size * (leading.c + 3 * robot.h)
-    end = start + step / size * 0.3 * length
+    start = last + step / size * (leading.c + 3 * robot.h)
+    end = start + step / size * 0.3 * robot_length(robot)
     style = {"arrowstyle": "-|>", "color": colour_of(speed), "lw": 2.0, "mutation_scale": 14}
     ax.annotate("", tuple(end), tuple(start), arrowprops=style)
     ax.update_datalim([tuple(end)])

@@ -4,44 +4,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import TwoSlopeNorm
-from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from rr_opt.problem import Problem
-from rr_opt.report.figures.style import INK, LIMIT, OPTIMUM, PAPER, SIGNED
-from rr_opt.report.quantities import number
+from rr_opt.report.figures.limit_lines import limit_lines, reach
+from rr_opt.report.figures.map_data import MapData
+from rr_opt.report.figures.style import INK, OPTIMUM, SIGNED
 from rr_opt.robot.gait import SineGait
 from rr_opt.robot.parameters import Robot
-
-Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class MapData:
-    """What the map shows, at one offset and inertia ratio.
-
-    period (T,) s; amplitude (A,) rad; speed (A, T) m/s signed; torque (A, T) N m, the peak.
-    Where the robot would pass its singular posture both are nan.
-    """
-
-    period: Array
-    amplitude: Array
-    speed: Array
-    torque: Array
-
-
-def reach(problem: Problem, robot: Robot, offset: float) -> dict[str, float]:
-    """The amplitude (rad) at which each limit on the angle is met, for gaits at an offset."""
-    one, two = robot.platform1, robot.platform2
-    cosine = (problem.limits.singularity - two.c) / one.c
-    edge = math.acos(min(max(cosine, -1.0), 1.0)) if cosine > -1 else math.inf
-    return {"singularity": edge - abs(offset), "angle": problem.limits.angle - abs(offset)}
 
 
 def allowed(data: MapData, problem: Problem, robot: Robot, offset: float) -> NDArray[np.bool_]:
@@ -90,7 +65,7 @@ def speed_map(
     bar = ax.figure.colorbar(fill, ax=ax, pad=0.02, aspect=26, ticks=MaxNLocator(7))
     bar.set_label("mean speed, mm/s  (+ forward, − backward)")
     bar.outline.set_visible(False)  # type: ignore[operator]
-    _limit_lines(ax, data, problem, robot, best.offset)
+    limit_lines(ax, data, problem, robot, best.offset)
     for one in others:
         ax.plot(one.period, one.amplitude, "o", ms=9, mfc="none", mec=INK, mew=1.4, zorder=6)
     ax.plot(
@@ -119,50 +94,3 @@ def _cover(ax: Axes, data: MapData, problem: Problem, robot: Robot, offset: floa
         data.period, data.amplitude, excess, levels=[0.0, 2 * span], colors=["#eceff2"],
         hatches=["////"], zorder=2,
     )  # fmt: skip
-
-
-def _limit_lines(ax: Axes, data: MapData, problem: Problem, robot: Robot, offset: float) -> None:
-    """The edges of what is allowed, each with its name."""
-    period, limits = data.period, problem.limits
-    bottom, top = data.amplitude[0], data.amplitude[-1]
-    rate = limits.rate * period / (2 * math.pi)
-    if math.isfinite(limits.rate) and rate[0] < top:
-        ax.plot(period, rate, color=LIMIT, lw=1.4, zorder=3)
-        at = bottom + 0.6 * (min(top, rate[-1]) - bottom)
-        where = 2 * math.pi * at / limits.rate
-        _name(ax, where, at, f"rate {number(limits.rate * 30 / math.pi, 3)} rpm", ha="right")
-    lines = reach(problem, robot, offset)
-    for name, line in lines.items():
-        if line < top:
-            ax.axhline(line, color=LIMIT, lw=1.4, zorder=3)
-            text = (
-                f"S1 = {number(1e3 * limits.singularity, 3)} mm: singular posture near"
-                if name == "singularity"
-                else f"|φ| = {number(limits.angle, 3)} rad"
-            )
-            place = period[0] + 0.97 * (period[-1] - period[0])
-            _name(ax, place, line + 0.015 * (top - bottom), text, ha="right", va="bottom")
-    _torque_line(ax, data, limits.torque, min(lines.values()))
-
-
-def _torque_line(ax: Axes, data: MapData, limit: float, most: float) -> None:
-    """Where the peak torque meets its limit, among gaits short of the limits on the angle."""
-    rows = data.amplitude <= most
-    torque = data.torque[rows]
-    known = np.isfinite(torque)
-    if not known.any() or not torque[known].min() < limit < torque[known].max():
-        return
-    drawn = ax.contour(
-        data.period, data.amplitude[rows], torque, levels=[limit], colors=[LIMIT],
-        linewidths=1.4, linestyles=[(0, (4, 2))], zorder=3,
-    )  # fmt: skip
-    line = max(
-        (np.asarray(one) for one in drawn.get_paths()[0].to_polygons(closed_only=False)), key=len
-    )
-    x, y = line[len(line) // 2]
-    _name(ax, float(x), float(y), f" torque {number(limit, 3)} N m", ha="left")
-
-
-def _name(ax: Axes, x: float, y: float, text: str, *, ha: str, va: str = "center") -> None:
-    halo = [withStroke(linewidth=3, foreground=PAPER, alpha=0.85)]
-    ax.text(x, y, text + " ", color=LIMIT, fontsize=9, ha=ha, va=va, zorder=5, path_effects=halo)
