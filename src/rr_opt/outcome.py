@@ -14,6 +14,7 @@ class Status(StrEnum):
 
     @property
     def exit_code(self) -> int:
+        """What the shell gets."""
         return {"optimal": 0, "infeasible": 3, "not_converged": 4}[self.value]
 
 

@@ -20,9 +20,11 @@ class Interval:
 
     @property
     def fixed(self) -> bool:
+        """Both ends are one."""
         return self.low == self.high
 
     def clip(self, value: float) -> float:
+        """The number of the interval that is nearest to value."""
         return min(max(value, self.low), self.high)
 
 

@@ -1,5 +1,50 @@
-"""stub"""
+"""`rr-opt sweep [PROBLEM]`: try gaits all over the bounds and keep the best, without a solver."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from rr_opt.cli.problem_input import name_of, read
+from rr_opt.cli.steps import Steps
+from rr_opt.outcome import Status
 
 
-def sweep() -> None:
-    """stub"""
+def sweep(
+    problem: Annotated[
+        Path | None,
+        typer.Argument(
+            help="Problem file, its folder, or a robot file; the paper's prototype if left out."
+        ),
+    ] = None,
+    points: Annotated[
+        int, typer.Option(help="About so many gaits.", min=1, max=5_000_000)
+    ] = 10_000,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for the results.", show_default="out/NAME-sweep")
+    ] = None,
+    json: Annotated[bool, typer.Option("--json", help="Print sweep.json alone on stdout.")] = False,
+) -> None:
+    """Try gaits on a grid over the bounds; write all of them, the best, and a figure."""
+    with Steps() as steps:
+        steps("reading")
+        posed, sha256 = read(problem)
+        from rr_opt.report.archive import folder_for_results, strict_json  # noqa: PLC0415
+        from rr_opt.report.swept import Swept, record, summary, write_sweep  # noqa: PLC0415
+        from rr_opt.verify.sweep import sweep as try_all  # noqa: PLC0415
+
+        name = name_of(problem)
+        folder = folder_for_results(out or Path("out") / f"{name}-sweep")
+        tried = try_all(posed, points, lambda done, of: steps(f"gait {done} of {of}"))
+        swept = Swept(name, sha256, tried)
+        steps("files")
+        written = write_sweep(swept, folder)
+    if json:
+        typer.echo(strict_json(record(swept)), nl=False)
+    else:
+        typer.echo(summary(swept, written), nl=False)
+    if swept.status is Status.INFEASIBLE:
+        typer.echo(swept.message, err=True)
+        raise typer.Exit(swept.status.exit_code)

@@ -92,7 +92,11 @@ class Answer:
 
 
 def _sweep_sentence(sweep: SweepCheck) -> str:
+    if sweep.best_gait is None:
+        return f"Sweep of {sweep.points} gaits: none of them keeps every limit."
     head = f"Sweep of {sweep.points} gaits: the best has {1e3 * sweep.best_speed:+.3f} mm/s, "
+    if abs(sweep.gap) < 1e-6:
+        return head + "as fast as the optimum to a millionth."
     if sweep.gap >= 0:
         return head + f"{100 * sweep.gap:.2g} % slower than the optimum."
     return (

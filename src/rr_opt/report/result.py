@@ -134,7 +134,7 @@ def _check(answer: Answer) -> dict[str, Any] | None:
     return {
         "sweep_points": sweep.points,
         "sweep_best": sweep.best_speed,
-        "sweep_gait": gait_record(sweep.best_gait),
+        "sweep_gait": gait_record(sweep.best_gait) if sweep.best_gait else None,
         "gap": finite(sweep.gap),
         "replay_error": finite(replay.error),
         "replay_speed": replay.speed,

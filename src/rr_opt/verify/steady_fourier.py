@@ -27,11 +27,12 @@ Array = NDArray[np.float64]
 _COARSE = 64
 """Samples at which Newton's method starts; each doubling goes on from the last."""
 
-_STEPS = 25
-_LAST = 1e-8
-"""The last step of Newton's method is no longer than this share of the largest |v|."""
-_GIVE_UP = 1e-3
-"""So much damping leads nowhere."""
+_STEPS, _COARSE_STEPS = 25, 8
+_SMALL, _TINY = 1e-3, 1e-12
+"""A speed below this share of the largest |v|, or below this in m/s, counts as this."""
+
+_BLOCK = 4096
+"""Samples in one go: some arrays of this length fit the processor's cache."""
 
 
 class Steady(NamedTuple):
@@ -40,8 +41,8 @@ class Steady(NamedTuple):
     speed        along the mean circle, signed along platform 1's mean heading, m/s
     turn         heading gained per period, rad
     peak_torque  largest |torque|, between the samples too, N m
-    error        what unresolved harmonics may do to the speed, m/s, an estimate; inf where no
-                 steady cycle was found
+    error        size of the fastest harmonics of the velocity, relative to the speed; the speed
+                 itself is some ten times better than that. inf: no steady cycle was found
     """
 
     speed: Array
@@ -50,98 +51,130 @@ class Steady(NamedTuple):
     error: Array
 
 
+class _Angle(NamedTuple):
+    """phi = swing + offset, dphi = rate omega, ddphi = -swing omega^2: offset (G,), swing and
+    rate (n, G), rad, omega (G, B), rad/s."""
+
+    offset: Array
+    swing: Array
+    rate: Array
+    omega: Array
+
+
+_Motion = tuple[Array, Array, Array, Array, NDArray[np.bool_]]
+"""v, w, side and torque (n, G B); whether v is a steady cycle (G B,)."""
+
+
 class SteadyFourier:
     """The derived model of a set of effects, evaluated over whole arrays."""
 
     def __init__(self, dynamics: Dynamics):
         motion, names = dynamics.motion, dynamics.motion.name_in()
-        powers = SpeedPowers(dynamics)
-        self.viscous = dynamics.linear and powers.reproduce(dynamics)
-        self._powers = powers
+        self._powers = SpeedPowers(dynamics)
+        self.viscous = dynamics.linear and self._powers.reproduce(dynamics)
         self._motion = over_arrays(motion)
         self._tangent = over_arrays(motion.factory("tangent", names, ["vdot", "jac:vdot:v"]))
 
     def cycles(
-        self, amplitude: Array, offset: Array, period: Array, p: Array, n: int, straight: bool
+        self,
+        amplitude: Array,
+        offset: Array,
+        period: Array,
+        p: Array,
+        n: int,
+        straight: bool,
+        tolerance: float = 1e-6,
     ) -> Steady:
         """Steady cycles from n samples of half a period if straight, else of a whole one.
 
         amplitude, offset (G,), rad, all offsets 0 if straight; period (G, B), s; p the robots'
-        parameters, (len, G) or (len, 1); n a power of two.
+        parameters, (len, G) or (len, 1); n a power of two. tolerance: of Newton's method.
         """
         theta = np.arange(n)[:, None] * ((1 if straight else 2) * math.pi / n)
         swing, rate = amplitude * np.sin(theta), amplitude * np.cos(theta)
-        span = (period / 2 if straight else period).ravel()
-        omega = 2 * math.pi / period
-        method = self._by_powers if self.viscous else self._by_newton
-        v, w, side, torque, settled = method(offset, swing, rate, omega, p, span)
-        speed, turn = _mean_speed(v, w, side, span, straight)
-        error = tail(v, False) + tail(side, straight)
-        error = np.where(settled & np.isfinite(speed), error, np.inf)
-        results = (speed, turn, peak(torque, straight), error)
-        return Steady(*(result.reshape(period.shape) for result in results))
+        powers = self._powers(swing + offset, p) if self.viscous else None
+        parts = []
+        width = max(1, _BLOCK // (n * period.shape[1]))
+        for block in (slice(k, k + width) for k in range(0, len(period), width)):
+            T = period[block]
+            span = (T / 2 if straight else T).ravel()
+            angle = _Angle(offset[block], swing[:, block], rate[:, block], 2 * math.pi / T)
+            if powers is not None:
+                here = Powers(*(_columns(part, block) for part in powers))
+                v, w, side, torque, settled = _by_powers(here, angle, span)
+            else:
+                here = _columns(p, block)
+                v, w, side, torque, settled = self._by_newton(here, angle, span, tolerance)
+            speed, turn = _mean_speed(v, w, side, span, straight)
+            scale = np.maximum(np.abs(speed), _SMALL * np.abs(v).max(axis=0)) + _TINY
+            error = (tail(v, False) + tail(side, straight)) / scale
+            error = np.where(settled & np.isfinite(speed), error, np.inf)
+            results = (speed, turn, peak(torque, straight), error)
+            parts.append([result.reshape(T.shape) for result in results])
+        return Steady(*(np.concatenate(results) for results in zip(*parts, strict=True)))
 
-    def _by_powers(
-        self, offset: Array, swing: Array, rate: Array, omega: Array, p: Array, span: Array
-    ) -> tuple[Array, Array, Array, Array, Array]:
-        c = Powers(*(part[..., None] for part in self._powers(swing + offset, p)))
-        q, r = rate[..., None], -swing[..., None]
-        shape = (len(swing), *omega.shape)
-        # In powers of omega: what stands in brackets is computed once for all periods.
-        a = (c.a_vq * q) * omega + c.a_v
-        b = ((c.a_qq * q**2 + c.a_r * r) * omega + c.a_q * q) * omega
-        v, mean = solve(a.reshape(len(a), -1), b.reshape(len(b), -1), span)
-        u = v.reshape(shape)
-        w = c.w_v * u + (c.w_q * q) * omega
-        side = c.s_v * u + (c.s_q * q) * omega
-        torque = (c.t_vv * u + (c.t_vq * q) * omega + c.t_v) * u
-        torque += ((c.t_qq * q**2 + c.t_r * r) * omega + c.t_q * q) * omega
-        w, side, torque = (part.reshape(v.shape) for part in (w, side, torque))
-        return v, w, side, torque, mean < 0
-
-    def _by_newton(
-        self, offset: Array, swing: Array, rate: Array, omega: Array, p: Array, span: Array
-    ) -> tuple[Array, Array, Array, Array, Array]:
-        periods = omega.shape[1]
+    def _by_newton(self, p: Array, gaits: _Angle, span: Array, tolerance: float) -> _Motion:
+        periods, omega = gaits.omega.shape[1], gaits.omega.ravel()
         phi, swing, rate = (
-            np.repeat(part, periods, axis=1) for part in (swing + offset, swing, rate)
+            np.repeat(part, periods, axis=1)
+            for part in (gaits.swing + gaits.offset, gaits.swing, gaits.rate)
         )
-        omega = omega.ravel()
         if p.shape[1] > 1:
             p = np.repeat(p, periods, axis=1)
         angle = np.array([phi, rate * omega, -swing * omega**2])
-        v, settled = self._newton(angle, p, span)
+        v, settled = self._newton(angle, p, span, 1e-2 * tolerance, _STEPS)
         _, w, side, torque = self._motion(v, *angle, *p)
         return v, w, side, torque, settled
 
-    def _newton(self, angle: Array, p: Array, span: Array) -> tuple[Array, NDArray[np.bool_]]:
+    def _newton(
+        self, angle: Array, p: Array, span: Array, last: float, steps: int
+    ) -> tuple[Array, NDArray[np.bool_]]:
         """v (n, K) along phi, dphi, ddphi (3, n, K), and where the steps have died out (K,)."""
-        n = angle.shape[1]
-        if n > _COARSE:
-            v = refined(self._newton(angle[:, ::2], p, span)[0])
+        if angle.shape[1] > _COARSE:
+            coarse, _ = self._newton(angle[:, ::2], p, span, 1e-4, _COARSE_STEPS)
+            v = refined(coarse)
         else:
             # The chord of vdot from v = -1 to 1 m/s: to it dry friction is a small matter.
             low, high = (self._motion(v, *angle, *p)[0] for v in (-1.0, 1.0))
             v = solve_stiff((high - low) / 2, (high + low) / 2, span)[0]
-        columns = np.arange(len(span))
-        settled = np.zeros(len(span), bool)
+        columns, settled = np.arange(len(span)), np.zeros(len(span), bool)
         damp, before = np.ones(len(span)), np.full(len(span), np.inf)
-        for _ in range(_STEPS):
-            here, robots = v[:, columns], p[:, columns] if p.shape[1] > 1 else p
+        for _ in range(steps):
+            here, robots = v[:, columns], _columns(p, columns)
             vdot, slope = self._tangent(here, *angle[:, :, columns], *robots)
             rest = vdot - derivative(here, span[columns])
             step, mean = solve_stiff(slope, rest, span[columns])
             size = np.abs(step).max(axis=0)
             damp = np.where(size > 0.9 * before, damp / 2, np.minimum(1.5 * damp, 1.0))
             v[:, columns] = here + damp * step
-            done = (size <= _LAST * np.abs(here).max(axis=0)) & (mean < 0)
+            done = (size <= last * np.abs(here).max(axis=0)) & (mean < 0)
             settled[columns[done]] = True
-            lost = ~np.isfinite(size) | (damp < _GIVE_UP)
-            going = ~(done | lost)
+            going = ~done & np.isfinite(size) & (damp > 1e-3)
             columns, damp, before = columns[going], damp[going], size[going]
             if not len(columns):
                 break
         return v, settled
+
+
+def _columns(x: Array, which: slice | NDArray[np.int_]) -> Array:
+    """The columns of x, which may have one that stands for all, or be a number."""
+    return x[:, which] if np.ndim(x) == 2 and x.shape[1] > 1 else x
+
+
+def _by_powers(powers: Powers, gaits: _Angle, span: Array) -> _Motion:
+    c = Powers(*(np.asarray(part)[..., None] for part in powers))
+    omega, q, r = gaits.omega, gaits.rate[..., None], -gaits.swing[..., None]
+    # In powers of omega: what stands in brackets is computed once for all periods.
+    a = (c.a_vq * q) * omega + c.a_v
+    b = ((c.a_qq * q**2 + c.a_r * r) * omega + c.a_q * q) * omega
+    v, mean = solve(a.reshape(len(a), -1), b.reshape(len(b), -1), span)
+    u = v.reshape(a.shape)
+    w = c.w_v * u + (c.w_q * q) * omega
+    side = c.s_v * u + (c.s_q * q) * omega
+    torque = (c.t_vv * u + (c.t_vq * q) * omega + c.t_v) * u
+    torque += ((c.t_qq * q**2 + c.t_r * r) * omega + c.t_q * q) * omega
+    w, side, torque = (part.reshape(v.shape) for part in (w, side, torque))
+    return v, w, side, torque, mean < 0
 
 
 def _mean_speed(

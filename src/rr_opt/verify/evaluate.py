@@ -1,0 +1,172 @@
+"""Speeds of a grid's points, which limits each keeps, and the points where the torque is just
+what it may be."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rr_opt.problem import Problem
+from rr_opt.robot.gait import SineGait
+from rr_opt.verify.grid import Grid, points
+from rr_opt.verify.speeds import least_S1, speeds
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+Progress = Callable[[int, int], None]
+"""Called with the points done and the points in all."""
+
+LIMITS = ("rate", "angle", "singularity", "torque", "direction")
+
+_SLACK = 1e-8
+"""By so much, relative, a limit may be broken: by rounding."""
+
+_AIMS = (1e-3, 1e-4, 1e-6, 1e-7)
+"""How far below the torque limit each secant step aims, relative."""
+
+_ROWS = 4096
+"""Rows of points between two reports of progress."""
+
+
+@dataclass(frozen=True)
+class Found:
+    """A gait that was found: offset >= 0 where the problem's range is symmetric.
+
+    ratio J20/J10 or None, speed signed, m/s; peak torque N m
+    """
+
+    gait: SineGait
+    ratio: float | None
+    speed: float
+    peak_torque: float
+
+
+@dataclass(frozen=True)
+class Evaluated:
+    """K points; every array (K,).
+
+    decisions    amplitude, period, offset, ratio (NaN: the robot as it is), (4, K)
+    speed        signed, m/s; NaN where a limit on the angle or the singular posture is broken
+    peak_torque  N m; NaN there too
+    keeps        by limit's name: the point keeps it; torque and direction are not kept where
+                 the speed is NaN
+    failed       how many points that keep angle and singularity have no resolved cycle
+    """
+
+    decisions: Array
+    speed: Array
+    peak_torque: Array
+    keeps: Mapping[str, Mask]
+    failed: int
+
+    @property
+    def feasible(self) -> Mask:
+        """All limits are kept."""
+        return np.logical_and.reduce([self.keeps[name] for name in LIMITS])
+
+    @property
+    def merit(self) -> Array:
+        """|speed| where all limits are kept, else -inf, m/s."""
+        return np.where(self.feasible, np.abs(self.speed), -np.inf)
+
+    def found(self, index: int) -> Found:
+        """One of the points."""
+        amplitude, period, offset, ratio = self.decisions[:, index].tolist()
+        return Found(
+            SineGait(amplitude, period, offset),
+            None if math.isnan(ratio) else ratio,
+            float(self.speed[index]),
+            float(self.peak_torque[index]),
+        )
+
+
+def evaluate(
+    problem: Problem, grid: Grid, tolerance: float, progress: Progress | None = None
+) -> Evaluated:
+    """Evaluate a grid's points; tolerance: of the speeds, relative."""
+    arrays = points(problem, grid)
+    shape = arrays[0].shape
+    rows = [part.reshape(-1, shape[-1]) for part in arrays]
+    speed, torque = (np.full(rows[0].shape, np.nan) for _ in range(2))
+    geometry = _geometry(problem, rows[0], rows[2])
+    wanted = np.flatnonzero((geometry["angle"] & geometry["singularity"])[:, 0])
+    failed = 0
+    for done in range(0, len(wanted), _ROWS):
+        block = wanted[done : done + _ROWS]
+        amplitude, period, offset, ratio = (part[block] for part in rows)
+        known = None if grid.ratio is None else ratio[:, :1]
+        found = speeds(problem, amplitude[:, :1], period, offset[:, :1], known, tolerance)
+        speed[block], torque[block] = found.speed, found.peak_torque
+        failed += int((~found.converged & np.isfinite(period)).sum())
+        if progress:
+            progress(min(done + _ROWS, len(wanted)) * shape[-1], len(wanted) * shape[-1])
+    line = _torque_line(problem, grid, np.array(arrays), torque.reshape(shape), tolerance)
+    there = np.isfinite(rows[1])
+    decisions = np.concatenate([np.array([part[there] for part in rows]), line[:4]], axis=1)
+    speed, torque = (
+        np.concatenate([part[there], extra])
+        for part, extra in zip((speed, torque), line[4:], strict=True)
+    )
+    return Evaluated(decisions, speed, torque, _keeps(problem, decisions, speed, torque), failed)
+
+
+def _geometry(problem: Problem, amplitude: Array, offset: Array) -> dict[str, Mask]:
+    limits, robot = problem.limits, problem.robot
+    slack = _SLACK * robot.platform1.c
+    return {
+        "angle": np.abs(amplitude) + np.abs(offset) <= limits.angle * (1 + _SLACK),
+        "singularity": least_S1(robot, amplitude, offset) >= limits.singularity - slack,
+    }
+
+
+def _keeps(problem: Problem, decisions: Array, speed: Array, torque: Array) -> dict[str, Mask]:
+    amplitude, period, offset, _ = decisions
+    limits = problem.limits
+    ahead = {"forward": speed > 0, "backward": speed < 0, "either": np.isfinite(speed)}
+    return {
+        "rate": np.abs(amplitude) * 2 * math.pi / period <= limits.rate * (1 + _SLACK),
+        **_geometry(problem, amplitude, offset),
+        "torque": torque <= limits.torque * (1 + _SLACK),
+        "direction": ahead[problem.direction],
+    }
+
+
+def _torque_line(
+    problem: Problem, grid: Grid, decisions: Array, torque: Array, tolerance: float
+) -> Array:
+    """Points (6, K) on the torque limit: decisions, speed, peak torque.
+
+    They lie between neighbours along the period, or the first free decision without it, of
+    which one keeps the limit; found by secants in the logarithm of the torque.
+    """
+    limit = problem.limits.torque
+    axes = {"amplitude": 0, "offset": 1, "period": 3}
+    order = [name for name in ("period", "amplitude", "offset") if name in grid.free]
+    if not order or not np.isfinite(limit):
+        return np.empty((6, 0))
+    along = axes[order[0]]
+    T, x = np.moveaxis(torque, along, -1), np.moveaxis(decisions, along + 1, -1)
+    keeps = limit * (1 + _SLACK) >= T
+    known = np.isfinite(T)
+    crossed = known[..., :-1] & known[..., 1:] & (keeps[..., :-1] != keeps[..., 1:])
+    pairs = [np.stack([part[..., :-1][crossed], part[..., 1:][crossed]]) for part in (T, *x)]
+    first_keeps = pairs[0][0] <= limit * (1 + _SLACK)
+    (low, high), *ends = (np.where(first_keeps, pair, pair[::-1]) for pair in pairs)
+    low = np.maximum(low, 1e-12 * limit)
+    inside, outside = np.array([end[0] for end in ends]), np.array([end[1] for end in ends])
+    best = np.array([*inside, np.full(len(low), np.nan), low])
+    for aim in _AIMS if len(low) else ():
+        rise = np.log(limit * (1 - aim) / low) / np.log(high / low)
+        middle = inside + np.clip(rise, 0.0, 1.0) * (outside - inside)
+        ratio = None if grid.ratio is None else middle[3]
+        found = speeds(problem, *middle[:3], ratio, tolerance)
+        good = found.peak_torque <= limit
+        worse = found.peak_torque > limit
+        best[:, good] = np.array([*middle, found.speed, found.peak_torque])[:, good]
+        inside, low = np.where(good, middle, inside), np.where(good, found.peak_torque, low)
+        outside, high = np.where(worse, middle, outside), np.where(worse, found.peak_torque, high)
+    return best[:, np.isfinite(best[4])]

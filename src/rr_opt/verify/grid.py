@@ -1,0 +1,171 @@
+"""The points of a sweep: a product grid of the decisions, and the lines where limits hold it.
+
+Optima tend to lie on limits, where a grid of evenly spaced values has hardly a point. So every
+grid is given, besides, the amplitude that the angle and the singular posture leave at each
+offset, and the period that the rate asks for at each amplitude.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rr_opt.problem import Interval, Problem, RatioChoice
+from rr_opt.robot.ballast import inertia_ratio, load_count, with_load_count
+from rr_opt.robot.parameters import Robot
+
+Array = NDArray[np.float64]
+
+DECISIONS = ("amplitude", "period", "offset", "ratio")
+
+
+@dataclass(frozen=True)
+class Grid:
+    """Values of each decision, increasing: amplitude and offset in rad, period in s, ratio
+    J20/J10; ratio None: the robot as it is."""
+
+    amplitude: Array
+    period: Array
+    offset: Array
+    ratio: Array | None = None
+
+    def axis(self, name: str) -> Array:
+        """Values of a decision by name; one NaN for the robot as it is."""
+        values = getattr(self, name)
+        return np.array([math.nan]) if values is None else values
+
+    @property
+    def free(self) -> tuple[str, ...]:
+        """The decisions with more than one value."""
+        return tuple(name for name in DECISIONS if len(self.axis(name)) > 1)
+
+
+def boxes(problem: Problem) -> dict[str, Interval]:
+    """The bounds of each decision. A gait at -phi0 is the mirror image of one at phi0, so of an
+    offset range that is symmetric one half will do. Ratios that cannot be realised are left out;
+    low > high if that is all of them."""
+    gait, choice = problem.gait, problem.inertia_ratio
+    offset = gait.offset
+    if offset.low == -offset.high:
+        offset = Interval(0.0, offset.high)
+    ratio = Interval(math.nan, math.nan)
+    if choice is not None:
+        ratio = _realisable(problem.robot, choice)
+    return {"amplitude": gait.amplitude, "period": gait.period, "offset": offset, "ratio": ratio}
+
+
+def grid_of(problem: Problem, counts: Mapping[str, int]) -> Grid:
+    """The grid over the problem's own bounds, ends included.
+
+    counts: values of each decision that is not fixed, at least 2; where only whole loads exist
+    their number says it.
+    """
+    inside = boxes(problem)
+
+    def spread(name: str) -> Array:
+        box, count = inside[name], max(counts.get(name, 2), 2)
+        if not box.low < box.high:
+            return np.array([box.low] if box.fixed else [])
+        if name == "period":
+            # Ends exactly as given: a grid may not leave its bounds by rounding.
+            inner = np.geomspace(box.low, box.high, count)[1:-1]
+            return np.array([box.low, *inner, box.high])
+        return np.linspace(box.low, box.high, count)
+
+    ratio = None
+    choice = problem.inertia_ratio
+    if choice is not None:
+        ratio = whole_loads(problem) if _whole(choice) else spread("ratio")
+    return Grid(spread("amplitude"), spread("period"), spread("offset"), ratio)
+
+
+def whole_loads(problem: Problem) -> Array:
+    """The ratios within bounds that a whole number of loads gives; empty if none does."""
+    choice = problem.inertia_ratio
+    if choice is None:
+        return np.array([])
+    robot, about, loads = problem.robot, choice.about, choice.loads
+    ends = (choice.bounds.low, choice.bounds.high)
+    low, high = (load_count(robot, ratio, about, loads) for ratio in ends)
+    count = range(math.ceil(max(low, 0.0) - 1e-9), math.floor(high + 1e-9) + 1)
+    return np.array([inertia_ratio(_loaded(robot, choice, k), about) for k in count])
+
+
+def free_decisions(problem: Problem) -> tuple[str, ...]:
+    """The decisions whose number of values is open."""
+    inside = boxes(problem)
+    free = [name for name in DECISIONS if inside[name].low < inside[name].high]
+    choice = problem.inertia_ratio
+    if choice is not None and _whole(choice) and "ratio" in free:
+        free.remove("ratio")
+    return tuple(free)
+
+
+def reach(problem: Problem) -> float:
+    """Largest |phi| that the limits on angle and singularity allow, rad; -inf if none."""
+    robot, limits = problem.robot, problem.limits
+    cosine = (limits.singularity - robot.platform2.c) / robot.platform1.c
+    if cosine > 1:
+        return -math.inf
+    return min(limits.angle, math.acos(cosine) if cosine > -1 else math.inf)
+
+
+def points(problem: Problem, grid: Grid) -> tuple[Array, Array, Array, Array]:
+    """Amplitude, period, offset and ratio of all points: (A, F, R, B) each, by amplitude,
+    offset, ratio and period; amplitudes and periods increase, and NaN stands for no point.
+
+    The lines where limits hold are added as far as they lie between the grid's ends.
+    """
+    far, rate = reach(problem), problem.limits.rate
+    alpha, phi0, T = grid.amplitude, grid.offset, grid.period
+    if len(phi0) > 1:
+        edges = [sign * (far - one) for one in alpha[[0, -1]] for sign in (-1, 1)]
+        phi0 = np.union1d(phi0, _between(np.array(edges), phi0))
+    if len(alpha) > 1:
+        corners = _between(rate * T[[0, -1]] / (2 * math.pi), alpha)
+        alpha = np.union1d(alpha, corners)
+        edge = _between_or_nan(far - np.abs(phi0), alpha)
+        alphas = np.sort(np.concatenate([np.tile(alpha[:, None], len(phi0)), edge[None]]), axis=0)
+    else:
+        alphas = np.tile(alpha[:, None], len(phi0))
+    shape = (len(alphas), len(phi0), len(grid.axis("ratio")))
+    amplitude = np.broadcast_to(alphas[:, :, None, None], (*shape, 1))
+    period = np.broadcast_to(T, (*shape, len(T)))
+    if len(T) > 1 and rate < math.inf:
+        line = _between_or_nan(2 * math.pi * amplitude / rate, T)
+        period = np.sort(np.concatenate([period, line], axis=-1), axis=-1)
+    offset = phi0[:, None, None]
+    ratio = grid.axis("ratio")[:, None]
+    amplitude, period, offset, ratio = np.broadcast_arrays(amplitude, period, offset, ratio)
+    return amplitude, np.where(np.isnan(amplitude), np.nan, period), offset, ratio
+
+
+def _between_or_nan(values: Array, axis: Array) -> Array:
+    return np.where((values > axis[0]) & (values < axis[-1]), values, np.nan)
+
+
+def _between(values: Array, axis: Array) -> Array:
+    return values[(values > axis[0]) & (values < axis[-1])]
+
+
+def _whole(choice: RatioChoice) -> bool:
+    return choice.by == "loads" and choice.loads.whole
+
+
+def _loaded(robot: Robot, choice: RatioChoice, count: int) -> Robot:
+    return replace(robot, platform2=with_load_count(robot.platform2, choice.loads, count))
+
+
+def _realisable(robot: Robot, choice: RatioChoice) -> Interval:
+    """The part of the ratio's bounds that loads, or a positive inertia I2, can give."""
+    if choice.by == "loads":
+        least = inertia_ratio(robot, choice.about)
+    else:
+        # I2 > 0 by a margin that no real platform comes near.
+        weightless = replace(robot, platform2=replace(robot.platform2, I=0.0))
+        least = inertia_ratio(weightless, choice.about) + 1e-6
+    return Interval(max(choice.bounds.low, least), choice.bounds.high)

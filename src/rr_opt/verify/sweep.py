@@ -1,0 +1,217 @@
+"""The sweep: a dense grid over all decisions, which no optimum may fall short of.
+
+It shares robot, problem and derived physics with the optimiser and nothing else: the steady
+cycle is found by Fourier series, the best point by looking everywhere.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rr_opt.problem import Problem
+from rr_opt.robot.gait import SineGait
+from rr_opt.robot.parameters import Robot
+from rr_opt.verify.evaluate import Evaluated, Found, Progress, evaluate
+from rr_opt.verify.grid import DECISIONS, Grid, boxes, free_decisions, grid_of
+from rr_opt.verify.speeds import Speeds, least_S1, model_of, robot_with, speeds
+from rr_opt.verify.zoom import zoom
+
+__all__ = [
+    *("Found", "Grid", "SpeedMap", "Speeds", "SweepCheck", "SweepResult"),
+    *("check_optimum", "robot_with", "speed_map", "speeds", "sweep"),
+]
+
+Array = NDArray[np.float64]
+
+TOLERATED = 1e-4
+"""A sweep that beats an optimum by more than this, relative, refutes it."""
+
+
+class _Effort(NamedTuple):
+    """points of a grid in all; tolerance of its speeds, and of the best one's, relative; how many
+    of its best points are climbed from, down to which share of the grid's spacing, and values
+    per decision of the grid around a claimed optimum."""
+
+    points: int
+    tolerance: float
+    fine: float
+    climbs: int
+    least: float
+    around: int
+
+
+# Other friction than viscous takes some hundred times as long.
+_EFFORT = {
+    True: _Effort(10_000, 1e-6, 1e-8, 4, 1e-5, 7),
+    False: _Effort(600, 1e-3, 1e-5, 2, 1e-2, 3),
+}
+
+
+@dataclass(frozen=True)
+class SweepResult:
+    """What a sweep found.
+
+    grid     the values of each decision
+    found    all points evaluated, those on the lines where limits hold among them
+    best     the best point of them that keeps all limits, None if none does
+    refined  the best that smaller grids around the best few points led to
+    points   how many points were evaluated in all
+    """
+
+    grid: Grid
+    found: Evaluated
+    best: Found | None
+    refined: Found | None
+    points: int
+
+
+@dataclass(frozen=True)
+class SweepCheck:
+    """A claimed optimum, held against a sweep.
+
+    points         evaluated, near the claimed optimum and all over
+    best_speed     of the best point that keeps all limits, signed, m/s; NaN if none does
+    best_gait      offset >= 0 where the problem's range of offsets is symmetric
+    best_ratio     J20/J10, None: the robot as it is
+    gap            (|claimed| - |best|)/|claimed|: negative where the sweep found something better
+    speed          of the claimed gait, by the sweep's model, signed, m/s
+    error          |speed - claimed|/|claimed|
+    """
+
+    points: int
+    best_speed: float
+    best_gait: SineGait | None
+    best_ratio: float | None
+    gap: float
+    speed: float
+    error: float
+
+    @property
+    def passed(self) -> bool:
+        """Nothing better was found, and the claimed gait has the claimed speed."""
+        return self.gap >= -TOLERATED and self.error <= TOLERATED
+
+
+class SpeedMap(NamedTuple):
+    """Speed over amplitude and period: amplitudes (nA,), rad, periods (nT,), s, signed speed
+    (nT, nA), m/s, peak torque (nT, nA), N m, and least S1 over the cycle (nA,), m. NaN past the
+    singular posture."""
+
+    amplitudes: Array
+    periods: Array
+    speed: Array
+    peak_torque: Array
+    least_S1: Array
+
+
+def sweep(
+    problem: Problem,
+    counts: Mapping[str, int] | int | None = None,
+    progress: Progress | None = None,
+) -> SweepResult:
+    """Evaluate a grid over the problem's own bounds and climb from its best points.
+
+    counts: values of each free decision by name (amplitude, period, offset, ratio), or one
+    number for all of them, or None for some 10 000 points in all.
+    """
+    effort = _EFFORT[model_of(problem.robot).viscous]
+    grid = grid_of(problem, _counts(problem, counts, effort.points))
+    found = evaluate(problem, grid, effort.tolerance, progress)
+    widths = _spacing(grid)
+    starts = [found.found(index) for index in _tops(found, widths, effort.climbs)]
+    climbs = [zoom(problem, start, widths, effort.fine, effort.least) for start in starts]
+    refined = [climb.best for climb in climbs if climb.best is not None]
+    return SweepResult(
+        grid=grid,
+        found=found,
+        best=starts[0] if starts else None,
+        refined=max(refined, key=lambda one: abs(one.speed), default=None),
+        points=found.speed.size + sum(climb.points for climb in climbs),
+    )
+
+
+def check_optimum(
+    problem: Problem,
+    gait: SineGait,
+    ratio: float | None,
+    speed: float,
+    counts: Mapping[str, int] | int | None = None,
+) -> SweepCheck:
+    """Hold a claimed optimum against a sweep of the whole problem and a dense grid around it.
+
+    gait, ratio (J20/J10 in the problem's definition; read only if the problem has one) and
+    signed speed (m/s) as claimed; counts as for `sweep`.
+    """
+    effort = _EFFORT[model_of(problem.robot).viscous]
+    if problem.inertia_ratio is None:
+        ratio = None
+    everywhere = sweep(problem, counts)
+    own = speeds(problem, gait.amplitude, gait.period, gait.offset, ratio, effort.fine)
+    here = float(own.speed)
+    centre = Found(_inside(problem, gait), ratio, here, float(own.peak_torque))
+    near = zoom(
+        problem, centre, _spacing(everywhere.grid), effort.fine, effort.least, effort.around
+    )
+    rivals = [one for one in (everywhere.refined, everywhere.best, near.best) if one is not None]
+    best = max(rivals, key=lambda one: abs(one.speed), default=None)
+    reached = math.nan if best is None else best.speed
+    return SweepCheck(
+        points=everywhere.points + near.points,
+        best_speed=reached,
+        best_gait=best.gait if best else None,
+        best_ratio=best.ratio if best else None,
+        gap=(abs(speed) - abs(reached)) / abs(speed) if best else math.inf,
+        speed=here,
+        error=abs(here - speed) / abs(speed),
+    )
+
+
+def speed_map(problem: Problem, robot: Robot, offset: float, n: int) -> SpeedMap:
+    """Speed of n by n gaits over the problem's bounds of amplitude and period, on a robot with
+    its ratio, whether or not they keep the limits: for a figure."""
+    inside = boxes(problem)
+    amplitude, period = inside["amplitude"], inside["period"]
+    alpha = np.linspace(amplitude.low, amplitude.high, n)
+    T = np.linspace(period.low, period.high, n)
+    bare = Problem(robot, problem.limits, problem.gait)
+    found = speeds(bare, alpha[:, None], T, offset, tolerance=1e-3)
+    return SpeedMap(alpha, T, found.speed.T, found.peak_torque.T, least_S1(robot, alpha, offset))
+
+
+def _counts(
+    problem: Problem, counts: Mapping[str, int] | int | None, points: int
+) -> Mapping[str, int]:
+    free = free_decisions(problem)
+    if counts is None:
+        counts = max(4, math.ceil(points ** (1 / max(len(free), 1))))
+    return dict.fromkeys(free, counts) if isinstance(counts, int) else counts
+
+
+def _spacing(grid: Grid) -> dict[str, float]:
+    """The widest gap between neighbours on the grid, by free decision."""
+    return {name: float(np.diff(grid.axis(name)).max()) for name in grid.free}
+
+
+def _tops(found: Evaluated, widths: Mapping[str, float], most: int) -> list[int]:
+    """Indices of the best points that are two spacings or more from better ones, best first."""
+    merit, chosen = found.merit, []
+    apart = np.array([2.0 * widths.get(name, math.inf) for name in DECISIONS])[:, None]
+    while merit.size and len(chosen) < most and merit.max() > -np.inf:
+        top = int(merit.argmax())
+        chosen.append(top)
+        away = np.abs(found.decisions - found.decisions[:, [top]]) / apart
+        merit = np.where(np.nanmax(away, axis=0) > 1, merit, -np.inf)
+    return chosen
+
+
+def _inside(problem: Problem, gait: SineGait) -> SineGait:
+    """The gait or its mirror image, whichever the sweep looks at."""
+    if problem.gait.offset.low == -problem.gait.offset.high:
+        return SineGait(gait.amplitude, gait.period, abs(gait.offset))
+    return gait
