@@ -168,9 +168,3 @@ def evaluate(
     if cycle.torque is None:
         return Performance(speed, turn, along, s1, np.full((len(speed), 1), np.nan))
     return Performance(speed, turn, along, s1, peaks(cycle.torque, finer, windows))
-
-
-if __name__ == "__main__":
-    from benchmarks.optimise.check_fourier import main
-
-    main()

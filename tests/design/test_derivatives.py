@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from rr_opt.design.multiple_shooting import LIMITS, shooting
+from rr_opt.design.interval import LIMITS
+from rr_opt.design.multiple_shooting import shooting
 from rr_opt.physics.dynamics import derive
 from tests.robots import BENCHMARK, DRY
 

@@ -1,13 +1,13 @@
 """What the tests of reports share: a small problem, solved once, with its evidence."""
 
 import pytest
-from rr_opt.verify.sweep import SweepCheck
 
 from rr_opt.design.maximize_speed import maximize_speed
 from rr_opt.files import read_problem
 from rr_opt.problem import GaitBounds, Interval, Problem
 from rr_opt.report.answer import Answer
 from rr_opt.verify.replay import replay
+from rr_opt.verify.sweep import SweepCheck
 
 
 @pytest.fixture(scope="session")
@@ -20,5 +20,5 @@ def answer() -> Answer:
     assert optimum.robot is not None
     best = optimum.best
     seen = replay(optimum.robot, best.gait, problem.limits, best.speed)
-    sweep = SweepCheck(100, 0.99 * best.speed, best.gait, 0.01)
+    sweep = SweepCheck(100, 0.99 * best.speed, best.gait, None, 0.01, best.speed, 0.0)
     return Answer("small", "0" * 64, optimum, seen, sweep)

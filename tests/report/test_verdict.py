@@ -13,6 +13,7 @@ def failed(answer, **changes):
     parts = {
         "error": lambda a, value: replace(a, replay=replace(a.replay, error=value)),
         "excess": lambda a, value: replace(a, replay=replace(a.replay, excess=value)),
+        "model": lambda a, value: replace(a, sweep=replace(a.sweep, error=value)),
         "gap": lambda a, value: replace(a, sweep=replace(a.sweep, gap=value)),
     }
     for name, value in changes.items():
@@ -27,7 +28,12 @@ def test_confirmed_optimum(answer):
 
 @pytest.mark.parametrize(
     ("change", "word"),
-    [({"error": 2e-6}, "Replay"), ({"excess": 2e-4}, "Limits"), ({"gap": -2e-4}, "Sweep")],
+    [
+        ({"error": 2e-6}, "Replay"),
+        ({"excess": 2e-4}, "Limits"),
+        ({"gap": -2e-4}, "Sweep"),
+        ({"model": 2e-4}, "The sweep's own model"),
+    ],
 )
 def test_a_failed_check_takes_the_verdict(answer, change, word):
     doubtful = failed(answer, **change)

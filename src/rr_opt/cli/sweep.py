@@ -20,7 +20,7 @@ def sweep(
         ),
     ] = None,
     points: Annotated[
-        int, typer.Option(help="About so many gaits.", min=1, max=5_000_000)
+        int, typer.Option(help="About so many gaits on the grid.", min=1, max=5_000_000)
     ] = 10_000,
     out: Annotated[
         Path | None, typer.Option(help="Folder for the results.", show_default="out/NAME-sweep")
@@ -32,12 +32,19 @@ def sweep(
         steps("reading")
         posed, sha256 = read(problem)
         from rr_opt.report.archive import folder_for_results, strict_json  # noqa: PLC0415
-        from rr_opt.report.swept import Swept, record, summary, write_sweep  # noqa: PLC0415
+        from rr_opt.report.swept import (  # noqa: PLC0415
+            Swept,
+            record,
+            summary,
+            values_per_decision,
+            write_sweep,
+        )
         from rr_opt.verify.sweep import sweep as try_all  # noqa: PLC0415
 
         name = name_of(problem)
         folder = folder_for_results(out or Path("out") / f"{name}-sweep")
-        tried = try_all(posed, points, lambda done, of: steps(f"gait {done} of {of}"))
+        counts = values_per_decision(posed, points)
+        tried = try_all(posed, counts, lambda done, of: steps(f"gait {done} of {of}"))
         swept = Swept(name, sha256, tried)
         steps("files")
         written = write_sweep(swept, folder)

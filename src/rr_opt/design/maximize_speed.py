@@ -12,33 +12,23 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-import numpy as np
-from numpy.typing import NDArray
-
-from rr_opt.design.decisions import Decisions, decisions
+from rr_opt.design.decisions import decisions
 from rr_opt.design.infeasible import direction_clash, posture_clashes, torque_clash
-from rr_opt.design.landscape import Landscape
-from rr_opt.design.mesh import LADDER, Dense, dense, mesh_for, with_nodes_at
+from rr_opt.design.ranking import distinct
+from rr_opt.design.refine import refine, solve_from
 from rr_opt.design.seeds import Seed, find_seeds
-from rr_opt.design.solve import Candidate, Setting, solve
-from rr_opt.motion.steady_cycle import steady_cycle
+from rr_opt.design.setting import Setting, robot_of, scanned, settings_of
+from rr_opt.design.solve import Candidate
 from rr_opt.outcome import NotConvergedError, Status
-from rr_opt.physics.dynamics import dynamics_of
-from rr_opt.problem import Interval, Problem
-from rr_opt.robot.ballast import Loads, inertia_ratio, with_load_count
+from rr_opt.problem import Problem
+from rr_opt.robot.ballast import inertia_ratio
 from rr_opt.robot.gait import SineGait
 from rr_opt.robot.parameters import Robot
 
-Array = NDArray[np.float64]
 Progress = Callable[[str], None]
 
-TRIAL = 36
 SAME_SPEED = 1e-5
-"""Optima whose speeds differ by less, relative, are one or a tie."""
-
-_CLAIM = 3e-7
-_PEAK = 1e-6
-_REFINEMENTS = 8
+"""Optima whose speeds differ by less, relative, are a tie."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +38,10 @@ class Optimum:
     best        the winner; None unless status is OPTIMAL
     robot       the robot with the winner's inertia ratio
     ratio       its J20/J10, in the problem's definition (about P if the problem has none)
-    optima      all distinct optima, best first; ties are those within SAME_SPEED of the first
+    optima      the distinct optima found that are at least half as fast as the best, best first;
+                ties are those within SAME_SPEED of the first
+    sideways    the best gait sits where forward turns into backward: its mean velocity is at
+                right angles to its mean heading, and its direction a matter of definition
     starts      starts solved; iterations and failures over all of them
     intervals   mesh of the winner
     """
@@ -64,6 +57,11 @@ class Optimum:
     iterations: int = 0
     failures: tuple[str, ...] = ()
     intervals: int = 0
+
+    @property
+    def sideways(self) -> bool:
+        """See above."""
+        return self.best is not None and self.best.prices["direction"] > abs(self.best.speed)
 
     @property
     def ties(self) -> tuple[Candidate, ...]:
@@ -87,11 +85,11 @@ def maximize_speed(problem: Problem, progress: Progress = lambda _: None) -> Opt
         return Optimum(Status.INFEASIBLE, clash, problem)
     progress("scanning for starts")
     signs = {"forward": (1,), "backward": (-1,), "either": (1, -1)}[problem.direction]
-    settings = _settings(problem, box)
+    settings = settings_of(problem, box)
     starts: list[tuple[Setting, Seed]] = []
     fastest = -math.inf
     for setting in settings:
-        inside = _scanned(setting, box)
+        inside = scanned(setting, box)
         seeds, best = find_seeds(setting.landscape, inside, problem.limits.torque, signs)
         starts += [(setting, seed) for seed in seeds]
         fastest = max(fastest, best)
@@ -104,7 +102,7 @@ def maximize_speed(problem: Problem, progress: Progress = lambda _: None) -> Opt
             share = setting.fixed_share
         gait = SineGait(amplitude, period, offset)
         try:
-            found.append((setting, _solve(setting, seed.sign, gait, share)))
+            found.append((setting, solve_from(setting, seed.sign, gait, share)))
         except NotConvergedError as error:
             lost.append(str(error))
     optimum = _answer(problem, found, lost, progress)
@@ -114,25 +112,6 @@ def maximize_speed(problem: Problem, progress: Progress = lambda _: None) -> Opt
         if clash:
             return replace(optimum, status=Status.INFEASIBLE, message=clash)
     return optimum
-
-
-def _solve(setting: Setting, sign: int, gait: SineGait, share: float) -> Candidate:
-    """Solve from a gait on a mesh that is fine enough for its cycle."""
-    robot = robot_of(setting, share)
-    seen = dense(setting.landscape, robot, gait, share)
-    try:
-        coarse = steady_cycle(robot, gait, steps=TRIAL).speed
-        error = abs(coarse - seen.speed) / abs(seen.speed)
-        intervals = mesh_for(TRIAL, error, _CLAIM / 2)
-    except NotConvergedError:  # dry friction too steep for so coarse a mesh
-        intervals = LADDER[-1]
-    return solve(setting, sign, gait, share, _phases(setting, intervals, seen))
-
-
-def _phases(setting: Setting, intervals: int, seen: Dense) -> Array:
-    """Equal phases, with nodes moved onto the torque's peaks where its limit is near."""
-    near = seen.peak > 0.97 * setting.problem.limits.torque
-    return with_nodes_at(intervals, seen.peaks if near else np.array([]))
 
 
 def _answer(
@@ -147,17 +126,17 @@ def _answer(
         *(one.sentence for _, one in found if not (one.feasible and one.success)),
     )
     good = [pair for pair in found if pair[1].feasible and pair[1].success]
-    good = _distinct(sorted(good, key=lambda pair: pair[1].rank))
+    good = distinct(sorted(good, key=lambda pair: pair[1].rank))
     while good:
         setting, best = good[0]
         progress("refining the best")
-        refined = _refine(setting, best)
+        refined = refine(setting, best)
         iterations += refined.iterations - best.iterations
         if not (refined.feasible and refined.success):
             failures += (refined.sentence,)
             good.pop(0)
             continue
-        good = _distinct([(setting, refined), *good[1:]])
+        good = distinct([(setting, refined), *good[1:]])
         others = good[1:]
         # A coarse mesh can put a close second first: it is refined too before the choice falls.
         if others and abs(others[0][1].speed) > abs(refined.speed):
@@ -187,77 +166,3 @@ def _answer(
         iterations=iterations,
         failures=failures,
     )
-
-
-def _settings(problem: Problem, box: Decisions) -> list[Setting]:
-    """One setting, or one for each whole number of loads."""
-    choice = problem.inertia_ratio
-    by, loads = (choice.by, choice.loads) if choice else ("inertia", Loads())
-    dynamics = dynamics_of(problem.robot)
-    low, high = box.ballast.low, box.ballast.high
-    landscape = Landscape(dynamics, problem.robot, by, loads, box.ballast)
-    setting = Setting(problem, dynamics, landscape, box.ballast)
-    if not (by == "loads" and loads.whole):
-        return [setting]
-    counts = range(math.ceil(low - 1e-9), math.floor(high + 1e-9) + 1)
-    width = (high - low) or 1.0
-    return [replace(setting, fixed_share=(count - low) / width) for count in counts]
-
-
-def _scanned(setting: Setting, box: Decisions) -> Decisions:
-    """The box to scan: with a whole number of loads the ballast is not free."""
-    if setting.fixed_share is None:
-        return box
-    count = box.ballast.low + setting.fixed_share * (box.ballast.high - box.ballast.low)
-    return replace(box, ballast=Interval(count, count))
-
-
-def robot_of(setting: Setting, share: float) -> Robot:
-    """The problem's robot with the ballast at this share of its range."""
-    robot, choice, ballast = setting.problem.robot, setting.problem.inertia_ratio, setting.ballast
-    amount = ballast.low + share * (ballast.high - ballast.low)
-    if choice and choice.by == "loads":
-        return replace(robot, platform2=with_load_count(robot.platform2, choice.loads, amount))
-    return replace(robot, platform2=replace(robot.platform2, I=amount))
-
-
-def _distinct(ranked: list[tuple[Setting, Candidate]]) -> list[tuple[Setting, Candidate]]:
-    """One of each optimum; a gait and its mirror image (phi0 and -phi0) are one."""
-    kept: list[tuple[Setting, Candidate]] = []
-    for setting, one in ranked:
-        if not any(setting is other and _same(one, twin) for other, twin in kept):
-            kept.append((setting, one))
-    return kept
-
-
-def _same(one: Candidate, other: Candidate) -> bool:
-    """Before their meshes are refined, two finds of one optimum differ a little."""
-    a, b = one.gait, other.gait
-    return (
-        one.sign == other.sign
-        and math.isclose(one.speed, other.speed, rel_tol=1e-3)
-        and math.isclose(a.amplitude, b.amplitude, rel_tol=1e-2)
-        and math.isclose(a.period, b.period, rel_tol=1e-2)
-        and math.isclose(abs(a.offset), abs(b.offset), abs_tol=1e-2)
-        and math.isclose(one.share, other.share, abs_tol=1e-2)
-    )
-
-
-def _refine(setting: Setting, candidate: Candidate) -> Candidate:
-    """Solve again until the mesh claims the true speed and no torque peaks between nodes."""
-    limit = setting.problem.limits.torque
-    iterations = candidate.iterations
-    for _ in range(_REFINEMENTS):
-        gait, share = candidate.gait, candidate.share
-        seen = dense(setting.landscape, robot_of(setting, share), gait, share)
-        error = abs(abs(candidate.speed) - abs(seen.speed)) / abs(seen.speed)
-        if error <= _CLAIM and seen.peak <= limit * (1 + _PEAK):
-            break
-        intervals = len(candidate.phases)
-        if error > _CLAIM:
-            intervals = mesh_for(intervals, error, _CLAIM / 4)
-        candidate = solve(setting, candidate.sign, gait, share, _phases(setting, intervals, seen))
-        iterations += candidate.iterations
-        if not (candidate.feasible and candidate.success):
-            break
-    return replace(candidate, iterations=iterations)

@@ -24,23 +24,34 @@ kind.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
 
 import casadi as ca
 
+from rr_opt.design.interval import DECISIONS, LIMITS, interval_of
 from rr_opt.motion.tableau import BUTCHER6, Tableau
-from rr_opt.physics.dynamics import derive
-from rr_opt.robot.ballast import By, hang
+from rr_opt.robot.ballast import By
 
-DECISIONS = ("amplitude", "period", "offset", "ballast", "turn")
-"""alpha (rad), T (s), phi0 (rad), I2 (kg m2) or number of loads on a scale from 0 at its lower
-bound to 1 at its upper, heading per period (rad)."""
-
-LIMITS = ("rate", "angle+", "angle-", "singularity+", "singularity-", "direction")
-"""Rows of the program that hold once a period, in their order; torque holds at every node."""
+_IPOPT = {
+    "print_time": False,
+    "error_on_fail": False,
+    # Prices of the program's parameters are not asked for, and cost more than a solve.
+    "calc_lam_p": False,
+    "no_nlp_grad": True,
+    "ipopt.print_level": 0,
+    "ipopt.sb": "yes",
+    "ipopt.tol": 1e-9,
+    "ipopt.max_iter": 200,
+    # Starts are steady cycles, near an optimum and often on a limit: IPOPT shall not push them
+    # far inside, nor begin with a barrier that does.
+    "ipopt.mu_init": 1e-5,
+    "ipopt.bound_push": 1e-6,
+    "ipopt.bound_frac": 1e-6,
+    "ipopt.slack_bound_push": 1e-6,
+    "ipopt.slack_bound_frac": 1e-6,
+    "ipopt.bound_relax_factor": 0.0,
+}
 
 
 @dataclass(frozen=True)
@@ -62,7 +73,7 @@ def shooting(
 ) -> Shooting:
     """Build the program for robots with these effects and this way of changing the inertia."""
     n, nz, nm = intervals, len(DECISIONS), 4
-    interval = _interval(effects, by, method)
+    interval = interval_of(effects, by, method)
     x = ca.MX.sym("x", nz + nm + 2 * n)
     p = ca.MX.sym("p", interval.shared + 1 + n)
     z, mean, vs, chis = ca.vertsplit(x, [0, nz, nz + nm, nz + nm + n, nz + nm + 2 * n])
@@ -133,114 +144,3 @@ def shooting(
     }
     solver = ca.nlpsol("gait", "ipopt", {"x": x, "p": p, "f": f, "g": g}, {**_IPOPT, **given})
     return Shooting(n, solver)
-
-
-@lru_cache
-def _interval(effects: tuple[str, ...], by: By, method: Tableau) -> _Interval:
-    return _Interval(effects, by, method)
-
-
-class _Interval:
-    """What one interval, and the limits, contribute: values, first and second derivatives.
-
-    step       (v, chi, theta, width, z, fixed) -> v, chi, V, E at the end, torque at the start
-    shared     length of `fixed`: robot, loads and ballast range
-    """
-
-    def __init__(self, effects: tuple[str, ...], by: By, method: Tableau):
-        dynamics = derive(effects)
-        names = dynamics.parameters
-        z = ca.SX.sym("z", len(DECISIONS))
-        amplitude, T, offset, share, turn = ca.vertsplit(z)
-        fixed = ca.SX.sym("fixed", len(names) + 5)
-        values = _with_ballast(fixed, names, share, by)
-        v, chi, theta, width = (ca.SX.sym(name) for name in ("v", "chi", "theta", "width"))
-
-        def motion(theta: ca.SX, v: ca.SX) -> Any:
-            omega = 2 * math.pi / T
-            swing = amplitude * ca.sin(2 * math.pi * theta)
-            rate = amplitude * omega * ca.cos(2 * math.pi * theta)
-            return dynamics.motion(v, swing + offset, rate, -(omega**2) * swing, values)
-
-        def rhs(fraction: float, y: ca.SX) -> ca.SX:
-            vdot, w, side, _ = motion(theta + fraction * width, y[0])
-            cos, sin = ca.cos(y[1]), ca.sin(y[1])
-            V = ca.vertcat(cos * y[0] - sin * side, sin * y[0] + cos * side)
-            return ca.vertcat(T * vdot, T * w - turn, V, cos, sin)
-
-        end = method.step(rhs, ca.vertcat(v, chi, 0, 0, 0, 0), width)
-        out = ca.cse(ca.vertcat(end, motion(theta, v)[3]))
-        inner = ca.vertcat(v, chi, z)
-        inputs = [v, chi, theta, width, z, fixed]
-        weights = ca.SX.sym("weights", out.numel())
-        slopes = ca.densify(ca.jacobian(out, inner))
-        curves = ca.densify(ca.hessian(ca.dot(weights, out), inner)[0])
-        self.shared = fixed.numel()
-        self.step = ca.Function("step", inputs, [out])
-        self.jacobian = ca.Function("jacobian", inputs, [ca.cse(slopes)])
-        self.hessian = ca.Function("hessian", [*inputs, weights], [ca.cse(curves)])
-
-        mean, sign = ca.SX.sym("mean", 4), ca.SX.sym("sign")
-        rows = _limit_rows(z, fixed, names, sign * ca.dot(mean[:2], mean[2:]))
-        lam = ca.SX.sym("lam", len(LIMITS))
-        inputs = [z, mean, fixed, sign]
-        self.limits = ca.Function("limits", inputs, [rows])
-        self.limit_slopes = ca.Function(
-            "limit_slopes", inputs, [ca.jacobian(rows, z), ca.jacobian(rows, mean)]
-        )
-        weighted = ca.dot(lam, rows)
-        self.limit_curves = ca.Function(
-            "limit_curves",
-            [*inputs, lam],
-            [ca.hessian(weighted, z)[0], ca.hessian(weighted, mean)[0]],
-        )
-
-
-_IPOPT = {
-    "print_time": False,
-    "error_on_fail": False,
-    # Prices of the program's parameters are not asked for, and cost more than a solve.
-    "calc_lam_p": False,
-    "no_nlp_grad": True,
-    "ipopt.print_level": 0,
-    "ipopt.sb": "yes",
-    "ipopt.tol": 1e-9,
-    "ipopt.max_iter": 200,
-    # Starts are steady cycles, near an optimum and often on a limit: IPOPT shall not push them
-    # far inside, nor begin with a barrier that does.
-    "ipopt.mu_init": 1e-5,
-    "ipopt.bound_push": 1e-6,
-    "ipopt.bound_frac": 1e-6,
-    "ipopt.slack_bound_push": 1e-6,
-    "ipopt.slack_bound_frac": 1e-6,
-    "ipopt.bound_relax_factor": 0.0,
-}
-
-
-def _limit_rows(z, fixed, names, forward):
-    """Rows of LIMITS; each is bounded by the limit of its name, so a row's multiplier is the
-    speed gained per unit of that limit."""
-    amplitude, period, offset = z[0], z[1], z[2]
-    c1, c2 = fixed[names.index("c1")], fixed[names.index("c2")]
-    return ca.vertcat(
-        2 * math.pi * amplitude / period,
-        offset + amplitude,
-        amplitude - offset,
-        c1 * ca.cos(offset + amplitude) + c2,
-        c1 * ca.cos(offset - amplitude) + c2,
-        forward,
-    )
-
-
-def _with_ballast(fixed: ca.SX, names: tuple[str, ...], share: ca.SX, by: By) -> ca.SX:
-    """The robot's parameter vector with platform 2 changed by the ballast."""
-    values = {name: fixed[i] for i, name in enumerate(names)}
-    mass, distance, spread, low, high = ca.vertsplit(fixed[len(names) :])
-    amount = low + share * (high - low)
-    if by == "loads":
-        m, I, c, a = (values[f"{symbol}2"] for symbol in ("m", "I", "c", "a"))
-        values["m2"], values["I2"], reach = hang(m, I, c - a, (mass, distance, spread), amount)
-        values["a2"] = c - reach
-    else:
-        values["I2"] = amount
-    return ca.vertcat(*values.values())

@@ -9,10 +9,11 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from rr_opt.design.interval import DECISIONS, LIMITS
 from rr_opt.design.landscape import Landscape
-from rr_opt.design.multiple_shooting import DECISIONS, LIMITS, shooting
-from rr_opt.physics.dynamics import Dynamics
-from rr_opt.problem import Interval, Problem
+from rr_opt.design.multiple_shooting import shooting
+from rr_opt.design.setting import Setting
+from rr_opt.problem import Interval
 from rr_opt.robot.gait import SineGait
 
 Array = NDArray[np.float64]
@@ -73,17 +74,6 @@ class Candidate:
     def rank(self) -> tuple[bool, bool, float]:
         """Sort key: infeasible last, then unsuccessful, then slow."""
         return (not self.feasible, not self.success, -abs(self.speed))
-
-
-@dataclass(frozen=True)
-class Setting:
-    """What stays the same over the starts of one problem."""
-
-    problem: Problem
-    dynamics: Dynamics
-    landscape: Landscape
-    ballast: Interval
-    fixed_share: float | None = None
 
 
 def solve(setting: Setting, sign: int, gait: SineGait, share: float, phases: Array) -> Candidate:

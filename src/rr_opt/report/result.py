@@ -29,6 +29,7 @@ UNITS = {
     "radius": "m",
     "shadow_price": "m/s of |speed| per SI unit by which the limit or bound is raised",
     "gap": "(|speed| - |sweep_best|)/|speed|",
+    "sweep_error": "|speed by the sweep's model - speed|/|speed|",
     "replay_error": "|replay speed - speed|/|speed|",
     "limit_excess": "largest (value - limit)/limit over the replayed cycle",
 }
@@ -133,9 +134,10 @@ def _check(answer: Answer) -> dict[str, Any] | None:
         return None
     return {
         "sweep_points": sweep.points,
-        "sweep_best": sweep.best_speed,
+        "sweep_best": finite(sweep.best_speed),
         "sweep_gait": gait_record(sweep.best_gait) if sweep.best_gait else None,
         "gap": finite(sweep.gap),
+        "sweep_error": finite(sweep.error),
         "replay_error": finite(replay.error),
         "replay_speed": replay.speed,
         "limit_excess": finite(replay.excess),

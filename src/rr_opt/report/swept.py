@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,78 +12,96 @@ import numpy as np
 
 from rr_opt import __version__
 from rr_opt.outcome import Status
+from rr_opt.problem import Problem
 from rr_opt.report.archive import remove, write_json, write_text
-from rr_opt.report.quantities import direction_text, number, speed_text
+from rr_opt.report.quantities import direction_text, number, speed_text, with_unit
 from rr_opt.report.result import gait_record
 from rr_opt.report.text import columns, gait_lines
-from rr_opt.verify.sweep import Gaits
+from rr_opt.verify.evaluate import LIMITS, Evaluated, Found
+from rr_opt.verify.grid import DECISIONS, free_decisions
+from rr_opt.verify.sweep import SweepResult
 
 _NAMES = ("sweep.json", "sweep.csv", "sweep.svg")
-_COLUMNS = ("amplitude", "period", "offset", "ratio", "speed", "peak_torque", "allowed")
 
 
 @dataclass(frozen=True)
 class Swept:
-    """A sweep of a problem: its gaits, and what it is told by. `name` and `sha256` of the input."""
+    """A sweep of a problem, with the name and the fingerprint of its input."""
 
     name: str
     sha256: str
-    gaits: Gaits
+    found: SweepResult
 
     @property
-    def best(self) -> int | None:
-        """Index of the fastest gait that keeps every limit."""
-        return self.gaits.best()
+    def best(self) -> Found | None:
+        """The fastest gait that keeps every limit, on the grid or close to its best points."""
+        both = [one for one in (self.found.refined, self.found.best) if one is not None]
+        return max(both, key=lambda one: abs(one.speed), default=None)
 
     @property
     def status(self) -> Status:
-        """INFEASIBLE if no gait of the sweep is allowed; a sweep never proves an optimum."""
-        return Status.INFEASIBLE if self.best is None else Status.OPTIMAL
+        """INFEASIBLE if no gait of the sweep keeps every limit."""
+        return Status.OPTIMAL if self.best else Status.INFEASIBLE
 
     @property
     def message(self) -> str:
         """The outcome in a sentence."""
         if self.best is None:
-            return f"None of the {len(self.gaits)} gaits tried keeps every limit."
-        speed = float(self.gaits.speed[self.best])
+            return f"None of the {self.found.points} gaits tried keeps every limit."
         return (
-            f"The fastest of {len(self.gaits)} gaits drives {direction_text(speed)} at "
-            f"{abs(speed):.4f} m/s."
+            f"The fastest of {self.found.points} gaits drives {direction_text(self.best.speed)} "
+            f"at {abs(self.best.speed):.4f} m/s."
         )
 
 
+def values_per_decision(problem: Problem, points: int) -> int:
+    """How many values of each free decision make about so many gaits."""
+    return max(2, math.ceil(points ** (1 / max(len(free_decisions(problem)), 1))))
+
+
 def record(swept: Swept) -> dict[str, Any]:
-    """The content of sweep.json, SI."""
-    gaits, best = swept.gaits, swept.best
+    """The content of sweep.json, SI. status: `swept`, as a sweep proves no optimum."""
+    found, best = swept.found, swept.best
     return {
-        "status": "swept" if best is not None else swept.status.value,
+        "status": "swept" if best else swept.status.value,
         "message": swept.message,
         "problem": swept.name,
-        "points": len(gaits),
-        "allowed": int(gaits.allowed.sum()),
-        "gait": gait_record(gaits.gait(best)) if best is not None else None,
-        "inertia_ratio": float(gaits.ratio[best]) if best is not None else None,
-        "speed": float(gaits.speed[best]) if best is not None else None,
-        "peak_torque": float(gaits.peak_torque[best]) if best is not None else None,
+        "points": found.points,
+        "feasible": int(found.found.feasible.sum()),
+        "failed": found.found.failed,
+        "best": _found_record(best),
+        "best_of_grid": _found_record(found.best),
         "version": __version__,
         "input_sha256": swept.sha256,
     }
 
 
+def _found_record(one: Found | None) -> dict[str, Any] | None:
+    if one is None:
+        return None
+    return {
+        "gait": gait_record(one.gait),
+        "inertia_ratio": one.ratio,
+        "speed": one.speed,
+        "peak_torque": one.peak_torque,
+    }
+
+
 def summary(swept: Swept, files: list[Path]) -> str:
     """The sweep as text for a terminal."""
-    gaits, best = swept.gaits, swept.best
+    best, grid = swept.best, swept.found.found
     rows: list[tuple[str, ...]] = []
-    if best is not None:
+    if best:
         rows = [
             ("gait", "phi(t) = amplitude sin(2 pi t/period) + offset"),
-            *gait_lines(gaits.gait(best)),
-            ("  J20/J10", number(float(gaits.ratio[best]))),
-            ("speed", speed_text(float(gaits.speed[best]))),
-            ("torque", f"{number(float(gaits.peak_torque[best]))} N m at most"),
+            *gait_lines(best.gait),
+            ("  J20/J10", "the robot as it is" if best.ratio is None else number(best.ratio)),
+            ("speed", speed_text(best.speed)),
+            ("torque", f"{with_unit(best.peak_torque, 'N m')} at most"),
         ]
+    rows.append(("grid", f"{len(grid.speed)} gaits, {int(grid.feasible.sum())} keep every limit"))
     rows += [("files" if not i else "", str(file)) for i, file in enumerate(files)]
-    head = f"{swept.name}: {swept.message}" if best is not None else f"{swept.name}: infeasible"
+    head = f"{swept.name}: {swept.message}" if best else f"{swept.name}: infeasible"
     return "\n".join([head, "", *columns(rows)]) + "\n"
 
 
@@ -91,14 +110,20 @@ def write_sweep(swept: Swept, folder: Path) -> list[Path]:
     from rr_opt.report.figures.of_sweep import draw  # noqa: PLC0415
 
     remove(folder, _NAMES)
-    gaits = swept.gaits
-    table = np.column_stack([np.asarray(getattr(gaits, name), float) for name in _COLUMNS])
-    text = io.StringIO()
-    form = ["%.9g"] * (len(_COLUMNS) - 1) + ["%d"]
-    np.savetxt(text, table, fmt=form, delimiter=",", header=",".join(_COLUMNS), comments="")
     return [
         write_json(folder / "sweep.json", record(swept)),
-        # A gait without a steady cycle has no speed: an empty cell.
-        write_text(folder / "sweep.csv", text.getvalue().replace("nan", "")),
-        write_text(folder / "sweep.svg", draw(gaits)),
+        write_text(folder / "sweep.csv", _csv(swept.found.found)),
+        write_text(folder / "sweep.svg", draw(swept.found.found, swept.best)),
     ]
+
+
+def _csv(found: Evaluated) -> str:
+    """A row a gait of the grid, SI; 1 in a limit's column where it is kept. An empty ratio is the
+    robot as it is; an empty speed, a gait at or past the limits on the angle."""
+    names = (*DECISIONS, "speed", "peak_torque", *(f"keeps_{name}" for name in LIMITS))
+    kept = [found.keeps[name] for name in LIMITS]
+    table = np.column_stack([*found.decisions, found.speed, found.peak_torque, *kept])
+    text = io.StringIO()
+    form = ["%.9g"] * (len(names) - len(kept)) + ["%d"] * len(kept)
+    np.savetxt(text, table, fmt=form, delimiter=",", header=",".join(names), comments="")
+    return text.getvalue().replace("nan", "")

@@ -28,6 +28,9 @@ _SLACK = 1e-8
 _AIMS = (1e-3, 1e-4, 1e-6, 1e-7)
 """How far below the torque limit each secant step aims, relative."""
 
+_WORTH = 0.8
+"""Points so much slower than the best are not led to the torque limit."""
+
 _ROWS = 4096
 """Rows of points between two reports of progress."""
 
@@ -104,14 +107,12 @@ def evaluate(
         failed += int((~found.converged & np.isfinite(period)).sum())
         if progress:
             progress(min(done + _ROWS, len(wanted)) * shape[-1], len(wanted) * shape[-1])
-    line = _torque_line(problem, grid, np.array(arrays), torque.reshape(shape), tolerance)
-    there = np.isfinite(rows[1])
-    decisions = np.concatenate([np.array([part[there] for part in rows]), line[:4]], axis=1)
-    speed, torque = (
-        np.concatenate([part[there], extra])
-        for part, extra in zip((speed, torque), line[4:], strict=True)
-    )
-    return Evaluated(decisions, speed, torque, _keeps(problem, decisions, speed, torque), failed)
+    seen = np.array([*arrays, speed.reshape(shape), torque.reshape(shape)])
+    flat = seen[:, np.isfinite(arrays[1])]
+    plain = Evaluated(flat[:4], flat[4], flat[5], _keeps(problem, *flat), failed)
+    line = _torque_line(problem, grid, seen, plain.merit.max(initial=0.0), tolerance)
+    flat = np.concatenate([flat, line], axis=1)
+    return Evaluated(flat[:4], flat[4], flat[5], _keeps(problem, *flat), failed)
 
 
 def _geometry(problem: Problem, amplitude: Array, offset: Array) -> dict[str, Mask]:
@@ -123,8 +124,15 @@ def _geometry(problem: Problem, amplitude: Array, offset: Array) -> dict[str, Ma
     }
 
 
-def _keeps(problem: Problem, decisions: Array, speed: Array, torque: Array) -> dict[str, Mask]:
-    amplitude, period, offset, _ = decisions
+def _keeps(
+    problem: Problem,
+    amplitude: Array,
+    period: Array,
+    offset: Array,
+    _ratio: Array,
+    speed: Array,
+    torque: Array,
+) -> dict[str, Mask]:
     limits = problem.limits
     ahead = {"forward": speed > 0, "backward": speed < 0, "either": np.isfinite(speed)}
     return {
@@ -136,12 +144,14 @@ def _keeps(problem: Problem, decisions: Array, speed: Array, torque: Array) -> d
 
 
 def _torque_line(
-    problem: Problem, grid: Grid, decisions: Array, torque: Array, tolerance: float
+    problem: Problem, grid: Grid, seen: Array, reached: float, tolerance: float
 ) -> Array:
     """Points (6, K) on the torque limit: decisions, speed, peak torque.
 
-    They lie between neighbours along the period, or the first free decision without it, of
-    which one keeps the limit; found by secants in the logarithm of the torque.
+    seen (6, A, F, R, B): the same of the grid's points; reached: the best merit among them. The
+    points lie between neighbours along the period, or the first free decision without it, of
+    which one keeps the limit and one is not much slower than the best; found by secants in the
+    logarithm of the torque.
     """
     limit = problem.limits.torque
     axes = {"amplitude": 0, "offset": 1, "period": 3}
@@ -149,18 +159,20 @@ def _torque_line(
     if not order or not np.isfinite(limit):
         return np.empty((6, 0))
     along = axes[order[0]]
-    T, x = np.moveaxis(torque, along, -1), np.moveaxis(decisions, along + 1, -1)
-    keeps = limit * (1 + _SLACK) >= T
-    known = np.isfinite(T)
-    crossed = known[..., :-1] & known[..., 1:] & (keeps[..., :-1] != keeps[..., 1:])
-    pairs = [np.stack([part[..., :-1][crossed], part[..., 1:][crossed]]) for part in (T, *x)]
-    first_keeps = pairs[0][0] <= limit * (1 + _SLACK)
-    (low, high), *ends = (np.where(first_keeps, pair, pair[::-1]) for pair in pairs)
-    low = np.maximum(low, 1e-12 * limit)
-    inside, outside = np.array([end[0] for end in ends]), np.array([end[1] for end in ends])
+    seen = np.moveaxis(seen, along + 1, -1)
+    one, other = seen[..., :-1], seen[..., 1:]
+    known = np.isfinite(one[5]) & np.isfinite(other[5])
+    keeps, kept = (end[5] <= limit * (1 + _SLACK) for end in (one, other))
+    worth = np.maximum(np.abs(one[4]), np.abs(other[4])) >= _WORTH * reached
+    crossed = known & worth & (keeps != kept)
+    one, other, keeps = one[:, crossed], other[:, crossed], keeps[crossed]
+    inside, outside = np.where(keeps, one, other), np.where(keeps, other, one)
+    low, high = np.maximum(inside[5], 1e-12 * limit), outside[5]
+    inside, outside = inside[:4], outside[:4]
     best = np.array([*inside, np.full(len(low), np.nan), low])
     for aim in _AIMS if len(low) else ():
-        rise = np.log(limit * (1 - aim) / low) / np.log(high / low)
+        apart = np.maximum(np.log(high / low), 1e-12)
+        rise = np.log(limit * (1 - aim) / low) / apart
         middle = inside + np.clip(rise, 0.0, 1.0) * (outside - inside)
         ratio = None if grid.ratio is None else middle[3]
         found = speeds(problem, *middle[:3], ratio, tolerance)

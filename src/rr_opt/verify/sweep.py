@@ -7,7 +7,7 @@ cycle is found by Fourier series, the best point by looking everywhere.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -46,9 +46,12 @@ class _Effort(NamedTuple):
     around: int
 
 
+_ROUGH = 0.1
+"""Share of the grid's spacing to which all climbs go, before the best of them goes on."""
+
 # Other friction than viscous takes some hundred times as long.
 _EFFORT = {
-    True: _Effort(10_000, 1e-6, 1e-8, 4, 1e-5, 7),
+    True: _Effort(10_000, 1e-6, 1e-8, 4, 1e-4, 7),
     False: _Effort(600, 1e-3, 1e-5, 2, 1e-2, 3),
 }
 
@@ -125,13 +128,17 @@ def sweep(
     found = evaluate(problem, grid, effort.tolerance, progress)
     widths = _spacing(grid)
     starts = [found.found(index) for index in _tops(found, widths, effort.climbs)]
-    climbs = [zoom(problem, start, widths, effort.fine, effort.least) for start in starts]
-    refined = [climb.best for climb in climbs if climb.best is not None]
+    climbs = [zoom(problem, start, widths, effort.tolerance, _ROUGH) for start in starts]
+    refined = _fastest([climb.best for climb in climbs])
+    if refined is not None:
+        closer = {name: 2 * _ROUGH * width for name, width in widths.items()}
+        climbs.append(zoom(problem, refined, closer, effort.fine, effort.least))
+        refined = climbs[-1].best
     return SweepResult(
         grid=grid,
         found=found,
         best=starts[0] if starts else None,
-        refined=max(refined, key=lambda one: abs(one.speed), default=None),
+        refined=refined,
         points=found.speed.size + sum(climb.points for climb in climbs),
     )
 
@@ -158,8 +165,7 @@ def check_optimum(
     near = zoom(
         problem, centre, _spacing(everywhere.grid), effort.fine, effort.least, effort.around
     )
-    rivals = [one for one in (everywhere.refined, everywhere.best, near.best) if one is not None]
-    best = max(rivals, key=lambda one: abs(one.speed), default=None)
+    best = _fastest([everywhere.refined, everywhere.best, near.best])
     reached = math.nan if best is None else best.speed
     return SweepCheck(
         points=everywhere.points + near.points,
@@ -208,6 +214,11 @@ def _tops(found: Evaluated, widths: Mapping[str, float], most: int) -> list[int]
         away = np.abs(found.decisions - found.decisions[:, [top]]) / apart
         merit = np.where(np.nanmax(away, axis=0) > 1, merit, -np.inf)
     return chosen
+
+
+def _fastest(gaits: Sequence[Found | None]) -> Found | None:
+    there = [one for one in gaits if one is not None]
+    return max(there, key=lambda one: abs(one.speed), default=None)
 
 
 def _inside(problem: Problem, gait: SineGait) -> SineGait:

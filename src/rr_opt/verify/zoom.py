@@ -14,7 +14,9 @@ from rr_opt.verify.grid import DECISIONS, Grid, boxes
 
 Array = NDArray[np.float64]
 
-_VALUES = 5
+_VALUES = {1: 5, 2: 5, 3: 3, 4: 3}
+"""Values of each decision in a grid, by how many are free."""
+
 _ROUNDS = 60
 
 
@@ -53,21 +55,24 @@ def zoom(
     widths: Mapping[str, float],
     tolerance: float,
     least: float,
-    first: int = _VALUES,
+    first: int = 0,
 ) -> Zoomed:
     """Climb from a start by grids around the best point so far.
 
-    widths: of the first grid to either side of the start, by decision; `first` values of each.
+    widths: of the first grid to either side of the start, by free decision; `first`: values of
+    each in it.
     A grid whose best point lies inside is followed by one half as wide, until it is `least` of
     the first; one whose best is on its rim, by one around that.
     tolerance: of the speeds, relative.
     """
-    best, points, share, count = None, 0, 1.0, first
+    best, points, share = None, 0, 1.0
+    usual = _VALUES.get(len(widths), 1)
+    count = first or usual
     centre = _values(start)
     for _ in range(_ROUNDS):
         around = {name: share * width for name, width in widths.items()}
         found = evaluate(problem, local_grid(problem, centre, around, count), tolerance)
-        points, count = points + found.speed.size, _VALUES
+        points, count = points + found.speed.size, usual
         merit = found.merit
         top = int(merit.argmax()) if merit.size else -1
         if top < 0 or merit[top] == -np.inf:

@@ -45,7 +45,7 @@ def map_data(problem: Problem, robot: Robot, best: SineGait) -> MapData:
         ),
     )
     found = speed_map(shown, robot, best.offset, POINTS)
-    return MapData(found.period, found.amplitude, found.speed, found.torque)
+    return MapData(found.periods, found.amplitudes, found.speed.T, found.peak_torque.T)
 
 
 def _opened(box: Interval) -> Interval:
