@@ -22,6 +22,7 @@ LIMITS = ("rate", "angle+", "angle-", "singularity+", "singularity-", "direction
 
 @lru_cache
 def interval_of(effects: tuple[str, ...], by: By, method: Tableau) -> IntervalTerms:
+    """The terms for these effects, this way of changing the inertia and this method."""
     return IntervalTerms(effects, by, method)
 
 

@@ -88,7 +88,7 @@ def _verdict(answer: Answer) -> str:
 
 def _header(answer: Answer) -> str:
     good = answer.status is Status.OPTIMAL
-    lead = answer.message
+    lead = answer.message.removeprefix(f"{_verdict(answer)}. ")
     if good:
         lead = f"Every check confirms it. {_why(answer)}"
     return (

@@ -9,7 +9,7 @@ from rr_opt.report.answer import Answer
 from rr_opt.report.candidates import ratio_of
 from rr_opt.report.html import Badge, Cell, table
 from rr_opt.report.quantities import QUANTITIES, number, price_text, with_unit
-from rr_opt.report.rows import bound_rows, limit_rows
+from rr_opt.report.rows import LIMIT_NAMES, bound_rows, limit_rows
 from rr_opt.robot.parameters import Robot
 
 _PLATFORM = {
@@ -27,7 +27,7 @@ _ORIGINS = ("measured", "fitted", "assumed")
 def limits_table(answer: Answer) -> str:
     """Each limit: what is reached, what is allowed, and what it costs."""
     if answer.replay is None:
-        return ""
+        return _limits_asked(answer)
     rows: list[list[Cell]] = []
     for row in limit_rows(answer.optimum, answer.replay):
         kind = QUANTITIES[row.name]
@@ -35,6 +35,16 @@ def limits_table(answer: Answer) -> str:
         state = Badge("active", "yes") if row.active else Badge("not active", "no")
         rows.append([kind.words, kind.both(row.value), kind.both(row.limit), state, price])
     return table(["Limit", "Reached", "Allowed", "State", "Speed gained per unit"], rows)
+
+
+def _limits_asked(answer: Answer) -> str:
+    """The limits alone, where there is no gait to hold against them."""
+    limits = answer.optimum.problem.limits
+    rows = [
+        [QUANTITIES[name].words, QUANTITIES[name].both(getattr(limits, name))]
+        for name in LIMIT_NAMES
+    ]
+    return table(["Limit", "Allowed"], rows)
 
 
 def bounds_table(answer: Answer) -> str:
@@ -87,7 +97,8 @@ def robot_table(robot: Robot, changed: str = "") -> str:
         badge = Badge("not stated" if origin == "unsaid" else origin, origin)
         if path == changed:
             badge, remark = Badge("chosen", "fitted"), "by the optimiser"
-        rows.append([path, words, value, badge, remark])
+        # A number stays on one line with its unit.
+        rows.append([path, words, value.replace(" ", "\N{NO-BREAK SPACE}"), badge, remark])
     return table(["Key", "Parameter", "Value", "Origin", "Source"], rows)
 
 

@@ -54,7 +54,8 @@ def number(value: float, digits: int = 4) -> str:
     if -4 <= size < 6:
         text = f"{value:.{max(digits - 1 - size, 0)}f}"
         return text.rstrip("0").rstrip(".") if "." in text else text
-    return f"{value:.{digits - 1}e}"
+    mantissa, power = f"{value:.{digits - 1}e}".split("e")
+    return f"{mantissa.rstrip('0').rstrip('.')}e{power}"
 
 
 def with_unit(value: float, unit: str, digits: int = 4) -> str:
