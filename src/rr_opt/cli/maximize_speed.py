@@ -33,7 +33,10 @@ def maximize_speed(
         bool, typer.Option("--figures/--no-figures", help="Draw figures and write report.html.")
     ] = True,
 ) -> None:
-    """Find the fastest gait of a problem, check it twice, and report."""
+    """Find the fastest gait of a problem.
+
+    It is checked by simulation and against a plain sweep, and told with the limits that hold it.
+    """
     with Steps() as steps:
         steps("reading")
         posed, sha256 = read(problem)

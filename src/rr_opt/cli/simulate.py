@@ -58,7 +58,10 @@ def simulate(
     kind: Annotated[Format, typer.Option("--format", help="Trajectory file.")] = Format.CSV,
     animate: Annotated[Film | None, typer.Option(help="Also make a film.")] = None,
 ) -> None:
-    """Simulate a gait; write its trajectory, a figure and, if asked for, a film."""
+    """Drive a gait for some time.
+
+    Writes the trajectory, a figure and, if asked for, a film.
+    """
     with Steps() as steps:
         from rr_opt.cli.motion_input import robot_and_gait, with_options  # noqa: PLC0415
         from rr_opt.motion.rollout import rollout  # noqa: PLC0415

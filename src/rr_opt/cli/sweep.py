@@ -27,7 +27,10 @@ def sweep(
     ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print sweep.json alone on stdout.")] = False,
 ) -> None:
-    """Try gaits on a grid over the bounds; write all of them, the best, and a figure."""
+    """Try gaits all over the bounds.
+
+    Writes all of them, the best one, and a figure; no solver is involved.
+    """
     with Steps() as steps:
         steps("reading")
         posed, sha256 = read(problem)

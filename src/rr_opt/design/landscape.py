@@ -67,7 +67,9 @@ class Landscape:
         """Steady cycles of gaits (4, K): amplitude, period, offset, ballast share."""
         count = gaits.shape[1]
         blocks = math.ceil(count * nodes / _BLOCK)
-        parts = [self._block(part, nodes) for part in np.array_split(gaits, blocks, axis=1)]
+        # A gait that does not settle comes out as inf or nan, which is the caller's to see.
+        with np.errstate(all="ignore"):
+            parts = [self._block(part, nodes) for part in np.array_split(gaits, blocks, axis=1)]
         if len(parts) == 1:
             return parts[0]
         return Cycles(

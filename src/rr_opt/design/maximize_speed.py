@@ -20,6 +20,7 @@ from rr_opt.design.seeds import Seed, find_seeds
 from rr_opt.design.setting import Setting, robot_of, scanned, settings_of
 from rr_opt.design.solve import Candidate
 from rr_opt.outcome import NotConvergedError, Status
+from rr_opt.physics.dynamics import require_friction
 from rr_opt.problem import Problem
 from rr_opt.robot.ballast import inertia_ratio
 from rr_opt.robot.gait import SineGait
@@ -79,6 +80,7 @@ def maximize_speed(problem: Problem, progress: Progress = lambda _: None) -> Opt
     clash and how far each must give) or NOT_CONVERGED; never a failure dressed as a solution.
     Raises InputError for a robot that has no steady cycle to find.
     """
+    require_friction(problem.robot)
     box = decisions(problem)
     clash = posture_clashes(problem, box)
     if clash:

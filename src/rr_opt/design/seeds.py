@@ -22,6 +22,8 @@ _CLIMBERS = {0: 1, 1: 4, 2: 6, 3: 8, 4: 10}
 # A start this much slower than the best is not climbed from; a top, not solved from.
 _PROMISING, _WORTH_SOLVING = 0.3, 0.5
 _APART = 0.3
+# What a gait counts as using of the torque limit that has no steady cycle.
+_UNSETTLED = 10.0
 _ROUGH = Effort(iterations=8, first=0.08, last=0.02)
 _THOROUGH = Effort(iterations=25, first=0.04, last=0.006)
 
@@ -42,7 +44,9 @@ def find_seeds(
 
     def terrain(points: Array, sign: Array, nodes: int = _NODES) -> tuple[Array, Array]:
         cycles = landscape.cycles(decisions.physical(points), nodes)
-        return sign * cycles.speed, cycles.peak_torque / torque_limit
+        speed, torque = sign * cycles.speed, cycles.peak_torque / torque_limit
+        settled = np.isfinite(speed) & np.isfinite(torque)
+        return np.where(settled, speed, 0.0), np.where(settled, torque, _UNSETTLED)
 
     free = decisions.free
     points = _scan(decisions)
@@ -70,7 +74,7 @@ def least_torque(landscape: Landscape, decisions: Decisions) -> float:
 
     def terrain(points: Array, sign: Array) -> tuple[Array, Array]:
         cycles = landscape.cycles(decisions.physical(points), _FINER_NODES)
-        return -cycles.peak_torque, np.zeros(len(sign))
+        return -np.nan_to_num(cycles.peak_torque, nan=1e6, posinf=1e6), np.zeros(len(sign))
 
     points, free = _scan(decisions), decisions.free
     sign = np.ones(len(points), int)

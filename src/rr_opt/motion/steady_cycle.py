@@ -1,11 +1,12 @@
 """The steady cycle: the one speed v(0) that a period carries back to itself.
 
 The period maps v(0) to v(T); where friction is viscous the map is affine and one Newton step
-from anywhere is exact, otherwise Newton's method goes on until it stands still.
+from anywhere is exact, otherwise Newton's method goes on inside a bracket until it stands still.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -21,7 +22,9 @@ from rr_opt.robot.parameters import Robot
 
 Array = NDArray[np.float64]
 
-_NEWTON_STEPS = 50
+_NEWTON_STEPS = 80
+_FIRST_STEP, _ABSURD = 0.1, 1e4  # m/s
+_FLAT = 1e-12
 
 
 @dataclass(frozen=True)
@@ -60,17 +63,26 @@ def reference_cycle(robot: Robot, gait: SineGait, *, samples: int = 2048) -> Ste
 
 
 def _close(robot: Robot, gait: SineGait, rollout: Callable[[float], Array]) -> SteadyCycle:
-    v0 = 0.0
+    v0, low, high = 0.0, -math.inf, math.inf
     # Beyond it a step can jump over the pole and close a cycle that does not exist.
     reached = gait.peak_angle >= robot.singular_angle
     for _ in range(0 if reached else _NEWTON_STEPS):
         path = rollout(v0)
         gap, slope = path[0, -1] - v0, path[4, -1] - 1.0
-        if not np.isfinite(gap) or not -slope > 1e-12:
+        if not np.isfinite(gap) or abs(v0) > _ABSURD:
             break
         if abs(gap) <= 1e-12 + 1e-10 * np.abs(path[0]).max():
             return _cycle(robot, gait, path)
-        v0 -= gap / slope
+        # Friction brakes, so v(T) - v(0) falls as v(0) grows: the sign of the gap says on which
+        # side the cycle lies, and what Newton's method proposes is held to it.
+        low, high = (v0, high) if gap > 0 else (low, v0)
+        proposed = v0 - gap / slope if slope < -_FLAT else math.nan
+        if low < proposed < high:
+            v0 = proposed
+        elif math.isfinite(low) and math.isfinite(high):
+            v0 = (low + high) / 2
+        else:
+            v0 += math.copysign(max(_FIRST_STEP, abs(v0)), gap)
     raise NotConvergedError(
         f"No steady cycle was found for amplitude {gait.amplitude:.4g} rad, period "
         f"{gait.period:.4g} s, offset {gait.offset:.4g} rad. A robot needs friction to settle, "

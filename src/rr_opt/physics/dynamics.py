@@ -22,6 +22,7 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
+from rr_opt.outcome import InputError
 from rr_opt.physics.effects import CATALOGUE
 from rr_opt.physics.kinematics import (
     ROBOT_PARAMETERS,
@@ -62,10 +63,25 @@ class Dynamics:
         )
         return np.array([*robot_values(robot), *beyond])
 
+    def dissipates(self, robot: Robot) -> bool:
+        """Whether motion costs the robot energy; without that no gait ever settles."""
+        p = self.values(robot)
+        return any(float(self.energy(1.0, phi, 1.0, p)[1]) > 0 for phi in (0.0, 0.3))
+
 
 def dynamics_of(robot: Robot) -> Dynamics:
     """The model with the effects that the robot lists."""
     return derive(tuple(use.name for use in robot.physics))
+
+
+def require_friction(robot: Robot) -> None:
+    """Raise InputError for a robot that no gait brings to a steady speed."""
+    if not dynamics_of(robot).dissipates(robot):
+        raise InputError(
+            "The robot has no friction: kappa (or k) is 0 on both platforms, and `physics` adds "
+            "none. Without friction no gait settles to a steady speed. Give at least one platform "
+            "a kappa above 0."
+        )
 
 
 @lru_cache

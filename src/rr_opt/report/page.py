@@ -9,6 +9,7 @@ from html import escape
 from rr_opt import __version__
 from rr_opt.outcome import Status
 from rr_opt.report.answer import Answer
+from rr_opt.report.holding import holding_sentence
 from rr_opt.report.html import card, figure
 from rr_opt.report.page_style import CSS
 from rr_opt.report.page_tables import bounds_table, limits_table, optima_table, robot_table
@@ -100,8 +101,6 @@ def _header(answer: Answer) -> str:
 
 def _why(answer: Answer) -> str:
     """What holds the optimum back, and whether it stands alone."""
-    from rr_opt.report.holding import holding_sentence  # noqa: PLC0415
-
     ties = len(answer.optimum.ties)
     tie = f" {ties} other local optimum is as fast." if ties == 1 else ""
     tie = f" {ties} other local optima are as fast." if ties > 1 else tie

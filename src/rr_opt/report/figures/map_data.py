@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from rr_opt.problem import GaitBounds, Interval, Problem
 from rr_opt.robot.gait import SineGait
 from rr_opt.robot.parameters import Robot
+from rr_opt.verify.sweep import speed_map
 
 Array = NDArray[np.float64]
 
@@ -36,8 +37,6 @@ def map_data(problem: Problem, robot: Robot, best: SineGait) -> MapData:
 
     A quantity that the problem fixes is shown from half to one and a half times its value.
     """
-    from rr_opt.verify.sweep import speed_map  # noqa: PLC0415
-
     shown = replace(
         problem,
         gait=GaitBounds(
