@@ -18,6 +18,15 @@ _NEAR = (-2, -1, 0, 1, 2, 3)
 """Samples, counted from the start of a step, whose polynomial stands for the integrand."""
 
 
+def _weights() -> Array:
+    """Of the samples _NEAR in the integral over a step of length 1: exact for polynomials."""
+    powers = np.arange(len(_NEAR))
+    return np.linalg.solve(np.array(_NEAR, float) ** powers[:, None], 1 / (powers + 1.0))
+
+
+_WEIGHTS = _weights()
+
+
 def solve(a: Array, b: Array, span: Array) -> tuple[Array, Array]:
     """v (n, K), and the mean of a (K,), harmonic by harmonic.
 
@@ -42,13 +51,15 @@ def solve_stiff(a: Array, b: Array, span: Array) -> tuple[Array, Array]:
     """
     n, h = len(a), span / len(a)
     A, mean = _exponent(a, frequencies(n, span))
-    ahead = np.roll(A, -1, axis=0)
-    # Clipped: where a step is so stiff, the solution is only as good as the samples are dense.
-    gain = np.exp(np.clip(ahead - A + mean * h, -500.0, 1.0))
+    # Clipped: where a step is stiffer, v is only as good as the samples are dense.
+    gain = np.exp(np.clip(np.roll(A, -1, axis=0) - A + mean * h, -10.0, 1.0))
+    # exp of what a gathers from each near sample to the end of the step, one gain at a time.
+    next1, next2, last1, last2 = (np.roll(gain, k, axis=0) for k in (-1, -2, 1, 2))
+    factors = (gain * last1 * last2, gain * last1, gain, 1.0, 1 / next1, 1 / (next1 * next2))
     shift = np.zeros_like(a)
-    for k, weight in zip(_NEAR, _weights(), strict=True):
-        factor = np.clip(ahead - np.roll(A, -k, axis=0) + mean * h * (1 - k), -30.0, 30.0)
-        shift += weight * h * np.exp(factor) * np.roll(b, -k, axis=0)
+    for k, weight, factor in zip(_NEAR, _WEIGHTS, factors, strict=True):
+        shift += weight * factor * np.roll(b, -k, axis=0)
+    shift *= h
     steps = 1
     while steps < n:
         later = np.roll(gain, -steps, axis=0)
@@ -65,9 +76,3 @@ def _exponent(a: Array, omega: NDArray[np.complex128]) -> tuple[Array, Array]:
     spectrum[0] = 0.0
     spectrum[1:] /= omega[1:]
     return irfft(spectrum, len(a), axis=0), mean
-
-
-def _weights() -> Array:
-    """Of the samples _NEAR in the integral over a step of length 1: exact for polynomials."""
-    powers = np.arange(len(_NEAR))
-    return np.linalg.solve(np.array(_NEAR, float) ** powers[:, None], 1 / (powers + 1.0))

@@ -23,7 +23,7 @@ _MARGIN = {True: 10.0, False: 0.3}
 """The fastest harmonics may be so many times as large as the speed's error: it comes from their
 products where friction is viscous (True), and where it is not from themselves."""
 
-_CHUNK = 8192
+_CHUNK = 16384
 """Samples of shapes in one go."""
 
 

@@ -31,8 +31,9 @@ _STEPS, _COARSE_STEPS = 25, 8
 _SMALL, _TINY = 1e-3, 1e-12
 """A speed below this share of the largest |v|, or below this in m/s, counts as this."""
 
-_BLOCK = 4096
-"""Samples in one go: some arrays of this length fit the processor's cache."""
+_BLOCK = {True: 4096, False: 16384}
+"""Samples in one go where friction is viscous (True) or not: so long that NumPy's own time per
+operation hardly counts, so short that some arrays fit the processor's cache."""
 
 
 class Steady(NamedTuple):
@@ -94,7 +95,7 @@ class SteadyFourier:
         swing, rate = amplitude * np.sin(theta), amplitude * np.cos(theta)
         powers = self._powers(swing + offset, p) if self.viscous else None
         parts = []
-        width = max(1, _BLOCK // (n * period.shape[1]))
+        width = max(1, _BLOCK[self.viscous] // (n * period.shape[1]))
         for block in (slice(k, k + width) for k in range(0, len(period), width)):
             T = period[block]
             span = (T / 2 if straight else T).ravel()

@@ -52,7 +52,7 @@ _ROUGH = 0.1
 # Other friction than viscous takes some hundred times as long.
 _EFFORT = {
     True: _Effort(10_000, 1e-6, 1e-8, 4, 1e-4, 7),
-    False: _Effort(600, 1e-3, 1e-5, 2, 1e-2, 3),
+    False: _Effort(600, 1e-2, 3e-5, 2, 3e-2, 3),
 }
 
 
