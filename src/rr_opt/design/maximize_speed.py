@@ -62,7 +62,7 @@ class Optimum:
     @property
     def sideways(self) -> bool:
         """See above."""
-        return self.best is not None and self.best.prices["direction"] > abs(self.best.speed)
+        return self.best is not None and abs(self.best.prices["direction"]) > 1e-3
 
     @property
     def ties(self) -> tuple[Candidate, ...]:

@@ -22,6 +22,7 @@ _CLIMBERS = {0: 1, 1: 4, 2: 6, 3: 8, 4: 10}
 # A start this much slower than the best is not climbed from; a top, not solved from.
 _PROMISING, _WORTH_SOLVING = 0.3, 0.5
 _APART = 0.3
+_FEW = 2
 # What a gait counts as using of the torque limit that has no steady cycle.
 _UNSETTLED = 10.0
 _ROUGH = Effort(iterations=8, first=0.08, last=0.02)
@@ -61,7 +62,8 @@ def find_seeds(
     tops, sign = tops[worth], sign[worth]
     if decisions.mirrored:
         tops[:, 1] = np.maximum(tops[:, 1], 1 - tops[:, 1])
-    if len(tops) > 1:
+    # A few tops are solved from sooner than told apart.
+    if len(tops) > _FEW:
         finer = partial(terrain, nodes=_FINER_NODES)
         tops, sign, values = climb(tops, sign, free, finer, penalty, _THOROUGH)
     least = values[0] - (1 - _WORTH_SOLVING) * abs(values[0])

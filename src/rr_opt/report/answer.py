@@ -93,6 +93,11 @@ class Answer:
         ties = len(self.optimum.ties)
         if ties:
             text += f" {ties} other gait{'s are' if ties > 1 else ' is'} as fast: a tie."
+        if self.optimum.sideways:
+            text += (
+                " It sits where forward turns into backward: its mean velocity is at right angles "
+                "to its mean heading, and which way it goes is a matter of definition."
+            )
         return text
 
 
