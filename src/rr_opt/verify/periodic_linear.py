@@ -8,9 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.fft import irfft, rfft
 
-from rr_opt.verify.spectral import frequencies
+from rr_opt.verify.spectral import Spectrum, frequencies, harmonics, samples
 
 Array = NDArray[np.float64]
 
@@ -21,7 +20,8 @@ _NEAR = (-2, -1, 0, 1, 2, 3)
 def _weights() -> Array:
     """Of the samples _NEAR in the integral over a step of length 1: exact for polynomials."""
     powers = np.arange(len(_NEAR))
-    return np.linalg.solve(np.array(_NEAR, float) ** powers[:, None], 1 / (powers + 1.0))
+    moments = np.array(_NEAR, float) ** powers[:, None]
+    return np.asarray(np.linalg.solve(moments, 1 / (powers + 1.0)), float)
 
 
 _WEIGHTS = _weights()
@@ -36,9 +36,9 @@ def solve(a: Array, b: Array, span: Array) -> tuple[Array, Array]:
     omega = frequencies(len(a), span)
     A, mean = _exponent(a, omega)
     growth = np.exp(A)
-    forcing = rfft(b / growth, axis=0)
+    forcing = harmonics(b / growth)
     forcing /= omega - mean
-    return growth * irfft(forcing, len(a), axis=0), mean
+    return growth * samples(forcing, len(a)), mean
 
 
 def solve_stiff(a: Array, b: Array, span: Array) -> tuple[Array, Array]:
@@ -69,10 +69,10 @@ def solve_stiff(a: Array, b: Array, span: Array) -> tuple[Array, Array]:
     return shift / (1 - gain), mean
 
 
-def _exponent(a: Array, omega: NDArray[np.complex128]) -> tuple[Array, Array]:
+def _exponent(a: Array, omega: Spectrum) -> tuple[Array, Array]:
     """A (n, K) and the mean of a (K,)."""
-    spectrum = rfft(a, axis=0)
+    spectrum = harmonics(a)
     mean = spectrum[0].real / len(a)
     spectrum[0] = 0.0
     spectrum[1:] /= omega[1:]
-    return irfft(spectrum, len(a), axis=0), mean
+    return samples(spectrum, len(a)), mean

@@ -11,10 +11,11 @@ from collections.abc import Callable
 from functools import lru_cache
 
 import numpy as np
+from numpy.fft import irfft, rfft
 from numpy.typing import NDArray
-from scipy.fft import irfft, rfft
 
 Array = NDArray[np.float64]
+Spectrum = NDArray[np.complex128]
 _Operation = Callable[[Array, bool], Array]
 
 _DENSE = 64
@@ -24,16 +25,26 @@ _SMOOTH = 256
 """At least so many samples show a peak well enough for a parabola."""
 
 
-def frequencies(n: int, span: Array) -> NDArray[np.complex128]:
+def harmonics(x: Array) -> Spectrum:
+    """The spectrum (n/2 + 1, K) of x: its mean times n, then what goes with each frequency."""
+    return np.asarray(rfft(x, axis=0))
+
+
+def samples(spectrum: Spectrum, n: int) -> Array:
+    """The n samples (n, K) that have this spectrum."""
+    return np.asarray(irfft(spectrum, n, axis=0))
+
+
+def frequencies(n: int, span: Array) -> Spectrum:
     """i omega of the harmonics of n samples, (n/2 + 1, K), rad/s."""
-    return 2j * np.pi / span * np.arange(n // 2 + 1)[:, None]
+    return np.arange(n // 2 + 1)[:, None] * (np.complex128(2j * np.pi) / span)
 
 
 def derivative(x: Array, span: Array) -> Array:
     """dx/dt (n, K) of functions that repeat after the span."""
-    spectrum = rfft(x, axis=0) * frequencies(len(x), span)
+    spectrum = harmonics(x) * frequencies(len(x), span)
     spectrum[-1] = 0.0
-    return irfft(spectrum, len(x), axis=0)
+    return samples(spectrum, len(x))
 
 
 def integral(x: Array, span: Array, flipping: bool) -> Array:
@@ -43,7 +54,7 @@ def integral(x: Array, span: Array, flipping: bool) -> Array:
 
 def refined(x: Array) -> Array:
     """Functions that repeat after the span at twice as many samples, (2n, K)."""
-    return irfft(rfft(x, axis=0), 2 * len(x), axis=0) * 2
+    return samples(harmonics(x), 2 * len(x)) * 2
 
 
 def peak(x: Array, flipping: bool) -> Array:
@@ -81,21 +92,21 @@ def _repeating(x: Array, flipping: bool) -> Array:
 
 def _integral(x: Array, flipping: bool) -> Array:
     whole = _repeating(x, flipping)
-    spectrum = rfft(whole, axis=0)
+    spectrum = harmonics(whole)
     spectrum[0] = 0.0
     spectrum[1:] /= 2j * np.pi * np.arange(1, len(spectrum))[:, None] * len(x) / len(whole)
-    return irfft(spectrum, len(whole), axis=0)[: len(x)]
+    return samples(spectrum, len(whole))[: len(x)]
 
 
 def _resampled(x: Array, flipping: bool) -> Array:
     factor = max(4, _SMOOTH // len(x))
     whole = _repeating(x, flipping)
-    dense = irfft(rfft(whole, axis=0), factor * len(whole), axis=0) * factor
+    dense = samples(harmonics(whole), factor * len(whole)) * factor
     return dense[: factor * len(x)]
 
 
 def _tail(x: Array, flipping: bool) -> Array:
     whole = _repeating(x, flipping)
-    spectrum = rfft(whole, axis=0) * (2 / len(whole))
+    spectrum = harmonics(whole) * (2 / len(whole))
     top = spectrum[-1 - len(spectrum) // 8 : -1]
     return np.concatenate([top.real, top.imag])

@@ -76,7 +76,7 @@ class SpeedPowers:
         for _ in range(8):
             p = draw.uniform(0.5, 1.5, len(dynamics.parameters))
             phi, (v, q, r) = draw.uniform(-1, 1), draw.uniform(-4, 4, 3)
-            c = Powers(*(float(value) for value in self._function(phi, p)))
+            c = self(np.float64(phi), p)
             tried = (
                 c.a_vq * v * q + c.a_v * v + c.a_qq * q**2 + c.a_q * q + c.a_r * r,
                 c.w_v * v + c.w_q * q,

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rr_opt.physics.dynamics import derive, dynamics_of
-from rr_opt.problem import Problem, RatioChoice
+from rr_opt.problem import Problem
 from rr_opt.robot.ballast import with_inertia_ratio
 from rr_opt.robot.parameters import Robot
 from rr_opt.verify.steady_fourier import SteadyFourier
@@ -19,9 +19,10 @@ Array = NDArray[np.float64]
 FEWEST, MOST = 16, 4096
 """Samples of half a period of a straight gait; of a whole period twice as many."""
 
-_MARGIN = {True: 10.0, False: 0.3}
-"""The fastest harmonics may be so many times as large as the speed's error: it comes from their
-products where friction is viscous (True), and where it is not from themselves."""
+_MARGIN = {True: 10.0, False: 0.01}
+"""The fastest harmonics of the velocity may be so many times as large as the speed's error. It
+comes from their products where friction is viscous (True); where it is not, those of the
+friction count, which are stronger."""
 
 _CHUNK = 16384
 """Samples of shapes in one go."""
@@ -96,7 +97,8 @@ def speeds(
     T = np.broadcast_to(np.asarray(period, float), shape).reshape(len(alpha), periods)
     which, p = _parameters(problem, None if ratio is None else J)
     found = _adaptive(problem.robot, alpha, phi0, T, which, p, tolerance)
-    return Speeds(*(part.reshape(shape) for part in found))
+    speed, turn, torque = (part.reshape(shape) for part in found[:3])
+    return Speeds(speed, turn, torque, found.converged.reshape(shape))
 
 
 def _parameters(problem: Problem, ratio: Array | None) -> tuple[NDArray[np.int_] | None, Array]:

@@ -31,6 +31,9 @@ _STEPS, _COARSE_STEPS = 25, 8
 _SMALL, _TINY = 1e-3, 1e-12
 """A speed below this share of the largest |v|, or below this in m/s, counts as this."""
 
+_DAMPED = -1e-9
+"""Logarithm by which a disturbance of v shrinks over a span, at least; else v never settles."""
+
 _BLOCK = {True: 4096, False: 16384}
 """Samples in one go where friction is viscous (True) or not: so long that NumPy's own time per
 operation hardly counts, so short that some arrays fit the processor's cache."""
@@ -42,8 +45,8 @@ class Steady(NamedTuple):
     speed        along the mean circle, signed along platform 1's mean heading, m/s
     turn         heading gained per period, rad
     peak_torque  largest |torque|, between the samples too, N m
-    error        size of the fastest harmonics of the velocity, relative to the speed; the speed
-                 itself is some ten times better than that. inf: no steady cycle was found
+    error        size of the fastest harmonics of the velocity, relative to the speed; inf where
+                 no steady cycle was found
     """
 
     speed: Array
@@ -76,6 +79,8 @@ class SteadyFourier:
         self._motion = over_arrays(motion)
         self._tangent = over_arrays(motion.factory("tangent", names, ["vdot", "jac:vdot:v"]))
 
+    # What is not finite has no settled cycle, and comes out as such.
+    @np.errstate(divide="ignore", over="ignore", invalid="ignore")
     def cycles(
         self,
         amplitude: Array,
@@ -133,7 +138,7 @@ class SteadyFourier:
         """v (n, K) along phi, dphi, ddphi (3, n, K), and where the steps have died out (K,)."""
         if angle.shape[1] > _COARSE:
             coarse, _ = self._newton(angle[:, ::2], p, span, 1e-4, _COARSE_STEPS)
-            v = refined(coarse)
+            v = np.where(np.isfinite(coarse).all(axis=0), refined(coarse), 0.0)
         else:
             # The chord of vdot from v = -1 to 1 m/s: to it dry friction is a small matter.
             low, high = (self._motion(v, *angle, *p)[0] for v in (-1.0, 1.0))
@@ -148,7 +153,7 @@ class SteadyFourier:
             size = np.abs(step).max(axis=0)
             damp = np.where(size > 0.9 * before, damp / 2, np.minimum(1.5 * damp, 1.0))
             v[:, columns] = here + damp * step
-            done = (size <= last * np.abs(here).max(axis=0)) & (mean < 0)
+            done = (size <= last * np.abs(here).max(axis=0)) & (mean * span[columns] < _DAMPED)
             settled[columns[done]] = True
             going = ~done & np.isfinite(size) & (damp > 1e-3)
             columns, damp, before = columns[going], damp[going], size[going]
@@ -175,7 +180,7 @@ def _by_powers(powers: Powers, gaits: _Angle, span: Array) -> _Motion:
     torque = (c.t_vv * u + (c.t_vq * q) * omega + c.t_v) * u
     torque += ((c.t_qq * q**2 + c.t_r * r) * omega + c.t_q * q) * omega
     w, side, torque = (part.reshape(v.shape) for part in (w, side, torque))
-    return v, w, side, torque, mean < 0
+    return v, w, side, torque, mean * span < _DAMPED
 
 
 def _mean_speed(
