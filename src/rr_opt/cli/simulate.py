@@ -57,6 +57,9 @@ def simulate(
     ] = None,
     kind: Annotated[Format, typer.Option("--format", help="Trajectory file.")] = Format.CSV,
     animate: Annotated[Film | None, typer.Option(help="Also make a film.")] = None,
+    json: Annotated[
+        bool, typer.Option("--json", help="Print a machine-readable summary alone on stdout.")
+    ] = False,
 ) -> None:
     """Drive a gait for some time.
 
@@ -65,8 +68,12 @@ def simulate(
     with Steps() as steps:
         from rr_opt.cli.motion_input import robot_and_gait, with_options  # noqa: PLC0415
         from rr_opt.motion.rollout import rollout  # noqa: PLC0415
-        from rr_opt.report.archive import folder_for_results  # noqa: PLC0415
-        from rr_opt.report.motion_summary import beyond_servo, motion_summary  # noqa: PLC0415
+        from rr_opt.report.archive import folder_for_results, strict_json  # noqa: PLC0415
+        from rr_opt.report.motion_summary import (  # noqa: PLC0415
+            beyond_servo,
+            motion_record,
+            motion_summary,
+        )
         from rr_opt.report.simulated import check_wishes, write_motion  # noqa: PLC0415
 
         robot, gait = robot_and_gait(source)
@@ -81,7 +88,10 @@ def simulate(
         )
     for warning in beyond_servo(robot, gait, driven):
         typer.echo(warning, err=True)
-    typer.echo(motion_summary(gait, driven, start.value, written), nl=False)
+    if json:
+        typer.echo(strict_json(motion_record(gait, driven, start.value, written)), nl=False)
+    else:
+        typer.echo(motion_summary(gait, driven, start.value, written), nl=False)
 
 
 def _name(source: Path | None) -> str:

@@ -60,9 +60,11 @@ def climb(
     """
     best = merit(*terrain(x, sign), penalty)
     d = len(free)
+    if not d:
+        return x, sign, best
     stencil, design = _stencil(d)
     size = np.full(len(x), effort.first)
-    for _ in range(effort.iterations if d else 0):
+    for _ in range(effort.iterations):
         # Near a face the stencil moves inside; its quadratic still serves up to the face.
         centre = np.clip(x[:, free], size[:, None], 1 - size[:, None])
         trial = np.repeat(x[:, None, :], len(stencil) + 1, axis=1)

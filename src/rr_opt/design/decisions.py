@@ -23,6 +23,9 @@ from rr_opt.robot.parameters import Robot
 
 Array = NDArray[np.float64]
 
+NO_ROOM = 1e-7
+"""A range this narrow, relative, is a point."""
+
 
 @dataclass(frozen=True)
 class Decisions:
@@ -40,6 +43,17 @@ class Decisions:
     ballast: Interval
     reach: float
     rate: float
+
+    @property
+    def amplitude_pinned(self) -> bool:
+        """The limits leave the amplitude no room above its lower bound."""
+        least_offset = abs(self.offset.clip(0.0))
+        most = min(
+            self.amplitude.high,
+            self.reach - least_offset,
+            self.rate * self.period.high / (2 * math.pi),
+        )
+        return most - self.amplitude.low <= NO_ROOM * most
 
     @property
     def empty(self) -> bool:
@@ -78,13 +92,21 @@ def decisions(problem: Problem) -> Decisions:
     least_period = 2 * math.pi * amplitude.low / limits.rate
     room = reach - amplitude.low
     return Decisions(
-        period=Interval(max(period.low, least_period), period.high),
-        offset=Interval(max(offset.low, -room), min(offset.high, room)),
+        period=_tightened(Interval(max(period.low, least_period), period.high)),
+        offset=_tightened(Interval(max(offset.low, -room), min(offset.high, room))),
         amplitude=amplitude,
         ballast=ballast_interval(problem.robot, problem.inertia_ratio),
         reach=reach,
         rate=limits.rate,
     )
+
+
+def _tightened(interval: Interval) -> Interval:
+    """The interval, or one point where limits and bounds leave no more than rounding."""
+    low, high = interval.low, interval.high
+    if abs(high - low) <= NO_ROOM * max(abs(low), abs(high)):
+        return Interval(high, high)
+    return interval
 
 
 def reach_before_singularity(robot: Robot, margin: float) -> float:

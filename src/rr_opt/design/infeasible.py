@@ -7,11 +7,14 @@ are known exactly. For the torque the smallest peak that any allowed gait has is
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 from rr_opt.design.decisions import Decisions, reach_before_singularity
 from rr_opt.design.landscape import Landscape
 from rr_opt.design.seeds import least_torque
 from rr_opt.problem import Problem
+
+_ROUNDING = 1 + 1e-9
 
 
 def posture_clashes(problem: Problem, box: Decisions) -> str:
@@ -39,55 +42,86 @@ def direction_clash(problem: Problem, fastest: float) -> str:
 
 
 def _told(clashes: list[str]) -> str:
-    return " ".join(["No gait keeps all limits.", *clashes]) if clashes else ""
+    if not clashes:
+        return ""
+    both = ["All of these have to give at once."] if len(clashes) > 1 else []
+    return " ".join(["No gait keeps all limits.", *clashes, *both])
 
 
 def _angle(problem: Problem) -> list[str]:
     gait, limits, robot = problem.gait, problem.limits, problem.robot
     least = abs(gait.offset.clip(0.0))
     needed = gait.amplitude.low + least
-    of = f"the amplitude's lower bound {gait.amplitude.low:.4g} rad"
+    of = f"the amplitude's lower bound {gait.amplitude.low:.6g} rad"
     if least:
-        of += f" about an offset of at least {least:.4g} rad"
+        of += f" about an offset of at least {least:.6g} rad"
     clashes = []
-    if needed > limits.angle:
+    if needed > limits.angle * _ROUNDING:
         clashes.append(
-            f"Limit `angle` ({limits.angle:.4g} rad) clashes with {of}: raise the limit to "
-            f"{needed:.4g} rad, or lower the amplitude's bound to {limits.angle - least:.4g} rad."
+            f"Limit `angle` ({limits.angle:.6g} rad) clashes with {of}: raise the limit to "
+            f"{_up(needed)} rad, or {_lower(limits.angle, least)}."
         )
     reach = reach_before_singularity(robot, limits.singularity)
-    if needed > reach:
-        S1 = robot.platform1.c * math.cos(needed) + robot.platform2.c
-        lower = (
-            f"lower the amplitude's bound to {reach - least:.4g} rad"
-            if reach > least
-            else "bring the offset nearer to 0"
-        )
-        give = (
-            f"lower the margin to {1e3 * S1:.4g} mm, or {lower}."
-            if S1 > 0
-            else f"{lower}; no margin allows it, as S1 falls to {1e3 * S1:.4g} mm, past the "
-            "singular posture."
-        )
-        clashes.append(
-            f"Limit `singularity` (S1 = c1 cos phi + c2 >= {1e3 * limits.singularity:.4g} mm, "
-            f"so |phi| <= {max(reach, 0.0):.4g} rad) clashes with {of}: {give}"
-        )
+    if needed > reach * _ROUNDING:
+        S1 = 1e3 * (robot.platform1.c * math.cos(needed) + robot.platform2.c)
+        widest = 1e3 * (robot.platform1.c + robot.platform2.c)
+        asked = f"Limit `singularity` (S1 = c1 cos phi + c2 >= {1e3 * limits.singularity:.6g} mm"
+        if math.isinf(reach):
+            clashes.append(
+                f"{asked}) is more than the robot has: at phi = 0, S1 is {widest:.6g} mm. With "
+                f"{of} it falls to {S1:.6g} mm: ask for a margin of at most that."
+                if S1 > 0
+                else f"{asked}) is more than the robot has: at phi = 0, S1 is {widest:.6g} mm. "
+                "Ask for a smaller margin."
+            )
+        else:
+            margin = (
+                f"lower the margin to {_down(S1)} mm, or {_lower(reach, least)}."
+                if S1 > 0
+                else f"{_lower(reach, least)}; no margin allows it, as S1 falls to {S1:.6g} mm, "
+                "past the singular posture."
+            )
+            clashes.append(f"{asked}, so |phi| <= {_down(reach)} rad) clashes with {of}: {margin}")
     return clashes
+
+
+def _lower(reach: float, offset: float) -> str:
+    """How the gait's bounds must give for |phi| to stay within reach."""
+    if reach > offset:
+        return f"lower the amplitude's bound to {_down(reach - offset)} rad"
+    return f"bring the offset within {_down(reach)} rad and the amplitude's bound below the rest"
 
 
 def _rate(problem: Problem) -> list[str]:
     gait, limits = problem.gait, problem.limits
     needed = 2 * math.pi * gait.amplitude.low / gait.period.high
-    if needed <= limits.rate:
+    if needed <= limits.rate * _ROUNDING:
         return []
     return [
-        f"Limit `rate` ({limits.rate:.4g} rad/s) clashes with the amplitude's lower bound "
-        f"{gait.amplitude.low:.4g} rad and the period's upper bound {gait.period.high:.4g} s: "
-        f"raise the limit to {needed:.4g} rad/s ({needed * 30 / math.pi:.4g} rpm), or the period's "
-        f"bound to {2 * math.pi * gait.amplitude.low / limits.rate:.4g} s, or lower the "
-        f"amplitude's bound to {limits.rate * gait.period.high / (2 * math.pi):.4g} rad."
+        f"Limit `rate` ({limits.rate:.6g} rad/s) clashes with the amplitude's lower bound "
+        f"{gait.amplitude.low:.6g} rad and the period's upper bound {gait.period.high:.6g} s: "
+        f"raise the limit to {_up(needed)} rad/s ({_up(needed * 30 / math.pi)} rpm), or the "
+        f"period's bound to {_up(2 * math.pi * gait.amplitude.low / limits.rate)} s, or lower the "
+        f"amplitude's bound to {_down(limits.rate * gait.period.high / (2 * math.pi))} rad."
     ]
+
+
+def _up(value: float) -> str:
+    """Six digits, rounded up: a limit given as told then is enough."""
+    return _rounded(value, math.ceil)
+
+
+def _down(value: float) -> str:
+    """Six digits, rounded down."""
+    return _rounded(value, math.floor)
+
+
+def _rounded(value: float, towards: Callable[[float], int]) -> str:
+    step = 10.0 ** (math.floor(math.log10(abs(value))) - 5) if value else 1.0
+    # What is exact to rounding stays as it is: 2.7 is not to become 2.70001.
+    nearest = round(value / step)
+    exact = abs(value / step - nearest) < 1e-6
+    return f"{(nearest if exact else towards(value / step)) * step:.6g}"
 
 
 def _ballast(box: Decisions) -> list[str]:
@@ -103,8 +137,10 @@ def _torque(problem: Problem, box: Decisions, landscapes: list[Landscape]) -> li
     least = min(least_torque(landscape, box) for landscape in landscapes)
     if least <= limit:
         return []
+    # The search for it is good to a few parts in ten thousand.
+    enough = _up(1.001 * least)
     return [
-        f"Limit `torque` ({limit:.4g} N m) clashes with the gait's bounds: among the gaits that "
-        f"keep the other limits, the least peak torque is {least:.4g} N m. Raise the limit to "
-        "that, or allow longer periods or smaller amplitudes."
+        f"Limit `torque` ({limit:.6g} N m) clashes with the gait's bounds: among the gaits that "
+        f"keep the other limits, the least peak torque is {enough} N m. Raise the limit to that, "
+        "or allow longer periods or smaller amplitudes."
     ]

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from rr_opt.design.decisions import decisions
 from rr_opt.design.interval import DECISIONS, LIMITS
 from rr_opt.design.landscape import Landscape
 from rr_opt.design.multiple_shooting import shooting
@@ -143,7 +144,13 @@ def _bounds(setting: Setting, n: int) -> tuple[Array, Array, Array, Array]:
     if share is None and setting.ballast.fixed:
         share = 0.0
     shares = Interval(0.0, 1.0) if share is None else Interval(share, share)
-    boxes = (gait.amplitude, gait.period, gait.offset, shares)
+    # Where limits and bounds leave one value there is no inside for the solver to move in: the
+    # decision is fixed, and rows that then depend on nothing free are dropped.
+    box = decisions(problem)
+    amplitude = Interval(*[gait.amplitude.low] * 2) if box.amplitude_pinned else gait.amplitude
+    period = box.period if box.period.fixed else gait.period
+    offset = box.offset if box.offset.fixed else gait.offset
+    boxes = (amplitude, period, offset, shares)
     free = [np.inf] * 5
     lbx = np.concatenate([[box.low for box in boxes], np.negative(free), -infinite])
     ubx = np.concatenate([[box.high for box in boxes], free, infinite])
@@ -157,6 +164,11 @@ def _bounds(setting: Setting, n: int) -> tuple[Array, Array, Array, Array]:
         "direction": _AHEAD,
     }
     high = {"rate": limits.rate, "angle+": limits.angle, "angle-": limits.angle}
+    if amplitude.fixed and offset.fixed:
+        low = {"direction": _AHEAD}
+        high = {"rate": limits.rate}
+    if amplitude.fixed and period.fixed:
+        high.pop("rate")
     lbg = [tight, [low.get(name, -np.inf) for name in LIMITS], np.full(n, -limits.torque)]
     ubg = [tight, [high.get(name, np.inf) for name in LIMITS], np.full(n, limits.torque)]
     return lbx, ubx, np.concatenate(lbg), np.concatenate(ubg)

@@ -18,6 +18,9 @@ from rr_opt.problem import GaitBounds, Limits, Problem, RatioChoice
 from rr_opt.robot.ballast import Loads
 from rr_opt.robot.parameters import Robot, Servo
 
+LONGEST_PERIOD = 60.0
+"""Longer ones are taken for a slip of the unit, s."""
+
 
 def read_problem(path: str | Path | None = None) -> Problem:
     """The problem of a file, of a folder with problem.yaml, or (None) the shipped one.
@@ -86,10 +89,33 @@ def _limits(given: LimitsModel, servo: Servo) -> Limits:
     )
 
 
+def _gait_findings(model: ProblemModel, document: Document) -> Iterator[Issue]:
+    """Gaits that say nothing, or whose steady cycle nobody could compute or wait for."""
+    if model.gait.amplitude.high <= 0:
+        message = (
+            "Read an amplitude of at most 0. Expected an upper bound above 0: a gait that "
+            "does not move the servo does not move the robot."
+        )
+        yield document.issue("error", ("gait", "amplitude"), message)
+    if model.gait.period.high > LONGEST_PERIOD:
+        message = (
+            f"Read a period of up to {model.gait.period.high:.4g} s. Expected at most "
+            f"{LONGEST_PERIOD:.4g} s. Check the unit."
+        )
+        yield document.issue("error", ("gait", "period"), message)
+
+
 def _contradictions(
     model: ProblemModel, ratio: RatioChoice | None, robot: Robot, document: Document
 ) -> Iterator[Issue]:
     """What the problem asks for and its robot cannot do."""
+    yield from _gait_findings(model, document)
+    if robot.k1 == robot.k2 == 0 and not robot.physics:
+        message = (
+            "Read kappa = 0 (or k = 0) on both platforms, and no `physics`. Without friction no "
+            "gait settles to a steady speed. Give at least one platform a kappa above 0."
+        )
+        yield document.issue("error", ("robot",), message)
     if ratio:
         for level, key, message in ratio_findings(ratio, robot):
             yield document.issue(level, ("inertia_ratio", key), message)

@@ -10,7 +10,7 @@ from rr_opt.files.issue import InvalidFileError, Issue, has_errors
 from rr_opt.files.model_issues import validate
 from rr_opt.files.provenance_section import read_provenance
 from rr_opt.files.robot_model import DEFAULT_WHEEL_RADIUS, PlatformModel, RobotModel
-from rr_opt.files.robot_sense import doubts
+from rr_opt.files.robot_sense import doubts, too_much_friction
 from rr_opt.files.source import read_document
 from rr_opt.robot.parameters import Platform, Robot, Servo
 
@@ -49,7 +49,8 @@ def robot_from(document: Document) -> tuple[Robot | None, list[Issue]]:
         **beyond,
     )
     issues += [document.issue("warning", path, message) for path, message in doubts(robot)]
-    return robot, issues
+    stuck = [document.issue("error", path, text) for path, text in too_much_friction(robot)]
+    return (None if stuck else robot), issues + stuck
 
 
 def _platform(model: PlatformModel, h: float) -> Platform:

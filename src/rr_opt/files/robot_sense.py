@@ -11,6 +11,9 @@ from rr_opt.robot.parameters import Platform, Robot
 _LARGEST_LENGTH = 5.0
 """Longer platforms are taken for millimetres written as metres, m."""
 
+_LARGEST_FRICTION = 1000.0
+"""A robot of a kilogram then stops within a fraction of a millisecond, N s/m per wheel."""
+
 
 def doubts(robot: Robot) -> Iterator[tuple[tuple[str, ...], str]]:
     """Key path and message of every value that looks like a slip of the pen."""
@@ -24,6 +27,18 @@ def doubts(robot: Robot) -> Iterator[tuple[tuple[str, ...], str]]:
             f"The inertia ratio J20/J10 about the joint is {ratio:.3g}. Expected 0.01 to 100: the "
             "platforms hardly belong together. Check the units of m, I, c and a of both.",
         )
+
+
+def too_much_friction(robot: Robot) -> Iterator[tuple[tuple[str, ...], str]]:
+    """Key path and message of friction that would stop any robot at once."""
+    for key, k in (("platform1", robot.k1), ("platform2", robot.k2)):
+        if k > _LARGEST_FRICTION:
+            yield (
+                (key, "kappa"),
+                f"The friction along the floor is k = kappa/h^2 = {k:.3g} N s/m per wheel. "
+                f"Expected at most {_LARGEST_FRICTION:.4g}: nothing would roll. Check the units of kappa "
+                "and h.",
+            )
 
 
 def singular_posture(robot: Robot) -> str | None:

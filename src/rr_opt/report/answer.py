@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from rr_opt.design.maximize_speed import Optimum
 from rr_opt.outcome import Status
 from rr_opt.report.quantities import direction_text
+from rr_opt.robot.gait import SineGait
 from rr_opt.verify.replay import Replay
 from rr_opt.verify.sweep import TOLERATED, SweepCheck
 
@@ -93,12 +94,32 @@ class Answer:
         ties = len(self.optimum.ties)
         if ties:
             text += f" {ties} other gait{'s are' if ties > 1 else ' is'} as fast: a tie."
+        text += self._servo_note(best.gait)
         if self.optimum.sideways:
             text += (
                 " It sits where forward turns into backward: its mean velocity is at right angles "
                 "to its mean heading, and which way it goes is a matter of definition."
             )
         return text
+
+    def _servo_note(self, gait: SineGait) -> str:
+        """What the problem's limits allow beyond the servo of the robot file."""
+        servo = self.optimum.problem.robot.servo
+        beyond = [
+            name
+            for name, needed, able in (
+                ("angle", gait.peak_angle, servo.angle_limit),
+                ("rate", gait.peak_rate, servo.rate_limit),
+                ("torque", self.replay.reached["torque"] if self.replay else 0, servo.torque_limit),
+            )
+            if needed > able * (1 + 1e-6)
+        ]
+        if not beyond:
+            return ""
+        return (
+            f" But the problem allows more than the robot's servo: the gait goes beyond its "
+            f"{' and '.join(beyond)} limit."
+        )
 
 
 def _sweep_sentence(sweep: SweepCheck) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -17,20 +18,48 @@ from rr_opt.robot.parameters import Robot
 
 def motion_summary(gait: SineGait, driven: Trajectory, start: str, files: Iterable[Path]) -> str:
     """The gait, how far it went and how fast at the end, and the files."""
-    seconds = float(driven.t[-1])
-    last = driven.t >= max(seconds - gait.period, 0.0)
-    distance = math.hypot(driven.x[-1] - driven.x[0], driven.y[-1] - driven.y[0])
-    turned = math.degrees(driven.psi[-1] - driven.psi[0])
+    record = motion_record(gait, driven, start, files)
+    begun = "rest" if start == "rest" else "the steady state"
+    degrees = math.degrees(record["turned"])
     rows = [
         ("gait", "phi(t) = amplitude sin(2 pi t/period) + offset"),
         *gait_lines(gait),
-        ("time", f"{number(seconds)} s from {'rest' if start == 'rest' else 'the steady state'}"),
-        ("moved", f"{number(distance)} m, turned by {number(turned)} deg"),
-        ("speed v", f"{speed_text(float(np.mean(driven.v[last])))}, mean of the last period"),
-        ("torque", f"{number(float(np.abs(driven.torque).max()))} N m at most"),
+        (
+            "time",
+            f"{number(record['seconds'])} s from {begun}",
+        ),
+        (
+            "moved",
+            f"{number(record['distance'])} m, turned by {number(degrees)} deg",
+        ),
+        ("speed v", f"{speed_text(record['last_speed'])}, mean of the last period"),
+        ("torque", f"{number(record['peak_torque'])} N m at most"),
         *(("files" if not i else "", str(file)) for i, file in enumerate(files)),
     ]
     return "\n".join(columns(rows)) + "\n"
+
+
+def motion_record(
+    gait: SineGait, driven: Trajectory, start: str, files: Iterable[Path]
+) -> dict[str, Any]:
+    """The same for scripts: SI; `last_speed` is the mean of v over the last period."""
+    seconds = float(driven.t[-1])
+    last = driven.t >= max(seconds - gait.period, 0.0)
+    return {
+        "gait": {
+            "shape": gait.shape,
+            "amplitude": gait.amplitude,
+            "period": gait.period,
+            "offset": gait.offset,
+        },
+        "start": start,
+        "seconds": seconds,
+        "distance": math.hypot(driven.x[-1] - driven.x[0], driven.y[-1] - driven.y[0]),
+        "turned": float(driven.psi[-1] - driven.psi[0]),
+        "last_speed": float(np.mean(driven.v[last])),
+        "peak_torque": float(np.abs(driven.torque).max()),
+        "files": [str(file) for file in files],
+    }
 
 
 def beyond_servo(robot: Robot, gait: SineGait, driven: Trajectory) -> list[str]:
