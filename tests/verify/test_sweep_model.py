@@ -1,7 +1,5 @@
 """The sweep's speeds, turns and peak torques are those of the motion that cvodes integrates."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -72,9 +70,7 @@ def test_other_effects(effects):
 
 @pytest.mark.parametrize("force", [0.005, 0.03])
 def test_dry_friction(force):
-    draw = np.random.default_rng(5)
     effects = (EffectUse("coulomb_friction", {"force1": force, "force2": force / 2}),)
-    robot = random_robot(draw)
-    robot = replace(robot, physics=effects)
-    agree(robot, (0.9, 0.8, 0.0))
-    agree(robot, (0.7, 1.0, 0.2))
+    robot = random_robot(np.random.default_rng(5), effects)
+    agree(robot, (0.9, 0.8, 0.0), torque=1e-4)
+    agree(robot, (0.7, 1.0, 0.2), torque=1e-4)

@@ -43,7 +43,7 @@ _IPOPT = {
     "ipopt.sb": "yes",
     "ipopt.tol": 1e-9,
     "ipopt.max_iter": 200,
-    "ipopt.max_cpu_time": 20.0,
+    "ipopt.max_cpu_time": 10.0,
     # Starts are steady cycles, near an optimum and often on a limit: IPOPT shall not push them
     # far inside, nor begin with a barrier that does.
     "ipopt.mu_init": 1e-5,

@@ -54,6 +54,8 @@ def refine(setting: Setting, candidate: Candidate) -> Candidate:
         error = abs(abs(candidate.speed) - abs(seen.speed)) / abs(seen.speed)
         if error <= _CLAIM and seen.peak <= limit * (1 + _PEAK):
             break
+        if error > _CLAIM and len(candidate.phases) == LADDER[-1]:
+            break  # no finer mesh is left; the replay will say what the claim is worth
         intervals = len(candidate.phases)
         if error > _CLAIM:
             intervals = mesh_for(intervals, error, _CLAIM / 4)

@@ -36,8 +36,8 @@ def too_much_friction(robot: Robot) -> Iterator[tuple[tuple[str, ...], str]]:
             yield (
                 (key, "kappa"),
                 f"The friction along the floor is k = kappa/h^2 = {k:.3g} N s/m per wheel. "
-                f"Expected at most {_LARGEST_FRICTION:.4g}: nothing would roll. Check the units of kappa "
-                "and h.",
+                f"Expected at most {_LARGEST_FRICTION:.4g}: nothing would roll. Check the "
+                "units of kappa and h.",
             )
 
 
