@@ -66,7 +66,9 @@ def test_the_best_keeps_every_limit(found):
 
 @pytest.mark.parametrize("direction", ["forward", "backward"])
 def test_direction_is_kept(direction):
-    found = sweep(replace(PROBLEM, direction=direction), COUNTS)
+    wide = Limits(angle=2.6, rate=4 * math.pi, torque=1.0)
+    found = sweep(replace(PROBLEM, limits=wide, direction=direction), COUNTS)
+    assert found.refined is not None
     assert (found.refined.speed > 0) == (direction == "forward")
 
 

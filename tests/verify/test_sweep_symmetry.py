@@ -6,7 +6,7 @@ import pytest
 
 from rr_opt.physics.dynamics import dynamics_of
 from rr_opt.problem import Limits, Problem
-from rr_opt.robot.parameters import EffectUse, Robot
+from rr_opt.robot.parameters import Robot
 from rr_opt.verify.speeds import speeds
 from rr_opt.verify.steady_fourier import SteadyFourier
 from tests.robots import BENCHMARK, DRY
@@ -53,28 +53,3 @@ def test_a_product_grid_is_its_points():
     alpha, T = np.broadcast_arrays(AMPLITUDES, PERIODS)
     listed = speeds(choice, alpha.ravel(), T.ravel(), np.full(alpha.size, 0.2))
     assert grid.speed.ravel() == pytest.approx(listed.speed, rel=1e-6)
-
-
-def test_what_has_no_steady_cycle_is_nan():
-    def without_friction(platform):
-        return type(platform)(**{**vars(platform), "kappa": 0.0})
-
-    free = Robot(
-        without_friction(BENCHMARK.platform1), without_friction(BENCHMARK.platform2), BENCHMARK.h
-    )
-    found = speeds(Problem(free, LIMITS), [0.5, 0.5, 1.0], 1.2, [0.0, 0.2, 0.0])
-    assert not found.converged.any()
-    assert np.isnan(found.speed).all()
-    past = speeds(Problem(BENCHMARK, LIMITS), BENCHMARK.singular_angle + 0.01, 1.0)
-    assert np.isnan(past.speed)
-
-
-def test_unsettled_points_are_not_hidden():
-    stuck = Robot(
-        BENCHMARK.platform1,
-        BENCHMARK.platform2,
-        BENCHMARK.h,
-        physics=(EffectUse("coulomb_friction", {"force1": 5.0, "force2": 5.0}),),
-    )
-    found = speeds(Problem(stuck, LIMITS), 0.3, 2.0)
-    assert found.converged == np.isfinite(found.speed)
