@@ -16,10 +16,10 @@ from numpy.typing import NDArray
 
 from rr_opt.problem import Problem
 from rr_opt.robot.gait import SineGait
-from rr_opt.robot.parameters import Robot
 from rr_opt.verify.evaluate import Evaluated, Found, Progress, evaluate
-from rr_opt.verify.grid import DECISIONS, Grid, boxes, free_decisions, grid_of
-from rr_opt.verify.speeds import least_S1, model_of, speeds
+from rr_opt.verify.grid import DECISIONS, Grid, free_decisions, grid_of
+from rr_opt.verify.speed_map import SpeedMap, speed_map
+from rr_opt.verify.speeds import model_of, speeds
 from rr_opt.verify.zoom import zoom
 
 __all__ = [
@@ -109,18 +109,6 @@ class SweepCheck:
         return self.gap >= -TOLERATED and self.error <= TOLERATED
 
 
-class SpeedMap(NamedTuple):
-    """Speed over amplitude and period: amplitudes (nA,), rad, periods (nT,), s, signed speed
-    (nT, nA), m/s, peak torque (nT, nA), N m, and least S1 over the cycle (nA,), m. NaN past the
-    singular posture."""
-
-    amplitudes: Array
-    periods: Array
-    speed: Array
-    peak_torque: Array
-    least_S1: Array
-
-
 def sweep(
     problem: Problem,
     counts: Mapping[str, int] | int | None = None,
@@ -184,18 +172,6 @@ def check_optimum(
         speed=here,
         error=abs(here - speed) / abs(speed),
     )
-
-
-def speed_map(problem: Problem, robot: Robot, offset: float, n: int) -> SpeedMap:
-    """Speed of n by n gaits over the problem's bounds of amplitude and period, on a robot with
-    its ratio, whether or not they keep the limits: for a figure."""
-    inside = boxes(problem)
-    amplitude, period = inside["amplitude"], inside["period"]
-    alpha = np.linspace(amplitude.low, amplitude.high, n)
-    T = np.linspace(period.low, period.high, n)
-    bare = Problem(robot, problem.limits, problem.gait)
-    found = speeds(bare, alpha[:, None], T, offset, tolerance=1e-3)
-    return SpeedMap(alpha, T, found.speed.T, found.peak_torque.T, least_S1(robot, alpha, offset))
 
 
 def _counts(
