@@ -73,7 +73,7 @@ def test_prices_put_the_dearest_first_and_idle_limits_last(answer):
 
 
 def test_drawing_twice_gives_the_same_files(answer, monkeypatch):
-    monkeypatch.setattr(map_data, "POINTS", 16)
+    monkeypatch.setattr("rr_opt.verify.speed_map._SIDE", {True: 16, False: 16})
     first, second = draw(answer), draw(answer)
     assert first.keys() == {"speed-map", "path", "cycle", "prices"}
     assert first == second

@@ -10,9 +10,13 @@ from numpy.typing import NDArray
 from rr_opt.problem import Problem
 from rr_opt.robot.parameters import Robot
 from rr_opt.verify.grid import boxes
-from rr_opt.verify.speeds import least_S1, speeds
+from rr_opt.verify.speeds import least_S1, model_of, speeds
 
 Array = NDArray[np.float64]
+
+_SIDE, _TOLERANCE = {True: 120, False: 40}, {True: 1e-3, False: 3e-2}
+"""Gaits along each side, and tolerance of their speeds, relative. Other friction than viscous
+(False) takes some hundred times as long; contours drawn through fewer points look the same."""
 
 
 class SpeedMap(NamedTuple):
@@ -27,13 +31,14 @@ class SpeedMap(NamedTuple):
     least_S1: Array
 
 
-def speed_map(problem: Problem, robot: Robot, offset: float, n: int) -> SpeedMap:
-    """Speed of n by n gaits over the problem's bounds of amplitude and period, on a robot with
-    its ratio, whether or not they keep the limits: for a figure."""
-    inside = boxes(problem)
+def speed_map(problem: Problem, robot: Robot, offset: float) -> SpeedMap:
+    """Speed of a grid of gaits over the problem's bounds of amplitude and period, on a robot
+    with its ratio, whether or not they keep the limits: for a figure."""
+    inside, viscous = boxes(problem), model_of(robot).viscous
+    n = _SIDE[viscous]
     amplitude, period = inside["amplitude"], inside["period"]
     alpha = np.linspace(amplitude.low, amplitude.high, n)
     T = np.linspace(period.low, period.high, n)
     bare = Problem(robot, problem.limits, problem.gait)
-    found = speeds(bare, alpha[:, None], T, offset, tolerance=1e-3)
+    found = speeds(bare, alpha[:, None], T, offset, tolerance=_TOLERANCE[viscous])
     return SpeedMap(alpha, T, found.speed.T, found.peak_torque.T, least_S1(robot, alpha, offset))

@@ -14,10 +14,6 @@ from rr_opt.verify.sweep import speed_map
 
 Array = NDArray[np.float64]
 
-POINTS = 120
-"""Gaits along each side of the map."""
-
-
 @dataclass(frozen=True)
 class MapData:
     """What the map shows, at one offset and inertia ratio.
@@ -43,7 +39,7 @@ def map_data(problem: Problem, robot: Robot, best: SineGait) -> MapData:
             _opened(problem.gait.amplitude), _opened(problem.gait.period), problem.gait.offset
         ),
     )
-    found = speed_map(shown, robot, best.offset, POINTS)
+    found = speed_map(shown, robot, best.offset)
     return MapData(found.periods, found.amplitudes, found.speed.T, found.peak_torque.T)
 
 
