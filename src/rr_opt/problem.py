@@ -9,6 +9,7 @@ from rr_opt.robot.ballast import About, By, Loads
 from rr_opt.robot.parameters import Robot
 
 Direction = Literal["forward", "backward", "either"]
+Shape = Literal["sine", "fourier", "free"]
 
 
 @dataclass(frozen=True)
@@ -30,12 +31,22 @@ class Interval:
 
 @dataclass(frozen=True)
 class GaitBounds:
-    """Where amplitude (rad), period (s) and offset (rad) of the gait may lie."""
+    """Where amplitude (rad), period (s) and offset (rad) of the gait may lie, and its shape.
+
+    A gait that is no sine has the mean angle `offset`, its first harmonic has at least the least
+    amplitude, and phi never leaves the offset by more than the largest. So every sine within the
+    bounds is a gait of the other shapes within the bounds too.
+
+    harmonics  of a `fourier` gait
+    intervals  of a `free` gait, on each of which the servo's acceleration is constant
+    """
 
     amplitude: Interval = Interval(0.05, 2.6)
     period: Interval = Interval(0.3, 3.0)
     offset: Interval = Interval(0.0, 0.0)
-    shape: Literal["sine"] = "sine"
+    shape: Shape = "sine"
+    harmonics: int = 3
+    intervals: int = 96
 
 
 @dataclass(frozen=True)

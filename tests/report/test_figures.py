@@ -5,7 +5,6 @@ import pytest
 from matplotlib.figure import Figure
 
 from rr_opt.motion.rollout import repeated
-from rr_opt.report.figures import map_data
 from rr_opt.report.figures.cycle import cycle
 from rr_opt.report.figures.map_data import MapData
 from rr_opt.report.figures.of_answer import draw

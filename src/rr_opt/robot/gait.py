@@ -4,11 +4,64 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
+
+
+class Gait(Protocol):
+    """A periodic phi(t), whatever its shape."""
+
+    @property
+    def shape(self) -> str:
+        """`sine`, `fourier` or `free`."""
+        ...
+
+    @property
+    def period(self) -> float:
+        """T, s."""
+        ...
+
+    @property
+    def offset(self) -> float:
+        """phi0, the mean of phi over a period, rad."""
+        ...
+
+    @property
+    def amplitude(self) -> float:
+        """Largest |phi - phi0|, rad."""
+        ...
+
+    @property
+    def pieces(self) -> int:
+        """Into how many equal parts of the period the jumps of the acceleration cut it; 1 where
+        phi is smooth."""
+        ...
+
+    @property
+    def peak_angle(self) -> float:
+        """Largest |phi| over a period, rad."""
+        ...
+
+    @property
+    def peak_rate(self) -> float:
+        """Largest |dphi/dt| over a period, rad/s."""
+        ...
+
+    def angle(self, t: ArrayLike) -> Array:
+        """phi, rad, in the shape of t (s)."""
+        ...
+
+    def rate(self, t: ArrayLike) -> Array:
+        """dphi/dt, rad/s, in the shape of t (s)."""
+        ...
+
+    def acceleration(self, t: ArrayLike) -> Array:
+        """d2phi/dt2, rad/s2, in the shape of t (s); at a jump, the value after it."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -23,6 +76,7 @@ class SineGait:
     offset: float = 0.0
 
     shape = "sine"
+    pieces = 1
 
     @property
     def angular_frequency(self) -> float:

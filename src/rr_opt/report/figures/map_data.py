@@ -14,6 +14,7 @@ from rr_opt.verify.sweep import speed_map
 
 Array = NDArray[np.float64]
 
+
 @dataclass(frozen=True)
 class MapData:
     """What the map shows, at one offset and inertia ratio.
