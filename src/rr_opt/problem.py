@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -70,11 +71,30 @@ class Limits:
     singularity: float = 0.020
 
 
+ANY = Interval(-math.inf, math.inf)
+
+
+@dataclass(frozen=True)
+class Turn:
+    """Which circles a gait may go round; what is not asked may be anything.
+
+    Positive is to the left (counter-clockwise, seen from above), wherever the robot goes.
+
+    curvature  heading gained per metre along the mean circle, 1/m
+    yaw_rate   heading gained per second, rad/s
+    heading    heading gained per period, rad
+    """
+
+    curvature: Interval = ANY
+    yaw_rate: Interval = ANY
+    heading: Interval = ANY
+
+
 @dataclass(frozen=True)
 class Problem:
-    """Which gait drives `robot` fastest within `gait`, `inertia_ratio` and `limits`?
+    """Which gait drives `robot` fastest within `gait`, `inertia_ratio`, `limits` and `turn`?
 
-    `inertia_ratio` None: the robot as it is.
+    `inertia_ratio` None: the robot as it is; `turn` None: straight or on any circle.
     """
 
     robot: Robot
@@ -82,3 +102,4 @@ class Problem:
     gait: GaitBounds = field(default_factory=GaitBounds)
     inertia_ratio: RatioChoice | None = None
     direction: Direction = "either"
+    turn: Turn | None = None

@@ -16,7 +16,8 @@ DECISIONS = ("amplitude", "period", "offset", "ballast", "turn")
 """alpha (rad), T (s), phi0 (rad), I2 (kg m2) or number of loads on a scale from 0 at its lower
 bound to 1 at its upper, heading per period (rad)."""
 
-LIMITS = ("rate", "angle+", "angle-", "singularity+", "singularity-", "direction")
+TURN = ("curvature", "yaw_rate", "heading")
+LIMITS = ("rate", "angle+", "angle-", "singularity+", "singularity-", "direction", *TURN)
 """Rows of the program that hold once a period, in their order; torque holds at every node."""
 
 
@@ -67,7 +68,7 @@ class IntervalTerms:
         self.hessian = ca.Function("hessian", [*inputs, weights], [ca.cse(curves)])
 
         mean, sign = ca.SX.sym("mean", 4), ca.SX.sym("sign")
-        rows = _limit_rows(z, fixed, names, sign * ca.dot(mean[:2], mean[2:]))
+        rows = _limit_rows(z, mean, fixed, names, sign)
         lam = ca.SX.sym("lam", len(LIMITS))
         inputs = [z, mean, fixed, sign]
         self.limits = ca.Function("limits", inputs, [rows])
@@ -78,14 +79,19 @@ class IntervalTerms:
         self.limit_curves = ca.Function(
             "limit_curves",
             [*inputs, lam],
-            [ca.hessian(weighted, z)[0], ca.hessian(weighted, mean)[0]],
+            [
+                ca.hessian(weighted, z)[0],
+                ca.jacobian(ca.gradient(weighted, z), mean),
+                ca.hessian(weighted, mean)[0],
+            ],
         )
 
 
-def _limit_rows(z, fixed, names, forward):
+def _limit_rows(z, mean, fixed, names, sign):
     """Rows of LIMITS; each is bounded by the limit of its name, so a row's multiplier is the
     speed gained per unit of that limit."""
-    amplitude, period, offset = z[0], z[1], z[2]
+    amplitude, period, offset, turn = z[0], z[1], z[2], z[4]
+    V, E = mean[:2], mean[2:]
     c1, c2 = fixed[names.index("c1")], fixed[names.index("c2")]
     return ca.vertcat(
         2 * math.pi * amplitude / period,
@@ -93,7 +99,10 @@ def _limit_rows(z, fixed, names, forward):
         amplitude - offset,
         c1 * ca.cos(offset + amplitude) + c2,
         c1 * ca.cos(offset - amplitude) + c2,
-        forward,
+        sign * ca.dot(V, E),
+        turn / (period * ca.norm_2(V)),
+        turn / period,
+        turn,
     )
 
 

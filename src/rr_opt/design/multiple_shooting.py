@@ -122,10 +122,10 @@ def shooting(
     weights = ca.vertcat(on_v.T, on_chi.T, ca.repmat(on_sums, 1, n), on_torque.T)
     curves = interval.hessian.map(n)(*per_node, z, fixed, weights)
     z_z = sum(curves[2:, 2 + j :: wrt] @ ca.DM.ones(n) @ ca.DM.eye(nz)[j, :] for j in range(nz))
-    limit_z, limit_mean = interval.limit_curves(z, mean, fixed, sign, on_limits)
+    limit_z, limit_cross, limit_mean = interval.limit_curves(z, mean, fixed, sign, on_limits)
     mean_mean = limit_mean + lam_f * ca.hessian(f, x)[0][nz : nz + nm, nz : nz + nm]
     upper = ca.vertcat(
-        ca.horzcat(z_z + limit_z, ca.MX(nz, nm), curves[2:, 0::wrt], curves[2:, 1::wrt]),
+        ca.horzcat(z_z + limit_z, limit_cross, curves[2:, 0::wrt], curves[2:, 1::wrt]),
         ca.horzcat(ca.MX(nm, nz), mean_mean, ca.MX(nm, 2 * n)),
         ca.horzcat(ca.MX(n, nz + nm), ca.diag(curves[0, 0::wrt]), ca.diag(curves[0, 1::wrt])),
         ca.horzcat(ca.MX(n, nz + nm + n), ca.diag(curves[1, 1::wrt])),

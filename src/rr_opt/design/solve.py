@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rr_opt.design.decisions import decisions
-from rr_opt.design.interval import DECISIONS, LIMITS
+from rr_opt.design.interval import DECISIONS, LIMITS, TURN
 from rr_opt.design.landscape import Landscape
 from rr_opt.design.multiple_shooting import shooting
 from rr_opt.design.setting import Setting
@@ -51,7 +51,7 @@ class Candidate:
     success      the solver says it is an optimum
     sentence     the same in words
     prices       speed gained per unit of each limit, m/s per unit: rate, angle, torque,
-                 singularity, direction
+                 singularity, direction, and curvature, yaw_rate, heading of the turn
     bound_prices speed gained per unit by which a decision's active bound moves up
     x, lam_x, lam_g, phases   where to go on from
     """
@@ -169,6 +169,9 @@ def _bounds(setting: Setting, n: int) -> tuple[Array, Array, Array, Array]:
         high = {"rate": limits.rate}
     if amplitude.fixed and period.fixed:
         high.pop("rate")
+    for name in TURN if problem.turn else ():
+        asked = getattr(problem.turn, name)
+        low[name], high[name] = asked.low, asked.high
     lbg = [tight, [low.get(name, -np.inf) for name in LIMITS], np.full(n, -limits.torque)]
     ubg = [tight, [high.get(name, np.inf) for name in LIMITS], np.full(n, limits.torque)]
     return lbx, ubx, np.concatenate(lbg), np.concatenate(ubg)
@@ -182,4 +185,5 @@ def _prices(lam_g: Array, n: int) -> dict[str, float]:
         "torque": float(np.abs(lam_g[2 * n + 4 + len(LIMITS) :]).sum()),
         "singularity": float(rows["singularity+"] + rows["singularity-"]),
         "direction": float(rows["direction"]),
+        **{name: float(rows[name]) for name in TURN},
     }
