@@ -81,12 +81,19 @@ class Landscape:
 
     def _block(self, gaits: Array, nodes: int) -> Cycles:
         amplitude, period, offset, share = gaits
-        p = self._parameters(share)
         theta = 2 * math.pi * (np.arange(2 * nodes) / (2 * nodes))[:, None]
         omega = 2 * math.pi / period
         sine = amplitude * np.sin(theta)
         angle = (sine + offset, amplitude * omega * np.cos(theta), -(omega**2) * sine)
-        h = period / nodes
+        return self.along(angle, period, share)
+
+    def along(self, angle: tuple[Array, Array, Array], period: Array, share: Array) -> Cycles:
+        """Steady cycles along phi (rad), dphi (rad/s), ddphi (rad/s2) of any shape.
+
+        Each is (2 N, K), at N nodes and halfway between them; period (s) and share are (K,).
+        """
+        p = self._parameters(share)
+        h = period / (len(angle[0]) // 2)
         at_nodes = [part[::2] for part in angle]
         if self.linear:
             a, b, *rates = self._affine(*angle, *p)
