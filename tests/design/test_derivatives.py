@@ -3,27 +3,34 @@
 import numpy as np
 import pytest
 
-from rr_opt.design.interval import LIMITS
 from rr_opt.design.multiple_shooting import shooting
+from rr_opt.design.shapes import FourierShape, FreeShape, SineShape
+from rr_opt.design.solve import all_checks
 from rr_opt.physics.dynamics import derive
 from tests.robots import BENCHMARK, DRY
 
 N = 8
+LOADS = 0.066, 0.05, 0.03
 
 
-@pytest.fixture(params=["inertia", "loads", "dry"])
+@pytest.fixture(params=["inertia", "loads", "dry", "fourier", "free"])
 def program(request):
-    robot = DRY if request.param == "dry" else BENCHMARK
+    robot = DRY if request.param in {"dry", "free"} else BENCHMARK
     by = "loads" if request.param == "loads" else "inertia"
     dynamics = derive(tuple(use.name for use in robot.physics))
     ballast = [0.0, 3.0] if by == "loads" else [5e-4, 2e-3]
     phases = np.array([0.0, 0.11, 0.25, 0.4, 0.5, 0.66, 0.75, 0.9])
-    p = np.concatenate([dynamics.values(robot), [0.066, 0.05, 0.03], ballast, [-1.0], phases])
-    rng = np.random.default_rng(1)
-    x = np.concatenate(
-        [[0.7, 1.3, 0.2, 0.4, 0.1], [0.2, 0.05, 0.9, 0.1], rng.normal(0, 0.2, 2 * N)]
-    )
-    return shooting(dynamics.effects, by, N).solver, x, p
+    shape = {"fourier": FourierShape(3), "free": FreeShape()}.get(request.param, SineShape())
+    checks = all_checks(shape, np.array([0.03]))
+    looks = 0 if request.param in {"inertia", "loads"} else 2
+    places = np.linspace(0.2, 0.7, N * looks)
+    p = [*dynamics.values(robot), *LOADS, *ballast, *checks, -1.0, *phases, *places]
+    program = shooting(dynamics.effects, by, shape, N, looks, substeps=2)
+    layout, rng = program.layout, np.random.default_rng(1)
+    values = {name: 0.1 * k - 0.2 for k, name in enumerate(layout.decisions + layout.means, 1)}
+    values |= {"period": 1.3, "Vx": 0.2, "Vy": 0.05, "Ex": 0.9, "Ey": 0.1}
+    values |= {name: rng.normal(0, 0.2, N) for name in layout.local}
+    return program.solver, layout.stacked(values), np.array(p)
 
 
 def central(function, x, step=1e-6):
@@ -46,8 +53,7 @@ def test_jacobian(program):
 
 def test_hessian(program):
     solver, x, p = program
-    count = 2 * N + 4 + len(LIMITS) + N
-    lam = np.random.default_rng(2).normal(size=count)
+    lam = np.random.default_rng(2).normal(size=len(rows(solver, x, p)))
     upper = solver.get_function("nlp_hess_l")(x, p, 0.7, lam).full()
     given = np.triu(upper) + np.triu(upper, 1).T
 

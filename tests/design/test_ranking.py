@@ -1,7 +1,6 @@
 """Candidates are ranked by feasibility, then success, then speed."""
 
-import numpy as np
-
+from rr_opt.design.mesh import regular
 from rr_opt.design.solve import Candidate
 from rr_opt.robot.gait import SineGait
 
@@ -19,9 +18,7 @@ def candidate(feasible, success, speed):
         prices={},
         bound_prices={},
         violation=0.0,
-        phases=np.zeros(1),
-        v=np.zeros(1),
-        chi=np.zeros(1),
+        mesh=regular(16),
     )
 
 

@@ -1,109 +1,137 @@
-"""What one interval of multiple shooting contributes, and the limits: values and derivatives."""
+"""What one interval of multiple shooting contributes: values and derivatives."""
 
 from __future__ import annotations
 
-import math
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
 import casadi as ca
 
+from rr_opt.design.layout import COMMON, DYNAMIC, MEANS
+from rr_opt.design.period import PeriodTerms, named
+from rr_opt.design.shapes import Shape
 from rr_opt.motion.tableau import Tableau
-from rr_opt.physics.dynamics import derive
+from rr_opt.physics.dynamics import Dynamics, derive
 from rr_opt.robot.ballast import By, hang
-
-DECISIONS = ("amplitude", "period", "offset", "ballast", "turn")
-"""alpha (rad), T (s), phi0 (rad), I2 (kg m2) or number of loads on a scale from 0 at its lower
-bound to 1 at its upper, heading per period (rad)."""
-
-TURN = ("curvature", "yaw_rate", "heading")
-LIMITS = ("rate", "angle+", "angle-", "singularity+", "singularity-", "direction", *TURN)
-"""Rows of the program that hold once a period, in their order; torque holds at every node."""
 
 
 @lru_cache
-def interval_of(effects: tuple[str, ...], by: By, method: Tableau) -> IntervalTerms:
-    """The terms for these effects, this way of changing the inertia and this method."""
-    return IntervalTerms(effects, by, method)
+def interval_of(
+    effects: tuple[str, ...], by: By, shape: Shape, looks: int, substeps: int, method: Tableau
+) -> IntervalTerms:
+    """The terms for these effects, this way of changing the inertia, shape and method."""
+    return IntervalTerms(effects, by, shape, looks, substeps, method)
 
 
 class IntervalTerms:
-    """What one interval, and the limits, contribute: values, first and second derivatives.
+    """What one interval contributes: values, first and second derivatives.
 
-    step       (v, chi, theta, width, z, fixed) -> v, chi, V, E at the end, torque at the start
+    step       (local, theta, width, looks, z, fixed) -> states at the end, integrals, path rows
+    slopes, curves   sparsity of its Jacobian and, weighted, Hessian in (local, z)
+    period     the rows of a whole period
     shared     length of `fixed`: robot, loads and ballast range
     """
 
-    def __init__(self, effects: tuple[str, ...], by: By, method: Tableau):
-        dynamics = derive(effects)
-        names = dynamics.parameters
-        z = ca.SX.sym("z", len(DECISIONS))
-        amplitude, T, offset, share, turn = ca.vertsplit(z)
-        fixed = ca.SX.sym("fixed", len(names) + 5)
-        values = _with_ballast(fixed, names, share, by)
-        v, chi, theta, width = (ca.SX.sym(name) for name in ("v", "chi", "theta", "width"))
-
-        def motion(theta: ca.SX, v: ca.SX) -> Any:
-            omega = 2 * math.pi / T
-            swing = amplitude * ca.sin(2 * math.pi * theta)
-            rate = amplitude * omega * ca.cos(2 * math.pi * theta)
-            return dynamics.motion(v, swing + offset, rate, -(omega**2) * swing, values)
-
-        def rhs(fraction: float, y: ca.SX) -> ca.SX:
-            vdot, w, side, _ = motion(theta + fraction * width, y[0])
-            cos, sin = ca.cos(y[1]), ca.sin(y[1])
-            V = ca.vertcat(cos * y[0] - sin * side, sin * y[0] + cos * side)
-            return ca.vertcat(T * vdot, T * w - turn, V, cos, sin)
-
-        end = method.step(rhs, ca.vertcat(v, chi, 0, 0, 0, 0), width)
-        out = ca.cse(ca.vertcat(end, motion(theta, v)[3]))
-        inner = ca.vertcat(v, chi, z)
-        inputs = [v, chi, theta, width, z, fixed]
+    def __init__(
+        self,
+        effects: tuple[str, ...],
+        by: By,
+        shape: Shape,
+        looks: int,
+        substeps: int,
+        method: Tableau,
+    ):
+        parameters = derive(effects).parameters
+        z = ca.SX.sym("z", len(COMMON + shape.decisions))
+        local_names = DYNAMIC + shape.states + shape.controls
+        local, places = ca.SX.sym("local", len(local_names)), ca.SX.sym("looks", looks)
+        fixed = ca.SX.sym("fixed", len(parameters) + 5)
+        theta, width = ca.SX.sym("theta"), ca.SX.sym("width")
+        decided = named(COMMON + shape.decisions, z)
+        values = _with_ballast(fixed, parameters, decided["ballast"], by)
+        interval = _Interval(
+            derive(effects), shape, values, decided, named(local_names, local), theta, width
+        )
+        end = interval.end(substeps, method)
+        out = ca.cse(
+            ca.vertcat(
+                end[:2],
+                *shape.angle(decided, interval.here, theta + width, width)[: len(shape.states)],
+                end[2:],
+                *shape.path_rows(decided, interval.here, theta, width),
+                *interval.torque(end, ca.vertsplit(places)),
+            )
+        )
+        inner = ca.vertcat(local, z)
+        inputs = [local, theta, width, places, z, fixed]
         weights = ca.SX.sym("weights", out.numel())
-        slopes = ca.densify(ca.jacobian(out, inner))
-        curves = ca.densify(ca.hessian(ca.dot(weights, out), inner)[0])
+        slopes = ca.jacobian(out, inner)
+        curves = ca.hessian(ca.dot(weights, out), inner)[0]
         self.shared = fixed.numel()
+        self.slopes, self.curves = slopes.sparsity(), curves.sparsity()
         self.step = ca.Function("step", inputs, [out])
-        self.jacobian = ca.Function("jacobian", inputs, [ca.cse(slopes)])
-        self.hessian = ca.Function("hessian", [*inputs, weights], [ca.cse(curves)])
-
-        mean, sign = ca.SX.sym("mean", 4), ca.SX.sym("sign")
-        rows = _limit_rows(z, mean, fixed, names, sign)
-        lam = ca.SX.sym("lam", len(LIMITS))
-        inputs = [z, mean, fixed, sign]
-        self.limits = ca.Function("limits", inputs, [rows])
-        self.limit_slopes = ca.Function(
-            "limit_slopes", inputs, [ca.jacobian(rows, z), ca.jacobian(rows, mean)]
-        )
-        weighted = ca.dot(lam, rows)
-        self.limit_curves = ca.Function(
-            "limit_curves",
-            [*inputs, lam],
-            [
-                ca.hessian(weighted, z)[0],
-                ca.jacobian(ca.gradient(weighted, z), mean),
-                ca.hessian(weighted, mean)[0],
-            ],
-        )
+        self.jacobian = ca.Function("jacobian", inputs, [ca.cse(ca.densify(slopes))])
+        self.hessian = ca.Function("hessian", [*inputs, weights], [ca.cse(ca.densify(curves))])
+        c1, c2 = (fixed[parameters.index(name)] for name in ("c1", "c2"))
+        self.period = PeriodTerms(shape, z, fixed, c1, c2)
 
 
-def _limit_rows(z, mean, fixed, names, sign):
-    """Rows of LIMITS; each is bounded by the limit of its name, so a row's multiplier is the
-    speed gained per unit of that limit."""
-    amplitude, period, offset, turn = z[0], z[1], z[2], z[4]
-    V, E = mean[:2], mean[2:]
-    c1, c2 = fixed[names.index("c1")], fixed[names.index("c2")]
-    return ca.vertcat(
-        2 * math.pi * amplitude / period,
-        offset + amplitude,
-        amplitude - offset,
-        c1 * ca.cos(offset + amplitude) + c2,
-        c1 * ca.cos(offset - amplitude) + c2,
-        sign * ca.dot(V, E),
-        turn / (period * ca.norm_2(V)),
-        turn / period,
-        turn,
-    )
+@dataclass(frozen=True)
+class _Interval:
+    """The motion within one interval, as expressions."""
+
+    dynamics: Dynamics
+    shape: Shape
+    values: ca.SX
+    decided: dict[str, ca.SX]
+    here: dict[str, ca.SX]
+    theta: ca.SX
+    width: ca.SX
+
+    def motion(self, fraction: Any, v: ca.SX) -> Any:
+        """vdot, w, side, torque and what is integrated, at a fraction of the interval."""
+        T, since = self.decided["period"], fraction * self.width
+        at = self.theta + since
+        phi, slope, bend = self.shape.angle(self.decided, self.here, at, since)
+        moved = self.dynamics.motion(v, phi, slope / T, bend / T**2, self.values)
+        return *moved, self.shape.integrands(phi, at)
+
+    def rhs(self, fraction: float, y: ca.SX) -> ca.SX:
+        """Derivative in theta of v, chi, V, E and the shape's integrals."""
+        T = self.decided["period"]
+        vdot, w, side, _, integrands = self.motion(fraction, y[0])
+        cos, sin = ca.cos(y[1]), ca.sin(y[1])
+        V = cos * y[0] - sin * side, sin * y[0] + cos * side
+        return ca.vertcat(T * vdot, T * w - self.decided["turn"], *V, cos, sin, *integrands)
+
+    def end(self, substeps: int, method: Tableau) -> ca.SX:
+        """v, chi and the integrals at the end."""
+        sums = len(MEANS) + len(self.shape.integrals)
+        y = ca.vertcat(self.here["v"], self.here["chi"], ca.SX.zeros(sums))
+        for part in range(substeps):
+            y = method.step(
+                lambda fraction, y, part=part: self.rhs((part + fraction) / substeps, y),
+                y,
+                self.width / substeps,
+            )
+        return y
+
+    def torque(self, end: ca.SX, places: list[ca.SX]) -> list[ca.SX]:
+        """At the node, at places within the interval and, where it jumps at nodes, at the end."""
+        start = ca.vertcat(self.here["v"], self.here["chi"])
+        v0, v1 = start[0], end[0]
+        d0, d1 = (self.width * self.rhs(at, y)[0] for at, y in ((0.0, start), (1.0, end)))
+        speeds = [_cubic(at, v0, v1, d0, d1) for at in places]
+        torque = [self.motion(0.0, v0)[3]]
+        torque += [self.motion(at, v)[3] for at, v in zip(places, speeds, strict=True)]
+        return [*torque, self.motion(1.0, v1)[3]] if self.shape.controls else torque
+
+
+def _cubic(at: ca.SX, v0: ca.SX, v1: ca.SX, d0: ca.SX, d1: ca.SX) -> ca.SX:
+    """The cubic through v0 at 0 and v1 at 1 with slopes d0 and d1 there."""
+    rest, rise = 1 - at, v1 - v0
+    return v0 + at * rise + at * rest * (rest * (d0 - rise) - at * (d1 - rise))
 
 
 def _with_ballast(fixed: ca.SX, names: tuple[str, ...], share: ca.SX, by: By) -> ca.SX:

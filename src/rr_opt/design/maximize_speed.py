@@ -8,25 +8,20 @@ checked and whose nodes lie where the torque peaks, so that limits hold between 
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from rr_opt.design.decisions import decisions
-from rr_opt.design.infeasible import direction_clash, posture_clashes, torque_clash
+from rr_opt.design.families import find_shapes
+from rr_opt.design.finds import Finds
 from rr_opt.design.ranking import distinct
-from rr_opt.design.refine import refine, solve_from
-from rr_opt.design.seeds import Seed, find_seeds
-from rr_opt.design.setting import Setting, robot_of, scanned, settings_of
+from rr_opt.design.refine import refine
+from rr_opt.design.setting import robot_of
+from rr_opt.design.sines import Progress, find_sines
 from rr_opt.design.solve import Candidate
-from rr_opt.outcome import NotConvergedError, Status
+from rr_opt.outcome import Status
 from rr_opt.physics.dynamics import require_friction
 from rr_opt.problem import Problem
 from rr_opt.robot.ballast import inertia_ratio
-from rr_opt.robot.gait import SineGait
 from rr_opt.robot.parameters import Robot
-
-Progress = Callable[[str], None]
 
 SAME_SPEED = 1e-5
 """Optima whose speeds differ by less, relative, are a tie."""
@@ -81,54 +76,22 @@ def maximize_speed(problem: Problem, progress: Progress = lambda _: None) -> Opt
     Raises InputError for a robot that has no steady cycle to find.
     """
     require_friction(problem.robot)
-    box = decisions(problem)
-    clash = posture_clashes(problem, box)
-    if clash:
-        return Optimum(Status.INFEASIBLE, clash, problem)
-    progress("scanning for starts")
-    signs = {"forward": (1,), "backward": (-1,), "either": (1, -1)}[problem.direction]
-    settings = settings_of(problem, box)
-    starts: list[tuple[Setting, Seed]] = []
-    fastest = -math.inf
-    for setting in settings:
-        inside = scanned(setting, box)
-        seeds, best = find_seeds(setting.landscape, inside, problem.limits.torque, signs)
-        starts += [(setting, seed) for seed in seeds]
-        fastest = max(fastest, best)
-    found: list[tuple[Setting, Candidate]] = []
-    lost: list[str] = []
-    for number, (setting, seed) in enumerate(starts, 1):
-        progress(f"start {number} of {len(starts)}")
-        amplitude, period, offset, share = map(float, box.physical(seed.point[None])[:, 0])
-        if setting.fixed_share is not None:
-            share = setting.fixed_share
-        gait = SineGait(amplitude, period, offset)
-        try:
-            found.append((setting, solve_from(setting, seed.sign, gait, share)))
-        except NotConvergedError as error:
-            lost.append(str(error))
-    optimum = _answer(problem, found, lost, progress)
-    if optimum.status is Status.NOT_CONVERGED:
-        landscapes = [setting.landscape for setting in settings]
-        clash = torque_clash(problem, box, landscapes) or direction_clash(problem, fastest)
-        if clash:
-            return replace(optimum, status=Status.INFEASIBLE, message=clash)
+    find = find_sines if problem.gait.shape == "sine" else find_shapes
+    finds = find(problem, progress)
+    optimum = _answer(problem, finds, progress)
+    if optimum.status is Status.NOT_CONVERGED and finds.clash:
+        return replace(optimum, status=Status.INFEASIBLE, message=finds.clash)
     return optimum
 
 
-def _answer(
-    problem: Problem,
-    found: list[tuple[Setting, Candidate]],
-    lost: list[str],
-    progress: Progress,
-) -> Optimum:
-    iterations = sum(candidate.iterations for _, candidate in found)
+def _answer(problem: Problem, finds: Finds, progress: Progress) -> Optimum:
+    iterations = sum(one.iterations for _, one in finds.pairs)
+    starts = len(finds.pairs) + len(finds.lost)
     failures = (
-        *lost,
-        *(one.sentence for _, one in found if not (one.feasible and one.success)),
+        *finds.lost,
+        *(one.sentence for _, one in finds.pairs if not (one.feasible and one.success)),
     )
-    good = [pair for pair in found if pair[1].feasible and pair[1].success]
-    good = distinct(sorted(good, key=lambda pair: pair[1].rank))
+    good = distinct(finds.good)
     while good:
         setting, best = good[0]
         progress("refining the best")
@@ -154,17 +117,17 @@ def _answer(
             robot=robot,
             ratio=inertia_ratio(robot, about),
             optima=(refined, *(candidate for _, candidate in others)),
-            starts=len(found) + len(lost),
+            starts=starts,
             iterations=iterations,
             failures=failures,
-            intervals=len(refined.phases),
+            intervals=refined.mesh.intervals,
         )
     message = "No start led to an optimum. " + " ".join(dict.fromkeys(failures))
     return Optimum(
         Status.NOT_CONVERGED,
         message,
         problem,
-        starts=len(found) + len(lost),
+        starts=starts,
         iterations=iterations,
         failures=failures,
     )

@@ -1,77 +1,96 @@
-"""The nodes of the winner's mesh: as many as its accuracy needs, and some where torque peaks.
+"""The mesh of a program: its nodes, and where between them limits are held.
 
-A limit that holds at every node can be broken between two. The sine's angle and rate have their
-extremes at known phases and are limited there; the torque's peaks depend on the solution, so
-nodes are moved onto them and the program is solved again. The peak's phase then errs only by
-what the second solve moves it, and the torque there only by the square of that.
+A limit that holds at every node can be broken between two, and where a shape has many
+coefficients the solver sees to it that its peaks lie there. So phases at which an answer breaks a
+limit are added to those at which it is held, and it is solved again, until its peaks have nowhere
+to go. Only a sine's peaks are as good as known: a node moved onto one is enough.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rr_opt.design.landscape import Landscape
-from rr_opt.motion.steady_cycle import steady_cycle
-from rr_opt.robot.gait import SineGait
-from rr_opt.robot.parameters import Robot
-
 Array = NDArray[np.float64]
 
 LADDER = (16, 20, 24, 30, 36, 48, 72, 96, 144, 192, 288, 384, 768)
-"""Meshes to choose from, so that few programs are ever built."""
+"""Numbers of intervals to choose from, so that few programs are ever built."""
 
-_SAMPLES = 1024
-_NEAR_LIMIT = 0.98
+LOOKS = np.array([2, 4, 6, 1, 3, 5, 7]) / 8
+"""Places of an interval at which the torque is held; the first three always."""
+_REGULAR = 3
+_ORDER = 6
 
 
 @dataclass(frozen=True)
-class Dense:
-    """A gait's steady cycle on a mesh far finer than the program's.
+class Mesh:
+    """Where a program looks at the gait.
 
-    speed   m/s, signed
-    peak    largest |torque|, N m
-    peaks   phases in [0, 1) at which |torque| peaks near `peak`
+    phases    nodes, (N,), increasing over less than 1 from about 0
+    substeps  steps of the integrator in each interval
+    looks     (N, M) fractions of the intervals at which the torque is held beside the nodes: LOOKS
+              of them, or none
+    checks    (K,) phases at which angle and rate are, beside the shape's regular grid
+    margin    kept from the torque's limit everywhere, relative
     """
 
-    speed: float
-    peak: float
-    peaks: Array
+    phases: Array
+    substeps: int
+    looks: Array
+    checks: Array
+    margin: float = 0.0
+
+    @property
+    def intervals(self) -> int:
+        """N."""
+        return len(self.phases)
+
+    def with_nodes_at(self, peaks: Array) -> Mesh:
+        """With equal intervals but for the nodes that are nearest to these phases of [0, 1), which
+        are moved there. The first may come to lie just before 0."""
+        phases = np.arange(self.intervals) / self.intervals
+        for peak in peaks:
+            nearest = round(peak * self.intervals)
+            phases[nearest % self.intervals] = peak - nearest // self.intervals
+        return replace(self, phases=phases)
+
+    def with_torque_at(self, peaks: Array) -> Mesh:
+        """With the torque held at these phases of [0, 1) too.
+
+        In each interval the look that is farthest from the peak gives way, of those that are not
+        the regular ones: what is near keeps the peak from moving aside.
+        """
+        if not len(peaks):
+            return self
+        looks = self.looks.copy()
+        if not looks.shape[1]:
+            looks = np.tile(LOOKS, (self.intervals, 1))
+        ends = np.append(self.phases, self.phases[0] + 1)
+        for peak in ends[0] + (peaks - ends[0]) % 1:
+            k = int(np.searchsorted(ends, peak, side="right")) - 1
+            fraction = (peak - ends[k]) / (ends[k + 1] - ends[k])
+            looks[k, _REGULAR + np.abs(looks[k, _REGULAR:] - fraction).argmax()] = fraction
+        return replace(self, looks=looks)
+
+    def with_checks_at(self, phases: Array) -> Mesh:
+        """With angle and rate held at these phases too."""
+        return replace(self, checks=np.append(self.checks, phases))
 
 
-def dense(landscape: Landscape, robot: Robot, gait: SineGait, share: float) -> Dense:
-    """Look at a gait finely; robot is the one with that ballast share."""
-    if landscape.linear:
-        point = np.array([[gait.amplitude], [gait.period], [gait.offset], [share]])
-        cycle = landscape.cycles(point, _SAMPLES)
-        speed, torque = float(cycle.speed[0]), cycle.torque[:, 0]
-    else:
-        steady = steady_cycle(robot, gait, steps=4 * _SAMPLES)
-        speed, torque = steady.speed, steady.torque[:-1:4]
-    size = np.abs(torque)
-    left, right = np.roll(size, 1), np.roll(size, -1)
-    at = np.flatnonzero((size >= left) & (size > right) & (size > _NEAR_LIMIT * size.max()))
-    # Vertex of the parabola through a peak and its neighbours.
-    bend = left[at] - 2 * size[at] + right[at]
-    shift = np.where(bend < 0, 0.5 * (left[at] - right[at]) / np.where(bend < 0, bend, -1.0), 0.0)
-    height = size[at] - 0.25 * (left[at] - right[at]) * shift
-    return Dense(speed, float(height.max()), (at + shift) / _SAMPLES % 1.0)
-
-
-def mesh_for(intervals: int, error: float, wanted: float, order: int = 6) -> int:
-    """The mesh of the ladder on which the error made with so many intervals, which falls with
-    this order, becomes the wanted one."""
-    needed = intervals * (error / wanted) ** (1 / order)
-    return next((n for n in LADDER if n >= needed), LADDER[-1])
-
-
-def with_nodes_at(intervals: int, peaks: Array) -> Array:
-    """Equal phases with the nearest node moved onto each peak; the first stays at 0."""
+def regular(intervals: int) -> Mesh:
+    """Equal intervals, the torque held at nodes alone."""
     phases = np.arange(intervals) / intervals
-    for peak in peaks:
-        nearest = round(peak * intervals) % intervals
-        if nearest:
-            phases[nearest] = peak
-    return phases
+    return Mesh(phases, 1, np.zeros((intervals, 0)), np.zeros(0))
+
+
+def intervals_for(intervals: int, error: float, wanted: float) -> int:
+    """How many intervals make the wanted error, if so many make this one."""
+    needed = intervals * (error / wanted) ** (1 / _ORDER)
+    return at_least(needed)
+
+
+def at_least(intervals: float) -> int:
+    """The next number of the ladder."""
+    return next((n for n in LADDER if n >= intervals), LADDER[-1])

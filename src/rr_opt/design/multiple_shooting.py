@@ -18,6 +18,9 @@ the intervals by linear rows. The Lagrangian is then a sum of terms that each kn
 and the few decisions, so Jacobian and Hessian are assembled from one small function mapped over
 the intervals. (Left to itself, CasADi colours the whole graph and takes a hundred times longer.)
 
+Shapes whose angle is more than one formula add states and controls at every node, which an
+interval carries on in the same way.
+
 Robot, limits and node phases are parameters: one compiled program serves every problem of its
 kind.
 """
@@ -29,7 +32,9 @@ from functools import lru_cache
 
 import casadi as ca
 
-from rr_opt.design.interval import DECISIONS, LIMITS, interval_of
+from rr_opt.design.interval import IntervalTerms, interval_of
+from rr_opt.design.layout import Layout
+from rr_opt.design.shapes import Shape
 from rr_opt.motion.tableau import BUTCHER6, Tableau
 from rr_opt.robot.ballast import By
 
@@ -57,91 +62,154 @@ _IPOPT = {
 
 @dataclass(frozen=True)
 class Shooting:
-    """The program with `intervals` steps a period.
+    """The program for one shape and number of intervals.
 
-    solver  nlpsol: x = (DECISIONS, V, E, v_0 .. , chi_0 ..), g = (continuity of v, of chi, of
-            V and E, LIMITS, torque at the nodes), p = (robot, loads, ballast range, direction,
-            node phases)
+    solver  nlpsol over the unknowns and rows of `layout`, p = (robot, loads, ballast range,
+            checked phases, direction, node phases, looks interval by interval)
     """
 
-    intervals: int
+    layout: Layout
     solver: ca.Function
 
 
 @lru_cache
 def shooting(
-    effects: tuple[str, ...], by: By, intervals: int, method: Tableau = BUTCHER6
+    effects: tuple[str, ...],
+    by: By,
+    shape: Shape,
+    intervals: int,
+    looks: int = 0,
+    substeps: int = 1,
+    method: Tableau = BUTCHER6,
 ) -> Shooting:
     """Build the program for robots with these effects and this way of changing the inertia."""
-    n, nz, nm = intervals, len(DECISIONS), 4
-    interval = interval_of(effects, by, method)
-    x = ca.MX.sym("x", nz + nm + 2 * n)
-    p = ca.MX.sym("p", interval.shared + 1 + n)
-    z, mean, vs, chis = ca.vertsplit(x, [0, nz, nz + nm, nz + nm + n, nz + nm + 2 * n])
-    fixed, sign, thetas = ca.vertsplit(p, [0, interval.shared, interval.shared + 1, p.numel()])
-    widths = ca.vertcat(thetas[1:], thetas[0] + 1) - thetas
-    per_node = (vs.T, chis.T, thetas.T, widths.T)
+    layout = Layout(shape, intervals, looks)
+    terms = interval_of(effects, by, shape, looks, substeps, method)
+    program = _Program(layout, terms)
+    return Shooting(layout, program.solver())
 
-    limits = interval.limits(z, mean, fixed, sign)
-    ends = interval.step.map(n)(*per_node, z, fixed)
-    following = ca.vertcat(vs[1:], vs[0]), ca.vertcat(chis[1:], chis[0])
-    f = -ca.sqrt(ca.sumsqr(mean[:2]))
-    g = ca.vertcat(
-        ends[0, :].T - following[0],
-        ends[1, :].T - following[1],
-        ca.sum2(ends[2:6, :]) - mean,
-        limits,
-        ends[6, :].T,
-    )
 
-    # Rows of `slopes` are the outputs of a step (v, chi, 4 sums, torque), column by column of
-    # (v, chi, decisions) for each interval in turn.
-    wrt = 2 + nz
-    slopes = interval.jacobian.map(n)(*per_node, z, fixed)
+class _Program:
+    """The parts of the program as expressions."""
 
-    def block(row, column):
-        return slopes[row, column::wrt]
+    def __init__(self, layout: Layout, terms: IntervalTerms):
+        self.layout, self.terms = layout, terms
+        n, nz, nm = layout.intervals, len(layout.decisions), len(layout.means)
+        self.states, self.wrt = len(layout.states), len(layout.local) + nz
+        self.x = ca.MX.sym("x", nz + nm + n * len(layout.local))
+        checks = layout.shape.checks
+        self.p = ca.MX.sym("p", terms.shared + checks + 1 + n + n * layout.looks)
+        self.z, self.mean, rest = ca.vertsplit(self.x, [0, nz, nz + nm, self.x.numel()])
+        ends = [terms.shared, terms.shared + checks, terms.shared + checks + 1]
+        ends.append(ends[-1] + n)
+        self.fixed, *others, thetas, looks = ca.vertsplit(self.p, [0, *ends, self.p.numel()])
+        self.per_period = (self.z, self.mean, self.fixed, *others)
+        self.local = ca.reshape(rest, n, -1)
+        widths = ca.vertcat(thetas[1:], thetas[0] + 1) - thetas
+        self.per_node = (self.local.T, thetas.T, widths.T, ca.reshape(looks, -1, n))
+        self.f = -ca.norm_2(self.mean[:2])
+        self.shift = ca.DM.eye(n)[[*range(1, n), 0], :]
+        self.g = self._rows()
 
-    shift = ca.DM.eye(n)[[*range(1, n), 0], :]
-    empty = ca.MX(n, nm)
-    to_z = [ca.horzcat(*(block(row, 2 + j).T for j in range(nz))) for row in (0, 1, 6)]
-    sums_to_z = ca.horzcat(*(ca.sum2(slopes[2:6, 2 + j :: wrt]) for j in range(nz)))
-    limits_to_z, limits_to_mean = interval.limit_slopes(z, mean, fixed, sign)
-    jac_g = ca.vertcat(
-        ca.horzcat(to_z[0], empty, ca.diag(block(0, 0)) - shift, ca.MX(n, n)),
-        ca.horzcat(to_z[1], empty, ca.diag(block(1, 0)), ca.diag(block(1, 1)) - shift),
-        ca.horzcat(sums_to_z, -ca.DM.eye(nm), slopes[2:6, 0::wrt], slopes[2:6, 1::wrt]),
-        ca.horzcat(limits_to_z, limits_to_mean, ca.MX(len(LIMITS), 2 * n)),
-        ca.horzcat(to_z[2], empty, ca.diag(block(6, 0)), ca.MX(n, n)),
-    )
+    def solver(self) -> ca.Function:
+        """The solver, with the derivatives given."""
+        x, p = self.x, self.p
+        lam_f, lam_g = ca.MX.sym("lam_f"), ca.MX.sym("lam_g", self.g.numel())
+        given = {
+            "grad_f": ca.Function(
+                "grad_f", [x, p], [self.f, ca.gradient(self.f, x)], ["x", "p"], ["f", "grad_f_x"]
+            ),
+            "jac_g": ca.Function(
+                "jac_g", [x, p], [self.g, self._jacobian()], ["x", "p"], ["g", "jac_g_x"]
+            ),
+            "hess_lag": ca.Function(
+                "hess_lag",
+                [x, p, lam_f, lam_g],
+                [ca.triu(self._hessian(lam_f, lam_g))],
+                ["x", "p", "lam_f", "lam_g"],
+                ["triu_hess_gamma_x_x"],
+            ),
+        }
+        posed = {"x": x, "p": p, "f": self.f, "g": self.g}
+        return ca.nlpsol("gait", "ipopt", posed, {**_IPOPT, **given})
 
-    lam_f, lam_g = ca.MX.sym("lam_f"), ca.MX.sym("lam_g", g.numel())
-    on_v, on_chi, on_sums, on_limits, on_torque = ca.vertsplit(
-        lam_g, [0, n, 2 * n, 2 * n + nm, 2 * n + nm + len(LIMITS), g.numel()]
-    )
-    weights = ca.vertcat(on_v.T, on_chi.T, ca.repmat(on_sums, 1, n), on_torque.T)
-    curves = interval.hessian.map(n)(*per_node, z, fixed, weights)
-    z_z = sum(curves[2:, 2 + j :: wrt] @ ca.DM.ones(n) @ ca.DM.eye(nz)[j, :] for j in range(nz))
-    limit_z, limit_cross, limit_mean = interval.limit_curves(z, mean, fixed, sign, on_limits)
-    mean_mean = limit_mean + lam_f * ca.hessian(f, x)[0][nz : nz + nm, nz : nz + nm]
-    upper = ca.vertcat(
-        ca.horzcat(z_z + limit_z, limit_cross, curves[2:, 0::wrt], curves[2:, 1::wrt]),
-        ca.horzcat(ca.MX(nm, nz), mean_mean, ca.MX(nm, 2 * n)),
-        ca.horzcat(ca.MX(n, nz + nm), ca.diag(curves[0, 0::wrt]), ca.diag(curves[0, 1::wrt])),
-        ca.horzcat(ca.MX(n, nz + nm + n), ca.diag(curves[1, 1::wrt])),
-    )
-    given = {
-        "grad_f": ca.Function(
-            "grad_f", [x, p], [f, ca.gradient(f, x)], ["x", "p"], ["f", "grad_f_x"]
-        ),
-        "jac_g": ca.Function("jac_g", [x, p], [g, jac_g], ["x", "p"], ["g", "jac_g_x"]),
-        "hess_lag": ca.Function(
-            "hess_lag",
-            [x, p, lam_f, lam_g],
-            [ca.triu(upper)],
-            ["x", "p", "lam_f", "lam_g"],
-            ["triu_hess_gamma_x_x"],
-        ),
-    }
-    solver = ca.nlpsol("gait", "ipopt", {"x": x, "p": p, "f": f, "g": g}, {**_IPOPT, **given})
-    return Shooting(n, solver)
+    def _rows(self) -> ca.MX:
+        n, states = self.layout.intervals, self.states
+        ends = self.terms.step.map(n)(*self.per_node, self.z, self.fixed)
+        sums = ends[states : states + self.mean.numel(), :]
+        path = ends[states + self.mean.numel() :, :]
+        gaps = [ends[i, :].T - self.shift @ self.local[:, i] for i in range(states)]
+        return ca.vertcat(
+            *gaps,
+            ca.sum2(sums) - self.mean,
+            self.terms.period.values(*self.per_period),
+            ca.vec(path.T),
+        )
+
+    def _jacobian(self) -> ca.MX:
+        """Rows of `slopes` are the outputs of a step, its columns (local, decisions) for each
+        interval in turn."""
+        n, nm, wrt = self.layout.intervals, self.mean.numel(), self.wrt
+        nl, outputs = len(self.layout.local), self.terms.slopes.size1()
+        slopes = self.terms.jacobian.map(n)(*self.per_node, self.z, self.fixed)
+
+        def node_by_node(row: int) -> list[ca.MX]:
+            known = self.terms.slopes
+            return [
+                ca.diag(slopes[row, j::wrt]) if known.has_nz(row, j) else ca.MX(n, n)
+                for j in range(nl)
+            ]
+
+        def along(row: int, blocks: list[ca.MX]) -> ca.MX:
+            to_z = ca.horzcat(*(slopes[row, j::wrt].T for j in range(nl, wrt)))
+            return ca.horzcat(to_z, ca.MX(n, nm), *blocks)
+
+        rows = []
+        for i in range(self.states):
+            blocks = node_by_node(i)
+            blocks[i] -= self.shift
+            rows.append(along(i, blocks))
+        sums = slice(self.states, self.states + nm)
+        rows.append(
+            ca.horzcat(
+                *(ca.sum2(slopes[sums, j::wrt]) for j in range(nl, wrt)),
+                -ca.DM.eye(nm),
+                *(slopes[sums, j::wrt] for j in range(nl)),
+            )
+        )
+        to_z, to_mean = self.terms.period.slopes(*self.per_period)
+        rows.append(ca.horzcat(to_z, to_mean, ca.MX(to_z.size1(), nl * n)))
+        rows += [along(row, node_by_node(row)) for row in range(sums.stop, outputs)]
+        return ca.vertcat(*rows)
+
+    def _hessian(self, lam_f: ca.MX, lam_g: ca.MX) -> ca.MX:
+        """Of the Lagrangian; only its upper triangle is complete."""
+        n, nm, wrt = self.layout.intervals, self.mean.numel(), self.wrt
+        nl, nz, tied = len(self.layout.local), self.z.numel(), self.states * n
+        limits = tied + nm + len(self.layout.limits)
+        on_states, on_sums, on_limits, on_path = ca.vertsplit(
+            lam_g, [0, tied, tied + nm, limits, lam_g.numel()]
+        )
+        weights = ca.vertcat(
+            ca.reshape(on_states, n, -1).T,
+            ca.repmat(on_sums, 1, n),
+            ca.reshape(on_path, n, -1).T,
+        )
+        curves = self.terms.hessian.map(n)(*self.per_node, self.z, self.fixed, weights)
+        summed = [ca.sum2(curves[nl:, j::wrt]) for j in range(nl, wrt)]
+        limit_z, cross, limit_mean = self.terms.period.curves(*self.per_period, on_limits)
+        of_mean = ca.hessian(self.f, self.x)[0][nz : nz + nm, nz : nz + nm]
+        z_local = [curves[nl:, j::wrt] for j in range(nl)]
+        rows = [
+            ca.horzcat(ca.horzcat(*summed) + limit_z, cross, *z_local),
+            ca.horzcat(ca.MX(nm, nz), limit_mean + lam_f * of_mean, ca.MX(nm, nl * n)),
+        ]
+        for i in range(nl):
+            blocks = [
+                ca.diag(curves[i, j::wrt])
+                if j >= i and self.terms.curves.has_nz(i, j)
+                else ca.MX(n, n)
+                for j in range(nl)
+            ]
+            rows.append(ca.horzcat(ca.MX(n, nz + nm), *blocks))
+        return ca.vertcat(*rows)

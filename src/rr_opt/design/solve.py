@@ -10,12 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rr_opt.design.decisions import decisions
-from rr_opt.design.interval import DECISIONS, LIMITS, TURN
-from rr_opt.design.landscape import Landscape
+from rr_opt.design.landscape import Cycles, Landscape
+from rr_opt.design.layout import MEANS, TURN, ZERO, Layout
+from rr_opt.design.mesh import Mesh
 from rr_opt.design.multiple_shooting import shooting
 from rr_opt.design.setting import Setting
+from rr_opt.design.shapes import Shape, shape_of
 from rr_opt.problem import Interval
-from rr_opt.robot.gait import SineGait
+from rr_opt.robot.gait import Gait
 
 Array = NDArray[np.float64]
 
@@ -52,12 +54,13 @@ class Candidate:
     sentence     the same in words
     prices       speed gained per unit of each limit, m/s per unit: rate, angle, torque,
                  singularity, direction, and curvature, yaw_rate, heading of the turn
-    bound_prices speed gained per unit by which a decision's active bound moves up
-    x, lam_x, lam_g, phases   where to go on from
+    bound_prices speed gained per unit by which an active bound moves up: period, ballast, and
+                 the decisions of the gait's shape
+    mesh         on which it was solved
     """
 
     sign: int
-    gait: SineGait
+    gait: Gait
     share: float
     speed: float
     feasible: bool
@@ -67,9 +70,7 @@ class Candidate:
     prices: Mapping[str, float]
     bound_prices: Mapping[str, float]
     violation: float
-    phases: Array = field(repr=False)
-    v: Array = field(repr=False)
-    chi: Array = field(repr=False)
+    mesh: Mesh = field(repr=False)
 
     @property
     def rank(self) -> tuple[bool, bool, float]:
@@ -77,113 +78,115 @@ class Candidate:
         return (not self.feasible, not self.success, -abs(self.speed))
 
 
-def solve(setting: Setting, sign: int, gait: SineGait, share: float, phases: Array) -> Candidate:
-    """Maximise the speed in direction `sign` from a gait and a share of the ballast.
-
-    phases (N,): nodes in [0, 1), increasing; the first is 0.
-    """
-    problem, n = setting.problem, len(phases)
+def solve(setting: Setting, sign: int, gait: Gait, share: float, mesh: Mesh) -> Candidate:
+    """Maximise the speed in direction `sign` from a gait and a share of the ballast."""
+    problem = setting.problem
     by = problem.inertia_ratio.by if problem.inertia_ratio else "inertia"
-    program = shooting(setting.dynamics.effects, by, n)
-    loads = setting.landscape.loads
+    shape = shape_of(problem.gait)
+    size = mesh.intervals, mesh.looks.shape[1], mesh.substeps
+    program = shooting(setting.dynamics.effects, by, shape, *size)
+    layout, loads = program.layout, setting.landscape.loads
     p = np.concatenate(
         [
             setting.dynamics.values(problem.robot),
             [loads.mass, loads.distance, loads.spread],
             [setting.ballast.low, setting.ballast.high],
+            all_checks(shape, mesh.checks),
             [sign],
-            phases,
+            mesh.phases,
+            mesh.looks.ravel(),
         ]
     )
-    lbx, ubx, lbg, ubg = _bounds(setting, n)
-    x0 = _start(setting.landscape, gait, share, phases)
+    lbx, ubx, lbg, ubg = _bounds(setting, layout, mesh.margin)
+    x0 = _start(setting.landscape, layout, gait, share, mesh.phases)
     result = program.solver(x0=np.clip(x0, lbx, ubx), p=p, lbx=lbx, ubx=ubx, lbg=lbg, ubg=ubg)
     stats = program.solver.stats()
-    x = np.array(result["x"]).ravel()
-    g = np.array(result["g"]).ravel()
-    lam_g, lam_x = (np.array(result[key]).ravel() for key in ("lam_g", "lam_x"))
+    x, g, lam_x, lam_g = (np.array(result[key]).ravel() for key in ("x", "g", "lam_x", "lam_g"))
     violation = float(np.max(np.maximum(np.maximum(lbg - g, g - ubg), 0.0)))
     status = stats["return_status"]
-    amplitude, period, offset, share = (float(value) for value in x[:4])
-    forward = math.copysign(1.0, g[2 * n + 4 + LIMITS.index("direction")])
-    first_v = len(DECISIONS) + 4
+    values, rows, multipliers = layout.unknowns(x), layout.rows(g), layout.rows(lam_g)
+    on_bounds = layout.unknowns(lam_x)
+    torque = sum(np.abs(multipliers[name]).sum() for name in layout.torque)
     return Candidate(
         sign=sign,
-        gait=SineGait(amplitude, period, offset),
-        share=share,
-        speed=-float(result["f"]) * sign * forward,
+        gait=shape.gait(values),
+        share=float(values["ballast"]),
+        speed=-float(result["f"]) * sign * math.copysign(1.0, rows["direction"]),
         feasible=bool(violation <= FEASIBLE),
         success=status == "Solve_Succeeded",
         sentence=_SENTENCES.get(status, f"The solver stopped: {status}."),
         iterations=int(stats["iter_count"]),
-        prices=_prices(lam_g, n),
-        bound_prices=dict(zip(DECISIONS[:4], map(float, lam_x[:4]), strict=True)),
+        prices={
+            **shape.prices(problem, multipliers),
+            "torque": float(torque),
+            **{name: float(multipliers[name]) for name in ("direction", *TURN)},
+        },
+        bound_prices={name: float(on_bounds[name]) for name in layout.decisions},
         violation=violation,
-        phases=phases,
-        v=x[first_v : first_v + n],
-        chi=x[first_v + n :],
+        mesh=mesh,
     )
 
 
-def _start(landscape: Landscape, gait: SineGait, share: float, phases: Array) -> Array:
+def all_checks(shape: Shape, added: Array) -> Array:
+    """The phases that a shape looks at: a regular grid, and the last of the added ones. As long
+    as few are, the grid is twice as fine in part."""
+    half = shape.checks // 2
+    grid = np.arange(half) / max(half, 1)
+    between = grid + 0.5 / max(half, 1)
+    return np.concatenate([grid, np.append(between, added)[len(added) :]])
+
+
+def _start(landscape: Landscape, layout: Layout, gait: Gait, share: float, phases: Array) -> Array:
     """The vector of unknowns on the steady cycle of a gait."""
     fine = 4 * len(phases)
-    point = [gait.amplitude, gait.period, gait.offset, share]
-    cycle = landscape.cycles(np.array(point)[:, None], fine)
+    cycle = cycle_along(landscape, gait, share, fine)
     theta = np.arange(fine + 1) / fine
     v, chi = (
-        np.interp(phases, theta, np.append(path[:, 0], path[0, 0])) for path in (cycle.v, cycle.chi)
+        np.interp(phases % 1, theta, np.append(path[:, 0], path[0, 0]))
+        for path in (cycle.v, cycle.chi)
     )
-    return np.concatenate([[*point, cycle.turn[0]], cycle.mean[:, 0], v, chi])
+    return layout.stacked(
+        {
+            "period": gait.period,
+            "ballast": share,
+            "turn": cycle.turn[0],
+            **dict(zip(MEANS, cycle.mean[:, 0], strict=True)),
+            "v": v,
+            "chi": chi,
+            **layout.shape.start(gait, phases),
+        }
+    )
 
 
-def _bounds(setting: Setting, n: int) -> tuple[Array, Array, Array, Array]:
-    problem, infinite = setting.problem, np.full(2 * n, np.inf)
-    gait, limits = problem.gait, problem.limits
+def cycle_along(landscape: Landscape, gait: Gait, share: float, nodes: int) -> Cycles:
+    """The steady cycle of one gait of any shape."""
+    t = np.arange(2 * nodes) / (2 * nodes) * gait.period
+    phi, rate, acceleration = gait.angle(t), gait.rate(t), gait.acceleration(t)
+    angle = phi[:, None], rate[:, None], acceleration[:, None]
+    with np.errstate(all="ignore"):
+        return landscape.along(angle, np.array([gait.period]), np.array([share]))
+
+
+def _bounds(setting: Setting, layout: Layout, margin: float) -> tuple[Array, Array, Array, Array]:
+    problem = setting.problem
     share = setting.fixed_share
     if share is None and setting.ballast.fixed:
         share = 0.0
-    shares = Interval(0.0, 1.0) if share is None else Interval(share, share)
-    # Where limits and bounds leave one value there is no inside for the solver to move in: the
-    # decision is fixed, and rows that then depend on nothing free are dropped.
     box = decisions(problem)
-    amplitude = Interval(*[gait.amplitude.low] * 2) if box.amplitude_pinned else gait.amplitude
-    period = box.period if box.period.fixed else gait.period
-    offset = box.offset if box.offset.fixed else gait.offset
-    boxes = (amplitude, period, offset, shares)
-    free = [np.inf] * 5
-    lbx = np.concatenate([[box.low for box in boxes], np.negative(free), -infinite])
-    ubx = np.concatenate([[box.high for box in boxes], free, infinite])
+    period = box.period if box.period.fixed else problem.gait.period
+    most = problem.limits.torque * (1 - margin)
+    torque = Interval(-most, most)
+    own = layout.shape.bounds(problem)
+    unknowns = {
+        "period": period,
+        "ballast": Interval(0.0, 1.0) if share is None else Interval(share, share),
+        **own.unknowns,
+    }
+    rows = {"direction": Interval(_AHEAD, np.inf), **dict.fromkeys(layout.torque, torque)}
+    if problem.turn:
+        rows |= {name: getattr(problem.turn, name) for name in TURN}
+    lbx, ubx = layout.bounds(unknowns)
     # The heading is counted from platform 1's at phase 0.
-    first_chi = len(DECISIONS) + 4 + n
-    lbx[first_chi] = ubx[first_chi] = 0.0
-    tight = np.zeros(2 * n + 4)
-    low = {
-        "singularity+": limits.singularity,
-        "singularity-": limits.singularity,
-        "direction": _AHEAD,
-    }
-    high = {"rate": limits.rate, "angle+": limits.angle, "angle-": limits.angle}
-    if amplitude.fixed and offset.fixed:
-        low = {"direction": _AHEAD}
-        high = {"rate": limits.rate}
-    if amplitude.fixed and period.fixed:
-        high.pop("rate")
-    for name in TURN if problem.turn else ():
-        asked = getattr(problem.turn, name)
-        low[name], high[name] = asked.low, asked.high
-    lbg = [tight, [low.get(name, -np.inf) for name in LIMITS], np.full(n, -limits.torque)]
-    ubg = [tight, [high.get(name, np.inf) for name in LIMITS], np.full(n, limits.torque)]
-    return lbx, ubx, np.concatenate(lbg), np.concatenate(ubg)
-
-
-def _prices(lam_g: Array, n: int) -> dict[str, float]:
-    rows = dict(zip(LIMITS, lam_g[2 * n + 4 : 2 * n + 4 + len(LIMITS)], strict=True))
-    return {
-        "rate": float(rows["rate"]),
-        "angle": float(rows["angle+"] + rows["angle-"]),
-        "torque": float(np.abs(lam_g[2 * n + 4 + len(LIMITS) :]).sum()),
-        "singularity": float(rows["singularity+"] + rows["singularity-"]),
-        "direction": float(rows["direction"]),
-        **{name: float(rows[name]) for name in TURN},
-    }
+    first = layout.first("chi")
+    lbx[first], ubx[first] = ZERO.low, ZERO.high
+    return lbx, ubx, *layout.row_bounds({**rows, **own.rows})

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -35,20 +34,28 @@ class FourierGait:
         """How many."""
         return len(self.sines)
 
-    @cached_property
+    @property
     def amplitude(self) -> float:
         """Largest |phi - phi0| over a period, rad."""
         return self._peak(0, 0.0)
 
-    @cached_property
+    @property
     def peak_angle(self) -> float:
         """Largest |phi| over a period, rad."""
         return self._peak(0, self.offset)
 
-    @cached_property
+    @property
     def peak_rate(self) -> float:
         """Largest |dphi/dt| over a period, rad/s."""
         return self._peak(1, 0.0)
+
+    def resized(self, amplitude: float, period: float, offset: float) -> FourierGait:
+        """The same shape with another amplitude (rad), period (s) and offset (rad)."""
+        factor = amplitude / self.amplitude
+        sines, cosines = (
+            tuple(factor * size for size in sizes) for sizes in (self.sines, self.cosines)
+        )
+        return FourierGait(period, offset, sines, cosines)
 
     def angle(self, t: ArrayLike) -> Array:
         """phi, rad, in the shape of t (s)."""

@@ -45,7 +45,7 @@ class FreeGait:
         angles = self.angle0 + np.concatenate([[0.0], np.cumsum(h * rates[:-1] + h**2 * u / 2)])
         return angles, rates
 
-    @cached_property
+    @property
     def offset(self) -> float:
         """phi0, the mean of phi over a period, rad."""
         angles, rates = self.nodes
@@ -79,6 +79,16 @@ class FreeGait:
     def peak_rate(self) -> float:
         """Largest |dphi/dt| over a period, rad/s."""
         return float(np.abs(self.nodes[1]).max())
+
+    def resized(self, amplitude: float, period: float, offset: float) -> FreeGait:
+        """The same shape with another amplitude (rad), period (s) and offset (rad)."""
+        factor, speed = amplitude / self.amplitude, self.period / period
+        return FreeGait(
+            period,
+            offset + factor * (self.angle0 - self.offset),
+            factor * speed * self.rate0,
+            tuple(factor * speed**2 * u for u in self.accelerations),
+        )
 
     def angle(self, t: ArrayLike) -> Array:
         """phi, rad, in the shape of t (s)."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -51,6 +51,13 @@ class Gait(Protocol):
         """Largest |dphi/dt| over a period, rad/s."""
         ...
 
+    def resized(self, amplitude: float, period: float, offset: float) -> Self:
+        """The same shape with another amplitude (rad), period (s) and offset (rad).
+
+        Raises ZeroDivisionError for a shape that does not move, unless it is a sine.
+        """
+        ...
+
     def angle(self, t: ArrayLike) -> Array:
         """phi, rad, in the shape of t (s)."""
         ...
@@ -92,6 +99,10 @@ class SineGait:
     def peak_rate(self) -> float:
         """Largest |dphi/dt| over a period, rad/s."""
         return abs(self.amplitude) * self.angular_frequency
+
+    def resized(self, amplitude: float, period: float, offset: float) -> SineGait:
+        """The sine with these values."""
+        return SineGait(amplitude, period, offset)
 
     def angle(self, t: ArrayLike) -> Array:
         """phi, rad, in the shape of t (s)."""

@@ -1,0 +1,16 @@
+"""Shapes of gaits: what each adds to the unknowns and rows of multiple shooting."""
+
+from rr_opt.design.shapes.fourier import FourierShape
+from rr_opt.design.shapes.free import FreeShape
+from rr_opt.design.shapes.shape import Bounds, Shape
+from rr_opt.design.shapes.sine import SineShape
+from rr_opt.problem import GaitBounds
+
+__all__ = ["Bounds", "FourierShape", "FreeShape", "Shape", "SineShape", "shape_of"]
+
+
+def shape_of(gait: GaitBounds) -> Shape:
+    """The shape that a problem asks for."""
+    if gait.shape == "fourier":
+        return FourierShape(gait.harmonics)
+    return FreeShape() if gait.shape == "free" else SineShape()

@@ -1,0 +1,38 @@
+"""Limits on angle and rate that hold at every node, for gaits whose extremes are anywhere."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from rr_opt.design.decisions import reach_before_singularity
+from rr_opt.design.shapes.shape import Values
+from rr_opt.problem import Interval, Problem
+
+PATH = ("angle", "swing", "rate")
+"""phi, phi - phi0 and dphi/dt."""
+
+
+def path_bounds(problem: Problem) -> dict[str, Interval]:
+    """Bounds of PATH. The singular posture is one of two angles, so its margin is one as well."""
+    limits = problem.limits
+    reach = min(limits.angle, reach_before_singularity(problem.robot, limits.singularity))
+    swing, rate = problem.gait.amplitude.high, limits.rate
+    return {
+        "angle": Interval(-reach, reach),
+        "swing": Interval(-swing, swing),
+        "rate": Interval(-rate, rate),
+    }
+
+
+def path_prices(problem: Problem, multipliers: Values) -> dict[str, float]:
+    """Speed gained per unit of the limits on rate, angle and singularity."""
+    limits, robot = problem.limits, problem.robot
+    rate, angle = (float(np.abs(multipliers[name]).sum()) for name in ("rate", "angle"))
+    edge = reach_before_singularity(robot, limits.singularity)
+    if limits.angle <= edge:
+        return {"rate": rate, "angle": angle, "singularity": 0.0}
+    # c1 cos(edge) + c2 = margin, so a wider margin brings the edge closer.
+    closer = 1 / (robot.platform1.c * math.sin(edge))
+    return {"rate": rate, "angle": 0.0, "singularity": -angle * closer}
