@@ -7,6 +7,7 @@ shapes at random are other starts.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 from rr_opt.design.decisions import decisions
@@ -22,18 +23,24 @@ from rr_opt.robot.gait import Gait
 
 _HARMONICS = (3, 5, 8, 12)
 """Families on the way to a larger one."""
-_HANDED_ON, _SCANNED = 3, 2
-"""How many optima of a family, and how many shapes at random, the next one starts from."""
+_HANDED_ON = 3
+"""How many optima of a family the next one starts from."""
+_SCANNED, _SCANNED_LATER = 8, 2
+"""How many shapes at random the first family of several harmonics starts from, and a later one."""
+_WORTH = 0.8
+"""Optima so much slower than the best are not handed on."""
 
 
-def find_shapes(problem: Problem, progress: Progress) -> Finds:
-    """Optima of the problem's family, or what is known of why there is none."""
+def find_families(problem: Problem, progress: Progress) -> Iterator[tuple[Problem, Finds]]:
+    """Optima, or why there are none, of the sines, then of each family up to the problem's."""
     sine = replace(problem, gait=replace(problem.gait, shape="sine"))
     finds = find_sines(sine, progress)
-    clash = finds.clash
+    clash = Finds(clash=finds.clash)
+    yield sine, finds
     for gait in _families(problem.gait):
-        finds = _next(replace(problem, gait=gait), finds, progress)
-    return finds if finds.good else finds + Finds(clash=clash)
+        larger = replace(problem, gait=gait)
+        finds = _next(larger, finds, progress)
+        yield larger, finds if finds.good else finds + clash
 
 
 def _families(gait: GaitBounds) -> list[GaitBounds]:
@@ -49,12 +56,15 @@ def _next(problem: Problem, before: Finds, progress: Progress) -> Finds:
     settings = settings_of(problem, decisions(problem))
     starts: list[tuple[Setting, int, Gait, float]] = []
     for old, one in distinct(before.good)[:_HANDED_ON]:
+        if abs(one.speed) < _WORTH * before.fastest:
+            break
         setting = next(new for new in settings if new.fixed_share == old.fixed_share)
         starts.append((setting, one.sign, one.gait, one.share))
     if problem.gait.shape == "fourier":
         for setting in settings[:1] if starts else settings:
+            most = _SCANNED if problem.gait.harmonics <= _HARMONICS[0] else _SCANNED_LATER
             for seed in scan_shapes(
-                setting, problem.gait.harmonics, SIGNS[problem.direction], _SCANNED
+                setting, problem.gait.harmonics, SIGNS[problem.direction], most
             ):
                 starts.append((setting, seed.sign, seed.gait, seed.share))
     name = "free gait" if problem.gait.shape == "free" else f"{problem.gait.harmonics} harmonics"

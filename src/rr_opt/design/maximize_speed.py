@@ -1,4 +1,4 @@
-"""The fastest gait of a problem: scan, solve from every promising start, rank, refine.
+"""The fastest gait of a problem: find the optima of its family, rank them, refine the best.
 
 Local optima are many, some on limits and some at the edge of the singular posture. The scan
 finds their basins; multiple shooting finds each optimum; they are ranked by feasibility,
@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from rr_opt.design.families import find_shapes
+from rr_opt.design.families import find_families
 from rr_opt.design.finds import Finds
 from rr_opt.design.ranking import distinct
 from rr_opt.design.refine import refine
@@ -40,6 +40,7 @@ class Optimum:
                 right angles to its mean heading, and its direction a matter of definition
     starts      starts solved; iterations and failures over all of them
     intervals   mesh of the winner
+    sine        speed of the best sine, where the problem asks for another shape, m/s
     """
 
     status: Status
@@ -53,6 +54,7 @@ class Optimum:
     iterations: int = 0
     failures: tuple[str, ...] = ()
     intervals: int = 0
+    sine: float | None = None
 
     @property
     def sideways(self) -> bool:
@@ -76,12 +78,18 @@ def maximize_speed(problem: Problem, progress: Progress = lambda _: None) -> Opt
     Raises InputError for a robot that has no steady cycle to find.
     """
     require_friction(problem.robot)
-    find = find_sines if problem.gait.shape == "sine" else find_shapes
-    finds = find(problem, progress)
-    optimum = _answer(problem, finds, progress)
-    if optimum.status is Status.NOT_CONVERGED and finds.clash:
-        return replace(optimum, status=Status.INFEASIBLE, message=finds.clash)
-    return optimum
+    if problem.gait.shape == "sine":
+        return _answer(problem, find_sines(problem, progress), progress)
+    finds = [found for _, found in find_families(problem, progress)]
+    optimum = _answer(problem, finds[-1], progress)
+    return replace(optimum, sine=finds[0].fastest or None)
+
+
+def compare_shapes(problem: Problem, progress: Progress = lambda _: None) -> list[Optimum]:
+    """The optimum among sines, then among 3 and 5 harmonics, then among free gaits."""
+    require_friction(problem.robot)
+    free = replace(problem, gait=replace(problem.gait, shape="free"))
+    return [_answer(posed, finds, progress) for posed, finds in find_families(free, progress)]
 
 
 def _answer(problem: Problem, finds: Finds, progress: Progress) -> Optimum:
@@ -122,9 +130,9 @@ def _answer(problem: Problem, finds: Finds, progress: Progress) -> Optimum:
             failures=failures,
             intervals=refined.mesh.intervals,
         )
-    message = "No start led to an optimum. " + " ".join(dict.fromkeys(failures))
+    message = finds.clash or "No start led to an optimum. " + " ".join(dict.fromkeys(failures))
     return Optimum(
-        Status.NOT_CONVERGED,
+        Status.INFEASIBLE if finds.clash else Status.NOT_CONVERGED,
         message,
         problem,
         starts=starts,

@@ -18,9 +18,9 @@ Array = NDArray[np.float64]
 LADDER = (16, 20, 24, 30, 36, 48, 72, 96, 144, 192, 288, 384, 768)
 """Numbers of intervals to choose from, so that few programs are ever built."""
 
-LOOKS = np.array([2, 4, 6, 1, 3, 5, 7]) / 8
-"""Places of an interval at which the torque is held; the first three always."""
-_REGULAR = 3
+LOOKS = np.array([2, 1, 3]) / 4
+"""Places of an interval at which the torque is held; the first one always."""
+_REGULAR = 1
 _ORDER = 6
 
 
@@ -60,7 +60,7 @@ class Mesh:
         """With the torque held at these phases of [0, 1) too.
 
         In each interval the look that is farthest from the peak gives way, of those that are not
-        the regular ones: what is near keeps the peak from moving aside.
+        regular: what is near keeps the peak from moving aside.
         """
         if not len(peaks):
             return self

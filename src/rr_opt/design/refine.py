@@ -21,11 +21,12 @@ _PEAK = 1e-6
 """Largest excess over a limit between nodes, relative."""
 _SHAPED_PEAK = 3e-5
 """The same where the solver moves peaks aside."""
-_PATIENCE = 6
-"""Refinements after which a margin is kept from the torque's limit instead."""
+_PATIENCE = 5
+"""Refinements after which the intervals are halved and, after as many more, a margin is kept from
+the torque's limit."""
 _PER_HARMONIC = 12
 """Intervals of a period of the fastest harmonic, at least."""
-_REFINEMENTS = 12
+_REFINEMENTS = 14
 _SUBSTEPS = 16
 """Of a free gait's interval, at most."""
 
@@ -42,9 +43,11 @@ def solve_from(setting: Setting, sign: int, gait: Gait, share: float) -> Candida
         intervals = intervals_for(_TRIAL, error, _CLAIM / 2)
     except NotConvergedError:  # dry friction too steep for so coarse a mesh
         intervals = LADDER[-1]
-    if wanted.shape == "fourier":
-        intervals = max(intervals, at_least(_PER_HARMONIC * wanted.harmonics))
-    return solve(setting, sign, gait, share, _held(setting, regular(intervals), seen))
+    if wanted.shape == "sine":
+        return solve(setting, sign, gait, share, regular(intervals).with_nodes_at(seen.peaks))
+    # Until an optimum is chosen, limits broken between nodes are no matter.
+    intervals = max(intervals, at_least(_PER_HARMONIC * wanted.harmonics))
+    return solve(setting, sign, gait, share, regular(intervals))
 
 
 def refine(setting: Setting, candidate: Candidate) -> Candidate:
@@ -60,8 +63,10 @@ def refine(setting: Setting, candidate: Candidate) -> Candidate:
         mesh = _finer(setting, candidate.mesh, error)
         if mesh is None:
             break  # the replay will say what the claim is worth
+        if number == _PATIENCE and setting.problem.gait.shape == "fourier":
+            mesh = replace(regular(at_least(2 * mesh.intervals)), checks=mesh.checks)
         mesh = _held(setting, mesh, seen)
-        if number >= _PATIENCE and seen.used > 1 + peak:
+        if number >= 2 * _PATIENCE and seen.used > 1 + peak:
             mesh = replace(mesh, margin=max(mesh.margin, 1 - (1 - mesh.margin) / seen.used))
         candidate = solve(setting, candidate.sign, gait, share, mesh)
         iterations += candidate.iterations

@@ -54,8 +54,8 @@ class Candidate:
     sentence     the same in words
     prices       speed gained per unit of each limit, m/s per unit: rate, angle, torque,
                  singularity, direction, and curvature, yaw_rate, heading of the turn
-    bound_prices speed gained per unit by which an active bound moves up: period, ballast, and
-                 the decisions of the gait's shape
+    bound_prices speed gained per unit by which an active bound moves up: amplitude, period,
+                 offset, ballast
     mesh         on which it was solved
     """
 
@@ -121,7 +121,10 @@ def solve(setting: Setting, sign: int, gait: Gait, share: float, mesh: Mesh) -> 
             "torque": float(torque),
             **{name: float(multipliers[name]) for name in ("direction", *TURN)},
         },
-        bound_prices={name: float(on_bounds[name]) for name in layout.decisions},
+        bound_prices={
+            **shape.bound_prices(on_bounds, multipliers),
+            **{name: float(on_bounds[name]) for name in ("period", "ballast")},
+        },
         violation=violation,
         mesh=mesh,
     )

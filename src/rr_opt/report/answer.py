@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from rr_opt.design.maximize_speed import Optimum
 from rr_opt.outcome import Status
 from rr_opt.report.quantities import direction_text
-from rr_opt.robot.gait import SineGait
+from rr_opt.robot.gait import Gait
 from rr_opt.verify.replay import Replay
 from rr_opt.verify.sweep import TOLERATED, SweepCheck
 
@@ -60,7 +60,8 @@ class Answer:
             )
             checks.append(Check(excess <= LARGEST_EXCESS, f"Limits over the whole cycle: {found}"))
         if self.sweep:
-            checks.append(Check(self.sweep.gap >= -TOLERATED, _sweep_sentence(self.sweep)))
+            found = _sweep_sentence(self.sweep, self.optimum.problem.gait.shape)
+            checks.append(Check(self.sweep.gap >= -TOLERATED, found))
             checks.append(
                 Check(
                     self.sweep.error <= TOLERATED,
@@ -94,6 +95,10 @@ class Answer:
         ties = len(self.optimum.ties)
         if ties:
             text += f" {ties} other gait{'s are' if ties > 1 else ' is'} as fast: a tie."
+        sine = self.optimum.sine
+        if sine:
+            gain = 100 * (abs(best.speed) / sine - 1)
+            text += f" That is {gain:.1f} % faster than the fastest sine."
         text += self._servo_note(best.gait)
         if self.optimum.sideways:
             text += (
@@ -102,7 +107,7 @@ class Answer:
             )
         return text
 
-    def _servo_note(self, gait: SineGait) -> str:
+    def _servo_note(self, gait: Gait) -> str:
         """What the problem's limits allow beyond the servo of the robot file."""
         servo = self.optimum.problem.robot.servo
         beyond = [
@@ -112,7 +117,7 @@ class Answer:
                 ("rate", gait.peak_rate, servo.rate_limit),
                 ("torque", self.replay.reached["torque"] if self.replay else 0, servo.torque_limit),
             )
-            if needed > able * (1 + 1e-6)
+            if needed > able * (1 + LARGEST_EXCESS)
         ]
         if not beyond:
             return ""
@@ -122,10 +127,11 @@ class Answer:
         )
 
 
-def _sweep_sentence(sweep: SweepCheck) -> str:
+def _sweep_sentence(sweep: SweepCheck, shape: str) -> str:
+    gaits = "gaits" if shape == "sine" else "sines"
     if sweep.best_gait is None:
-        return f"Sweep of {sweep.points} gaits: none of them keeps every limit."
-    head = f"Sweep of {sweep.points} gaits: the best has {1e3 * sweep.best_speed:+.3f} mm/s, "
+        return f"Sweep of {sweep.points} {gaits}: none of them keeps every limit."
+    head = f"Sweep of {sweep.points} {gaits}: the best has {1e3 * sweep.best_speed:+.3f} mm/s, "
     if abs(sweep.gap) < 1e-6:
         return head + "as fast as the optimum to a millionth."
     if sweep.gap >= 0:

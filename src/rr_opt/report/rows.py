@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 from rr_opt.design.decisions import ballast_interval
@@ -13,6 +13,9 @@ from rr_opt.verify.replay import Replay
 
 ACTIVE = 1e-4
 """A limit is active when the gait comes this near to it, relative to the limit."""
+
+_NOTHING = 1e-7
+"""A price of a bound that does not hold, m/s per rad."""
 
 LIMIT_NAMES = ("angle", "rate", "torque", "singularity")
 
@@ -71,6 +74,8 @@ def bound_rows(optimum: Optimum) -> list[BoundRow]:
         _bound(name, getattr(best.gait, name), getattr(gait, name), best.bound_prices[name])
         for name in ("amplitude", "period", "offset")
     ]
+    if gait.shape != "sine":
+        rows[0] = _swing(rows[0], best.bound_prices["amplitude"])
     choice = problem.inertia_ratio
     if choice:
         whole = choice.by == "loads" and choice.loads.whole
@@ -89,6 +94,15 @@ def _bound(name: str, value: float, box: Interval, price: float | None) -> Bound
     elif box.high - value <= near:
         side = "high"
     return BoundRow(name, value, box.low, box.high, side, price if side else 0.0)
+
+
+def _swing(row: BoundRow, price: float) -> BoundRow:
+    """The row of the amplitude where the least one bounds the first harmonic and the largest one
+    the swing: the price tells which of them holds."""
+    if row.side == "fixed":
+        return row
+    side: Literal["low", "high"] = "high" if price > 0 else "low"
+    return replace(row, side=side if abs(price) > _NOTHING else None, price=price)
 
 
 def _share_per_ratio(problem: Problem, choice: RatioChoice) -> float:

@@ -18,7 +18,7 @@ from rr_opt.report.quantities import (
 )
 from rr_opt.report.result import turns
 from rr_opt.report.rows import bound_rows, limit_rows
-from rr_opt.report.text import columns, gait_lines
+from rr_opt.report.text import columns, gait_formula, gait_lines
 
 _LEADS = {"forward": "platform 1 leads", "backward": "platform 2 leads"}
 
@@ -70,7 +70,7 @@ def _gait(answer: Answer) -> list[str]:
         return []
     way = direction_text(best.speed)
     rows = [
-        ("gait", "phi(t) = amplitude sin(2 pi t/period) + offset"),
+        ("gait", gait_formula(best.gait)),
         *gait_lines(best.gait),
         ("  J20/J10", ratio_text(answer)),
         ("speed", f"{speed_text(best.speed)}, {way}: {_LEADS[way]}"),

@@ -56,12 +56,12 @@ class Steady(NamedTuple):
 
 
 class _Angle(NamedTuple):
-    """phi = swing + offset, dphi = rate omega, ddphi = -swing omega^2: offset (G,), swing and
-    rate (n, G), rad, omega (G, B), rad/s."""
+    """phi, dphi = rate omega, ddphi = bend omega^2: phi, rate and bend (n, G), rad, omega (G, B),
+    rad/s."""
 
-    offset: Array
-    swing: Array
+    phi: Array
     rate: Array
+    bend: Array
     omega: Array
 
 
@@ -98,19 +98,35 @@ class SteadyFourier:
         """
         theta = np.arange(n)[:, None] * ((1 if straight else 2) * math.pi / n)
         swing, rate = amplitude * np.sin(theta), amplitude * np.cos(theta)
-        powers = self._powers(swing + offset, p) if self.viscous else None
+        return self.along((swing + offset, rate, -swing), period, p, straight, tolerance)
+
+    @np.errstate(divide="ignore", over="ignore", invalid="ignore")
+    def along(
+        self,
+        angle: tuple[Array, Array, Array],
+        period: Array,
+        p: Array,
+        straight: bool,
+        tolerance: float = 1e-6,
+    ) -> Steady:
+        """Steady cycles along phi and its first two derivatives in 2 pi t/T, (n, G) each, rad, of
+        half a period if straight: such a gait is its own mirror image half a period later."""
+        n = len(angle[0])
+        powers = self._powers(angle[0], p) if self.viscous else None
         parts = []
         width = max(1, _BLOCK[self.viscous] // (n * period.shape[1]))
         for block in (slice(k, k + width) for k in range(0, len(period), width)):
             T = period[block]
             span = (T / 2 if straight else T).ravel()
-            angle = _Angle(offset[block], swing[:, block], rate[:, block], 2 * math.pi / T)
+            phi, rate, bend = (part[:, block] for part in angle)
+            here = _Angle(phi, rate, bend, 2 * math.pi / T)
             if powers is not None:
-                here = Powers(*(_columns(part, block) for part in powers))
-                v, w, side, torque, settled = _by_powers(here, angle, span)
+                known = Powers(*(_columns(part, block) for part in powers))
+                v, w, side, torque, settled = _by_powers(known, here, span)
             else:
-                here = _columns(p, block)
-                v, w, side, torque, settled = self._by_newton(here, angle, span, tolerance)
+                v, w, side, torque, settled = self._by_newton(
+                    _columns(p, block), here, span, tolerance
+                )
             speed, turn = _mean_speed(v, w, side, span, straight)
             scale = np.maximum(np.abs(speed), _SMALL * np.abs(v).max(axis=0)) + _TINY
             error = (tail(v, False) + tail(side, straight)) / scale
@@ -121,13 +137,12 @@ class SteadyFourier:
 
     def _by_newton(self, p: Array, gaits: _Angle, span: Array, tolerance: float) -> _Motion:
         periods, omega = gaits.omega.shape[1], gaits.omega.ravel()
-        phi, swing, rate = (
-            np.repeat(part, periods, axis=1)
-            for part in (gaits.swing + gaits.offset, gaits.swing, gaits.rate)
+        phi, rate, bend = (
+            np.repeat(part, periods, axis=1) for part in (gaits.phi, gaits.rate, gaits.bend)
         )
         if p.shape[1] > 1:
             p = np.repeat(p, periods, axis=1)
-        angle = np.array([phi, rate * omega, -swing * omega**2])
+        angle = np.array([phi, rate * omega, bend * omega**2])
         v, settled = self._newton(angle, p, span, 1e-2 * tolerance, _STEPS)
         _, w, side, torque = self._motion(v, *angle, *p)
         return v, w, side, torque, settled
@@ -169,7 +184,7 @@ def _columns(x: Array, which: slice | NDArray[np.int_]) -> Array:
 
 def _by_powers(powers: Powers, gaits: _Angle, span: Array) -> _Motion:
     c = Powers(*(np.asarray(part)[..., None] for part in powers))
-    omega, q, r = gaits.omega, gaits.rate[..., None], -gaits.swing[..., None]
+    omega, q, r = gaits.omega, gaits.rate[..., None], gaits.bend[..., None]
     # In powers of omega: what stands in brackets is computed once for all periods.
     a = (c.a_vq * q) * omega + c.a_v
     b = ((c.a_qq * q**2 + c.a_r * r) * omega + c.a_q * q) * omega

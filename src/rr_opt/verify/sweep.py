@@ -15,11 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rr_opt.problem import Problem
-from rr_opt.robot.gait import SineGait
+from rr_opt.robot.gait import Gait, SineGait
 from rr_opt.verify.evaluate import Evaluated, Found, Progress, evaluate
+from rr_opt.verify.given import speed_of
 from rr_opt.verify.grid import DECISIONS, Grid, free_decisions, grid_of
 from rr_opt.verify.speed_map import SpeedMap, speed_map
-from rr_opt.verify.speeds import model_of, speeds
+from rr_opt.verify.speeds import model_of, robot_with, speeds
 from rr_opt.verify.zoom import zoom
 
 __all__ = [
@@ -144,12 +145,15 @@ def sweep(
 
 def check_optimum(
     problem: Problem,
-    gait: SineGait,
+    gait: Gait,
     ratio: float | None,
     speed: float,
     counts: Mapping[str, int] | int | None = None,
 ) -> SweepCheck:
     """Hold a claimed optimum against a sweep of the whole problem and a dense grid around it.
+
+    A gait of another shape is held against all sines, which no optimum of its family may fall
+    short of.
 
     gait, ratio (J20/J10 in the problem's definition; read only if the problem has one) and
     signed speed (m/s) as claimed; counts as for `sweep`.
@@ -158,18 +162,22 @@ def check_optimum(
     if problem.inertia_ratio is None:
         ratio = None
     everywhere = sweep(problem, counts)
-    own = speeds(problem, gait.amplitude, gait.period, gait.offset, ratio, effort.fine)
-    here = float(own.speed)
-    centre = Found(_inside(problem, gait), ratio, here, float(own.peak_torque))
-    near = zoom(
-        problem, centre, _spacing(everywhere.grid), effort.fine, effort.least, effort.around
-    )
+    finalists, points = [everywhere.refined, everywhere.best], everywhere.points
+    if isinstance(gait, SineGait):
+        own = speeds(problem, gait.amplitude, gait.period, gait.offset, ratio, effort.fine)
+        here = float(own.speed)
+        centre = Found(_inside(problem, gait), ratio, here, float(own.peak_torque))
+        near = zoom(
+            problem, centre, _spacing(everywhere.grid), effort.fine, effort.least, effort.around
+        )
+        finalists, points = [*finalists, near.best], points + near.points
+    else:
+        here = speed_of(robot_with(problem, ratio), gait).speed
     # A grid of dry friction is coarse: what is held against the claim is as fine as the claim.
-    finalists = [everywhere.refined, everywhere.best, near.best]
     best = _fastest([one and _resolved(problem, one, _FINAL) for one in finalists])
     reached = math.nan if best is None else best.speed
     return SweepCheck(
-        points=everywhere.points + near.points,
+        points=points,
         best_speed=reached,
         best_gait=best.gait if best else None,
         best_ratio=best.ratio if best else None,

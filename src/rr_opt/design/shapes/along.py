@@ -36,3 +36,10 @@ def path_prices(problem: Problem, multipliers: Values) -> dict[str, float]:
     # c1 cos(edge) + c2 = margin, so a wider margin brings the edge closer.
     closer = 1 / (robot.platform1.c * math.sin(edge))
     return {"rate": rate, "angle": 0.0, "singularity": -angle * closer}
+
+
+def amplitude_price(first_harmonic: float, swing: Values) -> float:
+    """Speed gained per unit by which the active bound of the amplitude moves up: the largest
+    amplitude holds the swing, the least one the first harmonic."""
+    most = float(np.abs(swing["swing"]).sum())
+    return most if most > abs(first_harmonic) else float(first_harmonic)

@@ -15,7 +15,7 @@ import casadi as ca
 import numpy as np
 
 from rr_opt.design.decisions import decisions
-from rr_opt.design.shapes.along import PATH, path_bounds, path_prices
+from rr_opt.design.shapes.along import PATH, amplitude_price, path_bounds, path_prices
 from rr_opt.design.shapes.shape import Array, Bounds, Symbols, Values
 from rr_opt.problem import Interval, Problem
 from rr_opt.robot.fourier_gait import FourierGait
@@ -122,7 +122,15 @@ class FourierShape:
 
     def prices(self, problem: Problem, multipliers: Values) -> dict[str, float]:
         """From the rows at the checked phases."""
-        along = {
+        return path_prices(problem, self._along(multipliers))
+
+    def bound_prices(self, on_bounds: Values, multipliers: Values) -> dict[str, float]:
+        """From the first harmonic, the swing and the offset."""
+        amplitude = amplitude_price(on_bounds["sine1"], self._along(multipliers))
+        return {"amplitude": amplitude, "offset": float(on_bounds["offset"])}
+
+    def _along(self, multipliers: Values) -> dict[str, Array]:
+        """Multipliers of PATH, one for each checked phase."""
+        return {
             name: np.array([multipliers[f"{name}{k}"] for k in range(self.checks)]) for name in PATH
         }
-        return path_prices(problem, along)

@@ -16,7 +16,7 @@ import casadi as ca
 import numpy as np
 
 from rr_opt.design.decisions import decisions
-from rr_opt.design.shapes.along import PATH, path_bounds, path_prices
+from rr_opt.design.shapes.along import PATH, amplitude_price, path_bounds, path_prices
 from rr_opt.design.shapes.shape import ZERO, Array, Bounds, Symbols, Values
 from rr_opt.problem import Interval, Problem
 from rr_opt.robot.free_gait import FreeGait
@@ -95,3 +95,8 @@ class FreeShape:
     def prices(self, problem: Problem, multipliers: Values) -> dict[str, float]:
         """From the rows at the nodes."""
         return path_prices(problem, multipliers)
+
+    def bound_prices(self, on_bounds: Values, multipliers: Values) -> dict[str, float]:
+        """From the first harmonic, the swing and the offset."""
+        amplitude = amplitude_price(on_bounds["first_sine"], multipliers)
+        return {"amplitude": amplitude, "offset": float(on_bounds["offset"])}

@@ -116,3 +116,7 @@ class Shape(Protocol):
     def prices(self, problem: Problem, multipliers: Values) -> dict[str, float]:
         """Speed gained per unit of the limits on rate, angle and singularity."""
         ...
+
+    def bound_prices(self, on_bounds: Values, multipliers: Values) -> dict[str, float]:
+        """Speed gained per unit by which an active bound of amplitude or offset moves up."""
+        ...

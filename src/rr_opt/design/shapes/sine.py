@@ -89,3 +89,7 @@ class SineShape:
                 for name in ("angle", "singularity")
             },
         }
+
+    def bound_prices(self, on_bounds: Values, multipliers: Values) -> dict[str, float]:
+        """From the bounds of the decisions."""
+        return {name: float(on_bounds[name]) for name in self.decisions}

@@ -13,6 +13,7 @@ from rr_opt.report.figures.prices import gains, prices
 from rr_opt.report.figures.speed_map import speed_map
 from rr_opt.report.figures.style import figure, styled, svg
 from rr_opt.report.rows import bound_rows, limit_rows
+from rr_opt.robot.gait import SineGait
 
 
 def draw(answer: Answer) -> dict[str, str]:
@@ -20,23 +21,23 @@ def draw(answer: Answer) -> dict[str, str]:
     if answer.optimum.best is None or answer.replay is None:
         return {}
     with styled():
-        return {
-            "speed-map": _speed_map(answer),
-            "path": _path(answer),
-            "cycle": _cycle(answer),
-            "prices": _prices(answer),
-        }
+        drawn = {"path": _path(answer), "cycle": _cycle(answer), "prices": _prices(answer)}
+        # The map is one of sines.
+        if answer.optimum.problem.gait.shape == "sine":
+            drawn = {"speed-map": _speed_map(answer), **drawn}
+        return drawn
 
 
 def _speed_map(answer: Answer) -> str:
     optimum, best = answer.optimum, answer.optimum.best
-    if best is None or optimum.robot is None:
+    if best is None or optimum.robot is None or not isinstance(best.gait, SineGait):
         return ""
     drawn = figure(6.3, 4.6)
     others = [
         one.gait
         for one in optimum.optima[1:]
-        if math.isclose(one.gait.offset, best.gait.offset, abs_tol=1e-3)
+        if isinstance(one.gait, SineGait)
+        and math.isclose(one.gait.offset, best.gait.offset, abs_tol=1e-3)
         and math.isclose(one.share, best.share, abs_tol=1e-2)
     ]
     data = map_data(optimum.problem, optimum.robot, best.gait)
