@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
+from rr_opt.cli.checked import checked
+from rr_opt.cli.place import place
 from rr_opt.cli.problem_input import name_of, read
 from rr_opt.cli.steps import Steps
 from rr_opt.outcome import Status
-
-if TYPE_CHECKING:
-    from rr_opt.problem import Problem
-    from rr_opt.report.answer import Answer
 
 
 def maximize_speed(
@@ -24,7 +22,10 @@ def maximize_speed(
         ),
     ] = None,
     out: Annotated[
-        Path | None, typer.Option(help="Folder for the results.", show_default="out/NAME")
+        Path | None,
+        typer.Option(
+            parser=place, metavar="DIR", help="Folder for the results.", show_default="out/NAME"
+        ),
     ] = None,
     json: Annotated[
         bool, typer.Option("--json", help="Print result.json alone on stdout.")
@@ -40,11 +41,12 @@ def maximize_speed(
     with Steps() as steps:
         steps("reading")
         posed, sha256 = read(problem)
+        from rr_opt.design.maximize_speed import maximize_speed as solve  # noqa: PLC0415
         from rr_opt.report.archive import folder_for_results, strict_json  # noqa: PLC0415
 
         name = name_of(problem)
         folder = folder_for_results(out or Path("out") / name)
-        answer = _answer(posed, name, sha256, steps)
+        answer = checked(name, sha256, solve(posed, steps), steps)
         from rr_opt.report.files import write_results  # noqa: PLC0415
         from rr_opt.report.result import result  # noqa: PLC0415
         from rr_opt.report.summary import summary  # noqa: PLC0415
@@ -57,21 +59,3 @@ def maximize_speed(
     if answer.status is not Status.OPTIMAL:
         typer.echo(answer.message, err=True)
         raise typer.Exit(answer.status.exit_code)
-
-
-def _answer(problem: Problem, name: str, sha256: str, steps: Steps) -> Answer:
-    """Optimise, then check what was found: by simulation, and against a plain sweep."""
-    from rr_opt.design.maximize_speed import maximize_speed as solve  # noqa: PLC0415
-    from rr_opt.report.answer import Answer  # noqa: PLC0415
-    from rr_opt.verify.replay import replay  # noqa: PLC0415
-    from rr_opt.verify.sweep import check_optimum  # noqa: PLC0415
-
-    optimum = solve(problem, steps)
-    best, robot, ratio = optimum.best, optimum.robot, optimum.ratio
-    if best is None or robot is None or ratio is None:
-        return Answer(name, sha256, optimum)
-    steps("replay by CVODES")
-    replayed = replay(robot, best.gait, problem.limits, best.speed)
-    steps("check against a sweep")
-    swept = check_optimum(problem, best.gait, ratio, best.speed)
-    return Answer(name, sha256, optimum, replayed, swept)

@@ -1,0 +1,67 @@
+"""`rr-opt shapes [PROBLEM]`: is a sine the best wiggle?"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from rr_opt.cli.checked import checked
+from rr_opt.cli.place import place
+from rr_opt.cli.problem_input import name_of, read
+from rr_opt.cli.steps import Steps
+from rr_opt.outcome import Status
+
+
+def shapes(
+    problem: Annotated[
+        Path | None,
+        typer.Argument(
+            help="Problem file, its folder, or a robot file; the paper's prototype if left out."
+        ),
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            parser=place,
+            metavar="DIR",
+            help="Folder for the results.",
+            show_default="out/NAME-shapes",
+        ),
+    ] = None,
+    json: Annotated[
+        bool, typer.Option("--json", help="Print shapes.json alone on stdout.")
+    ] = False,
+    figures: Annotated[
+        bool, typer.Option("--figures/--no-figures", help="Draw the figure and write report.html.")
+    ] = True,
+) -> None:
+    """Compare the fastest sine with faster shapes: 3 and 5 harmonics, and a free gait.
+
+    All keep the same limits, and each is checked. The shape that the problem asks for is ignored.
+    """
+    with Steps() as steps:
+        steps("reading")
+        posed, sha256 = read(problem)
+        from rr_opt.report.archive import folder_for_results, strict_json  # noqa: PLC0415
+
+        name = name_of(problem)
+        folder = folder_for_results(out or Path("out") / f"{name}-shapes")
+        from rr_opt.design.maximize_speed import compare_shapes  # noqa: PLC0415
+        from rr_opt.report.shapes import Compared, family_name, record, summary  # noqa: PLC0415
+        from rr_opt.report.shapes_files import write_shapes  # noqa: PLC0415
+
+        answers = []
+        for optimum in compare_shapes(posed, steps):
+            family = family_name(optimum.problem.gait)
+            answers.append(checked(f"{name}, {family}", sha256, optimum, steps))
+        compared = Compared(name, sha256, tuple(answers))
+        written = write_shapes(compared, folder, figures=figures, progress=steps)
+    if json:
+        typer.echo(strict_json(record(compared)), nl=False)
+    else:
+        typer.echo(summary(compared, written), nl=False)
+    if compared.status is not Status.OPTIMAL:
+        typer.echo(compared.message, err=True)
+        raise typer.Exit(compared.status.exit_code)
