@@ -1,4 +1,4 @@
-"""Ctrl-C exits 130 at once, without a traceback and without a half-written file."""
+"""Ctrl-C at any moment exits 130, without a traceback and without a half-written file."""
 
 import os
 import signal
@@ -6,33 +6,92 @@ import subprocess
 import sys
 import time
 
-PROGRAM = """
-import sys, threading
+import pytest
+
+ENTRY = "from rr_opt.cli.entry import main; main()"
+PROGRAM = f"""
+import sys
 from rr_opt.cli import steps
-from rr_opt.cli.main import main
 told = steps.Steps.__call__
 def tell(self, text):
     print(text, file=sys.stderr, flush=True)
     told(self, text)
 steps.Steps.__call__ = tell
-main()
+{ENTRY}
+"""
+LOADING = f"""
+import sys
+class Tell:
+    def find_spec(self, name, path, target=None):
+        if name == MODULE:
+            print("loading", file=sys.stderr, flush=True)
+sys.meta_path.insert(0, Tell())
+{ENTRY}
+"""
+WRITING = f"""
+import pathlib, sys, time
+whole = pathlib.Path.write_bytes
+def slowly(path, content):
+    whole(path, content[: len(content) // 2])
+    print("half of it is written", file=sys.stderr, flush=True)
+    time.sleep(10)
+    whole(path, content)
+pathlib.Path.write_bytes = slowly
+{ENTRY}
 """
 
 
-def test_interrupted_run_exits_130(tmp_path):
-    out = tmp_path / "res"
-    command = [sys.executable, "-c", PROGRAM, "maximize-speed", "--out", str(out)]
+def interrupted(program, arguments, folder, *, after, delay, number=signal.SIGINT):
+    """Exit code, stdout and stderr of a run that gets a signal some time after it says a word."""
+    command = [sys.executable, "-c", program, *arguments]
     with subprocess.Popen(
-        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=folder
     ) as running:
         assert running.stderr is not None
         for line in running.stderr:
-            if "start 1" in line:
+            if after in line:
                 break
-        time.sleep(0.05)
-        os.kill(running.pid, signal.SIGINT)
+        time.sleep(delay)
+        os.kill(running.pid, number)
         stdout, stderr = running.communicate(timeout=30)
-    assert running.returncode == 130, stderr
+    return running.returncode, stdout, stderr
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_interrupted_run_exits_130(tmp_path, number):
+    code, stdout, stderr = interrupted(
+        PROGRAM,
+        ["maximize-speed", "--out", "below/res"],
+        tmp_path,
+        after="start 1",
+        delay=0.05,
+        number=number,
+    )
+    assert code == 130, stderr
+    assert stderr.count("Interrupted.") == 1
     assert "Traceback" not in stderr
     assert not stdout
-    assert list(out.iterdir()) == []
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("module", ["typer", "numpy", "casadi", "scipy", "pydantic"])
+def test_interrupted_while_it_loads(tmp_path, module):
+    program = f"MODULE = {module!r}\n{LOADING}"
+    for delay in (0.0, 0.02):
+        code, stdout, stderr = interrupted(
+            program, ["maximize-speed"], tmp_path, after="loading", delay=delay
+        )
+        assert code == 130, stderr
+        assert "Traceback" not in stderr
+        assert not stdout
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("verb", ["simulate", "export"])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_interrupted_while_it_writes(tmp_path, verb, number):
+    code, _, stderr = interrupted(
+        WRITING, [verb], tmp_path, after="half of it", delay=0.1, number=number
+    )
+    assert code == 130, stderr
+    assert list(tmp_path.iterdir()) == []

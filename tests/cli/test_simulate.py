@@ -3,7 +3,13 @@
 import csv
 import json
 
+import numpy as np
 import pytest
+
+from rr_opt.files import read_problem
+from rr_opt.files.gait_record import gait_record
+from rr_opt.report.robot_record import robot_record
+from tests.motion.gaits import EVERY
 
 COLUMNS = ["t", "x", "y", "psi", "phi", "v", "torque"]
 
@@ -52,6 +58,30 @@ def test_a_result_brings_its_robot_and_gait(run, quick, tmp_path):
     table = rows(tmp_path / "out" / "res-motion" / "trajectory.csv")
     quarter = float(table[26][4])
     assert quarter == pytest.approx(gait["amplitude"], rel=1e-3)
+
+
+@pytest.mark.parametrize("gait", EVERY.values(), ids=EVERY)
+def test_a_result_of_any_shape(run, tmp_path, gait):
+    robot = robot_record(read_problem(None).robot)
+    record = {"status": "optimal", "input_sha256": "0", "gait": gait_record(gait), "robot": robot}
+    (tmp_path / "result.json").write_text(json.dumps(record))
+    done = run("simulate", "result.json", "--seconds", "1", "--out", "res", "--json")
+    assert done.exit_code == 0, done.stderr
+    assert json.loads(done.stdout)["gait"] == gait_record(gait)
+    t, _, _, _, phi, *_ = np.array(rows(tmp_path / "res" / "trajectory.csv")[1:], float).T
+    assert phi == pytest.approx(gait.angle(t), abs=1e-8)
+
+
+def test_a_wrong_gait_of_a_result_is_told(run, tmp_path):
+    robot = robot_record(read_problem(None).robot)
+    record = {"status": "optimal", "input_sha256": "0", "gait": {"shape": "fre"}, "robot": robot}
+    (tmp_path / "result.json").write_text(json.dumps(record))
+    done = run("simulate", "result.json")
+    assert done.exit_code == 2
+    assert done.stderr == (
+        "result.json: gait.shape: Read the word 'fre'. Expected one of: sine, fourier, free. "
+        "Did you mean `free`?\n"
+    )
 
 
 def test_film_shows_every_moment(run, tmp_path):

@@ -52,6 +52,28 @@ def test_json(write):
     assert issue == {"level": "error", "path": "a", "line": 1, "file": str(path)}
 
 
+def test_a_result_is_no_input(write):
+    text = json.dumps({"status": "optimal", "input_sha256": "0", "numbers": [0.0] * 20_000})
+    path = write(text, "result.json")
+    result = run("lint", path)
+    assert result.exit_code == 2
+    assert result.stdout == (
+        f"{path}: Read a result, which rr-opt has written. Expected an input file: a problem or a "
+        "robot. Results are read by `rr-opt simulate` and `rr-opt export`.\n"
+    )
+
+
+def test_a_result_is_no_robot(write):
+    write('{"status": "optimal", "input_sha256": "0"}', "result.json")
+    path = write("robot: result.json\n")
+    result = run("lint", path)
+    assert result.exit_code == 2
+    assert result.stdout == (
+        f"{path}:1: robot: Read 'result.json', a result. Expected a robot file. "
+        "Write what the result holds under `robot` to a file, and name that.\n"
+    )
+
+
 def test_a_file_that_is_not_there():
     result = run("lint", "nowhere.yaml")
     assert result.exit_code == 2

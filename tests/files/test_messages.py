@@ -8,7 +8,8 @@ from rr_opt.files import lint_file
 
 MESSAGES = {
     "gait: {amplitud: 1}": (
-        "Read the key 'amplitud'. Expected one of: shape, amplitude, period, offset. "
+        "Read the key 'amplitud'. Expected one of: shape, harmonics, intervals, amplitude, period, "
+        "offset. "
         "Did you mean `amplitude`?"
     ),
     "zzz: 1": (
@@ -16,7 +17,21 @@ MESSAGES = {
         "Correct it, or delete it."
     ),
     "Direction: forward": "Did you mean `direction`?",
-    "gait: {shape: square}": "Read the word 'square'. Expected `sine`. Correct it, or delete it.",
+    "gait: {shape: square}": (
+        "Read the word 'square'. Expected one of: sine, fourier, free. Correct it, or delete it."
+    ),
+    "gait: {harmonics: 3}": (
+        "Read harmonics of a gait with the shape `sine`. Only a `fourier` gait has harmonics. "
+        "Write `shape: fourier`, or delete this key."
+    ),
+    "gait: {shape: fourier, intervals: 96}": "Only a `free` gait has intervals.",
+    "gait: {shape: fourier, harmonics: 17}": (
+        "Read 17. Expected a whole number from 1 to 16. Write it without a unit, or delete the key."
+    ),
+    "gait: {shape: fourier, harmonics: 2.5}": "Read 2.5. Expected a whole number from 1 to 16.",
+    "gait: {shape: free, intervals: 97}": "Read 97. Expected an even number from 16 to 384.",
+    "gait: {shape: free, intervals: 14}": "Read 14. Expected an even number from 16 to 384.",
+    "gait: {shape: free, intervals: true}": "Read true. Expected an even number from 16 to 384.",
     "direction: 4": "Read 4. Expected one of: forward, backward, either.",
     "inertia_ratio: {bounds: 0.2, about: center}": (
         "Read the word 'center'. Expected one of: joint, centre. Did you mean `centre`?"
@@ -33,7 +48,7 @@ MESSAGES = {
     "gait: {period: .inf}": "Read .inf. Expected a number in s above 0.",
     "gait: {offset: .inf}": "Read .inf. Expected a number in rad that is finite.",
     "gait: {period: 3 m}": (
-        "Read '3 m', a quantity in m. Expected a number, or a number with a unit, in s. "
+        "Read '3 m', a length. Expected a number, or a number with a unit, in s. "
         "Write for example `1.2 s`."
     ),
     "gait: {amplitude: [2, 1]}": (

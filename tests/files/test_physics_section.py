@@ -50,7 +50,7 @@ WRONG = {
     "[{name: coulomb}]": ("physics[0].name", "Did you mean `coulomb_friction`?"),
     "[{name: coulomb_friction, F9: 1}]": ("physics[0].F9", "Expected one of: name, force1, F1,"),
     "[{name: coulomb_friction, F1: -1}]": ("physics[0].F1", "Expected a number in N at least 0"),
-    "[{name: coulomb_friction, F1: 1 m}]": ("physics[0].F1", "Read '1 m', a quantity in m."),
+    "[{name: coulomb_friction, F1: 1 m}]": ("physics[0].F1", "Read '1 m', a length."),
     "[{name: coulomb_friction, F1: 1, force1: 1}]": (
         "physics[0].force1",
         "`force1` and `F1` are the same parameter. Keep one.",

@@ -30,6 +30,20 @@ def test_a_number_fixes_and_a_pair_bounds(write):
     assert gait.offset == Interval(-0.1, 0.1)
 
 
+@pytest.mark.parametrize(
+    ("text", "bounds"),
+    [
+        ("{shape: sine}", GaitBounds()),
+        ("{shape: fourier}", GaitBounds(shape="fourier", harmonics=3)),
+        ("{shape: fourier, harmonics: 16}", GaitBounds(shape="fourier", harmonics=16)),
+        ("{shape: free}", GaitBounds(shape="free", intervals=96)),
+        ("{shape: free, intervals: 16}", GaitBounds(shape="free", intervals=16)),
+    ],
+)
+def test_a_shape_and_its_fineness(write, text: str, bounds: GaitBounds):
+    assert read_problem(write(f"gait: {text}")).gait == bounds
+
+
 def test_limits_come_from_the_robots_servo_one_by_one(write, robot_text):
     servo = "servo: {angle_limit: 1.5, rate_limit: 4, torque_limit: .inf}\n"
     write(robot_text + servo, "robots/own.yaml")

@@ -18,6 +18,7 @@ TYPES = {
     "array": list,
     "string": str,
     "number": (int, float),
+    "integer": int,
     "boolean": bool,
     "null": type(None),
 }
@@ -35,6 +36,9 @@ def accepts(node: dict[str, Any], value: Any, root: dict[str, Any]) -> bool:
         "anyOf" not in node or any(accepts(one, value, root) for one in node["anyOf"]),
         "oneOf" not in node or sum(accepts(one, value, root) for one in node["oneOf"]) == 1,
     ]
+    checks += [accepts(one, value, root) for one in node.get("allOf", [])]
+    if "if" in node and accepts(node["if"], value, root):
+        checks.append(accepts(node["then"], value, root))
     if isinstance(value, dict):
         properties = node.get("properties", {})
         checks += [key in value for key in node.get("required", [])]
@@ -50,6 +54,7 @@ def accepts(node: dict[str, Any], value: Any, root: dict[str, Any]) -> bool:
             value >= node.get("minimum", -1e300),
             value <= node.get("maximum", 1e300),
             value < node.get("exclusiveMaximum", 1e300),
+            value % node.get("multipleOf", 1) == 0 or "multipleOf" not in node,
         ]
     return all(checks)
 
@@ -102,6 +107,23 @@ def test_effects_by_name_and_alias():
 @pytest.mark.parametrize("value", [0.2, "20 %", [0.1, 0.2], {"bounds": [0.1, 0.2]}])
 def test_an_inertia_ratio_in_every_form(value: object):
     assert judged("problem", {"inertia_ratio": value})
+
+
+@pytest.mark.parametrize(
+    ("gait", "good"),
+    [
+        ({"shape": "fourier", "harmonics": 3}, True),
+        ({"shape": "free", "intervals": 96}, True),
+        ({"shape": "free"}, True),
+        ({"harmonics": 3}, False),
+        ({"shape": "free", "harmonics": 3}, False),
+        ({"shape": "fourier", "harmonics": 0}, False),
+        ({"shape": "free", "intervals": 97}, False),
+        ({"shape": "square"}, False),
+    ],
+)
+def test_shapes_with_what_belongs_to_them(gait: dict[str, object], good: bool):
+    assert judged("problem", {"gait": gait}) is good
 
 
 @pytest.mark.parametrize("kind", ["robot", "problem"])

@@ -10,11 +10,16 @@ from rr_opt.files.units import to_si
 from rr_opt.outcome import InputError
 
 REFUSED = [
-    ("3 s", "m", "Read '3 s', a quantity in s. Expected a number, or a number with a unit, in m."),
-    ("5 deg", "", "Read '5 deg', a quantity in rad. Expected a number without a unit."),
+    ("3 s", "m", "Read '3 s', a time. Expected a number, or a number with a unit, in m."),
+    ("5 deg", "", "Read '5 deg', an angle. Expected a number without a unit."),
     ("2 Hz", "rad/s", "Write rpm, rad/s or deg/s."),
     ("5 %", "rad", "Read '5 %', a plain number. Expected a number, or a number with a unit"),
-    ("3 rad s", "s", "Read '3 rad s', a quantity in rad·s."),
+    ("3 rad s", "s", "Read '3 rad s', another kind of quantity."),
+    ("3 N m", "rad", "Read '3 N m', a torque."),
+    ("3 N m s", "rad", "Read '3 N m s', a torque per angular rate."),
+    ("3 N s/m", "m", "Read '3 N s/m', a force per speed."),
+    ("3 m/s^2", "m", "Read '3 m/s^2', an acceleration."),
+    ("3 kg m^2", "m", "Read '3 kg m^2', a moment of inertia."),
     ("1 kgs", "kg", "The unit 'kgs' is not known. Did you mean `kg`?"),
     ("20 degC", "", "The unit 'degC' is not known."),
     ("10 dB", "", "The unit 'dB' is not known."),
@@ -30,7 +35,7 @@ REFUSED = [
     ([1], "kg", "Read [1]."),
     (float("nan"), "kg", "Read `.nan`, not a number."),
     ("1e999", "kg", "Read a number that is too large."),
-    ("1e300 Mm", "kg", "Read '1e300 Mm', a quantity in m."),
+    ("1e300 Mm", "kg", "Read '1e300 Mm', a length."),
     (10**400, "kg", "Read a number that is too large."),
 ]
 
@@ -40,6 +45,13 @@ def test_refused(value: object, unit: str, message: str):
     with pytest.raises(InputError) as caught:
         to_si(value, unit)
     assert message in str(caught.value)
+
+
+@pytest.mark.parametrize(("value", "unit", "message"), REFUSED)
+def test_base_units_that_nobody_writes_are_not_told(value: object, unit: str, message: str):
+    with pytest.raises(InputError) as caught:
+        to_si(value, unit)
+    assert not set("·²") & set(str(caught.value))
 
 
 @pytest.mark.parametrize(

@@ -34,7 +34,11 @@ def test_rest_settles_to_the_steady_state(robot):
 
 @pytest.mark.parametrize(
     ("amplitude", "seconds", "rate", "word"),
-    [(1.9, 1.0, 100.0, "singular"), (0.5, 0.0, 100.0, "samples"), (0.5, 1e9, 1e9, "samples")],
+    [
+        (1.9, 1.0, 100.0, "singular"),
+        (0.5, 0.0, 100.0, "samples"),
+        (0.5, 1e9, 1e9, "samples"),
+    ],
 )
 def test_what_cannot_be_driven_is_told(robot, amplitude, seconds, rate, word):
     with pytest.raises(InputError, match=word):

@@ -1,9 +1,16 @@
-"""Ctrl-C, remembered: compiled solvers may swallow the exception that Python raises for it."""
+"""Ctrl-C, remembered: compiled code may swallow the exception that Python raises for it.
+
+A run that is told to end (SIGTERM) ends in the same way, so that nothing half written is left.
+"""
 
 from __future__ import annotations
 
 import signal
 from types import FrameType
+
+MESSAGE = "Interrupted. No file was left half written."
+
+_SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 _seen = False
 
@@ -13,8 +20,15 @@ def watch() -> None:
 
     A run that was started to ignore interrupts goes on ignoring them.
     """
-    if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
-        signal.signal(signal.SIGINT, _remember)
+    for number in _SIGNALS:
+        if signal.getsignal(number) is not signal.SIG_IGN:
+            signal.signal(number, _remember)
+
+
+def ignore() -> None:
+    """From now on let the run end undisturbed: its work is done, or it has said why not."""
+    for number in _SIGNALS:
+        signal.signal(number, signal.SIG_IGN)
 
 
 def seen() -> bool:

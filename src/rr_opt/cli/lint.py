@@ -14,7 +14,8 @@ from rr_opt.outcome import EXIT_WRONG_INPUT
 
 def lint(
     files: Annotated[
-        list[Path], typer.Argument(help="Robot or problem files, or folders with a problem.yaml.")
+        list[Path],
+        typer.Argument(help="Robot, problem or study files, or folders with a problem.yaml."),
     ],
     json: Annotated[bool, typer.Option("--json", help="Print JSON on stdout.")] = False,
 ) -> None:

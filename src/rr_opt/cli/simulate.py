@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from rr_opt.cli.problem_input import name_of
+from rr_opt.cli.place import place
 from rr_opt.cli.steps import Steps
 
 
@@ -53,7 +53,13 @@ def simulate(
     ] = Start.REST,
     rate: Annotated[float, typer.Option(help="Samples a second.")] = 100.0,
     out: Annotated[
-        Path | None, typer.Option(help="Folder for the files.", show_default="out/NAME-motion")
+        Path | None,
+        typer.Option(
+            parser=place,
+            metavar="DIR",
+            help="Folder for the files.",
+            show_default="out/NAME-motion",
+        ),
     ] = None,
     kind: Annotated[Format, typer.Option("--format", help="Trajectory file.")] = Format.CSV,
     animate: Annotated[Film | None, typer.Option(help="Also make a film.")] = None,
@@ -66,7 +72,12 @@ def simulate(
     Writes the trajectory, a figure and, if asked for, a film.
     """
     with Steps() as steps:
-        from rr_opt.cli.motion_input import robot_and_gait, with_options  # noqa: PLC0415
+        from rr_opt.cli.motion_input import (  # noqa: PLC0415
+            read_options,
+            result_name,
+            robot_and_gait,
+            with_options,
+        )
         from rr_opt.motion.rollout import rollout  # noqa: PLC0415
         from rr_opt.report.archive import folder_for_results, strict_json  # noqa: PLC0415
         from rr_opt.report.motion_summary import (  # noqa: PLC0415
@@ -76,11 +87,14 @@ def simulate(
         )
         from rr_opt.report.simulated import check_wishes, write_motion  # noqa: PLC0415
 
+        options = read_options(
+            amplitude=amplitude, period=period, offset=offset, seconds=seconds, rate=rate
+        )
         robot, gait = robot_and_gait(source)
-        gait = with_options(gait, amplitude, period, offset)
+        gait = with_options(gait, options)
         film = animate.value if animate else None
         check_wishes(kind.value, film)
-        folder = folder_for_results(out or Path("out") / f"{_name(source)}-motion")
+        folder = folder_for_results(out or Path("out") / f"{result_name(source)}-motion")
         steps("simulate by CVODES")
         driven = rollout(robot, gait, seconds, start.value, rate)
         written = write_motion(
@@ -92,10 +106,3 @@ def simulate(
         typer.echo(strict_json(motion_record(gait, driven, start.value, written)), nl=False)
     else:
         typer.echo(motion_summary(gait, driven, start.value, written), nl=False)
-
-
-def _name(source: Path | None) -> str:
-    """A result is called as the folder it lies in."""
-    if source is not None and source.name == "result.json":
-        return source.resolve().parent.name
-    return name_of(source)

@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from rr_opt.cli.place import place
 from rr_opt.cli.problem_input import name_of, read
 from rr_opt.cli.steps import Steps
 from rr_opt.outcome import Status
@@ -20,10 +21,21 @@ def sweep(
         ),
     ] = None,
     points: Annotated[
-        int, typer.Option(help="About so many gaits on the grid.", min=1, max=5_000_000)
+        int,
+        typer.Option(
+            help="About so many gaits on the grid, and at least two values of each quantity.",
+            min=1,
+            max=5_000_000,
+        ),
     ] = 10_000,
     out: Annotated[
-        Path | None, typer.Option(help="Folder for the results.", show_default="out/NAME-sweep")
+        Path | None,
+        typer.Option(
+            parser=place,
+            metavar="DIR",
+            help="Folder for the results.",
+            show_default="out/NAME-sweep",
+        ),
     ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print sweep.json alone on stdout.")] = False,
 ) -> None:
@@ -34,6 +46,7 @@ def sweep(
     with Steps() as steps:
         steps("reading")
         posed, sha256 = read(problem)
+        from rr_opt.physics.dynamics import require_friction  # noqa: PLC0415
         from rr_opt.report.archive import folder_for_results, strict_json  # noqa: PLC0415
         from rr_opt.report.swept import (  # noqa: PLC0415
             Swept,
@@ -44,6 +57,7 @@ def sweep(
         )
         from rr_opt.verify.sweep import sweep as try_all  # noqa: PLC0415
 
+        require_friction(posed.robot)
         name = name_of(problem)
         folder = folder_for_results(out or Path("out") / f"{name}-sweep")
         counts = values_per_decision(posed, points)

@@ -49,8 +49,13 @@ class Document:
         return replace(self, data={k: v for k, v in self.data.items() if k not in keys})
 
     def issue(self, level: Level, path: Path, message: str) -> Issue:
-        """An issue at a path below this mapping, with the line of the nearest key written."""
+        """An issue at a path below this mapping, with the line of the nearest key written.
+
+        Where no lines are known it has none.
+        """
         whole = (*self.prefix, *path)
         steps = (whole[:n] for n in range(len(whole), 0, -1))
-        line = next((self.lines[step] for step in steps if step in self.lines), 1)
+        line = next(
+            (self.lines[step] for step in steps if step in self.lines), 1 if self.lines else None
+        )
         return Issue(level, path_text(whole), message, line, self.file)

@@ -13,6 +13,10 @@ from rr_opt.outcome import InputError
 Level = Literal["error", "warning"]
 
 _LONGEST_SHOWN = 60
+_SHORTEST_GUESSED = 3
+_ALIKE = 0.72
+"""Twice the letters that two words share in order, over the letters of both: `friction` and
+`direction` have 0.71, `gate` and `gait` 0.75."""
 
 
 @dataclass(frozen=True)
@@ -71,13 +75,20 @@ def _written(value: object) -> str:
 
 
 def nearest(word: str, known: Sequence[str]) -> str | None:
-    """The known word that `word` was most likely meant to be, if one is near."""
-    if len(word) > _LONGEST_SHOWN:
-        return None
+    """The known word that `word` was most likely meant to be, if one is near.
+
+    Near is the same word in other letters' case; a beginning, or a part between underscores, of
+    one known word alone; or most letters in the same order. Anything less is a guess.
+    """
+    meant = word.casefold()
     folded = {name.casefold(): name for name in reversed(known)}
-    matches = get_close_matches(word, known, n=1, cutoff=0.5)
-    matches = matches or get_close_matches(word.casefold(), list(folded), n=1, cutoff=0.5)
-    return folded.get(matches[0].casefold(), matches[0]) if matches else None
+    if meant in folded:
+        return folded[meant]
+    if not _SHORTEST_GUESSED <= len(meant) <= _LONGEST_SHOWN:
+        return None
+    near = get_close_matches(meant, list(folded), n=1, cutoff=_ALIKE)
+    near = near or [one for one in folded if one.startswith(meant) or meant in one.split("_")]
+    return folded[near[0]] if len(near) == 1 else None
 
 
 def unknown_word(word: str, known: Sequence[str], kind: str) -> str:

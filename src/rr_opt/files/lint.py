@@ -12,18 +12,22 @@ from rr_opt.files.problem_sources import problem_sources
 from rr_opt.files.robot_file import robot_from
 from rr_opt.files.robot_sense import singular_posture
 from rr_opt.files.source import problem_path, read_document
+from rr_opt.files.study_file import study_from
 
 
 def lint_file(path: str | Path) -> list[Issue]:
-    """All issues of a robot or problem file, and of the robot file that a problem names.
+    """All issues of a robot, problem or study file, and of the files that it names.
 
     A folder stands for its problem.yaml. The kind of the file is told from its keys. Nothing
     is raised: a file that cannot be read is an issue too.
     """
     try:
         document = read_document(problem_path(Path(path)))
-        if kind_of(document) == "robot":
+        kind = kind_of(document)
+        if kind == "robot":
             return _robot_issues(document)
+        if kind == "study":
+            return study_from(document, Path(path))[1]
         return problem_from(problem_sources(path))[1]
     except InvalidFileError as error:
         return list(error.issues)

@@ -7,6 +7,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from rr_opt.files.document import Document
+from rr_opt.files.gait_bounds_model import OWN_SHAPE, GaitModel
+from rr_opt.files.gait_sense import gait_findings
 from rr_opt.files.issue import InvalidFileError, Issue, has_errors, shown
 from rr_opt.files.model_issues import validate
 from rr_opt.files.problem_model import LimitsModel, ProblemModel
@@ -17,9 +19,6 @@ from rr_opt.files.source import read_content
 from rr_opt.problem import GaitBounds, Limits, Problem, RatioChoice
 from rr_opt.robot.ballast import Loads
 from rr_opt.robot.parameters import Robot, Servo
-
-LONGEST_PERIOD = 60.0
-"""Longer ones are taken for a slip of the unit, s."""
 
 
 def read_problem(path: str | Path | None = None) -> Problem:
@@ -66,11 +65,22 @@ def problem_from(sources: Sources) -> tuple[Problem | None, list[Issue]]:
     problem = Problem(
         robot=robot,
         limits=_limits(model.limits, robot.servo),
-        gait=GaitBounds(model.gait.amplitude, model.gait.period, model.gait.offset),
+        gait=_gait(model.gait),
         inertia_ratio=reachable(ratio, robot) if ratio else None,
         direction=model.direction,
     )
     return problem, issues
+
+
+def _gait(given: GaitModel) -> GaitBounds:
+    counts = {key: getattr(given, key) for key in OWN_SHAPE}
+    return GaitBounds(
+        amplitude=given.amplitude,
+        period=given.period,
+        offset=given.offset,
+        shape=given.shape,
+        **{key: count for key, count in counts.items() if count is not None},
+    )
 
 
 def _ratio(model: ProblemModel) -> RatioChoice | None:
@@ -89,27 +99,11 @@ def _limits(given: LimitsModel, servo: Servo) -> Limits:
     )
 
 
-def _gait_findings(model: ProblemModel, document: Document) -> Iterator[Issue]:
-    """Gaits that say nothing, or whose steady cycle nobody could compute or wait for."""
-    if model.gait.amplitude.high <= 0:
-        message = (
-            "Read an amplitude of at most 0. Expected an upper bound above 0: a gait that "
-            "does not move the servo does not move the robot."
-        )
-        yield document.issue("error", ("gait", "amplitude"), message)
-    if model.gait.period.high > LONGEST_PERIOD:
-        message = (
-            f"Read a period of up to {model.gait.period.high:.4g} s. Expected at most "
-            f"{LONGEST_PERIOD:.4g} s. Check the unit."
-        )
-        yield document.issue("error", ("gait", "period"), message)
-
-
 def _contradictions(
     model: ProblemModel, ratio: RatioChoice | None, robot: Robot, document: Document
 ) -> Iterator[Issue]:
     """What the problem asks for and its robot cannot do."""
-    yield from _gait_findings(model, document)
+    yield from gait_findings(model.gait, document)
     if robot.k1 == robot.k2 == 0 and not robot.physics:
         message = (
             "Read kappa = 0 (or k = 0) on both platforms, and no `physics`. Without friction no "

@@ -2,46 +2,28 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
-from pydantic import Field, GetJsonSchemaHandler, JsonValue, SkipValidation, model_validator
+from pydantic import (
+    Field,
+    GetJsonSchemaHandler,
+    SkipValidation,
+    model_validator,
+)
 from pydantic_core import CoreSchema
 
+from rr_opt.files.gait_bounds_model import GaitModel
 from rr_opt.files.quantity import FixedOrBounded, Quantity
 from rr_opt.files.robot_model import ANGLE, RATE, TORQUE, FileModel, Length, Mass, RobotModel
-from rr_opt.problem import Direction, GaitBounds, Interval, Limits
+from rr_opt.problem import Direction, Interval, Limits
 from rr_opt.robot.ballast import About, By, Loads
 
-Amplitude = Annotated[Interval, FixedOrBounded(Quantity("rad", "0.5", at_least=0))]
-Period = Annotated[Interval, FixedOrBounded(Quantity("s", "1.2 s", above=0))]
-Offset = Annotated[Interval, FixedOrBounded(Quantity("rad", "10 deg"))]
 RATIO = FixedOrBounded(Quantity("", "0.2", above=0))
 Ratio = Annotated[Interval, RATIO]
 OptionalAngle = Annotated[float | None, ANGLE]
 OptionalRate = Annotated[float | None, RATE]
 OptionalTorque = Annotated[float | None, TORQUE]
 Distance = Annotated[float, Quantity("m", "44.1 mm", at_least=0)]
-
-
-def _bounds(default: Interval, description: str) -> Any:
-    """A field with an interval for its default, which JSON Schema shows as a number or a pair."""
-    written: JsonValue = default.low if default.fixed else [default.low, default.high]
-    return Field(
-        default_factory=lambda: default,
-        description=f"{description} A number fixes it, a pair [low, high] bounds it.",
-        json_schema_extra={"default": written},
-    )
-
-
-class GaitModel(FileModel):
-    """phi(t) = amplitude sin(2 pi t/period) + offset."""
-
-    shape: Literal["sine"] = Field(default="sine", description="The shape of phi(t).")
-    amplitude: Amplitude = _bounds(GaitBounds.amplitude, "Amplitude, rad.")
-    period: Period = _bounds(GaitBounds.period, "Period, s.")
-    offset: Offset = _bounds(
-        GaitBounds.offset, "Offset, rad: phi swings about it, and if it is not 0 the robot turns."
-    )
 
 
 class LoadsModel(FileModel):

@@ -8,6 +8,7 @@ from pathlib import Path
 from rr_opt.files.document import Document
 from rr_opt.files.issue import InvalidFileError, Issue, shown
 from rr_opt.files.kind import kind_of
+from rr_opt.files.result_text import is_result
 from rr_opt.files.source import SHIPPED, problem_path, read_document
 
 
@@ -29,13 +30,15 @@ def problem_sources(path: str | Path | None) -> Sources:
     """The parts of a problem: a problem file, its folder, a robot file, or None (as shipped).
 
     A robot file stands for the shipped problem with that robot and its servo's limits.
-    Raises InvalidFileError if the file cannot be read or is an experiment.
+    Raises InvalidFileError if the file cannot be read, or is an experiment or a result.
     """
     file = problem_path(SHIPPED if path is None else Path(path))
     document = read_document(file)
     kind = kind_of(document)
     if kind == "experiment":
         raise InvalidFileError([experiment_issue(document)])
+    if kind == "result":
+        raise InvalidFileError([result_issue(document)])
     if kind == "robot":
         return _shipped_problem_with(document, file)
     if isinstance(document.data.get("robot"), dict):
@@ -50,6 +53,16 @@ def experiment_issue(document: Document) -> Issue:
         (),
         "Read the keys of an experiment. Expected a problem or a robot. "
         "Experiments are read by `rr-opt diagnose`.",
+    )
+
+
+def result_issue(document: Document) -> Issue:
+    """What to say to a result where an input file is expected."""
+    return document.issue(
+        "error",
+        (),
+        "Read a result, which rr-opt has written. Expected an input file: a problem or a robot. "
+        "Results are read by `rr-opt simulate` and `rr-opt export`.",
     )
 
 
@@ -74,7 +87,16 @@ def _with_robot_file(problem: Document, file: Path) -> Sources:
         )
         return Sources((file,), problem, None, (problem.issue("error", ("robot",), message),))
     try:
-        return Sources((file, named), problem, read_document(named))
+        robot = read_document(named)
+        if is_result(robot.data):
+            message = (
+                f"Read {shown(entry)}, a result. Expected a robot file. Write what the result "
+                "holds under `robot` to a file, and name that."
+            )
+            return Sources(
+                (file, named), problem, None, (problem.issue("error", ("robot",), message),)
+            )
+        return Sources((file, named), problem, robot)
     except InvalidFileError as error:
         issues = tuple(
             problem.issue("error", ("robot",), f"Read {shown(entry)}. {issue.message}")

@@ -84,7 +84,7 @@ class Quantity:
         return {"anyOf": [number, text], "examples": [self.example], "x-unit": unit}
 
     def __get_pydantic_core_schema__(self, _: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        return core_schema.no_info_plain_validator_function(_raising_value_error(self.read))
+        return core_schema.no_info_plain_validator_function(raising_value_error(self.read))
 
     def __get_pydantic_json_schema__(
         self, _: CoreSchema, handler: GetJsonSchemaHandler
@@ -123,7 +123,7 @@ class FixedOrBounded:
         return {**one, "anyOf": [*one["anyOf"], pair]}
 
     def __get_pydantic_core_schema__(self, _: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        return core_schema.no_info_plain_validator_function(_raising_value_error(self.read))
+        return core_schema.no_info_plain_validator_function(raising_value_error(self.read))
 
     def __get_pydantic_json_schema__(
         self, _: CoreSchema, handler: GetJsonSchemaHandler
@@ -131,8 +131,8 @@ class FixedOrBounded:
         return self.json_schema()
 
 
-def _raising_value_error(read: Any) -> Any:
-    """pydantic gathers ValueErrors and lets every other error out."""
+def raising_value_error(read: Any) -> Any:
+    """The same reader for pydantic, which gathers ValueErrors and lets every other error out."""
 
     def validate(value: object) -> Any:
         try:

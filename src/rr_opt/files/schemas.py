@@ -9,16 +9,21 @@ from pydantic import BaseModel
 from rr_opt.files.issue import unknown_word
 from rr_opt.files.problem_model import ProblemModel
 from rr_opt.files.robot_model import RobotModel
+from rr_opt.files.study_model import StudyModel
 from rr_opt.outcome import InputError
 
-FileKind = Literal["robot", "problem"]
+FileKind = Literal["robot", "problem", "study"]
 
 _DIALECT = "https://json-schema.org/draft/2020-12/schema"
-_MODELS: dict[str, type[BaseModel]] = {"robot": RobotModel, "problem": ProblemModel}
+_MODELS: dict[str, type[BaseModel]] = {
+    "robot": RobotModel,
+    "problem": ProblemModel,
+    "study": StudyModel,
+}
 
 
 def schema(kind: str) -> dict[str, Any]:
-    """The JSON Schema (2020-12) of a kind of file: robot or problem.
+    """The JSON Schema (2020-12) of a kind of file: robot, problem or study.
 
     Every field carries a description with its unit; the SI unit alone is under `x-unit`.
     Raises InputError for any other kind.

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from rr_opt.files.document import Document
 from rr_opt.files.issue import InvalidFileError, Issue
+from rr_opt.files.result_text import parse_result
 from rr_opt.files.yaml_text import LARGEST, parse_yaml
 
 SHIPPED = Path(str(files("rr_opt"))) / "data" / "prototype"
@@ -14,8 +15,9 @@ SHIPPED = Path(str(files("rr_opt"))) / "data" / "prototype"
 
 
 def read_document(path: Path) -> Document:
-    """The data of a YAML file. Raises InvalidFileError with everything wrong with it as YAML."""
-    return parse_yaml(read_content(path), str(path))
+    """The data of a YAML file, or of a result. Raises InvalidFileError with all that is wrong."""
+    content = read_content(path)
+    return parse_result(content, str(path)) or parse_yaml(content, str(path))
 
 
 def read_content(path: Path) -> bytes:

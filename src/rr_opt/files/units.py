@@ -14,6 +14,7 @@ import re
 from functools import lru_cache
 from typing import Any
 
+from rr_opt.files.dimensions import kind_of_quantity
 from rr_opt.files.issue import nearest, shown
 from rr_opt.outcome import InputError
 
@@ -79,7 +80,7 @@ def _worth(written: str, unit: str, text: str) -> float:
         expected_factor, expected = _base(accepted)
         if dimension == expected:
             return factor / expected_factor
-    what = f"a quantity in {dimension}" if dimension else "a plain number"
+    what = kind_of_quantity(dimension)
     advice = ""
     if unit == "rad/s" and dimension == _base("Hz")[1]:
         advice = " Turns per second or radians per second? Write rpm, rad/s or deg/s."

@@ -1,7 +1,8 @@
 """The equation of motion of a gait as CasADi integrators: fixed steps, and cvodes.
 
 Both carry the state (v, psi, x, y, s) with s = dv/dv(0) the sensitivity that closes a cycle.
-cvodes at tight tolerance is the reference that everything else is held against.
+cvodes at tight tolerance is the reference that everything else is held against. Neither steps
+across a jump of the servo's acceleration: both begin anew at each piece of the gait.
 """
 
 from __future__ import annotations
@@ -13,62 +14,77 @@ import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rr_opt.motion.command import Form, form_of, numbers_of
 from rr_opt.motion.tableau import BUTCHER6, Tableau
 from rr_opt.physics.dynamics import derive, dynamics_of
-from rr_opt.robot.gait import SineGait
+from rr_opt.robot.gait import Gait
 from rr_opt.robot.parameters import Robot
 
 Array = NDArray[np.float64]
 
 STATE = ("v", "psi", "x", "y", "s")
 
+_SNAP = 1e-9
+"""A time so near to the end of a piece, relative to the piece, is that end."""
+
+_CVODES = {"reltol": 1e-12, "abstol": 1e-13, "max_num_steps": 10_000_000}
+
+
+def whole_steps(gait: Gait, steps: int) -> int:
+    """The least number of equal steps a period, `steps` or more, whose ends meet all jumps."""
+    return gait.pieces * math.ceil(steps / gait.pieces)
+
 
 def fixed_steps(
-    robot: Robot,
-    gait: SineGait,
-    v0: float,
-    *,
-    steps: int,
-    end: float | None = None,
-    method: Tableau = BUTCHER6,
+    robot: Robot, gait: Gait, v0: float, *, steps: int, method: Tableau = BUTCHER6
 ) -> Array:
-    """States (5, steps + 1) at equal steps from t = 0 to `end` (one period), from v(0) = v0."""
+    """States (5, n + 1) over one period from v(0) = v0, at n = whole_steps(gait, steps)."""
     dynamics = dynamics_of(robot)
-    path = _path(dynamics.effects, method, steps)
-    h = (end or gait.period) / steps
-    start = np.array([v0, 0.0, 0.0, 0.0, 1.0])
-    t = np.arange(steps) * h
-    inputs = _inputs(robot, gait)
-    out = path(start, t[None, :], np.full((1, steps), h), np.tile(inputs[:, None], steps))
-    return np.hstack([start[:, None], np.asarray(out)])
+    n = whole_steps(gait, steps)
+    each, h = n // gait.pieces, gait.period / n
+    path = _path(dynamics.effects, form_of(gait), method, n)
+    since = np.tile(np.arange(each) * h, gait.pieces)
+    numbers = np.repeat(numbers_of(gait), each, axis=1)
+    inputs = np.vstack([numbers, np.tile(dynamics.values(robot)[:, None], n)])
+    out = path(_start(v0), since[None], np.full((1, n), h), inputs)
+    return np.column_stack([_start(v0), np.asarray(out)])
 
 
-def cvodes(robot: Robot, gait: SineGait, v0: float, times: ArrayLike) -> Array:
+def cvodes(robot: Robot, gait: Gait, v0: float, times: ArrayLike) -> Array:
     """States (5, len(times)) at `times` (s, increasing from 0) by CVODES at 1e-12, relative."""
     times = np.asarray(times, float)
-    dynamics = dynamics_of(robot)
-    state, t, p, rhs = _symbols(dynamics.effects)
-    integrator = ca.integrator(
-        "reference",
-        "cvodes",
-        {"x": state, "t": t, "p": p, "ode": rhs},
-        0.0,
-        times[1:],
-        {"reltol": 1e-12, "abstol": 1e-13, "max_num_steps": 10_000_000},
-    )
-    start = np.array([v0, 0.0, 0.0, 0.0, 1.0])
-    out = integrator(x0=start, p=_inputs(robot, gait))["xf"]
-    return np.hstack([start[:, None], np.asarray(out)])
+    dynamics, numbers = dynamics_of(robot), numbers_of(gait)
+    values = dynamics.values(robot)
+    length = gait.period / gait.pieces if gait.pieces > 1 else float(times[-1])
+    at = times[1:] / length
+    at = np.where(np.abs(at - np.round(at)) < _SNAP, np.round(at), at)
+    piece = np.ceil(at).astype(int) - 1
+    states, state = [_start(v0)[:, None]], _start(v0)
+    for k in range(piece[-1] + 1):
+        inside = slice(*np.searchsorted(piece, [k, k + 1]))
+        # Rounded, as pieces that are cut alike then share an integrator.
+        grid = tuple(np.round(at[inside] - k, 12))
+        grid += () if grid and grid[-1] == 1.0 else (1.0,)
+        run = _cvodes(dynamics.effects, form_of(gait), grid)
+        p = np.concatenate([[length], numbers[:, k % gait.pieces], values])
+        out = np.asarray(run(x0=state, p=p)["xf"])
+        states.append(out[:, : inside.stop - inside.start])
+        state = out[:, -1]
+    return np.hstack(states)
 
 
-def _inputs(robot: Robot, gait: SineGait) -> Array:
-    values = dynamics_of(robot).values(robot)
-    return np.array([gait.amplitude, gait.period, gait.offset, *values])
+def _start(v0: float) -> Array:
+    return np.array([v0, 0.0, 0.0, 0.0, 1.0])
 
 
 @lru_cache
-def _stepper(effects: tuple[str, ...], method: Tableau) -> ca.Function:
-    state, t, p, rhs = _symbols(effects)
+def _path(effects: tuple[str, ...], form: Form, method: Tableau, steps: int) -> ca.Function:
+    return _stepper(effects, form, method).mapaccum(steps)
+
+
+@lru_cache
+def _stepper(effects: tuple[str, ...], form: Form, method: Tableau) -> ca.Function:
+    state, t, p, rhs = _symbols(effects, form)
     slope = ca.Function("slope", [state, t, p], [rhs])
     h = ca.SX.sym("h")
     end = method.step(lambda fraction, y: slope(y, t + fraction * h, p), state, h)
@@ -76,26 +92,23 @@ def _stepper(effects: tuple[str, ...], method: Tableau) -> ca.Function:
 
 
 @lru_cache
-def _path(effects: tuple[str, ...], method: Tableau, steps: int) -> ca.Function:
-    return _stepper(effects, method).mapaccum(steps)
+def _cvodes(effects: tuple[str, ...], form: Form, grid: tuple[float, ...]) -> ca.Function:
+    """Time is counted in lengths of the piece, so that its length need not be known here."""
+    state, t, p, rhs = _symbols(effects, form)
+    part, length = ca.SX.sym("part"), ca.SX.sym("length")
+    ode = length * ca.substitute(rhs, t, part * length)
+    dae = {"x": state, "t": part, "p": ca.vertcat(length, p), "ode": ode}
+    return ca.integrator("reference", "cvodes", dae, 0.0, np.array(grid), _CVODES)
 
 
 @lru_cache
-def _symbols(effects: tuple[str, ...]) -> tuple[ca.SX, ca.SX, ca.SX, ca.SX]:
+def _symbols(effects: tuple[str, ...], form: Form) -> tuple[ca.SX, ca.SX, ca.SX, ca.SX]:
     dynamics = derive(effects)
     state = ca.SX.sym("state", len(STATE))
     v, psi, _, _, s = ca.vertsplit(state)
-    t, p = ca.SX.sym("t"), ca.SX.sym("p", 3 + len(dynamics.parameters))
-    amplitude, period, offset = p[0], p[1], p[2]
-    omega = 2 * math.pi / period
-    sine, cosine = ca.sin(omega * t), ca.cos(omega * t)
-    vdot, w, side, _ = dynamics.motion(
-        v,
-        amplitude * sine + offset,
-        amplitude * omega * cosine,
-        -amplitude * omega**2 * sine,
-        p[3:],
-    )
+    t, p = ca.SX.sym("t"), ca.SX.sym("p", form.size + len(dynamics.parameters))
+    command = form.command(t, p[: form.size])
+    vdot, w, side, _ = dynamics.motion(v, *command, p[form.size :])
     rhs = ca.vertcat(
         vdot,
         w,

@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 
 from rr_opt.motion.integrator import cvodes
 from rr_opt.motion.steady_cycle import SteadyCycle, steady_cycle
+from rr_opt.motion.torque import torque_after
 from rr_opt.outcome import InputError
-from rr_opt.physics.dynamics import dynamics_of
-from rr_opt.robot.gait import SineGait
+from rr_opt.physics.dynamics import require_friction
+from rr_opt.robot.gait import Gait
 from rr_opt.robot.parameters import Robot
 
 Array = NDArray[np.float64]
@@ -26,7 +27,8 @@ class Trajectory:
     """A motion at equal steps of time.
 
     t (s); x, y (m) the joint P; psi (rad) the heading of platform 1; phi (rad) the joint angle;
-    v (m/s) the speed of axle 1 along platform 1; torque (N m) of the servo on platform 2
+    v (m/s) the speed of axle 1 along platform 1; torque (N m) of the servo on platform 2, where it
+    jumps the value after the jump
     """
 
     t: Array
@@ -38,13 +40,13 @@ class Trajectory:
     torque: Array
 
 
-def rollout(robot: Robot, gait: SineGait, seconds: float, start: Start, rate: float) -> Trajectory:
+def rollout(robot: Robot, gait: Gait, seconds: float, start: Start, rate: float) -> Trajectory:
     """Drive a gait for `seconds` from t = 0, sampled `rate` times a second.
 
     start: `rest` begins with v(0) = 0 and the command running; `steady` with the speed that the
     gait settles to. P begins at the origin, platform 1 heading along x.
-    Raises InputError for a gait through the singular posture, NotConvergedError if there is no
-    steady state.
+    Raises InputError for a gait through the singular posture, and for the steady start of a robot
+    without friction; NotConvergedError if no steady state is found.
     """
     count = round(seconds * rate) if np.isfinite(seconds * rate) else MOST_SAMPLES + 1
     if not 0 < count <= MOST_SAMPLES:
@@ -52,21 +54,23 @@ def rollout(robot: Robot, gait: SineGait, seconds: float, start: Start, rate: fl
             f"{seconds:g} s at {rate:g} samples a second is {seconds * rate:.3g} samples. "
             f"Expected between 1 and {MOST_SAMPLES}. Change --seconds or --rate."
         )
+    require_regular(robot, gait)
+    if start == "steady":
+        require_friction(robot)
+    v0 = 0.0 if start == "rest" else float(steady_cycle(robot, gait).v[0])
+    t = np.arange(count + 1) / rate
+    v, psi, x, y, _ = cvodes(robot, gait, v0, t)
+    return Trajectory(t, x, y, psi, gait.angle(t), v, torque_after(robot, gait, t, v))
+
+
+def require_regular(robot: Robot, gait: Gait) -> None:
+    """Raise InputError for a gait that reaches the singular posture."""
     if gait.peak_angle >= robot.singular_angle:
         raise InputError(
             f"The gait reaches |phi| = {gait.peak_angle:.4g} rad. The robot is singular at "
             f"{robot.singular_angle:.4g} rad, where both axles point at one centre and no motion "
             "without side slip exists. Lower the amplitude or the offset."
         )
-    v0 = 0.0 if start == "rest" else float(steady_cycle(robot, gait).v[0])
-    t = np.arange(count + 1) / rate
-    v, psi, x, y, _ = cvodes(robot, gait, v0, t)
-    phi = gait.angle(t)
-    dynamics = dynamics_of(robot)
-    inputs = (v[None], phi[None], gait.rate(t)[None], gait.acceleration(t)[None])
-    values = np.tile(dynamics.values(robot)[:, None], len(t))
-    torque = np.asarray(dynamics.motion(*inputs, values)[3]).ravel()
-    return Trajectory(t, x, y, psi, phi, v, torque)
 
 
 def one_period(steady: SteadyCycle) -> Trajectory:

@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rr_opt.motion.cycle import Cycle, cycle_of
-from rr_opt.motion.integrator import cvodes, fixed_steps
+from rr_opt.motion.integrator import cvodes, fixed_steps, whole_steps
+from rr_opt.motion.torque import torque_after, torque_before
 from rr_opt.outcome import NotConvergedError
-from rr_opt.physics.dynamics import dynamics_of
-from rr_opt.robot.gait import SineGait
+from rr_opt.robot.gait import Gait
 from rr_opt.robot.parameters import Robot
 
 Array = NDArray[np.float64]
@@ -30,9 +30,13 @@ _FLAT = 1e-12
 @dataclass(frozen=True)
 class SteadyCycle:
     """One steady period at N + 1 equal steps: t (s), phi (rad), v (m/s), psi (rad), x, y (m),
-    torque (N m), and the cycle they make."""
+    torque (N m), and the cycle they make.
 
-    gait: SineGait
+    Where the acceleration jumps a sample lies, and the torque has two values there: `torque` is
+    the one after the jump, `torque_before` the one before.
+    """
+
+    gait: Gait
     t: Array
     phi: Array
     v: Array
@@ -40,6 +44,7 @@ class SteadyCycle:
     x: Array
     y: Array
     torque: Array
+    torque_before: Array
     cycle: Cycle
 
     @property
@@ -48,21 +53,21 @@ class SteadyCycle:
         return self.cycle.speed
 
 
-def steady_cycle(robot: Robot, gait: SineGait, *, steps: int = 512) -> SteadyCycle:
-    """The steady cycle by fixed steps of order 6.
+def steady_cycle(robot: Robot, gait: Gait, *, steps: int = 512) -> SteadyCycle:
+    """The steady cycle by fixed steps of order 6, `steps` of them or what the gait's pieces need.
 
     Raises NotConvergedError if there is none: without friction, say, or in a singular posture.
     """
     return _close(robot, gait, lambda v0: fixed_steps(robot, gait, v0, steps=steps))
 
 
-def reference_cycle(robot: Robot, gait: SineGait, *, samples: int = 2048) -> SteadyCycle:
+def reference_cycle(robot: Robot, gait: Gait, *, samples: int = 2048) -> SteadyCycle:
     """The steady cycle by cvodes at tight tolerance. Raises as steady_cycle."""
-    times = np.linspace(0.0, gait.period, samples + 1)
+    times = np.linspace(0.0, gait.period, whole_steps(gait, samples) + 1)
     return _close(robot, gait, lambda v0: cvodes(robot, gait, v0, times))
 
 
-def _close(robot: Robot, gait: SineGait, rollout: Callable[[float], Array]) -> SteadyCycle:
+def _close(robot: Robot, gait: Gait, rollout: Callable[[float], Array]) -> SteadyCycle:
     v0, low, high = 0.0, -math.inf, math.inf
     # Beyond it a step can jump over the pole and close a cycle that does not exist.
     reached = gait.peak_angle >= robot.singular_angle
@@ -90,14 +95,10 @@ def _close(robot: Robot, gait: SineGait, rollout: Callable[[float], Array]) -> S
     )
 
 
-def _cycle(robot: Robot, gait: SineGait, path: Array) -> SteadyCycle:
-    dynamics = dynamics_of(robot)
+def _cycle(robot: Robot, gait: Gait, path: Array) -> SteadyCycle:
     v, psi, x, y, _ = path
     t = np.linspace(0.0, gait.period, len(v))
-    phi = gait.angle(t)
-    values = np.tile(dynamics.values(robot)[:, None], len(t))
-    torque = dynamics.motion(
-        v[None], phi[None], gait.rate(t)[None], gait.acceleration(t)[None], values
-    )[3]
+    after = torque_after(robot, gait, t, v)
+    before = torque_before(robot, gait, t, v) if gait.pieces > 1 else after
     made = cycle_of(gait.period, x, y, psi)
-    return SteadyCycle(gait, t, phi, v, psi, x, y, np.asarray(torque).ravel(), made)
+    return SteadyCycle(gait, t, gait.angle(t), v, psi, x, y, after, before, made)

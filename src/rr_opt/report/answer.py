@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from rr_opt.design.maximize_speed import Optimum
 from rr_opt.outcome import Status
-from rr_opt.report.quantities import direction_text
+from rr_opt.report.quantities import direction_text, pace_text
 from rr_opt.robot.gait import Gait
 from rr_opt.verify.replay import Replay
 from rr_opt.verify.sweep import TOLERATED, SweepCheck
@@ -90,7 +90,7 @@ class Answer:
             return self.optimum.message
         text = (
             f"The fastest gait found drives {direction_text(best.speed)} at "
-            f"{abs(best.speed):.4f} m/s, and every check confirms it."
+            f"{pace_text(best.speed)}, and every check confirms it."
         )
         ties = len(self.optimum.ties)
         if ties:

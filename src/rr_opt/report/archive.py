@@ -10,7 +10,7 @@ import json
 import os
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -18,32 +18,60 @@ from rr_opt.outcome import InputError
 
 
 def folder_for_results(folder: Path) -> Path:
-    """The folder, made if it is missing. Raises InputError if it cannot be one to write to."""
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
+    """The folder, which is made when the first file is written to it.
+
+    Raises InputError if it cannot be one to write to.
+    """
+    return _writable(folder, folder)
+
+
+def file_for_result(file: Path) -> Path:
+    """The file, whose folder is made when it is written. Raises InputError if it cannot be."""
+    if file.is_dir():
+        raise InputError(f"{file} is a folder. Expected a file. Name one in it with --out.")
+    _writable(file, file.parent)
+    return file
+
+
+def _writable(asked: Path, folder: Path) -> Path:
+    """`asked`, if files can be written to `folder`, or it can be made where it would be."""
+    there = next(place for place in (folder, *folder.absolute().parents) if place.exists())
+    if not there.is_dir():
         raise InputError(
-            f"The folder {folder} cannot be made: {error.strerror}. Give another one with --out."
-        ) from None
-    if not os.access(folder, os.W_OK):
-        raise InputError(f"The folder {folder} cannot be written to. Give another one with --out.")
-    return folder
+            f"{asked} cannot be made: {there} is not a folder. Give another place with --out."
+        )
+    if not os.access(there, os.W_OK | os.X_OK):
+        raise InputError(
+            f"{asked} cannot be written: {there} does not let you. Give another place with --out."
+        )
+    return asked
 
 
 @contextmanager
 def whole(path: Path) -> Iterator[Path]:
-    """A temporary path of the same ending, in the same folder, that becomes `path` on success."""
-    handle, name = tempfile.mkstemp(suffix=path.suffix, prefix=f".{path.stem}-", dir=path.parent)
-    os.close(handle)
-    temporary = Path(name)
+    """A temporary path of the same ending, in the same folder, that becomes `path` on success.
+
+    Folders that are missing are made, and taken away again if nothing comes into them.
+    """
+    made = [place for place in (path.parent, *path.parent.parents) if not place.exists()]
+    temporary: Path | None = None
     try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        handle, name = tempfile.mkstemp(path.suffix, f".{path.stem}-", path.parent)
+        temporary = Path(name)
+        os.close(handle)
         yield temporary
         with temporary.open("rb") as file:
             os.fsync(file.fileno())
         temporary.chmod(0o644)
         temporary.replace(path)
-    finally:
-        temporary.unlink(missing_ok=True)
+    except BaseException:
+        if temporary is not None:
+            temporary.unlink(missing_ok=True)
+        for place in made:
+            with suppress(OSError):
+                place.rmdir()
+        raise
 
 
 def write_bytes(path: Path, content: bytes) -> Path:

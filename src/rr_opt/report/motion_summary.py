@@ -9,20 +9,24 @@ from typing import Any
 
 import numpy as np
 
+from rr_opt.files.gait_record import gait_record
 from rr_opt.motion.rollout import Trajectory
 from rr_opt.report.quantities import QUANTITIES, number, speed_text
-from rr_opt.report.text import columns, gait_lines
-from rr_opt.robot.gait import SineGait
+from rr_opt.report.text import columns, gait_formula, gait_lines
+from rr_opt.robot.gait import Gait
 from rr_opt.robot.parameters import Robot
 
+EXCEEDED = 1e-4
+"""By so much, relative, an optimum on a limit may be past it without a warning."""
 
-def motion_summary(gait: SineGait, driven: Trajectory, start: str, files: Iterable[Path]) -> str:
+
+def motion_summary(gait: Gait, driven: Trajectory, start: str, files: Iterable[Path]) -> str:
     """The gait, how far it went and how fast at the end, and the files."""
     record = motion_record(gait, driven, start, files)
     begun = "rest" if start == "rest" else "the steady state"
     degrees = math.degrees(record["turned"])
     rows = [
-        ("gait", "phi(t) = amplitude sin(2 pi t/period) + offset"),
+        ("gait", gait_formula(gait)),
         *gait_lines(gait),
         (
             "time",
@@ -40,18 +44,13 @@ def motion_summary(gait: SineGait, driven: Trajectory, start: str, files: Iterab
 
 
 def motion_record(
-    gait: SineGait, driven: Trajectory, start: str, files: Iterable[Path]
+    gait: Gait, driven: Trajectory, start: str, files: Iterable[Path]
 ) -> dict[str, Any]:
     """The same for scripts: SI; `last_speed` is the mean of v over the last period."""
     seconds = float(driven.t[-1])
     last = driven.t >= max(seconds - gait.period, 0.0)
     return {
-        "gait": {
-            "shape": gait.shape,
-            "amplitude": gait.amplitude,
-            "period": gait.period,
-            "offset": gait.offset,
-        },
+        "gait": gait_record(gait),
         "start": start,
         "seconds": seconds,
         "distance": math.hypot(driven.x[-1] - driven.x[0], driven.y[-1] - driven.y[0]),
@@ -62,7 +61,7 @@ def motion_record(
     }
 
 
-def beyond_servo(robot: Robot, gait: SineGait, driven: Trajectory) -> list[str]:
+def beyond_servo(robot: Robot, gait: Gait, driven: Trajectory) -> list[str]:
     """A warning for each limit of the servo that the motion passes; the model drives it anyway."""
     reached = {
         "angle": (gait.peak_angle, robot.servo.angle_limit),
@@ -73,5 +72,5 @@ def beyond_servo(robot: Robot, gait: SineGait, driven: Trajectory) -> list[str]:
         f"warning: the gait needs {QUANTITIES[name].both(value)}, and the servo's {name} limit is "
         f"{QUANTITIES[name].both(limit)}. It is simulated as if the servo could."
         for name, (value, limit) in reached.items()
-        if value > limit * (1 + 1e-6)
+        if value > limit * (1 + EXCEEDED)
     ]

@@ -28,6 +28,7 @@ class Quantity:
         """`3.142 rad/s (30 rpm)`; `no limit` for None and infinity."""
         if value is None or math.isinf(value):
             return "no limit"
+        value = 0.0 if abs(value) < _ROUNDING else value
         first = with_unit(value, self.unit)
         return f"{first} ({with_unit(value * self.factor, self.other)})" if self.other else first
 
@@ -46,10 +47,20 @@ QUANTITIES = {
 """By the name under which a limit or a decision stands in files and results."""
 
 
+_ROUNDING = 1e-12
+_CRAWLING = 1e-3
+"""Slower than this a speed is told in mm/s alone, m/s."""
+
+
 def number(value: float, digits: int = 4) -> str:
-    """A number with so many significant digits, without an exponent where it is readable."""
-    if value == 0 or not math.isfinite(value):
-        return "0" if value == 0 else f"{value}"
+    """A number with so many significant digits, without an exponent where it is readable.
+
+    What is smaller than anything that is told here is a zero that rounding has left.
+    """
+    if not math.isfinite(value):
+        return f"{value}"
+    if abs(value) < _ROUNDING:
+        return "0"
     size = math.floor(math.log10(abs(value)))
     if -4 <= size < 6:
         text = f"{value:.{max(digits - 1 - size, 0)}f}"
@@ -64,8 +75,17 @@ def with_unit(value: float, unit: str, digits: int = 4) -> str:
 
 
 def speed_text(speed: float) -> str:
-    """A signed speed in m/s and mm/s."""
+    """A signed speed in m/s and mm/s, `-0.12896 m/s (-129.0 mm/s)`, or `+0.0738 mm/s`."""
+    if abs(speed) < _CRAWLING:
+        return f"{'+' if speed > _ROUNDING else ''}{number(1e3 * speed)} mm/s"
     return f"{speed:+.5f} m/s ({1e3 * speed:+.1f} mm/s)"
+
+
+def pace_text(speed: float) -> str:
+    """How fast, whichever way: `0.1290 m/s`, or `0.0738 mm/s`."""
+    if abs(speed) < _CRAWLING:
+        return f"{number(1e3 * abs(speed))} mm/s"
+    return f"{abs(speed):.4f} m/s"
 
 
 def direction_text(speed: float) -> str:

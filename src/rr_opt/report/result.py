@@ -6,12 +6,12 @@ from typing import Any
 
 from rr_opt import __version__
 from rr_opt.design.solve import Candidate
+from rr_opt.files.gait_record import gait_record
 from rr_opt.report.answer import Answer
 from rr_opt.report.candidates import ratio_of
 from rr_opt.report.robot_record import finite, robot_record
 from rr_opt.report.rows import bound_rows, limit_rows
 from rr_opt.robot.ballast import load_count
-from rr_opt.robot.gait import SineGait
 
 UNITS = {
     "angle": "rad",
@@ -64,16 +64,6 @@ def result(answer: Answer) -> dict[str, Any]:
         "input_sha256": answer.sha256,
     }
     return record
-
-
-def gait_record(gait: SineGait) -> dict[str, Any]:
-    """The gait under the keys of a problem file."""
-    return {
-        "shape": gait.shape,
-        "amplitude": gait.amplitude,
-        "period": gait.period,
-        "offset": gait.offset,
-    }
 
 
 def _cycle(answer: Answer) -> dict[str, Any] | None:

@@ -9,7 +9,7 @@ from typing import Literal
 from rr_opt.motion.rollout import Trajectory
 from rr_opt.report.archive import remove, write_text
 from rr_opt.report.trajectory_file import write_csv, write_netcdf
-from rr_opt.robot.gait import SineGait
+from rr_opt.robot.gait import Gait
 from rr_opt.robot.parameters import Robot
 
 Format = Literal["csv", "netcdf"]
@@ -32,7 +32,7 @@ def check_wishes(kind: Format, film: Film | None) -> None:
 
 def write_motion(
     robot: Robot,
-    gait: SineGait,
+    gait: Gait,
     trajectory: Trajectory,
     folder: Path,
     *,

@@ -5,16 +5,32 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from rr_opt.report.quantities import QUANTITIES, with_unit
-from rr_opt.robot.gait import SineGait
+from rr_opt.robot.fourier_gait import FourierGait
+from rr_opt.robot.free_gait import FreeGait
+from rr_opt.robot.gait import Gait
 
 
-def gait_lines(gait: SineGait) -> list[tuple[str, ...]]:
-    """Amplitude, period and offset with their units, a row each."""
-    return [
+def gait_formula(gait: Gait) -> str:
+    """What phi(t) is made of."""
+    if isinstance(gait, FourierGait):
+        return f"phi(t) = offset + {gait.harmonics} harmonics of the period"
+    if isinstance(gait, FreeGait):
+        return f"phi(t) with a constant acceleration on each of {gait.pieces} intervals"
+    return "phi(t) = amplitude sin(2 pi t/period) + offset"
+
+
+def gait_lines(gait: Gait) -> list[tuple[str, ...]]:
+    """Amplitude, period, offset and, of a Fourier gait, the harmonics, a row each."""
+    rows = [
         ("  amplitude", QUANTITIES["amplitude"].both(gait.amplitude)),
         ("  period", f"{with_unit(gait.period, 's')} ({with_unit(1 / gait.period, 'Hz')})"),
         ("  offset", QUANTITIES["offset"].both(gait.offset)),
     ]
+    if isinstance(gait, FourierGait):
+        for n, sizes in enumerate(zip(gait.sines, gait.cosines, strict=True), 1):
+            sine, cosine = (with_unit(size, "rad") for size in sizes)
+            rows.append((f"  harmonic {n}", f"{sine} of the sine, {cosine} of the cosine"))
+    return rows
 
 
 def columns(rows: Sequence[tuple[str, ...]]) -> list[str]:

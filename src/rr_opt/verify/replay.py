@@ -1,7 +1,7 @@
 """Replay: the winner, simulated by cvodes at tight tolerance, as if nothing were known of it.
 
 The steady cycle is found anew, the speed measured from P's path, and every limit looked at
-between the optimiser's nodes too.
+between the optimiser's nodes too, and on both sides of every jump of the torque.
 """
 
 from __future__ import annotations
@@ -13,8 +13,11 @@ from scipy.interpolate import CubicSpline
 
 from rr_opt.motion.steady_cycle import SteadyCycle, reference_cycle
 from rr_opt.problem import Limits
-from rr_opt.robot.gait import SineGait
+from rr_opt.robot.gait import Gait
 from rr_opt.robot.parameters import Robot
+
+_BETWEEN = 16
+"""Points among which a peak is looked for, for each sample of the cycle."""
 
 
 @dataclass(frozen=True)
@@ -35,22 +38,19 @@ class Replay:
     steady: SteadyCycle
 
 
-def replay(robot: Robot, gait: SineGait, limits: Limits, claimed: float) -> Replay:
+def replay(robot: Robot, gait: Gait, limits: Limits, claimed: float) -> Replay:
     """Simulate the steady cycle of a gait and hold it against the claim and the limits.
 
     Raises NotConvergedError if the gait has no steady cycle.
     """
     steady = reference_cycle(robot, gait)
-    t = steady.t
-    # A spline through 2048 samples finds peaks between them.
-    dense = np.linspace(t[0], t[-1], 16 * (len(t) - 1) + 1)
-    torque = CubicSpline(t, steady.torque)(dense)
+    dense = np.linspace(0.0, gait.period, _BETWEEN * (len(steady.t) - 1) + 1)
     phi = gait.angle(dense)
     S1 = robot.platform1.c * np.cos(phi) + robot.platform2.c
     reached = {
         "rate": float(np.abs(gait.rate(dense)).max()),
         "angle": float(np.abs(phi).max()),
-        "torque": float(np.abs(torque).max()),
+        "torque": _peak_torque(steady),
         "singularity": float(S1.min()),
     }
     excess = max(
@@ -58,3 +58,14 @@ def replay(robot: Robot, gait: SineGait, limits: Limits, claimed: float) -> Repl
         1 - reached["singularity"] / limits.singularity,
     )
     return Replay(steady.speed, abs(steady.speed - claimed) / abs(claimed), reached, excess, steady)
+
+
+def _peak_torque(steady: SteadyCycle) -> float:
+    """Largest |torque|: a spline on each piece, from just after a jump to just before the next."""
+    pieces = steady.gait.pieces
+    each = (len(steady.t) - 1) // pieces
+    inside = steady.torque[:-1].reshape(pieces, each)
+    ends = steady.torque_before[each::each, None]
+    at = np.arange(each + 1)
+    spline = CubicSpline(at, np.hstack([inside, ends]), axis=1)
+    return float(np.abs(spline(np.linspace(0, each, _BETWEEN * each + 1))).max())

@@ -1,0 +1,40 @@
+"""Where `rr-opt` begins: Ctrl-C is watched for before anything that takes time is loaded."""
+
+from __future__ import annotations
+
+from rr_opt.cli import interrupt
+from rr_opt.outcome import EXIT_INTERRUPTED
+
+
+def main() -> None:
+    """Run the command, and end with 130 whatever an interrupt has turned into on its way.
+
+    Libraries that are being loaded, and compiled solvers, make other errors of it, or none.
+    """
+    try:
+        interrupt.watch()
+        from rr_opt.cli.main import app  # noqa: PLC0415
+
+        app()
+    except SystemExit as end:
+        if interrupt.seen() and end.code != 0:
+            _end(told=end.code == EXIT_INTERRUPTED)
+        interrupt.ignore()
+        raise
+    except BaseException:
+        if interrupt.seen():
+            _end(told=False)
+        raise
+
+
+def _end(*, told: bool) -> None:
+    """End here and now: libraries that are half loaded complain when they are tidied up."""
+    import os  # noqa: PLC0415
+    import sys  # noqa: PLC0415
+
+    interrupt.ignore()
+    if not told:
+        print(interrupt.MESSAGE, file=sys.stderr)  # noqa: T201 - typer may not be there
+    sys.stderr.flush()
+    sys.stdout.flush()
+    os._exit(EXIT_INTERRUPTED)

@@ -1,0 +1,100 @@
+"""`rr-opt export [FILE]`: a gait as set points for a controller, and what they cost in speed."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from rr_opt.cli.place import place
+from rr_opt.cli.steps import Steps
+
+
+class Format(StrEnum):
+    """How the set points are written."""
+
+    CSV = "csv"
+    C_HEADER = "c-header"
+    SERVO = "servo"
+
+
+def export(
+    source: Annotated[
+        Path | None,
+        typer.Argument(
+            metavar="[FILE]",
+            help="A result.json, a robot or a problem; the paper's prototype if left out.",
+        ),
+    ] = None,
+    *,
+    kind: Annotated[
+        Format,
+        typer.Option(
+            "--format",
+            help="csv: time and angle in rad and degrees; c-header: an array for C; "
+            "servo: counts of the servo CDS5516.",
+        ),
+    ] = Format.CSV,
+    rate: Annotated[float, typer.Option(help="Set points a second.")] = 125.0,
+    keep_period: Annotated[
+        bool,
+        typer.Option("--keep-period", help="Change the rate and not the period to fit them in."),
+    ] = False,
+    amplitude: Annotated[
+        str | None, typer.Option(help="Amplitude, rad, or with a unit: '30 deg'.")
+    ] = None,
+    period: Annotated[str | None, typer.Option(help="Period, s, or with a unit.")] = None,
+    offset: Annotated[str | None, typer.Option(help="Offset, rad, or with a unit.")] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            parser=place, metavar="FILE", help="The file to write.", show_default="out/NAME-..."
+        ),
+    ] = None,
+    json: Annotated[
+        bool, typer.Option("--json", help="Print a machine-readable summary alone on stdout.")
+    ] = False,
+) -> None:
+    """Write a gait as set points for a controller.
+
+    A period holds a whole number of set points. What that, moving from one to the next, and
+    rounding to the servo's counts cost in speed is told each by itself.
+    """
+    with Steps() as steps:
+        from rr_opt.cli.motion_input import (  # noqa: PLC0415
+            read_options,
+            result_name,
+            robot_and_gait,
+            with_options,
+        )
+        from rr_opt.report.archive import (  # noqa: PLC0415
+            file_for_result,
+            strict_json,
+            write_text,
+        )
+        from rr_opt.report.setpoints import cost, set_points  # noqa: PLC0415
+        from rr_opt.report.setpoints_file import ENDINGS, text_of  # noqa: PLC0415
+        from rr_opt.report.setpoints_summary import (  # noqa: PLC0415
+            beyond_rate,
+            setpoints_record,
+            setpoints_summary,
+        )
+
+        options = read_options(amplitude=amplitude, period=period, offset=offset, rate=rate)
+        robot, gait = robot_and_gait(source)
+        name = f"{result_name(source)}{ENDINGS[kind.value]}"
+        file = file_for_result(out or Path("out") / name)
+        points = set_points(with_options(gait, options), rate, keep_period=keep_period)
+        text = text_of(points, kind.value)
+        steps("what the set points cost")
+        rounded = kind is Format.SERVO
+        lost = cost(robot, points, rounded=rounded)
+        write_text(file, text)
+    for warning in beyond_rate(robot, points, rounded=rounded):
+        typer.echo(warning, err=True)
+    if json:
+        typer.echo(strict_json(setpoints_record(points, lost, kind.value, file)), nl=False)
+    else:
+        typer.echo(setpoints_summary(points, lost, file), nl=False)
