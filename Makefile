@@ -60,6 +60,7 @@ results: $(RUN) ## write the results that are kept in results/
 
 bench: $(DEV) ## measure against other ways to the same answer, into results/bench
 	$(BIN)/python -m benchmarks.optimise
+	$(BIN)/python -m benchmarks.study
 
 pins: $(RUN) ## pin the newest dependencies that pyproject.toml allows
 	$(BIN)/python scripts/pins.py

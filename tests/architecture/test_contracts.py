@@ -32,6 +32,9 @@ PLANTED = [
     ("formats-in-files", "report/planted.py", "import pydantic"),
     ("terminal-in-cli", "design/planted.py", "import typer"),
     ("terminal-in-cli", "report/planted.py", "def table():\n    from rich.table import Table"),
+    ("layers", "design/planted.py", "import rr_opt.batch.run"),
+    ("processes-in-batch", "design/planted.py", "import joblib"),
+    ("processes-in-batch", "cli/planted.py", "from distributed import Client"),
     ("plain-robot", "robot/planted.py", "import casadi as ca"),
     ("plain-robot", "problem.py", "import casadi as ca"),
 ]

@@ -29,16 +29,61 @@ class ShapeSeed:
     share: float
 
 
+@dataclass(frozen=True)
+class _Shapes:
+    """K shapes at random, as large as the limits on angle and rate allow or smaller.
+
+    period, offset, share (K,); sines, cosines (n, K), rad
+    """
+
+    period: Array
+    offset: Array
+    share: Array
+    sines: Array
+    cosines: Array
+
+    def gait(self, k: int) -> FourierGait:
+        """One of them."""
+        return FourierGait(
+            float(self.period[k]),
+            float(self.offset[k]),
+            tuple(self.sines[:, k].tolist()),
+            tuple(self.cosines[:, k].tolist()),
+        )
+
+    def angle(self) -> tuple[Array, Array, Array]:
+        """phi, dphi, ddphi at nodes and halfway between them, (2 N, K)."""
+        theta = 2 * math.pi * np.arange(2 * _NODES) / (2 * _NODES)
+        omega = 2 * math.pi / self.period
+        swing, rate, bend = (_waves(self.sines, self.cosines, theta, k) for k in range(3))
+        return self.offset + swing, omega * rate, omega**2 * bend
+
+
 def scan_shapes(
     setting: Setting, harmonics: int, signs: tuple[int, ...], most: int
 ) -> list[ShapeSeed]:
     """The best few shapes of many that keep the limits but perhaps for the torque's, best first;
     none if the bounds leave no room for a sine."""
-    problem = setting.problem
-    box, limits = decisions(problem), problem.limits
-    if box.empty or harmonics < 2:
+    if decisions(setting.problem).empty or harmonics < 2:
         return []
-    rng, n = np.random.default_rng(0), min(harmonics, _SCANNED)
+    shapes = _random(setting, min(harmonics, _SCANNED))
+    with np.errstate(all="ignore"):
+        cycles = setting.landscape.along(shapes.angle(), shapes.period, shapes.share)
+        excess = np.maximum(cycles.peak_torque / setting.problem.limits.torque - 1, 0.0)
+    allowed = shapes.sines[0] >= setting.problem.gait.amplitude.low
+    allowed &= np.isfinite(cycles.speed + excess) & np.isin(np.sign(cycles.speed), signs)
+    size = np.where(allowed, np.abs(cycles.speed), 0.0)
+    merit = np.where(allowed, size - 3 * size.max() * excess, -np.inf)
+    vectors = np.vstack([shapes.sines, shapes.cosines])
+    return [
+        ShapeSeed(int(np.sign(cycles.speed[k])), shapes.gait(k), float(shapes.share[k]))
+        for k in _best(merit, vectors / np.linalg.norm(vectors, axis=0), most)
+    ]
+
+
+def _random(setting: Setting, n: int) -> _Shapes:
+    problem = setting.problem
+    box, rng = decisions(problem), np.random.default_rng(0)
     T = box.period.low * (box.period.high / box.period.low) ** rng.random(_SHAPES)
     phi0 = box.offset.low + (box.offset.high - box.offset.low) * rng.random(_SHAPES)
     share = rng.random(_SHAPES)
@@ -47,38 +92,12 @@ def scan_shapes(
     order = np.arange(1, n + 1)[:, None]
     sines, cosines = (rng.normal(0, 0.5, (n, _SHAPES)) / order for _ in range(2))
     sines[0], cosines[0] = 1.0, 0.0
-    theta = 2 * math.pi * np.arange(2 * _NODES) / (2 * _NODES)
-    swing, slope, bend = (_waves(sines, cosines, theta, k) for k in range(3))
+    theta = np.linspace(0, 2 * math.pi, 4 * _NODES)
+    swing, rate = (np.abs(_waves(sines, cosines, theta, k)).max(axis=0) for k in range(2))
     most_swing = np.minimum(problem.gait.amplitude.high, box.reach - np.abs(phi0))
-    scale = np.minimum(
-        most_swing / np.abs(swing).max(axis=0),
-        limits.rate * T / (2 * math.pi * np.abs(slope).max(axis=0)),
-    ) * rng.uniform(0.3, 1.0, _SHAPES)
-    omega = 2 * math.pi / T
-    angle = phi0 + scale * swing, scale * omega * slope, scale * omega**2 * bend
-    with np.errstate(all="ignore"):
-        cycles = setting.landscape.along(angle, T, share)
-        excess = np.maximum(cycles.peak_torque / limits.torque - 1, 0.0)
-    allowed = (scale >= problem.gait.amplitude.low) & np.isfinite(cycles.speed + excess)
-    speed = np.where(allowed, cycles.speed, 0.0)
-    speed -= np.sign(speed) * 3 * np.abs(speed).max() * np.where(allowed, excess, 0.0)
-    ahead = np.isin(np.sign(cycles.speed), signs)
-    merit = np.where(allowed & ahead, np.sign(cycles.speed) * speed, -np.inf)
-    shapes = np.vstack([scale * sines, scale * cosines])
-    chosen = _best(merit, shapes / np.linalg.norm(shapes, axis=0), most)
-    return [
-        ShapeSeed(
-            int(np.sign(cycles.speed[i])),
-            FourierGait(
-                float(T[i]),
-                float(phi0[i]),
-                tuple((scale[i] * sines[:, i]).tolist()),
-                tuple((scale[i] * cosines[:, i]).tolist()),
-            ),
-            float(share[i]),
-        )
-        for i in chosen
-    ]
+    largest = np.minimum(most_swing / swing, problem.limits.rate * T / (2 * math.pi * rate))
+    scale = largest * rng.uniform(0.3, 1.0, _SHAPES)
+    return _Shapes(T, phi0, share, scale * sines, scale * cosines)
 
 
 def _waves(sines: Array, cosines: Array, theta: Array, order: int) -> Array:

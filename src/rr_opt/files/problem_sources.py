@@ -30,7 +30,7 @@ def problem_sources(path: str | Path | None) -> Sources:
     """The parts of a problem: a problem file, its folder, a robot file, or None (as shipped).
 
     A robot file stands for the shipped problem with that robot and its servo's limits.
-    Raises InvalidFileError if the file cannot be read, or is an experiment or a result.
+    Raises InvalidFileError if the file cannot be read, or is of another kind.
     """
     file = problem_path(SHIPPED if path is None else Path(path))
     document = read_document(file)
@@ -39,6 +39,8 @@ def problem_sources(path: str | Path | None) -> Sources:
         raise InvalidFileError([experiment_issue(document)])
     if kind == "result":
         raise InvalidFileError([result_issue(document)])
+    if kind == "study":
+        raise InvalidFileError([study_issue(document)])
     if kind == "robot":
         return _shipped_problem_with(document, file)
     if isinstance(document.data.get("robot"), dict):
@@ -53,6 +55,16 @@ def experiment_issue(document: Document) -> Issue:
         (),
         "Read the keys of an experiment. Expected a problem or a robot. "
         "Experiments are read by `rr-opt diagnose`.",
+    )
+
+
+def study_issue(document: Document) -> Issue:
+    """What to say to a study where a problem is expected."""
+    return document.issue(
+        "error",
+        (),
+        "Read the keys of a study. Expected a problem or a robot. "
+        "Studies are solved by `rr-opt study`.",
     )
 
 

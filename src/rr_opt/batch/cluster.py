@@ -1,0 +1,98 @@
+"""Processes of a cluster, handed out by a dask scheduler."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from concurrent.futures import Future
+from typing import Any
+
+from rr_opt import __version__
+from rr_opt.outcome import InputError
+
+_PATIENCE = 10  # s
+_AT_LEAST = 8
+_PER_CORE = 2
+
+
+class ClusterPool:
+    """The workers of the scheduler at an address, tcp://HOST:PORT, however many come and go.
+
+    A case whose worker dies is given to another one by the scheduler.
+    """
+
+    def __init__(self, address: str):
+        client = _client()
+        try:
+            self._client = client(address, timeout=_PATIENCE, set_as_default=False)
+        except (OSError, ValueError, TimeoutError) as error:
+            raise InputError(
+                f"No dask scheduler answers at {address!r} ({_first_line(error)}). Expected an "
+                "address such as tcp://host:8786. Start one with `dask scheduler`, and workers "
+                "with `dask worker`."
+            ) from None
+        self._check_versions()
+        self._executor = self._client.get_executor(pure=False)
+
+    @property
+    def ahead(self) -> int:
+        """Two cases for each thread of the workers there are now."""
+        cores = sum(self._client.ncores().values())
+        return max(_AT_LEAST, _PER_CORE * cores)
+
+    def submit(self, function: Callable[[Any], Any], argument: Any) -> Future[Any]:
+        """Have function(argument) computed by a worker."""
+        return self._executor.submit(function, argument)
+
+    def is_lost(self, error: BaseException) -> bool:
+        """Whether the scheduler gave up a case because its workers died."""
+        from distributed import KilledWorker  # noqa: PLC0415
+
+        return isinstance(error, KilledWorker)
+
+    def restart(self) -> None:
+        """Nothing to do: the scheduler replaces workers."""
+
+    def close(self) -> None:
+        """Take back what is not done, and leave the cluster as it was."""
+        self._executor.shutdown(wait=False)
+        self._client.close(timeout=_PATIENCE)
+
+    def _check_versions(self) -> None:
+        """Raise InputError if a worker has another rr-opt, or none."""
+        try:
+            others = self._client.run(installed_version)
+        except Exception as error:
+            raise InputError(
+                f"A worker of the cluster cannot run rr-opt ({_first_line(error)}). Expected "
+                f"rr-opt {__version__} on every worker. Install it there."
+            ) from None
+        wrong = {place: found for place, found in others.items() if found != __version__}
+        for place, found in wrong.items():
+            raise InputError(
+                f"The worker {place} has rr-opt {found}. Expected {__version__}, as here. "
+                "Install the same version on every worker."
+            )
+
+
+def installed_version() -> str:
+    """The version of rr-opt where this runs."""
+    # Cases leave a worker no time for threads of numerical libraries.
+    os.environ.setdefault("OMP_NUM_THREADS", "1")
+    return __version__
+
+
+def _first_line(error: BaseException) -> str:
+    return (str(error) or type(error).__name__).splitlines()[0]
+
+
+def _client() -> Any:
+    """The class dask.distributed.Client. Raises InputError if it is not installed."""
+    try:
+        from distributed import Client  # noqa: PLC0415
+    except ImportError:
+        raise InputError(
+            "A cluster needs dask.distributed, which is not installed. "
+            "Run `pip install 'rr-opt[cluster]'`, or leave out --scheduler."
+        ) from None
+    return Client

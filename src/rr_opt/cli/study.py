@@ -1,0 +1,123 @@
+"""`rr-opt study STUDY`: one problem with many values of its keys, a row a case."""
+
+from __future__ import annotations
+
+from contextlib import closing
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from rr_opt import __version__
+from rr_opt.cli.place import place
+from rr_opt.cli.study_progress import CaseProgress
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rr_opt.batch.pool import Pool
+    from rr_opt.design.study_row import Row
+    from rr_opt.files.study_file import Study
+
+
+def study(
+    study: Annotated[Path, typer.Argument(help="Study file: a problem and what is varied.")],
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            parser=place, metavar="DIR", help="Folder for the results.", show_default="out/NAME"
+        ),
+    ] = None,
+    workers: Annotated[
+        int | None, typer.Option(help="Processes here.", min=1, show_default="one a core")
+    ] = None,
+    scheduler: Annotated[
+        str | None, typer.Option(help="Solve on a dask cluster: tcp://HOST:PORT of its scheduler.")
+    ] = None,
+    cold: Annotated[
+        bool, typer.Option("--cold", help="Solve every case from cold starts alone.")
+    ] = False,
+    restart: Annotated[
+        bool, typer.Option("--restart", help="Forget the rows of an earlier run.")
+    ] = False,
+    netcdf: Annotated[bool, typer.Option("--netcdf", help="Write study.nc too.")] = False,
+    json: Annotated[bool, typer.Option("--json", help="Print study.json alone on stdout.")] = False,
+    figures: Annotated[
+        bool, typer.Option("--figures/--no-figures", help="Draw figures and write report.html.")
+    ] = True,
+) -> None:
+    """Solve a problem with many values of its keys: limits, the robot's parameters, bounds.
+
+    A run that was stopped goes on where it was when the same command is given again.
+    """
+    from rr_opt.files.study_file import read_study  # noqa: PLC0415
+
+    asked, warnings = read_study(study)
+    for warning in warnings:
+        typer.echo(str(warning), err=True)
+    from rr_opt.report.archive import folder_for_results, strict_json  # noqa: PLC0415
+    from rr_opt.report.study_files import check_wishes, write_study  # noqa: PLC0415
+
+    check_wishes(netcdf=netcdf)
+    folder = folder_for_results(out or Path("out") / asked.name)
+    rows = _rows(asked, folder, partial(_pool, workers, scheduler), cold=cold, restart=restart)
+    from rr_opt.report.study_result import studied  # noqa: PLC0415
+    from rr_opt.report.study_summary import record, summary  # noqa: PLC0415
+
+    result = studied(asked, rows)
+    written = write_study(result, folder, netcdf=netcdf, figures=figures)
+    if json:
+        typer.echo(strict_json(record(result)), nl=False)
+    else:
+        typer.echo(summary(result, written), nl=False)
+    for sentence in result.complaints:
+        typer.echo(sentence, err=True)
+    if result.exit_code:
+        raise typer.Exit(result.exit_code)
+
+
+def _rows(
+    asked: Study, folder: Path, pool_of: Callable[[], Pool], *, cold: bool, restart: bool
+) -> dict[int, Row]:
+    """Every case's row: those that the folder's journal has, and the others solved now."""
+    from rr_opt.batch.journal import Journal  # noqa: PLC0415
+    from rr_opt.batch.run import run  # noqa: PLC0415
+    from rr_opt.design.study import solve_study  # noqa: PLC0415
+    from rr_opt.design.study_case import solve_case  # noqa: PLC0415
+    from rr_opt.design.study_plan import plan  # noqa: PLC0415
+    from rr_opt.design.study_row import row_from, row_record  # noqa: PLC0415
+
+    total = len(asked.problems)
+    identity = {"input_sha256": asked.sha256, "version": __version__, "cold": cold}
+    with Journal(folder / "journal.jsonl", identity, restart=restart) as journal:
+        rows = {case: row_from(record) for case, record in journal.rows.items()}
+        if rows:
+            typer.echo(f"{len(rows)} of {total} rows are there from an earlier run.", err=True)
+        if len(rows) == total:
+            return rows
+        planned = plan([axis.numbers for axis in asked.axes], asked.shape)
+        try:
+            with closing(pool_of()) as pool, CaseProgress(len(rows), total) as progress:
+                solve = partial(run, pool, solve_case)
+                for case, row in solve_study(asked.problems, planned, rows, solve, cold=cold):
+                    journal.append(case, row_record(row))
+                    rows[case] = row
+                    progress()
+        except KeyboardInterrupt:
+            typer.echo(
+                f"{len(rows)} of {total} rows are kept. The same command goes on with the others.",
+                err=True,
+            )
+            raise
+    return rows
+
+
+def _pool(workers: int | None, scheduler: str | None) -> Pool:
+    if scheduler:
+        from rr_opt.batch.cluster import ClusterPool  # noqa: PLC0415
+
+        return ClusterPool(scheduler)
+    from rr_opt.batch.local import LocalPool  # noqa: PLC0415
+
+    return LocalPool(workers)

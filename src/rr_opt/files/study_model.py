@@ -1,0 +1,77 @@
+"""The study file's keys: a base problem, and what is varied."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, GetJsonSchemaHandler, JsonValue, SkipValidation, create_model
+from pydantic_core import CoreSchema
+
+from rr_opt.files.problem_model import ProblemModel
+from rr_opt.files.robot_model import FileModel
+
+MOST_CASES = 100_000
+
+
+def _number(description: str, **default: Any) -> Any:
+    """A field read later, when the unit of its key is known."""
+    kinds: list[JsonValue] = [{"type": "number"}, {"type": "string"}]
+    return Field(description=description, json_schema_extra={"anyOf": kinds}, **default)
+
+
+# `from` is no name that a class body can hold.
+RangeModel: Any = create_model(
+    "RangeModel",
+    __base__=FileModel,
+    __doc__="Values from one to another, both included. Give count or step, not both.",
+    **{
+        "from": (Any, _number("The first value, with its unit if it has one.")),
+        "to": (Any, _number("The last value.")),
+        "count": (
+            Annotated[int, Field(ge=2, le=MOST_CASES)],
+            Field(default=0, validate_default=False, description="How many values."),
+        ),
+        "step": (Any, _number("From one value to the next.", default=None)),
+        "spacing": (
+            Literal["linear", "log"],
+            Field(default="linear", description="log: each value is the last times a factor."),
+        ),
+    },
+)
+
+
+class _Varied:
+    """The JSON schema of the values of a key: a list, or a range."""
+
+    def __get_pydantic_json_schema__(
+        self, _: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        values = {"type": "array", "minItems": 1, "description": "The values, one after another."}
+        item = {"anyOf": [values, RangeModel.model_json_schema()]}
+        return {"type": "object", "additionalProperties": item}
+
+
+Varied = Annotated[dict[str, Any], SkipValidation, _Varied()]
+
+
+class StudyModel(FileModel):
+    """A problem solved again and again with other values of some of its keys.
+
+    A key is named by its path in the problem file, `limits.rate` or `robot.platform2.I`, an entry
+    of a list by its index, `robot.physics[0].force1` or `gait.period[1]`.
+    """
+
+    problem: Annotated[str | ProblemModel | None, SkipValidation] = Field(
+        default=None,
+        description="A problem file, relative to this file, or the problem itself. "
+        "Without it: the paper's prototype.",
+    )
+    vary: Varied = Field(
+        default_factory=dict,
+        description="Keys of the problem, each with a list or a range of values. "
+        "Every combination is a case.",
+    )
+    together: list[Varied] = Field(
+        default_factory=list,
+        description="Groups of keys whose values, as many for each key, are taken in step.",
+    )

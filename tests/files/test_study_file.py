@@ -1,0 +1,142 @@
+"""A study file is every combination of its values, each read as a problem file would be."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+
+from rr_opt.files import read_problem
+from rr_opt.files.issue import InvalidFileError
+from rr_opt.files.study_file import read_study
+
+
+@pytest.fixture
+def study(write):
+    return lambda text: read_study(write(text, "study.yaml"))[0]
+
+
+def values(made, key):
+    return [made.inputs(case)[key] for case in range(len(made.problems))]
+
+
+def test_product_the_last_key_fastest(study):
+    made = study("vary: {limits.torque: [1, 2], limits.rate: [3 rpm, 6 rpm, 9 rpm]}\n")
+    assert made.shape == (2, 3)
+    assert [p.limits.torque for p in made.problems] == [1, 1, 1, 2, 2, 2]
+    rates = [p.limits.rate * 30 / math.pi for p in made.problems]
+    assert rates == pytest.approx([3, 6, 9] * 2)
+    assert values(made, "limits.rate") == [p.limits.rate for p in made.problems]
+
+
+@pytest.mark.parametrize(
+    ("written", "expected"),
+    [
+        ("{from: 1, to: 3, count: 5}", [1, 1.5, 2, 2.5, 3]),
+        ("{from: 100 mN*m, to: 0.4, step: 0.1}", [0.1, 0.2, 0.3, 0.4]),
+        ("{from: 3, to: 1, step: -1}", [3, 2, 1]),
+        ("{from: 0.01, to: 1, count: 3, spacing: log}", [0.01, 0.1, 1]),
+        ("{from: 1, to: 2, step: 0.4}", [1, 1.4, 1.8]),
+    ],
+)
+def test_ranges(study, written, expected):
+    made = study(f"vary: {{limits.torque: {written}}}\n")
+    assert [p.limits.torque for p in made.problems] == pytest.approx(expected)
+
+
+def test_together_is_in_step(study):
+    made = study(
+        "together:\n- {robot.platform1.kappa: [1e-5, 2e-5], robot.platform2.kappa: [3e-5, 4e-5]}\n"
+    )
+    kappas = [(p.robot.platform1.kappa, p.robot.platform2.kappa) for p in made.problems]
+    assert kappas == [(1e-5, 3e-5), (2e-5, 4e-5)]
+
+
+def test_a_case_is_the_problem_with_the_value_written_in_it(study, write):
+    made = study(
+        "problem: {gait: {period: [0.4, 2.0]}, direction: forward}\n"
+        "vary: {'gait.period[1]': [1.5 s], robot.servo.torque_limit: [0.5], inertia_ratio: "
+        "[[0.1, 0.2]]}\n"
+    )
+    robot = write(
+        "platform1: {m: 0.469, I: 0.00386, c: 186 mm, a: 0.0, b: 22 mm, kappa: 6.2e-5}\n"
+        "platform2: {m: 0.250, I: 0.00175, c: 44.1 mm, a: 0.0, b: 22 mm, kappa: 6.2e-5}\n"
+        "h: 20 mm\nservo: {torque_limit: 0.5}\n",
+        "robot.yaml",
+    )
+    single = write(
+        f"robot: {robot.name}\ngait: {{period: [0.4, 1.5]}}\ndirection: forward\n"
+        "inertia_ratio: [0.1, 0.2]\n",
+        "problem.yaml",
+    )
+    (case,), alone = made.problems, read_problem(single)
+    assert case.gait == alone.gait
+    assert case.limits == alone.limits
+    assert case.inertia_ratio == alone.inertia_ratio
+    assert case.robot.servo == alone.robot.servo
+    assert case.robot.platform1 == alone.robot.platform1
+
+
+def test_robots_by_file_and_effects_by_list(study, write, robot_text):
+    write(robot_text, "one.yaml")
+    write(robot_text.replace("m: 0.469", "m: 0.5"), "two.yaml")
+    made = study(
+        "vary:\n  robot: [one.yaml, two.yaml]\n"
+        "  robot.physics: [[], [{name: coulomb_friction, force1: 0.02, force2: 0.02}]]\n"
+    )
+    assert [p.robot.platform1.m for p in made.problems] == [0.469, 0.469, 0.5, 0.5]
+    assert [len(p.robot.physics) for p in made.problems] == [0, 1, 0, 1]
+
+
+def test_every_mistake_at_once(write):
+    text = (
+        "problem: {gait: {amplitud: 3}}\n"
+        "vary:\n"
+        "  limits.rat: [1]\n"
+        "  gait.period: {from: 1 s, to: 2 s, count: 3, step: 1}\n"
+        "  limits.torque: {from: 1, to: 2, cuont: 3}\n"
+        "  direction: {from: 1, to: 2, count: 3}\n"
+        "together: [{robot.platform1.m: [1, 2], robot.platform2.m: [1, 2, 3]}]\n"
+    )
+    with pytest.raises(InvalidFileError) as caught:
+        read_study(write(text, "study.yaml"))
+    told = {issue.path: issue for issue in caught.value.issues}
+    assert {path: issue.line for path, issue in told.items()} == {
+        "problem.gait.amplitud": 1,
+        "vary.'limits.rat'": 3,
+        "vary.'gait.period'": 4,
+        "vary.'limits.torque'.cuont": 5,
+        "vary.direction": 6,
+        "together[0]": 7,
+    }
+    assert "Did you mean `rate`?" in told["vary.'limits.rat'"].message
+    assert "Did you mean `count`?" in told["vary.'limits.torque'.cuont"].message
+
+
+def test_a_value_is_refused_where_it_is_written_with_its_case(write):
+    text = "vary:\n  limits.rate: [10 rpm, -1 rpm, 3 kg]\n  direction: [forward, upward]\n"
+    with pytest.raises(InvalidFileError) as caught:
+        read_study(write(text, "study.yaml"))
+    told = [(issue.path, issue.line) for issue in caught.value.issues]
+    assert sorted(told) == [("vary.'limits.rate'", 2)] * 2 + [("vary.direction", 3)]
+    text = str(caught.value)
+    assert "In the case limits.rate = '-1 rpm', direction = 'forward', and 1 more" in text
+
+
+@pytest.mark.parametrize("changed", ["study.yaml", "problem.yaml", "one.yaml", "two.yaml"])
+def test_the_fingerprint_is_over_every_file(write, robot_text, changed):
+    write(robot_text, "one.yaml")
+    write(robot_text, "two.yaml")
+    write("robot: one.yaml\n", "problem.yaml")
+    path = write("problem: problem.yaml\nvary: {robot: [one.yaml, two.yaml]}\n", "study.yaml")
+    before = read_study(path)[0].sha256
+    with (path.parent / changed).open("a") as file:
+        file.write("# a remark\n")
+    assert read_study(path)[0].sha256 != before
+
+
+@pytest.mark.parametrize("name", ["servo", "limits", "inertia"])
+def test_the_examples_can_be_used(name):
+    made, _ = read_study(Path(__file__).parents[2] / "problems" / "studies" / f"{name}.yaml")
+    assert len(made.problems) == math.prod(made.shape)

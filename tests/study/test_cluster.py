@@ -1,0 +1,83 @@
+"""On a cluster one of whose workers is killed during the study, every row is there, once."""
+
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+
+import pytest
+
+pytest.importorskip("distributed")
+
+STUDY = """
+problem:
+  gait: {amplitude: [0.1, 1.0], period: 1 s, offset: 0.0}
+  limits: {angle: 2.6, torque: 1.37}
+vary:
+  limits.rate: {from: 10 rpm, to: 60 rpm, count: 25}
+"""
+
+
+def free_port():
+    with socket.socket() as one:
+        one.bind(("127.0.0.1", 0))
+        return one.getsockname()[1]
+
+
+@pytest.fixture
+def started(tmp_path):
+    """Starts processes, which are ended with the test."""
+    running = []
+
+    def start(*arguments, **options):
+        with (tmp_path / f"log{len(running)}").open("w") as log:
+            process = subprocess.Popen(
+                [sys.executable, *arguments], cwd=tmp_path, stdout=log, stderr=log, **options
+            )
+        running.append(process)
+        return process
+
+    yield start
+    for process in running:
+        process.kill()
+        process.wait()
+
+
+def test_a_killed_worker_costs_no_row(started, tmp_path):
+    (tmp_path / "study.yaml").write_text(STUDY)
+    address = f"tcp://127.0.0.1:{free_port()}"
+    started("-m", "distributed.cli.dask_scheduler", "--host", address, "--no-dashboard")
+    worker = ("-m", "distributed.cli.dask_worker", address, "--nthreads", "1", "--no-nanny",
+              "--no-dashboard")  # fmt: skip
+    first, _second = started(*worker), started(*worker)
+    journal = tmp_path / "res" / "journal.jsonl"
+    study = started(
+        *("-c", "from rr_opt.cli.entry import main; main()", "study", "study.yaml", "--cold"),
+        *("--out", "res", "--scheduler", address, "--no-figures"),
+    )
+    end = time.monotonic() + 90
+    killed = False
+    while study.poll() is None and time.monotonic() < end:
+        if not killed and journal.exists() and len(journal.read_text().splitlines()) > 4:
+            os.kill(first.pid, signal.SIGKILL)
+            killed = True
+        time.sleep(0.01)
+    told = "\n".join(path.read_text() for path in sorted(tmp_path.glob("log*")))
+    assert killed, told
+    assert study.returncode == 0, told
+    rows = [json.loads(line) for line in journal.read_text().splitlines()[1:]]
+    assert sorted(row["case"] for row in rows) == list(range(25))
+    assert {row["status"] for row in rows} == {"optimal"}
+
+
+def test_no_scheduler_is_wrong_input(started, tmp_path):
+    from rr_opt.batch import cluster  # noqa: PLC0415
+    from rr_opt.outcome import InputError  # noqa: PLC0415
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(cluster, "_PATIENCE", 1)
+        with pytest.raises(InputError, match="No dask scheduler answers"):
+            cluster.ClusterPool(f"tcp://127.0.0.1:{free_port()}")
