@@ -57,6 +57,7 @@ results: $(RUN) ## write the results that are kept in results/
 	$(BIN)/rr-opt maximize-speed --out results/prototype
 	$(BIN)/rr-opt maximize-speed problems/loads --out results/loads
 	$(BIN)/rr-opt maximize-speed problems/turning --out results/turning
+	$(BIN)/rr-opt shapes --out results/shapes
 
 bench: $(DEV) ## measure against other ways to the same answer, into results/bench
 	$(BIN)/python -m benchmarks.optimise

@@ -74,7 +74,9 @@ def label(answer: Answer) -> str:
 
 def _spoken(answer: Answer) -> str:
     gait = answer.optimum.problem.gait
-    return f"{gait.harmonics} harmonics" if gait.shape == "fourier" else f"a {gait.shape} gait"
+    if gait.shape == "fourier":
+        return f"{gait.harmonics} harmonics"
+    return "a free gait" if gait.shape == "free" else "a sine"
 
 
 def family_name(gait: GaitBounds) -> str:
