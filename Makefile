@@ -58,9 +58,12 @@ results: $(RUN) ## write the results that are kept in results/
 	$(BIN)/rr-opt maximize-speed problems/loads --out results/loads
 	$(BIN)/rr-opt maximize-speed problems/turning --out results/turning
 	$(BIN)/rr-opt shapes --out results/shapes
+	$(BIN)/rr-opt turn-chart --out results/turn-chart
+	$(BIN)/rr-opt study problems/studies/servo.yaml --out results/servo
 
 bench: $(DEV) ## measure against other ways to the same answer, into results/bench
 	$(BIN)/python -m benchmarks.optimise
+	$(BIN)/python -m benchmarks.turn
 	$(BIN)/python -m benchmarks.study
 
 pins: $(RUN) ## pin the newest dependencies that pyproject.toml allows

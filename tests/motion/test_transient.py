@@ -49,7 +49,7 @@ def test_the_distance_lost(offset):
 
     goal = period(float(steady.v[0]))[1]
     length, lost, v = np.hypot(*goal), 0.0, 0.0
-    for _ in range(16):
+    for _ in range(32):
         v, step = period(v)
         lost += length - step @ goal / length
     start = transient(BENCHMARK, steady)

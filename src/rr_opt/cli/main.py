@@ -13,11 +13,17 @@ from typer.core import TyperGroup
 
 from rr_opt import __version__
 from rr_opt.cli import interrupt
+from rr_opt.cli.circle import circle
+from rr_opt.cli.export import export
 from rr_opt.cli.lint import lint
 from rr_opt.cli.maximize_speed import maximize_speed
 from rr_opt.cli.schema import schema
+from rr_opt.cli.shapes import shapes
 from rr_opt.cli.simulate import simulate
+from rr_opt.cli.study import study
 from rr_opt.cli.sweep import sweep
+from rr_opt.cli.turn import turn
+from rr_opt.cli.turn_chart import turn_chart
 from rr_opt.outcome import EXIT_INTERRUPTED, EXIT_WRONG_INPUT, RollerRacerError
 
 
@@ -42,15 +48,15 @@ class Verbs(TyperGroup):
             place = f"{error.filename}: " if error.filename else ""
             typer.echo(f"{place}{what}. Check the name, the folder and its permissions.", err=True)
             raise typer.Exit(EXIT_WRONG_INPUT) from None
-        except RuntimeError:
-            # Ctrl-C inside CasADi comes out as its own RuntimeError.
+        except Exception:
+            # Ctrl-C comes out of CasADi, and of a library that is being loaded, as another error.
             if interrupt.seen():
                 return _interrupted()
             raise
 
 
 def _interrupted() -> Any:
-    typer.echo("Interrupted. No file was left half written.", err=True)
+    typer.echo(interrupt.MESSAGE, err=True)
     raise typer.Exit(EXIT_INTERRUPTED) from None
 
 
@@ -66,8 +72,14 @@ app = typer.Typer(
     "4 the solver did not converge, 130 interrupted.",
 )
 app.command("maximize-speed")(maximize_speed)
+app.command("shapes")(shapes)
 app.command("sweep")(sweep)
+app.command("turn")(turn)
+app.command("turn-chart")(turn_chart)
+app.command("circle")(circle)
 app.command("simulate")(simulate)
+app.command("export")(export)
+app.command("study")(study)
 app.command("lint")(lint)
 app.command("schema")(schema)
 
@@ -88,9 +100,3 @@ def _options(
     ] = False,
 ) -> None:
     pass
-
-
-def main() -> None:
-    """Entry point of the command."""
-    interrupt.watch()
-    app()

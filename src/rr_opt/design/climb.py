@@ -1,9 +1,10 @@
 """Climb from many points of the unit box at once, along smooth slopes and along kinks.
 
 Each iteration lays a small stencil around every climber, evaluates all stencils in one call, and
-fits a quadratic to the speed and another to the torque. What is maximised is the speed less a
-penalty for torque beyond its limit: that has a kink where the limit begins, often right where
-the optimum is, so it is formed from the two quadratics and not fitted itself.
+fits one quadratic to the speed and one to each row: the torque, and the turn if one is asked for.
+What is maximised is the speed less a penalty for rows outside their intervals: that has a kink
+where an interval ends, often right where the optimum is, so it is formed from the quadratics and
+not fitted itself.
 """
 
 from __future__ import annotations
@@ -15,6 +16,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from rr_opt.problem import Interval
+
 Array = NDArray[np.float64]
 
 _LARGEST, _SMALLEST = 0.2, 2e-3
@@ -25,8 +28,8 @@ _SAMPLES = 256
 class Terrain(Protocol):
     """What is climbed."""
 
-    def __call__(self, points: Array, sign: Array, /) -> tuple[Array, Array]:
-        """points (K, 4), directions (K,) -> speed that way (K,), torque over its limit (K,)."""
+    def __call__(self, points: Array, sign: Array, /) -> Array:
+        """points (K, 4), directions (K,) -> speed that way and R rows, (1 + R, K)."""
         ...
 
 
@@ -40,9 +43,24 @@ class Effort:
     last: float
 
 
-def merit(speed: Array, torque: Array, penalty: float) -> Array:
-    """Speed less the penalty for torque beyond its limit; the torque is relative to the limit."""
-    return speed - penalty * np.maximum(torque - 1.0, 0.0)
+@dataclass(frozen=True)
+class Merit:
+    """What is climbed: the speed less a penalty for each row outside its interval.
+
+    rows       the interval of each row
+    penalties  for an excess of 1 of each row, m/s
+    """
+
+    rows: tuple[Interval, ...]
+    penalties: tuple[float, ...]
+
+    def __call__(self, values: Array) -> Array:
+        """values: speed and rows, (1 + R, ...)."""
+        merit = values[0]
+        for row, asked, penalty in zip(values[1:], self.rows, self.penalties, strict=True):
+            excess = np.maximum(row - asked.high, asked.low - row)
+            merit = merit - penalty * np.maximum(excess, 0.0)
+        return merit
 
 
 def climb(
@@ -50,7 +68,7 @@ def climb(
     sign: Array,
     free: list[int],
     terrain: Terrain,
-    penalty: float,
+    merit: Merit,
     effort: Effort,
 ) -> tuple[Array, Array, Array]:
     """Climb from x (K, 4) along the free coordinates; the tops, their directions and their merit,
@@ -58,7 +76,7 @@ def climb(
 
     A climber that comes next to a better one gives up: both are on their way to the same top.
     """
-    best = merit(*terrain(x, sign), penalty)
+    best = merit(terrain(x, sign))
     d = len(free)
     if not d:
         return x, sign, best
@@ -69,11 +87,11 @@ def climb(
         centre = np.clip(x[:, free], size[:, None], 1 - size[:, None])
         trial = np.repeat(x[:, None, :], len(stencil) + 1, axis=1)
         trial[:, :-1, free] = centre[:, None, :] + size[:, None, None] * stencil
-        speed, torque = _each(terrain, trial[:, :-1], sign)
-        models = (speed @ design.T, torque @ design.T)
-        trial[:, -1, free] = centre + size[:, None] * _best_step(models, centre, size, penalty)
+        around = _each(terrain, trial[:, :-1], sign)
+        models = around @ design.T
+        trial[:, -1, free] = centre + size[:, None] * _best_step(models, centre, size, merit)
         last = _each(terrain, trial[:, -1:], sign)
-        values = merit(np.hstack([speed, last[0]]), np.hstack([torque, last[1]]), penalty)
+        values = merit(np.concatenate([around, last], axis=-1))
         rows, top = np.arange(len(x)), values.argmax(axis=1)
         gain = np.maximum(values[rows, top] - best, 0.0)
         aim = np.where((gain > 0)[:, None], trial[rows, top], x)
@@ -90,10 +108,10 @@ def climb(
     return x[order], sign[order], best[order]
 
 
-def _each(terrain: Terrain, trial: Array, sign: Array) -> tuple[Array, Array]:
-    """Speed and torque of (K, M, 4) points, (K, M) each."""
-    speed, torque = terrain(trial.reshape(-1, 4), np.repeat(sign, trial.shape[1]))
-    return speed.reshape(trial.shape[:2]), torque.reshape(trial.shape[:2])
+def _each(terrain: Terrain, trial: Array, sign: Array) -> Array:
+    """Speed and rows of (K, M, 4) points, (1 + R, K, M)."""
+    values = terrain(trial.reshape(-1, 4), np.repeat(sign, trial.shape[1]))
+    return values.reshape(-1, *trial.shape[:2])
 
 
 def _monomials(s: Array) -> Array:
@@ -117,7 +135,7 @@ def _stencil(d: int) -> tuple[Array, Array]:
     return points, design
 
 
-def _best_step(models: tuple[Array, Array], centre: Array, size: Array, penalty: float) -> Array:
+def _best_step(models: Array, centre: Array, size: Array, merit: Merit) -> Array:
     """The best step (K, d), in stencils, of a cloud within two stencils and the unit box, then
     of smaller clouds around that. A cloud serves kinks and slopes alike."""
     low = np.maximum(-2.0, -centre / size[:, None])
@@ -127,8 +145,9 @@ def _best_step(models: tuple[Array, Array], centre: Array, size: Array, penalty:
     for _ in range(4):
         steps = np.clip(middle[:, None] + reach * cloud, low[:, None], high[:, None])
         basis = _monomials(steps)
-        speed, torque = (np.einsum("kmp,kp->km", basis, model) for model in models)
-        top = merit(speed, torque, penalty).argmax(axis=1)
+        top = merit(np.array([np.einsum("kmp,kp->km", basis, one) for one in models])).argmax(
+            axis=1
+        )
         middle, reach = steps[np.arange(len(steps)), top], reach / 3
     return middle
 

@@ -17,6 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from rr_opt.design.turn_rows import TurnRows, turn_rows
 from rr_opt.problem import Interval, Problem, RatioChoice
 from rr_opt.robot.ballast import load_count
 from rr_opt.robot.parameters import Robot
@@ -35,6 +36,7 @@ class Decisions:
     amplitude        the problem's bounds, rad
     ballast          I2 (kg m2) or number of loads
     reach            largest |phi| that angle and singularity allow, rad
+    turn             what the problem asks of the turn; it bounds no decision by itself
     """
 
     period: Interval
@@ -43,6 +45,7 @@ class Decisions:
     ballast: Interval
     reach: float
     rate: float
+    turn: TurnRows | None = None
 
     @property
     def amplitude_pinned(self) -> bool:
@@ -68,8 +71,10 @@ class Decisions:
 
     @property
     def mirrored(self) -> bool:
-        """Every gait of the box has its mirror image in the box."""
-        return not self.offset.fixed and self.offset.low == -self.offset.high
+        """Every gait of the box has its mirror image in the box, and may do as well as it: one
+        of two mirror images turns the wrong way."""
+        symmetric = not self.offset.fixed and self.offset.low == -self.offset.high
+        return symmetric and self.turn is None
 
     def physical(self, unit: Array) -> Array:
         """Unit-box points (K, 4) -> amplitude, period, offset, ballast share, (4, K)."""
@@ -98,6 +103,7 @@ def decisions(problem: Problem) -> Decisions:
         ballast=ballast_interval(problem.robot, problem.inertia_ratio),
         reach=reach,
         rate=limits.rate,
+        turn=turn_rows(problem.turn, problem.robot) if problem.turn else None,
     )
 
 

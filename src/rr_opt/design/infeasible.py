@@ -1,7 +1,8 @@
 """Why no gait keeps all limits, and how far each must give, in sentences.
 
 Angle, rate and singularity bound the amplitude alone, so their clashes with the gait's bounds
-are known exactly. For the torque the smallest peak that any allowed gait has is searched.
+are known exactly. For the torque the smallest peak that any allowed gait has is searched, and for
+a turn the nearest that any allowed gait makes.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from collections.abc import Callable
 from rr_opt.design.decisions import Decisions, reach_before_singularity
 from rr_opt.design.landscape import Landscape
 from rr_opt.design.seeds import least_torque
+from rr_opt.design.turn_clash import turn_clashes
 from rr_opt.problem import Problem
 
 _ROUNDING = 1 + 1e-9
@@ -23,13 +25,16 @@ def posture_clashes(problem: Problem, box: Decisions) -> str:
 
 
 def torque_clash(problem: Problem, box: Decisions, landscapes: list[Landscape]) -> str:
-    """Why no gait that keeps the other limits keeps the torque's; empty if some do."""
-    return _told(_torque(problem, box, landscapes))
+    """Why no gait that keeps the other limits keeps the torque's, or none that keeps them all
+    turns as asked; empty if some do."""
+    heavy = _torque(problem, box, landscapes)
+    return _told(heavy) or " ".join(turn_clashes(problem, box, landscapes))
 
 
 def direction_clash(problem: Problem, fastest: float) -> str:
-    """Why no gait goes the way it should; `fastest` is the best speed that way in a scan, m/s."""
-    if problem.direction == "either" or fastest > 0:
+    """Why no gait goes the way it should; `fastest` is the best speed that way in a scan, m/s,
+    of gaits that turn as asked if a turn is asked for: then it says nothing about the others."""
+    if problem.direction == "either" or fastest > 0 or problem.turn:
         return ""
     other = "backward" if problem.direction == "forward" else "forward"
     return _told(

@@ -25,7 +25,7 @@ from rr_opt.robot.parameters import Robot
 Array = NDArray[np.float64]
 
 _STEPS = 512
-_DEAD = 1e-6
+_DEAD = 1e-4
 _MOST = 2000
 """Periods summed at most: the geometric series takes over wherever the sum ends."""
 

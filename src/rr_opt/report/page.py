@@ -41,14 +41,15 @@ _CAPTIONS = {
 }
 
 
-def page(answer: Answer, figures: Mapping[str, str]) -> str:
-    """The whole page; figures are SVG texts by name."""
+def page(answer: Answer, figures: Mapping[str, str], first: str = "") -> str:
+    """The whole page; figures are SVG texts by name, `first` a card that leads the others."""
     optimum = answer.optimum
     choice = optimum.problem.inertia_ratio
     chosen = "platform2.I" if choice and choice.by == "inertia" and optimum.best else ""
     body = [
         _header(answer),
         _tiles(answer),
+        first,
         card("Checks", _checks(answer)),
         _gallery(figures),
         card("Limits", limits_table(answer)),

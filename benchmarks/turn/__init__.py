@@ -1,0 +1,1 @@
+"""The fastest turns, against a search that shares no code with the package."""

@@ -1,0 +1,59 @@
+"""`rr-opt circle [FILE]`: the circle that a gait drives, and how a start from rest comes to it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from rr_opt.cli.steps import Steps
+
+
+def circle(
+    source: Annotated[
+        Path | None,
+        typer.Argument(
+            metavar="[FILE]",
+            help="Robot file, problem file or result.json; the paper's prototype if left out.",
+        ),
+    ] = None,
+    *,
+    amplitude: Annotated[
+        str | None, typer.Option(help="Amplitude, rad, or with a unit: '30 deg'.")
+    ] = None,
+    period: Annotated[str | None, typer.Option(help="Period, s, or with a unit.")] = None,
+    offset: Annotated[str | None, typer.Option(help="Offset, rad, or with a unit.")] = None,
+    json: Annotated[
+        bool, typer.Option("--json", help="Print a machine-readable record alone on stdout.")
+    ] = False,
+) -> None:
+    """Tell the circle that a gait drives: radius, centre, speed, time for a full turn.
+
+    With it how a start from rest comes to that circle. Left is positive, seen from above.
+    """
+    with Steps() as steps:
+        from rr_opt.cli.motion_input import (  # noqa: PLC0415
+            read_options,
+            robot_and_gait,
+            with_options,
+        )
+        from rr_opt.motion.circle import circle_of, require_regular  # noqa: PLC0415
+        from rr_opt.motion.steady_cycle import steady_cycle  # noqa: PLC0415
+        from rr_opt.motion.transient import transient  # noqa: PLC0415
+        from rr_opt.physics.dynamics import require_friction  # noqa: PLC0415
+        from rr_opt.report.archive import strict_json  # noqa: PLC0415
+        from rr_opt.report.circle_summary import circle_record, circle_summary  # noqa: PLC0415
+
+        options = read_options(amplitude=amplitude, period=period, offset=offset)
+        robot, gait = robot_and_gait(source)
+        gait = with_options(gait, options)
+        require_friction(robot)
+        require_regular(robot, gait)
+        steps("steady cycle")
+        steady = steady_cycle(robot, gait)
+        round_, start = circle_of(steady.cycle), transient(robot, steady)
+    if json:
+        typer.echo(strict_json(circle_record(gait, round_, start)), nl=False)
+    else:
+        typer.echo(circle_summary(gait, round_, start), nl=False)

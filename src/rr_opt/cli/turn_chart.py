@@ -1,0 +1,79 @@
+"""`rr-opt turn-chart [PROBLEM]`: the circles of a robot, and the tightest it can make."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from rr_opt.cli.place import place
+from rr_opt.cli.problem_input import name_of, read
+from rr_opt.cli.steps import Steps
+from rr_opt.outcome import Status
+
+_DRAWN = (6, 4, 121)
+"""Amplitudes, periods and offsets of the chart."""
+_HELD = (24, 10, 101)
+"""The same of the map against which the paper's claim is held."""
+
+
+def turn_chart(
+    problem: Annotated[
+        Path | None,
+        typer.Argument(
+            help="Problem file, its folder, or a robot file; the paper's prototype if left out."
+        ),
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            parser=place,
+            metavar="DIR",
+            help="Folder for the results.",
+            show_default="out/NAME-turn-chart",
+        ),
+    ] = None,
+    json: Annotated[
+        bool, typer.Option("--json", help="Print turn-chart.json alone on stdout.")
+    ] = False,
+) -> None:
+    """Chart the circles of a robot: radius over offset, amplitude and period.
+
+    Finds the tightest circle within the limits, and tells where the offset alone does not decide
+    on the circle. The inertia ratio is that of the robot as it is.
+    """
+    with Steps() as steps:
+        steps("reading")
+        posed, sha256 = read(problem)
+        from rr_opt.physics.dynamics import require_friction  # noqa: PLC0415
+        from rr_opt.report.archive import folder_for_results, strict_json  # noqa: PLC0415
+        from rr_opt.report.turn_chart import (  # noqa: PLC0415
+            TurnChart,
+            chart_record,
+            chart_summary,
+            write_chart,
+        )
+        from rr_opt.verify.offset_claim import radius_claim, sign_claim  # noqa: PLC0415
+        from rr_opt.verify.tightest import tightest  # noqa: PLC0415
+        from rr_opt.verify.turn_map import turn_map  # noqa: PLC0415
+
+        require_friction(posed.robot)
+        name = name_of(problem)
+        folder = folder_for_results(out or Path("out") / f"{name}-turn-chart")
+        steps("chart")
+        seen = turn_map(posed, _DRAWN)
+        steps("the paper's claim")
+        fine = turn_map(posed, _HELD)
+        steps("tightest circle")
+        tight = tightest(posed)
+        chart = TurnChart(name, sha256, seen, tight, sign_claim(fine), radius_claim(fine))
+        steps("files")
+        written = write_chart(chart, folder)
+    if json:
+        typer.echo(strict_json(chart_record(chart)), nl=False)
+    else:
+        typer.echo(chart_summary(chart, written), nl=False)
+    if chart.status is Status.INFEASIBLE:
+        typer.echo(chart.message, err=True)
+        raise typer.Exit(chart.status.exit_code)

@@ -1,0 +1,64 @@
+"""Radius over offset: a panel a period, a line an amplitude."""
+
+from __future__ import annotations
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from rr_opt.report.figures.style import LIMIT, figure, note, styled, svg
+from rr_opt.report.quantities import with_unit
+from rr_opt.verify.tightest import Tightest
+from rr_opt.verify.turn_map import TurnMap
+
+_WIDEST = 20.0
+"""m; wider circles are left out of the picture."""
+
+
+def draw(seen: TurnMap, tight: Tightest | None) -> str:
+    """The chart as SVG text."""
+    with styled():
+        return svg(turn_chart(seen, tight))
+
+
+def turn_chart(seen: TurnMap, tight: Tightest | None) -> Figure:
+    """All panels; offsets below 0 are the mirror image and not drawn."""
+    count = len(seen.period)
+    columns = min(count, 2)
+    drawn = figure(4.6 * columns, 3.6 * -(-count // columns))
+    axes = drawn.subplots(-(-count // columns), columns, sharex=True, sharey=True, squeeze=False)
+    for j, ax in enumerate(axes.flat):
+        if j >= count:
+            ax.set_visible(False)
+            continue
+        _panel(ax, seen, j)
+        if tight:
+            ax.axhline(tight.radius, color=LIMIT, lw=1.0)
+    note(axes[0, 0], "full: to the left, broken: to the right")
+    if tight:
+        note(axes[0, 0], f"tightest: {with_unit(tight.radius, 'm')}", y=0.1, color=LIMIT)
+    for ax in axes[-1]:
+        ax.set_xlabel("offset φ0, rad")
+    for ax in axes[:, 0]:
+        ax.set_ylabel("radius, m")
+    handles, labels = axes[0, 0].get_legend_handles_labels()
+    drawn.legend(handles, labels, loc="outside lower center", ncols=4, title="amplitude α")
+    return drawn
+
+
+def _panel(ax: Axes, seen: TurnMap, j: int) -> None:
+    """Full lines turn left, broken ones right; blank where a limit is broken."""
+    colours = mpl.colormaps["viridis"](np.linspace(0.0, 0.85, len(seen.amplitude)))
+    curvature = seen.curvature[:, j]
+    kept = seen.keeps[:, j] & (np.abs(curvature) > 1 / _WIDEST)
+    for i, alpha in enumerate(seen.amplitude):
+        label = with_unit(float(alpha), "rad", 3)
+        ax.plot([], [], color=colours[i], label=label)
+        for side, line in ((1, "-"), (-1, "--")):
+            there = kept[i] & (side * curvature[i] > 0)
+            radius = np.full(len(seen.offset), np.nan)
+            radius[there] = 1 / np.abs(curvature[i][there])
+            ax.plot(seen.offset, radius, line, color=colours[i], lw=1.5)
+    ax.set_yscale("log")
+    ax.set_title(f"T = {with_unit(float(seen.period[j]), 's', 3)}")

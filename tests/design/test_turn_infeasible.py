@@ -1,0 +1,50 @@
+"""A turn out of reach names the nearest in reach, which can be asked for, and what holds it."""
+
+import math
+import re
+from dataclasses import replace
+
+import pytest
+
+from benchmarks.turn.problems import REFERENCE, SHORT, round_, turning
+from rr_opt.design.maximize_speed import maximize_speed
+from rr_opt.design.turn import fastest_turn
+from rr_opt.design.turn_target import Target
+from rr_opt.outcome import Status
+from rr_opt.problem import Interval
+
+
+def refused(problem):
+    optimum = maximize_speed(problem)
+    assert optimum.status is Status.INFEASIBLE
+    assert optimum.best is None
+    return optimum.message
+
+
+def test_too_tight():
+    message = refused(turning(SHORT, round_(0.2)))
+    assert "radius of 0.2 m to the left" in message
+    assert "limit `singularity`" in message
+    nearest = float(re.search(r"limit is a radius of ([\d.]+) m to the left", message)[1])
+    assert maximize_speed(turning(SHORT, round_(nearest))).status is Status.OPTIMAL
+
+
+def test_offsets_of_one_sign_turn_to_one_side():
+    gait = replace(REFERENCE.gait, offset=Interval(0.1, 1.0))
+    message = refused(turning(REFERENCE, round_(1.0), gait=gait, inertia_ratio=None))
+    assert "to the right" in message
+    assert "the offset's lower bound" in message
+
+
+def test_a_direction_that_stands_in_the_way():
+    message = refused(turning(SHORT, round_(0.5), direction="backward"))
+    assert "drives forward" in message
+    assert "A gait that drives forward makes it." in message
+
+
+def test_too_soon_tells_the_time_that_it_takes():
+    message = fastest_turn(SHORT, Target(heading=math.pi / 2, within=0.05)).optimum.message
+    needed = float(re.search(r"--within '([\d.]+) s'", message)[1])
+    turned = fastest_turn(SHORT, Target(heading=math.pi / 2, within=needed))
+    assert turned.optimum.status is Status.OPTIMAL
+    assert turned.arc.time == pytest.approx(needed, rel=0.01)

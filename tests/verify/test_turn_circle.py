@@ -1,0 +1,27 @@
+"""The circle's check passes the true curvature and no other, straight or not, any friction."""
+
+import pytest
+
+from rr_opt.motion.circle import circle_of
+from rr_opt.motion.steady_cycle import steady_cycle
+from rr_opt.robot.gait import SineGait
+from rr_opt.verify.circle import check_circle
+from tests.robots import BENCHMARK, DRY
+
+
+@pytest.mark.parametrize("robot", [BENCHMARK, DRY], ids=["viscous", "dry"])
+@pytest.mark.parametrize("offset", [0.4, -0.05, 1e-9])
+def test_the_true_curvature_passes(robot, offset):
+    gait = SineGait(0.7, 1.4, offset)
+    curvature = circle_of(steady_cycle(robot, gait).cycle).curvature
+    check = check_circle(robot, gait, curvature)
+    assert check.passed
+    assert check.ends < 1e-5
+
+
+def test_another_does_not():
+    gait = SineGait(0.7, 1.4, 0.4)
+    curvature = circle_of(steady_cycle(BENCHMARK, gait).cycle).curvature
+    check = check_circle(BENCHMARK, gait, curvature * (1 + 2e-4))
+    assert not check.passed
+    assert check.mean == pytest.approx(2e-4, rel=1e-2)
