@@ -20,11 +20,11 @@ from typing import Any
 from rr_opt.batch.journal import Journal
 from rr_opt.batch.local import LocalPool
 from rr_opt.batch.run import run
-from rr_opt.design.study import solve_study
-from rr_opt.design.study_case import Task, solve_case
-from rr_opt.design.study_plan import plan
-from rr_opt.design.study_row import Row, row_record
-from rr_opt.files.study_file import Study, read_study
+from rr_opt.design.study.case import Task, solve_case
+from rr_opt.design.study.plan import plan
+from rr_opt.design.study.row import Row, row_record
+from rr_opt.design.study.solve_study import solve_study
+from rr_opt.files.study.file import Study, read_study
 from rr_opt.outcome import Status
 
 RESULT = Path(__file__).parents[2] / "results" / "bench" / "study.md"

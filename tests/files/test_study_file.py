@@ -9,7 +9,7 @@ import pytest
 
 from rr_opt.files import read_problem
 from rr_opt.files.issue import InvalidFileError
-from rr_opt.files.study_file import read_study
+from rr_opt.files.study.file import read_study
 
 
 @pytest.fixture

@@ -7,8 +7,8 @@ import subprocess
 import numpy as np
 import pytest
 
-from rr_opt.report.setpoints import set_points
-from rr_opt.report.setpoints_file import text_of
+from rr_opt.report.setpoints.file import text_of
+from rr_opt.report.setpoints.setpoints import set_points
 from rr_opt.robot.gait import SineGait
 from tests.motion.gaits import EVERY
 

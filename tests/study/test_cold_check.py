@@ -2,8 +2,8 @@
 
 import pytest
 
-from rr_opt.design.study_case import Task, solve_case
-from rr_opt.design.study_neighbours import Foothold
+from rr_opt.design.study.case import Task, solve_case
+from rr_opt.design.study.neighbours import Foothold
 from rr_opt.robot.gait import SineGait
 
 # Just past the jump: forward gaits are there still, and slower than the backward ones.

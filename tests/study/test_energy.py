@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rr_opt.design.study_energy import GRAVITY, energy
+from rr_opt.design.study.energy import GRAVITY, energy
 from rr_opt.motion.steady_cycle import reference_cycle, steady_cycle
 from rr_opt.physics.dynamics import dynamics_of
 from rr_opt.robot.free_gait import FreeGait

@@ -4,7 +4,7 @@ import itertools
 
 import pytest
 
-from rr_opt.design.study_plan import plan
+from rr_opt.design.study.plan import plan
 
 SHAPES = [(1,), (2,), (3,), (4,), (11,), (13, 9), (5, 1, 7), (2, 2)]
 

@@ -2,8 +2,8 @@
 
 import pytest
 
-from rr_opt.design.study_branches import branches
-from rr_opt.design.study_plan import plan
+from rr_opt.design.study.branches import branches
+from rr_opt.design.study.plan import plan
 
 JUMP = """
 vary:

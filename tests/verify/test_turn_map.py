@@ -12,10 +12,10 @@ from rr_opt.motion.circle import circle_of
 from rr_opt.motion.steady_cycle import steady_cycle
 from rr_opt.problem import GaitBounds, Interval
 from rr_opt.robot.gait import SineGait
-from rr_opt.verify.offset_claim import radius_claim, sign_claim
 from rr_opt.verify.speeds import speeds
-from rr_opt.verify.tightest import tightest
-from rr_opt.verify.turn_map import turn_map
+from rr_opt.verify.turn.map import turn_map
+from rr_opt.verify.turn.offset_claim import radius_claim, sign_claim
+from rr_opt.verify.turn.tightest import tightest
 
 
 def test_circles_are_those_of_the_simulation():

@@ -43,7 +43,7 @@ def circle(
         from rr_opt.motion.transient import transient  # noqa: PLC0415
         from rr_opt.physics.dynamics import require_friction  # noqa: PLC0415
         from rr_opt.report.archive import strict_json  # noqa: PLC0415
-        from rr_opt.report.circle_summary import circle_record, circle_summary  # noqa: PLC0415
+        from rr_opt.report.turn.circle_summary import circle_record, circle_summary  # noqa: PLC0415
 
         options = read_options(amplitude=amplitude, period=period, offset=offset)
         robot, gait = robot_and_gait(source)

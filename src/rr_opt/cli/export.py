@@ -74,9 +74,9 @@ def export(
             strict_json,
             write_text,
         )
-        from rr_opt.report.setpoints import cost, set_points  # noqa: PLC0415
-        from rr_opt.report.setpoints_file import ENDINGS, text_of  # noqa: PLC0415
-        from rr_opt.report.setpoints_summary import (  # noqa: PLC0415
+        from rr_opt.report.setpoints.file import ENDINGS, text_of  # noqa: PLC0415
+        from rr_opt.report.setpoints.setpoints import cost, set_points  # noqa: PLC0415
+        from rr_opt.report.setpoints.summary import (  # noqa: PLC0415
             beyond_rate,
             setpoints_record,
             setpoints_summary,

@@ -49,8 +49,8 @@ def shapes(
         name = name_of(problem)
         folder = folder_for_results(out or Path("out") / f"{name}-shapes")
         from rr_opt.design.maximize_speed import compare_shapes  # noqa: PLC0415
-        from rr_opt.report.shapes import Compared, family_name, record, summary  # noqa: PLC0415
-        from rr_opt.report.shapes_files import write_shapes  # noqa: PLC0415
+        from rr_opt.report.shapes.compared import Compared, family_name, record, summary  # noqa: PLC0415
+        from rr_opt.report.shapes.files import write_shapes  # noqa: PLC0415
 
         answers = []
         for optimum in compare_shapes(posed, steps):

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from rr_opt.batch.pool import Pool
-    from rr_opt.design.study_row import Row
-    from rr_opt.files.study_file import Study
+    from rr_opt.design.study.row import Row
+    from rr_opt.files.study.file import Study
 
 
 def study(
@@ -51,19 +51,19 @@ def study(
 
     A run that was stopped goes on where it was when the same command is given again.
     """
-    from rr_opt.files.study_file import read_study  # noqa: PLC0415
+    from rr_opt.files.study.file import read_study  # noqa: PLC0415
 
     asked, warnings = read_study(study)
     for warning in warnings:
         typer.echo(str(warning), err=True)
     from rr_opt.report.archive import folder_for_results, strict_json  # noqa: PLC0415
-    from rr_opt.report.study_files import check_wishes, write_study  # noqa: PLC0415
+    from rr_opt.report.study.files import check_wishes, write_study  # noqa: PLC0415
 
     check_wishes(netcdf=netcdf)
     folder = folder_for_results(out or Path("out") / asked.name)
     rows = _rows(asked, folder, partial(_pool, workers, scheduler), cold=cold, restart=restart)
-    from rr_opt.report.study_result import studied  # noqa: PLC0415
-    from rr_opt.report.study_summary import record, summary  # noqa: PLC0415
+    from rr_opt.report.study.result import studied  # noqa: PLC0415
+    from rr_opt.report.study.summary import record, summary  # noqa: PLC0415
 
     result = studied(asked, rows)
     written = write_study(result, folder, netcdf=netcdf, figures=figures)
@@ -83,10 +83,10 @@ def _rows(
     """Every case's row: those that the folder's journal has, and the others solved now."""
     from rr_opt.batch.journal import Journal  # noqa: PLC0415
     from rr_opt.batch.run import run  # noqa: PLC0415
-    from rr_opt.design.study import solve_study  # noqa: PLC0415
-    from rr_opt.design.study_case import solve_case  # noqa: PLC0415
-    from rr_opt.design.study_plan import plan  # noqa: PLC0415
-    from rr_opt.design.study_row import row_from, row_record  # noqa: PLC0415
+    from rr_opt.design.study.case import solve_case  # noqa: PLC0415
+    from rr_opt.design.study.plan import plan  # noqa: PLC0415
+    from rr_opt.design.study.row import row_from, row_record  # noqa: PLC0415
+    from rr_opt.design.study.solve_study import solve_study  # noqa: PLC0415
 
     total = len(asked.problems)
     identity = {"input_sha256": asked.sha256, "version": __version__, "cold": cold}

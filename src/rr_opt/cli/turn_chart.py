@@ -48,15 +48,15 @@ def turn_chart(
         posed, sha256 = read(problem)
         from rr_opt.physics.dynamics import require_friction  # noqa: PLC0415
         from rr_opt.report.archive import folder_for_results, strict_json  # noqa: PLC0415
-        from rr_opt.report.turn_chart import (  # noqa: PLC0415
+        from rr_opt.report.turn.chart import (  # noqa: PLC0415
             TurnChart,
             chart_record,
             chart_summary,
             write_chart,
         )
-        from rr_opt.verify.offset_claim import radius_claim, sign_claim  # noqa: PLC0415
-        from rr_opt.verify.tightest import tightest  # noqa: PLC0415
-        from rr_opt.verify.turn_map import turn_map  # noqa: PLC0415
+        from rr_opt.verify.turn.map import turn_map  # noqa: PLC0415
+        from rr_opt.verify.turn.offset_claim import radius_claim, sign_claim  # noqa: PLC0415
+        from rr_opt.verify.turn.tightest import tightest  # noqa: PLC0415
 
         require_friction(posed.robot)
         name = name_of(problem)

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rr_opt.design.turn_rows import TurnRows, turn_rows
+from rr_opt.design.turn.rows import TurnRows, turn_rows
 from rr_opt.problem import Interval, Problem, RatioChoice
 from rr_opt.robot.ballast import load_count
 from rr_opt.robot.parameters import Robot

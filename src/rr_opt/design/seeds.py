@@ -24,7 +24,7 @@ from rr_opt.design.scan import (
     search,
     share_of,
 )
-from rr_opt.design.turn_seeds import turn_seeds
+from rr_opt.design.turn.seeds import turn_seeds
 from rr_opt.problem import Interval
 
 Array = NDArray[np.float64]

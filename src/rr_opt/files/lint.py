@@ -12,7 +12,7 @@ from rr_opt.files.problem_sources import problem_sources
 from rr_opt.files.robot_file import robot_from
 from rr_opt.files.robot_sense import singular_posture
 from rr_opt.files.source import problem_path, read_document
-from rr_opt.files.study_file import study_from
+from rr_opt.files.study.file import study_from
 
 
 def lint_file(path: str | Path) -> list[Issue]:

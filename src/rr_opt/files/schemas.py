@@ -9,7 +9,7 @@ from pydantic import BaseModel
 from rr_opt.files.issue import unknown_word
 from rr_opt.files.problem_model import ProblemModel
 from rr_opt.files.robot_model import RobotModel
-from rr_opt.files.study_model import StudyModel
+from rr_opt.files.study.model import StudyModel
 from rr_opt.outcome import InputError
 
 FileKind = Literal["robot", "problem", "study"]

@@ -1,0 +1,1 @@
+"""Studies: one problem with many values of its keys."""

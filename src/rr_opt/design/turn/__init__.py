@@ -1,0 +1,1 @@
+"""Turns: gaits that go round a circle that is asked for."""

@@ -1,0 +1,130 @@
+"""A study file to its cases, each a problem of its own that was checked like any other."""
+
+from __future__ import annotations
+
+import hashlib
+import itertools
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from rr_opt.files.document import Document
+from rr_opt.files.issue import InvalidFileError, Issue, has_errors, shown
+from rr_opt.files.kind import kind_of
+from rr_opt.files.model_issues import validate
+from rr_opt.files.problem_file import problem_from
+from rr_opt.files.source import read_content, read_document
+from rr_opt.files.study.axes import Axis, axes_of
+from rr_opt.files.study.issues import CaseIssues
+from rr_opt.files.study.model import StudyModel
+from rr_opt.files.study.sources import Setting, base_sources, with_values
+from rr_opt.problem import Problem
+
+
+@dataclass(frozen=True)
+class Study:
+    """A study as asked: the product of its axes, a case a combination, the last axis fastest.
+
+    problems  one a case
+    sha256    over the study file and every file that it names, in hex
+    """
+
+    name: str
+    axes: tuple[Axis, ...]
+    problems: tuple[Problem, ...] = field(repr=False)
+    sha256: str
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """How many steps each axis has."""
+        return tuple(len(axis) for axis in self.axes)
+
+    def steps(self, case: int) -> tuple[int, ...]:
+        """Which step of each axis a case is."""
+        left = []
+        for length in reversed(self.shape):
+            case, step = divmod(case, length)
+            left.append(step)
+        return tuple(reversed(left))
+
+    def inputs(self, case: int) -> dict[str, Any]:
+        """The varied keys of a case: SI where they are numbers, as written elsewhere."""
+        found: dict[str, Any] = {}
+        for axis, step in zip(self.axes, self.steps(case), strict=True):
+            for line in axis.lines:
+                value = line.values[step]
+                found[line.key.name] = (
+                    line.numbers[step]
+                    if line.numbers is not None
+                    else value
+                    if isinstance(value, str)
+                    else shown(value)
+                )
+        return found
+
+
+def read_study(path: str | Path) -> tuple[Study, list[Issue]]:
+    """The study of a file, and warnings. Raises InvalidFileError with all that is wrong."""
+    file = Path(path)
+    document = read_document(file)
+    if kind_of(document) != "study":
+        message = (
+            "Read a file that varies nothing. Expected a study, with `problem` and `vary`. "
+            "A single problem is solved by `rr-opt maximize-speed`."
+        )
+        raise InvalidFileError([document.issue("error", (), message)])
+    study, issues = study_from(document, file)
+    if study is None:
+        raise InvalidFileError(issues)
+    return study, issues
+
+
+def study_from(document: Document, file: Path) -> tuple[Study | None, list[Issue]]:
+    """The study (None if an issue is an error), and all issues of it and of every case."""
+    _, issues = validate(StudyModel, document)
+    axes, found = axes_of(document)
+    issues += found
+    try:
+        base = base_sources(document, file)
+    except InvalidFileError as error:
+        return None, [*issues, *error.issues]
+    if has_errors(issues):
+        # What is wrong with the problem itself is told in one go with what is varied.
+        return None, _distinct([*issues, *problem_from(base)[1]])
+    problems: list[Problem] = []
+    paths = [file, *base.paths]
+    found_in = CaseIssues(document, axes)
+    for steps in itertools.product(*(range(len(axis)) for axis in axes)):
+        sources, misplaced = with_values(base, _settings(axes, steps), file)
+        paths += [path for path in sources.paths if path not in paths]
+        problem, of_case = problem_from(sources)
+        found_in.add(steps, [*misplaced, *of_case])
+        if problem is not None:
+            problems.append(problem)
+    issues += found_in.issues()
+    if has_errors(issues):
+        return None, issues
+    return Study(file.stem, tuple(axes), tuple(problems), _sha256(paths)), issues
+
+
+def _settings(axes: list[Axis], steps: Iterable[int]) -> list[Setting]:
+    return [
+        (line.key.path, line.values[step])
+        for axis, step in zip(axes, steps, strict=True)
+        for line in axis.lines
+    ]
+
+
+def _distinct(issues: list[Issue]) -> list[Issue]:
+    return list(dict.fromkeys(issues))
+
+
+def _sha256(paths: Iterable[Path]) -> str:
+    """Each file is preceded by its length in bytes, so that none can pass for two."""
+    digest = hashlib.sha256()
+    for path in paths:
+        content = read_content(path)
+        digest.update(f"{len(content)}\n".encode())
+        digest.update(content)
+    return digest.hexdigest()

@@ -1,0 +1,1 @@
+"""A gait as set points."""

@@ -1,0 +1,151 @@
+"""report.html of a study: one file that opens anywhere, the outcome first."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from html import escape
+
+import numpy as np
+
+from rr_opt import __version__
+from rr_opt.outcome import Status
+from rr_opt.report.html import Badge, Cell, card, figure, table
+from rr_opt.report.page_style import CSS
+from rr_opt.report.quantities import QUANTITIES, direction_text, number, with_unit
+from rr_opt.report.study.result import Studied, front
+
+_CAPTIONS = {
+    "speed": (
+        "Speed over what was varied",
+        "A line for each combination of the other inputs. Triangles point up for forward and down "
+        "for backward. Dotted: the optimum jumps to another branch.",
+    ),
+    "map": (
+        "Speed over two inputs",
+        "A cell a case; thick lines part branches, the star is the fastest. Hatched: no optimum. "
+        "If more than two keys were varied, a cell shows the fastest of its cases.",
+    ),
+    "held": (
+        "What holds the optimum where",
+        "The limits and bounds that the best gait stands on.",
+    ),
+    "pareto": (
+        "What speed costs",
+        "Each dot is a case. No case is both faster and cheaper than one on the front. Energy is "
+        "the servo's positive work per metre of path; what it brakes is not given back.",
+    ),
+}
+_MOST_ROWS = 300
+
+
+def page(result: Studied, figures: Mapping[str, str]) -> str:
+    """The whole page; figures are SVG texts by name."""
+    body = [
+        _header(result),
+        _tiles(result),
+        _gallery(figures),
+        card("Fast for what they cost", _front_table(result)),
+        card("Cases without an optimum", _failures(result)),
+        card("All cases" if len(result.rows) <= _MOST_ROWS else f"The first {_MOST_ROWS} cases",
+             _cases_table(result, range(min(len(result.rows), _MOST_ROWS)))),
+        f"<footer>rr-opt {escape(__version__)} · input SHA-256 "
+        f"<code>{escape(result.study.sha256)}</code></footer>",
+    ]  # fmt: skip
+    title = escape(f"{result.study.name}: {_verdict(result)}")
+    return (
+        '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">'
+        f"<title>{title}</title><style>{CSS}</style></head>\n<body><main>\n"
+        + "\n".join(part for part in body if part)
+        + "\n</main></body></html>\n"
+    )
+
+
+def _verdict(result: Studied) -> str:
+    speed = 1e3 * result.speed
+    if result.fastest is None:
+        return f"None of {len(result.rows)} cases has an optimum"
+    return f"{len(result.rows)} cases, from {np.nanmin(speed):.1f} to {np.nanmax(speed):.1f} mm/s"
+
+
+def _header(result: Studied) -> str:
+    good = result.fastest is not None
+    lead = " ".join([result.message, *result.complaints])
+    return (
+        f'<header class="{"" if good else "bad"}"><p class="kind">Roller Racer · '
+        f"{escape(result.study.name)} · study</p><h1>{escape(_verdict(result))}</h1>"
+        f'<p class="lead">{escape(lead)}</p></header>'
+    )
+
+
+def _tiles(result: Studied) -> str:
+    counts = result.counts
+    cold = sum(row.started != "warm" for row in result.rows)
+    least = result.values("cost_of_transport")
+    tiles = [
+        (str(counts[Status.OPTIMAL]), f"of {len(result.rows)} cases have an optimum"),
+        (str(counts[Status.INFEASIBLE]), "have no feasible gait"),
+        (str(counts[Status.NOT_CONVERGED]), "did not converge"),
+        (str(len({one for one in result.branches if one})), "branches of optima"),
+        (str(cold), "cases checked from cold starts"),
+        ("–" if np.isnan(least).all() else number(float(np.nanmin(least)), 3),
+         "least cost of transport"),
+    ]  # fmt: skip
+    inner = "".join(
+        f'<div class="tile"><b>{escape(value)}</b><span>{escape(words)}</span></div>'
+        for value, words in tiles
+    )
+    return f'<div class="tiles">{inner}</div>'
+
+
+def _gallery(figures: Mapping[str, str]) -> str:
+    """Two columns of figures, one below the other where the screen is narrow."""
+    columns = [
+        "".join(figure(figures[name], *_CAPTIONS[name]) for name in names if name in figures)
+        for names in (("speed", "held"), ("map", "pareto"))
+    ]
+    inner = "".join(f"<div>{column}</div>" for column in columns if column)
+    return f'<div class="grid">{inner}</div>' if inner else ""
+
+
+def _front_table(result: Studied) -> str:
+    """The cases that are on a front, the fastest first."""
+    fronts = {name: front(result.values(name), result.speed)
+              for name in ("peak_torque", "energy_per_metre")}  # fmt: skip
+    cases = sorted({case for found in fronts.values() for case in found},
+                   key=lambda case: -result.speed[case])  # fmt: skip
+    return _cases_table(result, cases[:20])
+
+
+def _failures(result: Studied) -> str:
+    rows: list[list[Cell]] = [
+        [result.inputs_text(case), Badge(row.status.value.replace("_", " "), "no"), row.message]
+        for case, row in enumerate(result.rows)
+        if row.optimum is None
+    ]
+    return table(["Case", "Status", "Why"], rows[:_MOST_ROWS]) if rows else ""
+
+
+def _cases_table(result: Studied, cases: Iterable[int]) -> str:
+    head = ["Case", "Speed", "Amplitude", "Period", "Torque", "Energy", "Held by", "Branch"]
+    rows: list[list[Cell]] = []
+    for case in cases:
+        row = result.rows[case]
+        one = row.optimum
+        if one is None:
+            told: list[Cell] = ["–"] * 5
+            rows.append([result.inputs_text(case), *told, row.status.value.replace("_", " "), "–"])
+            continue
+        rows.append(
+            [
+                result.inputs_text(case),
+                f"{1e3 * abs(one.speed):.1f} mm/s {direction_text(one.speed)}",
+                with_unit(one.amplitude, QUANTITIES["amplitude"].unit, 3),
+                with_unit(one.period, "s", 3),
+                with_unit(one.peak_torque, "N m", 3),
+                with_unit(one.energy_per_metre, "J/m", 3),
+                ", ".join(one.held) or "nothing",
+                str(result.branches[case]),
+            ]
+        )
+    return table(head, rows)

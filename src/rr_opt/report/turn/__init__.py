@@ -1,0 +1,1 @@
+"""What turns, circles and the chart of them tell."""

@@ -1,0 +1,184 @@
+"""The turning chart of a robot: what was found, as text, as a record and as a table."""
+
+from __future__ import annotations
+
+import io
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rr_opt import __version__
+from rr_opt.files.gait_record import gait_record
+from rr_opt.outcome import Status
+from rr_opt.report.archive import remove, write_json, write_text
+from rr_opt.report.quantities import direction_text, number, speed_text, with_unit
+from rr_opt.report.robot_record import finite
+from rr_opt.report.text import columns
+from rr_opt.robot.gait import SineGait
+from rr_opt.verify.turn.map import TurnMap
+from rr_opt.verify.turn.offset_claim import RadiusClaim, SignClaim
+from rr_opt.verify.turn.tightest import Tightest
+
+_NAMES = ("turn-chart.json", "turn-chart.csv", "turn-chart.svg")
+_COLUMNS = (
+    "amplitude", "period", "offset", "curvature", "speed", "heading_per_period", "peak_torque",
+    "keeps_limits",
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class TurnChart:
+    """name and sha256 of the input; the map drawn and written; the tightest circle; the paper's
+    claim, held against a finer map."""
+
+    name: str
+    sha256: str
+    seen: TurnMap
+    tight: Tightest | None
+    sign: SignClaim
+    radius: RadiusClaim
+
+    @property
+    def status(self) -> Status:
+        """INFEASIBLE if no gait keeps every limit."""
+        return Status.OPTIMAL if self.tight else Status.INFEASIBLE
+
+    @property
+    def message(self) -> str:
+        """The outcome in a sentence."""
+        if self.tight is None:
+            return "None of the gaits tried turns and keeps every limit. Widen the bounds."
+        return (
+            f"The tightest circle within the limits has a radius of "
+            f"{with_unit(self.tight.radius, 'm')}, and two searches agree on it to "
+            f"{max(self.tight.error, 1e-9):.1e} m."
+        )
+
+
+def chart_summary(chart: TurnChart, files: list[Path]) -> str:
+    """The chart as text for a terminal."""
+    rows: list[tuple[str, str]] = []
+    if chart.tight:
+        rows += [
+            ("tightest", f"{with_unit(chart.tight.radius, 'm')} by {_told(chart.tight.gait)}"),
+            ("  speed", f"{speed_text(chart.tight.speed)}, {direction_text(chart.tight.speed)}"),
+        ]
+    if chart.status is Status.OPTIMAL:
+        rows += [("claim", "the sign of the offset sets the side"), *_sign_rows(chart.sign)]
+        rows += [("claim", "a larger offset makes a smaller radius"), *_radius_rows(chart.radius)]
+    rows += [("files" if not i else "", str(file)) for i, file in enumerate(files)]
+    head = chart.message if chart.tight else chart.status.value
+    return "\n".join([f"{chart.name}: {head}", "", *columns(rows)]) + "\n"
+
+
+def _sign_rows(claim: SignClaim) -> list[tuple[str, str]]:
+    verdict = (
+        f"holds for all {claim.gaits} gaits"
+        if claim.holds
+        else f"fails: {claim.rarer} of {claim.gaits} gaits turn to the other side"
+    )
+    rows = [
+        ("  verdict", verdict),
+        ("  forward", f"{claim.forward_left} left, {claim.forward_right} right at offsets above 0"),
+        ("  backward", f"{claim.backward_left} left, {claim.backward_right} right"),
+    ]
+    if claim.exception:
+        rows.append(("  first at", _told(claim.exception)))
+    return rows
+
+
+def _radius_rows(claim: RadiusClaim) -> list[tuple[str, str]]:
+    if claim.first is None or claim.worst is None:
+        return [("  verdict", f"holds on all {claim.curves} curves of one amplitude and period")]
+    most = (
+        "runs off to a straight line where the turn changes sides"
+        if math.isinf(claim.factor)
+        else f"comes to {number(claim.factor)} times its least"
+    )
+    return [
+        ("  verdict", f"fails on {claim.growing} of {claim.curves} curves of one amplitude and "
+            "period"),
+        ("  first at", _told(claim.first)),
+        ("  worst", f"the radius {most}, by {_told(claim.worst)}"),
+    ]  # fmt: skip
+
+
+def _told(gait: SineGait) -> str:
+    return (
+        f"amplitude {with_unit(gait.amplitude, 'rad')}, period {with_unit(gait.period, 's')}, "
+        f"offset {with_unit(gait.offset, 'rad')}"
+    )
+
+
+def chart_record(chart: TurnChart) -> dict[str, Any]:
+    """The content of turn-chart.json, SI."""
+    tight, sign, radius = chart.tight, chart.sign, chart.radius
+    return {
+        "status": "charted" if tight else chart.status.value,
+        "message": chart.message,
+        "problem": chart.name,
+        "tightest": {
+            "radius": tight.radius,
+            "error": finite(tight.error),
+            "gait": gait_record(tight.gait),
+            "speed": tight.speed,
+        }
+        if tight
+        else None,
+        "sign_claim": {
+            "holds": sign.holds,
+            "holds_each_way": sign.holds_each_way,
+            "gaits": sign.gaits,
+            "forward_left": sign.forward_left,
+            "forward_right": sign.forward_right,
+            "backward_left": sign.backward_left,
+            "backward_right": sign.backward_right,
+            "exception": gait_record(sign.exception) if sign.exception else None,
+        },
+        "radius_claim": {
+            "holds": radius.holds,
+            "curves": radius.curves,
+            "growing": radius.growing,
+            "first": gait_record(radius.first) if radius.first else None,
+            "factor": finite(radius.factor),
+            "worst": gait_record(radius.worst) if radius.worst else None,
+        },
+        "version": __version__,
+        "input_sha256": chart.sha256,
+    }
+
+
+def write_chart(chart: TurnChart, folder: Path) -> list[Path]:
+    """Write everything; what an earlier run left is removed before."""
+    from rr_opt.report.figures.turn_chart import draw  # noqa: PLC0415
+
+    remove(folder, _NAMES)
+    return [
+        write_json(folder / _NAMES[0], chart_record(chart)),
+        write_text(folder / _NAMES[1], _csv(chart.seen)),
+        write_text(folder / _NAMES[2], draw(chart.seen, chart.tight)),
+    ]
+
+
+def _csv(seen: TurnMap) -> str:
+    """A row a gait, SI, offsets of both signs; empty where there is no steady cycle within the
+    limits on the angle."""
+    alpha, T, phi0 = np.meshgrid(seen.amplitude, seen.period, seen.offset, indexing="ij")
+    arrays = (alpha, T, phi0, seen.curvature, seen.speed, seen.heading, seen.peak_torque)
+    parts = [*arrays, seen.keeps.astype(float)]
+    # phi0 and -phi0 are mirror images: what turns has the other sign there.
+    mirror = [-part if i in (2, 3, 5) else part for i, part in enumerate(parts)]
+    both = [
+        np.concatenate([there[..., :0:-1], here], axis=-1).ravel()
+        for here, there in zip(parts, mirror, strict=True)
+    ]
+    text = io.StringIO()
+    form = ["%.9g"] * (len(_COLUMNS) - 1) + ["%d"]
+    header = ",".join(_COLUMNS)
+    np.savetxt(
+        text, np.column_stack(both) + 0.0, fmt=form, delimiter=",", header=header, comments=""
+    )
+    return text.getvalue().replace("nan", "")

@@ -1,0 +1,1 @@
+"""Turns by the sweep's model."""

@@ -1,0 +1,161 @@
+"""The sweep of a turn: gaits all over the bounds, each brought to turn as asked.
+
+As `check_optimum` for a turn, with which it shares no more than the array model: a grid of all
+decisions, the best of it followed by smaller grids, and more of them around the claimed gait.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rr_opt.problem import Problem
+from rr_opt.robot.gait import Gait, SineGait
+from rr_opt.verify.evaluate import Found
+from rr_opt.verify.given import speed_of
+from rr_opt.verify.grid import boxes
+from rr_opt.verify.speeds import least_S1, model_of, robot_with, speeds
+from rr_opt.verify.sweep import SweepCheck
+from rr_opt.verify.turn.points import Care, Points, Turning
+
+Array = NDArray[np.float64]
+
+_SLACK = 1e-6
+
+
+class _Effort(NamedTuple):
+    """values of period, offset, share of the amplitude and ratio; care for all of them, and for
+    the smaller grids; rounds of those."""
+
+    counts: tuple[int, int, int, int]
+    wide: Care
+    close: Care
+    rounds: int
+
+
+# Other friction than viscous takes some hundred times as long.
+_WIDE = Care(tolerance=1e-3, newton=6, step=1e-3, kept=2e-2)
+_CLOSE = Care(tolerance=1e-6, newton=3, step=1e-4, kept=1e-6)
+_EFFORT = {
+    True: _Effort((10, 9, 6, 4), _WIDE, _CLOSE, 10),
+    False: _Effort((4, 5, 3, 2), _WIDE, Care(1e-4, 2, 1e-3, 1e-3), 4),
+}
+
+
+def check_turn(problem: Problem, gait: Gait, ratio: float | None, speed: float) -> SweepCheck:
+    """Hold a claimed fastest turn against a sweep, as `check_optimum` does without a turn.
+
+    A gait of another shape is held against all sines.
+    """
+    effort = _EFFORT[model_of(problem.robot).viscous]
+    ratios = None if problem.inertia_ratio is None else boxes(problem)["ratio"]
+    ratio = None if ratios is None else ratio
+    wide, turning = (Turning(problem, ratios, care) for care in (effort.wide, effort.close))
+    fixed = [box.fixed for box in (problem.gait.period, problem.gait.offset)]
+    counts = list(effort.counts)
+    counts[0] = 1 if fixed[0] else counts[0]
+    counts[1] = 1 if fixed[1] else counts[1]
+    counts[2] = 1 if problem.gait.amplitude.fixed else counts[2]
+    counts[3] = 1 if ratios is None or ratios.fixed else counts[3]
+    axes = [np.linspace(0.0, 1.0, count) for count in counts]
+    everywhere = np.array(list(itertools.product(*axes))).T
+    far, points = _best(problem, wide, everywhere)
+    width = np.array([1 / (count - 1) if count > 1 else 0.0 for count in counts])
+    own = None
+    if isinstance(gait, SineGait):
+        sine = (gait.amplitude, gait.period, gait.offset)
+        claimed = float(speeds(problem, *sine, ratio, effort.close.tolerance).speed)
+        own = turning.place(np.array([*sine, ratio or 0.0]))
+    else:
+        claimed = speed_of(robot_with(problem, ratio), gait).speed
+    best = None
+    for start, first, rounds in ((far, width / 2, effort.rounds), (own, width / 50, 4)):
+        if start is None:
+            continue
+        found, more = _closer(problem, turning, start, first, rounds)
+        points += more
+        best = found if _speed(problem, turning, found) > _speed(problem, turning, best) else best
+    top = _found(turning, best, ratios is not None)
+    reached = math.nan if top is None else top.speed
+    return SweepCheck(
+        points=points,
+        best_speed=reached,
+        best_gait=top.gait if top else None,
+        best_ratio=top.ratio if top else None,
+        gap=(abs(speed) - abs(reached)) / abs(speed) if top else math.inf,
+        speed=claimed,
+        error=abs(claimed - speed) / abs(speed),
+    )
+
+
+def _closer(
+    problem: Problem, turning: Turning, start: Array, width: Array, rounds: int
+) -> tuple[Array | None, int]:
+    """The best place that smaller and smaller grids around the best so far lead to."""
+    best, points = start, 0
+    steps = np.array(list(itertools.product((-1.0, 0.0, 1.0), repeat=4))).T
+    steps = np.unique(steps * (width > 0)[:, None], axis=1)
+    for _ in range(rounds):
+        around = np.clip(best + steps * width[:, None], 0.0, 1.0)
+        found, more = _best(problem, turning, around)
+        points += more
+        gained = found is not None and _speed(problem, turning, found) > _speed(
+            problem, turning, best
+        )
+        if found is not None and gained:
+            best = found
+        else:
+            width = width / 2
+    return best, points
+
+
+def _best(problem: Problem, turning: Turning, unit: Array) -> tuple[Array | None, int]:
+    """The fastest place (4, 1) next to these that turns as asked within the limits, and how many
+    were looked at."""
+    sets = turning.active_sets
+    tried = np.concatenate([turning.held(unit, active) for active in sets], axis=1)
+    points = turning.at(tried)
+    merit = _merit(problem, points)
+    top = int(merit.argmax())
+    place = None if merit[top] == -np.inf else points.unit[:, [top]]
+    return place, tried.shape[1]
+
+
+def _speed(problem: Problem, turning: Turning, place: Array | None) -> float:
+    return -math.inf if place is None else float(_merit(problem, turning.at(place))[0])
+
+
+def _merit(problem: Problem, points: Points) -> Array:
+    """|speed| where everything is kept, else -inf."""
+    limits, robot = problem.limits, problem.robot
+    amplitude, period, offset, _ = points.gaits
+    speed, torque = points.seen.speed, points.seen.peak_torque
+    ahead = {"forward": speed > 0, "backward": speed < 0, "either": np.isfinite(speed)}
+    far = np.abs(amplitude) + np.abs(offset)
+    kept = (
+        points.turns
+        & ahead[problem.direction]
+        & (torque <= limits.torque * (1 + _SLACK))
+        & (amplitude * 2 * math.pi <= limits.rate * period * (1 + _SLACK))
+        & (far <= limits.angle * (1 + _SLACK))
+        & (least_S1(robot, amplitude, offset) >= limits.singularity * (1 - _SLACK))
+    )
+    return np.where(kept, np.abs(speed), -np.inf)
+
+
+def _found(turning: Turning, place: Array | None, has_ratio: bool) -> Found | None:
+    if place is None:
+        return None
+    points = turning.at(place)
+    amplitude, period, offset, ratio = (float(value) for value in points.gaits[:, 0])
+    seen = points.seen
+    return Found(
+        SineGait(amplitude, period, offset),
+        ratio if has_ratio else None,
+        float(seen.speed[0]),
+        float(seen.peak_torque[0]),
+    )
