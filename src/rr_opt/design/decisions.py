@@ -24,6 +24,11 @@ from rr_opt.robot.parameters import Robot
 
 Array = NDArray[np.float64]
 
+SQUARE = math.pi / 4
+"""Peak of a square wave over that of its first harmonic: no shape has a first harmonic that is
+larger against its largest value. So the shapes that need the least angle and the least rate for
+a first harmonic need this share of what the sine needs."""
+
 NO_ROOM = 1e-7
 """A range this narrow, relative, is a point."""
 
@@ -94,8 +99,9 @@ def decisions(problem: Problem) -> Decisions:
     gait, limits = problem.gait, problem.limits
     reach = min(limits.angle, reach_before_singularity(problem.robot, limits.singularity))
     amplitude, period, offset = gait.amplitude, gait.period, gait.offset
-    least_period = 2 * math.pi * amplitude.low / limits.rate
-    room = reach - amplitude.low
+    least = amplitude.low * (1.0 if gait.shape == "sine" else SQUARE)
+    least_period = 2 * math.pi * least / limits.rate
+    room = reach - least
     return Decisions(
         period=_tightened(Interval(max(period.low, least_period), period.high)),
         offset=_tightened(Interval(max(offset.low, -room), min(offset.high, room))),

@@ -27,6 +27,10 @@ SAME_SPEED = 1e-5
 """Optima whose speeds differ by less, relative, are a tie."""
 
 
+COMPARED = (3, 5)
+"""Numbers of harmonics that are compared with the sine and the free gait."""
+
+
 @dataclass(frozen=True)
 class Optimum:
     """The answer to a problem.
@@ -86,10 +90,11 @@ def maximize_speed(problem: Problem, progress: Progress = lambda _: None) -> Opt
 
 
 def compare_shapes(problem: Problem, progress: Progress = lambda _: None) -> list[Optimum]:
-    """The optimum among sines, then among 3 and 5 harmonics, then among free gaits."""
+    """The optimum among sines, then among COMPARED harmonics, then among free gaits."""
     require_friction(problem.robot)
     free = replace(problem, gait=replace(problem.gait, shape="free"))
-    return [_answer(posed, finds, progress) for posed, finds in find_families(free, progress)]
+    families = find_families(free, progress, COMPARED)
+    return [_answer(posed, finds, progress) for posed, finds in families]
 
 
 def _answer(problem: Problem, finds: Finds, progress: Progress) -> Optimum:

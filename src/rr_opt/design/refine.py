@@ -27,8 +27,8 @@ the torque's limit."""
 _PER_HARMONIC = 12
 """Intervals of a period of the fastest harmonic, at least."""
 _REFINEMENTS = 14
-_SUBSTEPS = 16
-"""Of a free gait's interval, at most."""
+_SUBSTEPS, _FINEST = 4, 192
+"""Of a free gait's interval, and intervals of a Fourier gait, at most."""
 
 
 def solve_from(setting: Setting, sign: int, gait: Gait, share: float) -> Candidate:
@@ -58,11 +58,13 @@ def refine(setting: Setting, candidate: Candidate) -> Candidate:
         gait, share = candidate.gait, candidate.share
         seen = dense(setting, gait, share)
         error = abs(abs(candidate.speed) - abs(seen.speed)) / abs(seen.speed)
-        if error <= _CLAIM and seen.used <= 1 + peak:
+        finer = _finer(setting, candidate.mesh, error)
+        if seen.used <= 1 + peak and (finer is None or error <= _CLAIM):
+            # With no finer mesh left, the gait is as good as found; its speed is what was seen.
+            speed = candidate.speed if error <= _CLAIM else seen.speed
+            candidate = replace(candidate, speed=speed)
             break
-        mesh = _finer(setting, candidate.mesh, error)
-        if mesh is None:
-            break  # the replay will say what the claim is worth
+        mesh = finer or candidate.mesh
         if number == _PATIENCE and setting.problem.gait.shape == "fourier":
             mesh = replace(regular(at_least(2 * mesh.intervals)), checks=mesh.checks)
         mesh = _held(setting, mesh, seen)
@@ -91,7 +93,7 @@ def _finer(setting: Setting, mesh: Mesh, error: float) -> Mesh | None:
         return mesh
     if setting.problem.gait.shape == "free":
         return replace(mesh, substeps=2 * mesh.substeps) if mesh.substeps < _SUBSTEPS else None
-    if mesh.intervals == LADDER[-1]:
+    if mesh.intervals >= (LADDER[-1] if setting.problem.gait.shape == "sine" else _FINEST):
         return None
     finer = regular(intervals_for(mesh.intervals, error, _CLAIM / 4))
     return replace(finer, checks=mesh.checks, margin=mesh.margin)

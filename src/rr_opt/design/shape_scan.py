@@ -14,7 +14,7 @@ from rr_opt.robot.fourier_gait import FourierGait
 
 Array = NDArray[np.float64]
 
-_SHAPES, _NODES = 1500, 48
+_SHAPES, _TRIANGLES, _NODES = 1500, 100, 48
 _SCANNED = 5
 """Harmonics of the shapes: what more of them add is left to the solver."""
 _APART = 0.25
@@ -59,21 +59,23 @@ class _Shapes:
         return self.offset + swing, omega * rate, omega**2 * bend
 
 
-def scan_shapes(
-    setting: Setting, harmonics: int, signs: tuple[int, ...], most: int
-) -> list[ShapeSeed]:
+def scan_shapes(setting: Setting, signs: tuple[int, ...], most: int) -> list[ShapeSeed]:
     """The best few shapes of many that keep the limits but perhaps for the torque's, best first;
-    none if the bounds leave no room for a sine."""
+    where none has the least amplitude, those that come nearest."""
+    gait = setting.problem.gait
+    harmonics = _SCANNED if gait.shape == "free" else min(gait.harmonics, _SCANNED)
     if decisions(setting.problem).empty or harmonics < 2:
         return []
-    shapes = _random(setting, min(harmonics, _SCANNED))
+    shapes = _random(setting, harmonics)
     with np.errstate(all="ignore"):
         cycles = setting.landscape.along(shapes.angle(), shapes.period, shapes.share)
         excess = np.maximum(cycles.peak_torque / setting.problem.limits.torque - 1, 0.0)
-    allowed = shapes.sines[0] >= setting.problem.gait.amplitude.low
-    allowed &= np.isfinite(cycles.speed + excess) & np.isin(np.sign(cycles.speed), signs)
+    known = np.isfinite(cycles.speed + excess) & np.isin(np.sign(cycles.speed), signs)
+    allowed = known & (shapes.sines[0] >= gait.amplitude.low)
     size = np.where(allowed, np.abs(cycles.speed), 0.0)
     merit = np.where(allowed, size - 3 * size.max() * excess, -np.inf)
+    if not allowed.any():
+        merit = np.where(known, shapes.sines[0], -np.inf)
     vectors = np.vstack([shapes.sines, shapes.cosines])
     return [
         ShapeSeed(int(np.sign(cycles.speed[k])), shapes.gait(k), float(shapes.share[k]))
@@ -92,12 +94,20 @@ def _random(setting: Setting, n: int) -> _Shapes:
     order = np.arange(1, n + 1)[:, None]
     sines, cosines = (rng.normal(0, 0.5, (n, _SHAPES)) / order for _ in range(2))
     sines[0], cosines[0] = 1.0, 0.0
+    # Triangles, the shape that needs the least rate for its first harmonic.
+    sines[:, :_TRIANGLES], cosines[:, :_TRIANGLES] = _triangle(n)[:, None], 0.0
     theta = np.linspace(0, 2 * math.pi, 4 * _NODES)
     swing, rate = (np.abs(_waves(sines, cosines, theta, k)).max(axis=0) for k in range(2))
     most_swing = np.minimum(problem.gait.amplitude.high, box.reach - np.abs(phi0))
     largest = np.minimum(most_swing / swing, problem.limits.rate * T / (2 * math.pi * rate))
-    scale = largest * rng.uniform(0.3, 1.0, _SHAPES)
+    scale = largest * np.append(np.ones(_TRIANGLES), rng.uniform(0.3, 1.0, _SHAPES - _TRIANGLES))
     return _Shapes(T, phi0, share, scale * sines, scale * cosines)
+
+
+def _triangle(n: int) -> Array:
+    """Its harmonics' sines, the first 1."""
+    order = np.arange(1, n + 1)
+    return np.sin(order * math.pi / 2) / order**2
 
 
 def _waves(sines: Array, cosines: Array, theta: Array, order: int) -> Array:

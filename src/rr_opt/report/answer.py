@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from rr_opt.design.maximize_speed import Optimum
@@ -62,14 +63,15 @@ class Answer:
         if self.sweep:
             found = _sweep_sentence(self.sweep, self.optimum.problem.gait.shape)
             checks.append(Check(self.sweep.gap >= -TOLERATED, found))
-            checks.append(
-                Check(
-                    self.sweep.error <= TOLERATED,
-                    f"The sweep's own model gives the optimum {1e3 * self.sweep.speed:+.3f} mm/s, "
-                    f"{self.sweep.error:.1e} from the optimiser's, relative "
-                    f"(at most {TOLERATED:.0e} allowed).",
+            if not math.isnan(self.sweep.error):
+                checks.append(
+                    Check(
+                        self.sweep.error <= TOLERATED,
+                        f"The sweep's own model gives the optimum {1e3 * self.sweep.speed:+.3f} "
+                        f"mm/s, {self.sweep.error:.1e} from the optimiser's, relative "
+                        f"(at most {TOLERATED:.0e} allowed).",
+                    )
                 )
-            )
         return checks
 
     @property
@@ -100,6 +102,8 @@ class Answer:
             gain = 100 * (abs(best.speed) / sine - 1)
             text += f" That is {gain:.1f} % faster than the fastest sine."
         text += self._servo_note(best.gait)
+        if self.sweep and math.isnan(self.sweep.error):
+            text += " The sweep's own model could not follow this shape and says nothing of it."
         if self.optimum.sideways:
             text += (
                 " It sits where forward turns into backward: its mean velocity is at right angles "

