@@ -8,31 +8,17 @@ from typing import Annotated
 import typer
 
 from rr_opt.cli.checked import checked
-from rr_opt.cli.place import place
+from rr_opt.cli.options import Figures, ProblemFile, json_option, out_option
 from rr_opt.cli.problem_input import name_of, read
 from rr_opt.cli.steps import Steps
 from rr_opt.outcome import Status
 
 
 def maximize_speed(
-    problem: Annotated[
-        Path | None,
-        typer.Argument(
-            help="Problem file, its folder, or a robot file; the paper's prototype if left out."
-        ),
-    ] = None,
-    out: Annotated[
-        Path | None,
-        typer.Option(
-            parser=place, metavar="DIR", help="Folder for the results.", show_default="out/NAME"
-        ),
-    ] = None,
-    json: Annotated[
-        bool, typer.Option("--json", help="Print result.json alone on stdout.")
-    ] = False,
-    figures: Annotated[
-        bool, typer.Option("--figures/--no-figures", help="Draw figures and write report.html.")
-    ] = True,
+    problem: ProblemFile = None,
+    out: Annotated[Path | None, out_option("out/NAME")] = None,
+    json: Annotated[bool, json_option("result.json")] = False,
+    figures: Figures = True,
 ) -> None:
     """Find the fastest gait of a problem.
 

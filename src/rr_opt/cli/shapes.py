@@ -8,34 +8,17 @@ from typing import Annotated
 import typer
 
 from rr_opt.cli.checked import checked
-from rr_opt.cli.place import place
+from rr_opt.cli.options import Figures, ProblemFile, json_option, out_option
 from rr_opt.cli.problem_input import name_of, read
 from rr_opt.cli.steps import Steps
 from rr_opt.outcome import Status
 
 
 def shapes(
-    problem: Annotated[
-        Path | None,
-        typer.Argument(
-            help="Problem file, its folder, or a robot file; the paper's prototype if left out."
-        ),
-    ] = None,
-    out: Annotated[
-        Path | None,
-        typer.Option(
-            parser=place,
-            metavar="DIR",
-            help="Folder for the results.",
-            show_default="out/NAME-shapes",
-        ),
-    ] = None,
-    json: Annotated[
-        bool, typer.Option("--json", help="Print shapes.json alone on stdout.")
-    ] = False,
-    figures: Annotated[
-        bool, typer.Option("--figures/--no-figures", help="Draw the figure and write report.html.")
-    ] = True,
+    problem: ProblemFile = None,
+    out: Annotated[Path | None, out_option("out/NAME-shapes")] = None,
+    json: Annotated[bool, json_option("shapes.json")] = False,
+    figures: Figures = True,
 ) -> None:
     """Compare the fastest sine with faster shapes: 3 and 5 harmonics, and a free gait.
 

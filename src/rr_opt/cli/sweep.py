@@ -7,19 +7,14 @@ from typing import Annotated
 
 import typer
 
-from rr_opt.cli.place import place
+from rr_opt.cli.options import ProblemFile, json_option, out_option
 from rr_opt.cli.problem_input import name_of, read
 from rr_opt.cli.steps import Steps
 from rr_opt.outcome import Status
 
 
 def sweep(
-    problem: Annotated[
-        Path | None,
-        typer.Argument(
-            help="Problem file, its folder, or a robot file; the paper's prototype if left out."
-        ),
-    ] = None,
+    problem: ProblemFile = None,
     points: Annotated[
         int,
         typer.Option(
@@ -28,16 +23,8 @@ def sweep(
             max=5_000_000,
         ),
     ] = 10_000,
-    out: Annotated[
-        Path | None,
-        typer.Option(
-            parser=place,
-            metavar="DIR",
-            help="Folder for the results.",
-            show_default="out/NAME-sweep",
-        ),
-    ] = None,
-    json: Annotated[bool, typer.Option("--json", help="Print sweep.json alone on stdout.")] = False,
+    out: Annotated[Path | None, out_option("out/NAME-sweep")] = None,
+    json: Annotated[bool, json_option("sweep.json")] = False,
 ) -> None:
     """Try gaits all over the bounds.
 

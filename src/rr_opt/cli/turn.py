@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from rr_opt.cli.place import place
+from rr_opt.cli.options import Figures, ProblemFile, json_option, out_option
 from rr_opt.cli.problem_input import name_of, read
 from rr_opt.cli.steps import Steps
 from rr_opt.outcome import InputError, Status
@@ -27,12 +27,7 @@ class Cycles(StrEnum):
 
 
 def turn(
-    problem: Annotated[
-        Path | None,
-        typer.Argument(
-            help="Problem file, its folder, or a robot file; the paper's prototype if left out."
-        ),
-    ] = None,
+    problem: ProblemFile = None,
     *,
     radius: Annotated[
         str | None,
@@ -53,21 +48,9 @@ def turn(
     cycles: Annotated[
         Cycles, typer.Option(help="whole: a whole number of periods makes the heading change.")
     ] = Cycles.ANY,
-    out: Annotated[
-        Path | None,
-        typer.Option(
-            parser=place,
-            metavar="DIR",
-            help="Folder for the results.",
-            show_default="out/NAME-turn",
-        ),
-    ] = None,
-    json: Annotated[
-        bool, typer.Option("--json", help="Print result.json alone on stdout.")
-    ] = False,
-    figures: Annotated[
-        bool, typer.Option("--figures/--no-figures", help="Draw figures and write report.html.")
-    ] = True,
+    out: Annotated[Path | None, out_option("out/NAME-turn")] = None,
+    json: Annotated[bool, json_option("result.json")] = False,
+    figures: Figures = True,
 ) -> None:
     """Find the gait that turns fastest.
 

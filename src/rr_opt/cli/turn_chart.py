@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from rr_opt.cli.place import place
+from rr_opt.cli.options import ProblemFile, json_option, out_option
 from rr_opt.cli.problem_input import name_of, read
 from rr_opt.cli.steps import Steps
 from rr_opt.outcome import Status
@@ -19,24 +19,9 @@ _HELD = (24, 10, 101)
 
 
 def turn_chart(
-    problem: Annotated[
-        Path | None,
-        typer.Argument(
-            help="Problem file, its folder, or a robot file; the paper's prototype if left out."
-        ),
-    ] = None,
-    out: Annotated[
-        Path | None,
-        typer.Option(
-            parser=place,
-            metavar="DIR",
-            help="Folder for the results.",
-            show_default="out/NAME-turn-chart",
-        ),
-    ] = None,
-    json: Annotated[
-        bool, typer.Option("--json", help="Print turn-chart.json alone on stdout.")
-    ] = False,
+    problem: ProblemFile = None,
+    out: Annotated[Path | None, out_option("out/NAME-turn-chart")] = None,
+    json: Annotated[bool, json_option("turn-chart.json")] = False,
 ) -> None:
     """Chart the circles of a robot: radius over offset, amplitude and period.
 

@@ -22,7 +22,7 @@ from rr_opt.outcome import NotConvergedError
 from rr_opt.problem import GaitBounds, Problem
 from rr_opt.robot.gait import Gait
 
-_ON_THE_WAY = {"fourier": (3, 8), "free": (3,)}
+_ON_THE_WAY = {"fourier": (3, 8), "free": (3, 5)}
 """Numbers of harmonics of the families on the way to a larger one."""
 _HANDED_ON = 3
 """How many optima of a family the next one starts from."""
