@@ -95,6 +95,8 @@ def test_steps_too_fast_for_the_servo_are_told(run, result):
         (("--rate", "3"), "--rate: 3 set points a second"),
         (("--out", ""), "--out: Read an empty name"),
         (("--out", "."), "is a folder"),
+        (("--amplitude", "0"), "Read a gait with the amplitude 0."),
+        (("--amplitude", "0 deg", "--keep-period", "--format", "servo"), "amplitude 0."),
     ],
 )
 def test_wrong_input_writes_nothing(run, tmp_path, arguments, word):
@@ -103,3 +105,24 @@ def test_wrong_input_writes_nothing(run, tmp_path, arguments, word):
     assert word in done.stderr
     assert not done.stdout
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("gait", EVERY.values(), ids=EVERY)
+def test_a_gait_that_does_not_move_is_refused(run, result, tmp_path, gait):
+    done = run("export", result(gait), "--amplitude", "0")
+    assert done.exit_code == 2
+    assert done.stderr.startswith("Read a gait with the amplitude 0. Expected one that moves")
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_folder_without_a_problem_is_told_what_is_expected(run, result, tmp_path):
+    (tmp_path / "empty").mkdir()
+    expected = (
+        "This is a folder without problem.yaml. Expected a result.json, a robot file, a problem "
+        "file or its folder. Give "
+    )
+    done = run("export", "empty")
+    assert (done.exit_code, done.stderr) == (2, f"empty: {expected}one of them.\n")
+    result(EVERY["sine"])
+    done = run("export", "mine")
+    assert (done.exit_code, done.stderr) == (2, f"mine: {expected}mine/result.json.\n")

@@ -8,8 +8,11 @@ import pytest
 
 from rr_opt.files import read_problem
 from rr_opt.files.gait_record import gait_record
+from rr_opt.problem import Limits
+from rr_opt.report.quantities import number, speed_text
 from rr_opt.report.robot_record import robot_record
-from tests.motion.gaits import EVERY
+from rr_opt.verify.replay import replay
+from tests.motion.gaits import EVERY, FREE
 
 COLUMNS = ["t", "x", "y", "psi", "phi", "v", "torque"]
 
@@ -70,6 +73,35 @@ def test_a_result_of_any_shape(run, tmp_path, gait):
     assert json.loads(done.stdout)["gait"] == gait_record(gait)
     t, _, _, _, phi, *_ = np.array(rows(tmp_path / "res" / "trajectory.csv")[1:], float).T
     assert phi == pytest.approx(gait.angle(t), abs=1e-8)
+
+
+def test_speeds_are_named_and_the_torque_is_the_true_peak(run, tmp_path):
+    # One sample a period sees one torque alone.
+    robot = robot_record(read_problem(None).robot)
+    record = {"status": "optimal", "input_sha256": "0", "gait": gait_record(FREE), "robot": robot}
+    (tmp_path / "result.json").write_text(json.dumps(record))
+    arguments = ("simulate", "result.json", "--seconds", "28", "--rate", str(1 / FREE.period))
+    told = json.loads(run(*arguments, "--start", "steady", "--json").stdout)
+    seen = replay(read_problem(None).robot, FREE, Limits(3.0, 9.0, 9.0), 1.0)
+    assert told["peak_torque"] == pytest.approx(seen.reached["torque"], rel=1e-4)
+    assert told["last_circle_speed"] == pytest.approx(seen.speed, rel=1e-6)
+    assert told["last_speed"] == pytest.approx(np.mean(seen.steady.v[:-1]), rel=1e-4)
+    printed = run(*arguments, "--start", "steady").stdout
+    assert f"{number(seen.reached['torque'])} N m at most" in printed
+    assert f"{speed_text(seen.speed)}, along the mean circle of the last period" in printed
+    assert "mean v of axle 1 over the last period" in printed
+
+
+def test_less_than_a_period_has_no_circle(run):
+    arguments = ("simulate", "--period", "2", "--seconds", "1.9")
+    told = json.loads(run(*arguments, "--json").stdout)
+    assert told["last_circle_speed"] is None
+    assert "mean v of axle 1, less than a period" in run(*arguments).stdout
+
+
+def test_torque_between_the_samples_is_held_against_the_servo(run):
+    done = run("simulate", "--amplitude", "1", "--period", "0.2", "--seconds", "1", "--rate", "5")
+    assert "the servo's torque limit" in done.stderr
 
 
 def test_a_wrong_gait_of_a_result_is_told(run, tmp_path):

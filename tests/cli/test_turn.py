@@ -72,7 +72,9 @@ def test_wrong_input(run, options, said):
     assert done.stdout == ""
 
 
-@pytest.mark.parametrize("options", [("--amplitude", "0"), ("--amplitude", "1.9")])
+@pytest.mark.parametrize(
+    "options", [("--amplitude", "0", "--period", "1"), ("--amplitude", "1.9", "--period", "1")]
+)
 def test_a_gait_without_a_circle(run, options):
     done = run("circle", *options)
     assert done.exit_code == 2

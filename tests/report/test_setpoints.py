@@ -9,7 +9,8 @@ from rr_opt.motion.cycle import cycle_of
 from rr_opt.motion.steady_cycle import steady_cycle
 from rr_opt.outcome import InputError
 from rr_opt.physics.dynamics import dynamics_of
-from rr_opt.report.setpoints.setpoints import BLEND, Cost, cost, held, set_points
+from rr_opt.report.setpoints.cost import Cost, cost
+from rr_opt.report.setpoints.setpoints import BLEND, held, set_points
 from rr_opt.robot.gait import SineGait
 from tests.motion.gaits import EVERY
 from tests.robots import BENCHMARK, with_friction
@@ -122,14 +123,14 @@ def test_a_period_holds_a_whole_number(period, count):
     ("degrees", "count"), [(0.0, 512), (90.0, 819), (-90.0, 205), (149.6, 1023), (-150.0, 0)]
 )
 def test_counts_are_those_of_the_servos_manual(degrees, count):
-    points = set_points(SineGait(0.0, 1.0, math.radians(degrees)), 10.0)
+    points = set_points(SineGait(1e-9, 1.0, math.radians(degrees)), 10.0)
     assert set(points.counts) == {count}
     assert abs(points.rounded - points.angles).max() <= math.radians(300 / 1024) / 2
 
 
 @pytest.mark.parametrize("degrees", [151.0, -151.0, 149.95])
 def test_an_angle_without_a_count_is_told(degrees):
-    points = set_points(SineGait(0.0, 1.0, math.radians(degrees)), 10.0)
+    points = set_points(SineGait(1e-9, 1.0, math.radians(degrees)), 10.0)
     with pytest.raises(InputError, match=r"-?1\d\d.* degrees.*cover -150 to 149.7 degrees"):
         _ = points.counts
 
@@ -138,6 +139,11 @@ def test_an_angle_without_a_count_is_told(degrees):
 def test_a_rate_that_makes_no_sense_is_told(rate):
     with pytest.raises(InputError, match=r"--rate: .* set points a second"):
         set_points(SineGait(0.2, 1.0), rate)
+
+
+def test_a_gait_that_stands_still_has_no_set_points():
+    with pytest.raises(InputError, match="amplitude 0"):
+        set_points(SineGait(0.0, 1.0, 0.3), 50.0)
 
 
 def test_without_friction_there_is_no_speed_to_lose():

@@ -35,8 +35,7 @@ def circle(
     with Steps() as steps:
         from rr_opt.cli.motion_input import (  # noqa: PLC0415
             read_options,
-            robot_and_gait,
-            with_options,
+            read_source,
         )
         from rr_opt.motion.circle import circle_of, require_regular  # noqa: PLC0415
         from rr_opt.motion.steady_cycle import steady_cycle  # noqa: PLC0415
@@ -46,8 +45,8 @@ def circle(
         from rr_opt.report.turn.circle_summary import circle_record, circle_summary  # noqa: PLC0415
 
         options = read_options(amplitude=amplitude, period=period, offset=offset)
-        robot, gait = robot_and_gait(source)
-        gait = with_options(gait, options)
+        given = read_source(source, options)
+        robot, gait = given.robot, given.gait
         require_friction(robot)
         require_regular(robot, gait)
         steps("steady cycle")

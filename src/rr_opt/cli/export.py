@@ -65,17 +65,17 @@ def export(
     with Steps() as steps:
         from rr_opt.cli.motion_input import (  # noqa: PLC0415
             read_options,
+            read_source,
             result_name,
-            robot_and_gait,
-            with_options,
         )
         from rr_opt.report.archive import (  # noqa: PLC0415
             file_for_result,
             strict_json,
             write_text,
         )
+        from rr_opt.report.setpoints.cost import cost  # noqa: PLC0415
         from rr_opt.report.setpoints.file import ENDINGS, text_of  # noqa: PLC0415
-        from rr_opt.report.setpoints.setpoints import cost, set_points  # noqa: PLC0415
+        from rr_opt.report.setpoints.setpoints import set_points  # noqa: PLC0415
         from rr_opt.report.setpoints.summary import (  # noqa: PLC0415
             beyond_rate,
             setpoints_record,
@@ -83,18 +83,19 @@ def export(
         )
 
         options = read_options(amplitude=amplitude, period=period, offset=offset, rate=rate)
-        robot, gait = robot_and_gait(source)
+        given = read_source(source, options)
         name = f"{result_name(source)}{ENDINGS[kind.value]}"
         file = file_for_result(out or Path("out") / name)
-        points = set_points(with_options(gait, options), rate, keep_period=keep_period)
+        points = set_points(given.gait, rate, keep_period=keep_period)
         text = text_of(points, kind.value)
         steps("what the set points cost")
         rounded = kind is Format.SERVO
-        lost = cost(robot, points, rounded=rounded)
+        lost = cost(given.robot, points, rounded=rounded)
         write_text(file, text)
-    for warning in beyond_rate(robot, points, rounded=rounded):
+    for warning in beyond_rate(given.robot, points, rounded=rounded):
         typer.echo(warning, err=True)
     if json:
-        typer.echo(strict_json(setpoints_record(points, lost, kind.value, file)), nl=False)
+        record = setpoints_record(points, lost, kind.value, file, given.status)
+        typer.echo(strict_json(record), nl=False)
     else:
         typer.echo(setpoints_summary(points, lost, file), nl=False)

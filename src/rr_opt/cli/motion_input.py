@@ -2,44 +2,32 @@
 
 from __future__ import annotations
 
-import math
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+import typer
+
+from rr_opt.cli.source import Source, source_of_result
 from rr_opt.outcome import InputError
 
 if TYPE_CHECKING:
-    from rr_opt.files.document import Document
     from rr_opt.robot.gait import Gait
-    from rr_opt.robot.parameters import Robot
 
 AMPLITUDE, PERIOD, OFFSET = 0.785, 1.0, 0.0
 """The gait where none is given: the paper's run with T = 1 s."""
 
 
-def robot_and_gait(path: Path | None) -> tuple[Robot, Gait]:
-    """The robot of a file (None: the prototype) and its gait.
+def read_source(path: Path | None, options: dict[str, float]) -> Source:
+    """What a file (None: the prototype) gives, with what the options say of its gait.
 
     A result has its own gait, of whatever shape. Of a problem the values that it fixes are taken,
-    and the others are the paper's run, brought within the problem's bounds.
+    and the others are the paper's run, brought within the problem's bounds. Doubts go to stderr.
     """
-    from rr_opt.files import read_document, read_problem  # noqa: PLC0415
-    from rr_opt.files.kind import kind_of  # noqa: PLC0415
-    from rr_opt.robot.gait import SineGait  # noqa: PLC0415
-
-    if path is not None and path.is_file():
-        document = read_document(path)
-        if kind_of(document) == "result":
-            return _of_result(document)
-        if "platform1" in document.data:
-            from rr_opt.files import read_robot  # noqa: PLC0415
-
-            return read_robot(path), SineGait(AMPLITUDE, PERIOD, OFFSET)
-    problem = read_problem(path)
-    gait = problem.gait
-    return problem.robot, SineGait(
-        gait.amplitude.clip(AMPLITUDE), gait.period.clip(PERIOD), gait.offset.clip(OFFSET)
-    )
+    source = _source(path, options)
+    for doubt in source.doubts:
+        typer.echo(f"warning: {doubt}", err=True)
+    return replace(source, gait=with_options(source.gait, options))
 
 
 def read_options(**given: str | float | None) -> dict[str, float]:
@@ -84,22 +72,36 @@ def result_name(path: Path | None) -> str:
     return name_of(path)
 
 
-def _of_result(document: Document) -> tuple[Robot, Gait]:
-    from rr_opt.files import InvalidFileError, robot_from  # noqa: PLC0415
-    from rr_opt.files.gait_record import gait_from  # noqa: PLC0415
+def _source(path: Path | None, options: dict[str, float]) -> Source:
+    from rr_opt.cli.default_gait import doubts  # noqa: PLC0415
+    from rr_opt.files import read_document, read_problem  # noqa: PLC0415
+    from rr_opt.files.kind import kind_of  # noqa: PLC0415
+    from rr_opt.robot.gait import SineGait  # noqa: PLC0415
 
-    robot: Any = document.data.get("robot")
-    if not isinstance(document.data.get("gait"), dict) or not isinstance(robot, dict):
+    if path is not None and path.is_file():
+        document = read_document(path)
+        if kind_of(document) == "result":
+            return source_of_result(document)
+        if "platform1" in document.data:
+            from rr_opt.files import read_robot  # noqa: PLC0415
+
+            gait = SineGait(AMPLITUDE, PERIOD, OFFSET)
+            return Source(read_robot(path), gait, doubts=doubts(path, gait, None, options))
+    if path is not None and path.is_dir():
+        _require_problem(path)
+    problem = read_problem(path)
+    bounds = problem.gait
+    gait = SineGait(
+        bounds.amplitude.clip(AMPLITUDE), bounds.period.clip(PERIOD), bounds.offset.clip(OFFSET)
+    )
+    return Source(problem.robot, gait, doubts=doubts(path, gait, bounds, options))
+
+
+def _require_problem(folder: Path) -> None:
+    if not (folder / "problem.yaml").exists():
+        result = folder / "result.json"
         raise InputError(
-            f"{document.file}: The result holds no gait: its status is "
-            f"`{document.data['status']}`. Give the result of a problem that was solved."
+            f"{folder}: This is a folder without problem.yaml. Expected a result.json, a robot "
+            "file, a problem file or its folder. "
+            + (f"Give {result}." if result.is_file() else "Give one of them.")
         )
-    servo = robot.get("servo")
-    if isinstance(servo, dict):
-        # null in a result is a limit that does not exist.
-        robot["servo"] = {key: math.inf if v is None else v for key, v in servo.items()}
-    read, issues = robot_from(document.section("robot"))
-    gait, found = gait_from(document.section("gait"))
-    if read is None or gait is None:
-        raise InvalidFileError([*issues, *found])
-    return read, gait

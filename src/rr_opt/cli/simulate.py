@@ -74,13 +74,14 @@ def simulate(
     with Steps() as steps:
         from rr_opt.cli.motion_input import (  # noqa: PLC0415
             read_options,
+            read_source,
             result_name,
-            robot_and_gait,
-            with_options,
         )
+        from rr_opt.motion.measured import measured  # noqa: PLC0415
         from rr_opt.motion.rollout import rollout  # noqa: PLC0415
         from rr_opt.report.archive import folder_for_results, strict_json  # noqa: PLC0415
         from rr_opt.report.motion_summary import (  # noqa: PLC0415
+            Motion,
             beyond_servo,
             motion_record,
             motion_summary,
@@ -90,19 +91,21 @@ def simulate(
         options = read_options(
             amplitude=amplitude, period=period, offset=offset, seconds=seconds, rate=rate
         )
-        robot, gait = robot_and_gait(source)
-        gait = with_options(gait, options)
+        given = read_source(source, options)
+        robot, gait = given.robot, given.gait
         film = animate.value if animate else None
         check_wishes(kind.value, film)
         folder = folder_for_results(out or Path("out") / f"{result_name(source)}-motion")
         steps("simulate by CVODES")
         driven = rollout(robot, gait, seconds, start.value, rate)
+        steps("measure")
+        motion = Motion(gait, start.value, driven, measured(robot, gait, driven), given.status)
         written = write_motion(
             robot, gait, driven, folder, kind=kind.value, film=film, progress=steps
         )
-    for warning in beyond_servo(robot, gait, driven):
+    for warning in beyond_servo(robot, gait, motion.measured):
         typer.echo(warning, err=True)
     if json:
-        typer.echo(strict_json(motion_record(gait, driven, start.value, written)), nl=False)
+        typer.echo(strict_json(motion_record(motion, written)), nl=False)
     else:
-        typer.echo(motion_summary(gait, driven, start.value, written), nl=False)
+        typer.echo(motion_summary(motion, written), nl=False)

@@ -27,6 +27,14 @@ def gait_findings(gait: GaitModel, document: Document) -> Iterator[Issue]:
             "does not move the servo does not move the robot."
         )
         yield document.issue("error", ("gait", "amplitude"), message)
+    elif gait.amplitude.low == 0 and gait.shape != "sine":
+        message = (
+            f"Read an amplitude from 0 of a `{gait.shape}` gait. Expected a lower bound above 0: "
+            "it bounds the first harmonic, without which a gait repeats within its period, and "
+            "the bounds of the period mean nothing. Write for example `amplitude: "
+            f"[{min(0.05, gait.amplitude.high / 10):.2g}, {gait.amplitude.high:.4g}]`."
+        )
+        yield document.issue("warning", ("gait", "amplitude"), message)
     if gait.period.high > LONGEST_PERIOD:
         message = (
             f"Read a period of up to {gait.period.high:.4g} s. Expected at most "

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from rr_opt.files.gait_record import gait_record
+from rr_opt.motion.measured import Measured
 from rr_opt.motion.rollout import Trajectory
 from rr_opt.report.quantities import QUANTITIES, number, speed_text
 from rr_opt.report.text import columns, gait_formula, gait_lines
@@ -20,53 +20,72 @@ EXCEEDED = 1e-4
 """By so much, relative, an optimum on a limit may be past it without a warning."""
 
 
-def motion_summary(gait: Gait, driven: Trajectory, start: str, files: Iterable[Path]) -> str:
+@dataclass(frozen=True)
+class Motion:
+    """A gait that was driven, and what came of it.
+
+    start   `rest` or `steady`
+    status  of the result that the gait was taken from; None if it was not taken from one
+    """
+
+    gait: Gait
+    start: str
+    driven: Trajectory
+    measured: Measured
+    status: str | None
+
+
+def motion_summary(motion: Motion, files: Iterable[Path]) -> str:
     """The gait, how far it went and how fast at the end, and the files."""
-    record = motion_record(gait, driven, start, files)
-    begun = "rest" if start == "rest" else "the steady state"
+    record = motion_record(motion, files)
+    begun = "rest" if motion.start == "rest" else "the steady state"
     degrees = math.degrees(record["turned"])
     rows = [
-        ("gait", gait_formula(gait)),
-        *gait_lines(gait),
-        (
-            "time",
-            f"{number(record['seconds'])} s from {begun}",
-        ),
-        (
-            "moved",
-            f"{number(record['distance'])} m, turned by {number(degrees)} deg",
-        ),
-        ("speed v", f"{speed_text(record['last_speed'])}, mean of the last period"),
+        ("gait", gait_formula(motion.gait)),
+        *gait_lines(motion.gait),
+        ("time", f"{number(record['seconds'])} s from {begun}"),
+        ("moved", f"{number(record['distance'])} m, turned by {number(degrees)} deg"),
+        *_speed_lines(motion.measured),
         ("torque", f"{number(record['peak_torque'])} N m at most"),
-        *(("files" if not i else "", str(file)) for i, file in enumerate(files)),
+        *(("files" if not i else "", file) for i, file in enumerate(record["files"])),
     ]
     return "\n".join(columns(rows)) + "\n"
 
 
-def motion_record(
-    gait: Gait, driven: Trajectory, start: str, files: Iterable[Path]
-) -> dict[str, Any]:
-    """The same for scripts: SI; `last_speed` is the mean of v over the last period."""
-    seconds = float(driven.t[-1])
-    last = driven.t >= max(seconds - gait.period, 0.0)
+def motion_record(motion: Motion, files: Iterable[Path]) -> dict[str, Any]:
+    """The same for scripts, SI; of the last period, `last_speed` is the mean of v, and
+    `last_circle_speed` the speed along its mean circle, null of a shorter motion."""
+    driven, measured = motion.driven, motion.measured
     return {
-        "gait": gait_record(gait),
-        "start": start,
-        "seconds": seconds,
+        "gait": gait_record(motion.gait),
+        "status": motion.status,
+        "start": motion.start,
+        "seconds": float(driven.t[-1]),
         "distance": math.hypot(driven.x[-1] - driven.x[0], driven.y[-1] - driven.y[0]),
         "turned": float(driven.psi[-1] - driven.psi[0]),
-        "last_speed": float(np.mean(driven.v[last])),
-        "peak_torque": float(np.abs(driven.torque).max()),
+        "last_speed": measured.mean_v,
+        "last_circle_speed": measured.speed,
+        "peak_torque": measured.peak_torque,
         "files": [str(file) for file in files],
     }
 
 
-def beyond_servo(robot: Robot, gait: Gait, driven: Trajectory) -> list[str]:
+def _speed_lines(measured: Measured) -> list[tuple[str, ...]]:
+    mean = f"{speed_text(measured.mean_v)}, mean v of axle 1"
+    if measured.speed is None:
+        return [("speed", f"{mean}, less than a period")]
+    return [
+        ("speed", f"{speed_text(measured.speed)}, along the mean circle of the last period"),
+        ("", f"{mean} over the last period"),
+    ]
+
+
+def beyond_servo(robot: Robot, gait: Gait, measured: Measured) -> list[str]:
     """A warning for each limit of the servo that the motion passes; the model drives it anyway."""
     reached = {
         "angle": (gait.peak_angle, robot.servo.angle_limit),
         "rate": (gait.peak_rate, robot.servo.rate_limit),
-        "torque": (float(np.abs(driven.torque).max()), robot.servo.torque_limit),
+        "torque": (measured.peak_torque, robot.servo.torque_limit),
     }
     return [
         f"warning: the gait needs {QUANTITIES[name].both(value)}, and the servo's {name} limit is "

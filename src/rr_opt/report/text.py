@@ -9,6 +9,9 @@ from rr_opt.robot.fourier_gait import FourierGait
 from rr_opt.robot.free_gait import FreeGait
 from rr_opt.robot.gait import Gait
 
+_NOTHING = 1e-4
+"""A coefficient so small, relative to the largest, is what an optimiser leaves of 0."""
+
 
 def gait_formula(gait: Gait) -> str:
     """What phi(t) is made of."""
@@ -27,8 +30,9 @@ def gait_lines(gait: Gait) -> list[tuple[str, ...]]:
         ("  offset", QUANTITIES["offset"].both(gait.offset)),
     ]
     if isinstance(gait, FourierGait):
+        least = _NOTHING * max(map(abs, gait.sines + gait.cosines))
         for n, sizes in enumerate(zip(gait.sines, gait.cosines, strict=True), 1):
-            sine, cosine = (with_unit(size, "rad") for size in sizes)
+            sine, cosine = (with_unit(size if abs(size) >= least else 0, "rad") for size in sizes)
             rows.append((f"  harmonic {n}", f"{sine} of the sine, {cosine} of the cosine"))
     return rows
 

@@ -1,4 +1,4 @@
-"""A gait as set points at the rate of a controller, and what following them costs in speed.
+"""A gait as set points at the rate of a controller, and how a servo moves that follows them.
 
 A controller sends an angle every 1/rate seconds and holds it. A servo cannot jump: it is taken to
 move at a constant speed from each set point to the next, and to be there when the next one comes.
@@ -17,13 +17,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rr_opt.motion.rollout import require_regular
-from rr_opt.motion.steady_cycle import steady_cycle
 from rr_opt.outcome import InputError
-from rr_opt.physics.dynamics import require_friction
 from rr_opt.robot.free_gait import FreeGait
 from rr_opt.robot.gait import Gait
-from rr_opt.robot.parameters import Robot
 
 Array = NDArray[np.float64]
 
@@ -71,40 +67,18 @@ class SetPoints:
         return COUNT * (self.counts.astype(float) - CENTRE)
 
 
-@dataclass(frozen=True)
-class Cost:
-    """Signed speeds, m/s: of the gait; with its period changed; with its set points held; and with
-    them rounded to counts too (None if they are not)."""
-
-    asked: float
-    changed: float
-    held: float
-    rounded: float | None
-
-    @property
-    def left(self) -> float:
-        """What is left of the speed in the end."""
-        return self.held if self.rounded is None else self.rounded
-
-    @property
-    def steps(self) -> dict[str, float]:
-        """What each step adds to the speed, m/s; below 0 where the robot gets slower."""
-        sign = math.copysign(1.0, self.asked)
-        steps = {
-            "period": sign * (self.changed - self.asked),
-            "holding": sign * (self.held - self.changed),
-        }
-        if self.rounded is not None:
-            steps["rounding"] = sign * (self.rounded - self.held)
-        return steps
-
-
 def set_points(gait: Gait, rate: float, *, keep_period: bool = False) -> SetPoints:
     """Sample a gait about `rate` times a second.
 
     Its period is changed to the nearest whole number of samples; or, keep_period, the rate is.
-    Raises InputError for a rate that gives too few or too many of them.
+    Raises InputError for a gait that does not move, and for a rate that gives too few or too many
+    of them.
     """
+    if gait.amplitude == 0:
+        raise InputError(
+            "Read a gait with the amplitude 0. Expected one that moves the servo: set points of "
+            "one angle drive nothing. Give an amplitude above 0."
+        )
     count = round(gait.period * rate)
     if not _FEWEST <= count <= _MOST:
         raise InputError(
@@ -135,17 +109,3 @@ def held(angles: Array, rate: float, blend: int = BLEND) -> FreeGait:
         rate0=before,
         accelerations=tuple(map(float, accelerations.ravel())),
     )
-
-
-def cost(robot: Robot, points: SetPoints, *, rounded: bool) -> Cost:
-    """What each step from the gait to its set points does to the speed.
-
-    Raises InputError for angles beyond the servo's counts, a robot without friction or a gait
-    through the singular posture; NotConvergedError for a gait that does not settle.
-    """
-    require_friction(robot)
-    require_regular(robot, points.gait)
-    angles = [points.angles, *([points.rounded] if rounded else [])]
-    driven = [points.gait, points.played, *(held(each, points.rate) for each in angles)]
-    asked, changed, plain, *rest = (steady_cycle(robot, gait).speed for gait in driven)
-    return Cost(asked, changed, plain, rest[0] if rest else None)

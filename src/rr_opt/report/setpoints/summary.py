@@ -10,7 +10,8 @@ from rr_opt import __version__
 from rr_opt.files.gait_record import gait_record
 from rr_opt.report.motion_summary import EXCEEDED
 from rr_opt.report.quantities import QUANTITIES, number, speed_text, with_unit
-from rr_opt.report.setpoints.setpoints import COUNT, Cost, SetPoints, held
+from rr_opt.report.setpoints.cost import Cost
+from rr_opt.report.setpoints.setpoints import COUNT, SetPoints, held
 from rr_opt.report.text import columns, gait_formula, gait_lines
 from rr_opt.robot.parameters import Robot
 
@@ -44,10 +45,16 @@ def setpoints_summary(points: SetPoints, cost: Cost, file: Path) -> str:
     return "\n".join([*columns(rows), "", MODEL]) + "\n"
 
 
-def setpoints_record(points: SetPoints, cost: Cost, kind: str, file: Path) -> dict[str, Any]:
-    """The same for scripts, SI; `cost` is the speed lost (negative) or gained by each step."""
+def setpoints_record(
+    points: SetPoints, cost: Cost, kind: str, file: Path, status: str | None
+) -> dict[str, Any]:
+    """The same for scripts, SI; `cost` is the speed lost (negative) or gained by each step.
+
+    status  of the result that the gait was taken from; None if it was not taken from one
+    """
     return {
         "gait": gait_record(points.gait),
+        "status": status,
         "format": kind,
         "rate": points.rate,
         "points": len(points.angles),
