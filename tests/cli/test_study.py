@@ -122,3 +122,13 @@ def test_no_column_is_there_twice(study, quick, tmp_path):
         names = next(csv.reader(file))
     assert len(names) == len(set(names))
     assert names[:4] == ["case", "limits.rate", "direction", "inertia_ratio"]
+
+
+def test_a_scheduler_that_is_none_is_wrong_input(run, quick, tmp_path):
+    pytest.importorskip("distributed")
+    (tmp_path / "small.yaml").write_text(TWO)
+    done = run("study", "small.yaml", "--scheduler", "foo", "--no-figures")
+    assert done.exit_code == 2
+    assert "'foo'" in done.stderr
+    assert "tcp://host:8786" in done.stderr
+    assert done.stdout == ""

@@ -9,6 +9,7 @@ import pytest
 
 from rr_opt.files import read_problem
 from rr_opt.files.issue import InvalidFileError
+from rr_opt.files.schemas import schema
 from rr_opt.files.study.file import read_study
 
 
@@ -122,6 +123,85 @@ def test_a_value_is_refused_where_it_is_written_with_its_case(write):
     assert sorted(told) == [("vary.'limits.rate'", 2)] * 2 + [("vary.direction", 3)]
     text = str(caught.value)
     assert "In the case limits.rate = '-1 rpm', direction = 'forward', and 1 more" in text
+
+
+@pytest.mark.parametrize(
+    ("text", "place", "told"),
+    [
+        ("vary: {limits.rate: [1, 2]}\ntogether: [{}]\n", "together[0]", "an empty mapping"),
+        ("vary: {limits.rate: [1, 2]}\ntogether: [3]\n", "together[0]", "Read 3."),
+        ("vary: {limits: [{rate: 1}], limits.rate: [1]}\n", "vary.'limits.rate'", "`limits`"),
+        ("vary: {limits.rate: [1], limits: [{rate: 1}]}\n", "vary.limits", "`limits.rate`"),
+        (
+            "vary: {gait.period: [[1, 2]]}\ntogether: [{'gait.period[1]': [2, 3]}]\n",
+            "together[0].'gait.period[1]'",
+            "`gait.period`",
+        ),
+        (
+            "vary: {robot.servo: [{torque_limit: 1}], robot: [{h: 1}]}\n",
+            "vary.robot",
+            "`robot.servo`",
+        ),
+        ("vary: {limits.rate: [3, 4, 3.0]}\n", "vary.'limits.rate'", "value 3, which is value 1"),
+        ("vary: {limits.rate: [30 rpm, 180 deg/s]}\n", "vary.'limits.rate'", "'180 deg/s'"),
+        ("vary: {direction: [forward, forward]}\n", "vary.direction", "value 2"),
+        (
+            "together: [{limits.rate: [1, 1, 1], limits.torque: [1, 2, 1]}]\n",
+            "together[0]",
+            "value 3, which is value 1",
+        ),
+    ],
+)
+def test_what_is_asked_for_twice_or_not_at_all_is_refused(write, text, place, told):
+    with pytest.raises(InvalidFileError) as caught:
+        read_study(write(text, "study.yaml"))
+    messages = {issue.path: issue.message for issue in caught.value.issues}
+    assert place in messages
+    assert told in messages[place]
+
+
+def test_values_in_step_may_be_there_again_one_by_one(study):
+    made = study("together: [{limits.rate: [1, 1, 2], limits.torque: [1, 2, 2]}]\n")
+    assert [(p.limits.rate, p.limits.torque) for p in made.problems] == [(1, 1), (1, 2), (2, 2)]
+
+
+@pytest.mark.parametrize(
+    ("written", "bare"),
+    [
+        ("{from: 10 rpm, to: 2, count: 3}", ["`to: 2`"]),
+        ("{from: 1, to: 30 rpm, count: 3}", ["`from: 1`"]),
+        ("{from: 10 rpm, to: 30 rpm, step: 1}", ["`step: 1`"]),
+        ("{from: 10 rpm, to: 30 rpm, step: 3 rpm}", []),
+        ("{from: 1, to: 2, count: 3}", []),
+        ("{from: '1e0', to: 2, count: 3}", []),
+    ],
+)
+def test_a_number_without_unit_beside_one_with_a_unit_is_doubted(write, written, bare):
+    _, warnings = read_study(write(f"vary: {{limits.rate: {written}}}\n", "study.yaml"))
+    doubts = [one.message for one in warnings if "without a unit" in one.message]
+    assert len(doubts) == len(bare)
+    assert all(one in doubt and "rad/s" in doubt for one, doubt in zip(bare, doubts, strict=True))
+
+
+def test_zero_needs_no_unit(write):
+    text = "vary: {gait.offset[0]: {from: 0, to: 30 deg, count: 3}}\n"
+    text = "problem: {gait: {offset: [0, 0.7]}}\n" + text.replace(
+        "gait.offset[0]", "'gait.offset[0]'"
+    )
+    assert read_study(write(text, "study.yaml"))[1] == []
+
+
+def test_the_schema_offers_no_default_that_it_forbids():
+    def nodes(node):
+        if isinstance(node, dict):
+            yield node
+        for below in node.values() if isinstance(node, dict) else node:
+            if isinstance(below, dict | list):
+                yield from nodes(below)
+
+    counts = [node["count"] for node in nodes(schema("study")) if "count" in node]
+    assert counts
+    assert all(one["minimum"] == 2 and "default" not in one for one in counts)
 
 
 @pytest.mark.parametrize("changed", ["study.yaml", "problem.yaml", "one.yaml", "two.yaml"])

@@ -73,11 +73,26 @@ def test_a_killed_worker_costs_no_row(started, tmp_path):
     assert {row["status"] for row in rows} == {"optimal"}
 
 
-def test_no_scheduler_is_wrong_input(started, tmp_path):
+@pytest.mark.parametrize(
+    "address", ["", "foo", "tcp://127.0.0.1", "tcp://127.0.0.1:x", "tcp://127.0.0.1:99999"]
+)
+def test_no_scheduler_is_wrong_input_before_a_client_is_made(monkeypatch, address):
     from rr_opt.batch import cluster  # noqa: PLC0415
     from rr_opt.outcome import InputError  # noqa: PLC0415
 
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(cluster, "_PATIENCE", 1)
+    monkeypatch.setattr(cluster, "_client", lambda: pytest.fail)
+    with pytest.raises(InputError, match="No dask scheduler answers"):
+        cluster.ClusterPool(address or f"tcp://127.0.0.1:{free_port()}")
+
+
+def test_what_listens_and_says_nothing_is_no_scheduler(monkeypatch):
+    from rr_opt.batch import cluster  # noqa: PLC0415
+    from rr_opt.outcome import InputError  # noqa: PLC0415
+
+    monkeypatch.setattr(cluster, "_client", lambda: pytest.fail)
+    monkeypatch.setattr(cluster, "_PATIENCE", 0.2)
+    with socket.socket() as silent:
+        silent.bind(("127.0.0.1", 0))
+        silent.listen()
         with pytest.raises(InputError, match="No dask scheduler answers"):
-            cluster.ClusterPool(f"tcp://127.0.0.1:{free_port()}")
+            cluster.ClusterPool(f"tcp://127.0.0.1:{silent.getsockname()[1]}")

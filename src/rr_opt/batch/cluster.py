@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import re
+import socket
 from collections.abc import Callable
 from concurrent.futures import Future
 from typing import Any
@@ -11,6 +13,9 @@ from rr_opt import __version__
 from rr_opt.outcome import InputError
 
 _PATIENCE = 10  # s
+_ADDRESS = re.compile(
+    r"(?:(?P<scheme>tcp|tls)://)?(?P<host>\[[0-9a-fA-F:.]+\]|[^\s:/\[\]]+):(?P<port>[0-9]{1,5})"
+)
 _AT_LEAST = 8
 _PER_CORE = 2
 
@@ -24,6 +29,8 @@ class ClusterPool:
     def __init__(self, address: str):
         client = _client()
         try:
+            # A dask client that finds nobody waits long, and complains when it is thrown away.
+            _knock(address)
             self._client = client(address, timeout=_PATIENCE, set_as_default=False)
         except (OSError, ValueError, TimeoutError) as error:
             raise InputError(
@@ -80,6 +87,18 @@ def installed_version() -> str:
     # Cases leave a worker no time for threads of numerical libraries.
     os.environ.setdefault("OMP_NUM_THREADS", "1")
     return __version__
+
+
+def _knock(address: str) -> None:
+    """Raise ValueError if it is no address, OSError if no scheduler is there."""
+    match = _ADDRESS.fullmatch(address)
+    if match is None or not 0 < int(match["port"]) < 2**16:
+        raise ValueError("it is no address")
+    place = match["host"].strip("[]"), int(match["port"])
+    with socket.create_connection(place, _PATIENCE) as line:
+        # A scheduler speaks first, except where TLS has to be agreed on before.
+        if match["scheme"] != "tls" and not line.recv(1):
+            raise OSError("it hangs up")
 
 
 def _first_line(error: BaseException) -> str:

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import math
-
-import numpy as np
-
 from rr_opt.design.solve import Candidate
 from rr_opt.design.study.energy import energy
 from rr_opt.design.study.held import held
+from rr_opt.design.study.reached import UNITS, reached, worst
 from rr_opt.design.study.row import Optimum, Row, gait_record
 from rr_opt.motion.steady_cycle import steady_cycle
 from rr_opt.outcome import Status
@@ -17,6 +14,8 @@ from rr_opt.robot.parameters import Robot
 
 _CLAIM = 1e-6
 """Largest difference of a claimed speed from that of the steady cycle, relative."""
+LARGEST_EXCESS = 1e-4
+"""Largest excess over a limit that passes, relative to the limit."""
 _STRAIGHT = 1e-7
 """Heading gained per period below which the robot goes straight, rad."""
 _SIDEWAYS = 1e-3
@@ -25,8 +24,8 @@ _SIDEWAYS = 1e-3
 def measured(problem: Problem, best: Candidate, robot: Robot, ratio: float) -> Row:
     """The row of an optimum of a problem, with the robot and the J20/J10 that it chose.
 
-    NOT_CONVERGED if the steady cycle has another speed than the optimiser claims. Raises
-    NotConvergedError if the gait has no steady cycle.
+    NOT_CONVERGED if the steady cycle has another speed than the optimiser claims, or breaks a
+    limit. Raises NotConvergedError if the gait has no steady cycle.
     """
     gait, steady = best.gait, steady_cycle(robot, best.gait)
     error = abs(steady.speed / best.speed - 1)
@@ -37,14 +36,18 @@ def measured(problem: Problem, best: Candidate, robot: Robot, ratio: float) -> R
             "Solve the case alone with `rr-opt maximize-speed`."
         )
         return Row(Status.NOT_CONVERGED, message)
+    extremes = reached(robot, steady)
+    name, excess = worst(problem.limits, extremes)
+    if not excess <= LARGEST_EXCESS:
+        unit, limit = UNITS[name], getattr(problem.limits, name)
+        message = (
+            f"The optimiser's gait reaches {extremes[name]:.6g} {unit}. Expected it to keep the "
+            f"limit on {name}, {limit:.6g} {unit}, which it breaks by {excess:.1e} of it (at most "
+            f"{LARGEST_EXCESS:.0e} allowed). Solve the case alone with `rr-opt maximize-speed`."
+        )
+        return Row(Status.NOT_CONVERGED, message)
     work, turn = energy(robot, steady), steady.cycle.dpsi
-    reached = {
-        "angle": gait.peak_angle,
-        "rate": gait.peak_rate,
-        "torque": float(max(np.abs(steady.torque).max(), np.abs(steady.torque_before).max())),
-        "singularity": robot.platform1.c * math.cos(gait.peak_angle) + robot.platform2.c,
-    }
-    on = held(problem, best, reached, ratio)
+    on = held(problem, best, extremes, ratio)
     optimum = Optimum(
         gait=gait_record(gait),
         sign=best.sign,
@@ -57,10 +60,10 @@ def measured(problem: Problem, best: Candidate, robot: Robot, ratio: float) -> R
         cycle_length=abs(best.speed) * gait.period,
         turn=turn,
         radius=abs(best.speed) * gait.period / abs(turn) if abs(turn) > _STRAIGHT else None,
-        peak_angle=reached["angle"],
-        peak_rate=reached["rate"],
-        peak_torque=reached["torque"],
-        least_s1=reached["singularity"],
+        peak_angle=extremes["angle"],
+        peak_rate=extremes["rate"],
+        peak_torque=extremes["torque"],
+        least_s1=extremes["singularity"],
         energy_per_metre=work.gross,
         net_energy_per_metre=work.net,
         cost_of_transport=work.cost_of_transport,

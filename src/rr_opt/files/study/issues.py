@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Sequence
 
 from rr_opt.files.document import Document
 from rr_opt.files.document import Path as Keys
 from rr_opt.files.issue import Issue, shown
-from rr_opt.files.study.axes import Axis, Line
+from rr_opt.files.study.axes import Axis
+from rr_opt.files.study.line import Line
 
 _NUMBERS = re.compile(r"[-+]?[0-9][0-9.e+-]*|'[^']*'")
 
@@ -75,6 +77,7 @@ class CaseIssues:
         for axis, step in zip(self._axes, steps, strict=True):
             if line in axis.lines:
                 value = line.values[step]
-                text = f"{value:.6g}" if isinstance(value, float) else shown(value)
+                finite = isinstance(value, float) and math.isfinite(value)
+                text = f"{value:.6g}" if finite else shown(value)
                 return f"{line.key.name} = {text}"
         return line.key.name

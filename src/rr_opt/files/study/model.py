@@ -29,7 +29,7 @@ RangeModel: Any = create_model(
         "to": (Any, _number("The last value.")),
         "count": (
             Annotated[int, Field(ge=2, le=MOST_CASES)],
-            Field(default=0, validate_default=False, description="How many values."),
+            Field(default=None, description="How many values."),
         ),
         "step": (Any, _number("From one value to the next.", default=None)),
         "spacing": (

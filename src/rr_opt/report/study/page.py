@@ -27,7 +27,7 @@ _CAPTIONS = {
     ),
     "held": (
         "What holds the optimum where",
-        "The limits and bounds that the best gait stands on.",
+        "The limits and bounds that the best gait stands on. Hatched on a map: no optimum.",
     ),
     "pareto": (
         "What speed costs",

@@ -14,8 +14,8 @@ from rr_opt.design.study.plan import plan
 from rr_opt.design.study.row import Row
 from rr_opt.files.study.file import Study
 from rr_opt.outcome import Status
-from rr_opt.report.quantities import direction_text, pace_text, with_unit
-from rr_opt.report.study.unit import unit_of
+from rr_opt.report.quantities import direction_text, pace_text
+from rr_opt.report.study.unit import value_text
 
 Array = NDArray[np.float64]
 
@@ -62,11 +62,7 @@ class Studied:
         inputs = self.study.inputs(case)
         for axis in self.study.axes:
             for line in axis.lines:
-                value = inputs[line.key.name]
-                unit, factor = unit_of(line.key)
-                number = isinstance(value, float)
-                text = with_unit(factor * value, unit) if number else str(value)
-                told.append(f"{line.key.name} = {text}")
+                told.append(f"{line.key.name} = {value_text(line.key, inputs[line.key.name])}")
         return ", ".join(told)
 
     @property

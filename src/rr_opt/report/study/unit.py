@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import math
+from typing import Any
+
 from rr_opt.files.study.units import Key
-from rr_opt.report.quantities import QUANTITIES
+from rr_opt.report.quantities import QUANTITIES, with_unit
 
 _LIKE = {"angle_limit": "angle", "rate_limit": "rate", "torque_limit": "torque"}
 
@@ -14,3 +17,11 @@ def unit_of(key: Key) -> tuple[str, float]:
     kind = QUANTITIES.get(_LIKE.get(name, name))
     unit, factor = kind.common if kind else (key.unit or "", 1.0)
     return ("mm", 1e3) if unit == "m" else (unit, factor)
+
+
+def value_text(key: Key, value: Any, digits: int = 4) -> str:
+    """A value of a key for people: a float, SI, in their unit; infinity is `no limit`."""
+    if not isinstance(value, float):
+        return str(value)
+    unit, factor = unit_of(key)
+    return with_unit(factor * value, unit, digits) if math.isfinite(value) else "no limit"

@@ -9,18 +9,24 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from rr_opt.files.study.axes import Axis
-from rr_opt.report.quantities import number, with_unit
-from rr_opt.report.study.unit import unit_of
+from rr_opt.report.quantities import number
+from rr_opt.report.study.unit import unit_of, value_text
 
 Array = NDArray[np.float64]
 
 _EVEN = 0.05
+_WIDEST = 60
+"""Letters of names that fit side by side under a figure."""
 
 
 @dataclass(frozen=True)
 class Shown:
-    """steps in the unit that people think in (1, 2, 3 .. for what is not a number), and how they
-    are called; factor: how many of that unit are one SI unit; log: on a logarithmic scale."""
+    """steps in the unit that people think in, and how they are called; factor: how many of that
+    unit are one SI unit; log: on a logarithmic scale.
+
+    ordered: steps are numbers with a place on a scale. If one is none, or is infinite, they are
+    named and stand one beside the other, at 1, 2, 3 ..: the finite ones by size, infinity last.
+    """
 
     label: str
     unit: str
@@ -42,7 +48,9 @@ class Shown:
             getattr(ax, f"set_{which}scale")("log")
             _plain_ticks(ax, which, self.steps)
         if not self.ordered:
-            getattr(ax, f"set_{which}ticks")(self.steps, self.texts)
+            slant = which == "x" and sum(map(len, self.texts)) > _WIDEST
+            style = {"rotation": 30, "ha": "right", "rotation_mode": "anchor"} if slant else {}
+            getattr(ax, f"set_{which}ticks")(self.steps, self.texts, **style)
 
 
 def shown(axis: Axis) -> Shown:
@@ -52,11 +60,13 @@ def shown(axis: Axis) -> Shown:
     more = f" and {len(axis.lines) - 1} more" if len(axis.lines) > 1 else ""
     numbers = line.numbers
     if numbers is None or not np.isfinite(numbers).all():
-        texts = tuple(str(value) for value in line.values)
-        steps = np.arange(1.0, len(texts) + 1)
-        return Shown(f"{line.key.name}{more}", "", steps, texts, 1.0, numbers is not None, False)
+        values = line.values if numbers is None else numbers
+        texts = tuple(value_text(line.key, value, 3) for value in values)
+        rank = np.arange(len(texts)) if numbers is None else np.argsort(np.argsort(numbers))
+        places = np.asarray(1 + rank, float)
+        return Shown(f"{line.key.name}{more}", "", places, texts, 1.0, False, False)
     steps = factor * np.array(numbers)
-    texts = tuple(with_unit(step, unit, 3) for step in steps)
+    texts = tuple(value_text(line.key, value, 3) for value in numbers)
     label = f"{line.key.name}{more}" + (f", {unit}" if unit else "")
     return Shown(label, unit, steps, texts, factor, True, _even_in_log(steps))
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -12,6 +13,10 @@ from rr_opt.report.figures.study.axis import Shown, shown
 from rr_opt.report.study.result import Studied
 
 Array = NDArray[np.float64]
+
+_GROUND = "#eceff2"
+HATCHED: dict[str, Any] = {"facecolor": _GROUND, "edgecolor": "#b4bdc6", "hatch": "////", "lw": 0}
+"""How what has no optimum looks."""
 
 
 @dataclass(frozen=True)
@@ -55,6 +60,12 @@ def grid_of(result: Studied) -> Grid | None:
     speed = np.nan_to_num(result.speed, nan=-1.0)
     best = np.take_along_axis(cases, speed[cases].argmax(axis=2)[:, :, None], axis=2)[:, :, 0]
     return Grid(x, y, best[np.ix_(y.order, x.order)], cases.shape[2] - 1)
+
+
+def hatched(ax: Axes) -> None:
+    """Hatch the ground of a map, to be seen where no cell is drawn: there is no optimum."""
+    ax.set_facecolor(_GROUND)
+    ax.fill_between([0, 1], 0, 1, transform=ax.transAxes, zorder=0, **HATCHED)
 
 
 def edges(steps: Array, *, log: bool = False) -> Array:

@@ -10,8 +10,8 @@ from matplotlib.colors import ListedColormap
 from matplotlib.patches import Patch
 
 from rr_opt.report.figures.study.axis import shown
-from rr_opt.report.figures.study.grid import Grid, edges
-from rr_opt.report.figures.style import FAINT, GREY, INK
+from rr_opt.report.figures.study.grid import HATCHED, Grid, edges, hatched
+from rr_opt.report.figures.style import FAINT, INK
 from rr_opt.report.study.result import Studied
 
 _COLOURS = ("#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#f0e442", "#5b2a86")
@@ -47,7 +47,8 @@ def lanes(ax: Axes, result: Studied) -> Axes:
 
 
 def areas(ax: Axes, result: Studied, grid: Grid) -> Axes:
-    """Each case in the colour of what holds it; the rarest share a grey."""
+    """Each case in the colour of what holds it; the rarest share a grey. Hatched: no
+    optimum."""
     sets = [None if one.optimum is None else words(one.optimum.held) for one in result.rows]
     seen = Counter(sets[case] for case in grid.cases.ravel())
     seen.pop(None, None)
@@ -57,8 +58,9 @@ def areas(ax: Axes, result: Studied, grid: Grid) -> Axes:
         if sets[case] is not None:
             index[at] = named.index(sets[case]) if sets[case] in named else len(named)
     colours = [*_COLOURS[: len(named)], _OTHERS]
+    hatched(ax)
     ax.pcolormesh(*grid.borders, index, cmap=ListedColormap(colours), vmin=-0.5,
-                  vmax=len(named) + 0.5, edgecolors="white", linewidth=0.4)  # fmt: skip
+                  vmax=len(named) + 0.5, edgecolors="white", linewidth=0.4, zorder=1)  # fmt: skip
     grid.frame(ax)
     handles = [
         Patch(color=colour, label=name) for colour, name in zip(colours, named, strict=False)
@@ -66,6 +68,6 @@ def areas(ax: Axes, result: Studied, grid: Grid) -> Axes:
     if len(seen) > len(named):
         handles.append(Patch(color=_OTHERS, label="others"))
     if np.isnan(index).any():
-        handles.append(Patch(facecolor="white", edgecolor=GREY, label="no optimum"))
+        handles.append(Patch(**HATCHED, label="no optimum"))
     ax.figure.legend(handles=handles, loc="outside lower left", labelcolor=INK)  # type: ignore[union-attr]
     return ax

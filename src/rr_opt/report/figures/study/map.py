@@ -7,9 +7,12 @@ from matplotlib.axes import Axes
 from matplotlib.colors import TwoSlopeNorm
 from matplotlib.ticker import MaxNLocator
 
-from rr_opt.report.figures.study.grid import Grid
+from rr_opt.report.figures.study.grid import Grid, hatched
 from rr_opt.report.figures.style import INK, OPTIMUM, PAPER, SIGNED
 from rr_opt.report.study.result import Studied
+
+_LEAST_CELLS = 4
+"""Along each axis, for lines of equal speed."""
 
 
 def study_map(ax: Axes, result: Studied, grid: Grid) -> Axes:
@@ -17,9 +20,7 @@ def study_map(ax: Axes, result: Studied, grid: Grid) -> Axes:
     Hatched: no optimum."""
     speed = 1e3 * result.values("speed")[grid.cases]
     top = float(np.nanmax(np.abs(speed), initial=1e-9))
-    ax.set_facecolor("#eceff2")
-    ax.fill_between([0, 1], 0, 1, transform=ax.transAxes, facecolor="none", hatch="////",
-                    edgecolor=(0, 0, 0, 0), zorder=0)  # fmt: skip
+    hatched(ax)
     cells = ax.pcolormesh(*grid.borders, speed, cmap=SIGNED, norm=TwoSlopeNorm(0.0, -top, top),
                           zorder=1)  # fmt: skip
     cells.set_edgecolor("face")
@@ -39,7 +40,8 @@ def study_map(ax: Axes, result: Studied, grid: Grid) -> Axes:
 
 
 def _contours(ax: Axes, speed: np.ndarray, grid: Grid) -> None:
-    if min(speed.shape) < 3:
+    """Lines of equal speed, where there are cells enough, on scales, to draw them between."""
+    if min(speed.shape) < _LEAST_CELLS or not (grid.x.ordered and grid.y.ordered):
         return
     lines = ax.contour(*grid.centres, speed, levels=7, colors=INK, linewidths=0.7, alpha=0.75,
                        zorder=3)  # fmt: skip

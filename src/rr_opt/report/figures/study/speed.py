@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap, LogNorm, Normalize
 
 from rr_opt.report.figures.study.axis import Shown, shown
-from rr_opt.report.figures.style import BACKWARD, FORWARD, GREY, INK, LIMIT, note
+from rr_opt.report.figures.style import BACKWARD, FORWARD, GREY, INK, LIMIT
 from rr_opt.report.study.result import Studied
 
 FAMILY = LinearSegmentedColormap.from_list(
@@ -44,10 +44,17 @@ def speed(ax: Axes, result: Studied, along: int) -> Axes:
             way = FORWARD if forward else BACKWARD
             ax.plot(x[at], y[at], "^" if forward else "v", ms=6, color=colour or way, mec="white",
                     mew=0.6, zorder=4)  # fmt: skip
-        if not others:
+        if not others and mine.ordered:
             _tangents(ax, result, cases, mine)
     if worst:
-        note(ax, f"{worst} cases without an optimum are left out", y=0.06, va="bottom")
+        words = (
+            "1 case without an optimum is"
+            if worst == 1
+            else f"{worst} cases without an optimum are"
+        )
+        # Above the axes: within them it would lie over curves.
+        ax.set_title(f"{words} left out", loc="right", fontsize=9.0, fontweight="normal",
+                     color=GREY)  # fmt: skip
     mine.scale(ax)
     ax.set_ylim(0, 1.06e3 * np.nanmax(result.speed))
     ax.set_ylabel("speed, mm/s")
@@ -108,7 +115,7 @@ class _Colours:
             return INK
         if self._norm is not None:
             return FAMILY(float(self._norm(self._axis.steps[step])))  # type: ignore[return-value]
-        return FAMILY(step / max(len(self._axis.steps) - 1, 1))  # type: ignore[return-value]
+        return FAMILY((self._axis.steps[step] - 1) / max(len(self._axis.steps) - 1, 1))  # type: ignore[return-value]
 
     def explain(self, ax: Axes) -> None:
         axis = self._axis

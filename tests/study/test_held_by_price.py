@@ -1,0 +1,59 @@
+"""A free gait is held by a limit of which it stays short, if raising it makes the gait faster."""
+
+from dataclasses import replace
+
+import pytest
+
+from rr_opt.design.decisions import decisions
+from rr_opt.design.refine import solve_from
+from rr_opt.design.setting import robot_of, settings_of
+from rr_opt.design.study.held import held
+from rr_opt.design.study.reached import reached
+from rr_opt.files import read_problem
+from rr_opt.motion.steady_cycle import steady_cycle
+from rr_opt.problem import GaitBounds, Interval, Limits, Problem, RatioChoice
+from rr_opt.robot.gait import SineGait
+
+STEP = 1e-3
+ANGLE, RATE, TORQUE = 0.9, 6.28, 1.37
+SHORT = 1e-3
+"""Ten times as far from its limit, relative, as a sine comes to one that holds it."""
+
+
+@pytest.fixture(scope="module")
+def solve():
+    robot = read_problem(None).robot
+    bounds = GaitBounds(Interval(0.2, 2.6), Interval(1.0, 1.5), shape="free", intervals=24)
+    choice = RatioChoice(Interval(0.04, 0.04))
+
+    def one(limits: Limits, start):
+        problem = Problem(robot, limits, bounds, choice)
+        (setting,) = settings_of(problem, decisions(problem))
+        found = solve_from(setting, 1, start, 0.0)
+        assert found.success
+        return setting, found
+
+    return one
+
+
+def test_limits_and_bounds_hold_where_their_price_says_so(solve):
+    limits = Limits(ANGLE, RATE, TORQUE)
+    setting, here = solve(limits, SineGait(0.8, 1.0))
+    robot = robot_of(setting, here.share)
+    extremes = reached(robot, steady_cycle(robot, here.gait))
+    on = held(setting.problem, here, extremes, 0.04)
+    assert extremes["angle"] < ANGLE * (1 - SHORT)
+    prices = {}
+    for name in ("angle", "rate", "torque"):
+        limit = getattr(limits, name)
+        low, high = (
+            solve(replace(limits, **{name: limit * (1 + side * STEP)}), here.gait)[1].speed
+            for side in (-1, 1)
+        )
+        slope = (high - low) / (2 * STEP * limit)
+        if slope * limit > 1e-3 * here.speed:
+            prices[name] = slope
+    assert "angle" in prices
+    assert on.prices == pytest.approx(prices, rel=0.03)
+    assert "least period" in on.names
+    assert not any("offset" in name or "amplitude" in name for name in on.names)
