@@ -59,7 +59,7 @@ results: $(RUN) ## write the results that are kept in results/
 	$(BIN)/rr-opt maximize-speed problems/turning --out results/turning
 	$(BIN)/rr-opt shapes --out results/shapes
 	$(BIN)/rr-opt turn-chart --out results/turn-chart
-	$(BIN)/rr-opt study problems/studies/servo.yaml --out results/servo
+	$(BIN)/rr-opt study problems/studies/servo.yaml --restart --out results/servo
 
 bench: $(DEV) ## measure against other ways to the same answer, into results/bench
 	$(BIN)/python -m benchmarks.optimise
