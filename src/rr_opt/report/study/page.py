@@ -48,7 +48,9 @@ def page(result: Studied, figures: Mapping[str, str]) -> str:
         card("Cases without an optimum", _failures(result)),
         card("All cases" if len(result.rows) <= _MOST_ROWS else f"The first {_MOST_ROWS} cases",
              _cases_table(result, range(min(len(result.rows), _MOST_ROWS)))),
-        f"<footer>rr-opt {escape(__version__)} · input SHA-256 "
+        "<footer>Each optimum was held against its limits and a fine simulation; a sweep for one "
+        "of them is `rr-opt maximize-speed`. "
+        f"rr-opt {escape(__version__)} · input SHA-256 "
         f"<code>{escape(result.study.sha256)}</code></footer>",
     ]  # fmt: skip
     title = escape(f"{result.study.name}: {_verdict(result)}")
