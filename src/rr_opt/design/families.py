@@ -83,7 +83,7 @@ def _next(problem: Problem, before: Finds, progress: Progress) -> Finds:
         setting = next(new for new in settings if new.fixed_share == old.fixed_share)
         starts.append((setting, one.sign, one.gait, one.share))
     first = problem.gait.harmonics <= _ON_THE_WAY["fourier"][0]
-    if problem.gait.shape == "fourier" or not starts:
+    if problem.gait.shape == "fourier" or len(starts) < _HANDED_ON:
         for setting in settings[:1] if starts else settings:
             for seed in scan_shapes(
                 setting, SIGNS[problem.direction], _SCANNED if first else _SCANNED_LATER

@@ -82,6 +82,17 @@ class Answer:
         return Status.NOT_CONVERGED
 
     @property
+    def headline(self) -> str:
+        """What was found, for the head of a page; empty if nothing was confirmed."""
+        best = self.optimum.best
+        if self.status is not Status.OPTIMAL or best is None:
+            return ""
+        return (
+            f"The fastest gait found drives {direction_text(best.speed)} at "
+            f"{1e3 * abs(best.speed):.1f} mm/s"
+        )
+
+    @property
     def message(self) -> str:
         """The outcome in a paragraph; a failed check comes first."""
         failed = [check.sentence for check in self.checks if not check.passed]

@@ -79,13 +79,7 @@ def _gallery(figures: Mapping[str, str]) -> str:
 
 
 def _verdict(answer: Answer) -> str:
-    best = answer.optimum.best
-    if answer.status is not Status.OPTIMAL or best is None:
-        return _HEADS[answer.status]
-    return (
-        f"The fastest gait found drives {direction_text(best.speed)} at "
-        f"{1e3 * abs(best.speed):.1f} mm/s"
-    )
+    return answer.headline or _HEADS[answer.status]
 
 
 def _header(answer: Answer) -> str:

@@ -60,7 +60,7 @@ def cycle_text(answer: Answer) -> str:
         return f"{step}, straight"
     return (
         f"{step}, round a circle of radius {with_unit(cycle.radius, 'm')}, "
-        f"turning {math.degrees(cycle.dpsi):+.2f} deg a period"
+        f"turning {math.degrees(cycle.dpsi):+.3g} deg a period"
     )
 
 

@@ -73,7 +73,10 @@ def turn_clashes(problem: Problem, box: Decisions, landscapes: list[Landscape]) 
         return []
     sentences = [f"The turn asked for is {asked_text(turn)}."]
     if nearest.distance >= OUT_OF_REACH:
-        sentences.append(f"Every gait tried that keeps the limits drives {_OPPOSITE[direction]}.")
+        sentences.append(
+            f"Every gait tried that keeps the limits drives {_OPPOSITE[direction]}; one that was "
+            "not tried may not."
+        )
     else:
         gait, held = nearest.gait, held_by(problem, box, nearest)
         listed = " and ".join([", ".join(held[:-1]), held[-1]] if len(held) > 1 else held)

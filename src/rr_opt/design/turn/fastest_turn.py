@@ -24,8 +24,8 @@ from rr_opt.problem import Interval, Problem
 
 Progress = Callable[[str], None]
 
-_WHOLE = 1e-5
-"""A number of periods this near to a whole one, relative, is that."""
+_WHOLE = 1e-4
+"""A number of periods this near to a whole one is that."""
 
 
 @dataclass(frozen=True)
@@ -122,7 +122,7 @@ def _whole(problem: Problem, heading: float, relaxed: Optimum, progress: Progres
         if best and best.best and abs(optimum.best.speed) <= abs(best.best.speed):
             continue
         nearest = max(round(arc.periods), 1)
-        if abs(arc.periods - nearest) <= _WHOLE * nearest:
+        if abs(arc.periods - nearest) <= _WHOLE:
             best = optimum
             continue
         below = math.floor(arc.periods)

@@ -21,10 +21,12 @@ def cycle(axes: Sequence[Axes], steady: SteadyCycle, limits: Limits) -> Sequence
     against_limit(axes[0], t, steady.phi, limits.angle, "φ, rad")
     against_limit(axes[1], t, steady.gait.rate(t), limits.rate, "dφ/dt, rad/s")
     axes[2].plot(t, steady.v, color=INK)
-    axes[2].axhline(steady.speed, color=colour_of(steady.speed), lw=1.3, ls=(0, (5, 2)))
+    mean = float(steady.v[:-1].mean())
+    axes[2].axhline(mean, color=colour_of(steady.speed), lw=1.3, ls=(0, (5, 2)))
     axes[2].set_ylabel("v, m/s")
     axes[2].margins(y=0.25)
-    note(axes[2], f"mean speed {steady.speed:+.4f} m/s", color=colour_of(steady.speed))
+    told = f"mean of v {mean:+.4f} m/s, of P on its way {steady.speed:+.4f} m/s"
+    note(axes[2], told, color=colour_of(steady.speed))
     against_limit(axes[3], t, steady.torque, limits.torque, "τ, N m")
     axes[3].set_xlabel("time, s")
     for ax in axes:

@@ -37,6 +37,18 @@ class TurnAnswer(Answer):
         return checks
 
     @property
+    def headline(self) -> str:
+        """The turn that was found."""
+        arc = self.arc
+        if arc is None or not super().headline:
+            return ""
+        return (
+            f"The fastest turn found goes {direction_text(arc.speed)} and to the "
+            f"{side(arc.curvature)} round {with_unit(radius(arc), 'm')} at "
+            f"{1e3 * abs(arc.speed):.1f} mm/s"
+        )
+
+    @property
     def message(self) -> str:
         """The outcome in a paragraph."""
         text = super().message

@@ -29,6 +29,12 @@ _COLUMNS = (
 )  # fmt: skip
 
 
+_SPIN = 1e-4
+"""A smaller radius, m, is that of a robot that turns on the spot."""
+_AGREED = 1e-3
+"""Two searches agree if they differ by no more, relative."""
+
+
 @dataclass(frozen=True)
 class TurnChart:
     """name and sha256 of the input; the map drawn and written; the tightest circle; the paper's
@@ -51,11 +57,18 @@ class TurnChart:
         """The outcome in a sentence."""
         if self.tight is None:
             return "None of the gaits tried turns and keeps every limit. Widen the bounds."
-        return (
-            f"The tightest circle within the limits has a radius of "
-            f"{with_unit(self.tight.radius, 'm')}, and two searches agree on it to "
-            f"{max(self.tight.error, 1e-9):.1e} m."
+        radius, error = self.tight.radius, self.tight.error
+        if radius < _SPIN:
+            return (
+                "The robot can turn on the spot: where its speed passes through 0 the circles "
+                f"become as tight as you like, next to {_told(self.tight.gait)}."
+            )
+        text = (
+            f"The tightest circle found within the limits has a radius of {with_unit(radius, 'm')}"
         )
+        if error > _AGREED * radius:
+            return f"{text}. Two searches differ by {error:.1e} m: there may be a tighter one."
+        return f"{text}, and two searches agree on it to {max(error, 1e-9):.1e} m."
 
 
 def chart_summary(chart: TurnChart, files: list[Path]) -> str:

@@ -55,7 +55,10 @@ def arc_rows(answer: TurnAnswer) -> list[tuple[str, str]]:
     return [
         (name, f"{number(degrees)} deg to the {side(arc.heading)}"),
         ("  radius", with_unit(radius(arc), "m")),
-        ("  time", f"{with_unit(arc.time, 's')}, {number(arc.periods, 6)} periods"),
+        (
+            "  time",
+            f"{with_unit(arc.time, 's')}, {number(arc.periods, 6)} periods, in steady motion",
+        ),
         ("  length", f"{with_unit(arc.length, 'm')} along the mean circle"),
         ("  yaw rate", f"{number(math.degrees(arc.yaw_rate))} deg/s"),
         *_price_rows(answer),

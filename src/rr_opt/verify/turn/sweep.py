@@ -8,16 +8,18 @@ from __future__ import annotations
 
 import itertools
 import math
+from dataclasses import replace
+from math import isclose
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rr_opt.problem import Problem
+from rr_opt.problem import Interval, Problem
 from rr_opt.robot.gait import Gait, SineGait
 from rr_opt.verify.evaluate import Found
 from rr_opt.verify.given import speed_of
-from rr_opt.verify.grid import boxes
+from rr_opt.verify.grid import boxes, whole_loads
 from rr_opt.verify.speeds import least_S1, model_of, robot_with, speeds
 from rr_opt.verify.sweep import SweepCheck
 from rr_opt.verify.turn.points import Care, Points, Turning
@@ -49,11 +51,26 @@ _EFFORT = {
 def check_turn(problem: Problem, gait: Gait, ratio: float | None, speed: float) -> SweepCheck:
     """Hold a claimed fastest turn against a sweep, as `check_optimum` does without a turn.
 
-    A gait of another shape is held against all sines.
+    A gait of another shape is held against all sines. Of whole loads every number is swept.
     """
+    choice = problem.inertia_ratio
+    if choice is None:
+        return _check(problem, gait, None, speed, None)
+    if not (choice.by == "loads" and choice.loads.whole):
+        return _check(problem, gait, ratio, speed, boxes(problem)["ratio"])
+    checks = [
+        _check(problem, gait, ratio, speed, Interval(loaded, loaded))
+        for loaded in whole_loads(problem).tolist()
+    ]
+    best = min(checks, key=lambda check: check.gap)
+    return replace(best, points=sum(check.points for check in checks))
+
+
+def _check(
+    problem: Problem, gait: Gait, ratio: float | None, speed: float, ratios: Interval | None
+) -> SweepCheck:
+    """Over these ratios; the claimed gait is followed if its own is one of them."""
     effort = _EFFORT[model_of(problem.robot).viscous]
-    ratios = None if problem.inertia_ratio is None else boxes(problem)["ratio"]
-    ratio = None if ratios is None else ratio
     wide, turning = (Turning(problem, ratios, care) for care in (effort.wide, effort.close))
     fixed = [box.fixed for box in (problem.gait.period, problem.gait.offset)]
     counts = list(effort.counts)
@@ -69,7 +86,8 @@ def check_turn(problem: Problem, gait: Gait, ratio: float | None, speed: float) 
     if isinstance(gait, SineGait):
         sine = (gait.amplitude, gait.period, gait.offset)
         claimed = float(speeds(problem, *sine, ratio, effort.close.tolerance).speed)
-        own = turning.place(np.array([*sine, ratio or 0.0]))
+        if ratio is None or ratios is None or not ratios.fixed or isclose(ratio, ratios.low):
+            own = turning.place(np.array([*sine, ratio or 0.0]))
     else:
         claimed = speed_of(robot_with(problem, ratio), gait).speed
     best = None
