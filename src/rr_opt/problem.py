@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -60,6 +61,10 @@ class RatioChoice:
     loads: Loads = field(default_factory=Loads)
 
 
+LARGEST_EXCESS = 1e-4
+"""By so much, relative to it, a gait may go over a limit and still counts as keeping it."""
+
+
 @dataclass(frozen=True)
 class Limits:
     """|phi| <= angle (rad), |dphi/dt| <= rate (rad/s), |torque| <= torque (N m),
@@ -69,6 +74,21 @@ class Limits:
     rate: float
     torque: float
     singularity: float = 0.020
+
+    def worst(self, reached: Mapping[str, float]) -> tuple[str, float]:
+        """The limit that is broken most, or kept most narrowly, and its excess relative to it.
+
+        reached: the extreme of what each limit bounds, by the limit's name, SI.
+        """
+        limits = {name: getattr(self, name) for name in reached}
+        excess = {
+            name: (limit - reached[name] if name == "singularity" else reached[name] - limit)
+            / abs(limit)
+            for name, limit in limits.items()
+            if math.isfinite(limit)
+        }
+        name = max(excess, key=lambda one: excess[one])
+        return name, excess[name]
 
 
 ANY = Interval(-math.inf, math.inf)

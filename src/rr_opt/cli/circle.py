@@ -37,7 +37,8 @@ def circle(
             read_options,
             read_source,
         )
-        from rr_opt.motion.circle import circle_of, require_regular  # noqa: PLC0415
+        from rr_opt.motion.circle import circle_of  # noqa: PLC0415
+        from rr_opt.motion.regular import require_regular  # noqa: PLC0415
         from rr_opt.motion.steady_cycle import steady_cycle  # noqa: PLC0415
         from rr_opt.motion.transient import transient  # noqa: PLC0415
         from rr_opt.physics.dynamics import require_friction  # noqa: PLC0415

@@ -9,8 +9,6 @@ import numpy as np
 
 from rr_opt.motion.cycle import Cycle
 from rr_opt.outcome import InputError
-from rr_opt.robot.gait import Gait
-from rr_opt.robot.parameters import Robot
 
 STRAIGHT = 1e-12
 """Heading per period, rad, up to which it is rounding and the gait straight."""
@@ -77,16 +75,6 @@ def circle_of(cycle: Cycle) -> Circle:
         period=cycle.period,
         centre=None if straight else _centre(cycle),
     )
-
-
-def require_regular(robot: Robot, gait: Gait) -> None:
-    """Raise InputError for a gait that reaches the singular posture: it has no circle."""
-    if gait.peak_angle >= robot.singular_angle:
-        raise InputError(
-            f"The gait reaches |phi| = {gait.peak_angle:.4g} rad. The robot is singular at "
-            f"{robot.singular_angle:.4g} rad, where no motion without side slip exists. Lower the "
-            "amplitude or the offset."
-        )
 
 
 def _centre(cycle: Cycle) -> tuple[float, float]:

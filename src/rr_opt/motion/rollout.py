@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rr_opt.motion.integrator import cvodes
+from rr_opt.motion.regular import require_regular
 from rr_opt.motion.steady_cycle import SteadyCycle, steady_cycle
 from rr_opt.motion.torque import torque_after
 from rr_opt.outcome import InputError
@@ -61,16 +62,6 @@ def rollout(robot: Robot, gait: Gait, seconds: float, start: Start, rate: float)
     t = np.arange(count + 1) / rate
     v, psi, x, y, _ = cvodes(robot, gait, v0, t)
     return Trajectory(t, x, y, psi, gait.angle(t), v, torque_after(robot, gait, t, v))
-
-
-def require_regular(robot: Robot, gait: Gait) -> None:
-    """Raise InputError for a gait that reaches the singular posture."""
-    if gait.peak_angle >= robot.singular_angle:
-        raise InputError(
-            f"The gait reaches |phi| = {gait.peak_angle:.4g} rad. The robot is singular at "
-            f"{robot.singular_angle:.4g} rad, where both axles point at one centre and no motion "
-            "without side slip exists. Lower the amplitude or the offset."
-        )
 
 
 def one_period(steady: SteadyCycle) -> Trajectory:

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 
 from rr_opt.design.maximize_speed import Optimum
 from rr_opt.outcome import Status
+from rr_opt.problem import LARGEST_EXCESS
 from rr_opt.report.quantities import direction_text, pace_text
 from rr_opt.robot.gait import Gait
 from rr_opt.verify.replay import Replay
 from rr_opt.verify.sweep import TOLERATED, SweepCheck
 
 LARGEST_REPLAY_ERROR = 1e-6
-LARGEST_EXCESS = 1e-4
 
 
 @dataclass(frozen=True)

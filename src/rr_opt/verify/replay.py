@@ -9,15 +9,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
+from rr_opt.motion.peaks import BETWEEN, peak_torque
 from rr_opt.motion.steady_cycle import SteadyCycle, reference_cycle
 from rr_opt.problem import Limits
 from rr_opt.robot.gait import Gait
 from rr_opt.robot.parameters import Robot
-
-_BETWEEN = 16
-"""Points among which a peak is looked for, for each sample of the cycle."""
 
 
 @dataclass(frozen=True)
@@ -44,28 +41,14 @@ def replay(robot: Robot, gait: Gait, limits: Limits, claimed: float) -> Replay:
     Raises NotConvergedError if the gait has no steady cycle.
     """
     steady = reference_cycle(robot, gait)
-    dense = np.linspace(0.0, gait.period, _BETWEEN * (len(steady.t) - 1) + 1)
+    dense = np.linspace(0.0, gait.period, BETWEEN * (len(steady.t) - 1) + 1)
     phi = gait.angle(dense)
     S1 = robot.platform1.c * np.cos(phi) + robot.platform2.c
     reached = {
         "rate": float(np.abs(gait.rate(dense)).max()),
         "angle": float(np.abs(phi).max()),
-        "torque": _peak_torque(steady),
+        "torque": peak_torque(steady),
         "singularity": float(S1.min()),
     }
-    excess = max(
-        *(reached[name] / getattr(limits, name) - 1 for name in ("rate", "angle", "torque")),
-        1 - reached["singularity"] / limits.singularity,
-    )
+    _, excess = limits.worst(reached)
     return Replay(steady.speed, abs(steady.speed - claimed) / abs(claimed), reached, excess, steady)
-
-
-def _peak_torque(steady: SteadyCycle) -> float:
-    """Largest |torque|: a spline on each piece, from just after a jump to just before the next."""
-    pieces = steady.gait.pieces
-    each = (len(steady.t) - 1) // pieces
-    inside = steady.torque[:-1].reshape(pieces, each)
-    ends = steady.torque_before[each::each, None]
-    at = np.arange(each + 1)
-    spline = CubicSpline(at, np.hstack([inside, ends]), axis=1)
-    return float(np.abs(spline(np.linspace(0, each, _BETWEEN * each + 1))).max())

@@ -5,17 +5,15 @@ from __future__ import annotations
 from rr_opt.design.solve import Candidate
 from rr_opt.design.study.energy import energy
 from rr_opt.design.study.held import held
-from rr_opt.design.study.reached import UNITS, reached, worst
+from rr_opt.design.study.reached import UNITS, reached
 from rr_opt.design.study.row import Optimum, Row, gait_record
 from rr_opt.motion.steady_cycle import steady_cycle
 from rr_opt.outcome import Status
-from rr_opt.problem import Problem
+from rr_opt.problem import LARGEST_EXCESS, Problem
 from rr_opt.robot.parameters import Robot
 
 _CLAIM = 1e-6
 """Largest difference of a claimed speed from that of the steady cycle, relative."""
-LARGEST_EXCESS = 1e-4
-"""Largest excess over a limit that passes, relative to the limit."""
 _STRAIGHT = 1e-7
 """Heading gained per period below which the robot goes straight, rad."""
 _SIDEWAYS = 1e-3
@@ -37,7 +35,7 @@ def measured(problem: Problem, best: Candidate, robot: Robot, ratio: float) -> R
         )
         return Row(Status.NOT_CONVERGED, message)
     extremes = reached(robot, steady)
-    name, excess = worst(problem.limits, extremes)
+    name, excess = problem.limits.worst(extremes)
     if not excess <= LARGEST_EXCESS:
         unit, limit = UNITS[name], getattr(problem.limits, name)
         message = (

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from rr_opt.motion.rollout import require_regular
+from rr_opt.motion.regular import require_regular
 from rr_opt.motion.steady_cycle import steady_cycle
 from rr_opt.physics.dynamics import require_friction
 from rr_opt.report.setpoints.setpoints import SetPoints, held
