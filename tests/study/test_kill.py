@@ -55,7 +55,7 @@ def test_killed_and_interrupted_and_finished(tmp_path):
         stdout, stderr = running.communicate(timeout=30)
     assert running.returncode == 130, stderr
     assert not stdout
-    assert "Traceback" not in stderr
+    assert "Traceback" not in stderr, stderr
     assert "rows are kept" in stderr
     between = lines(journal)
     with start(tmp_path) as running:
