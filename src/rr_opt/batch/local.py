@@ -15,6 +15,8 @@ from joblib.externals.loky import ProcessPoolExecutor
 
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 _LOOK = 1.0  # s
+_HANDED_ON = 1.0
+"""So long the executor may take to hand work on before it is ended, s."""
 
 
 class LocalPool:
@@ -26,6 +28,7 @@ class LocalPool:
     def __init__(self, workers: int | None = None):
         self.workers = workers or cpu_count()
         self._executor = self._started()
+        self._given: set[Future[Any]] = set()
 
     @property
     def ahead(self) -> int:
@@ -34,7 +37,14 @@ class LocalPool:
 
     def submit(self, function: Callable[[Any], Any], argument: Any) -> Future[Any]:
         """Have function(argument) computed."""
-        return self._executor.submit(function, argument)
+        # Ctrl-C in the middle would leave work behind that nobody knows of.
+        before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+        try:
+            future = self._executor.submit(function, argument)
+            self._given = {one for one in self._given if not one.done()} | {future}
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, before)
+        return future
 
     def is_lost(self, error: BaseException) -> bool:  # noqa: ARG002 - as every pool
         """Never: what died is told by BrokenExecutor."""
@@ -42,11 +52,16 @@ class LocalPool:
 
     def restart(self) -> None:
         """Start new processes."""
-        self._executor.shutdown(wait=True, kill_workers=True)
+        self.close()
         self._executor = self._started()
 
     def close(self) -> None:
         """End all processes."""
+        # The executor's own thread fails loudly if it is ended before it has handed work on.
+        end = time.monotonic() + _HANDED_ON
+        while time.monotonic() < end and not all(f.running() or f.done() for f in self._given):
+            time.sleep(_HANDED_ON / 100)
+        self._given = set()
         self._executor.shutdown(wait=True, kill_workers=True)
 
     def _started(self) -> ProcessPoolExecutor:
