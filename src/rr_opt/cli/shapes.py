@@ -34,11 +34,17 @@ def shapes(
         from rr_opt.design.maximize_speed import compare_shapes  # noqa: PLC0415
         from rr_opt.report.shapes.compared import Compared, family_name, record, summary  # noqa: PLC0415
         from rr_opt.report.shapes.files import write_shapes  # noqa: PLC0415
+        from rr_opt.verify.sweep import sweep  # noqa: PLC0415
 
-        answers = []
-        for optimum in compare_shapes(posed, steps):
+        optima = compare_shapes(posed, steps)
+        answers, swept = [], None
+        if any(one.best for one in optima):
+            # One for all: it is a sweep of the sines, whatever the shape.
+            steps("sweep of all sines")
+            swept = sweep(posed)
+        for optimum in optima:
             family = family_name(optimum.problem.gait)
-            answers.append(checked(f"{name}, {family}", sha256, optimum, steps))
+            answers.append(checked(f"{name}, {family}", sha256, optimum, steps, swept))
         compared = Compared(name, sha256, tuple(answers))
         written = write_shapes(compared, folder, figures=figures, progress=steps)
     if json:

@@ -31,6 +31,7 @@ __all__ = [
     "SweepCheck",
     "SweepResult",
     "check_optimum",
+    "held_against",
     "speed_map",
     "speeds",
     "sweep",
@@ -149,6 +150,7 @@ def check_optimum(
     ratio: float | None,
     speed: float,
     counts: Mapping[str, int] | int | None = None,
+    everywhere: SweepResult | None = None,
 ) -> SweepCheck:
     """Hold a claimed optimum against a sweep of the whole problem and a dense grid around it.
 
@@ -156,12 +158,12 @@ def check_optimum(
     short of.
 
     gait, ratio (J20/J10 in the problem's definition; read only if the problem has one) and
-    signed speed (m/s) as claimed; counts as for `sweep`.
+    signed speed (m/s) as claimed; counts as for `sweep`, or what it found where that is known.
     """
     effort = _EFFORT[model_of(problem.robot).viscous]
     if problem.inertia_ratio is None:
         ratio = None
-    everywhere = sweep(problem, counts)
+    everywhere = everywhere or sweep(problem, counts)
     finalists, points = [everywhere.refined, everywhere.best], everywhere.points
     if isinstance(gait, SineGait):
         own = speeds(problem, gait.amplitude, gait.period, gait.offset, ratio, effort.fine)
@@ -175,15 +177,21 @@ def check_optimum(
         here = speed_of(robot_with(problem, ratio), gait).speed
     # A grid of dry friction is coarse: what is held against the claim is as fine as the claim.
     best = _fastest([one and _resolved(problem, one, _FINAL) for one in finalists])
+    return held_against(speed, here, best, points)
+
+
+def held_against(claimed: float, own: float, best: Found | None, points: int) -> SweepCheck:
+    """A claimed speed held against the model's own of that gait (both signed, m/s) and against
+    the best that was found among so many points."""
     reached = math.nan if best is None else best.speed
     return SweepCheck(
         points=points,
         best_speed=reached,
         best_gait=best.gait if best else None,
         best_ratio=best.ratio if best else None,
-        gap=(abs(speed) - abs(reached)) / abs(speed) if best else math.inf,
-        speed=here,
-        error=abs(here - speed) / abs(speed),
+        gap=(abs(claimed) - abs(reached)) / abs(claimed) if best else math.inf,
+        speed=own,
+        error=abs(own - claimed) / abs(claimed),
     )
 
 

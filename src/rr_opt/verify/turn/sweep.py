@@ -21,7 +21,7 @@ from rr_opt.verify.evaluate import Found
 from rr_opt.verify.given import speed_of
 from rr_opt.verify.grid import boxes, whole_loads
 from rr_opt.verify.speeds import least_S1, model_of, robot_with, speeds
-from rr_opt.verify.sweep import SweepCheck
+from rr_opt.verify.sweep import SweepCheck, held_against
 from rr_opt.verify.turn.points import Care, Points, Turning
 
 Array = NDArray[np.float64]
@@ -98,16 +98,7 @@ def _check(
         points += more
         best = found if _speed(problem, turning, found) > _speed(problem, turning, best) else best
     top = _found(turning, best, ratios is not None)
-    reached = math.nan if top is None else top.speed
-    return SweepCheck(
-        points=points,
-        best_speed=reached,
-        best_gait=top.gait if top else None,
-        best_ratio=top.ratio if top else None,
-        gap=(abs(speed) - abs(reached)) / abs(speed) if top else math.inf,
-        speed=claimed,
-        error=abs(claimed - speed) / abs(speed),
-    )
+    return held_against(speed, claimed, top, points)
 
 
 def _closer(
