@@ -1,0 +1,1 @@
+"""Recordings in: from the file of a capture system to a clean, synchronised recording."""
