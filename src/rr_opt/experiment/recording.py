@@ -32,9 +32,11 @@ class Recording:
     values  by channel (n,): x, y the joint P, m; psi the heading of platform 1 and phi the angle of
             platform 2's axis against platform 1's, unwrapped, rad; torque of the servo, N m, if it
             was recorded. A value that is flagged stays as it was read; where there was none, NaN
-    sigma   by channel (n,), the noise's standard deviation, same units; may differ by sample
+    sigma   by channel (n,), the noise's standard deviation, same units; may differ by sample; NaN
+            where nobody said
     flags   by channel (n,), `Flag`
     source  where it came from: file, format, rate, clock, what was done to it; plain text by name
+    doubts  sentences on what looked wrong in it and what was made of it
     """
 
     name: str
@@ -43,6 +45,7 @@ class Recording:
     sigma: Mapping[str, Array]
     flags: Mapping[str, NDArray[np.uint8]]
     source: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
+    doubts: tuple[str, ...] = ()
 
     def __len__(self) -> int:
         return len(self.t)

@@ -25,6 +25,9 @@ _BINARY = {
     ca.OP_ATAN2: np.arctan2,
     ca.OP_FMIN: np.minimum,
     ca.OP_FMAX: np.maximum,
+    ca.OP_LT: np.less,
+    ca.OP_LE: np.less_equal,
+    ca.OP_IF_ELSE_ZERO: lambda condition, x: np.where(condition, x, 0.0),
 }
 _UNARY = {
     ca.OP_ASSIGN: np.positive,
@@ -40,6 +43,7 @@ _UNARY = {
     ca.OP_FABS: np.abs,
     ca.OP_SIGN: np.sign,
     ca.OP_INV: np.reciprocal,
+    ca.OP_NOT: np.logical_not,
     ca.OP_TWICE: lambda x: x + x,
 }
 

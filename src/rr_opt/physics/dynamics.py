@@ -1,16 +1,8 @@
 """The equation of motion and the servo torque, by Kane's method, for any set of effects.
 
-With u = (v, s1, s2, dphi) the speeds of `kinematics`, every velocity and rate of the mechanism is
-a function of phi and u, linear in u. A body of mass m whose centre moves at V, seen from a
-platform that turns at w, accelerates by dV/dt + w x V; a rotor of inertia I turning at w by
-dw/dt. Kane's equation for speed j equates what they need with what forces F and the servo give:
-
-    sum m (dV/dt + w x V) . dV/du_j + sum I dw/dt dw/du_j = sum F . dV/du_j + (0, F1, F2, torque)_j
-
-Row v is the equation of motion, rows s1 and s2 give the side forces that hold the axles, and
-row dphi gives the servo torque, which acts on platform 2 and reacts on platform 1. All partial
-velocities and rates of change are CasADi's; `tests/physics` holds the result against the paper's
-closed form, whose printed equation (3) has sign errors, and against Lagrange multipliers.
+Row v of Kane's equations (`kane`), with the axles held, is the equation of motion; the other rows
+give the side forces and the torque. `tests/physics` holds the result against the paper's closed
+form, whose printed equation (3) has sign errors, and against Lagrange multipliers.
 """
 
 from __future__ import annotations
@@ -23,14 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rr_opt.outcome import InputError
-from rr_opt.physics.effects import CATALOGUE
-from rr_opt.physics.kinematics import (
-    ROBOT_PARAMETERS,
-    SPEEDS,
-    Mechanism,
-    mechanism,
-    robot_values,
-)
+from rr_opt.physics.assembly import assembled, values_of
+from rr_opt.physics.kane import equations
+from rr_opt.physics.kinematics import SPEEDS, Mechanism
 from rr_opt.robot.parameters import Robot
 
 
@@ -55,13 +42,7 @@ class Dynamics:
 
     def values(self, robot: Robot) -> NDArray[np.float64]:
         """The parameter vector p of a robot that has these effects, SI."""
-        chosen = {use.name: use.values for use in robot.physics}
-        beyond = (
-            chosen[name][parameter.name]
-            for name in self.effects
-            for parameter in CATALOGUE[name].parameters
-        )
-        return np.array([*robot_values(robot), *beyond])
+        return values_of(robot, self.parameters)
 
     def dissipates(self, robot: Robot) -> bool:
         """Whether motion costs the robot energy; without that no gait ever settles."""
@@ -86,51 +67,32 @@ def require_friction(robot: Robot) -> None:
 
 @lru_cache
 def derive(effects: tuple[str, ...] = ()) -> Dynamics:
-    """Derive the model with the named effects of the catalogue."""
-    robot = mechanism()
-    symbols = [robot.parameters[name] for name in ROBOT_PARAMETERS]
-    names = list(ROBOT_PARAMETERS)
-    for name in effects:
-        effect = CATALOGUE[name]
-        values = {q.name: ca.SX.sym(f"{name}.{q.name}") for q in effect.parameters}
-        robot = effect.enter(robot, values)
-        symbols += values.values()
-        names += [f"{name}.{parameter}" for parameter in values]
+    """Derive the model with the named effects of the catalogue.
 
-    return _kane(robot, effects, tuple(names), ca.vertcat(*symbols))
+    Raises InputError for an effect that has no place in a steady cycle with held axles.
+    """
+    assembly = assembled(effects)
+    robot = assembly.mechanism
+    if len(robot.held) < 2 or any(ca.depends_on(f.vector, robot.pose) for f in robot.forces):
+        raise InputError(
+            f"With {', '.join(effects)} a gait has no steady cycle of its own: the axles slip, or "
+            "place and heading count. Expected effects that are the same everywhere. Leave out "
+            "what belongs to the floor; `rr-opt diagnose` takes every effect."
+        )
+    return _held(robot, effects, assembly.parameters, assembly.p)
 
 
-def _kane(robot: Mechanism, effects: tuple[str, ...], names: tuple[str, ...], p: ca.SX) -> Dynamics:
+def _held(robot: Mechanism, effects: tuple[str, ...], names: tuple[str, ...], p: ca.SX) -> Dynamics:
     phi, u = robot.phi, robot.speeds
-    vdot, ddphi = ca.SX.sym("vdot"), ca.SX.sym("ddphi")
-    udot = ca.vertcat(vdot, 0, 0, ddphi)
-
-    def change(quantity: ca.SX) -> ca.SX:
-        return ca.jtimes(quantity, phi, u[SPEEDS.index("dphi")]) + ca.jtimes(quantity, u, udot)
-
-    needed = ca.SX.zeros(len(SPEEDS))
-    kinetic = ca.SX(0)
-    for body in robot.bodies:
-        frame = robot.frames[body.platform]
-        V = frame.velocity(body.point)
-        acceleration = change(V) + frame.rate * ca.vertcat(-V[1], V[0])
-        needed += ca.jtimes(V, u, body.mass * acceleration, True)
-        kinetic += body.mass * ca.sumsqr(V) / 2
-    for rotor in robot.rotors:
-        needed += ca.jtimes(rotor.rate, u, rotor.inertia * change(rotor.rate), True)
-        kinetic += rotor.inertia * rotor.rate**2 / 2
-    power = ca.SX(0)
-    for force in robot.forces:
-        V = robot.frames[force.platform].velocity(force.point)
-        needed -= ca.jtimes(V, u, force.vector, True)
-        power += ca.dot(V, force.vector)
+    kane = equations(robot)
+    needed = ca.substitute(kane.needed, kane.udot[1:3], ca.SX.zeros(2))
+    vdot, ddphi = kane.udot[0], kane.udot[3]
 
     # The axles do not slip: s1 = s2 = 0 from here on. Row v is linear in vdot.
-    here = [robot.frames[1].rate, robot.parameters["c1"] * -robot.frames[1].rate]
     held = ca.vertcat(*(u[SPEEDS.index(name)] for name in sorted(robot.held)))
     needed, kinetic, power, w, side = (
         ca.substitute(part, held, ca.SX.zeros(held.numel()))
-        for part in (needed, kinetic, power, *here)
+        for part in (needed, kane.kinetic, kane.power, kane.rate, kane.joint[1])
     )
     inertia = ca.jacobian(needed[0], vdot)
     solved = -ca.substitute(needed[0], vdot, ca.SX(0)) / inertia

@@ -18,6 +18,12 @@ V_i + w_i x r, and P belongs to both platforms, so with R the rotation by phi
 
 which gives the yaw rate w1 and the speed u2 of axle 2 along its own axis. With s1 = s2 = 0 these
 are the paper's constraints (1) and (2), and S1 = c1 cos phi + c2 is the divisor of w1.
+
+An axle may be turned by an angle toe against its platform. Then v, s1, u2, s2 count along the
+rolling direction and square to it, (v, s1) = R(-toe1) V_1, and with n2 the side direction of axle 2
+the joint gives, in its direction alone,
+
+    w1 (c1 cos(phi + toe2) + c2 cos toe2) = (V_1 rotated by -phi) . n2 - s2 - c2 cos toe2 dphi
 """
 
 from __future__ import annotations
@@ -80,11 +86,15 @@ class Rotor:
 
 @dataclass(frozen=True)
 class Wheel:
-    """A wheel of platform 1 or 2, on its left (+1) or right (-1), at a point (2, m) of it."""
+    """A wheel of platform 1 or 2, on its left (+1) or right (-1), at a point (2, m) of it.
+
+    direction (2,) is the unit vector along which it rolls, in the platform's axes.
+    """
 
     platform: int
     side: int
     point: ca.SX
+    direction: ca.SX
 
 
 @dataclass(frozen=True)
@@ -100,12 +110,14 @@ class Force:
 class Mechanism:
     """The robot as bodies and forces over symbols; effects return a changed copy.
 
+    pose         x, y of the joint P (m) and psi (rad) on the floor (3,)
     phi, speeds  the angle (rad) and SPEEDS (4,)
     parameters   symbol of every robot parameter by name
     frames       motion of platforms 1 and 2
     held         the side speeds that are held at zero
     """
 
+    pose: ca.SX
     phi: ca.SX
     speeds: ca.SX
     parameters: Mapping[str, ca.SX]
@@ -118,33 +130,75 @@ class Mechanism:
 
     def rolling_speed(self, wheel: Wheel) -> ca.SX:
         """Speed of the wheel's contact point along its rolling direction, m/s."""
-        return self.frames[wheel.platform].velocity(wheel.point)[0]
+        return ca.dot(wheel.direction, self.frames[wheel.platform].velocity(wheel.point))
+
+    def joint(self, platform: int) -> ca.SX:
+        """The joint P (2, m) in the axes of platform 1 or 2."""
+        return ca.vertcat(-self.parameters["c1"] if platform == 1 else self.parameters["c2"], 0)
+
+    def heading(self, platform: int) -> ca.SX:
+        """The angle of the platform's axis on the floor, rad."""
+        return self.pose[2] if platform == 1 else self.pose[2] + self.phi
+
+    def on_floor(self, platform: int, point: ca.SX) -> ca.SX:
+        """Where on the floor (2, m) a point (2, m) of a platform is."""
+        return self.pose[:2] + rotated(point - self.joint(platform), self.heading(platform))
+
+
+def rotated(vector: ca.SX, angle: ca.SX | float) -> ca.SX:
+    """A vector (2,) turned counter-clockwise by an angle, rad."""
+    cos, sin = ca.cos(angle), ca.sin(angle)
+    return ca.vertcat(cos * vector[0] - sin * vector[1], sin * vector[0] + cos * vector[1])
 
 
 def mechanism() -> Mechanism:
     """The paper's robot: two bodies, four wheels, viscous friction k at each of them."""
     p = {name: ca.SX.sym(name) for name in ROBOT_PARAMETERS}
-    phi = ca.SX.sym("phi")
+    pose = ca.vertcat(*(ca.SX.sym(name) for name in ("x", "y", "psi")))
     speeds = ca.vertcat(*(ca.SX.sym(name) for name in SPEEDS))
+    return _assembled(pose, ca.SX.sym("phi"), speeds, p, ca.SX(0), ca.SX(0))
+
+
+def with_turned_axles(mechanism: Mechanism, toe1: ca.SX, toe2: ca.SX) -> Mechanism:
+    """The paper's robot over the same symbols, its axles turned counter-clockwise, rad.
+
+    Everything is assembled anew, as every force depends on it: what else is to enter comes after.
+    """
+    robot = mechanism
+    return _assembled(robot.pose, robot.phi, robot.speeds, robot.parameters, toe1, toe2)
+
+
+def _assembled(
+    pose: ca.SX, phi: ca.SX, speeds: ca.SX, p: Mapping[str, ca.SX], toe1: ca.SX, toe2: ca.SX
+) -> Mechanism:
     v, s1, s2, dphi = ca.vertsplit(speeds)
-    cos, sin = ca.cos(phi), ca.sin(phi)
     c1, c2 = p["c1"], p["c2"]
-    w1 = (s1 * cos - v * sin - s2 - c2 * dphi) / (c1 * cos + c2)
-    u2 = v * cos + (s1 - c1 * w1) * sin
+    V1 = rotated(ca.vertcat(v, s1), toe1)
+    cos, sin = ca.cos(phi + toe2), ca.sin(phi + toe2)
+    level = c2 * ca.cos(toe2)
+    w1 = (V1[1] * cos - V1[0] * sin - s2 - level * dphi) / (c1 * cos + level)
     w2 = w1 + dphi
+    u2 = V1[0] * cos + (V1[1] - c1 * w1) * sin - c2 * w2 * ca.sin(toe2)
+    V2 = rotated(ca.vertcat(u2, s2), toe2)
     bare = Mechanism(
+        pose=pose,
         phi=phi,
         speeds=speeds,
-        parameters=MappingProxyType(p),
-        frames={1: Frame(ca.vertcat(v, s1), w1), 2: Frame(ca.vertcat(u2, s2), w2)},
+        parameters=MappingProxyType(dict(p)),
+        frames={1: Frame(V1, w1), 2: Frame(V2, w2)},
         bodies=(
             Body(1, p["m1"], ca.vertcat(-p["a1"], 0)),
             Body(2, p["m2"], ca.vertcat(p["a2"], 0)),
         ),
         rotors=(Rotor(p["I1"], w1), Rotor(p["I2"], w2)),
         wheels=tuple(
-            Wheel(number, side, ca.vertcat(0, side * p[f"b{number}"]))
-            for number in (1, 2)
+            Wheel(
+                number,
+                side,
+                rotated(ca.vertcat(0, side * p[f"b{number}"]), toe),
+                ca.vertcat(ca.cos(toe), ca.sin(toe)),
+            )
+            for number, toe in ((1, toe1), (2, toe2))
             for side in (1, -1)
         ),
     )
@@ -157,7 +211,7 @@ def with_wheel_forces(mechanism: Mechanism, law: Callable[[Wheel, ca.SX], ca.SX]
         Force(
             wheel.platform,
             wheel.point,
-            ca.vertcat(law(wheel, mechanism.rolling_speed(wheel)), 0),
+            law(wheel, mechanism.rolling_speed(wheel)) * wheel.direction,
         )
         for wheel in mechanism.wheels
     )

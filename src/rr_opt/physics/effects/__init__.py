@@ -8,11 +8,41 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from rr_opt.physics.effects import coulomb_friction, quadratic_drag, wheel_inertia
-from rr_opt.physics.effects.effect import Effect, Parameter, Port
+from rr_opt.physics.effects import (
+    axle_misalignment,
+    clock_offset,
+    com_offset,
+    coulomb_friction,
+    floor_patch,
+    floor_tilt,
+    lateral_slip,
+    left_right_drag,
+    marker_offset,
+    quadratic_drag,
+    servo_lag,
+    servo_offset,
+    servo_rate_limit,
+    wheel_inertia,
+)
+from rr_opt.physics.effects.effect import Effect, Parameter, Port, Setting
 
-_MODULES = (coulomb_friction, quadratic_drag, wheel_inertia)
+_MODULES = (
+    servo_lag,
+    servo_rate_limit,
+    servo_offset,
+    coulomb_friction,
+    quadratic_drag,
+    left_right_drag,
+    wheel_inertia,
+    lateral_slip,
+    axle_misalignment,
+    floor_tilt,
+    floor_patch,
+    com_offset,
+    marker_offset,
+    clock_offset,
+)
 
 CATALOGUE: Mapping[str, Effect] = MappingProxyType({m.EFFECT.name: m.EFFECT for m in _MODULES})
 
-__all__ = ["CATALOGUE", "Effect", "Parameter", "Port"]
+__all__ = ["CATALOGUE", "Effect", "Parameter", "Port", "Setting"]

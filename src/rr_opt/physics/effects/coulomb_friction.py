@@ -11,7 +11,7 @@ from collections.abc import Mapping
 
 import casadi as ca
 
-from rr_opt.physics.effects.effect import Effect, Parameter, Port
+from rr_opt.physics.effects.effect import Effect, Parameter, Port, Setting
 from rr_opt.physics.kinematics import Mechanism, with_wheel_forces
 
 SMOOTHING_SPEED = 0.002
@@ -25,13 +25,18 @@ def _enter(mechanism: Mechanism, values: Mapping[str, ca.SX]) -> Mechanism:
     )
 
 
+def _viscous(setting: Setting) -> float:
+    """The viscous force on a wheel at the robot's speed."""
+    return (setting.robot.k1 + setting.robot.k2) / 2 * setting.speed
+
+
 EFFECT = Effect(
     name="coulomb_friction",
     family="rolling",
     port=Port.FORCE,
     parameters=(
-        Parameter("force1", "N", (0.0, 10.0), 0.02, aliases=("F1",)),
-        Parameter("force2", "N", (0.0, 10.0), 0.02, aliases=("F2",)),
+        Parameter("force1", "N", (0.0, 10.0), 0.02, aliases=("F1",), natural=_viscous),
+        Parameter("force2", "N", (0.0, 10.0), 0.02, aliases=("F2",), natural=_viscous),
     ),
     sentence="Each wheel resists rolling with a force that does not depend on its speed.",
     enter=_enter,

@@ -8,7 +8,10 @@ from enum import StrEnum
 
 import casadi as ca
 
+from rr_opt.physics.drive import Drive
 from rr_opt.physics.kinematics import Mechanism
+from rr_opt.physics.seen import Seen
+from rr_opt.robot.parameters import Robot
 
 
 class Port(StrEnum):
@@ -30,6 +33,10 @@ class Parameter:
     typical  its usual size
     neutral  the value at which the effect vanishes
     aliases  other names under which a robot file may give it
+    natural  what would be usual for a given robot and what was asked of it, where that depends on
+             them: a value as large as `typical` would be for the paper's prototype
+    trials   from where to look for it, in natural sizes from neutral (absolute ones, if neutral is
+             not zero): more than one where the way from the first may lead nowhere
     """
 
     name: str
@@ -38,14 +45,40 @@ class Parameter:
     typical: float
     neutral: float = 0.0
     aliases: tuple[str, ...] = ()
+    natural: Callable[[Setting], float] | None = None
+    trials: tuple[float, ...] = (0.05,)
+
+    def size(self, setting: Setting) -> float:
+        """Its usual size for a robot and what was asked of it."""
+        return self.natural(setting) if self.natural else self.typical
+
+
+@dataclass(frozen=True)
+class Setting:
+    """A robot, and the largest speeds asked of it.
+
+    rate   of the servo, rad/s
+    speed  of the wheels, m/s
+    """
+
+    robot: Robot
+    rate: float
+    speed: float
 
 
 @dataclass(frozen=True)
 class Effect:
-    """An effect: what it is called, what it says, and how it changes the mechanism.
+    """An effect: what it is called, what it says, and what it changes, at one port.
 
-    `enter(mechanism, values)` returns the mechanism with the effect in it; values maps each
-    parameter's name to its symbol.
+    enter    (mechanism, symbols) -> the mechanism with the effect in it: constraint, mass, force
+    actuate  (told, values) -> the angle that the servo makes of the one that it is told: actuation
+    observe  (seen, symbols) -> what is recorded of what there is to see: measurement
+    delay    the parameter by which the recording's clock is behind the command's: measurement
+    stiff    whether it lets the axles slip, which they stop doing at once
+    smooth   whether it has derivatives by its parameters where it vanishes
+    forms    which parameters are looked for together; one form of them all, if none is given
+
+    `symbols` and `values` map each parameter's name to its symbol or its value, SI.
     """
 
     name: str
@@ -53,4 +86,10 @@ class Effect:
     port: Port
     parameters: tuple[Parameter, ...]
     sentence: str
-    enter: Callable[[Mechanism, Mapping[str, ca.SX]], Mechanism]
+    enter: Callable[[Mechanism, Mapping[str, ca.SX]], Mechanism] | None = None
+    actuate: Callable[[Drive, Mapping[str, float]], Drive] | None = None
+    observe: Callable[[Seen, Mapping[str, ca.SX]], Seen] | None = None
+    delay: str | None = None
+    stiff: bool = False
+    smooth: bool = True
+    forms: tuple[tuple[str, ...], ...] = ()

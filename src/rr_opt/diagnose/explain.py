@@ -1,0 +1,88 @@
+"""Fit the model with chosen effects, from where each promises most."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from rr_opt.diagnose.fit import Fit, Problem, solve
+from rr_opt.diagnose.model import Form, Model, Piece
+
+WINDOW = 5.0
+"""Seconds of the pieces in which a fit begins: so short that it has no wrong minima, s."""
+
+
+def whole(model: Model, runs: Sequence[int]) -> list[Piece]:
+    """The runs in one piece each."""
+    return [Piece(run, 0, len(model.runs[run].t)) for run in runs]
+
+
+def windows(model: Model, runs: Sequence[int]) -> list[Piece]:
+    """The runs in pieces of about WINDOW seconds, which end where the next begins."""
+    pieces = []
+    for run in runs:
+        t = model.runs[run].t
+        count = max(round((t[-1] - t[0]) / WINDOW), 1)
+        edges = np.linspace(0, len(t), count + 1).astype(int)
+        pieces += [Piece(run, a, b) for a, b in itertools.pairwise(edges)]
+    return pieces
+
+
+@dataclass(frozen=True)
+class Chosen:
+    """An effect and which of its forms."""
+
+    name: str
+    form: int = 0
+
+    def of(self, model: Model) -> Form:
+        """The form itself."""
+        return model.catalogue[self.name].forms[self.form]
+
+
+def nominal(model: Model, pieces: Sequence[Piece]) -> Fit:
+    """The model as it is believed to be: the starts alone are fitted, each piece on its own."""
+    problem = Problem(model, pieces, (), ())
+    return solve(problem, {}, {piece: model.start(piece) for piece in pieces})
+
+
+def parameters(model: Model, start: Fit) -> Fit:
+    """The nominal model with the parameters free within what is known of them."""
+    problem = Problem(model, tuple(start.starts), (), model.parameters)
+    return solve(
+        problem, {q.name: q.value for q in model.parameters} | dict(start.values), start.starts
+    )
+
+
+def explain(model: Model, chosen: Sequence[Chosen], start: Fit) -> Fit:
+    """Fit the parameters and the chosen effects together, from a fit without some of them."""
+    forms = [one.of(model) for one in chosen]
+    names = tuple(one.name for one in chosen)
+    quantities = (*model.parameters, *(q for form in forms for q in form.quantities))
+    problem = Problem(model, tuple(start.starts), names, quantities)
+    values = {q.name: q.value for q in quantities} | {
+        q.name: start.values[q.name] for q in quantities if q.name in start.values
+    }
+    new = [form for one, form in zip(chosen, forms, strict=True) if one.name not in start.effects]
+    begins = [
+        values | {name: value for part in found for name, value in part.items()}
+        for found in itertools.product(*(form.starts for form in new))
+    ]
+    if len(begins) == 1:
+        return solve(problem, begins[0], start.starts)
+    best = min((solve(problem, v, start.starts, steps=3) for v in begins), key=lambda f: f.cost)
+    return best if best.converged else solve(problem, best.values, best.starts)
+
+
+def joined(model: Model, fit: Fit) -> Fit:
+    """The same fit over whole runs, from one over windows."""
+    problem = Problem(
+        model, whole(model, sorted({p.run for p in fit.starts})), fit.effects, fit.quantities
+    )
+    first = {piece.run: start for piece, start in fit.starts.items() if piece.first == 0}
+    starts = {piece: first[piece.run] for piece in problem.pieces}
+    alone = solve(Problem(model, problem.pieces, fit.effects, (), fit.values), {}, starts, steps=4)
+    return solve(problem, fit.values, alone.starts)

@@ -1,0 +1,187 @@
+"""Fit a model's quantities to all runs at once, by simulation error.
+
+The cost is the sum of squares of (predicted - recorded)/sigma over runs, channels and samples, and
+of (value - known)/uncertainty over the quantities of which something is known beforehand. Each run
+starts in a state of its own. Gauss-Newton steps with Levenberg's damping, inside a box; the horizon
+grows, as a long run has local minima where a short one has none.
+
+While the model is wrong its residuals are not noise: they are large, and the samples of a second or
+two say the same. What was known beforehand is then weighed against them as against so much larger
+noise, `doubt`, or the parameters would be bent to imitate what is missing. It is 1 at the noise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from rr_opt.diagnose.model import Array, Model, Piece, Quantity
+from rr_opt.diagnose.normal import Normal, normal_of
+
+_DAMPINGS = (0.0, 1e-4, 1e-3, 1e-2, 1e-1, 1.0, 10.0, 100.0)
+_STRIDE = 3.0
+"""A scaled quantity moves by no more in a step."""
+
+_ALIKE = 150
+"""So many samples of a misfit, 1.5 s at 100 Hz, count as one."""
+_DONE = 0.02
+"""A step that would lower the cost by less ends the fit: far below one unit of chi-square."""
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A model with effects, fitted to runs.
+
+    quantities  what was free
+    values      of them, by name, SI
+    starts      by piece
+    normals     by piece, in scaled units, at the last step's beginning
+    cost        chi-square of the data;  count  of their values
+    """
+
+    effects: tuple[str, ...]
+    quantities: tuple[Quantity, ...]
+    values: Mapping[str, float]
+    starts: Mapping[Piece, Array]
+    normals: Mapping[Piece, Normal]
+    cost: float
+    count: int
+    converged: bool
+
+    @property
+    def scaled(self) -> Array:
+        """The quantities in their scaled units."""
+        return scaled(self.quantities, self.values)
+
+
+def scaled(quantities: Sequence[Quantity], values: Mapping[str, float]) -> Array:
+    """(value - where it starts)/scale."""
+    return np.array([(values[q.name] - q.value) / q.scale for q in quantities])
+
+
+def unscaled(quantities: Sequence[Quantity], u: Array) -> dict[str, float]:
+    """The values, held inside their bounds."""
+    return {
+        q.name: float(min(max(q.value + q.scale * x, q.low), q.high))
+        for q, x in zip(quantities, u, strict=True)
+    }
+
+
+class Problem:
+    """The pieces of runs and the quantities of one fit; each piece has a start of its own."""
+
+    def __init__(
+        self,
+        model: Model,
+        pieces: Sequence[Piece],
+        effects: tuple[str, ...],
+        quantities: tuple[Quantity, ...],
+        fixed: Mapping[str, float] | None = None,
+    ) -> None:
+        self.model, self.pieces, self.effects = model, tuple(pieces), effects
+        self.quantities, self.fixed = quantities, dict(fixed or {})
+        self.prior = np.array([float(q.known) for q in quantities])
+
+    def residuals(self, piece: Piece, values: Mapping[str, float], start: Array) -> Array:
+        """(predicted - recorded)/sigma (n, channels), NaN where there are no data."""
+        data = self.model.runs[piece.run]
+        out = self.model.respond(piece, self.fixed | dict(values), self.effects, start)
+        return (out.predicted - data.values[piece.span]) / data.sigma[piece.span]
+
+    def normal(self, piece: Piece, values: Mapping[str, float], start: Array) -> Normal:
+        """The linearised problem of a piece."""
+        data = self.model.runs[piece.run]
+        names = tuple(q.name for q in self.quantities)
+        given = self.fixed | dict(values)
+        out = self.model.respond(piece, given, self.effects, start, names)
+        sigma = data.sigma[piece.span]
+        r = (out.predicted - data.values[piece.span]) / sigma
+        seen = np.isfinite(r)
+        scale = np.array([q.scale for q in self.quantities])
+        Jv = (out.by_value / sigma[:, :, None])[seen] * scale
+        Js = (out.by_start / sigma[:, :, None])[seen]
+        return normal_of(r[seen], Jv, Js)
+
+    def cost(self, values: Mapping[str, float], starts: Mapping[Piece, Array]) -> tuple[float, int]:
+        """Chi-square of the data, infinite where the prediction leaves the numbers; their count."""
+        total, count = 0.0, 0
+        for piece in self.pieces:
+            r = self.residuals(piece, values, starts[piece])
+            seen = np.isfinite(self.model.runs[piece.run].values[piece.span])
+            total += float(np.sum(r[seen] ** 2))
+            count += int(seen.sum())
+        return (total if np.isfinite(total) else np.inf), count
+
+
+def doubt(cost: float, count: int) -> float:
+    """By how much what was known counts for more while the data are not yet explained."""
+    return max(1.0, 1.0 + _ALIKE * (cost / max(count, 1) - 1.0))
+
+
+def solve(
+    problem: Problem,
+    values: Mapping[str, float],
+    starts: Mapping[Piece, Array],
+    *,
+    steps: int = 12,
+    done: float = _DONE,
+) -> Fit:
+    """Fit from given values and starts."""
+    quantities = problem.quantities
+    values, starts = dict(values), dict(starts)
+    low, high = box(quantities)
+    cost, count = problem.cost(values, starts)
+    converged, weakest = False, 0
+    normals: dict[Piece, Normal] = {}
+    for _ in range(steps):
+        normals = {one: problem.normal(one, values, starts[one]) for one in problem.pieces}
+        u = scaled(quantities, values)
+        prior = problem.prior * doubt(cost, count)
+        g = sum((n.g for n in normals.values()), prior * u)
+        H = sum((n.H for n in normals.values()), np.diag(prior))
+        whole = cost + prior @ u**2
+        near, far = np.maximum(low, u - _STRIDE), np.minimum(high, u + _STRIDE)
+        for k, damping in enumerate(_DAMPINGS[weakest:], weakest):
+            d = bounded_step(H, g, damping, u, near, far)
+            trial = unscaled(quantities, u + d)
+            moved = {one: starts[one] + n.shift + n.follow @ d for one, n in normals.items()}
+            reached, _ = problem.cost(trial, moved)
+            if reached + prior @ scaled(quantities, trial) ** 2 < whole:
+                weakest = max(k - 2, 0)
+                break
+        else:
+            converged = True
+            break
+        gained = whole - reached - prior @ scaled(quantities, trial) ** 2
+        values, starts, cost = trial, moved, reached
+        if gained < max(done, 1e-6 * whole):
+            converged = True
+            break
+    return Fit(problem.effects, quantities, values, starts, normals, cost, count, converged)
+
+
+def box(quantities: Sequence[Quantity]) -> tuple[Array, Array]:
+    """The bounds, scaled."""
+    low = scaled(quantities, {q.name: q.low for q in quantities})
+    return low, scaled(quantities, {q.name: q.high for q in quantities})
+
+
+def bounded_step(H: Array, g: Array, damping: float, u: Array, low: Array, high: Array) -> Array:
+    """Minimise 2 g'd + d'Hd inside the box: what would leave it is held at its edge."""
+    n = g.size
+    d = np.zeros(n)
+    free = np.ones(n, bool)
+    damped = H + np.diag(damping * np.diag(H) + 1e-10 * (1 + np.diag(H)))
+    for _ in range(n + 1):
+        if not free.any():
+            break
+        rhs = -(g[free] + damped[np.ix_(free, ~free)] @ d[~free])
+        d[free] = np.linalg.solve(damped[np.ix_(free, free)], rhs)
+        over = free & ((u + d < low - 1e-12) | (u + d > high + 1e-12))
+        if not over.any():
+            break
+        d[over] = np.where(u + d < low, low - u, high - u)[over]
+        free &= ~over
+    return d

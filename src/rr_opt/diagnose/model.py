@@ -1,0 +1,146 @@
+"""What the diagnosis needs of a machine: the protocol that a model answers.
+
+A model has quantities (the parameters it always has, and those of its effects), runs that were
+recorded of it, and channels in which they were. It predicts a run, and says how the prediction
+changes with every quantity and with the state the run starts in.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A number that a fit may change.
+
+    value       where it starts: a parameter's nominal value, an effect's first guess
+    scale       one standard deviation of what was known before, or the usual size of an effect
+    known       whether `scale` is knowledge (a prior) or only a size
+    low, high   where it may lie
+    neutral     at which an effect vanishes; for a parameter its nominal value
+    """
+
+    name: str
+    unit: str
+    value: float
+    scale: float
+    known: bool
+    low: float
+    high: float
+    neutral: float
+
+
+@dataclass(frozen=True)
+class Form:
+    """Quantities of an effect that are looked for together, and from where.
+
+    starts  values by quantity; the fit begins at that which promises most
+    """
+
+    quantities: tuple[Quantity, ...]
+    starts: tuple[Mapping[str, float], ...]
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """An effect that may be missing from the nominal model.
+
+    channel  where it would show, in the words of the verdict
+    """
+
+    name: str
+    family: str
+    channel: str
+    sentence: str
+    forms: tuple[Form, ...]
+
+
+@dataclass(frozen=True)
+class Data:
+    """One run as the fit sees it: t (n,) s; values, sigma (n, channels), NaN where there is none."""
+
+    name: str
+    t: Array
+    values: Array
+    sigma: Array
+    held_out: bool
+
+
+@dataclass(frozen=True)
+class Piece:
+    """The samples first <= k < last of a run, which is all of it or a part."""
+
+    run: int
+    first: int
+    last: int
+
+    @property
+    def span(self) -> slice:
+        """As a slice."""
+        return slice(self.first, self.last)
+
+
+@dataclass(frozen=True)
+class Response:
+    """What a model predicts of a run, and its derivatives.
+
+    predicted  (n, channels)
+    by_value   (n, channels, quantities) by those asked for
+    by_start   (n, channels, start) by the state at the start
+    """
+
+    predicted: Array
+    by_value: Array | None = None
+    by_start: Array | None = None
+
+
+class Model(Protocol):
+    """A machine with a catalogue of what may be missing from its nominal model."""
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """What is recorded, in order."""
+        ...
+
+    @property
+    def runs(self) -> Sequence[Data]:
+        """The recorded runs."""
+        ...
+
+    @property
+    def parameters(self) -> tuple[Quantity, ...]:
+        """Of the nominal model, with what is known of each."""
+        ...
+
+    @property
+    def catalogue(self) -> Mapping[str, Candidate]:
+        """The effects it knows, by name."""
+        ...
+
+    @property
+    def jumping(self) -> frozenset[str]:
+        """The effects that have no derivative where they vanish."""
+        ...
+
+    def start(self, piece: Piece) -> Array:
+        """A first guess of the state in which a piece of a run starts."""
+        ...
+
+    def respond(
+        self,
+        piece: Piece,
+        values: Mapping[str, float],
+        effects: tuple[str, ...],
+        start: Array,
+        wanted: tuple[str, ...] | None = None,
+    ) -> Response:
+        """Predict a piece of a run from its start; derivatives by `wanted`, if any."""
+        ...

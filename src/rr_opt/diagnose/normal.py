@@ -1,0 +1,63 @@
+"""One run's least-squares problem, linearised, with the run's own start taken out.
+
+With r the residuals in sigmas, Jv their derivatives by the shared quantities and Js by the run's
+start, the start that fits best for any change d of the quantities is known, and what is left is
+
+    |r|^2 - b'..  + 2 g'd + d'H d,     H = Jv'Jv - Jv'Js (Js'Js)^-1 Js'Jv
+
+so runs add up, can be left out one at a time, and quantities can be taken in or left out, all
+without going back to the data.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rr_opt.diagnose.model import Array
+
+_RIDGE = 1e-9
+"""Of the largest diagonal entry: a start that these data do not see stays where it is."""
+
+
+@dataclass(frozen=True)
+class Normal:
+    """|residuals|^2 after the best start, at a change d (nv,) of the scaled quantities.
+
+    cost, g (nv,), H (nv, nv) as above; start + shift + follow @ d is the best start.
+    """
+
+    cost: float
+    g: Array
+    H: Array
+    shift: Array
+    follow: Array
+
+    def at(self, d: Array) -> float:
+        """The cost after a change of the quantities."""
+        return float(self.cost + 2 * self.g @ d + d @ self.H @ d)
+
+
+def normal_of(r: Array, Jv: Array, Js: Array) -> Normal:
+    """Reduce r (n,), Jv (n, nv), Js (n, ns), all in sigmas."""
+    J = np.column_stack([Js, Jv, r])
+    S = J.T @ J
+    ns = Js.shape[1]
+    A = S[:ns, :ns]
+    size = np.sqrt(np.maximum(np.diag(A), 1e-300))
+    scaled = A / np.outer(size, size)
+    unseen = np.diag(A) <= _RIDGE * np.diag(A).max()
+    scaled[unseen, :] = scaled[:, unseen] = 0.0
+    scaled[np.diag_indices(ns)] = np.where(unseen, 1.0, np.diag(scaled) + 1e-12)
+    C = S[:ns, ns:] * (~unseen)[:, None]
+    solved = np.linalg.solve(scaled, C / size[:, None]) / size[:, None]
+    left = S[ns:, ns:] - C.T @ solved
+    left = (left + left.T) / 2
+    return Normal(
+        cost=max(float(left[-1, -1]), 0.0),
+        g=left[:-1, -1],
+        H=left[:-1, :-1],
+        shift=-solved[:, -1],
+        follow=-solved[:, :-1],
+    )

@@ -1,0 +1,305 @@
+"""The Roller Racer as a model that can be diagnosed."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Mapping, Sequence
+from functools import cached_property, lru_cache
+
+import numpy as np
+
+from rr_opt.diagnose.model import Array, Candidate, Data, Form, Piece, Quantity, Response
+from rr_opt.diagnose.shoot import DrivePath, System, predict, slopes
+from rr_opt.experiment.experiment import Experiment, Run, Uncertainty
+from rr_opt.experiment.recording import CHANNELS
+from rr_opt.physics.drive import Drive, told
+from rr_opt.physics.effects import CATALOGUE, Effect, Parameter, Port, Setting
+from rr_opt.physics.floor_motion import floor_motion
+
+SETTLING = 0.05
+"""After a start from rest the motor saturates for some 20 ms; that much, s, is left out."""
+
+_FINE = 4
+"""Steps between two samples where the drive is not smooth, or the wheels slip."""
+
+_CHANNELS = {
+    "actuation": "actuation",
+    "rolling": "rolling",
+    "contact": "constraint_axle1",
+    "floor": "floor",
+    "mass": "mass",
+    "measurement": "measurement",
+}
+"""The channel in which a family of effects shows."""
+
+_PARTS = {"m": "kg", "I": "kg m^2", "c": "m", "a": "m", "b": "m", "kappa": "N m s"}
+_EVERYTHING = (*(f"{part}{i}" for i in (1, 2) for part in _PARTS), "h")
+
+
+class RollerRacer:
+    """An experiment with a Roller Racer; answers `diagnose.model.Model`."""
+
+    channels = CHANNELS
+
+    def __init__(self, experiment: Experiment) -> None:
+        self.experiment = experiment
+        self.nominal = _nominal(experiment)
+
+    @cached_property
+    def runs(self) -> Sequence[Data]:
+        """The recorded runs."""
+        return [_data(run) for run in self.experiment.runs]
+
+    @cached_property
+    def parameters(self) -> tuple[Quantity, ...]:
+        """The robot's parameters that are not known exactly."""
+        known = self.experiment.uncertainty
+        free = dict(known)
+        if all(known.get(f"kappa{i}", Uncertainty()).factor for i in (1, 2)):
+            free.pop("h", None)  # the wheel's radius counts through kappa/h^2 alone
+        return tuple(
+            _parameter(name, self.nominal[name], free[name]) for name in _EVERYTHING if name in free
+        )
+
+    @cached_property
+    def catalogue(self) -> Mapping[str, Candidate]:
+        """The effects of physics beyond the paper's model."""
+        return {name: _candidate(effect, self.setting) for name, effect in CATALOGUE.items()}
+
+    @cached_property
+    def setting(self) -> Setting:
+        """What was asked of the robot, for the usual sizes of the effects."""
+        gaits = [run.gait for run in self.experiment.runs]
+        distances = [
+            np.nanmedian(np.hypot(*(np.diff(d.values[:: len(d.t) // 20, k]) for k in (0, 1))))
+            / np.median(np.diff(d.t[:: len(d.t) // 20]))
+            for d in self.runs
+        ]
+        fastest = max(gait.peak_rate for gait in gaits)
+        return Setting(self.experiment.robot, fastest, max(float(np.median(distances)), 1e-3))
+
+    @property
+    def jumping(self) -> frozenset[str]:
+        """The effects that have no derivative where they vanish."""
+        return frozenset(name for name, effect in CATALOGUE.items() if not effect.smooth)
+
+    def start(self, piece: Piece) -> Array:
+        """x, y, psi as first recorded, and v of axle 1."""
+        data = self.runs[piece.run]
+        t, values = data.t[piece.span], data.values[piece.span]
+        first = [column[np.isfinite(column)][0] for column in values.T[:3]]
+        # The mean speed along the axis over the first period is near enough to begin with.
+        period = t - t[0] <= self.experiment.runs[piece.run].gait.period
+        seen = values[period & np.isfinite(values[:, :3]).all(axis=1)]
+        dx, dy = seen[-1, :2] - seen[0, :2]
+        heading = seen[:, 2].mean()
+        v = (dx * np.cos(heading) + dy * np.sin(heading)) / max(t[period][-1] - t[0], 1e-9)
+        return np.array([*first, v])
+
+    def respond(
+        self,
+        piece: Piece,
+        values: Mapping[str, float],
+        effects: tuple[str, ...],
+        start: Array,
+        wanted: tuple[str, ...] | None = None,
+    ) -> Response:
+        """Predict a piece of a run; see `diagnose.model.Model`."""
+        mechanical = tuple(name for name in CATALOGUE if name in effects)
+        system, parameters = _system(mechanical)
+        given = self.nominal | values
+        p = _p(given, parameters)
+        t = self.runs[piece.run].t[piece.span]
+        path = self._drive_path(piece.run, given, mechanical, t)
+        made = predict(system, path, _state(mechanical, path, start, p), p)
+        if wanted is None:
+            return Response(made.seen)
+        by = np.zeros((p.size, len(wanted)))
+        for k, name in enumerate(wanted):
+            by[:, k] = _p_by(given, parameters, name)
+        drive_by = self._drive_by(piece.run, given, mechanical, t, wanted)
+        out = slopes(system, path, made, p, by, drive_by)
+        return Response(made.seen, out.by_parameter, out.by_start[:, :, : start.size])
+
+    def _drive(self, run: int, given: Mapping[str, float], effects: tuple[str, ...]) -> Drive:
+        here = self.experiment.runs[run]
+        drive = told(here.gait, here.start == "rest")
+        for name in effects:
+            effect = CATALOGUE[name]
+            if effect.actuate:
+                own = {q.name: given[f"{name}.{q.name}"] for q in effect.parameters}
+                drive = effect.actuate(drive, own)
+        return drive
+
+    def _drive_path(
+        self, run: int, given: Mapping[str, float], effects: tuple[str, ...], t: Array
+    ) -> DrivePath:
+        drive, late = self._drive(run, given, effects), _delay(given, effects)
+        stiff = any(CATALOGUE[name].stiff for name in effects)
+        each = _FINE if stiff or not drive.smooth else 1
+        inner = np.arange(each) / each
+        edges = np.append((t[:-1, None] + np.diff(t)[:, None] * inner).ravel(), t[-1])
+        h = np.diff(edges)
+        at_edges = drive.at(edges + late)[:2]
+        middle = drive.at(edges[:-1] + h / 2 + late)[:2]
+        nodes = np.stack([at_edges[:, :-1], middle, at_edges[:, 1:]], axis=1)
+        if not drive.smooth:
+            # Where dphi jumps within a step, the step keeps its end points.
+            nodes[1] = (np.diff(at_edges[0]) / h)[None]
+            nodes[0, 1] = (nodes[0, 0] + nodes[0, 2]) / 2
+        at = at_edges[:, ::each]
+        if stiff:
+            mean = np.diff(at_edges[1]) / h
+            nodes = np.concatenate([nodes, np.tile(mean, (1, 3, 1))])
+            at = np.vstack([at, np.append(mean, mean[-1])[::each]])
+        return DrivePath(h, nodes, at, each)
+
+    def _drive_by(
+        self,
+        run: int,
+        given: Mapping[str, float],
+        effects: tuple[str, ...],
+        t: Array,
+        wanted: tuple[str, ...],
+    ) -> Array | None:
+        moving = [
+            (k, name)
+            for k, name in enumerate(wanted)
+            if "." in name
+            and CATALOGUE[name.split(".")[0]].port in _OF_DRIVE
+            and name.split(".")[0] in effects
+        ]
+        if not [name for _, name in moving if _of_drive(name)]:
+            return None
+        both = np.array([t, np.append(t[:-1] + np.diff(t) / 2, t[-1])])
+        rows = 3 if any(CATALOGUE[name].stiff for name in effects) else 2
+        out = np.zeros((rows, 2, t.size, len(wanted)))
+        for k, name in moving:
+            step = 1e-2 * self._scale(name)
+            ends = []
+            for sign in (1, -1):
+                moved = {**given, name: given[name] + sign * step}
+                late = _delay(moved, effects)
+                ends.append([self._drive(run, moved, effects).at(at + late)[:rows] for at in both])
+            out[:, :, :, k] = (np.array(ends[0]) - np.array(ends[1])).transpose(1, 0, 2) / (
+                2 * step
+            )
+        return out
+
+    def _scale(self, name: str) -> float:
+        effect, parameter = name.split(".")
+        return next(q.typical for q in CATALOGUE[effect].parameters if q.name == parameter)
+
+
+def _state(effects: tuple[str, ...], path: DrivePath, start: Array, p: Array) -> Array:
+    """The state that belongs to x, y, psi and v.
+
+    Where the axles may slip they begin without: what they slip at first is over in milliseconds.
+    """
+    if floor_motion(effects).slips:
+        return np.append(start, [0.0, 0.0])
+    without = floor_motion(effects).speeds([*start[:3], 0.0], path.at[:, 0], p)
+    return start - np.array([0.0, 0.0, 0.0, float(without[0])])
+
+
+_OF_DRIVE = (Port.ACTUATION, Port.MEASUREMENT)
+
+
+def _of_drive(name: str) -> bool:
+    effect, parameter = name.split(".")
+    return CATALOGUE[effect].actuate is not None or CATALOGUE[effect].delay == parameter
+
+
+def _delay(given: Mapping[str, float], effects: tuple[str, ...]) -> float:
+    return sum(given[f"{n}.{CATALOGUE[n].delay}"] for n in effects if CATALOGUE[n].delay)
+
+
+@lru_cache
+def _system(effects: tuple[str, ...]) -> tuple[System, tuple[str, ...]]:
+    motion = floor_motion(effects)
+    stiff = len(motion.free) if motion.slips else 0
+    return System(motion.rates, motion.seen, stiff), motion.parameters
+
+
+def _nominal(experiment: Experiment) -> dict[str, float]:
+    robot = experiment.robot
+    platforms = ((1, robot.platform1), (2, robot.platform2))
+    out = {f"{part}{i}": getattr(platform, part) for i, platform in platforms for part in _PARTS}
+    neutral = {
+        f"{effect.name}.{q.name}": q.neutral
+        for effect in CATALOGUE.values()
+        for q in effect.parameters
+    }
+    given = {f"{use.name}.{name}": v for use in robot.physics for name, v in use.values.items()}
+    return {**out, "h": robot.h, **neutral, **given}
+
+
+def _p(given: Mapping[str, float], parameters: tuple[str, ...]) -> Array:
+    friction = {f"k{i}": given[f"kappa{i}"] / given["h"] ** 2 for i in (1, 2)}
+    return np.array([friction.get(name, given.get(name, math.nan)) for name in parameters])
+
+
+def _p_by(given: Mapping[str, float], parameters: tuple[str, ...], name: str) -> Array:
+    """How p changes with a quantity."""
+    out = np.array([float(own == name) for own in parameters])
+    for i in (1, 2):
+        own = parameters.index(f"k{i}")
+        if name == f"kappa{i}":
+            out[own] = 1 / given["h"] ** 2
+        if name == "h":
+            out[own] = -2 * given[f"kappa{i}"] / given["h"] ** 3
+    return out
+
+
+def _parameter(name: str, value: float, known: Uncertainty) -> Quantity:
+    unit = _PARTS.get(name.rstrip("12"), "m")
+    if known.factor:
+        # Counted as it is and not in its logarithm: the motion is nearly linear in kappa, and what
+        # is seen best is the sum of both.
+        low, high = value / known.factor, value * known.factor
+        return Quantity(name, unit, value, value, True, low, high, value)
+    low = 0.0 if name.startswith("a") else value / 3
+    return Quantity(name, unit, value, known.sigma, True, low, 3 * value, value)
+
+
+def _candidate(effect: Effect, setting: Setting) -> Candidate:
+    forms = effect.forms or (tuple(q.name for q in effect.parameters),)
+    own = {q.name: q for q in effect.parameters}
+    return Candidate(
+        effect.name,
+        effect.family,
+        _CHANNELS[effect.family],
+        effect.sentence,
+        tuple(_form(effect.name, [own[name] for name in form], setting) for form in forms),
+    )
+
+
+def _form(effect: str, parameters: Sequence[Parameter], setting: Setting) -> Form:
+    sizes = [q.size(setting) for q in parameters]
+    quantities = tuple(
+        Quantity(f"{effect}.{q.name}", q.unit, q.neutral, size, False, *q.bounds, q.neutral)
+        for q, size in zip(parameters, sizes, strict=True)
+    )
+    choices = [
+        [size * trial for trial in q.trials]
+        if q.neutral
+        else [size * trial for trial in q.trials]
+        if q.bounds[0] == 0
+        else [0.0]
+        for q, size in zip(parameters, sizes, strict=True)
+    ]
+    starts = tuple(
+        {q.name: value for q, value in zip(quantities, chosen, strict=True)}
+        for chosen in itertools.product(*choices)
+    )
+    return Form(quantities, starts)
+
+
+def _data(run: Run) -> Data:
+    recording = run.recording
+    values = np.column_stack([recording.data(name) for name in CHANNELS])
+    if run.start == "rest":
+        values[recording.t - recording.t[0] < SETTLING] = np.nan
+    sigma = np.column_stack([recording.sigma[name] for name in CHANNELS])
+    return Data(run.name, recording.t, values, sigma, run.use == "holdout")

@@ -1,0 +1,43 @@
+"""The angle that the servo makes, as a function of time, from standing still or for ever."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rr_opt.robot.gait import Gait
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Drive:
+    """phi(t) of a robot that is told a gait.
+
+    at      t (n,) s -> phi, dphi, ddphi (3, n): rad, rad/s, rad/s2
+    period  s
+    smooth   whether dphi never jumps
+    rest    the robot stands still until t = 0; else it has been driven for ever
+    """
+
+    at: Callable[[Array], Array]
+    period: float
+    rest: bool
+    smooth: bool = True
+
+
+def told(gait: Gait, rest: bool) -> Drive:
+    """The gait itself; before t = 0 a robot at rest is told to keep the offset."""
+
+    def at(t: Array) -> Array:
+        path = np.array([gait.angle(t), gait.rate(t), gait.acceleration(t)])
+        if rest:
+            still = np.asarray(t) < 0
+            path[0, still] = gait.offset
+            path[1:, still] = 0.0
+        return path
+
+    return Drive(at, gait.period, rest)

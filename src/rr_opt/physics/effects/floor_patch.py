@@ -1,0 +1,54 @@
+"""A part of the floor on which the wheels roll harder, or more easily.
+
+It is a circle of a radius about (x, y), or, where the radius is 0, all that lies beyond a straight
+edge through (edge_x, edge_y) in the direction `normal`. Each wheel feels the floor under itself.
+The border is smoothed over 5 mm, about the length of a wheel's contact with a carpet.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import casadi as ca
+
+from rr_opt.physics.effects.effect import Effect, Parameter, Port
+from rr_opt.physics.kinematics import Mechanism, Wheel, with_wheel_forces
+
+BORDER = 0.005
+"""Over which the drag changes, m."""
+
+
+def _enter(mechanism: Mechanism, values: Mapping[str, ca.SX]) -> Mechanism:
+    def law(wheel: Wheel, u: ca.SX) -> ca.SX:
+        place = mechanism.on_floor(wheel.platform, wheel.point)
+        from_centre = place - ca.vertcat(values["x"], values["y"])
+        distance = ca.sqrt(ca.sumsqr(from_centre) + BORDER**2 / 100)
+        into = ca.vertcat(ca.cos(values["normal"]), ca.sin(values["normal"]))
+        beyond = ca.dot(place - ca.vertcat(values["edge_x"], values["edge_y"]), into)
+        depth = ca.if_else(values["radius"] > 0, values["radius"] - distance, beyond)
+        inside = (1 + ca.tanh(depth / BORDER)) / 2
+        extra = mechanism.parameters[f"k{wheel.platform}"] * (values["multiplier"] - 1)
+        return -extra * inside * u
+
+    return with_wheel_forces(mechanism, law)
+
+
+EFFECT = Effect(
+    name="floor_patch",
+    family="floor",
+    port=Port.FORCE,
+    parameters=(
+        Parameter("multiplier", "dimensionless", (0.0, 1000.0), 2.0, neutral=1.0),
+        Parameter("x", "m", (-100.0, 100.0), 1.0),
+        Parameter("y", "m", (-100.0, 100.0), 1.0),
+        Parameter("radius", "m", (0.0, 100.0), 0.3),
+        Parameter("normal", "rad", (-math.pi, math.pi), 1.0),
+        Parameter("edge_x", "m", (-100.0, 100.0), 1.0),
+        Parameter("edge_y", "m", (-100.0, 100.0), 1.0),
+    ),
+    sentence="On a part of the floor the wheels roll harder, or more easily, than elsewhere.",
+    enter=_enter,
+    forms=(("multiplier", "x", "y", "radius"), ("multiplier", "normal", "edge_x", "edge_y")),
+    smooth=False,
+)
