@@ -24,6 +24,7 @@ class Quantity:
     value       where it starts: a parameter's nominal value, an effect's first guess
     scale       one standard deviation of what was known before, or the usual size of an effect
     known       whether `scale` is knowledge (a prior) or only a size
+    free        known only to within a factor: any other value is no surprise, but a finding
     low, high   where it may lie
     neutral     at which an effect vanishes; for a parameter its nominal value
     """
@@ -36,6 +37,7 @@ class Quantity:
     low: float
     high: float
     neutral: float
+    free: bool = False
 
 
 @dataclass(frozen=True)

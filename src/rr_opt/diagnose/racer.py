@@ -258,7 +258,7 @@ def _parameter(name: str, value: float, known: Uncertainty) -> Quantity:
         # Counted as it is and not in its logarithm: the motion is nearly linear in kappa, and what
         # is seen best is the sum of both.
         low, high = value / known.factor, value * known.factor
-        return Quantity(name, unit, value, value, True, low, high, value)
+        return Quantity(name, unit, value, value, True, low, high, value, free=True)
     low = 0.0 if name.startswith("a") else value / 3
     return Quantity(name, unit, value, known.sigma, True, low, 3 * value, value)
 

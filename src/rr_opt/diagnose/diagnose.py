@@ -1,0 +1,209 @@
+"""The whole diagnosis: is there a mismatch, is it values, where is it, what is it, how sure."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from rr_opt.diagnose.diagnosis import Diagnosis, Finding, Misfit, Tried
+from rr_opt.diagnose.explain import joined, nominal, parameters, whole, windows
+from rr_opt.diagnose.fit import Fit, Problem, solve
+from rr_opt.diagnose.intervals import estimates
+from rr_opt.diagnose.left_out import left_out
+from rr_opt.diagnose.model import Model
+from rr_opt.diagnose.search import Explanation, Search, misfit, rms
+from rr_opt.diagnose.verdict import confidence, finding, verdict_of, wrong_parameters
+
+Say = Callable[[str], None]
+
+
+@dataclass
+class Steps:
+    """Who hears of progress, how work is shared out, and how long each step took."""
+
+    say: Say = lambda _: None
+    each: Callable[..., Iterable] = map
+    seconds: dict[str, float] = field(default_factory=dict)
+
+    def timed(self, name: str, work: Callable[[], object]):
+        """Say it, do it, and note how long it took."""
+        self.say(name)
+        begun = time.perf_counter()
+        try:
+            return work()
+        finally:
+            self.seconds[name] = self.seconds.get(name, 0.0) + time.perf_counter() - begun
+
+
+@dataclass(frozen=True)
+class Level:
+    """A fit of the shared quantities and what it leaves of every run, held out or not."""
+
+    fit: Fit
+    misfits: tuple[Misfit, ...]
+
+    def held(self) -> float:
+        """RMS in sigma over the held-out runs; over the fitted ones where none is held out."""
+        return _rms_of(self.misfits, held_out=True)
+
+
+def diagnose(model: Model, steps: Steps | None = None) -> Diagnosis:
+    """Diagnose a machine from its runs."""
+    steps = steps or Steps()
+    fitted = [k for k, run in enumerate(model.runs) if not run.held_out]
+    held = [k for k, run in enumerate(model.runs) if run.held_out]
+    start = steps.timed(
+        "the model as it is believed to be", lambda: nominal(model, windows(model, fitted + held))
+    )
+    first = _of_runs(start, fitted)
+    level0 = steps.timed(
+        "against the recordings", lambda: _level(model, joined(model, start), start)
+    )
+    base = steps.timed("its parameters", lambda: _base(model, first))
+    level1 = steps.timed("held-out recordings", lambda: _level(model, base.whole, level0.fit))
+    search = Search(model, base, steps.say, steps.each)
+    best = steps.timed("what is missing", search.run)
+    level2 = _level(model, best.whole, level0.fit) if best is not base else level1
+    return _answer(model, search, best, (level0, level1, level2), steps)
+
+
+def _base(model: Model, first: Fit) -> Explanation:
+    fit = parameters(model, first)
+    return Explanation((), fit, joined(model, fit))
+
+
+def _of_runs(fit: Fit, runs: list[int]) -> Fit:
+    pieces = [piece for piece in fit.starts if piece.run in runs]
+    cost = sum(fit.normals[piece].cost for piece in pieces)
+    return replace(
+        fit,
+        starts={piece: fit.starts[piece] for piece in pieces},
+        normals={piece: fit.normals[piece] for piece in pieces},
+        cost=cost,
+    )
+
+
+def _level(model: Model, fit: Fit, start: Fit) -> Level:
+    """What a fit leaves of every run: those it did not see get the start that fits them best."""
+    seen = {piece.run for piece in fit.starts}
+    pieces = whole(model, range(len(model.runs)))
+    first = {piece.run: state for piece, state in start.starts.items() if piece.first == 0}
+    problem = Problem(model, pieces, fit.effects, (), fit.values)
+    fresh = [piece for piece in pieces if piece.run not in seen]
+    alone = Problem(model, fresh, fit.effects, (), fit.values)
+    starts = dict(fit.starts)
+    if fresh:
+        starts |= solve(alone, {}, {piece: first[piece.run] for piece in fresh}).starts
+    return Level(fit, tuple(_misfit(problem, piece, starts[piece]) for piece in pieces))
+
+
+def _misfit(problem: Problem, piece, start) -> Misfit:
+    data = problem.model.runs[piece.run]
+    response = problem.model.respond(piece, problem.fixed, problem.effects, start)
+    r = (response.predicted - data.values) / data.sigma
+    channels = {
+        name: float(np.sqrt(np.nanmean(r[:, k] ** 2)))
+        for k, name in enumerate(problem.model.channels)
+        if np.isfinite(r[:, k]).any()
+    }
+    total = float(np.sqrt(np.nanmean(r**2)))
+    return Misfit(data.name, data.held_out, total, channels, data.t, response.predicted, r)
+
+
+def _rms_of(misfits: tuple[Misfit, ...], *, held_out: bool) -> float:
+    some = [m for m in misfits if m.held_out == held_out] or list(misfits)
+    squares = np.concatenate([m.residuals.ravel() for m in some]) ** 2
+    return float(np.sqrt(np.nanmean(squares)))
+
+
+def _answer(
+    model: Model,
+    search: Search,
+    best: Explanation,
+    levels: tuple[Level, Level, Level],
+    steps: Steps,
+) -> Diagnosis:
+    level0, level1, level2 = levels
+    held = tuple(rms(level.held() ** 2 - 1) for level in levels)
+    intervals = estimates(best.whole)
+    wrong = wrong_parameters(best)
+    nominal_left = max(rms(misfit(level0.fit)), held[0])
+    verdict = verdict_of(best, search.base, nominal_left, (held[1], held[2]), bool(wrong))
+    rivals = [one for one in search.tried if not set(best.names) <= set(one.names)]
+    findings = _findings(best, search, intervals, (level1, level2), rivals)
+    if verdict == "parameters":
+        findings = tuple(Finding(q.name, 1.0, {q.name: intervals[q.name]}, 1.0) for q in wrong)
+    if verdict in ("consistent", "unexplained"):
+        findings = ()
+    channel = model.catalogue[best.names[0]].channel if findings and best.names else "none"
+    return Diagnosis(
+        verdict=verdict,
+        summary=_summary(verdict, findings, level0, level2),
+        channel=channel,
+        where="",
+        stages=(),
+        findings=findings,
+        parameters={q.name: intervals[q.name] for q in best.whole.quantities},
+        tried=tuple(_tried(one, best) for one in sorted(search.tried, key=lambda e: e.score)),
+        indistinguishable=(),
+        next_experiment=None,
+        residue=(),
+        nominal=level0.misfits,
+        refitted=level1.misfits,
+        final=level2.misfits,
+        before=level0.held(),
+        after=level2.held(),
+        values=dict(best.whole.values),
+        seconds=dict(steps.seconds),
+    )
+
+
+def _findings(
+    best: Explanation,
+    search: Search,
+    intervals: Mapping,
+    levels: tuple[Level, Level],
+    rivals: list[Explanation],
+) -> tuple[Finding, ...]:
+    before = max(levels[0].held() ** 2 - 1, 1e-12)
+    after = max(levels[1].held() ** 2 - 1, 0.0)
+    sure = confidence(best, rivals)
+    out = []
+    for name in best.names:
+        rest = set(best.names) - {name}
+        without = [e for e in search.tried if set(e.names) == rest]
+        left = max(without[0].misfit, 0.0) if without else before
+        removes = min(max((left - max(best.misfit, 0.0)) / before, 0.0), 1.0) if without else 1.0
+        if len(best.names) == 1:
+            removes = min(max(1 - after / before, 0.0), 1.0)
+        out.append(finding(name, best, sure, intervals, removes))
+    return tuple(sorted(out, key=lambda f: -f.removes))
+
+
+def _tried(one: Explanation, best: Explanation) -> Tried:
+    return Tried(
+        one.names,
+        rms(one.misfit),
+        rms(left_out(one.whole)),
+        one.score,
+        {k: v for k, v in one.whole.values.items() if "." in k},
+        one is best,
+    )
+
+
+def _summary(verdict: str, findings: tuple[Finding, ...], before: Level, after: Level) -> str:
+    numbers = (
+        f"On recordings that were not fitted the simulation was {before.held():.2f} sigma off, "
+        f"and is {after.held():.2f} sigma off now; 1 is the noise."
+    )
+    names = " and ".join(one.name.replace("_", " ") for one in findings)
+    opening = {
+        "consistent": "The model explains the recordings as it is.",
+        "parameters": f"The model is right, but these values are not: {names}.",
+        "missing_physics": f"The model leaves out {names}.",
+        "unexplained": "Something is left out, and no effect of the catalogue accounts for it.",
+    }[verdict]
+    return f"{opening} {numbers}"

@@ -1,0 +1,151 @@
+"""Search for what is missing: alone, in pairs, in threes; forward by promise, then backward.
+
+Every round begins with a linearised pass over all effects (`screen`), which ranks them at once.
+The most promising few are fitted in windows, and the best of those over whole runs, where small
+effects add up and show. An effect joins only if the misfit falls by more than `RELEVANT`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from rr_opt.diagnose.explain import Chosen, explain, joined
+from rr_opt.diagnose.fit import Fit, doubt, scaled
+from rr_opt.diagnose.model import Model
+from rr_opt.diagnose.screen import every, linear, screen
+
+FLOOR = 0.1
+"""A misfit of a tenth of a sigma, RMS, is none: no machine is ever exactly its model."""
+
+RELEVANT = 0.01
+"""By so much, in sigma squared per value, an effect has to lower the misfit to be one."""
+
+MOST = 3
+"""So many effects together, at most."""
+
+_IN_WINDOWS, _WHOLE = 5, 3
+"""How many of a round are fitted in windows, and over whole runs."""
+
+Say = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """A set of effects, fitted in windows and over whole runs.
+
+    misfit  mean square of the residuals over whole runs less 1, in sigma squared; 0 is the noise
+    """
+
+    chosen: tuple[Chosen, ...]
+    windows: Fit
+    whole: Fit
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The effects, in order of choice."""
+        return tuple(one.name for one in self.chosen)
+
+    @property
+    def misfit(self) -> float:
+        """Mean square over whole runs, less that of noise with as many quantities fitted."""
+        return misfit(self.whole)
+
+    @property
+    def strain(self) -> float:
+        """Chi-square of the parameters against what was known of them."""
+        known = [q for q in self.whole.quantities if q.known]
+        return float(np.sum(scaled(known, self.whole.values) ** 2))
+
+    @property
+    def score(self) -> float:
+        """Chi-square of data and knowledge, and what each quantity costs (BIC)."""
+        added = sum(not q.known for q in self.whole.quantities)
+        return self.whole.cost + self.strain + added * math.log(self.whole.count)
+
+
+def misfit(fit: Fit) -> float:
+    """Mean square of the residuals in sigma, less 1."""
+    fitted = 4 * len(fit.starts) + len(fit.quantities)
+    return fit.cost / max(fit.count - fitted, 1) - 1.0
+
+
+def rms(excess: float) -> float:
+    """The misfit as RMS in sigma, 0 at or below the noise."""
+    return math.sqrt(max(excess, 0.0))
+
+
+@dataclass
+class Search:
+    """A search under way, and all that it tried."""
+
+    model: Model
+    base: Explanation
+    say: Say = lambda _: None
+    each: Callable[..., Iterable] = map
+    tried: list[Explanation] = field(default_factory=list)
+
+    def run(self) -> Explanation:
+        """The best explanation, the base itself where nothing relevant is missing."""
+        best = self.base
+        self.tried.append(best)
+        for _ in range(MOST):
+            if rms(best.misfit) <= FLOOR and best.strain < 4 * len(self.model.parameters):
+                break
+            found = self._round(best)
+            if not found:
+                break
+            self.tried += found
+            better = min(found, key=lambda one: one.score)
+            if not _gains(better, best):
+                break
+            best = better
+        return self._backward(best)
+
+    def _round(self, best: Explanation) -> list[Explanation]:
+        have = {one.name for one in best.chosen}
+        promised = [p.chosen[0] for p in screen(self.model, best.windows, best.chosen)]
+        jumping = [
+            one for one in every(self.model) if one.name not in have and not linear(self.model, one)
+        ]
+        short = [*promised[:_IN_WINDOWS], *jumping]
+        self.say(f"fitting {', '.join(one.name for one in short)}")
+        in_windows = list(self.each(_InWindows(self.model, best.chosen, best.windows), short))
+        in_windows.sort(key=lambda pair: pair[1].cost)
+        found = []
+        for one, fit in in_windows[:_WHOLE]:
+            self.say(f"fitting {one.name} over whole runs")
+            found.append(Explanation((*best.chosen, one), fit, joined(self.model, fit)))
+        return found
+
+    def _backward(self, best: Explanation) -> Explanation:
+        for one in best.chosen[:-1] if len(best.chosen) > 1 else ():
+            rest = tuple(other for other in best.chosen if other != one)
+            self.say(f"leaving out {one.name}")
+            fit = explain(self.model, rest, self.base.windows)
+            without = Explanation(rest, fit, joined(self.model, fit))
+            self.tried.append(without)
+            if not _gains(best, without):
+                return self._backward(without)
+        return best
+
+
+@dataclass(frozen=True)
+class _InWindows:
+    model: Model
+    have: tuple[Chosen, ...]
+    fit: Fit
+
+    def __call__(self, one: Chosen) -> tuple[Chosen, Fit]:
+        """The effect beside those that are there."""
+        return one, explain(self.model, (*self.have, one), self.fit)
+
+
+def _gains(more: Explanation, less: Explanation) -> bool:
+    """Whether what `more` adds to `less` is relevant, and certain in spite of model error."""
+    gained = less.score - more.score
+    relevant = less.misfit - more.misfit > RELEVANT or less.strain - more.strain > 20
+    return relevant and gained > 20 * doubt(more.whole.cost, more.whole.count)
