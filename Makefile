@@ -53,13 +53,15 @@ format: $(DEV) ## format the code and sort its imports
 readme: $(DEV) ## run every command of README.md
 	$(BIN)/python scripts/readme_commands.py README.md
 
-results: $(RUN) ## write the results that are kept in results/
+results: $(DEV) ## write the results that are kept in results/
 	$(BIN)/rr-opt maximize-speed --out results/prototype
 	$(BIN)/rr-opt maximize-speed problems/loads --out results/loads
 	$(BIN)/rr-opt maximize-speed problems/turning --out results/turning
 	$(BIN)/rr-opt shapes --out results/shapes
 	$(BIN)/rr-opt turn-chart --out results/turn-chart
 	$(BIN)/rr-opt study problems/studies/servo.yaml --restart --out results/servo
+	$(BIN)/rr-opt reproduce --out results/paper
+	$(BIN)/rr-opt calibrate --out results/calibration
 
 bench: $(DEV) ## measure against other ways to the same answer, into results/bench
 	$(BIN)/python -m benchmarks.optimise
