@@ -74,10 +74,6 @@ MESSAGES = {
         "Read 'nowhere.yaml'. There is no such file. Check its name and folder."
     ),
     "robot: .": "Read '.'. This is a folder. Expected a file.",
-    "recordings: []": (
-        "Read the keys of an experiment. Expected a problem or a robot. "
-        "Experiments are read by `rr-opt diagnose`."
-    ),
 }
 
 

@@ -5,25 +5,30 @@ from __future__ import annotations
 import json as json_format
 from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from rr_opt.outcome import EXIT_WRONG_INPUT
 
+if TYPE_CHECKING:
+    from rr_opt.files.issue import Issue
+
 
 def lint(
     files: Annotated[
         list[Path],
-        typer.Argument(help="Robot, problem or study files, or folders with a problem.yaml."),
+        typer.Argument(
+            help="Robot, problem, study or experiment files, or folders with a problem.yaml or an "
+            "experiment.yaml, whose recordings are read too."
+        ),
     ],
     json: Annotated[bool, typer.Option("--json", help="Print JSON on stdout.")] = False,
 ) -> None:
     """Check input files and print every problem of all of them. Exits 2 if one is an error."""
     from rr_opt.files.issue import has_errors  # noqa: PLC0415
-    from rr_opt.files.lint import lint_file  # noqa: PLC0415
 
-    checked = {str(file): lint_file(file) for file in files}
+    checked = {str(file): _issues(file) for file in files}
     wrong = any(has_errors(issues) for issues in checked.values())
     if json:
         found = [asdict(issue) for issues in checked.values() for issue in issues]
@@ -36,3 +41,15 @@ def lint(
                 typer.echo(f"{name}: can be used")
     if wrong:
         raise typer.Exit(EXIT_WRONG_INPUT)
+
+
+def _issues(file: Path) -> list[Issue]:
+    """All of them; of an experiment also those of its recordings."""
+    from rr_opt.files.lint import experiment_file, lint_file  # noqa: PLC0415
+
+    experiment = experiment_file(file)
+    if experiment is None:
+        return lint_file(file)
+    from rr_opt.recordings.experiment import experiment_of  # noqa: PLC0415
+
+    return experiment_of(experiment)[1]

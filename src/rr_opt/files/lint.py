@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from pathlib import Path
 
 from rr_opt.files.document import Document
+from rr_opt.files.experiment.file import experiment_path, plan_from
 from rr_opt.files.issue import InvalidFileError, Issue
 from rr_opt.files.kind import kind_of
 from rr_opt.files.problem_file import problem_from
@@ -16,21 +18,43 @@ from rr_opt.files.study.file import study_from
 
 
 def lint_file(path: str | Path) -> list[Issue]:
-    """All issues of a robot, problem or study file, and of the files that it names.
+    """All issues of a robot, problem, study or experiment file, and of the files that it names.
 
-    A folder stands for its problem.yaml. The kind of the file is told from its keys. Nothing
-    is raised: a file that cannot be read is an issue too.
+    A folder stands for its problem.yaml, or else its experiment.yaml, whose recordings are not
+    read. The kind of the file is told from its keys. Nothing is raised: a file that cannot be read
+    is an issue too.
     """
     try:
-        document = read_document(problem_path(Path(path)))
+        file = _file_of(Path(path))
+        document = read_document(file)
         kind = kind_of(document)
         if kind == "robot":
             return _robot_issues(document)
         if kind == "study":
             return study_from(document, Path(path))[1]
-        return problem_from(problem_sources(path))[1]
+        if kind == "experiment":
+            return plan_from(document, file)[1]
+        return problem_from(problem_sources(file))[1]
     except InvalidFileError as error:
         return list(error.issues)
+
+
+def experiment_file(path: str | Path) -> Path | None:
+    """The experiment file that a path stands for; None if it is anything else."""
+    try:
+        file = _file_of(Path(path))
+        return file if kind_of(read_document(file)) == "experiment" else None
+    except InvalidFileError:
+        return None
+
+
+def _file_of(path: Path) -> Path:
+    """The file that a folder stands for; any other path as it is."""
+    problem, experiment = problem_path(path), experiment_path(path)
+    with suppress(OSError, ValueError):
+        if not problem.exists() and experiment.exists():
+            return experiment
+    return problem
 
 
 def _robot_issues(document: Document) -> list[Issue]:

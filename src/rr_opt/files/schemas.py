@@ -6,24 +6,26 @@ from typing import Any, Literal, get_args
 
 from pydantic import BaseModel
 
+from rr_opt.files.experiment.model import ExperimentModel
 from rr_opt.files.issue import unknown_word
 from rr_opt.files.problem_model import ProblemModel
 from rr_opt.files.robot_model import RobotModel
 from rr_opt.files.study.model import StudyModel
 from rr_opt.outcome import InputError
 
-FileKind = Literal["robot", "problem", "study"]
+FileKind = Literal["robot", "problem", "study", "experiment"]
 
 _DIALECT = "https://json-schema.org/draft/2020-12/schema"
 _MODELS: dict[str, type[BaseModel]] = {
     "robot": RobotModel,
     "problem": ProblemModel,
     "study": StudyModel,
+    "experiment": ExperimentModel,
 }
 
 
 def schema(kind: str) -> dict[str, Any]:
-    """The JSON Schema (2020-12) of a kind of file: robot, problem or study.
+    """The JSON Schema (2020-12) of a kind of file: robot, problem, study or experiment.
 
     Every field carries a description with its unit; the SI unit alone is under `x-unit`.
     Raises InputError for any other kind.

@@ -1,0 +1,104 @@
+"""How noisy a channel is, from the channel alone, and whether its noise is white.
+
+The sixth difference of a smooth motion is next to nothing, that of white noise is sqrt(924) of its
+standard deviation. Differences over two samples see the noise at half the frequency: with white
+noise both tell the same, and where a filter has taken the quickest noise away the first is smaller.
+Extreme differences are cut off, at three standard deviations, so that a kink or a jump does not
+count. The uncertainties are those of the mean over pieces of the recording.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import erf
+from scipy.stats import t as student
+
+Array = NDArray[np.float64]
+
+_ORDER = 6
+_SIGNS = np.array([(-1.0) ** i * math.comb(_ORDER, i) for i in range(_ORDER + 1)])
+_NORM = math.sqrt(math.comb(2 * _ORDER, _ORDER))
+_CUT = 3.0
+_KEPT = erf(_CUT / math.sqrt(2)) - _CUT * math.sqrt(2 / math.pi) * math.exp(-(_CUT**2) / 2)
+_KEPT /= erf(_CUT / math.sqrt(2))
+"""Variance of a normal that is cut off at three standard deviations."""
+_OVERLAP = math.comb(4 * _ORDER, 2 * _ORDER) / math.comb(2 * _ORDER, _ORDER) ** 2
+"""How many differences are worth one independent one."""
+_PIECES, _SHORTEST = 20, 60
+
+
+@dataclass(frozen=True)
+class NoiseEstimate:
+    """The noise of a channel, in its unit; NaN where there are too few samples.
+
+    sigma    standard deviation of the noise at the highest frequencies
+    error    of sigma, one standard deviation
+    slower   standard deviation of the noise at half those frequencies; white noise has the same
+    p_white  how likely white noise makes sigma and slower differ as much
+    """
+
+    sigma: float
+    error: float
+    slower: float
+    p_white: float
+
+    @property
+    def colour(self) -> float:
+        """slower over sigma; 1 for white noise."""
+        return self.slower / self.sigma if self.sigma > 0 else math.nan
+
+
+def noise_of(y: Array) -> NoiseEstimate:
+    """The noise of y (n,), samples at equal steps, NaN where there is none."""
+    quick, slow = _differences(y, 1), _differences(y, 2)
+    sigma, slower = _spread(quick), _spread(slow)
+    known = int(np.isfinite(quick).sum())
+    if not sigma > 0 or not slower > 0:
+        return NoiseEstimate(sigma, math.nan, slower, math.nan)
+    pieces = min(_PIECES, known // _SHORTEST)
+    relative = math.sqrt(_OVERLAP / (2 * known))
+    if pieces < 4:
+        return NoiseEstimate(sigma, sigma * relative, slower, math.nan)
+    ratios = []
+    for part in np.array_split(np.arange(len(quick)), pieces):
+        one, two = _spread(quick[part]), _spread(slow[part[part < len(slow)]])
+        if one > 0 and two > 0:
+            ratios.append((math.log(one), math.log(two / one)))
+    p_white, between = math.nan, relative
+    if len(ratios) >= 4:
+        both = np.array(ratios)
+        spread = both.std(axis=0, ddof=1) / math.sqrt(len(both))
+        between = max(float(spread[0]), relative)
+        p_white = float(
+            2 * student.sf(abs(both[:, 1].mean()) / max(spread[1], 1e-12), len(both) - 1)
+        )
+    return NoiseEstimate(sigma, sigma * between, slower, p_white)
+
+
+def _differences(y: Array, stride: int) -> Array:
+    """Sixth differences over `stride` samples, scaled to the noise's standard deviation."""
+    n = len(y) - _ORDER * stride
+    if n < 1:
+        return np.empty(0)
+    total = np.zeros(n)
+    for i, sign in enumerate(_SIGNS):
+        total += sign * y[i * stride : i * stride + n]
+    return total / _NORM
+
+
+def _spread(d: Array) -> float:
+    """Standard deviation of the bulk of d, whatever the rest is; NaN for fewer than 10."""
+    d = np.abs(d[np.isfinite(d)])
+    if len(d) < 10:
+        return math.nan
+    sigma = float(np.median(d)) / 0.6745
+    for _ in range(5):
+        inside = d[d <= _CUT * sigma]
+        if not len(inside) or not sigma > 0:
+            break
+        sigma = float(np.sqrt(np.mean(inside**2) / _KEPT))
+    return sigma

@@ -1,0 +1,1 @@
+"""Figures of a recording: the path, its channels, its command, its noise."""

@@ -1,0 +1,90 @@
+"""The smoother is the exact conditional mean and covariance, and its derivatives are true."""
+
+import numpy as np
+import pytest
+
+from rr_opt.recordings.derivatives import derivatives
+from rr_opt.recordings.smooth import smoothed
+from rr_opt.recordings.strength import strength
+from tests.recordings.clean.world import GAIT, motion
+
+
+def conditional(t, y, q, vague):
+    """Value, first and second derivative given y with unit noise, by Gaussian conditioning.
+
+    The prior is an integrated Wiener process from a vague parabola; its covariances come from
+    sampling the integral of its kernels on a fine grid, and not from a state space.
+    """
+    known = np.isfinite(y)
+    s = (np.arange(6000) + 0.5) / 6000 * (t[-1] - t[0]) + t[0]
+    u = (t - t.mean()) / 20
+    since = np.maximum(t[:, None] - s, 0.0)
+    parts = [since**2 / 2, since, (since > 0).astype(float)]
+    weight = q * (s[1] - s[0])
+    basis = [
+        np.stack([np.ones_like(t), u, u**2], 1),
+        np.stack([np.zeros_like(t), np.ones_like(t), 2 * u], 1) / 20,
+        np.stack([np.zeros_like(t), np.zeros_like(t), 2 * np.ones_like(t)], 1) / 400,
+    ]
+    cross = [weight * part @ parts[0].T + vague * one @ basis[0].T
+             for part, one in zip(parts, basis, strict=True)]  # fmt: skip
+    own = [weight * part @ part.T + vague * one @ one.T
+           for part, one in zip(parts, basis, strict=True)]  # fmt: skip
+    inverse = np.linalg.inv(cross[0][np.ix_(known, known)] + np.eye(known.sum()))
+    means = [one[:, known] @ inverse @ y[known] for one in cross]
+    variances = [
+        np.diag(two - one[:, known] @ inverse @ one[:, known].T)
+        for one, two in zip(cross, own, strict=True)
+    ]
+    return means, variances
+
+
+@pytest.mark.parametrize("uneven", [False, True])
+def test_it_is_what_gaussian_conditioning_gives(uneven):
+    rng = np.random.default_rng(0)
+    t = np.arange(40.0)
+    if uneven:
+        t = t + rng.uniform(-0.3, 0.3, 40)
+    y = 5 * np.sin(t / 4) + rng.normal(0, 1, 40)
+    y[[7, 20, 21, 22, 23]] = np.nan
+    step = float(np.median(np.diff(t)))
+    q = 2e-3
+    made = smoothed(t, y, 1.0, q * step**5)
+    # A vaguer prior leaves fewer digits for the variances, a firmer one pulls at the means.
+    means, _ = conditional(t, y, q, 1e8)
+    _, variances = conditional(t, y, q, 1e5)
+    for mine, mean in zip((made.value, made.first, made.second), means, strict=True):
+        np.testing.assert_allclose(mine, mean, rtol=2e-3, atol=2e-3)
+    mine = (made.value_sigma, made.first_sigma, made.second_sigma)
+    for sigma, variance in zip(mine, variances, strict=True):
+        np.testing.assert_allclose(sigma**2, variance, rtol=2e-2)
+
+
+def test_derivatives_of_a_noisy_wiggle_are_true_within_their_sigmas():
+    moved, rng = motion(), np.random.default_rng(1)
+    y = moved.phi + rng.normal(0, 3e-3, len(moved.t))
+    y[1000:1030] = np.nan
+    y[rng.random(len(y)) < 0.05] = np.nan
+    made = derivatives(moved.t, y)
+    true = (GAIT.angle(moved.t), GAIT.rate(moved.t), GAIT.acceleration(moved.t))
+    mine = (made.value, made.first, made.second)
+    sigmas = (made.value_sigma, made.first_sigma, made.second_sigma)
+    for estimate, sigma, exact in zip(mine, sigmas, true, strict=True):
+        scaled = (estimate - exact) / sigma
+        assert np.mean(np.abs(scaled) < 1.96) > 0.93
+        # And they are of use: small against what they measure.
+        assert np.median(sigma) < 0.2 * exact.std()
+
+
+def test_a_noisier_channel_is_smoothed_more():
+    moved, rng = motion(), np.random.default_rng(2)
+    ratios = [
+        strength(moved.phi + rng.normal(0, sigma, len(moved.t)), sigma)
+        for sigma in (1e-3, 3e-3, 1e-2)
+    ]
+    assert ratios[0] > 3 * ratios[1] > 9 * ratios[2]
+
+
+def test_too_few_samples_have_no_derivatives():
+    made = derivatives(np.arange(5.0), np.array([1.0, np.nan, 2.0, np.nan, np.nan]), 1.0)
+    assert np.isnan(made.first).all()
