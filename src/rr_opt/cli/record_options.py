@@ -1,0 +1,101 @@
+"""What `record` is told: runs, effects and noise, each in one text, to plain data."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+from rr_opt.outcome import InputError
+
+if TYPE_CHECKING:
+    from rr_opt.experiment.experiment import Noise
+    from rr_opt.lab.case import Plan
+    from rr_opt.robot.parameters import EffectUse
+
+STARTS, USES = ("rest", "running"), ("fit", "holdout")
+
+
+def read_runs(texts: Iterable[str], seconds: float) -> tuple[Plan, ...]:
+    """`30 deg, 1.2 s, 10 deg, rest, holdout`: amplitude, period, offset; words may be left out.
+
+    Raises InputError with everything that is wrong.
+    """
+    from rr_opt.cli.motion_input import read_options  # noqa: PLC0415
+    from rr_opt.lab.case import Plan  # noqa: PLC0415
+    from rr_opt.robot.gait import SineGait  # noqa: PLC0415
+
+    plans, wrong = [], []
+    for n, text in enumerate(texts, 1):
+        parts = [part.strip() for part in text.split(",")]
+        words = [part for part in parts if part in (*STARTS, *USES)]
+        sizes = [part for part in parts if part not in words]
+        start: Any = next((word for word in words if word in STARTS), "running")
+        use: Any = next((word for word in words if word in USES), "fit")
+        if len(sizes) not in (2, 3):
+            wrong.append(
+                f"--gait: Read {text!r}. Expected amplitude, period and offset, and rest, running, "
+                "fit or holdout. Write for example '30 deg, 1.2 s, 0, rest, holdout'."
+            )
+            continue
+        named = zip(("amplitude", "period", "offset"), sizes, strict=False)
+        try:
+            values = read_options(**dict(named))
+        except InputError as error:
+            wrong.append(f"--gait {text!r}: {error}")
+            continue
+        gait = SineGait(values["amplitude"], values["period"], values.get("offset", 0.0))
+        # Headings differ, as a floor's slope shows in no single one.
+        pose = (0.0, 0.0, 2.4 * (n - 1))
+        plans.append(Plan(f"run{n:02d}.csv", gait, seconds, start, use, pose))
+    if wrong:
+        raise InputError("\n".join(wrong))
+    return tuple(plans)
+
+
+def read_effects(texts: Iterable[str]) -> tuple[EffectUse, ...]:
+    """`coulomb_friction:force1=0.02,force2=20 mN` each. Raises InputError with all mistakes."""
+    from rr_opt.files.quantity import Quantity  # noqa: PLC0415
+    from rr_opt.lab.effects import effect_named  # noqa: PLC0415
+    from rr_opt.robot.parameters import EffectUse  # noqa: PLC0415
+
+    uses, wrong = [], []
+    for text in texts:
+        name, _, rest = text.partition(":")
+        effect = effect_named(name.strip())
+        units = {each.name: each for each in effect.parameters}
+        values = {}
+        for part in filter(None, (part.strip() for part in rest.split(","))):
+            key, _, value = (piece.strip() for piece in part.partition("="))
+            if key not in units:
+                wrong.append(
+                    f"--effect {name}: Read {part!r}. Expected {' or '.join(units)}. "
+                    f"Write for example `{effect.parameters[0].name}=VALUE`."
+                )
+                continue
+            unit = "" if units[key].unit == "1" else units[key].unit
+            try:
+                values[key] = Quantity(unit, f"{units[key].typical:g} {unit}".strip()).read(value)
+            except InputError as error:
+                wrong.append(f"--effect {name}, {key}: {error}")
+        uses.append(EffectUse(effect.name, values))
+    if wrong:
+        raise InputError("\n".join(wrong))
+    return tuple(uses)
+
+
+def read_noise(text: str) -> Noise:
+    """`1 mm, 3 mrad`: standard deviations of position and angle. Raises InputError."""
+    from rr_opt.experiment.experiment import Noise  # noqa: PLC0415
+    from rr_opt.files.quantity import Quantity  # noqa: PLC0415
+
+    parts = text.split(",")
+    if len(parts) != 2:
+        raise InputError(
+            f"--noise: Read {text!r}. Expected that of positions and that of angles. Write for "
+            "example '1 mm, 3 mrad'."
+        )
+    sizes = [
+        Quantity(unit, example, above=0).read(part.strip())
+        for unit, example, part in zip(("m", "rad"), ("1 mm", "3 mrad"), parts, strict=True)
+    ]
+    return Noise(*sizes)

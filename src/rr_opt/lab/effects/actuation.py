@@ -1,0 +1,77 @@
+"""What the servo makes of its command."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from scipy.signal import lfilter
+
+from rr_opt.lab.effects.hidden import HiddenEffect, Parameter, Values
+from rr_opt.lab.rig import Array, Rig
+
+
+def _lag(rig: Rig, values: Values) -> None:
+    """A first-order follower, tau dy/dt = u - y, exact for a command that is straight in a step."""
+    tau = values["tau"]
+
+    def follow(t: Array, angle: Array) -> Array:
+        dt = t[1] - t[0]
+        keep = np.exp(-dt / tau)
+        ramp = 1 - (1 - keep) * tau / dt
+        rest = angle[0]
+        # y' = keep y + (1 - keep - ramp) u + ramp u', with u as it was and as it is.
+        out = lfilter([ramp, 1 - keep - ramp], [1, -keep], angle - rest)
+        return np.asarray(out) + rest
+
+    rig.shapers.append(follow)
+
+
+def _rate_limit(rig: Rig, values: Values) -> None:
+    limit = values["rate_limit"]
+
+    def follow(t: Array, angle: Array) -> Array:
+        most = limit * (t[1] - t[0])
+        made, out = float(angle[0]), np.empty_like(angle)
+        for k, asked in enumerate(angle.tolist()):
+            made += min(max(asked - made, -most), most)
+            out[k] = made
+        return out
+
+    rig.shapers.append(follow)
+
+
+def _backlash(rig: Rig, values: Values) -> None:
+    rig.play += values["width"]
+
+
+def _offset(rig: Rig, values: Values) -> None:
+    rig.offset += values["offset"]
+
+
+ACTUATION = (
+    HiddenEffect(
+        "servo_lag",
+        "the servo follows its command late and smaller, by a first-order lag",
+        (Parameter("tau", "s", 0.02, most=0.3),),
+        _lag,
+    ),
+    HiddenEffect(
+        "servo_rate_limit",
+        "the servo turns no faster than a limit",
+        (Parameter("rate_limit", "rad/s", 2.5, neutral=math.inf, most=0.1),),
+        _rate_limit,
+    ),
+    HiddenEffect(
+        "servo_backlash",
+        "play between the servo and platform 2, with stops at its ends",
+        (Parameter("width", "rad", 0.03, most=0.2),),
+        _backlash,
+    ),
+    HiddenEffect(
+        "servo_offset",
+        "the servo's zero is off",
+        (Parameter("offset", "rad", 0.02, most=0.2, signed=True),),
+        _offset,
+    ),
+)

@@ -1,0 +1,114 @@
+"""A rig as MuJoCo's own model text.
+
+Two boxes of mass on four balls, P at the first body's origin. A wheel is a ball, so that it touches
+the floor at one point below its centre whatever way it heads. Each turns on its own hinge.
+"""
+
+from __future__ import annotations
+
+from rr_opt.lab.mjcf_parts import bent, cord, hook, jointed, loose_load, motor, motor_body, post
+from rr_opt.lab.rig import WHEELS, Rig
+from rr_opt.robot.parameters import Platform
+
+WHEEL_MASS = 5e-5
+"""kg, of one wheel; taken from its platform's."""
+
+SOFT = 0.99
+"""MuJoCo's impedance of a contact. Nearer to 1 the four wheels, one more than a stiff body needs to
+stand, chatter under large side forces."""
+
+GRIP_RATE = 1.9
+"""How fast side slip is taken back, in units of 1/step. 2 would hold the mean of two steps' slips
+at zero and thus be of second order, but never die out; 1 lags by half a step."""
+
+TURNING_LOAD = 5e-5
+"""kg, the least spin inertia of a wheel over h^2: what a wheel needs to be integrated at all."""
+
+
+def spin_inertia(rig: Rig, step: float) -> float:
+    """Spin inertia that each wheel is given, kg m2, so that its friction stops it in many steps.
+
+    It is taken back from the platform, see `_body`, so that the nominal robot has none.
+    """
+    k = max(rig.kappa) / rig.robot.h**2
+    return rig.robot.h**2 * max(TURNING_LOAD, 8 * k * step)
+
+
+def model_text(rig: Rig, step: float) -> str:
+    """The MJCF of a rig for a step of `step` s."""
+    h, J = rig.robot.h, spin_inertia(rig, step)
+    first = _platform(rig, 0, rig.robot.platform1, 1.0, J)
+    second = _platform(rig, 1, rig.robot.platform2, -1.0, J)
+    return f"""<mujoco><compiler angle="radian" boundmass="0" boundinertia="0"/>
+<option timestep="{step!r}" cone="elliptic" impratio="10" solver="Newton" iterations="100"
+ tolerance="1e-15" integrator="Euler"><flag eulerdamp="{_implicit(rig)}"/></option>
+<worldbody><geom name="floor" type="plane" size="0 0 1" contype="0" conaffinity="0"/>
+{post(rig)}<body name="platform1" pos="0 0 {h!r}"><freejoint name="base"/>
+{first}{hook(rig)}{loose_load(rig)}{jointed(rig, second, step)}</body>
+{motor_body()}</worldbody>
+<contact>{"".join(_pair(wheel, rig.mu, step) for wheel in WHEELS)}</contact>
+{cord(rig)}{motor(step)}</mujoco>"""
+
+
+def _implicit(rig: Rig) -> str:
+    """Whether hinges are damped implicitly.
+
+    MuJoCo does so once the constraints are solved, which moves the wheels off them where a damped
+    part is light: nothing to the wheels' own friction, much to a beam's.
+    """
+    return "enable" if rig.spring is None else "disable"
+
+
+def _platform(rig: Rig, i: int, part: Platform, ahead: float, J: float) -> str:
+    """Mass and wheels of a platform, P at the origin, its axle `ahead` (+1) or behind (-1)."""
+    wheels = "".join(_wheel(rig, 2 * i + n, side * part.b, J) for n, side in enumerate((1, -1)))
+    pivot = 0.0 if rig.spring is None else ahead * part.c / 2
+    axle = (
+        f'<body name="axle{i + 1}" pos="{ahead * part.c - pivot!r} 0 0" euler="0 0 {rig.toe[i]!r}">'
+        f"{wheels}</body>"
+    )
+    if rig.spring is not None:
+        axle = bent(f"beam{i + 1}", pivot, rig.spring, axle)
+    return _body(part, ahead, rig.left[i], J, rig.robot.h) + axle
+
+
+def _body(part: Platform, ahead: float, left: float, J: float, h: float) -> str:
+    """What is left of the platform for its own body, once the wheels have their share.
+
+    A rolling wheel carries the inertia of a load J/h^2 at its place. Two of them are, as the axle
+    does not slip, a load 2J/h^2 at its centre with the moment of inertia 2 b^2 J/h^2; these too are
+    taken from the body.
+    """
+    axle, centre = ahead * part.c, ahead * part.joint_to_centre
+    rolling = J / h**2
+    each, own = WHEEL_MASS + rolling, WHEEL_MASS * h**2 / 4
+    m = part.m - 2 * each
+    x, y = (part.m * centre - 2 * each * axle) / m, part.m * left / m
+    about_p = part.I + part.m * (centre**2 + left**2)
+    I = about_p - 2 * (each * (axle**2 + part.b**2) + own) - m * (x**2 + y**2)
+    flat = 0.6 * I
+    return (
+        f'<inertial pos="{x!r} {y!r} {-h / 2!r}" mass="{m!r}" '
+        f'diaginertia="{flat!r} {flat!r} {I!r}"/>'
+    )
+
+
+def _wheel(rig: Rig, n: int, y: float, J: float) -> str:
+    name, h = WHEELS[n], rig.robot.h
+    thin = WHEEL_MASS * h**2 / 4
+    return (
+        f'<body name="wheel{name}" pos="0 {y!r} 0"><inertial pos="0 0 0" mass="{WHEEL_MASS!r}" '
+        f'diaginertia="{thin!r} {thin!r} {thin!r}"/>'
+        f'<joint name="roll{name}" type="hinge" axis="0 1 0" armature="{J - thin + rig.J[n]!r}" '
+        f'damping="{rig.kappa[n]!r} {rig.quadratic[n]!r} 0" frictionloss="{rig.dry[n]!r}" '
+        'solreffriction="-1e-9 -2000" solimpfriction="0.9999 0.9999 0.001"/>'
+        f'<geom name="tyre{name}" type="sphere" size="{h!r}" contype="0" conaffinity="0"/></body>'
+    )
+
+
+def _pair(wheel: str, mu: float, step: float) -> str:
+    return (
+        f'<pair geom1="floor" geom2="tyre{wheel}" condim="3" friction="{mu!r} {mu!r} 0 0 0" '
+        f'solref="{2 * step!r} 1" solreffriction="-1e-9 {-GRIP_RATE * SOFT / step!r}" '
+        f'solimp="{SOFT!r} {SOFT!r} 0.001"/>'
+    )

@@ -1,0 +1,109 @@
+"""The robot on the laboratory's bench: what it is made of, before MuJoCo is told.
+
+A hidden effect changes a rig. A rig that no effect has touched is the nominal robot.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rr_opt.robot.parameters import Robot
+
+Array = NDArray[np.float64]
+
+WHEELS = ("1L", "1R", "2L", "2R")
+"""Platform and side, in the order of every list of four."""
+
+GRAVITY = 9.81
+
+Shaper = Callable[[Array, Array], Array]
+"""(times, angles the servo was to make) -> angles it makes; rad at equal steps, s."""
+
+
+@dataclass
+class Turning:
+    """The wheels at an instant, and what brakes them, which a law may change.
+
+    t        since the robot was put down, s
+    rate     of turning of each wheel, rad/s (4,)
+    angle    each has turned by, rad (4,)
+    places   of the wheels' centres on the floor, m (4, 2)
+    damping  N m s (4,), dry N m (4,): as the rig has them, to be changed in place
+    """
+
+    t: float
+    rate: Array
+    angle: Array
+    places: Array
+    damping: Array
+    dry: Array
+
+
+Law = Callable[[Turning], None]
+
+
+@dataclass(frozen=True)
+class Tether:
+    """A cord from a post at (x, y) to platform 1's centre of mass: it pulls when longer than
+    `slack` (m), with `stiffness` (N/m)."""
+
+    x: float
+    y: float
+    slack: float
+    stiffness: float
+
+
+@dataclass
+class Rig:
+    """A robot and what is hidden in it. Lists of four are by WHEELS, of two by platform.
+
+    kappa      viscous friction, N m s; quadratic, N m s2; dry, N m; J, kg m2: hidden spin inertia
+    toe        rad, the axle turned counter-clockwise about its centre
+    left       m, the centre of mass to the left of the axis
+    mu         grip of the wheels; large by default, so that none slides
+    creep      m/(N s), side speed per side force of a wheel
+    tilt       downhill components, rad
+    play       rad; pin, m, the joint pin's clearance; spring, N m/rad, with
+               which each platform bends half way between joint and axle (None: it is rigid);
+               load, mass (kg) and stiffness (N/m) of what shifts on platform 1
+    shapers    of the command, in order; offset, rad, is added first
+    tracked    m, where the point that is taken for P lies in platform 1's frame
+    clock      s, recording time t is command time t + clock
+    """
+
+    robot: Robot
+    kappa: list[float] = field(default_factory=list)
+    quadratic: list[float] = field(default_factory=lambda: [0.0] * 4)
+    dry: list[float] = field(default_factory=lambda: [0.0] * 4)
+    J: list[float] = field(default_factory=lambda: [0.0] * 4)
+    toe: list[float] = field(default_factory=lambda: [0.0, 0.0])
+    left: list[float] = field(default_factory=lambda: [0.0, 0.0])
+    mu: float = 50.0
+    creep: float = 0.0
+    tilt: tuple[float, float] = (0.0, 0.0)
+    play: float = 0.0
+    pin: float = 0.0
+    spring: float | None = None
+    load: tuple[float, float] | None = None
+    tether: Tether | None = None
+    offset: float = 0.0
+    shapers: list[Shaper] = field(default_factory=list)
+    laws: list[Law] = field(default_factory=list)
+    tracked: tuple[float, float] = (0.0, 0.0)
+    clock: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not self.kappa:
+            one, two = self.robot.platform1.kappa, self.robot.platform2.kappa
+            self.kappa = [one, one, two, two]
+
+    @property
+    def gravity(self) -> Any:
+        """On the floor's own axes, m/s2 (3,)."""
+        x, y = np.sin(self.tilt)
+        return GRAVITY * np.array([x, y, -np.sqrt(1 - x * x - y * y)])
