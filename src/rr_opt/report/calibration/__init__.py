@@ -1,0 +1,1 @@
+"""Results of `rr-opt calibrate`: the record, the tables, the words and the page."""

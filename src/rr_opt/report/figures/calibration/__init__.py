@@ -1,0 +1,1 @@
+"""Figures of `rr-opt calibrate`."""
