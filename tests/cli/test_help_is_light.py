@@ -26,7 +26,7 @@ def _fresh(*arguments):
 def test_help_names_every_verb_and_loads_nothing_heavy():
     done = _fresh("--help")
     assert done.returncode == 0, done.stderr
-    for verb in ("maximize-speed", "sweep", "simulate", "export", "lint", "schema"):
+    for verb in ("maximize-speed", "sweep", "simulate", "reproduce", "inspect", "diagnose"):
         assert verb in done.stdout
 
 

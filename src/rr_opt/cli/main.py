@@ -13,10 +13,15 @@ from typer.core import TyperGroup
 
 from rr_opt import __version__
 from rr_opt.cli import interrupt
+from rr_opt.cli.calibrate import calibrate
 from rr_opt.cli.circle import circle
+from rr_opt.cli.diagnose import diagnose
 from rr_opt.cli.export import export
+from rr_opt.cli.inspect import inspect
 from rr_opt.cli.lint import lint
 from rr_opt.cli.maximize_speed import maximize_speed
+from rr_opt.cli.record import record
+from rr_opt.cli.reproduce import reproduce
 from rr_opt.cli.schema import schema
 from rr_opt.cli.shapes import shapes
 from rr_opt.cli.simulate import simulate
@@ -80,6 +85,11 @@ app.command("circle")(circle)
 app.command("simulate")(simulate)
 app.command("export")(export)
 app.command("study")(study)
+app.command("reproduce")(reproduce)
+app.command("calibrate")(calibrate)
+app.command("inspect")(inspect)
+app.command("record")(record)
+app.command("diagnose")(diagnose)
 app.command("lint")(lint)
 app.command("schema")(schema)
 

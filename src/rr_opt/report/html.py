@@ -7,6 +7,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from html import escape
 
+from rr_opt.report.page_style import CSS
+
 
 @dataclass(frozen=True)
 class Badge:
@@ -17,6 +19,17 @@ class Badge:
 
 
 Cell = str | Badge
+
+
+def document(title: str, body: Iterable[str], style: str = "") -> str:
+    """A whole page of its parts, those that are not empty; style: CSS beside the common one."""
+    return (
+        '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">'
+        f"<title>{escape(title)}</title><style>{CSS}{style}</style></head>\n<body><main>\n"
+        + "\n".join(part for part in body if part)
+        + "\n</main></body></html>\n"
+    )
 
 
 def card(title: str, body: str) -> str:

@@ -10,8 +10,7 @@ from rr_opt import __version__
 from rr_opt.outcome import Status
 from rr_opt.report.answer import Answer
 from rr_opt.report.holding import holding_sentence
-from rr_opt.report.html import card, figure
-from rr_opt.report.page_style import CSS
+from rr_opt.report.html import card, document, figure
 from rr_opt.report.page_tables import bounds_table, limits_table, optima_table, robot_table
 from rr_opt.report.quantities import direction_text, number, with_unit
 from rr_opt.report.summary import cycle_text, ratio_text
@@ -58,14 +57,7 @@ def page(answer: Answer, figures: Mapping[str, str], first: str = "") -> str:
         card("Robot", robot_table(optimum.robot or optimum.problem.robot, chosen)),
         _footer(answer),
     ]
-    title = escape(f"{answer.name}: {_verdict(answer)}")
-    return (
-        '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">'
-        '<meta name="viewport" content="width=device-width, initial-scale=1">'
-        f"<title>{title}</title><style>{CSS}</style></head>\n<body><main>\n"
-        + "\n".join(part for part in body if part)
-        + "\n</main></body></html>\n"
-    )
+    return document(f"{answer.name}: {_verdict(answer)}", body)
 
 
 def _gallery(figures: Mapping[str, str]) -> str:

@@ -6,8 +6,7 @@ from html import escape
 
 from rr_opt import __version__
 from rr_opt.outcome import Status
-from rr_opt.report.html import Badge, Cell, card, figure, table
-from rr_opt.report.page_style import CSS
+from rr_opt.report.html import Badge, Cell, card, document, figure, table
 from rr_opt.report.quantities import direction_text, number, with_unit
 from rr_opt.report.shapes.compared import Compared, gain_of, held_by, label, speed_of
 
@@ -31,12 +30,7 @@ def page(compared: Compared, drawn: str) -> str:
         f"<footer>rr-opt {escape(__version__)} · input SHA-256 "
         f"<code>{escape(compared.sha256)}</code></footer>",
     ]
-    return (
-        '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">'
-        '<meta name="viewport" content="width=device-width, initial-scale=1">'
-        f"<title>{escape(compared.name)}: {escape(title)}</title><style>{CSS}</style></head>\n"
-        "<body><main>\n" + "\n".join(part for part in body if part) + "\n</main></body></html>\n"
-    )
+    return document(f"{compared.name}: {title}", body)
 
 
 def _verdict(compared: Compared) -> str:

@@ -9,8 +9,7 @@ import numpy as np
 
 from rr_opt import __version__
 from rr_opt.outcome import Status
-from rr_opt.report.html import Badge, Cell, card, figure, table
-from rr_opt.report.page_style import CSS
+from rr_opt.report.html import Badge, Cell, card, document, figure, table
 from rr_opt.report.quantities import QUANTITIES, direction_text, number, with_unit
 from rr_opt.report.study.result import Studied, front
 
@@ -53,14 +52,7 @@ def page(result: Studied, figures: Mapping[str, str]) -> str:
         f"rr-opt {escape(__version__)} · input SHA-256 "
         f"<code>{escape(result.study.sha256)}</code></footer>",
     ]  # fmt: skip
-    title = escape(f"{result.study.name}: {_verdict(result)}")
-    return (
-        '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">'
-        '<meta name="viewport" content="width=device-width, initial-scale=1">'
-        f"<title>{title}</title><style>{CSS}</style></head>\n<body><main>\n"
-        + "\n".join(part for part in body if part)
-        + "\n</main></body></html>\n"
-    )
+    return document(f"{result.study.name}: {_verdict(result)}", body)
 
 
 def _verdict(result: Studied) -> str:

@@ -1,0 +1,78 @@
+"""`rr-opt diagnose FOLDER`: where the simulation goes wrong, what it leaves out, and how sure."""
+
+from __future__ import annotations
+
+from contextlib import closing
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, cast
+
+import typer
+
+from rr_opt.cli.options import json_option, out_option
+from rr_opt.cli.steps import Steps
+from rr_opt.outcome import NotConvergedError
+
+if TYPE_CHECKING:
+    from rr_opt.diagnose.diagnosis import Diagnosis
+    from rr_opt.diagnose.model import Model
+    from rr_opt.experiment.experiment import Experiment
+
+
+def diagnose(
+    source: Annotated[
+        Path,
+        typer.Argument(metavar="FOLDER", help="Folder with an experiment.yaml and its recordings."),
+    ],
+    out: Annotated[Path | None, out_option("out/NAME-diagnosis")] = None,
+    json: Annotated[bool, json_option("diagnosis.json")] = False,
+    page: Annotated[
+        bool, typer.Option("--page/--no-page", help="Draw figures and write report.html.")
+    ] = True,
+) -> None:
+    """Find where the simulation goes wrong, what it leaves out, how much of it, and how sure.
+
+    Writes diagnosis.json, robot-corrected.yaml for the other verbs, and report.html.
+    """
+    with Steps() as steps:
+        steps("reading")
+        from rr_opt.cli.diagnose_input import read, usable  # noqa: PLC0415
+        from rr_opt.report.archive import folder_for_results, strict_json  # noqa: PLC0415
+
+        name, sha256, read_runs = read(source)
+        folder = folder_for_results(out or Path("out") / f"{name}-diagnosis")
+        experiment, left_out = usable(read_runs)
+        found = _diagnosed(experiment, steps)
+        from rr_opt.report.diagnosis.diagnosed import Diagnosed  # noqa: PLC0415
+        from rr_opt.report.diagnosis.files import write_diagnosis  # noqa: PLC0415
+        from rr_opt.report.diagnosis.record import record  # noqa: PLC0415
+        from rr_opt.report.diagnosis.summary import summary  # noqa: PLC0415
+
+        told = Diagnosed(name, sha256, experiment, found, left_out)
+        written = write_diagnosis(told, folder, page=page, progress=steps)
+    for sentence in left_out:
+        typer.echo(sentence, err=True)
+    if json:
+        typer.echo(strict_json(record(told)), nl=False)
+    else:
+        typer.echo(summary(told, written), nl=False)
+
+
+def _diagnosed(experiment: Experiment, steps: Steps) -> Diagnosis:
+    """The diagnosis, worked out in this process and two more. Raises NotConvergedError."""
+    from rr_opt.cli.shared_work import SharedWork  # noqa: PLC0415
+
+    with closing(SharedWork()) as work:
+        from rr_opt.diagnose.diagnose import Steps as Told  # noqa: PLC0415
+        from rr_opt.diagnose.diagnose import diagnose as run  # noqa: PLC0415
+        from rr_opt.diagnose.racer import RollerRacer  # noqa: PLC0415
+
+        # A cached property answers the protocol, though the type checker does not see it.
+        racer = cast("Model", RollerRacer(experiment))
+        found = run(racer, Told(say=steps, each=work))
+    if not (found.before < float("inf") and found.after < float("inf")):
+        raise NotConvergedError(
+            "The fits did not converge: a simulation left the range of numbers. Expected motion "
+            "near that of the nominal robot. Look at the recordings with `rr-opt inspect`, and "
+            "check the robot's values."
+        )
+    return found

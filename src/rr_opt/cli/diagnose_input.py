@@ -1,0 +1,102 @@
+"""What `diagnose` is given: an experiment whose recordings can tell something."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from rr_opt.experiment.experiment import Experiment, Run
+from rr_opt.experiment.recording import CHANNELS
+from rr_opt.files.experiment.file import FILE_NAME, experiment_path, read_plan
+from rr_opt.outcome import InputError
+from rr_opt.recordings.experiment import read_experiment
+from rr_opt.recordings.units_guess import unit_doubts
+
+_FEWEST = 50
+"""Samples of a channel below which nothing is told."""
+_PERIODS = 2.0
+"""A shorter recording holds a start and no more."""
+_STILL = 10.0
+"""What moves by less, in sigma of the noise, over 98 % of the samples, stands still."""
+_LARGEST_GAP = 4.0
+"""Seconds without any data of a channel; the motion in between is then nobody's."""
+
+
+def read(source: Path) -> tuple[str, str, Experiment]:
+    """Name, fingerprint and experiment of a folder. Raises InputError with all that is wrong."""
+    if source.is_dir() and not experiment_path(source).exists():
+        raise InputError(
+            f"{source}: Read a folder without {FILE_NAME}. Expected that file, which names the "
+            "robot and the recordings. `rr-opt schema experiment` tells its keys."
+        )
+    plan, _ = read_plan(source)
+    return plan.name, plan.sha256, read_experiment(source)
+
+
+def usable(experiment: Experiment) -> tuple[Experiment, tuple[str, ...]]:
+    """The experiment without the recordings that tell nothing, and a sentence on each of those.
+
+    Raises InputError for recordings in another unit, and where no recording is left to fit.
+    """
+    wrong = [
+        f"{run.name}: {doubt}" for run in experiment.runs for doubt in unit_doubts(run.recording)
+    ]
+    if wrong:
+        raise InputError("\n".join(wrong))
+    why = {run.name: _why_not(run) for run in experiment.runs}
+    runs = tuple(run for run in experiment.runs if not why[run.name])
+    told = tuple(f"{name}: {text} It was left out." for name, text in why.items() if text)
+    if not any(run.use == "fit" for run in runs):
+        if not told:
+            raise InputError(
+                "All recordings are held out. Expected some to fit. Mark them with `use: fit`."
+            )
+        reasons = "\n".join(f"{name}: {text}" for name, text in why.items() if text)
+        raise InputError(
+            f"{reasons}\nNo recording to fit is left, so nothing can be told of this robot. "
+            "Record some periods in which it drives."
+        )
+    return replace(experiment, runs=runs), told
+
+
+def _why_not(run: Run) -> str:
+    """Why a recording tells nothing; empty if it does."""
+    recording = run.recording
+    t, period = recording.t, run.gait.period
+    data = {name: recording.data(name) for name in CHANNELS}
+    counts = {name: int(np.isfinite(values).sum()) for name, values in data.items()}
+    least = min(counts, key=lambda name: counts[name])
+    if counts[least] == 0:
+        return f"There are no data of {least}. Expected x, y, psi and phi."
+    seconds = float(t[-1] - t[0])
+    if seconds < _PERIODS * period or counts[least] < _FEWEST:
+        return (
+            f"Read {seconds:.3g} s of a gait with a period of {period:.3g} s, and "
+            f"{counts[least]} values of {least}: too short to tell. Expected at least "
+            f"{_PERIODS:g} periods and {_FEWEST} values."
+        )
+    for name, values in data.items():
+        known = t[np.isfinite(values)]
+        gap = float(np.diff(np.concatenate([t[:1], known, t[-1:]])).max())
+        if gap > _LARGEST_GAP:
+            return (
+                f"Read no {name} for {gap:.3g} s. Expected gaps of at most {_LARGEST_GAP:g} s. "
+                "Cut the recording there."
+            )
+    moved = {name: _range(values) / _sigma(run, name) for name, values in data.items()}
+    if moved["phi"] < _STILL:
+        return "The servo does not move: too still to tell. Expected it to follow its command."
+    if max(moved[name] for name in ("x", "y", "psi")) < _STILL:
+        return "The robot does not move: too still to tell. Expected it to drive."
+    return ""
+
+
+def _range(values: np.ndarray) -> float:
+    low, high = np.nanpercentile(values, (1, 99))
+    return float(high - low)
+
+
+def _sigma(run: Run, name: str) -> float:
+    return float(np.nanmedian(run.recording.sigma[name]))

@@ -1,0 +1,1 @@
+"""A diagnosis told: the page, the record for scripts, the corrected robot, the terminal's text."""

@@ -1,0 +1,67 @@
+"""A diagnosis with the experiment that it is of."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from rr_opt.diagnose.diagnosis import Diagnosis, Misfit, Stage
+from rr_opt.experiment.experiment import Experiment
+from rr_opt.report.diagnosis.corrected import corrected_robot
+from rr_opt.robot.parameters import Robot
+
+
+@dataclass(frozen=True)
+class Diagnosed:
+    """What there is to tell.
+
+    name, sha256  of the input
+    left_out      sentences on the recordings that could not be used
+    """
+
+    name: str
+    sha256: str
+    experiment: Experiment
+    found: Diagnosis
+    left_out: tuple[str, ...] = ()
+
+    @cached_property
+    def corrected(self) -> Robot:
+        """The robot with what was found in it."""
+        return corrected_robot(self.experiment, self.found)
+
+    @property
+    def guilty(self) -> tuple[Stage, ...]:
+        """The stages in which a fault sits."""
+        return tuple(stage for stage in self.found.stages if stage.guilty)
+
+    @property
+    def where(self) -> str:
+        """Where the fault shows, in words; empty if nothing says."""
+        return self.found.where or "; ".join(one.where for one in self.guilty if one.where)
+
+    @property
+    def marked(self) -> bool:
+        """Whether the experiment keeps a recording apart from the fit."""
+        return any(one.held_out for one in self.found.final)
+
+    @property
+    def proof(self) -> tuple[int, ...]:
+        """Places of the recordings that prove the fit: the held-out ones; all, if there are none.
+
+        The worst explained by the nominal model come first.
+        """
+        nominal = self.found.nominal
+        rows = [k for k, one in enumerate(nominal) if one.held_out] or range(len(nominal))
+        return tuple(sorted(rows, key=lambda k: -nominal[k].rms))
+
+
+def rms(misfits: Iterable[Misfit]) -> float:
+    """Root mean square over all their values, in sigma; NaN of none."""
+    squares: Sequence[np.ndarray] = [one.residuals.ravel() ** 2 for one in misfits]
+    if not squares:
+        return float("nan")
+    return float(np.sqrt(np.nanmean(np.concatenate(squares))))

@@ -1,0 +1,127 @@
+"""diagnosis.json: what was found, for scripts; SI, strict JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from rr_opt import __version__
+from rr_opt.diagnose.diagnosis import Curve, Estimate, Finding, Residue, Stage, Tried
+from rr_opt.report.diagnosis.diagnosed import Diagnosed
+from rr_opt.report.diagnosis.fit_record import fit_record, number_of
+
+
+def record(one: Diagnosed) -> dict[str, Any]:
+    """The whole of `diagnosis.json`; what is not finite is null."""
+    found = one.found
+    return {
+        "name": one.name,
+        "verdict": found.verdict,
+        "summary": found.summary,
+        "location": {
+            "channel": found.channel,
+            "where": one.where,
+            "evidence": [_evidence(stage) for stage in found.stages],
+        },
+        "effects": [_finding(each, found.verdict == "parameters") for each in found.findings],
+        "candidates": _candidates(found.tried),
+        "indistinguishable": [list(group) for group in found.indistinguishable],
+        "next_experiment": _next(one),
+        "fit": fit_record(one),
+        "residue": [_residue(each) for each in found.residue],
+        "parameters": {name: _estimate(each) for name, each in found.parameters.items()},
+        "values": {name: number_of(value) for name, value in found.values.items()},
+        "left_out": list(one.left_out),
+        "seconds": {step: number_of(time) for step, time in found.seconds.items()},
+        "version": __version__,
+        "input_sha256": one.sha256,
+    }
+
+
+def _evidence(stage: Stage) -> dict[str, Any]:
+    return {
+        "test": stage.name,
+        "channel": stage.channel,
+        "statistic": number_of(stage.statistic),
+        "p_value": number_of(stage.p_value),
+        "size": number_of(stage.size),
+        "guilty": stage.guilty,
+        "where": stage.where,
+        "curves": [_curve(curve) for curve in stage.curves],
+    }
+
+
+def _curve(curve: Curve | Residue) -> dict[str, Any]:
+    return {
+        "variable": curve.variable,
+        "unit": curve.unit,
+        "at": _numbers(curve.at),
+        "mean": _numbers(curve.mean),
+        "error": _numbers(curve.error),
+    }
+
+
+def _finding(finding: Finding, of_robot: bool) -> dict[str, Any]:
+    """An effect; a parameter of the robot has its value beside its name too."""
+    parameters = {name: _estimate(each) for name, each in finding.parameters.items()}
+    return {
+        "name": finding.name,
+        "confidence": number_of(finding.confidence),
+        **(parameters.get(finding.name, {}) if of_robot else {}),
+        "parameters": parameters,
+        "removes": number_of(finding.removes),
+        "minor": finding.minor,
+    }
+
+
+def _estimate(one: Estimate) -> dict[str, Any]:
+    ends = [number_of(one.low), number_of(one.high)]
+    return {"value": number_of(one.value), "ci95": ends, "unit": one.unit}
+
+
+def _candidates(tried: Sequence[Tried]) -> list[dict[str, Any]]:
+    best = min((one.score for one in tried), default=0.0)
+    return [
+        {
+            "effects": list(one.effects),
+            "score": number_of(one.score),
+            "score_above_best": number_of(one.score - best),
+            "rms_beyond_noise": number_of(one.fit),
+            "rms_beyond_noise_left_out": number_of(one.left_out),
+            "values": {name: number_of(value) for name, value in one.values.items()},
+            "accepted": one.accepted,
+        }
+        for one in sorted(tried, key=lambda one: one.score)
+    ]
+
+
+def _next(one: Diagnosed) -> dict[str, Any] | None:
+    asked = one.found.next_experiment
+    if asked is None:
+        return None
+    return {
+        "gait": {
+            "amplitude": asked.amplitude,
+            "period": asked.period,
+            "offset": asked.offset,
+        },
+        "start": asked.start,
+        "heading": number_of(asked.heading),
+        "seconds": number_of(asked.seconds),
+        "between": list(asked.between),
+        "separation": number_of(asked.separation),
+        "sentence": asked.sentence,
+    }
+
+
+def _residue(one: Residue) -> dict[str, Any]:
+    return {
+        "kind": one.kind,
+        **_curve(one),
+        "share": number_of(one.share),
+        "sentence": one.sentence,
+    }
+
+
+def _numbers(values: Any) -> list[float | None]:
+    return [number_of(value) for value in values]

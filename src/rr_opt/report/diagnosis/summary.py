@@ -1,0 +1,67 @@
+"""A diagnosis as text for a terminal."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Sequence
+from pathlib import Path
+
+from rr_opt.diagnose.diagnosis import Finding
+from rr_opt.report.diagnosis.diagnosed import Diagnosed
+from rr_opt.report.diagnosis.stage_words import size_text, stage_words
+from rr_opt.report.diagnosis.words import (
+    candidate_words,
+    headline,
+    share_text,
+    value_text,
+)
+from rr_opt.report.text import columns
+
+_WIDTH = 100
+
+
+def summary(one: Diagnosed, written: Sequence[Path]) -> str:
+    """The verdict, what was found with its intervals, before and after, and what to do next."""
+    found = one.found
+    rows: list[tuple[str, ...]] = [("verdict", f"{found.verdict}: {headline(found)}")]
+    if found.channel != "none":
+        rows.append(("  shows in", found.channel.replace("_", " ")))
+    if one.where:
+        rows.append(("  where", one.where))
+    rows += [row for finding in found.findings for row in _finding(finding, found.verdict)]
+    rows += _misfit(one)
+    rows += [
+        (f"stage {stage.name.replace('_', ' ')}", f"{word}, {size_text(stage)}")
+        for stage, word in zip(found.stages, stage_words(found.stages), strict=True)
+    ]
+    rows += [
+        ("no telling", " or ".join(name.replace("_", " ") for name in group))
+        for group in found.indistinguishable
+    ]
+    rows += [("left over", each.sentence) for each in found.residue]
+    if found.next_experiment is not None:
+        rows.append(("record next", found.next_experiment.sentence))
+    rows.append(("took", f"{sum(found.seconds.values()):.0f} s"))
+    lines = columns(rows)
+    lines += ["", *textwrap.wrap(found.summary, _WIDTH)]
+    lines += ["", *(f"wrote {path}" for path in written)]
+    return "\n".join(lines).rstrip() + "\n"
+
+
+def _finding(finding: Finding, verdict: str) -> list[tuple[str, ...]]:
+    if verdict == "parameters":
+        return [(f"  {name}", value_text(value)) for name, value in finding.parameters.items()]
+    minor = ", minor" if finding.minor else ""
+    name = candidate_words([finding.name])
+    head = f"confidence {finding.confidence:.2f}, removes {share_text(finding)}{minor}"
+    values = [(f"  {key}", value_text(value)) for key, value in finding.parameters.items()]
+    return [(name, head), *values]
+
+
+def _misfit(one: Diagnosed) -> list[tuple[str, ...]]:
+    found = one.found
+    what = "held out" if one.marked else "fitted"
+    return [
+        ("misfit", f"{found.before:.2f} sigma before, {found.after:.2f} after, 1 is the noise "
+            f"({len(one.proof)} {what} recording{'s' if len(one.proof) != 1 else ''})")
+    ]  # fmt: skip

@@ -1,0 +1,135 @@
+"""How findings are written for people: names, verdicts, values with their intervals."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+
+from rr_opt.diagnose.diagnosis import Diagnosis, Estimate, Finding
+from rr_opt.report.quantities import number
+
+_NAMES = {
+    "coulomb_friction": "Coulomb friction",
+    "left_right_drag": "a drag that differs from left to right",
+    "com_offset": "a centre of mass beside the axis",
+    "axle_misalignment": "an axle that is not square",
+    "marker_offset": "a tracked point that is not the joint",
+    "clock_offset": "a clock offset",
+    "floor_tilt": "a tilt of the floor",
+    "floor_patch": "a patch of the floor",
+    "lateral_slip": "sideways slip of the wheels",
+    "servo_lag": "a lag of the servo",
+    "servo_rate_limit": "the servo's rate limit",
+    "servo_backlash": "backlash of the servo",
+    "servo_offset": "an offset of the servo",
+    "wheel_inertia": "the inertia of the wheels",
+}
+
+_PARTS = {
+    "m": "mass",
+    "I": "inertia",
+    "c": "length to the joint",
+    "a": "place of the centre of mass",
+    "b": "half track",
+    "kappa": "wheel friction",
+}
+
+_COMMON = {
+    "m": ("mm", 1e3, 1.0),
+    "kg": ("g", 1e3, 1.0),
+    "s": ("ms", 1e3, 1.0),
+    "N": ("mN", 1e3, 1.0),
+    "rad": ("mrad", 1e3, 0.5),
+    "N m s": ("µN m s", 1e6, 1e-2),
+    "kg m^2": ("kg m²", 1.0, math.inf),
+    "dimensionless": ("", 1.0, math.inf),
+}
+"""SI unit to the one that people think in, and below what size they do."""
+
+
+def effect_words(name: str) -> str:
+    """An effect in words, as the object of a sentence."""
+    return _NAMES.get(name, name.replace("_", " "))
+
+
+def parameter_words(name: str) -> str:
+    """`kappa1` as `wheel friction of platform 1`; anything else as it is."""
+    part, number_ = name[:-1], name[-1:]
+    if number_ in ("1", "2") and part in _PARTS:
+        return f"{_PARTS[part]} of platform {number_}"
+    return "wheel radius" if name == "h" else name.replace("_", " ")
+
+
+def candidate_words(effects: Sequence[str]) -> str:
+    """A set of effects."""
+    return " + ".join(one.replace("_", " ") for one in effects) or "none, the parameters alone"
+
+
+def listed(words: Iterable[str]) -> str:
+    """`one`, `one and two`, `one, two and three`."""
+    several = list(words)
+    return " and ".join([", ".join(several[:-1]), several[-1]] if several[1:] else several)
+
+
+def headline(found: Diagnosis) -> str:
+    """The verdict in a sentence."""
+    names = [one.name for one in found.findings]
+    if found.verdict == "consistent":
+        return "The model explains the recordings"
+    if found.verdict == "parameters":
+        several = len(names) > 1
+        return (
+            f"The model is right, but {listed(map(parameter_words, names)) or 'a value'} "
+            f"{'are' if several else 'is'} not as believed"
+        )
+    if found.verdict == "missing_physics":
+        return f"The model leaves out {listed(map(effect_words, names)) or 'something'}"
+    return "Something is left out, and no known effect accounts for it"
+
+
+def value_text(one: Estimate) -> str:
+    """`15.2 mN [14.1, 16.3]`, with digits as its interval allows."""
+    unit, value, ends = _people(one)
+    return f"{value} {unit}".strip() + f" [{ends[0]}, {ends[1]}]"
+
+
+def interval_text(one: Estimate) -> str:
+    """`14.1 to 16.3 mN`."""
+    unit, _, ends = _people(one)
+    return f"{ends[0]} to {ends[1]} {unit}".strip()
+
+
+def number_text(one: Estimate, value: float) -> str:
+    """Another value of the same quantity, in its unit and with its digits."""
+    unit, factor, digits = _scale(one)
+    return f"{_fixed(value * factor, digits)} {unit}".strip()
+
+
+def _people(one: Estimate) -> tuple[str, str, tuple[str, str]]:
+    unit, factor, digits = _scale(one)
+    value, low, high = (_fixed(x * factor, digits) for x in (one.value, one.low, one.high))
+    return unit, value, (low, high)
+
+
+def _scale(one: Estimate) -> tuple[str, float, int | None]:
+    """Unit, how many of it are one SI unit, and decimals: two digits of the interval; or None."""
+    finite = [abs(x) for x in (one.value, one.low, one.high) if math.isfinite(x)]
+    size = max(finite, default=0.0)
+    unit, factor, below = _COMMON.get(one.unit, (one.unit, 1.0, math.inf))
+    if size >= below:
+        unit, factor = one.unit, 1.0
+    width = (one.high - one.low) * factor
+    if not (math.isfinite(width) and width > 0) or not 1e-3 <= size * factor < 1e6:
+        return unit, factor, None
+    return unit, factor, min(max(1 - math.floor(math.log10(width / 2)), 0), 6)
+
+
+def _fixed(value: float, digits: int | None) -> str:
+    if not math.isfinite(value):
+        return "∞" if value > 0 else "-∞"
+    return number(value, 3) if digits is None else f"{value:.{digits}f}"
+
+
+def share_text(finding: Finding) -> str:
+    """How much of the mismatch goes with it."""
+    return f"{100 * finding.removes:.0f} %"

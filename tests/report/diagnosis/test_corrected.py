@@ -1,0 +1,65 @@
+"""robot-corrected.yaml is a robot file: it reads back as the robot that was found, with origins."""
+
+from dataclasses import replace
+
+import pytest
+import yaml
+
+from rr_opt.files import lint_file, read_robot
+from rr_opt.physics.effects import CATALOGUE
+from rr_opt.report.diagnosis.corrected import corrected_robot, robot_yaml
+
+
+def written(robot, folder):
+    path = folder / "robot-corrected.yaml"
+    path.write_text(robot_yaml(robot, "A title.\nAnd more."))
+    return path
+
+
+@pytest.mark.parametrize("verdict", ["consistent", "parameters", "missing_physics"])
+def test_it_reads_back_as_it_was(every, verdict, tmp_path):
+    robot = every[verdict].corrected
+    path = written(robot, tmp_path)
+    assert not [one for one in lint_file(path) if one.level == "error"]
+    again = read_robot(path)
+    assert again == robot
+    assert again.platform1.kappa == 2.1e-5
+    assert again.platform2 == every[verdict].experiment.robot.platform2
+    assert again.provenance["platform1.kappa"].startswith("fitted: 1.8e-05 to 2.4e-05 N m s")
+    assert [use.name for use in again.physics] == (
+        ["coulomb_friction"] if verdict == "missing_physics" else []
+    )
+
+
+def test_every_effect_of_the_catalogue_can_be_written(missing, tmp_path):
+    values = {
+        f"{effect.name}.{q.name}": q.bounds[1] if q.bounds[1] < 10 else q.typical
+        for effect in CATALOGUE.values()
+        for q in effect.parameters
+    }
+    found = replace(missing.found, values=values, parameters={})
+    robot = corrected_robot(missing.experiment, found)
+    path = written(robot, tmp_path)
+    assert not [one for one in lint_file(path) if one.level == "error"]
+    assert {use.name for use in read_robot(path).physics} == set(CATALOGUE)
+
+
+def test_other_readers_of_yaml_see_numbers_too(missing, tmp_path):
+    robot = replace(missing.corrected, platform2=replace(missing.corrected.platform2, kappa=2e-5))
+    data = yaml.safe_load(written(robot, tmp_path).read_text())
+    assert data["platform2"]["kappa"] == 2e-5
+    assert data["physics"] == [{"name": "coulomb_friction", "force1": 0.0152, "force2": 0.0098}]
+
+
+def test_effects_that_the_robot_had_stay(missing):
+    had = replace(missing.experiment, robot=missing.corrected)
+    found = replace(missing.found, values={"m1": 0.5, "servo_offset.offset": 0.02})
+    uses = {use.name: dict(use.values) for use in corrected_robot(had, found).physics}
+    assert uses["coulomb_friction"]["force1"] == 0.0152
+    assert uses["servo_offset"] == {"offset": 0.02}
+
+
+def test_a_value_stays_within_its_bounds(missing):
+    found = replace(missing.found, values={"lateral_slip.mu": 10.000004})
+    (use,) = corrected_robot(missing.experiment, found).physics
+    assert use.values["mu"] == CATALOGUE["lateral_slip"].parameters[1].bounds[1]

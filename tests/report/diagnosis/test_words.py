@@ -1,0 +1,45 @@
+"""A value is told in the unit of the bench, with as many digits as its interval allows."""
+
+import math
+
+import pytest
+
+from rr_opt.diagnose.diagnosis import Estimate
+from rr_opt.report.diagnosis.summary import summary
+from rr_opt.report.diagnosis.words import headline, interval_text, value_text
+
+
+@pytest.mark.parametrize(
+    ("estimate", "text"),
+    [
+        (Estimate(0.01523, 0.0141, 0.0163, "N"), "15.2 mN [14.1, 16.3]"),
+        (Estimate(1.234567, 1.2, 1.3, "N"), "1.235 N [1.200, 1.300]"),
+        (Estimate(0.20551, 0.2054, 0.2057, "m"), "205.51 mm [205.40, 205.70]"),
+        (Estimate(2.1e-5, 1.8e-5, 2.4e-5, "N m s"), "21.0 µN m s [18.0, 24.0]"),
+        (Estimate(0.04, 0.03, 0.05, "rad"), "40 mrad [30, 50]"),
+        (Estimate(0.2, 0.19, 0.21, "dimensionless"), "0.200 [0.190, 0.210]"),
+        (Estimate(0.2, 0.1, math.inf, "m"), "200 mm [100, ∞]"),
+    ],
+)
+def test_values(estimate, text):
+    assert value_text(estimate) == text
+
+
+def test_an_interval_alone():
+    assert interval_text(Estimate(0.0152, 0.0141, 0.0163, "N")) == "14.1 to 16.3 mN"
+
+
+def test_headlines_say_the_verdict(every):
+    said = {verdict: headline(one.found) for verdict, one in every.items()}
+    assert said["missing_physics"] == "The model leaves out Coulomb friction"
+    assert "wheel friction of platform 1 is not as believed" in said["parameters"]
+    assert "explains the recordings" in said["consistent"]
+    assert "no known effect" in said["unexplained"]
+
+
+@pytest.mark.parametrize("verdict", ["consistent", "parameters", "missing_physics", "unexplained"])
+def test_the_terminal_gets_the_verdict_first(every, verdict):
+    text = summary(every[verdict], [])
+    assert text.startswith("verdict")
+    assert verdict in text.splitlines()[0]
+    assert "8.10 sigma before, 1.00 after" in text
