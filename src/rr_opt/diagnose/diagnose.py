@@ -15,7 +15,8 @@ from rr_opt.diagnose.intervals import estimates
 from rr_opt.diagnose.left_out import left_out
 from rr_opt.diagnose.model import Model
 from rr_opt.diagnose.search import Explanation, Search, misfit, rms
-from rr_opt.diagnose.verdict import confidence, finding, verdict_of, wrong_parameters
+from rr_opt.diagnose.values import settled, wrong
+from rr_opt.diagnose.verdict import confidence, finding, verdict_of
 
 Say = Callable[[str], None]
 
@@ -64,8 +65,9 @@ def diagnose(model: Model, steps: Steps | None = None) -> Diagnosis:
     )
     base = steps.timed("its parameters", lambda: _base(model, first))
     level1 = steps.timed("held-out recordings", lambda: _level(model, base.whole, level0.fit))
-    search = Search(model, base, steps.say, steps.each)
+    search = Search(model, first, base, steps.say, steps.each)
     best = steps.timed("what is missing", search.run)
+    best = steps.timed("which values are wrong", lambda: settled(model, best))
     level2 = _level(model, best.whole, level0.fit) if best is not base else level1
     return _answer(model, search, best, (level0, level1, level2), steps)
 
@@ -129,13 +131,13 @@ def _answer(
     level0, level1, level2 = levels
     held = tuple(rms(level.held() ** 2 - 1) for level in levels)
     intervals = estimates(best.whole)
-    wrong = wrong_parameters(best)
+    moved = wrong(best.whole)
     nominal_left = max(rms(misfit(level0.fit)), held[0])
-    verdict = verdict_of(best, search.base, nominal_left, (held[1], held[2]), bool(wrong))
+    verdict = verdict_of(best, search.base, nominal_left, (held[1], held[2]), bool(moved))
     rivals = [one for one in search.tried if not set(best.names) <= set(one.names)]
     findings = _findings(best, search, intervals, (level1, level2), rivals)
     if verdict == "parameters":
-        findings = tuple(Finding(q.name, 1.0, {q.name: intervals[q.name]}, 1.0) for q in wrong)
+        findings = tuple(Finding(q.name, 1.0, {q.name: intervals[q.name]}, 1.0) for q in moved)
     if verdict in ("consistent", "unexplained"):
         findings = ()
     channel = model.catalogue[best.names[0]].channel if findings and best.names else "none"
@@ -158,6 +160,7 @@ def _answer(
         after=level2.held(),
         values=dict(best.whole.values),
         seconds=dict(steps.seconds),
+        converged=best.whole.converged,
     )
 
 

@@ -177,3 +177,4 @@ class Diagnosis:
     after: float
     values: Mapping[str, float]
     seconds: Mapping[str, float]
+    converged: bool = True

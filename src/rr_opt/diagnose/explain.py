@@ -57,23 +57,32 @@ def parameters(model: Model, start: Fit) -> Fit:
     )
 
 
-def explain(model: Model, chosen: Sequence[Chosen], start: Fit) -> Fit:
-    """Fit the parameters and the chosen effects together, from a fit without some of them."""
+def explain(model: Model, chosen: Sequence[Chosen], nominal: Fit, start: Fit) -> Fit:
+    """Fit the parameters and the chosen effects together.
+
+    Effects that `start` has begin as they are in it. Parameters and the runs' starts begin where
+    they are believed to be, in the `nominal` fit: bent to imitate what was missing, they lie at the
+    end of a valley along which a fit comes back only slowly.
+    """
     forms = [one.of(model) for one in chosen]
     names = tuple(one.name for one in chosen)
     quantities = (*model.parameters, *(q for form in forms for q in form.quantities))
-    problem = Problem(model, tuple(start.starts), names, quantities)
+    problem = Problem(model, tuple(nominal.starts), names, quantities)
     values = {q.name: q.value for q in quantities} | {
-        q.name: start.values[q.name] for q in quantities if q.name in start.values
+        q.name: start.values[q.name] for q in quantities if q.name in start.values and not q.known
     }
-    new = [form for one, form in zip(chosen, forms, strict=True) if one.name not in start.effects]
+    new = [
+        form.starts or model.propose(one.name, one.form, start)
+        for one, form in zip(chosen, forms, strict=True)
+        if one.name not in start.effects
+    ]
     begins = [
         values | {name: value for part in found for name, value in part.items()}
-        for found in itertools.product(*(form.starts for form in new))
+        for found in itertools.product(*new)
     ]
     if len(begins) == 1:
-        return solve(problem, begins[0], start.starts)
-    best = min((solve(problem, v, start.starts, steps=3) for v in begins), key=lambda f: f.cost)
+        return solve(problem, begins[0], nominal.starts)
+    best = min((solve(problem, v, nominal.starts, steps=3) for v in begins), key=lambda f: f.cost)
     return best if best.converged else solve(problem, best.values, best.starts)
 
 

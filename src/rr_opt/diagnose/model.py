@@ -9,10 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from rr_opt.diagnose.fit import Fit
 
 Array = NDArray[np.float64]
 
@@ -24,7 +27,7 @@ class Quantity:
     value       where it starts: a parameter's nominal value, an effect's first guess
     scale       one standard deviation of what was known before, or the usual size of an effect
     known       whether `scale` is knowledge (a prior) or only a size
-    free        known only to within a factor: any other value is no surprise, but a finding
+    free        known only to within a factor: another value is no surprise, but a finding
     low, high   where it may lie
     neutral     at which an effect vanishes; for a parameter its nominal value
     """
@@ -44,7 +47,8 @@ class Quantity:
 class Form:
     """Quantities of an effect that are looked for together, and from where.
 
-    starts  values by quantity; the fit begins at that which promises most
+    starts  values by quantity; the fit begins at that which promises most. Where there is none the
+            model has to propose them
     """
 
     quantities: tuple[Quantity, ...]
@@ -125,6 +129,10 @@ class Model(Protocol):
     @property
     def catalogue(self) -> Mapping[str, Candidate]:
         """The effects it knows, by name."""
+        ...
+
+    def propose(self, name: str, form: int, fit: Fit) -> Sequence[Mapping[str, float]]:
+        """From where to look for an effect that says nothing of it itself, beside a fit."""
         ...
 
     @property

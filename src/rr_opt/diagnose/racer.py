@@ -5,10 +5,13 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
 import numpy as np
 
+from rr_opt.diagnose.fit import Fit, Problem, doubt, scaled
+from rr_opt.diagnose.floor_map import cells_of, likely, with_cells
 from rr_opt.diagnose.model import Array, Candidate, Data, Form, Piece, Quantity, Response
 from rr_opt.diagnose.shoot import DrivePath, System, predict, slopes
 from rr_opt.experiment.experiment import Experiment, Run, Uncertainty
@@ -45,6 +48,7 @@ class RollerRacer:
     def __init__(self, experiment: Experiment) -> None:
         self.experiment = experiment
         self.nominal = _nominal(experiment)
+        self._given = frozenset(use.name for use in experiment.robot.physics)
 
     @cached_property
     def runs(self) -> Sequence[Data]:
@@ -65,7 +69,11 @@ class RollerRacer:
     @cached_property
     def catalogue(self) -> Mapping[str, Candidate]:
         """The effects of physics beyond the paper's model."""
-        return {name: _candidate(effect, self.setting) for name, effect in CATALOGUE.items()}
+        return {
+            name: _candidate(effect, self.setting)
+            for name, effect in CATALOGUE.items()
+            if name not in self._given
+        }
 
     @cached_property
     def setting(self) -> Setting:
@@ -78,6 +86,28 @@ class RollerRacer:
         ]
         fastest = max(gait.peak_rate for gait in gaits)
         return Setting(self.experiment.robot, fastest, max(float(np.median(distances)), 1e-3))
+
+    def propose(self, name: str, form: int, fit: Fit) -> Sequence[Mapping[str, float]]:
+        """Places for a patch on the floor, the one effect that has to be looked for in space."""
+        found = self._patches(fit)[form]
+        return [{f"{name}.{key}": value for key, value in one.items()} for one in found]
+
+    def _patches(self, fit: Fit) -> tuple[list[Mapping], list[Mapping]]:
+        """Circles and edges that would gain most; see `floor_map`."""
+        cells = cells_of([self.runs[piece.run].values[piece.span, :2] for piece in fit.starts])
+        motion = with_cells(self._all(fit.effects), cells)
+        stiff = len(motion.free) if motion.slips else 0
+        mapped = System(motion.rates, motion.seen, stiff), motion.parameters
+        quantities = (*fit.quantities, *(_share(name) for name in cells.names))
+        problem = Problem(_Mapped(self, mapped), tuple(fit.starts), fit.effects, quantities)
+        values = dict(fit.values) | dict.fromkeys(cells.names, 0.0)
+        parts = [problem.normal(piece, values, start) for piece, start in fit.starts.items()]
+        n = len(fit.quantities)
+        prior = np.diag(problem.prior * doubt(fit.cost, fit.count))
+        u = scaled(quantities, values)
+        H, g = sum((one.H for one in parts), prior), sum((one.g for one in parts), prior @ u)
+        onto = np.linalg.pinv(H[:n, :n], hermitian=True) @ H[:n, n:] if n else H[:0, n:]
+        return likely(cells, g[n:] - onto.T @ g[:n], H[n:, n:] - onto.T @ H[:n, n:])
 
     @property
     def jumping(self) -> frozenset[str]:
@@ -104,10 +134,14 @@ class RollerRacer:
         effects: tuple[str, ...],
         start: Array,
         wanted: tuple[str, ...] | None = None,
+        derived: tuple[System, tuple[str, ...]] | None = None,
     ) -> Response:
-        """Predict a piece of a run; see `diagnose.model.Model`."""
-        mechanical = tuple(name for name in CATALOGUE if name in effects)
-        system, parameters = _system(mechanical)
+        """Predict a piece of a run; see `diagnose.model.Model`.
+
+        derived  the motion and its parameters, where they are not those of the catalogue alone
+        """
+        mechanical = self._all(effects)
+        system, parameters = derived or _system(mechanical)
         given = self.nominal | values
         p = _p(given, parameters)
         t = self.runs[piece.run].t[piece.span]
@@ -121,6 +155,10 @@ class RollerRacer:
         drive_by = self._drive_by(piece.run, given, mechanical, t, wanted)
         out = slopes(system, path, made, p, by, drive_by)
         return Response(made.seen, out.by_parameter, out.by_start[:, :, : start.size])
+
+    def _all(self, effects: tuple[str, ...]) -> tuple[str, ...]:
+        """The effects with those that the nominal robot has already, in the catalogue's order."""
+        return tuple(name for name in CATALOGUE if name in effects or name in self._given)
 
     def _drive(self, run: int, given: Mapping[str, float], effects: tuple[str, ...]) -> Drive:
         here = self.experiment.runs[run]
@@ -192,14 +230,37 @@ class RollerRacer:
         return next(q.typical for q in CATALOGUE[effect].parameters if q.name == parameter)
 
 
+@dataclass(frozen=True)
+class _Mapped:
+    """A Roller Racer on a floor of cells."""
+
+    racer: RollerRacer
+    derived: tuple[System, tuple[str, ...]]
+
+    @property
+    def runs(self) -> Sequence[Data]:
+        """Those of the robot."""
+        return self.racer.runs
+
+    def respond(self, *given) -> Response:
+        """As the robot, with drag of its own in every cell."""
+        return self.racer.respond(*given, derived=self.derived)
+
+
+def _share(name: str) -> Quantity:
+    return Quantity(name, "", 0.0, 1.0, False, -1.0, 100.0, 0.0)
+
+
 def _state(effects: tuple[str, ...], path: DrivePath, start: Array, p: Array) -> Array:
     """The state that belongs to x, y, psi and v.
 
     Where the axles may slip they begin without: what they slip at first is over in milliseconds.
     """
-    if floor_motion(effects).slips:
+    motion = floor_motion(effects)
+    if motion.slips:
         return np.append(start, [0.0, 0.0])
-    without = floor_motion(effects).speeds([*start[:3], 0.0], path.at[:, 0], p)
+    own = p[: len(motion.parameters)]
+    without = motion.speeds([*start[:3], 0.0], path.at[:, 0], own)
     return start - np.array([0.0, 0.0, 0.0, float(without[0])])
 
 
@@ -289,9 +350,13 @@ def _form(effect: str, parameters: Sequence[Parameter], setting: Setting) -> For
         else [0.0]
         for q, size in zip(parameters, sizes, strict=True)
     ]
-    starts = tuple(
-        {q.name: value for q, value in zip(quantities, chosen, strict=True)}
-        for chosen in itertools.product(*choices)
+    starts = (
+        ()
+        if any(q.placed for q in parameters)
+        else tuple(
+            {q.name: value for q, value in zip(quantities, chosen, strict=True)}
+            for chosen in itertools.product(*choices)
+        )
     )
     return Form(quantities, starts)
 

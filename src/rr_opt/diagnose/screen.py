@@ -28,7 +28,7 @@ class Promise:
 
 def linear(model: Model, chosen: Chosen) -> bool:
     """Whether the effect can be linearised where it vanishes."""
-    return len(chosen.of(model).starts) == 1 and chosen.name not in model.jumping
+    return chosen.name not in model.jumping
 
 
 def every(model: Model) -> list[Chosen]:

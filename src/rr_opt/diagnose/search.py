@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+from scipy.stats import chi2
 
 from rr_opt.diagnose.explain import Chosen, explain, joined
 from rr_opt.diagnose.fit import Fit, doubt, scaled
@@ -57,8 +58,14 @@ class Explanation:
     @property
     def strain(self) -> float:
         """Chi-square of the parameters against what was known of them."""
-        known = [q for q in self.whole.quantities if q.known]
+        known = [q for q in self.whole.quantities if q.known and not q.free]
         return float(np.sum(scaled(known, self.whole.values) ** 2))
+
+    @property
+    def strained(self) -> bool:
+        """Whether the parameters are where what was known of them hardly lets them be."""
+        known = sum(q.known and not q.free for q in self.whole.quantities)
+        return self.strain > 2 * float(chi2.isf(0.01, known)) if known else False
 
     @property
     def score(self) -> float:
@@ -83,6 +90,7 @@ class Search:
     """A search under way, and all that it tried."""
 
     model: Model
+    nominal: Fit
     base: Explanation
     say: Say = lambda _: None
     each: Callable[..., Iterable] = map
@@ -93,7 +101,7 @@ class Search:
         best = self.base
         self.tried.append(best)
         for _ in range(MOST):
-            if rms(best.misfit) <= FLOOR and best.strain < 4 * len(self.model.parameters):
+            if rms(best.misfit) <= FLOOR and (best.chosen or not best.strained):
                 break
             found = self._round(best)
             if not found:
@@ -106,26 +114,34 @@ class Search:
         return self._backward(best)
 
     def _round(self, best: Explanation) -> list[Explanation]:
-        have = {one.name for one in best.chosen}
+        """The explanations with one effect more that promise most."""
         promised = [p.chosen[0] for p in screen(self.model, best.windows, best.chosen)]
-        jumping = [
-            one for one in every(self.model) if one.name not in have and not linear(self.model, one)
-        ]
-        short = [*promised[:_IN_WINDOWS], *jumping]
-        self.say(f"fitting {', '.join(one.name for one in short)}")
-        in_windows = list(self.each(_InWindows(self.model, best.chosen, best.windows), short))
-        in_windows.sort(key=lambda pair: pair[1].cost)
-        found = []
-        for one, fit in in_windows[:_WHOLE]:
-            self.say(f"fitting {one.name} over whole runs")
-            found.append(Explanation((*best.chosen, one), fit, joined(self.model, fit)))
+        found = self._fitted(best, promised[:_IN_WINDOWS], _WHOLE)
+        if min((rms(one.misfit) for one in found), default=math.inf) > FLOOR:
+            # What cannot be linearised is dear, and tried where nothing else will do.
+            have = {one.name for one in best.chosen}
+            rest = [
+                one
+                for one in every(self.model)
+                if one.name not in have and not linear(self.model, one)
+            ]
+            found += self._fitted(best, rest, _WHOLE)
         return found
+
+    def _fitted(self, best: Explanation, new: Sequence[Chosen], most: int) -> list[Explanation]:
+        self.say(f"fitting {', '.join(one.name for one in new)}")
+        in_windows = list(
+            self.each(_InWindows(self.model, best.chosen, self.nominal, best.windows), new)
+        )
+        in_windows.sort(key=lambda pair: pair[1].cost)
+        self.say(f"over whole runs: {', '.join(one.name for one, _ in in_windows[:most])}")
+        return list(self.each(_Whole(self.model, best.chosen), in_windows[:most]))
 
     def _backward(self, best: Explanation) -> Explanation:
         for one in best.chosen[:-1] if len(best.chosen) > 1 else ():
             rest = tuple(other for other in best.chosen if other != one)
             self.say(f"leaving out {one.name}")
-            fit = explain(self.model, rest, self.base.windows)
+            fit = explain(self.model, rest, self.nominal, best.windows)
             without = Explanation(rest, fit, joined(self.model, fit))
             self.tried.append(without)
             if not _gains(best, without):
@@ -137,15 +153,32 @@ class Search:
 class _InWindows:
     model: Model
     have: tuple[Chosen, ...]
+    nominal: Fit
     fit: Fit
 
     def __call__(self, one: Chosen) -> tuple[Chosen, Fit]:
         """The effect beside those that are there."""
-        return one, explain(self.model, (*self.have, one), self.fit)
+        return one, explain(self.model, (*self.have, one), self.nominal, self.fit)
+
+
+@dataclass(frozen=True)
+class _Whole:
+    model: Model
+    have: tuple[Chosen, ...]
+
+    def __call__(self, pair: tuple[Chosen, Fit]) -> Explanation:
+        """The fit over whole runs, from that over windows."""
+        one, fit = pair
+        return Explanation((*self.have, one), fit, joined(self.model, fit))
 
 
 def _gains(more: Explanation, less: Explanation) -> bool:
     """Whether what `more` adds to `less` is relevant, and certain in spite of model error."""
     gained = less.score - more.score
-    relevant = less.misfit - more.misfit > RELEVANT or less.strain - more.strain > 20
-    return relevant and gained > 20 * doubt(more.whole.cost, more.whole.count)
+    certain = gained > 20 * doubt(more.whole.cost, more.whole.count)
+    if rms(less.misfit) > FLOOR:
+        return certain and less.misfit - more.misfit > RELEVANT
+    # Parameters explain the data, but with values that nobody would believe. An effect stands for
+    # that only if with it they are believable.
+    known = sum(q.known and not q.free for q in less.whole.quantities)
+    return certain and more.strain < chi2.isf(0.01, known) < less.strain / 2

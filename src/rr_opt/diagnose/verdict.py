@@ -5,13 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 
-import numpy as np
-from scipy.stats import chi2, norm
+from scipy.stats import chi2
 
 from rr_opt.diagnose.diagnosis import Estimate, Finding, Verdict
 from rr_opt.diagnose.fit import doubt
-from rr_opt.diagnose.intervals import covariance
-from rr_opt.diagnose.model import Quantity
 from rr_opt.diagnose.search import FLOOR, Explanation, misfit, rms
 
 LEFT = 0.35
@@ -19,9 +16,6 @@ LEFT = 0.35
 
 SHARE = 0.1
 """Nor is more than this share of the misfit that the parameters alone leave."""
-
-FALSE_ALARM = 0.01
-"""Chance that any parameter is called wrong where all are right."""
 
 
 def verdict_of(
@@ -41,31 +35,6 @@ def verdict_of(
     left = max(rms(best.misfit), held[1])
     before = max(rms(base.misfit), held[0])
     return "missing_physics" if left <= max(LEFT, SHARE * before) else "unexplained"
-
-
-def wrong_parameters(best: Explanation) -> list[Quantity]:
-    """The parameters whose value is not what was believed.
-
-    One of which something is known left it by more than its own uncertainty allows; one of which
-    nothing is known differs from the nominal value by more than its interval. All of them are
-    tested together, so each is tested the harder.
-    """
-    fit = best.whole
-    if not fit.quantities:
-        return []
-    spread = np.sqrt(np.maximum(np.diag(covariance(fit)), 1e-300))
-    known = [q for q in fit.quantities if q.known]
-    limit = float(norm.isf(FALSE_ALARM / (2 * max(len(known), 1))))
-    out = []
-    for q, s in zip(fit.quantities, spread, strict=True):
-        if not q.known:
-            continue
-        off = (fit.values[q.name] - q.value) / q.scale
-        # What the data add to a prior of one sigma moves its estimate by sqrt(1 - s^2) on average.
-        usual = s if q.free else math.sqrt(max(1.0 - min(s * s, 1.0), 1e-12))
-        if abs(off) > limit * usual and usual > 1e-3 * (not q.free):
-            out.append(q)
-    return out
 
 
 def confidence(best: Explanation, rivals: Sequence[Explanation]) -> float:
@@ -96,4 +65,4 @@ def finding(
     return Finding(name, sure, own, removes, minor=removes < 0.05)
 
 
-__all__ = ["FLOOR", "confidence", "finding", "misfit", "verdict_of", "wrong_parameters"]
+__all__ = ["FLOOR", "confidence", "finding", "misfit", "verdict_of"]
