@@ -60,6 +60,7 @@ results: $(DEV) ## write the results that are kept in results/
 	$(BIN)/rr-opt shapes --out results/shapes
 	$(BIN)/rr-opt turn-chart --out results/turn-chart
 	$(BIN)/rr-opt study problems/studies/servo.yaml --restart --out results/servo
+	$(BIN)/python scripts/lab_null.py
 	$(BIN)/rr-opt reproduce --out results/paper
 	$(BIN)/rr-opt calibrate --out results/calibration
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from typing import TypeVar
 
 import numpy as np
 
@@ -19,6 +20,7 @@ from rr_opt.diagnose.values import settled, wrong
 from rr_opt.diagnose.verdict import confidence, finding, verdict_of
 
 Say = Callable[[str], None]
+T = TypeVar("T")
 
 
 @dataclass
@@ -29,7 +31,7 @@ class Steps:
     each: Callable[..., Iterable] = map
     seconds: dict[str, float] = field(default_factory=dict)
 
-    def timed(self, name: str, work: Callable[[], object]):
+    def timed(self, name: str, work: Callable[[], T]) -> T:
         """Say it, do it, and note how long it took."""
         self.say(name)
         begun = time.perf_counter()
@@ -182,7 +184,7 @@ def _findings(
         removes = min(max((left - max(best.misfit, 0.0)) / before, 0.0), 1.0) if without else 1.0
         if len(best.names) == 1:
             removes = min(max(1 - after / before, 0.0), 1.0)
-        out.append(finding(name, best, sure, intervals, removes))
+        out.append(finding(name, sure, intervals, removes))
     return tuple(sorted(out, key=lambda f: -f.removes))
 
 
@@ -193,7 +195,7 @@ def _tried(one: Explanation, best: Explanation) -> Tried:
         rms(left_out(one.whole)),
         one.score,
         {k: v for k, v in one.whole.values.items() if "." in k},
-        one is best,
+        one.chosen == best.chosen,
     )
 
 

@@ -94,4 +94,4 @@ def joined(model: Model, fit: Fit) -> Fit:
     first = {piece.run: start for piece, start in fit.starts.items() if piece.first == 0}
     starts = {piece: first[piece.run] for piece in problem.pieces}
     alone = solve(Problem(model, problem.pieces, fit.effects, (), fit.values), {}, starts, steps=4)
-    return solve(problem, fit.values, alone.starts)
+    return solve(problem, fit.values, alone.starts, steps=30)

@@ -97,12 +97,13 @@ class Problem:
         names = tuple(q.name for q in self.quantities)
         given = self.fixed | dict(values)
         out = self.model.respond(piece, given, self.effects, start, names)
+        by_value, by_start = out.slopes
         sigma = data.sigma[piece.span]
         r = (out.predicted - data.values[piece.span]) / sigma
         seen = np.isfinite(r)
         scale = np.array([q.scale for q in self.quantities])
-        Jv = (out.by_value / sigma[:, :, None])[seen] * scale
-        Js = (out.by_start / sigma[:, :, None])[seen]
+        Jv = (by_value / sigma[:, :, None])[seen] * scale
+        Js = (by_start / sigma[:, :, None])[seen]
         return normal_of(r[seen], Jv, Js)
 
     def cost(self, values: Mapping[str, float], starts: Mapping[Piece, Array]) -> tuple[float, int]:

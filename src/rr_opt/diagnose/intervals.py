@@ -23,7 +23,7 @@ def covariance(fit: Fit) -> Array:
     wider = doubt(fit.cost, fit.count)
     prior = np.diag([float(q.known) for q in fit.quantities]) * wider
     H = sum((n.H for n in fit.normals.values()), prior)
-    return wider * np.linalg.pinv(H, hermitian=True)
+    return np.asarray(wider * np.linalg.pinv(H, hermitian=True), float)
 
 
 def estimates(fit: Fit) -> Mapping[str, Estimate]:

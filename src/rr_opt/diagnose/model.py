@@ -71,7 +71,7 @@ class Candidate:
 
 @dataclass(frozen=True)
 class Data:
-    """One run as the fit sees it: t (n,) s; values, sigma (n, channels), NaN where there is none."""
+    """One run as the fit sees it: t (n,) s; values, sigma (n, channels), NaN for no data."""
 
     name: str
     t: Array
@@ -106,6 +106,13 @@ class Response:
     predicted: Array
     by_value: Array | None = None
     by_start: Array | None = None
+
+    @property
+    def slopes(self) -> tuple[Array, Array]:
+        """by_value and by_start, which were asked for."""
+        if self.by_value is None or self.by_start is None:
+            raise ValueError("derivatives were not asked for")
+        return self.by_value, self.by_start
 
 
 class Model(Protocol):

@@ -4,21 +4,23 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from typing import cast
 
 import numpy as np
 
 from rr_opt.diagnose.fit import Fit, Problem, doubt, scaled
 from rr_opt.diagnose.floor_map import cells_of, likely, with_cells
-from rr_opt.diagnose.model import Array, Candidate, Data, Form, Piece, Quantity, Response
+from rr_opt.diagnose.model import Array, Candidate, Data, Form, Model, Piece, Quantity, Response
 from rr_opt.diagnose.shoot import DrivePath, System, predict, slopes
 from rr_opt.experiment.experiment import Experiment, Run, Uncertainty
 from rr_opt.experiment.recording import CHANNELS
 from rr_opt.physics.drive import Drive, told
 from rr_opt.physics.effects import CATALOGUE, Effect, Parameter, Port, Setting
 from rr_opt.physics.floor_motion import floor_motion
+from rr_opt.robot.parameters import EffectUse
 
 SETTLING = 0.05
 """After a start from rest the motor saturates for some 20 ms; that much, s, is left out."""
@@ -50,25 +52,48 @@ class RollerRacer:
         self.nominal = _nominal(experiment)
         self._given = frozenset(use.name for use in experiment.robot.physics)
 
-    @cached_property
+    @property
     def runs(self) -> Sequence[Data]:
         """The recorded runs."""
-        return [_data(run) for run in self.experiment.runs]
+        return self._runs
 
     @cached_property
+    def _runs(self) -> Sequence[Data]:
+        return [_data(run) for run in self.experiment.runs]
+
+    @property
     def parameters(self) -> tuple[Quantity, ...]:
         """The robot's parameters that are not known exactly."""
+        return self._parameters
+
+    @cached_property
+    def _parameters(self) -> tuple[Quantity, ...]:
         known = self.experiment.uncertainty
         free = dict(known)
         if all(known.get(f"kappa{i}", Uncertainty()).factor for i in (1, 2)):
             free.pop("h", None)  # the wheel's radius counts through kappa/h^2 alone
-        return tuple(
+        own = [
             _parameter(name, self.nominal[name], free[name]) for name in _EVERYTHING if name in free
-        )
+        ]
+        return (*own, *(q for use in self.experiment.robot.physics for q in self._present(use)))
 
-    @cached_property
+    def _present(self, use: EffectUse) -> Iterator[Quantity]:
+        """The values of an effect that the nominal robot has: how strong it is, is not known."""
+        for q in CATALOGUE[use.name].parameters:
+            value = use.values[q.name]
+            if value != q.neutral and not q.placed:
+                size = max(abs(value), 0.1 * q.size(self.setting))
+                yield Quantity(
+                    f"{use.name}.{q.name}", q.unit, value, size, True, *q.bounds, value, free=True
+                )
+
+    @property
     def catalogue(self) -> Mapping[str, Candidate]:
         """The effects of physics beyond the paper's model."""
+        return self._catalogue
+
+    @cached_property
+    def _catalogue(self) -> Mapping[str, Candidate]:
         return {
             name: _candidate(effect, self.setting)
             for name, effect in CATALOGUE.items()
@@ -99,7 +124,9 @@ class RollerRacer:
         stiff = len(motion.free) if motion.slips else 0
         mapped = System(motion.rates, motion.seen, stiff), motion.parameters
         quantities = (*fit.quantities, *(_share(name) for name in cells.names))
-        problem = Problem(_Mapped(self, mapped), tuple(fit.starts), fit.effects, quantities)
+        problem = Problem(
+            cast("Model", _Mapped(self, mapped)), tuple(fit.starts), fit.effects, quantities
+        )
         values = dict(fit.values) | dict.fromkeys(cells.names, 0.0)
         parts = [problem.normal(piece, values, start) for piece, start in fit.starts.items()]
         n = len(fit.quantities)
@@ -142,7 +169,7 @@ class RollerRacer:
         """
         mechanical = self._all(effects)
         system, parameters = derived or _system(mechanical)
-        given = self.nominal | values
+        given = {**self.nominal, **values}
         p = _p(given, parameters)
         t = self.runs[piece.run].t[piece.span]
         path = self._drive_path(piece.run, given, mechanical, t)

@@ -181,4 +181,5 @@ def _gains(more: Explanation, less: Explanation) -> bool:
     # Parameters explain the data, but with values that nobody would believe. An effect stands for
     # that only if with it they are believable.
     known = sum(q.known and not q.free for q in less.whole.quantities)
-    return certain and more.strain < chi2.isf(0.01, known) < less.strain / 2
+    usual = float(chi2.isf(0.01, known))
+    return certain and more.strain < usual < less.strain / 2

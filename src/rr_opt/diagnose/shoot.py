@@ -8,6 +8,7 @@ and then multiplied up along the run.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -17,6 +18,9 @@ import numpy as np
 from rr_opt.diagnose.model import Array
 from rr_opt.physics.arrays import over_arrays
 from rr_opt.physics.cofactors import inverted
+
+Slope = Callable[[int, ca.SX], ca.SX]
+"""d(state)/dt at the beginning (0), in the middle (1) or at the end (2) of a step."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -200,11 +204,11 @@ def _step(system: System) -> ca.Function:
     h, nodes = ca.SX.sym("h"), ca.SX.sym("nodes", 3 * drive.numel())
     parts = ca.vertsplit(nodes, drive.numel())
     make = _rosenbrock if system.stiff else _rk4
-    end = make(system, lambda k, y: system.rates(y, parts[k], p), x, h, parts, p)
+    end = make(lambda k, y: system.rates(y, parts[k], p), x, h, system.stiff)
     return ca.Function("step", [x, ca.vertcat(h, nodes), p], [ca.cse(end)])
 
 
-def _rk4(system, f, x, h, parts, p) -> ca.SX:
+def _rk4(f: Slope, x: ca.SX, h: ca.SX, _: int) -> ca.SX:
     k1 = f(0, x)
     k2 = f(1, x + h / 2 * k1)
     k3 = f(1, x + h / 2 * k2)
@@ -212,13 +216,12 @@ def _rk4(system, f, x, h, parts, p) -> ca.SX:
     return x + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
 
 
-def _rosenbrock(system, f, x, h, parts, p) -> ca.SX:
+def _rosenbrock(f: Slope, x: ca.SX, h: ca.SX, n: int) -> ca.SX:
     """ROS2 of Verwer, Spee, Blom and Hundsdorfer (1999): L-stable, and of order 2 with any matrix.
 
     So the matrix holds the stiff states alone.
     """
     gamma = 1 - 1 / np.sqrt(2)
-    n = system.stiff
     y = ca.SX.sym("y", x.numel())
     by = ca.jacobian(f(0, y)[-n:], y)[:, -n:]
     inverse = inverted(ca.SX.eye(n) - gamma * h * ca.substitute(by, y, x))

@@ -9,7 +9,7 @@ from scipy.stats import chi2
 
 from rr_opt.diagnose.diagnosis import Estimate, Finding, Verdict
 from rr_opt.diagnose.fit import doubt
-from rr_opt.diagnose.search import FLOOR, Explanation, misfit, rms
+from rr_opt.diagnose.search import FLOOR, Explanation, rms
 
 LEFT = 0.35
 """More misfit than this on the held-out recordings, RMS in sigma, is not explained."""
@@ -53,9 +53,7 @@ def mismatch_p(explained: Explanation) -> float:
     return float(chi2.sf(fit.cost, max(fit.count - fitted, 1)))
 
 
-def finding(
-    name: str, best: Explanation, sure: float, intervals: Mapping[str, Estimate], removes: float
-) -> Finding:
+def finding(name: str, sure: float, intervals: Mapping[str, Estimate], removes: float) -> Finding:
     """An accepted effect as the answer tells it."""
     own = {
         key.split(".", 1)[1]: value
@@ -63,6 +61,3 @@ def finding(
         if key.startswith(f"{name}.")
     }
     return Finding(name, sure, own, removes, minor=removes < 0.05)
-
-
-__all__ = ["FLOOR", "confidence", "finding", "misfit", "verdict_of"]
