@@ -127,13 +127,36 @@ def test_a_servo_s_log_is_matched(run, tmp_path):
     counts = np.round(GAIT.angle(when) / count) + 512
     rows = [f"{t + 7:.4f},{c:.0f},{c:.0f}" for t, c in zip(when, counts, strict=True)]
     (tmp_path / "log.csv").write_text("t,goal,present\n" + "\n".join(rows) + "\n")
-    done = run("inspect", "run.csv", "--servo-log", "log.csv", "--no-figures", "--json")
+    options = ("--servo-log", "log.csv", "--no-figures", "--json")
+    done = run("inspect", "run.csv", *options)
     assert done.exit_code == 0, done.stderr
     (one,) = json.loads(done.stdout)["recordings"]
-    # Whole periods are open, as the motion only repeats.
-    off = (one["servo_log"]["offset"]["value"] - 7) % 1.0
-    assert min(off, 1 - off) < 2e-3
-    assert "one thing" in " ".join(one["doubts"])
+    low, high = one["servo_log"]["phi"]["offset"]["ci95"]
+    assert low - 1e-3 < 7 < high + 1e-3
+    assert one["servo_log"]["shift"] is None
+    assert "takes `goal` and `present` in the log, and the gait" in " ".join(one["doubts"])
+
+
+def test_with_log_and_gait_a_recording_goes_to_the_command_s_clock(run, tmp_path):
+    # The recording's t is 0.2 s behind the command's clock, and the servo is 30 ms late.
+    write_plain(tmp_path / "run.csv", lag=-0.17)
+    count = np.radians(300) / 1024
+    when = np.arange(0, 30, 0.004)
+    goal, present = (np.round(GAIT.angle(when - late) / count) + 512 for late in (0, 0.03))
+    rows = [f"{t + 7:.4f},{g:.0f},{p:.0f}" for t, g, p in zip(when, goal, present, strict=True)]
+    (tmp_path / "log.csv").write_text("t,goal,present\n" + "\n".join(rows) + "\n")
+    gait = ("--amplitude", "0.7", "--period", "1", "--offset", "0.1")
+    done = run("inspect", "run.csv", "--servo-log", "log.csv", "--json", *gait)
+    assert done.exit_code == 0, done.stderr
+    (one,) = json.loads(done.stdout)["recordings"]
+    shift = one["servo_log"]["shift"]
+    assert shift["applied"]
+    assert abs(shift["offset"]["value"] - 0.2) < 5e-4
+    assert abs(one["start"] - 0.2) < 1e-3
+    assert "the command's, by the servo's log" in one["source"]["clock"]
+    text = " ".join(one["doubts"])
+    assert "put on the command's clock" in text
+    assert re.search("phi lags its command by (30|29.9) ms.*: a servo that is late, as", text)
 
 
 @pytest.mark.parametrize(

@@ -8,10 +8,11 @@ import pytest
 from hypothesis import given
 
 from rr_opt.physics.dynamics import derive, dynamics_of
-from rr_opt.physics.effects import CATALOGUE
+from rr_opt.physics.steady_effects import steady_effects
 from tests.physics.cases import REPEATABLE, cases, energy, motion
 
-CHOICES = sorted({c for size in (0, 1, 2, len(CATALOGUE)) for c in combinations(CATALOGUE, size)})
+NAMES = sorted(steady_effects())
+CHOICES = sorted({c for size in (0, 1, 2, len(NAMES)) for c in combinations(NAMES, size)})
 
 
 @lru_cache

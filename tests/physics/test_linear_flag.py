@@ -4,10 +4,10 @@ import pytest
 from hypothesis import find, given
 
 from rr_opt.physics.dynamics import derive
-from rr_opt.physics.effects import CATALOGUE
+from rr_opt.physics.steady_effects import steady_effects
 from tests.physics.cases import FIRST_FOUND, REPEATABLE, cases, motion
 
-CHOICES = [(), *((name,) for name in CATALOGUE)]
+CHOICES = [(), *((name,) for name in sorted(steady_effects()))]
 
 
 def bend(case) -> float:

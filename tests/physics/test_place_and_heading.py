@@ -14,11 +14,11 @@ from tests.physics import multipliers
 from tests.physics.cases import REPEATABLE, State, cases, motion, numbers, sides
 
 
-def at_place(robot: Robot, state: State, x: float, y: float, psi: float, **physics):
+def at_place(robot: Robot, state: State, x: float, y: float, psi: float, beyond=multipliers.PAPER):
     """(vdot, w, torque, F1, F2) of the model with multipliers."""
     q = np.array([x, y, psi, state.phi])
     qd = multipliers.rates(robot, q, state.v, state.dphi)
-    qdd, (F1, F2, torque) = multipliers.solve(robot, q, qd, state.ddphi, **physics)
+    qdd, (F1, F2, torque) = multipliers.solve(robot, q, qd, state.ddphi, beyond)
     return multipliers.forward_acceleration(q, qd, qdd), qd[2], torque, F1, F2
 
 
@@ -42,13 +42,14 @@ def test_with_friction_of_the_catalogue(case, x, y, psi):
     robot, _ = case
     coulomb, quadratic = (use.values for use in robot.physics)
 
-    def law(number: int, u: float) -> float:
+    def law(wheel: multipliers.Wheel, u: float) -> float:
+        number = wheel.number
         dry = coulomb[f"force{number}"] * math.tanh(u / 0.002)
         drag = quadratic["coefficient_total"] / 4 * abs(u) * u
         return -(robot.k1, robot.k2)[number - 1] * u - dry - drag
 
     # |u| is smoothed below 0.1 mm/s in the catalogue and is not here, hence the looser bounds.
-    found = at_place(*case, x, y, psi, law=law)
+    found = at_place(*case, x, y, psi, multipliers.Beyond(law))
     assert found == pytest.approx(derived(*case), rel=1e-5, abs=1e-5)
 
 
@@ -56,4 +57,6 @@ def test_with_friction_of_the_catalogue(case, x, y, psi):
 @given(cases(("wheel_inertia",)), *places)
 def test_with_turning_wheels(case, x, y, psi):
     J = case[0].physics[0].values["J"]
-    assert at_place(*case, x, y, psi, J=J) == pytest.approx(derived(*case), rel=1e-8, abs=1e-9)
+    assert at_place(*case, x, y, psi, multipliers.Beyond(J=J)) == pytest.approx(
+        derived(*case), rel=1e-8, abs=1e-9
+    )

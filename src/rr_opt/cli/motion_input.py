@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
+from rr_opt.cli.passed_over import tell_passed_over
 from rr_opt.cli.source import Source, source_of_result
 from rr_opt.outcome import InputError
 
@@ -27,6 +28,7 @@ def read_source(path: Path | None, options: dict[str, float]) -> Source:
     source = _source(path, options)
     for doubt in source.doubts:
         typer.echo(f"warning: {doubt}", err=True)
+    tell_passed_over(source.robot)
     return replace(source, gait=with_options(source.gait, options))
 
 

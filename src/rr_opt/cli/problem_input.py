@@ -6,6 +6,7 @@ from pathlib import Path
 
 import typer
 
+from rr_opt.cli.passed_over import tell_passed_over
 from rr_opt.problem import Problem
 
 
@@ -17,6 +18,7 @@ def read(path: Path | None) -> tuple[Problem, str]:
     if path is not None:
         for issue in lint_file(path):
             typer.echo(str(issue), err=True)
+    tell_passed_over(problem.robot)
     return problem, input_sha256(path)
 
 

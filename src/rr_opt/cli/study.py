@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from rr_opt import __version__
+from rr_opt.cli.passed_over import tell_passed_over
 from rr_opt.cli.place import place
 from rr_opt.cli.study_progress import CaseProgress
 
@@ -56,6 +57,7 @@ def study(
     asked, warnings = read_study(study)
     for warning in warnings:
         typer.echo(str(warning), err=True)
+    tell_passed_over(asked.problems[0].robot)
     from rr_opt.report.archive import folder_for_results, strict_json  # noqa: PLC0415
     from rr_opt.report.study.files import check_wishes, write_study  # noqa: PLC0415
 

@@ -55,6 +55,11 @@ def turn_chart(
         chart = TurnChart(name, sha256, seen, tight, sign_claim(fine), radius_claim(fine))
         steps("files")
         written = write_chart(chart, folder)
+    if not seen.two_sided:
+        typer.echo(
+            "warning: The robot's two sides differ. The chart is of offsets of 0 and more alone.",
+            err=True,
+        )
     if json:
         typer.echo(strict_json(chart_record(chart)), nl=False)
     else:

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rr_opt.design.turn.rows import TurnRows, turn_rows
+from rr_opt.physics.dynamics import dynamics_of
 from rr_opt.problem import Interval, Problem, RatioChoice
 from rr_opt.robot.ballast import load_count
 from rr_opt.robot.parameters import Robot
@@ -42,6 +43,7 @@ class Decisions:
     ballast          I2 (kg m2) or number of loads
     reach            largest |phi| that angle and singularity allow, rad
     turn             what the problem asks of the turn; it bounds no decision by itself
+    two_sided        the robot's two sides are alike: gaits at phi0 and -phi0 are mirror images
     """
 
     period: Interval
@@ -51,6 +53,7 @@ class Decisions:
     reach: float
     rate: float
     turn: TurnRows | None = None
+    two_sided: bool = True
 
     @property
     def amplitude_pinned(self) -> bool:
@@ -79,7 +82,7 @@ class Decisions:
         """Every gait of the box has its mirror image in the box, and may do as well as it: one
         of two mirror images turns the wrong way."""
         symmetric = not self.offset.fixed and self.offset.low == -self.offset.high
-        return symmetric and self.turn is None
+        return symmetric and self.turn is None and self.two_sided
 
     def physical(self, unit: Array) -> Array:
         """Unit-box points (K, 4) -> amplitude, period, offset, ballast share, (4, K)."""
@@ -110,6 +113,7 @@ def decisions(problem: Problem) -> Decisions:
         reach=reach,
         rate=limits.rate,
         turn=turn_rows(problem.turn, problem.robot) if problem.turn else None,
+        two_sided=dynamics_of(problem.robot).mirrored,
     )
 
 

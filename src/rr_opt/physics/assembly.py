@@ -14,7 +14,8 @@ from rr_opt.physics.seen import Seen
 from rr_opt.robot.parameters import Robot
 
 _ORDER = (Port.CONSTRAINT, Port.MASS, Port.FORCE, Port.ACTUATION, Port.MEASUREMENT)
-"""What turns the axles comes first, as every force depends on it."""
+"""What turns the axles comes first, also of those at its port, as every force depends on it."""
+_LISTED = tuple(CATALOGUE)
 
 
 @dataclass(frozen=True)
@@ -36,9 +37,11 @@ class Assembly:
 def assembled(effects: tuple[str, ...]) -> Assembly:
     """The paper's robot with those of the named effects that change it or how it is seen."""
     robot = mechanism()
-    seen = Seen(*ca.vertsplit(robot.pose), robot.phi)
+    seen = Seen(robot.pose[0], robot.pose[1], robot.pose[2], robot.phi)
     symbols = {name: robot.parameters[name] for name in ROBOT_PARAMETERS}
-    for name in sorted(effects, key=lambda name: _ORDER.index(CATALOGUE[name].port)):
+    for name in sorted(
+        effects, key=lambda name: (_ORDER.index(CATALOGUE[name].port), _LISTED.index(name))
+    ):
         effect = CATALOGUE[name]
         values = {q.name: ca.SX.sym(f"{name}.{q.name}") for q in effect.parameters}
         if effect.enter:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
@@ -27,6 +28,18 @@ class Drive:
     period: float
     rest: bool
     smooth: bool = True
+
+
+@dataclass(frozen=True)
+class FreeJoint:
+    """How the joint swings while the servo's torque is zero; see `physics.free_joint`.
+
+    swing  (phi, dphi, z, p) -> ddphi (rad/s2), zdot (m/s2)
+    p      the robot's values, SI
+    """
+
+    swing: ca.Function
+    p: tuple[float, ...]
 
 
 def told(gait: Gait, rest: bool) -> Drive:

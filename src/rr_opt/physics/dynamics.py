@@ -18,6 +18,8 @@ from rr_opt.outcome import InputError
 from rr_opt.physics.assembly import assembled, values_of
 from rr_opt.physics.kane import equations
 from rr_opt.physics.kinematics import SPEEDS, Mechanism
+from rr_opt.physics.steady_effects import steady_effects
+from rr_opt.physics.tried import affine, mirrored
 from rr_opt.robot.parameters import Robot
 
 
@@ -25,12 +27,14 @@ from rr_opt.robot.parameters import Robot
 class Dynamics:
     """The derived model as CasADi functions; `p` stacks the values of `parameters`.
 
-    motion  (v, phi, dphi, ddphi, p) -> vdot, w, side, torque: acceleration of axle 1 along
-            platform 1 (m/s2), yaw rate psi-dot (rad/s), velocity of P to the left of platform
-            1's axis (m/s), servo torque (N m). P moves at v along the axis.
-    energy  (v, phi, dphi, p) -> kinetic (J), dissipation (W, the paper's 2R)
-    sides   (v, phi, dphi, ddphi, p) -> F1, F2: side forces on the axles, N
-    linear  vdot is affine in v, so the steady cycle is one linear fixed point
+    effects  those that have a place in a steady cycle; see `steady_effects`
+    motion   (v, phi, dphi, ddphi, p) -> vdot, w, side, torque: acceleration of axle 1 along
+             platform 1 (m/s2), yaw rate psi-dot (rad/s), velocity of P to the left of platform
+             1's axis (m/s), servo torque (N m). P moves at v along the axis.
+    energy   (v, phi, dphi, p) -> kinetic (J), dissipation (W, the paper's 2R)
+    sides    (v, phi, dphi, ddphi, p) -> F1, F2: side forces on the axles, N
+    linear   vdot is affine in v, so the steady cycle is one linear fixed point
+    mirrored the mirror image of a motion is a motion: gaits at offsets phi0 and -phi0 are alike
     """
 
     effects: tuple[str, ...]
@@ -39,6 +43,7 @@ class Dynamics:
     energy: ca.Function
     sides: ca.Function
     linear: bool
+    mirrored: bool
 
     def values(self, robot: Robot) -> NDArray[np.float64]:
         """The parameter vector p of a robot that has these effects, SI."""
@@ -65,21 +70,15 @@ def require_friction(robot: Robot) -> None:
         )
 
 
-@lru_cache
 def derive(effects: tuple[str, ...] = ()) -> Dynamics:
-    """Derive the model with the named effects of the catalogue.
+    """Derive the model with those of the named effects that have a place in a steady cycle."""
+    return _derived(tuple(name for name in effects if name in steady_effects()))
 
-    Raises InputError for an effect that has no place in a steady cycle with held axles.
-    """
+
+@lru_cache
+def _derived(effects: tuple[str, ...]) -> Dynamics:
     assembly = assembled(effects)
-    robot = assembly.mechanism
-    if len(robot.held) < 2 or any(ca.depends_on(f.vector, robot.pose) for f in robot.forces):
-        raise InputError(
-            f"With {', '.join(effects)} a gait has no steady cycle of its own: the axles slip, or "
-            "place and heading count. Expected effects that are the same everywhere. Leave out "
-            "what belongs to the floor; `rr-opt diagnose` takes every effect."
-        )
-    return _held(robot, effects, assembly.parameters, assembly.p)
+    return _held(assembly.mechanism, effects, assembly.parameters, assembly.p)
 
 
 def _held(robot: Mechanism, effects: tuple[str, ...], names: tuple[str, ...], p: ca.SX) -> Dynamics:
@@ -90,22 +89,29 @@ def _held(robot: Mechanism, effects: tuple[str, ...], names: tuple[str, ...], p:
 
     # The axles do not slip: s1 = s2 = 0 from here on. Row v is linear in vdot.
     held = ca.vertcat(*(u[SPEEDS.index(name)] for name in sorted(robot.held)))
-    needed, kinetic, power, w, side = (
+    needed, kinetic, power, w, ahead, side = (
         ca.substitute(part, held, ca.SX.zeros(held.numel()))
-        for part in (needed, kane.kinetic, kane.power, kane.rate, kane.joint[1])
+        for part in (needed, kane.kinetic, kane.power, kane.rate, kane.joint[0], kane.joint[1])
     )
     inertia = ca.jacobian(needed[0], vdot)
     solved = -ca.substitute(needed[0], vdot, ca.SX(0)) / inertia
     needed = ca.substitute(needed, vdot, solved)
 
+    # Axle 1 may roll at an angle to its platform's axis; from here on v counts along the axis.
     v, dphi = u[0], u[SPEEDS.index("dphi")]
+    share = ca.jacobian(ahead, v)
+    solved, needed, kinetic, power, w, side = (
+        ca.substitute(part, v, v / share)
+        for part in (share * solved, needed, kinetic, power, w, side)
+    )
     inputs = [v, phi, dphi, ddphi, p]
     names_in = ["v", "phi", "dphi", "ddphi", "p"]
-    motion = _tidy(solved, w, side, needed[3])
+    outputs = _tidy(solved, w, side, needed[3])
+    motion = ca.Function("motion", inputs, outputs, names_in, ["vdot", "w", "side", "torque"])
     return Dynamics(
         effects=effects,
         parameters=names,
-        motion=ca.Function("motion", inputs, motion, names_in, ["vdot", "w", "side", "torque"]),
+        motion=motion,
         energy=ca.Function(
             "energy",
             [v, phi, dphi, p],
@@ -114,22 +120,9 @@ def _held(robot: Mechanism, effects: tuple[str, ...], names: tuple[str, ...], p:
             ["kinetic", "dissipation"],
         ),
         sides=ca.Function("sides", inputs, _tidy(needed[1], needed[2]), names_in, ["F1", "F2"]),
-        linear=_affine(ca.Function("vdot", inputs, [solved])),
+        linear=affine(ca.Function("vdot", inputs, [solved])),
+        mirrored=mirrored(motion),
     )
-
-
-def _affine(vdot: ca.Function) -> bool:
-    """Whether vdot is affine in v, found by trying.
-
-    Terms in v^2 cancel between the bodies, but only once sines and cosines are multiplied out,
-    which CasADi does not do; so the second difference in v is looked at in numbers.
-    """
-    p = np.linspace(0.5, 1.5, vdot.numel_in(4))
-    for phi, dphi, ddphi in ((0.3, 1.0, -2.0), (-1.1, 0.7, 3.0), (0.8, -2.0, 0.5)):
-        low, middle, high = (float(vdot(v, phi, dphi, ddphi, p)) for v in (-1.0, 0.0, 1.0))
-        if abs(low - 2 * middle + high) > 1e-9 * (abs(low) + abs(middle) + abs(high)):
-            return False
-    return True
 
 
 def _tidy(*expressions: ca.SX) -> list[ca.SX]:

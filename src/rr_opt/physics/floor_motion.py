@@ -64,10 +64,11 @@ class FloorMotion:
 @lru_cache
 def floor_motion(effects: tuple[str, ...] = ()) -> FloorMotion:
     """Derive the motion with the named effects; those of the servo are for who drives it."""
-    return _solved(assembled(effects))
+    return solved(assembled(effects))
 
 
-def _solved(assembly: Assembly) -> FloorMotion:
+def solved(assembly: Assembly) -> FloorMotion:
+    """The motion of an assembled mechanism."""
     robot = assembly.mechanism
     kane = equations(robot)
     phi, dphi, ddphi = robot.phi, robot.speeds[3], kane.udot[3]

@@ -37,7 +37,7 @@ _ROWS = 4096
 
 @dataclass(frozen=True)
 class Found:
-    """A gait that was found: offset >= 0 where the problem's range is symmetric.
+    """A gait that was found: offset >= 0 where phi0 and -phi0 do equally well.
 
     ratio J20/J10 or None, speed signed, m/s; peak torque N m
     """

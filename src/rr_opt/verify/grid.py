@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from rr_opt.physics.dynamics import dynamics_of
 from rr_opt.problem import Interval, Problem, RatioChoice
 from rr_opt.robot.ballast import inertia_ratio, load_count, with_load_count
 from rr_opt.robot.parameters import Robot
@@ -44,13 +45,18 @@ class Grid:
         return tuple(name for name in DECISIONS if len(self.axis(name)) > 1)
 
 
+def mirrored(problem: Problem) -> bool:
+    """Whether each gait's mirror image, phi0 and -phi0, is within bounds and does as well."""
+    offset = problem.gait.offset
+    return offset.low == -offset.high and dynamics_of(problem.robot).mirrored
+
+
 def boxes(problem: Problem) -> dict[str, Interval]:
-    """The bounds of each decision. A gait at -phi0 is the mirror image of one at phi0, so of an
-    offset range that is symmetric one half will do. Ratios that cannot be realised are left out;
-    low > high if that is all of them."""
+    """The bounds of each decision. Where gaits at -phi0 are mirror images one half of the offsets
+    will do. Ratios that cannot be realised are left out; low > high if that is all of them."""
     gait, choice = problem.gait, problem.inertia_ratio
     offset = gait.offset
-    if offset.low == -offset.high:
+    if mirrored(problem):
         offset = Interval(0.0, offset.high)
     ratio = Interval(math.nan, math.nan)
     if choice is not None:

@@ -137,7 +137,7 @@ def _adaptive(
     needed = _samples(robot, np.abs(alpha) + np.abs(phi0))
     for straight in (True, False):
         halves = 1 if straight else 2
-        pending = np.flatnonzero(regular & ((phi0 == 0) == straight))
+        pending = np.flatnonzero(regular & (((phi0 == 0) & model.mirrored) == straight))
         n = FEWEST * halves if model.viscous else 4 * FEWEST
         while len(pending) and n <= MOST * halves:
             now = pending[needed[pending] * halves <= n]

@@ -4,8 +4,9 @@ Where friction is viscous, vdot = a v + b with a and b known along the gait, and
 solution follows in closed form. Other friction is linearised about the current v, solved so,
 and the step repeated (Newton-Kantorovich).
 
-The mirror image of a motion is a motion. A straight gait turns into its mirror image after
-half a period, so half a period says everything: v repeats, w, side and torque change sign.
+On a robot whose two sides are alike the mirror image of a motion is a motion. A straight gait turns
+into its mirror image after half a period, so half a period says everything: v repeats, w, side and
+torque change sign.
 """
 
 from __future__ import annotations
@@ -76,6 +77,7 @@ class SteadyFourier:
         motion, names = dynamics.motion, dynamics.motion.name_in()
         self._powers = SpeedPowers(dynamics)
         self.viscous = dynamics.linear and self._powers.reproduce(dynamics)
+        self.mirrored = dynamics.mirrored
         self._motion = over_arrays(motion)
         self._tangent = over_arrays(motion.factory("tangent", names, ["vdot", "jac:vdot:v"]))
 

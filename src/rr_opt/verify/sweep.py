@@ -18,7 +18,7 @@ from rr_opt.problem import Problem
 from rr_opt.robot.gait import Gait, SineGait
 from rr_opt.verify.evaluate import Evaluated, Found, Progress, evaluate
 from rr_opt.verify.given import speed_of
-from rr_opt.verify.grid import DECISIONS, Grid, free_decisions, grid_of
+from rr_opt.verify.grid import DECISIONS, Grid, free_decisions, grid_of, mirrored
 from rr_opt.verify.speed_map import SpeedMap, speed_map
 from rr_opt.verify.speeds import model_of, robot_with, speeds
 from rr_opt.verify.zoom import zoom
@@ -93,7 +93,7 @@ class SweepCheck:
 
     points         evaluated, near the claimed optimum and all over
     best_speed     of the best point that keeps all limits, signed, m/s; NaN if none does
-    best_gait      offset >= 0 where the problem's range of offsets is symmetric
+    best_gait      offset >= 0 where gaits at phi0 and -phi0 do equally well
     best_ratio     J20/J10, None: the robot as it is
     gap            (|claimed| - |best|)/|claimed|: negative where the sweep found something better
     speed          of the claimed gait, by the sweep's model, signed, m/s
@@ -239,6 +239,6 @@ def _resolved(problem: Problem, found: Found, tolerance: float) -> Found | None:
 
 def _inside(problem: Problem, gait: SineGait) -> SineGait:
     """The gait or its mirror image, whichever the sweep looks at."""
-    if problem.gait.offset.low == -problem.gait.offset.high:
+    if mirrored(problem):
         return SineGait(gait.amplitude, gait.period, abs(gait.offset))
     return gait

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import Protocol
 
 import casadi as ca
 
-from rr_opt.physics.drive import Drive
+from rr_opt.physics.drive import Drive, FreeJoint
 from rr_opt.physics.kinematics import Mechanism
 from rr_opt.physics.seen import Seen
 from rr_opt.robot.parameters import Robot
@@ -47,6 +48,7 @@ class Parameter:
     aliases: tuple[str, ...] = ()
     natural: Callable[[Setting], float] | None = None
     trials: tuple[float, ...] = (0.05,)
+    placed: bool = False
 
     def size(self, setting: Setting) -> float:
         """Its usual size for a robot and what was asked of it."""
@@ -66,12 +68,23 @@ class Setting:
     speed: float
 
 
+class Actuate(Protocol):
+    """What a servo makes of the angle that it is told."""
+
+    def __call__(
+        self, told: Drive, values: Mapping[str, float], joint: FreeJoint | None = None, /
+    ) -> Drive:
+        """`joint`: the joint while the servo does not hold it; None if nothing is known of it."""
+        ...
+
+
 @dataclass(frozen=True)
 class Effect:
     """An effect: what it is called, what it says, and what it changes, at one port.
 
     enter    (mechanism, symbols) -> the mechanism with the effect in it: constraint, mass, force
-    actuate  (told, values) -> the angle that the servo makes of the one that it is told: actuation
+    actuate  (told, values, joint) -> the angle that the servo makes of the one that it is told:
+             actuation
     observe  (seen, symbols) -> what is recorded of what there is to see: measurement
     delay    the parameter by which the recording's clock is behind the command's: measurement
     stiff    whether it lets the axles slip, which they stop doing at once
@@ -87,7 +100,7 @@ class Effect:
     parameters: tuple[Parameter, ...]
     sentence: str
     enter: Callable[[Mechanism, Mapping[str, ca.SX]], Mechanism] | None = None
-    actuate: Callable[[Drive, Mapping[str, float]], Drive] | None = None
+    actuate: Actuate | None = None
     observe: Callable[[Seen, Mapping[str, ca.SX]], Seen] | None = None
     delay: str | None = None
     stiff: bool = False

@@ -5,8 +5,9 @@ A wheel whose contact moves sideways at s is pushed back by
     F = -s / sqrt(creep^2 + (s^2 + s0^2)/(mu N)^2)
 
 which is s/creep while that is small against mu N, and mu N beyond. Without creep the jump of dry
-sliding is smoothed at s0 = 1 mm/s. N is the wheel's share of the weight in the straight posture,
-from the balance of moments about either axle.
+sliding is smoothed at s0 = 0.5 mm/s. That lets wheels that hold creep by s0/(mu N), so it has to be
+small; below that, derivatives over steps of 2.5 ms lose it. N is the wheel's share of the weight in
+the straight posture, from the balance of moments about either axle.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from rr_opt.physics.effects.effect import Effect, Parameter, Port
 from rr_opt.physics.gravity import G
 from rr_opt.physics.kinematics import Force, Mechanism
 
-SMOOTHING_SPEED = 0.001
+SMOOTHING_SPEED = 5e-4
 """s0, m/s."""
 
 

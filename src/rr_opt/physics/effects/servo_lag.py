@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from rr_opt.physics.drive import Array, Drive
+from rr_opt.physics.drive import Array, Drive, FreeJoint
 from rr_opt.physics.effects.effect import Effect, Parameter, Port
 
 _SAMPLES = 512
@@ -19,7 +19,7 @@ _NEGLIGIBLE = 1e-10
 """A term so small, relative to the largest, is left out."""
 
 
-def _actuate(told: Drive, values: Mapping[str, float]) -> Drive:
+def _actuate(told: Drive, values: Mapping[str, float], _: FreeJoint | None = None) -> Drive:
     tau = values["tau"]
     if tau <= 0:
         return told

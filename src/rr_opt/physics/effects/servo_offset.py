@@ -7,11 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from rr_opt.physics.drive import Array, Drive
+from rr_opt.physics.drive import Array, Drive, FreeJoint
 from rr_opt.physics.effects.effect import Effect, Parameter, Port
 
 
-def _actuate(told: Drive, values: Mapping[str, float]) -> Drive:
+def _actuate(told: Drive, values: Mapping[str, float], _: FreeJoint | None = None) -> Drive:
     shift = np.array([[values["offset"]], [0.0], [0.0]])
 
     def at(t: Array) -> Array:

@@ -177,15 +177,16 @@ def write_chart(chart: TurnChart, folder: Path) -> list[Path]:
 
 
 def _csv(seen: TurnMap) -> str:
-    """A row a gait, SI, offsets of both signs; empty where there is no steady cycle within the
-    limits on the angle."""
+    """A row a gait, SI, offsets of both signs, or of one if the robot's two sides differ; empty
+    where there is no steady cycle within the limits on the angle."""
     alpha, T, phi0 = np.meshgrid(seen.amplitude, seen.period, seen.offset, indexing="ij")
     arrays = (alpha, T, phi0, seen.curvature, seen.speed, seen.heading, seen.peak_torque)
     parts = [*arrays, seen.keeps.astype(float)]
     # phi0 and -phi0 are mirror images: what turns has the other sign there.
+    left = slice(None, 0, -1) if seen.two_sided else slice(0, 0)
     mirror = [-part if i in (2, 3, 5) else part for i, part in enumerate(parts)]
     both = [
-        np.concatenate([there[..., :0:-1], here], axis=-1).ravel()
+        np.concatenate([there[..., left], here], axis=-1).ravel()
         for here, there in zip(parts, mirror, strict=True)
     ]
     text = io.StringIO()

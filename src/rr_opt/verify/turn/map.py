@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from rr_opt.physics.dynamics import dynamics_of
 from rr_opt.problem import Problem
 from rr_opt.verify.evaluate import Mask
 from rr_opt.verify.grid import reach
@@ -21,7 +22,7 @@ _TOLERANCE = 1e-6
 
 @dataclass(frozen=True)
 class TurnMap:
-    """Gaits at offsets phi0 >= 0; those at -phi0 are their mirror images.
+    """Gaits at offsets phi0 >= 0; those at -phi0 are mirror images, if the robot is two-sided.
 
     amplitude (A,), offset (F,) in rad, period (T,) in s; all others (A, T, F): speed (m/s, signed),
     heading per period (rad, positive to the left), peak torque (N m), keeps: every limit is kept
@@ -34,6 +35,7 @@ class TurnMap:
     heading: Array
     peak_torque: Array
     keeps: Mask
+    two_sided: bool = True
 
     @property
     def curvature(self) -> Array:
@@ -81,7 +83,8 @@ def turn_map(problem: Problem, counts: tuple[int, int, int]) -> TurnMap:
     keeps &= ahead(problem, seen.speed)
     parts = (np.where(inside, part, np.nan) for part in (seen.speed, seen.turn, seen.peak_torque))
     speed, heading, torque = (np.swapaxes(part, 1, 2) for part in parts)
-    return TurnMap(amplitude, period, offset, speed, heading, torque, np.swapaxes(keeps, 1, 2))
+    keeps, alike = np.swapaxes(keeps, 1, 2), dynamics_of(problem.robot).mirrored
+    return TurnMap(amplitude, period, offset, speed, heading, torque, keeps, alike)
 
 
 def ahead(problem: Problem, speed: Array) -> Mask:

@@ -1,0 +1,49 @@
+"""The motion on the floor at a place and heading, with the direct equation of motion behind z."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from rr_opt.physics.assembly import values_of
+from rr_opt.physics.effects import CATALOGUE
+from rr_opt.physics.floor_motion import floor_motion
+from rr_opt.robot.parameters import Robot
+from tests.physics.cases import State
+
+MECHANICAL = tuple(name for name, effect in CATALOGUE.items() if effect.enter)
+
+
+class Floor(NamedTuple):
+    """xdot, ydot, psidot; d/dt of v, s1, s2 as far as they are free; servo torque."""
+
+    pose: np.ndarray
+    speeds: np.ndarray
+    torque: float
+
+
+def on_floor(robot: Robot, state: State, place: np.ndarray, sides=(0.0, 0.0)) -> Floor:
+    """The robot's floor motion; axles that may slip do so at `sides`, m/s."""
+    motion = floor_motion(tuple(use.name for use in robot.physics))
+    p = values_of(robot, motion.parameters)
+    v, phi, dphi, ddphi = state
+    if motion.slips:
+        here, drive = [*place, v, *sides], [phi, dphi, ddphi]
+        rates = motion.rates(here, drive, p).full().ravel()
+        return Floor(rates[:3], rates[3:], float(motion.torque(here, drive, ddphi, p)))
+
+    def g(angle: float) -> float:
+        return float(motion.speeds([*place, 0.0], [angle, 1.0], p)[0])
+
+    here = [*place, v - g(phi) * dphi]
+    rates = motion.rates(here, [phi, dphi], p).full().ravel()
+    slope = (g(phi + 1e-5) - g(phi - 1e-5)) / 2e-5
+    vdot = rates[3] + slope * dphi**2 + g(phi) * ddphi
+    torque = float(motion.torque(here, [phi, dphi], ddphi, p))
+    return Floor(rates[:3], np.array([vdot]), torque)
+
+
+def what_is_seen(effects: tuple[str, ...], place: np.ndarray, phi: float, values) -> np.ndarray:
+    """x, y, psi, phi as a capture system sees them, of one effect with these values."""
+    motion = floor_motion(effects)
+    p = [values.get(name.split(".")[-1], np.nan) for name in motion.parameters]
+    return motion.seen([*place, 0.0], [phi, 0.0], p).full().ravel()
