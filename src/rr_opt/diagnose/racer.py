@@ -9,17 +9,20 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import cast
 
+import casadi as ca
 import numpy as np
 
 from rr_opt.diagnose.fit import Fit, Problem, doubt, scaled
 from rr_opt.diagnose.floor_map import cells_of, likely, with_cells
 from rr_opt.diagnose.model import Array, Candidate, Data, Form, Model, Piece, Quantity, Response
-from rr_opt.diagnose.shoot import DrivePath, System, predict, slopes
+from rr_opt.diagnose.shoot import DrivePath, DriveSlopes, System, predict, slopes
 from rr_opt.experiment.experiment import Experiment, Run, Uncertainty
 from rr_opt.experiment.recording import CHANNELS
-from rr_opt.physics.drive import Drive, told
-from rr_opt.physics.effects import CATALOGUE, Effect, Parameter, Port, Setting
+from rr_opt.physics.drive import Drive, FreeJoint, told
+from rr_opt.physics.effects import CATALOGUE, Effect, Parameter, Setting
 from rr_opt.physics.floor_motion import floor_motion
+from rr_opt.physics.free_joint import free_joint
+from rr_opt.physics.kinematics import ROBOT_PARAMETERS
 from rr_opt.robot.parameters import EffectUse
 
 SETTLING = 0.05
@@ -142,7 +145,7 @@ class RollerRacer:
         return frozenset(name for name, effect in CATALOGUE.items() if not effect.smooth)
 
     def start(self, piece: Piece) -> Array:
-        """x, y, psi as first recorded, and v of axle 1."""
+        """x, y, psi as first recorded, and for z, which swings less than v, the mean of v."""
         data = self.runs[piece.run]
         t, values = data.t[piece.span], data.values[piece.span]
         first = [column[np.isfinite(column)][0] for column in values.T[:3]]
@@ -181,11 +184,20 @@ class RollerRacer:
             by[:, k] = _p_by(given, parameters, name)
         drive_by = self._drive_by(piece.run, given, mechanical, t, wanted)
         out = slopes(system, path, made, p, by, drive_by)
-        return Response(made.seen, out.by_parameter, out.by_start[:, :, : start.size])
+        by_value = out.by_parameter
+        if floor_motion(mechanical).slips:
+            # The start is given in z and the state holds v, which moves with what is asked.
+            by_value = by_value + out.by_start[:, :, 3:4] * _v_of_z_by(path, start, p, by, drive_by)
+        return Response(made.seen, by_value, out.by_start[:, :, : start.size])
 
     def _all(self, effects: tuple[str, ...]) -> tuple[str, ...]:
         """The effects with those that the nominal robot has already, in the catalogue's order."""
         return tuple(name for name in CATALOGUE if name in effects or name in self._given)
+
+    @cached_property
+    def _joint(self) -> FreeJoint:
+        """The joint while the servo does not hold it, of the nominal robot."""
+        return free_joint(self.experiment.robot)
 
     def _drive(self, run: int, given: Mapping[str, float], effects: tuple[str, ...]) -> Drive:
         here = self.experiment.runs[run]
@@ -194,22 +206,29 @@ class RollerRacer:
             effect = CATALOGUE[name]
             if effect.actuate:
                 own = {q.name: given[f"{name}.{q.name}"] for q in effect.parameters}
-                drive = effect.actuate(drive, own)
+                drive = effect.actuate(drive, own, self._joint)
         return drive
 
     def _drive_path(
-        self, run: int, given: Mapping[str, float], effects: tuple[str, ...], t: Array
+        self,
+        run: int,
+        given: Mapping[str, float],
+        effects: tuple[str, ...],
+        t: Array,
+        smooth: bool | None = None,
     ) -> DrivePath:
+        """The drive over the steps between the samples; `smooth` as it is, or as it is said."""
         drive, late = self._drive(run, given, effects), _delay(given, effects)
+        smooth = drive.smooth if smooth is None else smooth
         stiff = any(CATALOGUE[name].stiff for name in effects)
-        each = _FINE if stiff or not drive.smooth else 1
+        each = _FINE if stiff or not smooth else 1
         inner = np.arange(each) / each
         edges = np.append((t[:-1, None] + np.diff(t)[:, None] * inner).ravel(), t[-1])
         h = np.diff(edges)
         at_edges = drive.at(edges + late)[:2]
         middle = drive.at(edges[:-1] + h / 2 + late)[:2]
         nodes = np.stack([at_edges[:, :-1], middle, at_edges[:, 1:]], axis=1)
-        if not drive.smooth:
+        if not smooth:
             # Where dphi jumps within a step, the step keeps its end points.
             nodes[1] = (np.diff(at_edges[0]) / h)[None]
             nodes[0, 1] = (nodes[0, 0] + nodes[0, 2]) / 2
@@ -227,30 +246,34 @@ class RollerRacer:
         effects: tuple[str, ...],
         t: Array,
         wanted: tuple[str, ...],
-    ) -> Array | None:
+    ) -> DriveSlopes | None:
         moving = [
             (k, name)
             for k, name in enumerate(wanted)
-            if "." in name
-            and CATALOGUE[name.split(".")[0]].port in _OF_DRIVE
-            and name.split(".")[0] in effects
+            if "." in name and name.split(".")[0] in effects and _of_drive(name)
         ]
-        if not [name for _, name in moving if _of_drive(name)]:
+        if not moving:
             return None
-        both = np.array([t, np.append(t[:-1] + np.diff(t) / 2, t[-1])])
-        rows = 3 if any(CATALOGUE[name].stiff for name in effects) else 2
-        out = np.zeros((rows, 2, t.size, len(wanted)))
+        smooth = self._drive(run, given, effects).smooth
+        path = self._drive_path(run, given, effects, t)
+        at = np.zeros((*path.at.shape, len(wanted)))
+        middle = np.zeros((*path.nodes[:, 1].shape, len(wanted)))
         for k, name in moving:
-            step = 1e-2 * self._scale(name)
-            ends = []
-            for sign in (1, -1):
-                moved = {**given, name: given[name] + sign * step}
-                late = _delay(moved, effects)
-                ends.append([self._drive(run, moved, effects).at(at + late)[:rows] for at in both])
-            out[:, :, :, k] = (np.array(ends[0]) - np.array(ends[1])).transpose(1, 0, 2) / (
-                2 * step
-            )
-        return out
+            # The very steps that predict are moved, so that a jump of dphi counts where it does.
+            step, least = 1e-3 * self._scale(name), _least(name)
+            low, high = max(given[name] - step, least), given[name] + step
+            ends = [
+                self._drive_path(run, {**given, name: value}, effects, t, smooth)
+                for value in (low, high)
+            ]
+            at[:, :, k] = (ends[1].at - ends[0].at) / (high - low)
+            middle[:, :, k] = (ends[1].nodes[:, 1] - ends[0].nodes[:, 1]) / (high - low)
+        if smooth and self.experiment.runs[run].start == "rest":
+            # How dphi sets in may change at once, and more than a step shows: what the first step
+            # integrates to is the change of phi.
+            rise = (at[0, 1] - at[0, 0]) / path.h[0]
+            at[1, 0] = middle[1, 0] = (6 * rise - at[1, 1]) / 5
+        return DriveSlopes(at, middle)
 
     def _scale(self, name: str) -> float:
         effect, parameter = name.split(".")
@@ -279,24 +302,46 @@ def _share(name: str) -> Quantity:
 
 
 def _state(effects: tuple[str, ...], path: DrivePath, start: Array, p: Array) -> Array:
-    """The state that belongs to x, y, psi and v.
+    """The state that belongs to x, y, psi and z = v - g dphi, which is 0 of a robot at rest.
 
-    Where the axles may slip they begin without: what they slip at first is over in milliseconds.
+    Where the axles may slip it holds v, and they begin without: what they slip at first is over in
+    milliseconds.
     """
-    motion = floor_motion(effects)
-    if motion.slips:
-        return np.append(start, [0.0, 0.0])
-    own = p[: len(motion.parameters)]
-    without = motion.speeds([*start[:3], 0.0], path.at[:, 0], own)
-    return start - np.array([0.0, 0.0, 0.0, float(without[0])])
+    if not floor_motion(effects).slips:
+        return start
+    speeds = floor_motion().speeds
+    v = float(speeds(start, path.at[:2, 0], p[: len(ROBOT_PARAMETERS)])[0])
+    return np.array([*start[:3], v, 0.0, 0.0])
 
 
-_OF_DRIVE = (Port.ACTUATION, Port.MEASUREMENT)
+def _v_of_z_by(
+    path: DrivePath, start: Array, p: Array, by: Array, drive_by: DriveSlopes | None
+) -> Array:
+    """How the v that belongs to a start's z changes with what is asked for, (nw,)."""
+    v_by = _v_by()
+    known = len(ROBOT_PARAMETERS)
+    slope = np.asarray(v_by(start, path.at[:2, 0], p[:known]))[0]
+    own = slope[2:] @ by[:known]
+    return own if drive_by is None else own + slope[:2] @ drive_by.at[:2, 0]
+
+
+@lru_cache
+def _v_by() -> ca.Function:
+    """(state, drive, p) -> the derivatives of v by the drive and by p, (1, 2 + np)."""
+    speeds = floor_motion().speeds
+    state, drive, p = speeds.sx_in()
+    by = ca.densify(ca.jacobian(speeds(state, drive, p)[0], ca.vertcat(drive, p)))
+    return ca.Function("v_by", [state, drive, p], [by])
 
 
 def _of_drive(name: str) -> bool:
     effect, parameter = name.split(".")
     return CATALOGUE[effect].actuate is not None or CATALOGUE[effect].delay == parameter
+
+
+def _least(name: str) -> float:
+    effect, parameter = name.split(".")
+    return next(q.bounds[0] for q in CATALOGUE[effect].parameters if q.name == parameter)
 
 
 def _delay(given: Mapping[str, float], effects: tuple[str, ...]) -> float:
@@ -392,6 +437,6 @@ def _data(run: Run) -> Data:
     recording = run.recording
     values = np.column_stack([recording.data(name) for name in CHANNELS])
     if run.start == "rest":
-        values[recording.t - recording.t[0] < SETTLING] = np.nan
+        values[(recording.t >= 0) & (recording.t < SETTLING)] = np.nan
     sigma = np.column_stack([recording.sigma[name] for name in CHANNELS])
     return Data(run.name, recording.t, values, sigma, run.use == "holdout")

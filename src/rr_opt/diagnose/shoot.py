@@ -51,6 +51,17 @@ class DrivePath:
 
 
 @dataclass(frozen=True)
+class DriveSlopes:
+    """How the drive changes with what is asked for, by index along the last axis.
+
+    at      (size, samples, nw) at the samples;  middle (size, steps, nw) in the middle of each step
+    """
+
+    at: Array
+    middle: Array
+
+
+@dataclass(frozen=True)
 class Path:
     """The states (size, steps + 1) of a run and what is seen of it (samples, channels)."""
 
@@ -78,13 +89,17 @@ class Slopes:
 
 
 def slopes(
-    system: System, path: DrivePath, made: Path, p: Array, wanted: Array, drive_by: Array | None
+    system: System,
+    path: DrivePath,
+    made: Path,
+    p: Array,
+    wanted: Array,
+    drive_by: DriveSlopes | None,
 ) -> Slopes:
     """The linearised motion along a predicted path.
 
     wanted    (np, nw) how p changes with what is asked for
-    drive_by  (size, 2, samples, nw): how the drive at the samples, and in the middle of the
-              interval after each, changes with it; None if it does not
+    drive_by  how the drive does; None if it does not
     """
     size, nd = made.states.shape[0], path.at.shape[0]
     A, B = (_frozen if path.each > 1 else _kutta)(system, path, made, p, wanted, drive_by)
@@ -106,7 +121,7 @@ def slopes(
     seen = sx @ carried
     seen[:, :, size:] += sp @ wanted
     if drive_by is not None:
-        seen[:, :, size:] += np.einsum("sid,dsw->siw", sd, drive_by[:, 0])
+        seen[:, :, size:] += np.einsum("sid,dsw->siw", sd, drive_by.at)
     return Slopes(seen[:, :, size:], seen[:, :, :size])
 
 
@@ -130,7 +145,7 @@ def _kutta(system, path, made, p, wanted, drive_by) -> tuple[Array, Array]:
     )
     force = fp @ wanted
     if drive_by is not None:
-        moved = np.concatenate([drive_by[:, 0], drive_by[:, 1, :-1]], axis=1)
+        moved = np.concatenate([drive_by.at, drive_by.middle], axis=1)
         force = force + np.einsum("sid,dsw->siw", fd, moved)
     n, size = h.size, len(ends)
     both = np.concatenate([fx, force], axis=2)
@@ -164,8 +179,7 @@ def _frozen(system, path, made, p, wanted, drive_by) -> tuple[Array, Array]:
     )
     force = fp @ wanted
     if drive_by is not None:
-        within = np.repeat(drive_by[:, 1, :-1], path.each, axis=1)
-        force = force + np.einsum("sid,dsw->siw", fd, within)
+        force = force + np.einsum("sid,dsw->siw", fd, drive_by.middle)
     eye, z = np.eye(size), fx * h[:, None, None]
     push = (eye - z / 6) @ (force * h[:, None, None])
     left = eye - 2 / 3 * z + z @ z / 6

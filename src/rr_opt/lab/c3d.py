@@ -19,7 +19,7 @@ def c3d_bytes(seen: Seen) -> bytes:
     except ImportError:
         raise InputError(
             "C3D cannot be written: the package ezc3d is not installed. Expected it. Install it "
-            "with: pip install 'rr-opt[c3d]', or take another format."
+            "with: pip install 'rr-opt[lab]', or take another format."
         ) from None
     file: Any = ezc3d.c3d()
     file["parameters"]["POINT"]["RATE"]["value"] = [seen.rate]

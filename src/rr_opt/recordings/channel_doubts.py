@@ -10,13 +10,13 @@ from numpy.typing import NDArray
 from rr_opt.experiment.recording import Flag, Recording
 from rr_opt.recordings.doubts import Doubt
 from rr_opt.recordings.gaps import Gap
+from rr_opt.recordings.jump_doubts import jump_doubts
 from rr_opt.recordings.jumps import Jump
 from rr_opt.recordings.noise import NoiseEstimate
+from rr_opt.recordings.sizes import size_text
 
 Array = NDArray[np.float64]
 
-UNITS = {"x": (1e3, "mm"), "y": (1e3, "mm"), "psi": (1e3, "mrad"), "phi": (1e3, "mrad"),
-         "torque": (1e3, "mN m")}  # fmt: skip
 _MANY, _FEW = 1.25, 0.8
 """Times the stated noise from which on the estimate contradicts it, if it does so surely."""
 _SURE = 4.0
@@ -26,18 +26,25 @@ _LONG = 0.1
 _LISTED = 3
 
 
-def size_text(channel: str, size: float) -> str:
-    """A size in the unit people think in: `1.2 mm`."""
-    factor, unit = UNITS.get(channel, (1.0, ""))
-    return f"{factor * size:.3g} {unit}".strip()
-
-
 def turn_doubts(turns: Mapping[str, int]) -> tuple[Doubt, ...]:
     """Of angles that jumped by turns and were unwrapped."""
     return tuple(
         Doubt("turns", f"{angle} jumps by a whole turn {count} times. It was unwrapped.")
         for angle, count in turns.items()
         if count
+    )
+
+
+def step_doubts(steps: Mapping[str, float], stated: Mapping[str, Array]) -> tuple[Doubt, ...]:
+    """Of channels whose values are rounded to steps larger than their noise."""
+    return tuple(
+        Doubt(
+            "steps",
+            f"{channel} comes in steps of {size_text(channel, step)}, larger than its noise: it "
+            "was rounded. Its errors are then not independent; export more digits.",
+        )
+        for channel, step in steps.items()
+        if step > np.nan_to_num(float(np.median(stated[channel])))
     )
 
 
@@ -50,14 +57,19 @@ def channel_doubts(
 ) -> tuple[Doubt, ...]:
     """All of them, channel by channel, then the gaps."""
     doubts: list[Doubt] = []
+    by_fit = "motion" in recording.source
     for channel in recording.channels:
-        doubts += _of_noise(channel, noise[channel], stated[channel])
+        if not np.isfinite(recording.data(channel)).any():
+            continue
+        doubts += _of_noise(channel, noise[channel], stated[channel], by_fit=by_fit)
         doubts += _of_outliers(recording, channel)
-        doubts += _of_jumps(recording, channel, found[channel])
-    return (*doubts, *_of_gaps(holes))
+    return (*doubts, *jump_doubts(recording, found), *_of_gaps(holes))
 
 
-def _of_noise(channel: str, noise: NoiseEstimate, stated: Array) -> Iterator[Doubt]:
+def _of_noise(
+    channel: str, noise: NoiseEstimate, stated: Array, *, by_fit: bool
+) -> Iterator[Doubt]:
+    """by_fit: what is stated follows from the markers' noise."""
     if not np.isfinite(noise.sigma):
         yield Doubt("noise", f"{channel} has too few samples in a row to tell its noise.")
         return
@@ -67,20 +79,22 @@ def _of_noise(channel: str, noise: NoiseEstimate, stated: Array) -> Iterator[Dou
     said = float(np.median(stated))
     ratio = noise.sigma / said if said > 0 else np.nan
     sure = abs(noise.sigma - said) > _SURE * noise.error
+    whose = "the markers' residuals lead to" if by_fit else "are stated"
     coloured = noise.p_white < _CHANCE and noise.colour > _COLOURED
     if sure and ratio > _MANY:
         yield Doubt(
             "noise",
             f"The noise of {channel} is {size_text(channel, noise.sigma)}, and "
-            f"{size_text(channel, said)} are stated.",
+            f"{size_text(channel, said)} {whose}.",
         )
     if sure and ratio < _FEW:
-        why = "A filter upstream?" if coloured else "A better capture than stated?"
+        better = "Markers that slip or bend?" if by_fit else "A better capture than stated?"
+        why = "A filter upstream?" if coloured else better
         yield Doubt(
             "noise",
             f"The noise of {channel} at the highest frequencies is "
-            f"{size_text(channel, noise.sigma)}, less than the {size_text(channel, said)} that are "
-            f"stated. {why}",
+            f"{size_text(channel, noise.sigma)}, less than the {size_text(channel, said)} that "
+            f"{whose}. {why}",
         )
     if coloured:
         yield Doubt(
@@ -108,18 +122,6 @@ def _of_outliers(recording: Recording, channel: str) -> Iterator[Doubt]:
         "outlier",
         f"{channel} has {len(rows)} outlier{'s' if len(rows) > 1 else ''} ({share:.2g} % of its "
         f"samples), at t = {listed}{more} s. Flagged, not removed.",
-    )
-
-
-def _of_jumps(recording: Recording, channel: str, found: Sequence[Jump]) -> Iterator[Doubt]:
-    if not found:
-        return
-    largest = max(found, key=lambda jump: abs(jump.size))
-    several = f" and {len(found) - 1} times more" if len(found) > 1 else ""
-    yield Doubt(
-        "jump",
-        f"{channel} jumps by {size_text(channel, largest.size)} at "
-        f"t = {recording.t[largest.row]:.6g} s{several}: a marker with another's name, or a blow?",
     )
 
 

@@ -13,14 +13,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rr_opt.experiment.recording import Flag, Recording
-from rr_opt.recordings.channel_doubts import channel_doubts, turn_doubts
+from rr_opt.recordings.channel_doubts import channel_doubts, step_doubts, turn_doubts
 from rr_opt.recordings.doubts import Doubt
-from rr_opt.recordings.gaps import Gap, gaps
+from rr_opt.recordings.gaps import LACKING, Gap, gaps
+from rr_opt.recordings.held import without_copies
 from rr_opt.recordings.jumps import Jump, jumps
 from rr_opt.recordings.motion_doubts import motion_doubts
-from rr_opt.recordings.noise import NoiseEstimate, noise_of
+from rr_opt.recordings.noise import NoiseEstimate
 from rr_opt.recordings.outliers import outliers
+from rr_opt.recordings.smooth import time_step
 from rr_opt.recordings.units_guess import unit_doubts
+from rr_opt.recordings.usual_noise import step_of, usual_noise
 from rr_opt.recordings.wrapping import turns_taken, unwrapped
 
 Array = NDArray[np.float64]
@@ -49,18 +52,21 @@ class Cleaned:
 
 def clean(recording: Recording) -> Cleaned:
     """Look at every channel of a recording; its own doubts stay with it."""
-    recording = _of_numbers(recording)
+    recording, copies = without_copies(_of_numbers(recording))
     turns = {one: turns_taken(recording.data(one)) for one in _ANGLES}
     units = unit_doubts(recording)
     if not any(doubt.kind == "units" for doubt in units):
         recording = _without_turns(recording, turns)
     else:
         turns = {}
-    values, flags, sigma, noise, found = {}, {}, {}, {}, {}
+    lacking = np.diff(recording.t) > LACKING * time_step(recording.t)
+    values, flags, sigma, noise, found, steps = {}, {}, {}, {}, {}, {}
     for channel in recording.channels:
         y = recording.data(channel)
         stated = recording.sigma[channel]
-        told = stated if np.isfinite(stated).all() and (stated > 0).all() else _estimated(y)
+        told = stated if np.isfinite(stated).all() and (stated > 0).all() else usual_noise(y)
+        steps[channel] = step_of(y)
+        told = np.hypot(told, steps[channel] / np.sqrt(12))
         seen = outliers(recording.t, y, told)
         values[channel] = recording.values[channel]
         flags[channel] = recording.flags[channel] | np.where(
@@ -68,9 +74,11 @@ def clean(recording: Recording) -> Cleaned:
         ).astype(np.uint8)
         noise[channel] = seen.noise
         unsaid = not np.isfinite(stated).any()
-        sigma[channel] = np.full(len(y), seen.noise.sigma) if unsaid else stated
+        sigma[channel] = np.full(len(y), seen.sigma) if unsaid else stated
         good = np.where(seen.outlier, np.nan, y)
-        found[channel] = jumps(good, max(seen.noise.sigma, 0.5 * float(np.median(told))))
+        all_jumps = jumps(good, max(seen.noise.sigma, 0.5 * float(np.median(told))))
+        # Where rows are lacking, the motion went on unseen.
+        found[channel] = tuple(jump for jump in all_jumps if not lacking[jump.row])
     made = replace(
         recording,
         sigma=MappingProxyType(sigma),
@@ -79,8 +87,10 @@ def clean(recording: Recording) -> Cleaned:
     holes = gaps(made)
     doubts = (
         *units,
+        *copies,
         *turn_doubts(turns),
         *motion_doubts(made, noise, stated=recording.sigma),
+        *step_doubts(steps, recording.sigma),
         *channel_doubts(made, noise, holes, found, stated=recording.sigma),
     )
     return Cleaned(made, MappingProxyType(noise), holes, MappingProxyType(found), doubts)
@@ -93,14 +103,6 @@ def _of_numbers(recording: Recording) -> Recording:
         for channel, flag in recording.flags.items()
     }
     return replace(recording, flags=MappingProxyType(flags))
-
-
-def _estimated(y: Array) -> Array:
-    """The noise of a channel of which none is stated, (n,); never zero."""
-    sigma = noise_of(y).sigma
-    size = float(np.nanmax(np.abs(y))) if np.isfinite(y).any() else 1.0
-    least = max(1e-9 * size, 1e-12)
-    return np.full(len(y), max(sigma, least) if np.isfinite(sigma) else max(size, least))
 
 
 def _without_turns(recording: Recording, turns: Mapping[str, int]) -> Recording:

@@ -15,17 +15,43 @@ _SURE = 3.0
 _RUNS_OFF = 1e-5
 _LESS = 0.01
 _BIASED = 2e-3
+_HALF = 0.05
+"""Periods."""
 _TURN = 180 / np.pi
 
 
-def command_doubts(fit: ClockFit | None, *, from_rest: bool) -> tuple[Doubt, ...]:
-    """Of phi against its command."""
+def command_doubts(
+    fit: ClockFit | None, *, from_rest: bool, period: float, clock_known: bool = False
+) -> tuple[Doubt, ...]:
+    """Of phi against its command, whose period is in s.
+
+    clock_known: a servo's log has told the clock's part.
+    """
     if fit is None:
         return (Doubt("clock", "phi cannot be matched with its command: it does not move."),)
-    return tuple(_of_command(fit, from_rest=from_rest))
+    if abs(abs(fit.offset) / period - 0.5) < _HALF:
+        text = (
+            "phi is half a period off its command, or it has the other sign. Left is positive: "
+            "phi grows as platform 2 turns counter-clockwise against platform 1, seen from above."
+        )
+        return (Doubt("command", text),)
+    return tuple(_of_command(fit, from_rest=from_rest, clock_known=clock_known))
 
 
-def _of_command(fit: ClockFit, *, from_rest: bool) -> Iterator[Doubt]:
+def start_doubts(first: float, period: float) -> tuple[Doubt, ...]:
+    """Of a recording that begins at a time, s, although the robot started from rest at t = 0."""
+    if first < period / 4:
+        return ()
+    return (
+        Doubt(
+            "clock",
+            f"The robot is said to start from rest at t = 0, and the recording begins at "
+            f"t = {first:.6g} s. Is its clock the command's?",
+        ),
+    )
+
+
+def _of_command(fit: ClockFit, *, from_rest: bool, clock_known: bool) -> Iterator[Doubt]:
     if fit.scale <= 0.1:
         yield Doubt(
             "command",
@@ -36,15 +62,7 @@ def _of_command(fit: ClockFit, *, from_rest: bool) -> Iterator[Doubt]:
     if abs(fit.offset) > max(_LATE, _SURE * fit.sigma[0]):
         way = "lags" if fit.offset < 0 else "leads"
         low, high = sorted(1e3 * abs(end) for end in fit.interval(0))
-        why = (
-            "a clock that is off, as no servo moves before it is told"
-            if fit.offset > 0
-            else "a servo that is late, or a clock that is off. The start from rest is part of the "
-            "fit, but only a model of the servo can tell one from the other"
-            if from_rest
-            else "a servo that is late, or a clock that is off. This recording cannot tell one "
-            "from the other: they are one thing in it"
-        )
+        why = _why_late(fit, from_rest=from_rest, clock_known=clock_known)
         yield Doubt(
             "clock",
             f"phi {way} its command by {1e3 * abs(fit.offset):.3g} ms (95 %: {low:.3g} to "
@@ -79,37 +97,15 @@ def _why(scale: float) -> str:
     return "play with inertia makes it more; a clock would not."
 
 
-def log_doubts(
-    fit: ClockFit | None, others: tuple[float, ...], period: float | None = None
-) -> tuple[Doubt, ...]:
-    """Of the capture's clock against the servo's."""
-    if fit is None:
-        return (Doubt("clock", "The servo's log and phi have no motion in common."),)
-    low, high = fit.interval(0)
-    told = [
-        Doubt(
-            "log",
-            f"The servo's clock is {fit.offset:+.4f} s against the capture's (95 %: {low:+.4f} to "
-            f"{high:+.4f} s), and gains {1e6 * fit.drift:+.3g} +- {1.96e6 * fit.sigma[1]:.2g} us a "
-            "second. A delay within the servo or the capture is part of it: they are one thing.",
+def _why_late(fit: ClockFit, *, from_rest: bool, clock_known: bool) -> str:
+    if fit.offset > 0:
+        return "a clock that is off, as no servo moves before it is told"
+    if clock_known:
+        return "a servo that is late, as its log has told what the clocks are off by"
+    both = "a servo that is late, or a clock that is off."
+    if from_rest:
+        return (
+            f"{both} The start from rest is part of the fit, but only a model of the servo can "
+            "tell one from the other"
         )
-    ]
-    if others:
-        whole = f", or whole periods of {period:.4g} s off" if period else ""
-        also = ", ".join(f"{other:+.3f}" for other in others[:3])
-        told.append(
-            Doubt(
-                "log",
-                f"The motion repeats itself, and fits about as well with {also} s{whole}. Start "
-                "both recordings before the command.",
-            )
-        )
-    if abs(fit.scale - 1) > max(_LESS, _SURE * fit.sigma[2]):
-        told.append(
-            Doubt(
-                "log",
-                f"phi moves {fit.scale:.4g} times as far as the servo's log has it: its count "
-                "scale, or a joint that gives?",
-            )
-        )
-    return tuple(told)
+    return f"{both} This recording cannot tell one from the other: they are one thing in it"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import chi2
+from scipy.special import chdtri
 
 from rr_opt.recordings.rigid import Fit
 
@@ -30,6 +30,6 @@ def marker_noise(fit: Fit) -> float:
 
 def beyond(fit: Fit, sigma: float) -> NDArray[np.bool_]:
     """The frames (n,) whose markers do not fit two rigid platforms with noise sigma, m."""
-    most = sigma**2 * chi2.isf(FALSE_ALARM, np.maximum(fit.freedom, 1))
+    most = sigma**2 * chdtri(np.maximum(fit.freedom, 1), FALSE_ALARM)
     # Noise-free data keep to their digits only.
     return (fit.freedom > 0) & (fit.squares > np.maximum(most, 1e-18))

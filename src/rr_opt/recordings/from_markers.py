@@ -11,10 +11,12 @@ from numpy.typing import NDArray
 from rr_opt.experiment.recording import CHANNELS, Flag, Recording
 from rr_opt.recordings.bodies import Bodies, bodies_of
 from rr_opt.recordings.doubts import Doubt, texts
+from rr_opt.recordings.exchanges import Order
 from rr_opt.recordings.fit_noise import marker_noise
 from rr_opt.recordings.floor_frame import seen_from_above, tilt
 from rr_opt.recordings.ghosts import Ghosts
 from rr_opt.recordings.layout import Layout
+from rr_opt.recordings.layout_scale import check_scale
 from rr_opt.recordings.marker_doubts import marker_doubts
 from rr_opt.recordings.markers_file import MarkerData
 from rr_opt.recordings.rigid import Fit, fit
@@ -81,6 +83,7 @@ def fit_markers(
     always = swapped_throughout(bodies, seen)
     if always:
         bodies = _renamed(bodies, always)
+    check_scale(bodies, seen, layout.up)
     bodies, shift, seen, swaps, ghosts = robot_of(bodies, seen, noise_sigma)
     fitted = fit(bodies, ghosts.seen)
     noise = marker_noise(fitted)
@@ -101,11 +104,15 @@ def _places(data: MarkerData) -> Array:
     return np.where(np.abs(data.positions) < _FARTHEST, data.positions, np.nan)
 
 
-def _renamed(bodies: Bodies, pair: tuple[int, int]) -> Bodies:
-    places, platform = bodies.places.copy(), bodies.platform.copy()
-    i, j = pair
-    places[[i, j]], platform[[i, j]] = places[[j, i]], platform[[j, i]]
-    return replace(bodies, places=places, platform=platform)
+def _renamed(bodies: Bodies, order: Order) -> Bodies:
+    """The columns keep their names, and get the places of the markers that are in them."""
+    places, platform, heights = (
+        np.empty_like(one) for one in (bodies.places, bodies.platform, bodies.heights)
+    )
+    columns = list(order)
+    places[columns], platform[columns] = bodies.places, bodies.platform
+    heights[columns] = bodies.heights
+    return replace(bodies, places=places, platform=platform, heights=heights)
 
 
 def _mean(squares: Array) -> Array:

@@ -14,7 +14,7 @@ Array = NDArray[np.float64]
 
 SHORT = 0.1
 """A gap of a drawing that is bridged, s."""
-_LACKING = 1.5
+LACKING = 1.5
 """Steps longer than this, in usual steps, lack a row."""
 
 
@@ -54,7 +54,7 @@ def gaps(recording: Recording) -> tuple[Gap, ...]:
     step = time_step(t)
     found += [
         Gap((), float(t[i]), float(t[i + 1]), round((t[i + 1] - t[i]) / step) - 1)
-        for i in np.flatnonzero(np.diff(t) > _LACKING * step)
+        for i in np.flatnonzero(np.diff(t) > LACKING * step)
     ]
     return tuple(sorted(found, key=lambda gap: (gap.start, gap.channels)))
 

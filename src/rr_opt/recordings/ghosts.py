@@ -39,11 +39,14 @@ class Ghosts:
     lost: NDArray[np.int_]
 
 
-def without_ghosts(bodies: Bodies, seen: Array, sigma: float) -> Ghosts:
-    """The markers (n, k, 2) without those that do not fit; sigma: of a coordinate, m."""
+def without_ghosts(bodies: Bodies, seen: Array, sigma: float, most: int = 2) -> Ghosts:
+    """The markers (n, k, 2) without those that do not fit; sigma: of a coordinate, m.
+
+    most: how many of a frame may be left out together.
+    """
     left = np.flatnonzero(beyond(fit(bodies, seen), sigma))
     given, seen, out = seen, seen.copy(), np.zeros(seen.shape[:2], bool)
-    for size in (1, 2):
+    for size in range(1, most + 1):
         if not len(left):
             break
         blamed, solved = _blamed(bodies, seen[left], sigma, size)

@@ -65,6 +65,8 @@ def check_columns(
     twice = [name for name in known if header.names.count(name) > 1]
     missing = [name for name in needed if name not in header.names]
     wrong = []
+    if "t" in missing and "time" in header.names:
+        refuse(file, "Read the column `time`. Expected `t`, in s. Rename it.", line)
     if twice:
         wrong.append(f"Read the column `{twice[0]}` twice. Expected it once. Delete one of them.")
     if missing:

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from rr_opt.experiment.experiment import Start
 from rr_opt.experiment.recording import Recording
 from rr_opt.recordings.clean import Cleaned, clean
-from rr_opt.recordings.clock_doubts import command_doubts, log_doubts
+from rr_opt.recordings.clock_doubts import command_doubts, start_doubts
 from rr_opt.recordings.clock_fit import ClockFit
-from rr_opt.recordings.clocks import against_command, against_log
+from rr_opt.recordings.clocks import against_command
 from rr_opt.recordings.doubts import Doubt, texts
 from rr_opt.recordings.from_markers import MarkerFit, fit_markers
 from rr_opt.recordings.layout import Layout
 from rr_opt.recordings.markers_file import MarkerData
 from rr_opt.recordings.servo_log_file import ServoLog
+from rr_opt.recordings.synchrony import Synchrony, synchronised
 from rr_opt.robot.gait import Gait
 
 
@@ -25,7 +26,7 @@ class Inspection:
     markers   the rigid fit, of marker files
     gait      what the servo was told, where it is known
     command   phi against it
-    log       phi against the servo's log
+    synchrony what the servo's log says of the clocks, where there is one
     doubts    all of them, the reader's first
     """
 
@@ -33,7 +34,7 @@ class Inspection:
     markers: MarkerFit | None
     gait: Gait | None
     command: ClockFit | None
-    log: ClockFit | None
+    synchrony: Synchrony | None
     doubts: tuple[str, ...]
 
     @property
@@ -69,17 +70,24 @@ def inspect(read: Recording | MarkerData, told: Told) -> Inspection:
         recording = markers.recording
     else:
         recording = read
+    first: list[Doubt] = []
+    synchrony = None
+    if told.log is not None:
+        synchrony = synchronised(recording, told.log, told.gait, told.start)
+        recording = synchrony.recording
+        first += synchrony.doubts
+        if markers is not None:
+            markers = replace(markers, recording=recording)
     cleaned = clean(recording)
-    t, phi = cleaned.recording.t, cleaned.recording.data("phi")
-    doubts: list[Doubt] = list(cleaned.doubts)
-    command = log = None
+    doubts = [*cleaned.doubts, *first]
+    command = None
     if told.gait is not None:
         rest = told.start == "rest"
+        t, phi = cleaned.recording.t, cleaned.recording.data("phi")
         command = against_command(t, phi, told.gait, from_rest=rest)
-        doubts += command_doubts(command, from_rest=rest)
-    if told.log is not None:
-        log, others = against_log(t, phi, told.log)
-        period = told.gait.period if told.gait else None
-        doubts += log_doubts(log, others, period)
+        shifted = synchrony is not None and synchrony.shift is not None
+        period = told.gait.period
+        doubts += command_doubts(command, from_rest=rest, period=period, clock_known=shifted)
+        doubts += start_doubts(float(t[0]), period) if rest else ()
     said = (*recording.doubts, *(told.log.doubts if told.log else ()), *texts(doubts))
-    return Inspection(cleaned, markers, told.gait, command, log, said)
+    return Inspection(cleaned, markers, told.gait, command, synchrony, said)

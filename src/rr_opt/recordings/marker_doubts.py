@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rr_opt.recordings.doubts import Doubt, frames_text, when
+from rr_opt.recordings.exchanges import Order, members
 from rr_opt.recordings.layout import Layout
 from rr_opt.recordings.markers_file import MarkerData
+from rr_opt.recordings.tilt_doubts import tilt_doubts
 from rr_opt.recordings.unknown_layout import Guessed
 
 if TYPE_CHECKING:
     from rr_opt.recordings.from_markers import MarkerFit
 
-_TILTS = 6.0
-"""Times the typical tilt from which on a frame's is told."""
 _MATTERS = 0.5
 """Times the noise by which a marker must be off its place to be told."""
 _STATED = 1.5
@@ -28,7 +28,7 @@ def marker_doubts(
     layout: Layout,
     made: MarkerFit,
     guess: Guessed | None,
-    always: tuple[int, int] | None,
+    always: Order | None,
     noise_sigma: float | None,
 ) -> tuple[Doubt, ...]:
     """All of them, the gravest first."""
@@ -37,7 +37,7 @@ def marker_doubts(
         *_of_names(data, made, always),
         *_of_ghosts(data, made),
         *_of_noise(made, noise_sigma),
-        *_of_tilt(data, made),
+        *tilt_doubts(data, made),
     )
 
 
@@ -74,24 +74,29 @@ def _of_layout(
         )
 
 
-def _of_names(data: MarkerData, made: MarkerFit, always: tuple[int, int] | None) -> Iterator[Doubt]:
+def _of_names(data: MarkerData, made: MarkerFit, always: Order | None) -> Iterator[Doubt]:
     names = made.bodies.labels
     if always:
         yield Doubt(
             "swap",
-            f"The markers {names[always[0]]} and {names[always[1]]} are exchanged in the whole "
+            f"The markers {_and(names[i] for i in members(always))} are exchanged in the whole "
             "recording: in the file or in the layout. They were put right. Correct the layout.",
         )
-    pairs: dict[tuple[int, int], list[int]] = {}
+    together: dict[tuple[int, ...], list[int]] = {}
     for swap in made.swaps:
-        pairs.setdefault(swap.pair, []).extend(swap.frames.tolist())
-    for (i, j), frames in pairs.items():
+        together.setdefault(swap.members, []).extend(swap.frames.tolist())
+    for several, frames in together.items():
         rows = sorted(frames)
         yield Doubt(
             "swap",
-            f"Markers {names[i]} and {names[j]} have each other's names in "
+            f"Markers {_and(names[i] for i in several)} have each other's names in "
             f"{frames_text(len(rows))} {when(data.t, rows)}: swapped labels, put right.",
         )
+
+
+def _and(names: Iterable[str]) -> str:
+    *others, last = names
+    return f"{', '.join(others)} and {last}"
 
 
 def _of_ghosts(data: MarkerData, made: MarkerFit) -> Iterator[Doubt]:
@@ -133,20 +138,3 @@ def _of_noise(made: MarkerFit, noise_sigma: float | None) -> Iterator[Doubt]:
             f"is {1e3 * noise_sigma:.2g} mm. A platform that bends, or a noise that is larger than "
             "stated.",
         )
-
-
-def _of_tilt(data: MarkerData, made: MarkerFit) -> Iterator[Doubt]:
-    for one in (0, 1):
-        lean = made.tilt[:, one]
-        known = np.isfinite(lean)
-        if known.sum() < 20:
-            continue
-        usual = float(np.median(lean[known]))
-        rows = np.flatnonzero(known & (lean > max(_TILTS * usual, 0.01)))
-        if len(rows):
-            yield Doubt(
-                "tilt",
-                f"Platform {one + 1} leans by up to {np.degrees(np.nanmax(lean)):.1f} deg in "
-                f"{frames_text(len(rows))} {when(data.t, rows)}, against "
-                f"{np.degrees(usual):.2g} deg usually: a wheel off the floor, or a bump?",
-            )

@@ -15,6 +15,7 @@ Array = NDArray[np.float64]
 
 _HARDLY = 0.02
 """A path shorter than this tells little about friction, m."""
+_FEW = 10
 _STILL = 6.0
 """A range, of 98 % of the samples, within so many standard deviations is noise; Gaussian noise has
 4.7."""
@@ -32,8 +33,8 @@ def _of_angle(
 ) -> Iterator[Doubt]:
     phi = recording.data("phi")
     phi = phi[np.isfinite(phi)]
-    if not len(phi):
-        yield Doubt("motion", "phi has no data at all.")
+    if len(phi) < _FEW:
+        yield Doubt("motion", f"phi has {_few(len(phi), recording)}.")
         return
     sigma = np.nan_to_num([noise["phi"].sigma, float(np.median(stated["phi"]))]).max()
     low, high = np.percentile(phi, (1, 99))
@@ -48,8 +49,8 @@ def _of_angle(
 def _of_path(recording: Recording) -> Iterator[Doubt]:
     x, y = recording.data("x"), recording.data("y")
     both = np.isfinite(x) & np.isfinite(y)
-    if not both.any():
-        yield Doubt("motion", "The joint's place has no data at all.")
+    if both.sum() < _FEW:
+        yield Doubt("motion", f"The joint's place has {_few(int(both.sum()), recording)}.")
         return
     x, y = x[both], y[both]
     far = float(np.hypot(x - x[0], y - y[0]).max())
@@ -59,3 +60,11 @@ def _of_path(recording: Recording) -> Iterator[Doubt]:
             f"This robot hardly moves: the joint never is more than {1e3 * far:.2g} mm from where "
             "it began. Such a recording says little about friction or inertia.",
         )
+
+
+def _few(count: int, recording: Recording) -> str:
+    return (
+        f"{count} samples that are taken as data, of {len(recording)}"
+        if count
+        else "no data at all"
+    )

@@ -14,8 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import erf
-from scipy.stats import t as student
+from scipy.special import erf, stdtr
 
 Array = NDArray[np.float64]
 
@@ -73,10 +72,13 @@ def noise_of(y: Array) -> NoiseEstimate:
         both = np.array(ratios)
         spread = both.std(axis=0, ddof=1) / math.sqrt(len(both))
         between = max(float(spread[0]), relative)
-        p_white = float(
-            2 * student.sf(abs(both[:, 1].mean()) / max(spread[1], 1e-12), len(both) - 1)
-        )
+        p_white = float(2 * stdtr(len(both) - 1, -abs(both[:, 1].mean()) / max(spread[1], 1e-12)))
     return NoiseEstimate(sigma, sigma * between, slower, p_white)
+
+
+def spread_at(y: Array, stride: int) -> float:
+    """The noise of y (n,) as differences over `stride` samples have it; NaN where it cannot."""
+    return _spread(_differences(y, stride))
 
 
 def _differences(y: Array, stride: int) -> Array:

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter1d
-from scipy.stats import norm
+from scipy.special import ndtri
 
 from rr_opt.recordings.noise import NoiseEstimate, noise_of
 from rr_opt.recordings.one_sided import misses
@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 
 FALSE_ALARM = 1e-6
 """The share of good samples, with Gaussian noise, that the smooth curve suspects."""
-_SUSPECT = float(norm.isf(FALSE_ALARM / 2))
+_SUSPECT = float(-ndtri(FALSE_ALARM / 2))
 _ONE_SIDE = 3.5
 """A parabola through one side misses a good sample by less; it has its own curvature to miss."""
 _ROUNDS = 12
@@ -40,11 +40,13 @@ class Outliers:
 
     outlier  (n,)
     noise    of the others
+    sigma    standard deviation that a sample was allowed, the usual one
     ratio    the strength of the motion (`strength`)
     """
 
     outlier: NDArray[np.bool_]
     noise: NoiseEstimate
+    sigma: float
     ratio: float
 
 
@@ -54,7 +56,7 @@ def outliers(t: Array, y: Array, sigma: Array) -> Outliers:
     known = np.isfinite(y)
     noise, ratio = noise_of(y), 1.0
     if known.sum() < 4 or not np.nanmax(np.abs(y)) < 1e12:
-        return Outliers(suspect, noise, ratio)
+        return Outliers(suspect, noise, float(np.median(sigma)), ratio)
     scale = 1.0
     usual = float(np.median(sigma))
     for _ in range(3):
@@ -66,7 +68,7 @@ def outliers(t: Array, y: Array, sigma: Array) -> Outliers:
         before, suspect = suspect, _suspects(t, y, scale * sigma, ratio)
         if (suspect == before).all():
             break
-    return Outliers(_foretold(t, y, suspect, scale * sigma), noise, ratio)
+    return Outliers(_foretold(t, y, suspect, scale * sigma), noise, scale * usual, ratio)
 
 
 def _suspects(t: Array, y: Array, sigma: Array, ratio: float) -> NDArray[np.bool_]:

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass
 from pathlib import Path
-from types import MappingProxyType
 
 import numpy as np
 
@@ -20,9 +19,17 @@ from rr_opt.recordings.readers import read_file
 from rr_opt.recordings.servo_log_file import ServoLog
 
 
+@dataclass(frozen=True)
+class ReadRun:
+    """A run as its files have it, and the servo's log of it."""
+
+    run: Run
+    log: ServoLog | None
+
+
 def read_run(
     plan: ExperimentPlan, number: int, planned: PlannedRun
-) -> tuple[Run | None, list[Issue]]:
+) -> tuple[ReadRun | None, list[Issue]]:
     """The run (None if an issue is an error), and all issues; nothing is raised."""
     issues: list[Issue] = []
     recording = log = None
@@ -43,10 +50,7 @@ def read_run(
             ]
     if recording is None or has_errors(issues):
         return None, issues
-    if log is not None:
-        told = {**recording.source, "servo log": f"{log.name}, {log.rate:.6g} Hz"}
-        recording = replace(recording, source=MappingProxyType(told))
-    return Run(recording, planned.gait, planned.use, planned.start), issues
+    return ReadRun(Run(recording, planned.gait, planned.use, planned.start), log), issues
 
 
 def _other_command(

@@ -35,7 +35,10 @@ def rate_of(t: Array, file: str, line: int | None = None) -> float:
             line,
         )
     steps = np.diff(t)
-    usual = steps[steps <= np.median(steps) * _JUMP]
+    # As far below the usual step as above it, so that times that jitter have their mean rate.
+    middle = np.median(steps)
+    usual = steps[np.abs(steps / middle - 1) <= _JUMP - 0.99]
+    usual = usual if len(usual) else steps[steps <= middle]
     with np.errstate(over="ignore"):
         rate = float(len(usual) / usual.sum())
     check_rate(rate, file, line)
@@ -57,7 +60,9 @@ def time_doubts(t: Array, rate: float, stated: float | None = None) -> tuple[str
     """What is odd about increasing times (n >= 2) that come at a rate, Hz; stated: by a header."""
     doubts = []
     steps = np.diff(t) * rate
-    jumps = np.flatnonzero(steps > _JUMP)
+    # Where a row is lacking the steps about it do not make up for it, as they do for a late one.
+    around = np.convolve(np.concatenate([[1.0], steps, [1.0]]), np.ones(3), "valid")
+    jumps = np.flatnonzero((steps > _JUMP) & (around > _JUMP + 2))
     if len(jumps):
         listed = ", ".join(
             f"{steps[at] / rate:.4g} s at t = {t[at]:.6g} s" for at in jumps[:_LISTED]
@@ -68,7 +73,7 @@ def time_doubts(t: Array, rate: float, stated: float | None = None) -> tuple[str
             f"The time jumps {_times(len(jumps))} ({listed}{more}): at {rate:.5g} Hz about "
             f"{lacking} rows are missing."
         )
-    usual = steps[steps <= _JUMP]
+    usual = np.delete(steps, jumps)
     uneven = np.abs(usual - 1) > _UNEVEN + 1.01 * _printed(t) * rate
     if uneven.any():
         doubts.append(

@@ -11,6 +11,9 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
+_RESTARTS = 5
+"""A file whose time falls back less often, and by more rows than this at once, was joined."""
+
 
 @dataclass(frozen=True)
 class Order:
@@ -42,6 +45,13 @@ def in_order(t: Array, values: Array, lines: Sequence[int] | NDArray[np.int64]) 
     if (np.diff(t[rows]) < 0).any():
         moved = ~_longest_rising(t[rows])
         doubts.append(f"Out of order, and put where the time says: {_rows(lines[rows[moved]])}.")
+        back = np.flatnonzero(np.diff(t[rows]) < 0)
+        if len(back) < _RESTARTS and moved.sum() > _RESTARTS * len(back):
+            at = rows[back[0]], rows[back[0] + 1]
+            doubts.append(
+                f"The time falls back from {t[at[0]]:.6g} to {t[at[1]]:.6g} s in line "
+                f"{lines[at[1]]}: two recordings in one file, or a clock that was set? Part them."
+            )
         order = np.argsort(t[rows], kind="stable")
         rows, moved = rows[order], moved[order]
     again = np.diff(t[rows], prepend=np.nan) == 0

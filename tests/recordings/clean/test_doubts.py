@@ -134,7 +134,7 @@ def test_a_jump_is_told():
 
     cleaned = clean(recording(change))
     assert kinds(cleaned.doubts) == {"jump"}
-    assert "x jumps by 4" in texts(cleaned)
+    assert "jumps x by 4" in texts(cleaned)
     assert "t = 14.99 s" in texts(cleaned)
 
 

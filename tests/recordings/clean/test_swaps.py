@@ -42,7 +42,7 @@ def test_a_swap_is_put_right(names, rows):
     found = fit_markers(data, LAYOUT, SIGMA)
     planted = np.arange(len(data))[rows]
     told = np.concatenate([swap.frames for swap in found.swaps])
-    assert {frozenset(found.bodies.labels[i] for i in swap.pair) for swap in found.swaps} == {
+    assert {frozenset(found.bodies.labels[i] for i in swap.members) for swap in found.swaps} == {
         frozenset(names)
     }
     assert len(np.setdiff1d(told, planted)) == 0
@@ -84,3 +84,22 @@ def test_no_swap_is_found_where_there_is_none():
     found = fit_markers(markers(motion(), SIGMA, 4), LAYOUT, SIGMA)
     assert not found.swaps
     assert not kinds(found.doubts)
+
+
+@pytest.mark.parametrize(
+    "names", [("L1", "R1", "L2"), ("R1", "T2", "T4"), ("L1", "R1", "T1", "T3"), ("L2", "T1", "R2")]
+)
+@pytest.mark.parametrize("rows", [slice(500, 900), slice(77, 78), slice(None)])
+def test_three_in_a_ring_and_two_pairs_at_once_are_put_right(names, rows):
+    data = markers(motion(), SIGMA, 4)
+    i = [data.labels.index(name) for name in names]
+    to = [i[1], i[2], i[0]] if len(i) == 3 else [i[1], i[0], i[3], i[2]]
+    positions = data.positions.copy()
+    positions[rows, i] = data.positions[rows][:, to]
+    # Ghosts beside them do not hide them.
+    positions[1500:2400:30, 3] += 0.1
+    found = fit_markers(replace(data, positions=positions), LAYOUT, SIGMA)
+    assert worst(found) < 5.5
+    text = " ".join(doubt.text for doubt in found.doubts)
+    assert "swapped labels" in text or "in the whole recording" in text
+    assert all(name in text for name in names)

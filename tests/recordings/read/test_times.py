@@ -87,3 +87,17 @@ def test_the_fewest_rows_are_called_out_of_order(times):
         if list(kept) == sorted(kept)
     )
     assert order.moved.sum() == fewest
+
+
+def test_times_that_jitter_keep_their_rate_and_lack_no_row(write):
+    t = np.arange(2000) / 100 + np.random.default_rng(0).uniform(-0.003, 0.003, 2000)
+    run = read_file(write(csv(np.sort(t))))
+    assert float(run.source["rate"].split()[0]) == pytest.approx(100, rel=1e-3)
+    assert any("constant rate" in doubt for doubt in run.doubts)
+    assert not any("missing" in doubt for doubt in run.doubts)
+
+
+def test_two_recordings_in_one_file_are_told(write):
+    run = read_file(write(csv(np.concatenate([np.arange(500), np.arange(400) + 0.5]) / 100)))
+    told = next(doubt for doubt in run.doubts if "two recordings in one file" in doubt)
+    assert "from 4.99 to 0.005 s in line 502" in told

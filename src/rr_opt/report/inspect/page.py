@@ -8,8 +8,8 @@ from html import escape
 import numpy as np
 
 from rr_opt import __version__
-from rr_opt.recordings.channel_doubts import size_text
 from rr_opt.recordings.inspection import Inspection
+from rr_opt.recordings.sizes import size_text
 from rr_opt.report.html import Badge, Cell, card, figure, table
 from rr_opt.report.inspect.summary import rows
 from rr_opt.report.page_style import CSS
@@ -23,7 +23,7 @@ _CAPTIONS = {
     ),
     "command": (
         "phi against its command",
-        "Above: all samples at their phase of the period. Below: the difference over time.",
+        "Above: samples at their phase of the period. Below: the difference over time.",
     ),
     "rigid": (
         "Markers on rigid platforms",

@@ -16,6 +16,7 @@ from rr_opt.recordings.from_markers import MarkerFit
 from rr_opt.recordings.inspection import Inspection
 from rr_opt.recordings.noise import NoiseEstimate
 from rr_opt.recordings.smooth import time_step
+from rr_opt.recordings.synchrony import Synchrony
 
 
 def record(name: str, sha256: str, found: Sequence[Inspection]) -> dict[str, Any]:
@@ -53,7 +54,7 @@ def _of_one(found: Inspection) -> dict[str, Any]:
         "path": path_record(recording),
         "gait": gait_record(found.gait) if found.gait else None,
         "command": _clock(found.command),
-        "servo_log": _clock(found.log),
+        "servo_log": _servo_log(found.synchrony),
         "markers": _markers(found.markers),
         "doubts": list(found.doubts),
     }  # fmt: skip
@@ -107,6 +108,24 @@ def _clock(fit: ClockFit | None) -> dict[str, Any] | None:
     return {**told, "t_mid": fit.t_mid, "residual_rms": _number(fit.residual)}
 
 
+def _servo_log(found: Synchrony | None) -> dict[str, Any] | None:
+    """phi against the log, the log's goal against the gait, and what the two make together."""
+    if found is None:
+        return None
+    shift = found.shift
+    return {
+        "phi": _clock(found.log),
+        "goal": _clock(found.goal),
+        "shift": shift
+        and {
+            "offset": {"value": shift.offset, "ci95": list(shift.interval())},
+            "drift": {"value": shift.drift, "ci95": list(shift.interval(1))},
+            "t_mid": shift.t_mid,
+            "applied": shift.applied,
+        },
+    }
+
+
 def _markers(fit: MarkerFit | None) -> dict[str, Any] | None:
     if fit is None:
         return None
@@ -125,7 +144,7 @@ def _markers(fit: MarkerFit | None) -> dict[str, Any] | None:
         ],
         "swaps": [
             {
-                "names": [fit.bodies.labels[i] for i in swap.pair],
+                "names": [fit.bodies.labels[i] for i in swap.members],
                 "frames": len(swap.frames),
                 "first": float(fit.recording.t[swap.frames[0]]),
                 "last": float(fit.recording.t[swap.frames[-1]]),

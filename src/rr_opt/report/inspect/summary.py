@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 
 from rr_opt.experiment.recording import Flag
-from rr_opt.recordings.channel_doubts import size_text
 from rr_opt.recordings.inspection import Inspection
+from rr_opt.recordings.sizes import size_text
 from rr_opt.recordings.smooth import time_step
 from rr_opt.report.inspect.record import path_record
 from rr_opt.report.quantities import number, with_unit
@@ -52,6 +52,13 @@ def rows(found: Inspection) -> list[tuple[str, str]]:
             ("  command", f"phi's clock {1e3 * fit.offset:+.2f} +- {1.96e3 * fit.sigma[0]:.2g} ms, "
                 f"scale {fit.scale:.4f} +- {1.96 * fit.sigma[2]:.1g}, "
                 f"{1e3 * fit.bias:+.2f} mrad; {1e3 * fit.residual:.3g} mrad are left")
+        )  # fmt: skip
+    if found.synchrony is not None and found.synchrony.shift is not None:
+        shift = found.synchrony.shift
+        done = "put on the command's clock" if shift.applied else "not shifted"
+        told.append(
+            ("  servo log", f"the command's clock is {1e3 * shift.offset:+.3f} +- "
+                f"{1.96e3 * shift.sigma[0]:.2g} ms ahead of the recording's: {done}")
         )  # fmt: skip
     return told
 

@@ -25,7 +25,8 @@ def channels(axes: Sequence[Axes], recording: Recording, holes: Sequence[Gap]) -
     t = recording.t
     for ax, channel in zip(axes, recording.channels, strict=True):
         y = recording.data(channel)
-        ax.plot(*thinned(t, bridged(t, y)), color=PLATFORM2, lw=0.8)
+        if not np.isfinite(y).all():
+            ax.plot(*thinned(t, bridged(t, y)), color=PLATFORM2, lw=0.8)
         ax.plot(*thinned(t, y), color=INK, lw=1.1)
         _bands(ax, channel, holes)
         _flags(ax, recording, channel)

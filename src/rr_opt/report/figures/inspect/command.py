@@ -12,14 +12,21 @@ from rr_opt.report.figures.style import FORWARD, GREY, INK, note
 from rr_opt.robot.gait import Gait
 
 _POINTS = 1000
+_DOT = 2e-4
+"""Half the length of a dot, in periods."""
 
 
 def folded(
     ax: Axes, t: NDArray[np.float64], phi: NDArray[np.float64], gait: Gait, fit: ClockFit | None
 ) -> Axes:
     """Every sample of phi, rad, at its phase of the period, over the command as a line."""
-    step = max(1, len(t) // _POINTS)
-    ax.plot(t[::step] % gait.period, phi[::step], ".", ms=2.2, color=GREY, label="seen")
+    known = np.flatnonzero(np.isfinite(phi))
+    known = known[:: max(1, len(known) // _POINTS)]
+    # One path of dashes as short as dots: a marker each makes a file several times as large.
+    dash = gait.period * _DOT
+    phase = t[known] % gait.period
+    x = np.stack([phase - dash, phase + dash, np.full(len(known), np.nan)], 1).ravel()
+    ax.plot(x, np.repeat(phi[known], 3), color=GREY, lw=2, solid_capstyle="round", label="seen")
     phase = np.linspace(0, gait.period, 400)
     ax.plot(phase, gait.angle(phase), color=FORWARD, lw=1.6, label="command")
     if fit is not None:

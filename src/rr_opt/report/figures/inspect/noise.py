@@ -35,5 +35,5 @@ def noise(ax: Axes, found: Mapping[str, NoiseEstimate], stated: Mapping[str, flo
         ax.set_xlim(min(low, 0.0), max(high, 1.5))
     ax.set_xlabel("noise, in units of the stated one")
     if names:
-        ax.legend(loc="lower right", facecolor="white", labelcolor=GREY)
+        ax.legend(loc="lower left", facecolor="white", labelcolor=GREY)
     return ax

@@ -10,6 +10,7 @@ from rr_opt.report.figures.inspect.command import difference, folded
 from rr_opt.report.figures.inspect.noise import noise
 from rr_opt.report.figures.inspect.path import path
 from rr_opt.report.figures.inspect.residual import by_marker, over_time
+from rr_opt.report.figures.inspect.thinned import small
 from rr_opt.report.figures.style import figure, styled, svg
 
 
@@ -42,4 +43,4 @@ def draw(found: Inspection) -> dict[str, str]:
             over_time(above, found.markers)
             by_marker(below, found.markers)
             drawn["rigid"] = svg(one)
-    return drawn
+    return {name: small(text) for name, text in drawn.items()}
