@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from contextlib import closing
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, cast
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -14,7 +14,6 @@ from rr_opt.outcome import NotConvergedError
 
 if TYPE_CHECKING:
     from rr_opt.diagnose.diagnosis import Diagnosis
-    from rr_opt.diagnose.model import Model
     from rr_opt.experiment.experiment import Experiment
 
 
@@ -63,12 +62,11 @@ def _diagnosed(experiment: Experiment, steps: Steps) -> Diagnosis:
 
     with closing(SharedWork()) as work:
         from rr_opt.diagnose.diagnose import Steps as Told  # noqa: PLC0415
-        from rr_opt.diagnose.diagnose import diagnose as run  # noqa: PLC0415
         from rr_opt.diagnose.racer import RollerRacer  # noqa: PLC0415
+        from rr_opt.diagnose.racer_diagnosis import diagnose_racer  # noqa: PLC0415
 
-        # A cached property answers the protocol, though the type checker does not see it.
-        racer = cast("Model", RollerRacer(experiment))
-        found = run(racer, Told(say=steps, each=work))
+        racer = RollerRacer(experiment)
+        found = diagnose_racer(racer, Told(say=steps, each=work))
     if not (found.before < float("inf") and found.after < float("inf")):
         raise NotConvergedError(
             "The fits did not converge: a simulation left the range of numbers. Expected motion "

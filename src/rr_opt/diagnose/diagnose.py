@@ -53,9 +53,34 @@ class Level:
         return _rms_of(self.misfits, held_out=True)
 
 
+@dataclass(frozen=True)
+class Found:
+    """What the steps of a diagnosis found.
+
+    levels  the model as believed, with its parameters re-estimated, and with what is missing
+    """
+
+    model: Model
+    search: Search
+    best: Explanation
+    levels: tuple[Level, Level, Level]
+    steps: Steps
+
+    @property
+    def rivals(self) -> list[Explanation]:
+        """The explanations without one of the accepted effects, the best first."""
+        own = set(self.best.names)
+        rivals = [one for one in self.search.tried if not own <= set(one.names)]
+        return sorted(rivals, key=lambda one: one.score)
+
+
 def diagnose(model: Model, steps: Steps | None = None) -> Diagnosis:
     """Diagnose a machine from its runs."""
-    steps = steps or Steps()
+    return answer(found(model, steps or Steps()))
+
+
+def found(model: Model, steps: Steps) -> Found:
+    """Fit the model, its parameters, and what may be missing."""
     fitted = [k for k, run in enumerate(model.runs) if not run.held_out]
     held = [k for k, run in enumerate(model.runs) if run.held_out]
     start = steps.timed(
@@ -70,8 +95,8 @@ def diagnose(model: Model, steps: Steps | None = None) -> Diagnosis:
     search = Search(model, first, base, steps.say, steps.each)
     best = steps.timed("what is missing", search.run)
     best = steps.timed("which values are wrong", lambda: settled(model, best))
-    level2 = _level(model, best.whole, level0.fit) if best is not base else level1
-    return _answer(model, search, best, (level0, level1, level2), steps)
+    level2 = _level(model, best.whole, level0.fit)
+    return Found(model, search, best, (level0, level1, level2), steps)
 
 
 def _base(model: Model, first: Fit) -> Explanation:
@@ -123,21 +148,16 @@ def _rms_of(misfits: tuple[Misfit, ...], *, held_out: bool) -> float:
     return float(np.sqrt(np.nanmean(squares)))
 
 
-def _answer(
-    model: Model,
-    search: Search,
-    best: Explanation,
-    levels: tuple[Level, Level, Level],
-    steps: Steps,
-) -> Diagnosis:
+def answer(it: Found) -> Diagnosis:
+    """What was found as an answer."""
+    model, search, best, levels, steps = it.model, it.search, it.best, it.levels, it.steps
     level0, level1, level2 = levels
     held = tuple(rms(level.held() ** 2 - 1) for level in levels)
     intervals = estimates(best.whole)
     moved = wrong(best.whole)
     nominal_left = max(rms(misfit(level0.fit)), held[0])
     verdict = verdict_of(best, search.base, nominal_left, (held[1], held[2]), bool(moved))
-    rivals = [one for one in search.tried if not set(best.names) <= set(one.names)]
-    findings = _findings(best, search, intervals, (level1, level2), rivals)
+    findings = _findings(best, search, intervals, (level1, level2), it.rivals)
     if verdict == "parameters":
         findings = tuple(Finding(q.name, 1.0, {q.name: intervals[q.name]}, 1.0) for q in moved)
     if verdict in ("consistent", "unexplained"):

@@ -100,7 +100,7 @@ class RollerRacer:
         return {
             name: _candidate(effect, self.setting)
             for name, effect in CATALOGUE.items()
-            if name not in self._given
+            if name not in self._given and not effect.nameless
         }
 
     @cached_property

@@ -89,6 +89,7 @@ class Effect:
     delay    the parameter by which the recording's clock is behind the command's: measurement
     stiff    whether it lets the axles slip, which they stop doing at once
     smooth   whether it has derivatives by its parameters where it vanishes
+    nameless whether it is a curve that imitates what has no name: no candidate of a diagnosis
     forms    which parameters are looked for together; one form of them all, if none is given
 
     `symbols` and `values` map each parameter's name to its symbol or its value, SI.
@@ -105,4 +106,5 @@ class Effect:
     delay: str | None = None
     stiff: bool = False
     smooth: bool = True
+    nameless: bool = False
     forms: tuple[tuple[str, ...], ...] = ()

@@ -50,4 +50,5 @@ EFFECT = Effect(
     ),
     sentence="Each wheel resists rolling with a force that is given at five speeds.",
     enter=_enter,
+    nameless=True,
 )

@@ -1,0 +1,42 @@
+"""A term without a name for the corrected robot: rolling resistance as a curve of speed.
+
+Where no effect of the catalogue accounts for what is left, `rolling_force_curve` says what the
+wheels do at five speeds. It is fitted as an effect is, by simulation error over whole runs, beside
+the parameters; the speed of its last knot is that which the wheels seldom exceed.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from rr_opt.diagnose.fit import Fit, Problem, solve
+from rr_opt.diagnose.model import Quantity
+from rr_opt.diagnose.pushed import observed
+from rr_opt.diagnose.racer import RollerRacer
+from rr_opt.diagnose.search import Explanation
+from rr_opt.physics.effects.rolling_force_curve import EFFECT
+
+_FAST = 0.98
+"""Quantile of the wheels' speeds at which the curve ends."""
+
+
+def with_force_curve(model: RollerRacer, best: Explanation) -> Fit:
+    """An explanation with the curve beside it, over whole runs; its values include the speed."""
+    fit, name = best.whole, EFFECT.name
+    seen = [observed(model, p, fit.values, fit.effects, s) for p, s in fit.starts.items()]
+    speed = float(np.quantile(np.abs(np.concatenate([one.u.ravel() for one in seen])), _FAST))
+    robot = model.experiment.robot
+    size = (robot.k1 + robot.k2) / 2 * speed
+    forces = tuple(
+        Quantity(f"{name}.{q.name}", q.unit, 0.0, size, False, *q.bounds, q.neutral)
+        for q in EFFECT.parameters
+        if q.name != "speed"
+    )
+    fixed = {f"{name}.speed": speed}
+    quantities = (*fit.quantities, *forces)
+    problem = Problem(model, tuple(fit.starts), (*fit.effects, name), quantities, fixed)
+    values = dict(fit.values) | {q.name: 0.0 for q in forces}
+    found = solve(problem, values, fit.starts)
+    return replace(found, values=dict(found.values) | fixed)

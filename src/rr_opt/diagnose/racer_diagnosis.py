@@ -1,0 +1,36 @@
+"""The diagnosis of a Roller Racer: the engine's answer, and what only this machine can tell.
+
+Where along the way from the command to the floor the fault sits, which names these recordings
+cannot tell apart, what to record next, and, where no name fits, what the missing force is like.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from rr_opt.diagnose.diagnose import Found, Steps, answer, found
+from rr_opt.diagnose.diagnosis import Diagnosis
+from rr_opt.diagnose.indistinguishable import groups
+from rr_opt.diagnose.next_experiment import next_experiment
+from rr_opt.diagnose.racer import RollerRacer
+from rr_opt.diagnose.residue import residue
+
+
+def diagnose_racer(racer: RollerRacer, steps: Steps | None = None) -> Diagnosis:
+    """Diagnose a Roller Racer from its recordings."""
+    it = found(racer, steps or Steps())
+    said = answer(it)
+    said = _told_apart(racer, it, said)
+    if said.verdict == "unexplained":
+        left = it.steps.timed("what is left", lambda: residue(racer, it.search.base))
+        said = replace(said, residue=left)
+    return replace(said, seconds=dict(it.steps.seconds))
+
+
+def _told_apart(racer: RollerRacer, it: Found, said: Diagnosis) -> Diagnosis:
+    if said.verdict in ("missing_physics", "parameters"):
+        alike = it.steps.timed("what is alike", lambda: groups(it.search, it.best))
+        said = replace(said, indistinguishable=alike)
+    rival = it.rivals[0] if it.rivals else None
+    plan = it.steps.timed("what to record next", lambda: next_experiment(racer, it.best, rival))
+    return replace(said, next_experiment=plan)

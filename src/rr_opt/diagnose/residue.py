@@ -1,0 +1,134 @@
+"""When no name fits: the push that the model lacks, as a function of what it depends on.
+
+All terms of `residue_terms` are columns of one linearised problem at the fit. A set of terms is
+judged by how well each run is predicted from the others with it, parameters re-fitted, so a
+function that only follows one run's noise is not believed. The few that are kept are chosen one by
+one.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+
+import numpy as np
+
+from rr_opt.diagnose.diagnosis import Residue
+from rr_opt.diagnose.model import Array
+from rr_opt.diagnose.pushed import observed
+from rr_opt.diagnose.racer import RollerRacer
+from rr_opt.diagnose.residue_problem import Columns, Linearised, Point, linearised, moved, thinned
+from rr_opt.diagnose.residue_terms import Term, terms
+from rr_opt.diagnose.search import FLOOR, Explanation
+from rr_opt.diagnose.shape_words import shape
+from rr_opt.physics.effects import CATALOGUE
+
+MOST = 3
+"""So many variables, at most."""
+
+WORTH = 0.15
+"""A term removes at least this share of the misfit that is left without it."""
+
+MOSTLY = 0.5
+"""A curve of friction over speed is kept before all else if it removes this share."""
+
+LEAST = 0.15
+"""And this share of the misfit there was at first."""
+
+ALIKE = 0.05
+"""Terms that differ by less of the misfit do about as well."""
+
+_AGAIN = 3
+"""So often the problem is linearised again."""
+
+
+def residue(model: RollerRacer, best: Explanation) -> tuple[Residue, ...]:
+    """The functions that the model lacks beyond an explanation, the most telling first.
+
+    Returns none where no function predicts the runs better, each from the others.
+    """
+    fit = best.whole
+    if best.misfit <= FLOOR**2:
+        return ()
+    less, starts = thinned(model, fit)
+    seen = {p: observed(less, p, fit.values, fit.effects, start) for p, start in starts.items()}
+    slips = any(CATALOGUE[name].stiff for name in fit.effects)
+    every = terms(list(seen.values()), model.nominal["h"], slips=slips)
+    sizes = [term.kind.size(*_usual(model)) for term in every]
+    pushes = {
+        piece: np.concatenate([s * t.pushes(along) for t, s in zip(every, sizes, strict=True)])
+        for piece, along in seen.items()
+    }
+    weights = [term.weights for term in every]
+    edges = np.cumsum([len(fit.quantities), *map(len, weights)])
+    places = [np.arange(a, b) for a, b in itertools.pairwise(edges)]
+    point = Point(fit.values, starts, np.zeros(edges[-1] - edges[0]))
+    problem = linearised(less, fit, point, pushes, weights)
+    chosen = _chosen(problem, places)
+    for _ in range(_AGAIN if chosen else 0):
+        point = moved(fit, point, problem, _joined(places, chosen))
+        problem = linearised(less, fit, point, pushes, weights)
+        chosen = _chosen(problem, places)
+    if not chosen:
+        return ()
+    values, spread = problem.curve(_joined(places, chosen))
+    shares = _shares(problem, places, chosen)
+    out, at = [], 0
+    for k, share in zip(chosen, shares, strict=True):
+        own = slice(at, at + places[k].size)
+        at = own.stop
+        out.append(_told(every[k], sizes[k], values[own], spread[own, own], share))
+    return tuple(out)
+
+
+def _joined(places: Sequence[Columns], chosen: Sequence[int]) -> Columns:
+    return np.concatenate([np.zeros(0, int), *(places[k] for k in chosen)])
+
+
+def _chosen(problem: Linearised, places: Sequence[Columns]) -> list[int]:
+    """Which terms: one by one that which helps most."""
+    chosen: list[int] = []
+    first = now = problem.left(_joined(places, chosen))
+    # Friction is a matter of speed before all else: its curve over speed, the first of the terms,
+    # holds the constant part, and the others what varies with something else.
+    by_speed = problem.left(_joined(places, [0]))
+    if by_speed < (1 - MOSTLY) * first and first > FLOOR**2:
+        chosen, now = [0], by_speed
+    while len(chosen) < MOST and now > FLOOR**2:
+        tried = {
+            k: problem.left(_joined(places, [*chosen, k]))
+            for k in range(len(places))
+            if k not in chosen
+        }
+        most = min(tried.values())
+        if most > (1 - WORTH) * now or now - most < LEAST * first:
+            break
+        # Of those that do about as well, the first in the list, which is the plainest.
+        best = next(k for k in tried if tried[k] <= most + ALIKE * now)
+        chosen, now = [*chosen, best], tried[best]
+    return chosen
+
+
+def _shares(problem: Linearised, places: Sequence[Columns], chosen: Sequence[int]) -> list[float]:
+    """Of the misfit there was, what goes with each term, one after the other."""
+    lefts = [problem.left(_joined(places, chosen[:n])) for n in range(len(chosen) + 1)]
+    return [(a - max(b, 0.0)) / lefts[0] for a, b in itertools.pairwise(lefts)]
+
+
+def _told(term: Term, size: float, values: Array, spread: Array, share: float) -> Residue:
+    at = term.shown_at()
+    basis = term.basis(at)
+    mean = size * (values @ basis)
+    error = size * np.sqrt(np.maximum(np.einsum("ik,ij,jk->k", basis, spread, basis), 0.0))
+    words = shape(term.kind.says, term.variable.name, term.variable.unit, at, mean, error)
+    article = "an" if term.kind.name[0] in "aeiou" else "a"
+    sentence = f"What is left is {article} {term.kind.name} that {words}."
+    return Residue(
+        term.kind.name, term.variable.name, term.variable.unit, at, mean, error, share, sentence
+    )
+
+
+def _usual(model: RollerRacer) -> tuple[float, float]:
+    """The viscous force on a wheel at the robot's speed, N, and that speed, m/s."""
+    robot, speed = model.experiment.robot, model.setting.speed
+    return (robot.k1 + robot.k2) / 2 * speed, speed
