@@ -20,7 +20,7 @@ RUN := $(VENV)/run-$(call checksum,requirements/run.txt)
 DEV := $(VENV)/dev-$(call checksum,requirements/run.txt requirements/dev.txt)
 
 .DEFAULT_GOAL := help
-.PHONY: help run test check format-check lint types contracts format readme results bench pins clean
+.PHONY: help run test check format-check lint types contracts format readme results bench real pins clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/\1|\2/p' $(MAKEFILE_LIST) | \
@@ -68,6 +68,9 @@ bench: $(DEV) ## measure against other ways to the same answer, into results/ben
 	$(BIN)/python -m benchmarks.optimise
 	$(BIN)/python -m benchmarks.turn
 	$(BIN)/python -m benchmarks.study
+
+real: $(DEV) ## diagnose a real pendulum (DATA=/path/to/data_measured.csv)
+	$(BIN)/python scripts/real_pendulum.py "$(DATA)"
 
 pins: $(RUN) ## pin the newest dependencies that pyproject.toml allows
 	$(BIN)/python scripts/pins.py

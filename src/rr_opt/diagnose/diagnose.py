@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
@@ -14,8 +14,8 @@ from rr_opt.diagnose.explain import joined, nominal, parameters, whole, windows
 from rr_opt.diagnose.fit import Fit, Problem, solve
 from rr_opt.diagnose.intervals import estimates
 from rr_opt.diagnose.left_out import left_out
-from rr_opt.diagnose.model import Model
-from rr_opt.diagnose.search import Explanation, Search, misfit, rms
+from rr_opt.diagnose.model import Array, Model, Piece
+from rr_opt.diagnose.search import Explanation, Search, certain, misfit, rms
 from rr_opt.diagnose.values import settled, wrong
 from rr_opt.diagnose.verdict import confidence, finding, verdict_of
 
@@ -51,6 +51,10 @@ class Level:
     def held(self) -> float:
         """RMS in sigma over the held-out runs; over the fitted ones where none is held out."""
         return _rms_of(self.misfits, held_out=True)
+
+    def count(self) -> int:
+        """The values that this is of."""
+        return int(np.isfinite(_residuals(self.misfits, held_out=True)).sum())
 
 
 @dataclass(frozen=True)
@@ -125,8 +129,25 @@ def _level(model: Model, fit: Fit, start: Fit) -> Level:
     alone = Problem(model, fresh, fit.effects, (), fit.values)
     starts = dict(fit.starts)
     if fresh:
-        starts |= solve(alone, {}, {piece: first[piece.run] for piece in fresh}).starts
+        guesses = [
+            {piece: first[piece.run] for piece in fresh},
+            {piece: model.start(piece) for piece in fresh},
+        ]
+        starts |= _best_starts(alone, guesses)
     return Level(fit, tuple(_misfit(problem, piece, starts[piece]) for piece in pieces))
+
+
+def _best_starts(problem: Problem, guesses: Sequence[Mapping[Piece, Array]]) -> dict[Piece, Array]:
+    """Each run's start, from whichever of the guesses leads lowest.
+
+    Where dry friction holds a machine at first, the misfit has no slope by its starting speed.
+    """
+    out: dict[Piece, Array] = {}
+    for piece in problem.pieces:
+        alone = Problem(problem.model, [piece], problem.effects, (), problem.fixed)
+        fits = [solve(alone, {}, {piece: guess[piece]}) for guess in guesses]
+        out |= min(fits, key=lambda fit: fit.cost).starts
+    return out
 
 
 def _misfit(problem: Problem, piece, start) -> Misfit:
@@ -143,16 +164,19 @@ def _misfit(problem: Problem, piece, start) -> Misfit:
 
 
 def _rms_of(misfits: tuple[Misfit, ...], *, held_out: bool) -> float:
+    return float(np.sqrt(np.nanmean(_residuals(misfits, held_out=held_out) ** 2)))
+
+
+def _residuals(misfits: tuple[Misfit, ...], *, held_out: bool) -> Array:
     some = [m for m in misfits if m.held_out == held_out] or list(misfits)
-    squares = np.concatenate([m.residuals.ravel() for m in some]) ** 2
-    return float(np.sqrt(np.nanmean(squares)))
+    return np.concatenate([m.residuals.ravel() for m in some])
 
 
 def answer(it: Found) -> Diagnosis:
     """What was found as an answer."""
     model, search, best, levels, steps = it.model, it.search, it.best, it.levels, it.steps
     level0, level1, level2 = levels
-    held = tuple(rms(level.held() ** 2 - 1) for level in levels)
+    held = tuple(certain(level.held() ** 2 - 1, level.count()) for level in levels)
     intervals = estimates(best.whole)
     moved = wrong(best.whole)
     nominal_left = max(rms(misfit(level0.fit)), held[0])

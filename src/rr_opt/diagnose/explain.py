@@ -11,9 +11,6 @@ import numpy as np
 from rr_opt.diagnose.fit import Fit, Problem, solve
 from rr_opt.diagnose.model import Form, Model, Piece
 
-WINDOW = 5.0
-"""Seconds of the pieces in which a fit begins: so short that it has no wrong minima, s."""
-
 
 def whole(model: Model, runs: Sequence[int]) -> list[Piece]:
     """The runs in one piece each."""
@@ -21,11 +18,11 @@ def whole(model: Model, runs: Sequence[int]) -> list[Piece]:
 
 
 def windows(model: Model, runs: Sequence[int]) -> list[Piece]:
-    """The runs in pieces of about WINDOW seconds, which end where the next begins."""
+    """The runs in pieces of about the model's window, which end where the next begins."""
     pieces = []
     for run in runs:
         t = model.runs[run].t
-        count = max(round((t[-1] - t[0]) / WINDOW), 1)
+        count = max(round((t[-1] - t[0]) / model.window), 1)
         edges = np.linspace(0, len(t), count + 1).astype(int)
         pieces += [Piece(run, a, b) for a, b in itertools.pairwise(edges)]
     return pieces

@@ -24,4 +24,5 @@ def left_out(fit: Fit) -> float:
         H = sum((n.H for n in others), np.diag(prior))
         d = bounded_step(H, g, 1e-9, u, low, high) if u.size else u
         total += own.at(d)
-    return total / max(fit.count - 4 * len(fit.normals), 1) - 1.0
+    starts = sum(normal.shift.size for normal in fit.normals.values())
+    return total / max(fit.count - starts, 1) - 1.0

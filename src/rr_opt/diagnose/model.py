@@ -129,6 +129,11 @@ class Model(Protocol):
         ...
 
     @property
+    def window(self) -> float:
+        """Seconds of the pieces in which a fit begins: so short that it has no wrong minima."""
+        ...
+
+    @property
     def parameters(self) -> tuple[Quantity, ...]:
         """Of the nominal model, with what is known of each."""
         ...

@@ -49,6 +49,7 @@ class RollerRacer:
     """An experiment with a Roller Racer; answers `diagnose.model.Model`."""
 
     channels = CHANNELS
+    window = 5.0
 
     def __init__(self, experiment: Experiment) -> None:
         self.experiment = experiment

@@ -9,13 +9,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.stats import chi2
 
 from rr_opt.diagnose.explain import Chosen, explain, joined
-from rr_opt.diagnose.fit import Fit, doubt, scaled
+from rr_opt.diagnose.fit import Fit, Problem, doubt, scaled, solve
 from rr_opt.diagnose.model import Model
 from rr_opt.diagnose.screen import every, linear, screen
 
@@ -76,13 +76,18 @@ class Explanation:
 
 def misfit(fit: Fit) -> float:
     """Mean square of the residuals in sigma, less 1."""
-    fitted = 4 * len(fit.starts) + len(fit.quantities)
+    fitted = sum(start.size for start in fit.starts.values()) + len(fit.quantities)
     return fit.cost / max(fit.count - fitted, 1) - 1.0
 
 
 def rms(excess: float) -> float:
     """The misfit as RMS in sigma, 0 at or below the noise."""
     return math.sqrt(max(excess, 0.0))
+
+
+def certain(excess: float, count: int) -> float:
+    """The misfit of so many values, RMS in sigma, less what noise reaches once in a thousand."""
+    return rms(excess - 3.1 * math.sqrt(2 / max(count, 1)))
 
 
 @dataclass
@@ -108,10 +113,27 @@ class Search:
                 break
             self.tried += found
             better = min(found, key=lambda one: one.score)
+            best = self._again(best, better)
             if not _gains(better, best):
                 break
             best = better
         return self._backward(best)
+
+    def _again(self, less: Explanation, more: Explanation) -> Explanation:
+        """`less` from where `more` ended, if that is better.
+
+        What joins must not win by a valley that the smaller set could have gone down too.
+        """
+        whole = less.whole
+        values = {q.name: more.whole.values[q.name] for q in whole.quantities}
+        problem = Problem(
+            self.model, tuple(more.whole.starts), whole.effects, whole.quantities, whole.values
+        )
+        again = replace(less, whole=solve(problem, values, more.whole.starts))
+        if again.score >= less.score:
+            return less
+        self.tried[:] = [again if one is less else one for one in self.tried]
+        return again
 
     def _round(self, best: Explanation) -> list[Explanation]:
         """The explanations with one effect more that promise most."""
@@ -138,12 +160,13 @@ class Search:
         return list(self.each(_Whole(self.model, best.chosen), in_windows[:most]))
 
     def _backward(self, best: Explanation) -> Explanation:
-        for one in best.chosen[:-1] if len(best.chosen) > 1 else ():
+        for one in best.chosen if len(best.chosen) > 1 else ():
             rest = tuple(other for other in best.chosen if other != one)
             self.say(f"leaving out {one.name}")
             fit = explain(self.model, rest, self.nominal, best.windows)
             without = Explanation(rest, fit, joined(self.model, fit))
             self.tried.append(without)
+            without = self._again(without, best)
             if not _gains(best, without):
                 return self._backward(without)
         return best

@@ -9,7 +9,7 @@ from scipy.stats import chi2
 
 from rr_opt.diagnose.diagnosis import Estimate, Finding, Verdict
 from rr_opt.diagnose.fit import doubt
-from rr_opt.diagnose.search import FLOOR, Explanation, rms
+from rr_opt.diagnose.search import FLOOR, Explanation, certain, rms
 
 LEFT = 0.35
 """More misfit than this on the held-out recordings, RMS in sigma, is not explained."""
@@ -28,11 +28,11 @@ def verdict_of(
     moved    whether a parameter left what was known of it
     """
     if not best.chosen:
-        explained = max(rms(base.misfit), held[0]) <= max(LEFT, FLOOR)
+        explained = max(certain(base.misfit, base.whole.count), held[0]) <= max(LEFT, FLOOR)
         if not explained:
             return "unexplained"
         return "parameters" if moved and nominal > FLOOR else "consistent"
-    left = max(rms(best.misfit), held[1])
+    left = max(certain(best.misfit, best.whole.count), held[1])
     before = max(rms(base.misfit), held[0])
     return "missing_physics" if left <= max(LEFT, SHARE * before) else "unexplained"
 
@@ -49,7 +49,7 @@ def confidence(best: Explanation, rivals: Sequence[Explanation]) -> float:
 def mismatch_p(explained: Explanation) -> float:
     """Chance of so large a misfit from noise alone."""
     fit = explained.whole
-    fitted = 4 * len(fit.starts) + len(fit.quantities)
+    fitted = sum(start.size for start in fit.starts.values()) + len(fit.quantities)
     return float(chi2.sf(fit.cost, max(fit.count - fitted, 1)))
 
 

@@ -1,0 +1,1 @@
+"""What a diagnosis said of a pendulum, as a figure."""
