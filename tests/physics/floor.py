@@ -10,7 +10,10 @@ from rr_opt.physics.floor_motion import floor_motion
 from rr_opt.robot.parameters import Robot
 from tests.physics.cases import State
 
-MECHANICAL = tuple(name for name, effect in CATALOGUE.items() if effect.enter)
+# The curve without a name is held against the effects that it imitates, beside the diagnosis.
+MECHANICAL = tuple(
+    name for name, effect in CATALOGUE.items() if effect.enter and not effect.nameless
+)
 
 
 class Floor(NamedTuple):
