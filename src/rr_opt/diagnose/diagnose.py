@@ -19,6 +19,9 @@ from rr_opt.diagnose.search import Explanation, Search, certain, misfit, rms
 from rr_opt.diagnose.values import settled, wrong
 from rr_opt.diagnose.verdict import confidence, finding, verdict_of
 
+_POOR = 1.1
+"""With more misfit a run's start is looked for from elsewhere too, mean square in sigma."""
+
 Say = Callable[[str], None]
 T = TypeVar("T")
 
@@ -145,7 +148,10 @@ def _best_starts(problem: Problem, guesses: Sequence[Mapping[Piece, Array]]) -> 
     out: dict[Piece, Array] = {}
     for piece in problem.pieces:
         alone = Problem(problem.model, [piece], problem.effects, (), problem.fixed)
-        fits = [solve(alone, {}, {piece: guess[piece]}) for guess in guesses]
+        fits: list[Fit] = []
+        for guess in guesses:
+            if not fits or fits[-1].cost > _POOR * fits[-1].count:
+                fits.append(solve(alone, {}, {piece: guess[piece]}))
         out |= min(fits, key=lambda fit: fit.cost).starts
     return out
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -54,12 +54,19 @@ def parameters(model: Model, start: Fit) -> Fit:
     )
 
 
-def explain(model: Model, chosen: Sequence[Chosen], nominal: Fit, start: Fit) -> Fit:
+def explain(
+    model: Model,
+    chosen: Sequence[Chosen],
+    nominal: Fit,
+    start: Fit,
+    begins: Sequence[Mapping[str, float]] | None = None,
+) -> Fit:
     """Fit the parameters and the chosen effects together.
 
-    Effects that `start` has begin as they are in it. Parameters and the runs' starts begin where
-    they are believed to be, in the `nominal` fit: bent to imitate what was missing, they lie at the
-    end of a valley along which a fit comes back only slowly.
+    Effects that `start` has begin as they are in it, a new one at the best of `begins`, or where
+    its form says. Parameters and the runs' starts begin where they are believed to be, in the
+    `nominal` fit: bent to imitate what was missing, they lie at the end of a valley along which a
+    fit comes back only slowly.
     """
     forms = [one.of(model) for one in chosen]
     names = tuple(one.name for one in chosen)
@@ -68,18 +75,15 @@ def explain(model: Model, chosen: Sequence[Chosen], nominal: Fit, start: Fit) ->
     values = {q.name: q.value for q in quantities} | {
         q.name: start.values[q.name] for q in quantities if q.name in start.values and not q.known
     }
-    new = [
-        form.starts or model.propose(one.name, one.form, start)
-        for one, form in zip(chosen, forms, strict=True)
-        if one.name not in start.effects
-    ]
-    begins = [
+    fresh = [f for one, f in zip(chosen, forms, strict=True) if one.name not in start.effects]
+    places = [begins] if begins else [form.starts for form in fresh]
+    each = [
         values | {name: value for part in found for name, value in part.items()}
-        for found in itertools.product(*new)
+        for found in itertools.product(*places)
     ]
-    if len(begins) == 1:
-        return solve(problem, begins[0], nominal.starts)
-    best = min((solve(problem, v, nominal.starts, steps=3) for v in begins), key=lambda f: f.cost)
+    if len(each) == 1:
+        return solve(problem, each[0], nominal.starts)
+    best = min((solve(problem, v, nominal.starts, steps=3) for v in each), key=lambda f: f.cost)
     return best if best.converged else solve(problem, best.values, best.starts)
 
 

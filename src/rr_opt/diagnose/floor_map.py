@@ -76,8 +76,12 @@ def with_cells(effects: tuple[str, ...], cells: Cells) -> FloorMotion:
     )
 
 
-def likely(cells: Cells, g: Array, H: Array) -> tuple[list[Mapping], list[Mapping]]:
-    """The circles and the edges that gain most, as values of a patch.
+Found = tuple[float, Mapping[str, float]]
+"""What a patch would gain, and its values."""
+
+
+def likely(cells: Cells, g: Array, H: Array) -> tuple[list[Found], list[Found]]:
+    """The circles and the edges that gain most.
 
     g (n,), H (n, n): of the cost by the shares, everything else re-fitted.
     """
@@ -106,5 +110,5 @@ def _gain(inside: Array, g: Array, H: Array) -> tuple[float, float]:
     return slope**2 / bend, min(max(1.0 - slope / bend, 0.1), 8.0)
 
 
-def _top(found: list[tuple[float, Mapping]]) -> list[Mapping]:
-    return [values for _, values in sorted(found, key=lambda one: -one[0])[:_BEST]]
+def _top(found: list[Found]) -> list[Found]:
+    return sorted(found, key=lambda one: -one[0])[:_BEST]

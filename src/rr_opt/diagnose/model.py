@@ -47,8 +47,8 @@ class Quantity:
 class Form:
     """Quantities of an effect that are looked for together, and from where.
 
-    starts  values by quantity; the fit begins at that which promises most. Where there is none the
-            model has to propose them
+    starts  values by quantity; the fit begins at that which promises most. From where to look for
+            an effect that jumps, the model proposes
     """
 
     quantities: tuple[Quantity, ...]
@@ -67,6 +67,17 @@ class Candidate:
     channel: str
     sentence: str
     forms: tuple[Form, ...]
+
+
+@dataclass(frozen=True)
+class Proposal:
+    """From where to look for an effect that jumps.
+
+    gain  by how much it promises to lower the chi-square of a fit without it
+    """
+
+    values: Mapping[str, float]
+    gain: float
 
 
 @dataclass(frozen=True)
@@ -143,13 +154,18 @@ class Model(Protocol):
         """The effects it knows, by name."""
         ...
 
-    def propose(self, name: str, form: int, fit: Fit) -> Sequence[Mapping[str, float]]:
-        """From where to look for an effect that says nothing of it itself, beside a fit."""
-        ...
-
     @property
     def jumping(self) -> frozenset[str]:
         """The effects that have no derivative where they vanish."""
+        ...
+
+    @property
+    def dear(self) -> frozenset[str]:
+        """Those of them that are dear to look for, and so only where nothing else will do."""
+        ...
+
+    def propose(self, name: str, form: int, fit: Fit) -> Sequence[Proposal]:
+        """From where to look for an effect that jumps, beside a fit without it."""
         ...
 
     def start(self, piece: Piece) -> Array:

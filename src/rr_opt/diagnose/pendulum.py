@@ -17,7 +17,7 @@ import casadi as ca
 import numpy as np
 
 from rr_opt.diagnose.fit import Fit
-from rr_opt.diagnose.model import Array, Candidate, Data, Form, Piece, Quantity, Response
+from rr_opt.diagnose.model import Array, Candidate, Data, Form, Piece, Proposal, Quantity, Response
 from rr_opt.diagnose.pendulum_effects import EXTRAS, Extra
 from rr_opt.diagnose.shoot import DrivePath, DriveSlopes, System, predict, slopes
 from rr_opt.experiment.experiment import Uncertainty
@@ -51,7 +51,7 @@ class Pendulum:
     """Recordings of a pendulum and its nominal J, ml, b; answers `diagnose.model.Model`."""
 
     channels = ("angle",)
-    jumping = frozenset(name for name, extra in EXTRAS.items() if not extra.smooth)
+    jumping = dear = frozenset(name for name, extra in EXTRAS.items() if not extra.smooth)
 
     def __init__(
         self,
@@ -76,9 +76,9 @@ class Pendulum:
             name: _candidate(extra, torque, max(*speeds, 1e-3)) for name, extra in EXTRAS.items()
         }
 
-    def propose(self, name: str, form: int, fit: Fit) -> Sequence[Mapping[str, float]]:
-        """Nothing: every effect of a pendulum says itself where to begin."""
-        raise NotImplementedError(f"{name}, form {form}, beside {fit.effects}")
+    def propose(self, name: str, form: int, fit: Fit) -> Sequence[Proposal]:
+        """Where the effect's form says; a fit of a pendulum is cheap, so each is worth it."""
+        return [Proposal(start, fit.cost) for start in self.catalogue[name].forms[form].starts]
 
     def start(self, piece: Piece) -> Array:
         """Angle and speed (rad, rad/s) by a straight line through the first tenth of a second."""

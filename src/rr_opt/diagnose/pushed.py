@@ -17,7 +17,8 @@ import numpy as np
 from scipy.signal import savgol_filter
 
 from rr_opt.diagnose.model import Array, Piece
-from rr_opt.diagnose.racer import RollerRacer, _p, _p_by, _state, _v_of_z_by
+from rr_opt.diagnose.racer import RollerRacer, state_of, v_of_z_by
+from rr_opt.diagnose.racer_quantities import values_by, values_of
 from rr_opt.diagnose.shoot import DrivePath, DriveSlopes, System, predict, slopes
 from rr_opt.physics.assembly import Assembly, assembled
 from rr_opt.physics.effects import CATALOGUE
@@ -97,22 +98,22 @@ def respond(
     system, motion = _system(mechanical)
     given = {**model.nominal, **values}
     names = motion.parameters[:-_FURTHER]
-    p = _p(given, names)
+    p = values_of(given, names)
     t = model.runs[piece.run].t[piece.span]
-    path = model._drive_path(piece.run, given, mechanical, t)
+    path = model.drive_path(piece.run, given, mechanical, t)
     drives = _drives(pushes, t)
     pushed_path = _with_drives(path, np.tensordot(amounts, drives, 1))
-    made = predict(system, pushed_path, _state(mechanical, path, start, p), p)
+    made = predict(system, pushed_path, state_of(mechanical, path, start, p), p)
     n, rows = len(wanted), len(path.at)
     by = np.zeros((p.size, n + len(pushes)))
     for k, name in enumerate(wanted):
-        by[:, k] = _p_by(given, names, name)
+        by[:, k] = values_by(given, names, name)
     at, middle = _at(drives, path.h.size)
     drive_by = DriveSlopes(
         np.zeros((rows + _FURTHER, t.size, by.shape[1])),
         np.zeros((rows + _FURTHER, path.h.size, by.shape[1])),
     )
-    own = model._drive_by(piece.run, given, mechanical, t, wanted)
+    own = model.drive_slopes(piece.run, given, mechanical, t, wanted)
     if own is not None:
         drive_by.at[:rows, :, :n], drive_by.middle[:rows, :, :n] = own.at, own.middle
     for there, push in ((drive_by.at, at), (drive_by.middle, middle)):
@@ -121,7 +122,7 @@ def respond(
     out = slopes(system, pushed_path, made, p, by, drive_by)
     by_value = out.by_parameter[:, :, :n]
     if motion.slips:
-        moved = _v_of_z_by(path, start, p, by[:, :n], own)
+        moved = v_of_z_by(path, start, p, by[:, :n], own)
         by_value = by_value + out.by_start[:, :, 3:4] * moved
     return Pushed(
         made.seen,
@@ -142,12 +143,12 @@ def observed(
     mechanical = tuple(name for name in CATALOGUE if name in effects)
     system, motion = _system(mechanical)
     given = {**model.nominal, **values}
-    p = _p(given, motion.parameters[:-_FURTHER])
+    p = values_of(given, motion.parameters[:-_FURTHER])
     data = model.runs[piece.run]
     t = data.t[piece.span]
-    path = model._drive_path(piece.run, given, mechanical, t)
+    path = model.drive_path(piece.run, given, mechanical, t)
     still = _with_drives(path, np.zeros((len(_DRIVES), t.size)))
-    made = predict(system, still, _state(mechanical, path, start, p), p)
+    made = predict(system, still, state_of(mechanical, path, start, p), p)
     pose, rate = _smooth(t, made.seen[:, :3], data.values[piece.span, :3])
     states = made.states[:, :: path.each]
     _, s1, s2, w = np.array(

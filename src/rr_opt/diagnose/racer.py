@@ -2,47 +2,27 @@
 
 from __future__ import annotations
 
-import itertools
-import math
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
 from functools import cached_property, lru_cache
-from typing import cast
 
 import casadi as ca
 import numpy as np
 
-from rr_opt.diagnose.fit import Fit, Problem, doubt, scaled
-from rr_opt.diagnose.floor_map import cells_of, likely, with_cells
-from rr_opt.diagnose.model import Array, Candidate, Data, Form, Model, Piece, Quantity, Response
+from rr_opt.diagnose.fit import Fit
+from rr_opt.diagnose.model import Array, Candidate, Data, Piece, Proposal, Quantity, Response
+from rr_opt.diagnose.racer_drive import Drives, drive_path, drive_slopes, lateness
+from rr_opt.diagnose.racer_proposals import of_patch, of_servo, of_slip
+from rr_opt.diagnose.racer_quantities import candidate, nominal, uncertain, values_by, values_of
 from rr_opt.diagnose.shoot import DrivePath, DriveSlopes, System, predict, slopes
-from rr_opt.experiment.experiment import Experiment, Run, Uncertainty
+from rr_opt.experiment.experiment import Experiment, Run
 from rr_opt.experiment.recording import CHANNELS
-from rr_opt.physics.drive import Drive, FreeJoint, told
-from rr_opt.physics.effects import CATALOGUE, Effect, Parameter, Setting
+from rr_opt.physics.effects import CATALOGUE, Setting
 from rr_opt.physics.floor_motion import floor_motion
 from rr_opt.physics.free_joint import free_joint
 from rr_opt.physics.kinematics import ROBOT_PARAMETERS
-from rr_opt.robot.parameters import EffectUse
 
 SETTLING = 0.05
 """After a start from rest the motor saturates for some 20 ms; that much, s, is left out."""
-
-_FINE = 4
-"""Steps between two samples where the drive is not smooth, or the wheels slip."""
-
-_CHANNELS = {
-    "actuation": "actuation",
-    "rolling": "rolling",
-    "contact": "constraint_axle1",
-    "floor": "floor",
-    "mass": "mass",
-    "measurement": "measurement",
-}
-"""The channel in which a family of effects shows."""
-
-_PARTS = {"m": "kg", "I": "kg m^2", "c": "m", "a": "m", "b": "m", "kappa": "N m s"}
-_EVERYTHING = (*(f"{part}{i}" for i in (1, 2) for part in _PARTS), "h")
 
 
 class RollerRacer:
@@ -53,8 +33,9 @@ class RollerRacer:
 
     def __init__(self, experiment: Experiment) -> None:
         self.experiment = experiment
-        self.nominal = _nominal(experiment)
+        self.nominal = nominal(experiment)
         self._given = frozenset(use.name for use in experiment.robot.physics)
+        self._mapped: tuple[Fit, tuple[Sequence[Proposal], Sequence[Proposal]]] | None = None
 
     @property
     def runs(self) -> Sequence[Data]:
@@ -72,24 +53,7 @@ class RollerRacer:
 
     @cached_property
     def _parameters(self) -> tuple[Quantity, ...]:
-        known = self.experiment.uncertainty
-        free = dict(known)
-        if all(known.get(f"kappa{i}", Uncertainty()).factor for i in (1, 2)):
-            free.pop("h", None)  # the wheel's radius counts through kappa/h^2 alone
-        own = [
-            _parameter(name, self.nominal[name], free[name]) for name in _EVERYTHING if name in free
-        ]
-        return (*own, *(q for use in self.experiment.robot.physics for q in self._present(use)))
-
-    def _present(self, use: EffectUse) -> Iterator[Quantity]:
-        """The values of an effect that the nominal robot has: how strong it is, is not known."""
-        for q in CATALOGUE[use.name].parameters:
-            value = use.values[q.name]
-            if value != q.neutral and not q.placed:
-                size = max(abs(value), 0.1 * q.size(self.setting))
-                yield Quantity(
-                    f"{use.name}.{q.name}", q.unit, value, size, True, *q.bounds, value, free=True
-                )
+        return uncertain(self.experiment, self.setting)
 
     @property
     def catalogue(self) -> Mapping[str, Candidate]:
@@ -99,7 +63,7 @@ class RollerRacer:
     @cached_property
     def _catalogue(self) -> Mapping[str, Candidate]:
         return {
-            name: _candidate(effect, self.setting)
+            name: candidate(effect, self.setting)
             for name, effect in CATALOGUE.items()
             if name not in self._given and not effect.nameless
         }
@@ -116,34 +80,24 @@ class RollerRacer:
         fastest = max(gait.peak_rate for gait in gaits)
         return Setting(self.experiment.robot, fastest, max(float(np.median(distances)), 1e-3))
 
-    def propose(self, name: str, form: int, fit: Fit) -> Sequence[Mapping[str, float]]:
-        """Places for a patch on the floor, the one effect that has to be looked for in space."""
-        found = self._patches(fit)[form]
-        return [{f"{name}.{key}": value for key, value in one.items()} for one in found]
-
-    def _patches(self, fit: Fit) -> tuple[list[Mapping], list[Mapping]]:
-        """Circles and edges that would gain most; see `floor_map`."""
-        cells = cells_of([self.runs[piece.run].values[piece.span, :2] for piece in fit.starts])
-        motion = with_cells(self._all(fit.effects), cells)
-        stiff = len(motion.free) if motion.slips else 0
-        mapped = System(motion.rates, motion.seen, stiff), motion.parameters
-        quantities = (*fit.quantities, *(_share(name) for name in cells.names))
-        problem = Problem(
-            cast("Model", _Mapped(self, mapped)), tuple(fit.starts), fit.effects, quantities
-        )
-        values = dict(fit.values) | dict.fromkeys(cells.names, 0.0)
-        parts = [problem.normal(piece, values, start) for piece, start in fit.starts.items()]
-        n = len(fit.quantities)
-        prior = np.diag(problem.prior * doubt(fit.cost, fit.count))
-        u = scaled(quantities, values)
-        H, g = sum((one.H for one in parts), prior), sum((one.g for one in parts), prior @ u)
-        onto = np.linalg.pinv(H[:n, :n], hermitian=True) @ H[:n, n:] if n else H[:0, n:]
-        return likely(cells, g[n:] - onto.T @ g[:n], H[n:, n:] - onto.T @ H[:n, n:])
-
     @property
     def jumping(self) -> frozenset[str]:
         """The effects that have no derivative where they vanish."""
         return frozenset(name for name, effect in CATALOGUE.items() if not effect.smooth)
+
+    @property
+    def dear(self) -> frozenset[str]:
+        """Those of them that are not the servo's."""
+        return frozenset(name for name in self.jumping if CATALOGUE[name].actuate is None)
+
+    def propose(self, name: str, form: int, fit: Fit) -> Sequence[Proposal]:
+        """From where to look for an effect that jumps; see `racer_proposals`."""
+        if CATALOGUE[name].family == "floor":
+            if not self._mapped or self._mapped[0] is not fit:
+                self._mapped = fit, of_patch(self, fit)
+            return self._mapped[1][form]
+        find = of_slip if CATALOGUE[name].stiff else of_servo
+        return find(self, name, self.catalogue[name].forms[form], fit)
 
     def start(self, piece: Piece) -> Array:
         """x, y, psi as first recorded, and for z, which swings less than v, the mean of v."""
@@ -171,76 +125,50 @@ class RollerRacer:
 
         derived  the motion and its parameters, where they are not those of the catalogue alone
         """
-        mechanical = self._all(effects)
+        mechanical = self.every(effects)
         system, parameters = derived or _system(mechanical)
         given = {**self.nominal, **values}
-        p = _p(given, parameters)
+        p = values_of(given, parameters)
         t = self.runs[piece.run].t[piece.span]
-        path = self._drive_path(piece.run, given, mechanical, t)
-        made = predict(system, path, _state(mechanical, path, start, p), p)
+        path = self.drive_path(piece.run, given, mechanical, t)
+        made = predict(system, path, state_of(mechanical, path, start, p), p)
         if wanted is None:
             return Response(made.seen)
         by = np.zeros((p.size, len(wanted)))
         for k, name in enumerate(wanted):
-            by[:, k] = _p_by(given, parameters, name)
-        drive_by = self._drive_by(piece.run, given, mechanical, t, wanted)
+            by[:, k] = values_by(given, parameters, name)
+        drive_by = self.drive_slopes(piece.run, given, mechanical, t, wanted)
         out = slopes(system, path, made, p, by, drive_by)
         by_value = out.by_parameter
         if floor_motion(mechanical).slips:
             # The start is given in z and the state holds v, which moves with what is asked.
-            by_value = by_value + out.by_start[:, :, 3:4] * _v_of_z_by(path, start, p, by, drive_by)
+            by_value = by_value + out.by_start[:, :, 3:4] * v_of_z_by(path, start, p, by, drive_by)
         return Response(made.seen, by_value, out.by_start[:, :, : start.size])
 
-    def _all(self, effects: tuple[str, ...]) -> tuple[str, ...]:
+    def every(self, effects: tuple[str, ...]) -> tuple[str, ...]:
         """The effects with those that the nominal robot has already, in the catalogue's order."""
         return tuple(name for name in CATALOGUE if name in effects or name in self._given)
 
     @cached_property
-    def _joint(self) -> FreeJoint:
-        """The joint while the servo does not hold it, of the nominal robot."""
-        return free_joint(self.experiment.robot)
+    def _drives(self) -> Drives:
+        """What the servo makes of the gaits, of the nominal robot."""
+        return Drives(self.experiment.runs, free_joint(self.experiment.robot))
 
-    def _drive(self, run: int, given: Mapping[str, float], effects: tuple[str, ...]) -> Drive:
-        here = self.experiment.runs[run]
-        drive = told(here.gait, here.start == "rest")
-        for name in effects:
-            effect = CATALOGUE[name]
-            if effect.actuate:
-                own = {q.name: given[f"{name}.{q.name}"] for q in effect.parameters}
-                drive = effect.actuate(drive, own, self._joint)
-        return drive
+    def angle(self, run: int, given: Mapping[str, float], effects: tuple[str, ...]) -> Array:
+        """phi (n,) of a run as the servo makes it, rad, at the samples."""
+        mechanical = self.every(effects)
+        drive = self._drives.of(run, given, mechanical)
+        return drive.at(self.runs[run].t + lateness(given, mechanical))[0]
 
-    def _drive_path(
-        self,
-        run: int,
-        given: Mapping[str, float],
-        effects: tuple[str, ...],
-        t: Array,
-        smooth: bool | None = None,
+    def drive_path(
+        self, run: int, given: Mapping[str, float], effects: tuple[str, ...], t: Array
     ) -> DrivePath:
-        """The drive over the steps between the samples; `smooth` as it is, or as it is said."""
-        drive, late = self._drive(run, given, effects), _delay(given, effects)
-        smooth = drive.smooth if smooth is None else smooth
-        stiff = any(CATALOGUE[name].stiff for name in effects)
-        each = _FINE if stiff or not smooth else 1
-        inner = np.arange(each) / each
-        edges = np.append((t[:-1, None] + np.diff(t)[:, None] * inner).ravel(), t[-1])
-        h = np.diff(edges)
-        at_edges = drive.at(edges + late)[:2]
-        middle = drive.at(edges[:-1] + h / 2 + late)[:2]
-        nodes = np.stack([at_edges[:, :-1], middle, at_edges[:, 1:]], axis=1)
-        if not smooth:
-            # Where dphi jumps within a step, the step keeps its end points.
-            nodes[1] = (np.diff(at_edges[0]) / h)[None]
-            nodes[0, 1] = (nodes[0, 0] + nodes[0, 2]) / 2
-        at = at_edges[:, ::each]
-        if stiff:
-            mean = np.diff(at_edges[1]) / h
-            nodes = np.concatenate([nodes, np.tile(mean, (1, 3, 1))])
-            at = np.vstack([at, np.append(mean, mean[-1])[::each]])
-        return DrivePath(h, nodes, at, each)
+        """The drive over the steps between the samples t (n,) of a run."""
+        drive = self._drives.of(run, given, effects)
+        late = lateness(given, effects)
+        return drive_path(drive, t, effects, late, smooth=drive.smooth)
 
-    def _drive_by(
+    def drive_slopes(
         self,
         run: int,
         given: Mapping[str, float],
@@ -248,61 +176,11 @@ class RollerRacer:
         t: Array,
         wanted: tuple[str, ...],
     ) -> DriveSlopes | None:
-        moving = [
-            (k, name)
-            for k, name in enumerate(wanted)
-            if "." in name and name.split(".")[0] in effects and _of_drive(name)
-        ]
-        if not moving:
-            return None
-        smooth = self._drive(run, given, effects).smooth
-        path = self._drive_path(run, given, effects, t)
-        at = np.zeros((*path.at.shape, len(wanted)))
-        middle = np.zeros((*path.nodes[:, 1].shape, len(wanted)))
-        for k, name in moving:
-            # The very steps that predict are moved, so that a jump of dphi counts where it does.
-            step, least = 1e-3 * self._scale(name), _least(name)
-            low, high = max(given[name] - step, least), given[name] + step
-            ends = [
-                self._drive_path(run, {**given, name: value}, effects, t, smooth)
-                for value in (low, high)
-            ]
-            at[:, :, k] = (ends[1].at - ends[0].at) / (high - low)
-            middle[:, :, k] = (ends[1].nodes[:, 1] - ends[0].nodes[:, 1]) / (high - low)
-        if smooth and self.experiment.runs[run].start == "rest":
-            # How dphi sets in may change at once, and more than a step shows: what the first step
-            # integrates to is the change of phi.
-            rise = (at[0, 1] - at[0, 0]) / path.h[0]
-            at[1, 0] = middle[1, 0] = (6 * rise - at[1, 1]) / 5
-        return DriveSlopes(at, middle)
-
-    def _scale(self, name: str) -> float:
-        effect, parameter = name.split(".")
-        return next(q.typical for q in CATALOGUE[effect].parameters if q.name == parameter)
+        """How the drive changes with what is wanted; None if it does not."""
+        return drive_slopes(self._drives, run, t, given, effects, wanted)
 
 
-@dataclass(frozen=True)
-class _Mapped:
-    """A Roller Racer on a floor of cells."""
-
-    racer: RollerRacer
-    derived: tuple[System, tuple[str, ...]]
-
-    @property
-    def runs(self) -> Sequence[Data]:
-        """Those of the robot."""
-        return self.racer.runs
-
-    def respond(self, *given) -> Response:
-        """As the robot, with drag of its own in every cell."""
-        return self.racer.respond(*given, derived=self.derived)
-
-
-def _share(name: str) -> Quantity:
-    return Quantity(name, "", 0.0, 1.0, False, -1.0, 100.0, 0.0)
-
-
-def _state(effects: tuple[str, ...], path: DrivePath, start: Array, p: Array) -> Array:
+def state_of(effects: tuple[str, ...], path: DrivePath, start: Array, p: Array) -> Array:
     """The state that belongs to x, y, psi and z = v - g dphi, which is 0 of a robot at rest.
 
     Where the axles may slip it holds v, and they begin without: what they slip at first is over in
@@ -315,7 +193,7 @@ def _state(effects: tuple[str, ...], path: DrivePath, start: Array, p: Array) ->
     return np.array([*start[:3], v, 0.0, 0.0])
 
 
-def _v_of_z_by(
+def v_of_z_by(
     path: DrivePath, start: Array, p: Array, by: Array, drive_by: DriveSlopes | None
 ) -> Array:
     """How the v that belongs to a start's z changes with what is asked for, (nw,)."""
@@ -335,103 +213,11 @@ def _v_by() -> ca.Function:
     return ca.Function("v_by", [state, drive, p], [by])
 
 
-def _of_drive(name: str) -> bool:
-    effect, parameter = name.split(".")
-    return CATALOGUE[effect].actuate is not None or CATALOGUE[effect].delay == parameter
-
-
-def _least(name: str) -> float:
-    effect, parameter = name.split(".")
-    return next(q.bounds[0] for q in CATALOGUE[effect].parameters if q.name == parameter)
-
-
-def _delay(given: Mapping[str, float], effects: tuple[str, ...]) -> float:
-    return sum(given[f"{n}.{CATALOGUE[n].delay}"] for n in effects if CATALOGUE[n].delay)
-
-
 @lru_cache
 def _system(effects: tuple[str, ...]) -> tuple[System, tuple[str, ...]]:
     motion = floor_motion(effects)
     stiff = len(motion.free) if motion.slips else 0
-    return System(motion.rates, motion.seen, stiff), motion.parameters
-
-
-def _nominal(experiment: Experiment) -> dict[str, float]:
-    robot = experiment.robot
-    platforms = ((1, robot.platform1), (2, robot.platform2))
-    out = {f"{part}{i}": getattr(platform, part) for i, platform in platforms for part in _PARTS}
-    neutral = {
-        f"{effect.name}.{q.name}": q.neutral
-        for effect in CATALOGUE.values()
-        for q in effect.parameters
-    }
-    given = {f"{use.name}.{name}": v for use in robot.physics for name, v in use.values.items()}
-    return {**out, "h": robot.h, **neutral, **given}
-
-
-def _p(given: Mapping[str, float], parameters: tuple[str, ...]) -> Array:
-    friction = {f"k{i}": given[f"kappa{i}"] / given["h"] ** 2 for i in (1, 2)}
-    return np.array([friction.get(name, given.get(name, math.nan)) for name in parameters])
-
-
-def _p_by(given: Mapping[str, float], parameters: tuple[str, ...], name: str) -> Array:
-    """How p changes with a quantity."""
-    out = np.array([float(own == name) for own in parameters])
-    for i in (1, 2):
-        own = parameters.index(f"k{i}")
-        if name == f"kappa{i}":
-            out[own] = 1 / given["h"] ** 2
-        if name == "h":
-            out[own] = -2 * given[f"kappa{i}"] / given["h"] ** 3
-    return out
-
-
-def _parameter(name: str, value: float, known: Uncertainty) -> Quantity:
-    unit = _PARTS.get(name.rstrip("12"), "m")
-    if known.factor:
-        # Counted as it is and not in its logarithm: the motion is nearly linear in kappa, and what
-        # is seen best is the sum of both.
-        low, high = value / known.factor, value * known.factor
-        return Quantity(name, unit, value, value, True, low, high, value, free=True)
-    low = 0.0 if name.startswith("a") else value / 3
-    return Quantity(name, unit, value, known.sigma, True, low, 3 * value, value)
-
-
-def _candidate(effect: Effect, setting: Setting) -> Candidate:
-    forms = effect.forms or (tuple(q.name for q in effect.parameters),)
-    own = {q.name: q for q in effect.parameters}
-    return Candidate(
-        effect.name,
-        effect.family,
-        _CHANNELS[effect.family],
-        effect.sentence,
-        tuple(_form(effect.name, [own[name] for name in form], setting) for form in forms),
-    )
-
-
-def _form(effect: str, parameters: Sequence[Parameter], setting: Setting) -> Form:
-    sizes = [q.size(setting) for q in parameters]
-    quantities = tuple(
-        Quantity(f"{effect}.{q.name}", q.unit, q.neutral, size, False, *q.bounds, q.neutral)
-        for q, size in zip(parameters, sizes, strict=True)
-    )
-    choices = [
-        [size * trial for trial in q.trials]
-        if q.neutral
-        else [size * trial for trial in q.trials]
-        if q.bounds[0] == 0
-        else [0.0]
-        for q, size in zip(parameters, sizes, strict=True)
-    ]
-    starts = (
-        ()
-        if any(q.placed for q in parameters)
-        else tuple(
-            {q.name: value for q, value in zip(quantities, chosen, strict=True)}
-            for chosen in itertools.product(*choices)
-        )
-    )
-    return Form(quantities, starts)
+    return System(motion.rates, motion.seen, stiff, lasts=True), motion.parameters
 
 
 def _data(run: Run) -> Data:

@@ -1,14 +1,14 @@
 """Rank what may be missing without fitting it: one linearised pass over all effects at once.
 
 At a fit without them, the derivatives by every effect's quantities at the value where it vanishes
-say what the best of each would gain, parameters and starts re-fitted with it. An effect that
-cannot be linearised there (its forms begin at several places) is not ranked but always tried.
+say what the best of each would gain, parameters and starts re-fitted with it. Of an effect that
+cannot be linearised there the model proposes from where to look for it, and what that promises.
 """
 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,15 +20,37 @@ from rr_opt.diagnose.model import Array, Model
 
 @dataclass(frozen=True)
 class Promise:
-    """What adding effects would leave of the cost, linearised."""
+    """What adding effects would leave of the cost, linearised.
+
+    begins  where to begin, if the effect jumps
+    """
 
     chosen: tuple[Chosen, ...]
     cost: float
+    begins: tuple[Mapping[str, float], ...] = ()
 
 
 def linear(model: Model, chosen: Chosen) -> bool:
     """Whether the effect can be linearised where it vanishes."""
     return chosen.name not in model.jumping
+
+
+def jumps(model: Model, fit: Fit, have: Sequence[Chosen], *, dear: bool) -> list[Promise]:
+    """What those that jump promise, beside a fit: of the dear ones, or of the others."""
+    names = {one.name for one in have}
+    new = [
+        one
+        for one in every(model)
+        if one.name in model.jumping and (one.name in model.dear) == dear and one.name not in names
+    ]
+    found = []
+    for one in new:
+        proposals = model.propose(one.name, one.form, fit)
+        if proposals:
+            gain = max(proposal.gain for proposal in proposals)
+            begins = tuple(proposal.values for proposal in proposals)
+            found.append(Promise((one,), fit.cost - gain, begins))
+    return sorted(found, key=lambda promise: promise.cost)
 
 
 def every(model: Model) -> list[Chosen]:

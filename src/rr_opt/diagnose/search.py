@@ -17,7 +17,7 @@ from scipy.stats import chi2
 from rr_opt.diagnose.explain import Chosen, explain, joined
 from rr_opt.diagnose.fit import Fit, Problem, doubt, scaled, solve
 from rr_opt.diagnose.model import Model
-from rr_opt.diagnose.screen import every, linear, screen
+from rr_opt.diagnose.screen import Promise, jumps, screen
 
 FLOOR = 0.1
 """A misfit of a tenth of a sigma, RMS, is none: no machine is ever exactly its model."""
@@ -28,8 +28,17 @@ RELEVANT = 0.01
 MOST = 3
 """So many effects together, at most."""
 
-_IN_WINDOWS, _WHOLE = 5, 3
-"""How many of a round are fitted in windows, and over whole runs."""
+EXACT = 0.015
+"""Nor is an effect's model: by that share of the first misfit, what is left is none."""
+
+_IN_WINDOWS, _DEAR, _WHOLE = 5, 4, 3
+"""How many of a round are fitted in windows, of those the dear ones, and over whole runs."""
+
+_WORTH = 0.05
+"""Of what the best promises, any but the first few have to promise that share."""
+
+_LUCK = 25.0
+"""So much lower a chi-square is, by luck, where the best of many places was chosen."""
 
 Say = Callable[[str], None]
 
@@ -101,19 +110,25 @@ class Search:
     each: Callable[..., Iterable] = map
     tried: list[Explanation] = field(default_factory=list)
 
+    @property
+    def floor(self) -> float:
+        """A misfit that is none, RMS in sigma."""
+        return max(FLOOR, EXACT * rms(self.base.misfit))
+
     def run(self) -> Explanation:
         """The best explanation, the base itself where nothing relevant is missing."""
         best = self.base
         self.tried.append(best)
         for _ in range(MOST):
-            if rms(best.misfit) <= FLOOR and (best.chosen or not best.strained):
+            if rms(best.misfit) <= self.floor and (best.chosen or not best.strained):
                 break
             found = self._round(best)
             if not found:
                 break
             self.tried += found
             better = min(found, key=lambda one: one.score)
-            best = self._again(best, better)
+            if not _outright(better, best):
+                best = self._again(best, better)
             if not _gains(better, best):
                 break
             best = better
@@ -137,36 +152,48 @@ class Search:
 
     def _round(self, best: Explanation) -> list[Explanation]:
         """The explanations with one effect more that promise most."""
-        promised = [p.chosen[0] for p in screen(self.model, best.windows, best.chosen)]
-        found = self._fitted(best, promised[:_IN_WINDOWS], _WHOLE)
-        if min((rms(one.misfit) for one in found), default=math.inf) > FLOOR:
+        fit = best.windows
+        promised = screen(self.model, fit, best.chosen) + self._jumps(best, dear=False)
+        promised.sort(key=lambda one: one.cost)
+        most = fit.cost - _WORTH * (fit.cost - promised[0].cost) if promised else 0.0
+        worth = [one for k, one in enumerate(promised) if k < _WHOLE or one.cost < most]
+        found = self._fitted(best, worth[:_IN_WINDOWS], _WHOLE)
+        if min((rms(one.misfit) for one in found), default=math.inf) > self.floor:
             # What cannot be linearised is dear, and tried where nothing else will do.
-            have = {one.name for one in best.chosen}
-            rest = [
-                one
-                for one in every(self.model)
-                if one.name not in have and not linear(self.model, one)
-            ]
-            found += self._fitted(best, rest, _WHOLE)
+            found += self._fitted(best, self._jumps(best, dear=True)[:_DEAR], _WHOLE)
         return found
 
-    def _fitted(self, best: Explanation, new: Sequence[Chosen], most: int) -> list[Explanation]:
-        self.say(f"fitting {', '.join(one.name for one in new)}")
+    def _jumps(self, best: Explanation, *, dear: bool) -> list[Promise]:
+        """The effects that jump, of which each promises more than luck."""
+        most = best.windows.cost - _LUCK * doubt(best.windows.cost, best.windows.count)
+        promised = jumps(self.model, best.windows, best.chosen, dear=dear)
+        return [one for one in promised if one.cost < most]
+
+    def _fitted(
+        self, best: Explanation, promised: Sequence[Promise], most: int
+    ) -> list[Explanation]:
+        if not promised:
+            return []
+        self.say(f"fitting {', '.join(one.chosen[0].name for one in promised)}")
         in_windows = list(
-            self.each(_InWindows(self.model, best.chosen, self.nominal, best.windows), new)
+            self.each(_InWindows(self.model, best.chosen, self.nominal, best.windows), promised)
         )
         in_windows.sort(key=lambda pair: pair[1].cost)
-        self.say(f"over whole runs: {', '.join(one.name for one, _ in in_windows[:most])}")
-        return list(self.each(_Whole(self.model, best.chosen), in_windows[:most]))
+        hopeful = [pair for pair in in_windows[:most] if not _hopeless(pair[1], in_windows[0][1])]
+        self.say(f"over whole runs: {', '.join(one.name for one, _ in hopeful)}")
+        return list(self.each(_Whole(self.model, best.chosen), hopeful))
 
     def _backward(self, best: Explanation) -> Explanation:
         for one in best.chosen if len(best.chosen) > 1 else ():
             rest = tuple(other for other in best.chosen if other != one)
-            self.say(f"leaving out {one.name}")
-            fit = explain(self.model, rest, self.nominal, best.windows)
-            without = Explanation(rest, fit, joined(self.model, fit))
-            self.tried.append(without)
-            without = self._again(without, best)
+            without = next((tried for tried in self.tried if tried.chosen == rest), None)
+            if without is None:
+                self.say(f"leaving out {one.name}")
+                fit = explain(self.model, rest, self.nominal, best.windows)
+                without = Explanation(rest, fit, joined(self.model, fit))
+                self.tried.append(without)
+            if not _outright(best, without):
+                without = self._again(without, best)
             if not _gains(best, without):
                 return self._backward(without)
         return best
@@ -179,9 +206,11 @@ class _InWindows:
     nominal: Fit
     fit: Fit
 
-    def __call__(self, one: Chosen) -> tuple[Chosen, Fit]:
+    def __call__(self, promise: Promise) -> tuple[Chosen, Fit]:
         """The effect beside those that are there."""
-        return one, explain(self.model, (*self.have, one), self.nominal, self.fit)
+        (one,) = promise.chosen
+        every = (*self.have, one)
+        return one, explain(self.model, every, self.nominal, self.fit, promise.begins)
 
 
 @dataclass(frozen=True)
@@ -193,6 +222,18 @@ class _Whole:
         """The fit over whole runs, from that over windows."""
         one, fit = pair
         return Explanation((*self.have, one), fit, joined(self.model, fit))
+
+
+def _hopeless(fit: Fit, best: Fit) -> bool:
+    """Whether even in windows far more is left than with another effect."""
+    left = fit.cost / fit.count - 1.0
+    return left > 0.1 and left > 20 * (best.cost / best.count - 1.0)
+
+
+def _outright(more: Explanation, less: Explanation) -> bool:
+    """Whether `more` wins in windows already, which have no valleys to go down."""
+    wins = less.windows.cost - more.windows.cost
+    return wins > 0.3 * (less.whole.cost - more.whole.cost) and more.misfit < FLOOR
 
 
 def _gains(more: Explanation, less: Explanation) -> bool:

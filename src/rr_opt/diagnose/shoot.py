@@ -3,7 +3,8 @@
 The state follows xdot = rates(x, drive, p) between samples, where the drive is known. It is stepped
 by CasADi's virtual machine, one function for all steps. The derivatives are those of the linearised
 motion: its matrices are evaluated for all steps at once over NumPy arrays, which needs no compiler,
-and then multiplied up along the run.
+and then multiplied up along the run. A system that is used a lot is compiled, where there is a
+compiler, and then does the same in machine code.
 """
 
 from __future__ import annotations
@@ -15,9 +16,14 @@ from functools import lru_cache
 import casadi as ca
 import numpy as np
 
+from rr_opt.diagnose.compiled import Compiled, found, source_of
 from rr_opt.diagnose.model import Array
 from rr_opt.physics.arrays import over_arrays
 from rr_opt.physics.cofactors import inverted
+
+_FEW, _PAYS = 10_000, 100_000
+"""Steps, with derivatives counted fourfold, that take as long as to look for what was compiled
+before, and as long as to compile."""
 
 Slope = Callable[[int, ca.SX], ca.SX]
 """d(state)/dt at the beginning (0), in the middle (1) or at the end (2) of a step."""
@@ -27,12 +33,14 @@ Slope = Callable[[int, ca.SX], ca.SX]
 class System:
     """rates(state, drive, p) -> d(state)/dt and seen(state, drive, p) -> channels.
 
-    stiff  how many states at the end of it settle at once, and need an implicit step
+    stiff   how many states at the end of it settle at once, and need an implicit step
+    lasts   whether it is the same for other recordings, so that compiling it may be worth it
     """
 
     rates: ca.Function
     seen: ca.Function
     stiff: int = 0
+    lasts: bool = False
 
 
 @dataclass(frozen=True)
@@ -72,8 +80,10 @@ class Path:
 def predict(system: System, path: DrivePath, start: Array, p: Array) -> Path:
     """Step the system along the drive from `start`."""
     steps = path.h.size
-    inputs = np.vstack([path.h[None], path.nodes.transpose(1, 0, 2).reshape(-1, steps)])
-    rolled = _roll(system, steps)(start, inputs, p)
+    code = _code(system, steps)
+    if code:
+        return Path(*code.predict(start, _rows(path), path.at, path.each, p))
+    rolled = _roll(system, steps)(start, _rows(path).T, p)
     states = np.column_stack([start, np.asarray(rolled)])
     at = states[:, :: path.each]
     seen = _arrays(system, "seen")(*at, *path.at, *p)
@@ -102,6 +112,10 @@ def slopes(
     drive_by  how the drive does; None if it does not
     """
     size, nd = made.states.shape[0], path.at.shape[0]
+    code = _code(system, 4 * path.h.size)
+    if code:
+        moved = (drive_by.at, drive_by.middle) if drive_by else None
+        return Slopes(*code.slopes(made.states, _rows(path), path.at, path.each, p, wanted, moved))
     A, B = (_frozen if path.each > 1 else _kutta)(system, path, made, p, wanted, drive_by)
     for _ in range(int(np.log2(path.each))):
         A, B = A[1::2] @ A[::2], A[1::2] @ B[::2] + B[1::2]
@@ -123,6 +137,41 @@ def slopes(
     if drive_by is not None:
         seen[:, :, size:] += np.einsum("sid,dsw->siw", sd, drive_by.at)
     return Slopes(seen[:, :, size:], seen[:, :, :size])
+
+
+def _rows(path: DrivePath) -> Array:
+    """(steps, 1 + 3 drive): each step's length, and its drive at the beginning, middle and end."""
+    nodes = path.nodes.transpose(2, 1, 0).reshape(path.h.size, -1)
+    return np.column_stack([path.h, nodes])
+
+
+_used: dict[System, int] = {}
+
+
+def _code(system: System, steps: int) -> Compiled | None:
+    """The system compiled: if it was before, or was used so much now that it pays."""
+    if not system.lasts:
+        return None
+    used = _used[system] = _used.get(system, 0) + steps
+    return _compiled(system, make=used > _PAYS) if used > _FEW else None
+
+
+@lru_cache(maxsize=64)
+def _compiled(system: System, *, make: bool) -> Compiled | None:
+    return found(*_source(system), make=make)
+
+
+@lru_cache(maxsize=64)
+def _source(system: System) -> tuple[str, tuple[int, int, int, int]]:
+    inputs = system.rates.sx_in()
+    both = []
+    for name, function in (("rr_rates", system.rates), ("rr_seen", system.seen)):
+        by = ca.densify(ca.jacobian(function(*inputs), ca.vertcat(*inputs)))
+        outputs = ca.cse([ca.densify(function(*inputs)), by])
+        both.append(ca.Function(name, inputs, outputs))
+    state, drive, given = (one.numel() for one in inputs)
+    sizes = (state, drive, given, system.seen.numel_out(0))
+    return source_of((_step(system), *both), sizes), sizes
 
 
 def _kutta(system, path, made, p, wanted, drive_by) -> tuple[Array, Array]:
@@ -219,7 +268,7 @@ def _step(system: System) -> ca.Function:
     parts = ca.vertsplit(nodes, drive.numel())
     make = _rosenbrock if system.stiff else _rk4
     end = make(lambda k, y: system.rates(y, parts[k], p), x, h, system.stiff)
-    return ca.Function("step", [x, ca.vertcat(h, nodes), p], [ca.cse(end)])
+    return ca.Function("rr_step", [x, ca.vertcat(h, nodes), p], [ca.cse(end)])
 
 
 def _rk4(f: Slope, x: ca.SX, h: ca.SX, _: int) -> ca.SX:

@@ -1,0 +1,124 @@
+"""The joint's angle in a run, as the steps of a prediction need it, and how it changes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import lru_cache
+
+import numpy as np
+
+from rr_opt.diagnose.model import Array
+from rr_opt.diagnose.shoot import DrivePath, DriveSlopes
+from rr_opt.experiment.experiment import Run
+from rr_opt.physics.drive import Drive, FreeJoint, told
+from rr_opt.physics.effects import CATALOGUE
+
+_FINE = 4
+"""Steps between two samples where the drive is not smooth, or the wheels slip."""
+
+
+class Drives:
+    """The drives of runs, each kept until others were asked for."""
+
+    def __init__(self, runs: Sequence[Run], joint: FreeJoint) -> None:
+        self._runs, self._joint = runs, joint
+        self._of = lru_cache(maxsize=64)(self._made)
+
+    def of(self, run: int, given: Mapping[str, float], effects: tuple[str, ...]) -> Drive:
+        """What the servo makes of the gait that it is told in a run."""
+        own = tuple(
+            (name, tuple((q.name, given[f"{name}.{q.name}"]) for q in CATALOGUE[name].parameters))
+            for name in effects
+            if CATALOGUE[name].actuate
+        )
+        return self._of(run, own)
+
+    def _made(self, run: int, own: tuple[tuple[str, tuple[tuple[str, float], ...]], ...]) -> Drive:
+        drive = told(self._runs[run].gait, self._runs[run].start == "rest")
+        for name, values in own:
+            actuate = CATALOGUE[name].actuate
+            if actuate:
+                drive = actuate(drive, dict(values), self._joint)
+        return drive
+
+
+def drive_path(
+    drive: Drive, t: Array, effects: tuple[str, ...], late: float, *, smooth: bool
+) -> DrivePath:
+    """The drive over the steps between the samples; dphi jumps where it is not smooth."""
+    stiff = any(CATALOGUE[name].stiff for name in effects)
+    each = _FINE if stiff or not smooth else 1
+    inner = np.arange(each) / each
+    edges = np.append((t[:-1, None] + np.diff(t)[:, None] * inner).ravel(), t[-1])
+    h = np.diff(edges)
+    at_edges = drive.at(edges + late)[:2]
+    middle = drive.at(edges[:-1] + h / 2 + late)[:2]
+    nodes = np.stack([at_edges[:, :-1], middle, at_edges[:, 1:]], axis=1)
+    if not smooth:
+        # Where dphi jumps within a step, the step keeps its end points.
+        nodes[1] = (np.diff(at_edges[0]) / h)[None]
+        nodes[0, 1] = (nodes[0, 0] + nodes[0, 2]) / 2
+    at = at_edges[:, ::each]
+    if stiff:
+        mean = np.diff(at_edges[1]) / h
+        nodes = np.concatenate([nodes, np.tile(mean, (1, 3, 1))])
+        at = np.vstack([at, np.append(mean, mean[-1])[::each]])
+    return DrivePath(h, nodes, at, each)
+
+
+def drive_slopes(
+    drives: Drives,
+    run: int,
+    t: Array,
+    given: Mapping[str, float],
+    effects: tuple[str, ...],
+    wanted: tuple[str, ...],
+) -> DriveSlopes | None:
+    """How the drive changes with what is wanted; None if it does not."""
+    moving = [
+        (k, name)
+        for k, name in enumerate(wanted)
+        if "." in name and name.split(".")[0] in effects and _of_drive(name)
+    ]
+    if not moving:
+        return None
+    here = drives.of(run, given, effects)
+
+    def path_at(values: Mapping[str, float]) -> DrivePath:
+        drive = drives.of(run, values, effects)
+        return drive_path(drive, t, effects, lateness(values, effects), smooth=here.smooth)
+
+    path = path_at(given)
+    at = np.zeros((*path.at.shape, len(wanted)))
+    middle = np.zeros((*path.nodes[:, 1].shape, len(wanted)))
+    for k, name in moving:
+        # The very steps that predict are moved, so that a jump of dphi counts where it does.
+        least, size = _extent(name)
+        step = 1e-3 * size
+        low, high = max(given[name] - step, least), given[name] + step
+        ends = [path_at({**given, name: value}) for value in (low, high)]
+        at[:, :, k] = (ends[1].at - ends[0].at) / (high - low)
+        middle[:, :, k] = (ends[1].nodes[:, 1] - ends[0].nodes[:, 1]) / (high - low)
+    if here.smooth and here.rest:
+        # How dphi sets in may change at once, and more than a step shows: what the first step
+        # integrates to is the change of phi.
+        rise = (at[0, 1] - at[0, 0]) / path.h[0]
+        at[1, 0] = middle[1, 0] = (6 * rise - at[1, 1]) / 5
+    return DriveSlopes(at, middle)
+
+
+def lateness(given: Mapping[str, float], effects: tuple[str, ...]) -> float:
+    """By how much the recording's clock is behind the command's, s."""
+    return sum(given[f"{n}.{CATALOGUE[n].delay}"] for n in effects if CATALOGUE[n].delay)
+
+
+def _of_drive(name: str) -> bool:
+    effect, parameter = name.split(".")
+    return CATALOGUE[effect].actuate is not None or CATALOGUE[effect].delay == parameter
+
+
+def _extent(name: str) -> tuple[float, float]:
+    """The least value of a quantity of an effect, and its usual size."""
+    effect, parameter = name.split(".")
+    q = next(q for q in CATALOGUE[effect].parameters if q.name == parameter)
+    return q.bounds[0], q.typical

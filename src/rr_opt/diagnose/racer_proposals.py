@@ -1,0 +1,135 @@
+"""From where to look for the effects of a Roller Racer that jump, and what each promises.
+
+What the servo does shows in the joint's angle alone, which needs no dynamics: the values that fit
+the angle best are where to begin. A patch of other floor is looked for on a map of it. Slipping
+wheels are linearised where they slip.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+from scipy.optimize import minimize_scalar
+
+from rr_opt.diagnose.fit import Fit, Problem, bounded_step, box, doubt, scaled
+from rr_opt.diagnose.floor_map import Found, cells_of, likely, with_cells
+from rr_opt.diagnose.model import Data, Form, Model, Proposal, Quantity, Response
+from rr_opt.diagnose.shoot import System
+
+if TYPE_CHECKING:
+    from rr_opt.diagnose.racer import RollerRacer
+
+_TRIED = 14
+"""Values of an effect of the servo, between next to nothing and a lot."""
+
+
+def of_servo(model: RollerRacer, name: str, form: Form, fit: Fit) -> Sequence[Proposal]:
+    """The value that fits the recorded angle best; phi is the last channel."""
+    (q,) = form.quantities
+    effects = (*fit.effects, name)
+    runs = sorted({piece.run for piece in fit.starts})
+
+    def left(value: float, used: tuple[str, ...] = effects) -> float:
+        given = {**model.nominal, **fit.values, q.name: value}
+        total = 0.0
+        for run in runs:
+            data = model.runs[run]
+            r = (model.angle(run, given, used) - data.values[:, -1]) / data.sigma[:, -1]
+            total += float(np.nansum(r**2))
+        return total
+
+    before = left(q.neutral, fit.effects)
+    count = sum(int(np.isfinite(model.runs[run].values[:, -1]).sum()) for run in runs)
+    if before < count + 4 * math.sqrt(2 * count):
+        return []  # noise alone
+    if q.neutral:
+        values = q.scale * np.geomspace(0.25, 1.0, _TRIED)
+    else:
+        values = q.scale * np.geomspace(0.05, 5.0, _TRIED)
+    found = [left(value) for value in values]
+    k = int(np.argmin(found))
+    low, high = values[max(k - 1, 0)], values[min(k + 1, _TRIED - 1)]
+    best = minimize_scalar(left, bounds=(low, high), method="bounded", options={"maxiter": 12})
+    value, least = min((float(best.x), float(best.fun)), (float(values[k]), found[k]), key=_second)
+    return [Proposal({q.name: value}, before - least)]
+
+
+def _second(pair: tuple[float, float]) -> float:
+    return pair[1]
+
+
+def of_slip(model: RollerRacer, name: str, form: Form, fit: Fit) -> Sequence[Proposal]:
+    """Where the form says, and what one step from there promises."""
+    quantities = (*fit.quantities, *form.quantities)
+    problem = Problem(cast("Model", model), tuple(fit.starts), (*fit.effects, name), quantities)
+    low, high = box(quantities)
+    prior = problem.prior * doubt(fit.cost, fit.count)
+    before = fit.cost + float(prior @ scaled(quantities, _at(fit, form.starts[0])) ** 2)
+    found = []
+    for start in form.starts:
+        values = _at(fit, start)
+        parts = [problem.normal(piece, values, begin) for piece, begin in fit.starts.items()]
+        u = scaled(quantities, values)
+        g = sum((one.g for one in parts), prior * u)
+        H = sum((one.H for one in parts), np.diag(prior))
+        d = bounded_step(H, g, 1e-9, u, np.maximum(low, u - 3), np.minimum(high, u + 3))
+        after = sum(one.cost for one in parts) + prior @ u**2 + 2 * g @ d + d @ H @ d
+        found.append(Proposal(start, before - float(after)))
+    return found
+
+
+def _at(fit: Fit, start: Mapping[str, float]) -> dict[str, float]:
+    return {**fit.values, **start}
+
+
+def of_patch(model: RollerRacer, fit: Fit) -> tuple[Sequence[Proposal], Sequence[Proposal]]:
+    """Circles and edges that would gain most; see `floor_map`."""
+    cells = cells_of([model.runs[piece.run].values[piece.span, :2] for piece in fit.starts])
+    motion = with_cells(model.every(fit.effects), cells)
+    stiff = len(motion.free) if motion.slips else 0
+    mapped = System(motion.rates, motion.seen, stiff), motion.parameters
+    quantities = (*fit.quantities, *(_share(name) for name in cells.names))
+    problem = Problem(
+        cast("Model", _Mapped(model, mapped)), tuple(fit.starts), fit.effects, quantities
+    )
+    values = dict(fit.values) | dict.fromkeys(cells.names, 0.0)
+    parts = [problem.normal(piece, values, start) for piece, start in fit.starts.items()]
+    n = len(fit.quantities)
+    prior = np.diag(problem.prior * doubt(fit.cost, fit.count))
+    u = scaled(quantities, values)
+    H, g = sum((one.H for one in parts), prior), sum((one.g for one in parts), prior @ u)
+    onto = np.linalg.pinv(H[:n, :n], hermitian=True) @ H[:n, n:] if n else H[:0, n:]
+    circles, edges = likely(cells, g[n:] - onto.T @ g[:n], H[n:, n:] - onto.T @ H[:n, n:])
+    return _named(circles), _named(edges)
+
+
+def _named(places: Sequence[Found]) -> list[Proposal]:
+    return [
+        Proposal({f"floor_patch.{key}": value for key, value in values.items()}, gain)
+        for gain, values in places
+    ]
+
+
+@dataclass(frozen=True)
+class _Mapped:
+    """A Roller Racer on a floor of cells."""
+
+    racer: RollerRacer
+    derived: tuple[System, tuple[str, ...]]
+
+    @property
+    def runs(self) -> Sequence[Data]:
+        """Those of the robot."""
+        return self.racer.runs
+
+    def respond(self, *given) -> Response:
+        """As the robot, with drag of its own in every cell."""
+        return self.racer.respond(*given, derived=self.derived)
+
+
+def _share(name: str) -> Quantity:
+    return Quantity(name, "", 0.0, 1.0, False, -1.0, 100.0, 0.0)

@@ -1,0 +1,126 @@
+"""What may be fitted of a Roller Racer: its own values, and those of the effects."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from rr_opt.diagnose.model import Array, Candidate, Form, Quantity
+from rr_opt.experiment.experiment import Experiment, Uncertainty
+from rr_opt.physics.effects import CATALOGUE, Effect, Parameter, Setting
+from rr_opt.robot.parameters import EffectUse
+
+_CHANNELS = {
+    "actuation": "actuation",
+    "rolling": "rolling",
+    "contact": "constraint_axle1",
+    "floor": "floor",
+    "mass": "mass",
+    "measurement": "measurement",
+}
+"""The channel in which a family of effects shows."""
+
+_PARTS = {"m": "kg", "I": "kg m^2", "c": "m", "a": "m", "b": "m", "kappa": "N m s"}
+_EVERYTHING = (*(f"{part}{i}" for i in (1, 2) for part in _PARTS), "h")
+
+
+def nominal(experiment: Experiment) -> dict[str, float]:
+    """Every value of the robot and of all effects, SI; an effect that it has not is neutral."""
+    robot = experiment.robot
+    platforms = ((1, robot.platform1), (2, robot.platform2))
+    out = {f"{part}{i}": getattr(platform, part) for i, platform in platforms for part in _PARTS}
+    neutral = {
+        f"{effect.name}.{q.name}": q.neutral
+        for effect in CATALOGUE.values()
+        for q in effect.parameters
+    }
+    given = {f"{use.name}.{name}": v for use in robot.physics for name, v in use.values.items()}
+    return {**out, "h": robot.h, **neutral, **given}
+
+
+def uncertain(experiment: Experiment, setting: Setting) -> tuple[Quantity, ...]:
+    """The robot's own values that are not known exactly, and those of the effects that it has."""
+    values = nominal(experiment)
+    known = experiment.uncertainty
+    free = dict(known)
+    if all(known.get(f"kappa{i}", Uncertainty()).factor for i in (1, 2)):
+        free.pop("h", None)  # the wheel's radius counts through kappa/h^2 alone
+    own = [_parameter(name, values[name], free[name]) for name in _EVERYTHING if name in free]
+    return (*own, *(q for use in experiment.robot.physics for q in _present(use, setting)))
+
+
+def candidate(effect: Effect, setting: Setting) -> Candidate:
+    """An effect that may be missing."""
+    forms = effect.forms or (tuple(q.name for q in effect.parameters),)
+    own = {q.name: q for q in effect.parameters}
+    return Candidate(
+        effect.name,
+        effect.family,
+        _CHANNELS[effect.family],
+        effect.sentence,
+        tuple(_form(effect.name, [own[name] for name in form], setting) for form in forms),
+    )
+
+
+def values_of(given: dict[str, float], parameters: tuple[str, ...]) -> Array:
+    """The parameters p of a motion, with k = kappa/h^2."""
+    friction = {f"k{i}": given[f"kappa{i}"] / given["h"] ** 2 for i in (1, 2)}
+    return np.array([friction.get(name, given.get(name, math.nan)) for name in parameters])
+
+
+def values_by(given: dict[str, float], parameters: tuple[str, ...], name: str) -> Array:
+    """How p changes with a quantity."""
+    out = np.array([float(own == name) for own in parameters])
+    for i in (1, 2):
+        own = parameters.index(f"k{i}")
+        if name == f"kappa{i}":
+            out[own] = 1 / given["h"] ** 2
+        if name == "h":
+            out[own] = -2 * given[f"kappa{i}"] / given["h"] ** 3
+    return out
+
+
+def _present(use: EffectUse, setting: Setting) -> Iterator[Quantity]:
+    """The values of an effect that the nominal robot has: how strong it is, is not known."""
+    for q in CATALOGUE[use.name].parameters:
+        value = use.values[q.name]
+        if value != q.neutral and not q.placed:
+            size = max(abs(value), 0.1 * q.size(setting))
+            yield Quantity(
+                f"{use.name}.{q.name}", q.unit, value, size, True, *q.bounds, value, free=True
+            )
+
+
+def _parameter(name: str, value: float, known: Uncertainty) -> Quantity:
+    unit = _PARTS.get(name.rstrip("12"), "m")
+    if known.factor:
+        # Counted as it is and not in its logarithm: the motion is nearly linear in kappa, and what
+        # is seen best is the sum of both.
+        low, high = value / known.factor, value * known.factor
+        return Quantity(name, unit, value, value, True, low, high, value, free=True)
+    low = 0.0 if name.startswith("a") else value / 3
+    return Quantity(name, unit, value, known.sigma, True, low, 3 * value, value)
+
+
+def _form(effect: str, parameters: Sequence[Parameter], setting: Setting) -> Form:
+    sizes = [q.size(setting) for q in parameters]
+    quantities = tuple(
+        Quantity(f"{effect}.{q.name}", q.unit, q.neutral, size, False, *q.bounds, q.neutral)
+        for q, size in zip(parameters, sizes, strict=True)
+    )
+    choices = [
+        [size * trial for trial in q.trials] if q.neutral or q.bounds[0] == 0 else [0.0]
+        for q, size in zip(parameters, sizes, strict=True)
+    ]
+    starts = (
+        ()
+        if any(q.placed for q in parameters)
+        else tuple(
+            {q.name: value for q, value in zip(quantities, chosen, strict=True)}
+            for chosen in itertools.product(*choices)
+        )
+    )
+    return Form(quantities, starts)
