@@ -7,6 +7,7 @@ else
 PYTHONS := $(PYTHON)
 endif
 WORKERS ?= 2
+SEED ?= 5
 
 VENV := .venv
 BIN := $(VENV)/bin
@@ -20,7 +21,7 @@ RUN := $(VENV)/run-$(call checksum,requirements/run.txt)
 DEV := $(VENV)/dev-$(call checksum,requirements/run.txt requirements/dev.txt)
 
 .DEFAULT_GOAL := help
-.PHONY: help run test check format-check lint types contracts format readme results bench real pins clean
+.PHONY: help run test check format-check lint types contracts format readme results bench real prove demo pins clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/\1|\2/p' $(MAKEFILE_LIST) | \
@@ -72,6 +73,12 @@ bench: $(DEV) ## measure against other ways to the same answer, into results/ben
 
 real: $(DEV) ## diagnose a real pendulum (DATA=/path/to/data_measured.csv)
 	$(BIN)/python scripts/real_pendulum.py "$(DATA)"
+
+prove: $(DEV) ## try the diagnosis on 100 sealed cases, of the commit's own seed (hours)
+	$(BIN)/rr-opt prove --workers $(WORKERS)
+
+demo: $(DEV) ## record, diagnose, open the seal, correct, predict: some minutes (SEED=5)
+	$(BIN)/python scripts/demonstration.py --seed $(SEED)
 
 pins: $(RUN) ## pin the newest dependencies that pyproject.toml allows
 	$(BIN)/python scripts/pins.py

@@ -37,6 +37,7 @@ PLANTED = [
     ("processes-in-batch", "cli/planted.py", "from distributed import Client"),
     ("plain-robot", "robot/planted.py", "import casadi as ca"),
     ("plain-robot", "problem.py", "import casadi as ca"),
+    ("proof-apart", "proof/planted.py", "import rr_opt.diagnose.verdict"),
     ("lab-apart", "lab/planted.py", "import rr_opt.motion.cycle"),
     ("lab-apart", "lab/planted.py", "import rr_opt.files.units"),
     ("lab-unknown", "diagnose/planted.py", "import rr_opt.lab.rig"),

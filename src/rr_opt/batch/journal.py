@@ -20,6 +20,9 @@ _CHANGES = {
     "input_sha256": "the study file or a file that it names",
     "version": "the version of rr-opt",
     "cold": "--cold",
+    "seed": "the seed",
+    "kinds": "--kinds",
+    "code": "the code of rr-opt",
 }
 
 

@@ -27,6 +27,9 @@ def diagnose(
     page: Annotated[
         bool, typer.Option("--page/--no-page", help="Draw figures and write report.html.")
     ] = True,
+    workers: Annotated[
+        int | None, typer.Option(help="Processes here.", min=1, show_default="two")
+    ] = None,
 ) -> None:
     """Find where the simulation goes wrong, what it leaves out, how much of it, and how sure.
 
@@ -40,7 +43,7 @@ def diagnose(
         name, sha256, read_runs = read(source)
         folder = folder_for_results(out or Path("out") / f"{name}-diagnosis")
         experiment, left_out = usable(read_runs)
-        found = _diagnosed(experiment, steps)
+        found = _diagnosed(experiment, steps, workers)
         from rr_opt.report.diagnosis.diagnosed import Diagnosed  # noqa: PLC0415
         from rr_opt.report.diagnosis.files import write_diagnosis  # noqa: PLC0415
         from rr_opt.report.diagnosis.record import record  # noqa: PLC0415
@@ -56,11 +59,11 @@ def diagnose(
         typer.echo(summary(told, written), nl=False)
 
 
-def _diagnosed(experiment: Experiment, steps: Steps) -> Diagnosis:
-    """The diagnosis, worked out in this process and two more. Raises NotConvergedError."""
+def _diagnosed(experiment: Experiment, steps: Steps, workers: int | None) -> Diagnosis:
+    """The diagnosis, worked out in so many processes. Raises NotConvergedError."""
     from rr_opt.cli.shared_work import SharedWork  # noqa: PLC0415
 
-    with closing(SharedWork()) as work:
+    with closing(SharedWork(workers)) as work:
         from rr_opt.diagnose.diagnose import Steps as Told  # noqa: PLC0415
         from rr_opt.diagnose.racer import RollerRacer  # noqa: PLC0415
         from rr_opt.diagnose.racer_diagnosis import diagnose_racer  # noqa: PLC0415

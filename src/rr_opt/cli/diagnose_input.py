@@ -11,8 +11,11 @@ from rr_opt.experiment.experiment import Experiment, Run
 from rr_opt.experiment.recording import CHANNELS
 from rr_opt.files.experiment.file import FILE_NAME, experiment_path, read_plan
 from rr_opt.outcome import InputError
+from rr_opt.recordings.against_plan import plan_doubts
+from rr_opt.recordings.doubts import Doubt, texts
 from rr_opt.recordings.experiment import read_experiment
 from rr_opt.recordings.units_guess import unit_doubts
+from rr_opt.robot.parameters import Robot
 
 _FEWEST = 50
 """Samples of a channel below which nothing is told."""
@@ -20,6 +23,8 @@ _PERIODS = 2.0
 """A shorter recording holds a start and no more."""
 _STILL = 10.0
 """What moves by less, in sigma of the noise, over 98 % of the samples, stands still."""
+_GRAVE = ("units", "command")
+"""Doubts with which nothing can be fitted."""
 _LARGEST_GAP = 4.0
 """Seconds without any data of a channel; the motion in between is then nobody's."""
 
@@ -38,14 +43,14 @@ def read(source: Path) -> tuple[str, str, Experiment]:
 def usable(experiment: Experiment) -> tuple[Experiment, tuple[str, ...]]:
     """The experiment without the recordings that tell nothing, and a sentence on each of those.
 
-    Raises InputError for recordings in another unit, and where no recording is left to fit.
+    Raises InputError for recordings in another unit or of another gait than the experiment says,
+    and where no recording is left to fit.
     """
-    wrong = [
-        f"{run.name}: {doubt}" for run in experiment.runs for doubt in unit_doubts(run.recording)
-    ]
+    why = {run.name: _why_not(run) for run in experiment.runs}
+    doubts = {run.name: _doubts(run, experiment.robot, why[run.name]) for run in experiment.runs}
+    wrong = [f"{name}: {one}" for name, own in doubts.items() for one in own if one.kind in _GRAVE]
     if wrong:
         raise InputError("\n".join(wrong))
-    why = {run.name: _why_not(run) for run in experiment.runs}
     runs = tuple(run for run in experiment.runs if not why[run.name])
     told = tuple(f"{name}: {text} It was left out." for name, text in why.items() if text)
     if not any(run.use == "fit" for run in runs):
@@ -58,7 +63,19 @@ def usable(experiment: Experiment) -> tuple[Experiment, tuple[str, ...]]:
             f"{reasons}\nNo recording to fit is left, so nothing can be told of this robot. "
             "Record some periods in which it drives."
         )
+    runs = tuple(_with_doubts(run, doubts[run.name]) for run in runs)
     return replace(experiment, runs=runs), told
+
+
+def _with_doubts(run: Run, doubts: tuple[Doubt, ...]) -> Run:
+    recording = run.recording
+    said = (*recording.doubts, *texts(doubts))
+    return replace(run, recording=replace(recording, doubts=said)) if doubts else run
+
+
+def _doubts(run: Run, robot: Robot, why_not: str) -> tuple[Doubt, ...]:
+    """Whether a recording, if it tells something, is what the experiment file says."""
+    return unit_doubts(run.recording) or (() if why_not else plan_doubts(run, robot))
 
 
 def _why_not(run: Run) -> str:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+
 from rr_opt.cli import interrupt
 from rr_opt.outcome import EXIT_INTERRUPTED
 
@@ -13,6 +15,8 @@ def main() -> None:
     """
     try:
         interrupt.watch()
+        for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+            os.environ.setdefault(name, "1")  # the matrices are small: threads would only spin
         from rr_opt.cli.main import app  # noqa: PLC0415
 
         app()
@@ -29,7 +33,6 @@ def main() -> None:
 
 def _end(*, told: bool) -> None:
     """End here and now: libraries that are half loaded complain when they are tidied up."""
-    import os  # noqa: PLC0415
     import sys  # noqa: PLC0415
 
     interrupt.ignore()

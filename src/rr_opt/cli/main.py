@@ -20,6 +20,7 @@ from rr_opt.cli.export import export
 from rr_opt.cli.inspect import inspect
 from rr_opt.cli.lint import lint
 from rr_opt.cli.maximize_speed import maximize_speed
+from rr_opt.cli.prove import prove
 from rr_opt.cli.record import record
 from rr_opt.cli.reproduce import reproduce
 from rr_opt.cli.schema import schema
@@ -90,6 +91,7 @@ app.command("calibrate")(calibrate)
 app.command("inspect")(inspect)
 app.command("record")(record)
 app.command("diagnose")(diagnose)
+app.command("prove")(prove)
 app.command("lint")(lint)
 app.command("schema")(schema)
 

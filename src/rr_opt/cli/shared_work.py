@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterable
 from typing import Any
 
@@ -13,18 +14,23 @@ _WORKERS = 2
 
 
 class SharedWork:
-    """Calls function(item) for every item, in two processes; both have to be picklable.
+    """Calls function(item) for every item, in some processes; both have to be picklable.
 
-    The processes load what they need while the caller is still at work of its own.
+    workers  how many; None: two, or on a single core one. One is this process itself
+    Other processes load what they need while the caller is still at work of its own.
     """
 
-    def __init__(self) -> None:
-        self._pool = LocalPool(_WORKERS)
-        for _ in range(_WORKERS):
-            self._pool.submit(_load, None)
+    def __init__(self, workers: int | None = None) -> None:
+        workers = workers or min(_WORKERS, os.cpu_count() or 1)
+        self._pool = LocalPool(workers) if workers > 1 else None
+        if self._pool:
+            for _ in range(workers):
+                self._pool.submit(_load, None)
 
     def __call__(self, function: Callable[[Any], Any], items: Iterable[Any]) -> list[Any]:
         """The results in the order of the items; what a process died over is done here."""
+        if self._pool is None:
+            return [_here(function, item) for item in items]
         tasks = dict(enumerate(items))
         done: dict[int, Any] = {}
         for key, result in run(self._pool, function, tasks):
@@ -34,7 +40,13 @@ class SharedWork:
 
     def close(self) -> None:
         """End the processes."""
-        self._pool.close()
+        if self._pool:
+            self._pool.close()
+
+
+def _here(function: Callable[[Any], Any], item: Any) -> Any:
+    interrupt.check()
+    return function(item)
 
 
 def _load(_: None) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -55,6 +56,15 @@ class Level:
         """RMS in sigma over the held-out runs; over the fitted ones where none is held out."""
         return _rms_of(self.misfits, held_out=True)
 
+    def unseen(self) -> float:
+        """The same for the answer; where none is held out, of the runs each predicted from the
+        others. The verdict does not rest on that: of two or three runs, one may be all that tells a
+        parameter, and what the others say of it is then far off through no fault of the model."""
+        apart = float("nan")
+        if not any(one.held_out for one in self.misfits):
+            apart = left_out(self.fit)
+        return math.sqrt(apart + 1.0) if np.isfinite(apart) else self.held()
+
     def count(self) -> int:
         """The values that this is of."""
         return int(np.isfinite(_residuals(self.misfits, held_out=True)).sum())
@@ -101,9 +111,20 @@ def found(model: Model, steps: Steps) -> Found:
     level1 = steps.timed("held-out recordings", lambda: _level(model, base.whole, level0.fit))
     search = Search(model, first, base, steps.say, steps.each)
     best = steps.timed("what is missing", search.run)
-    best = steps.timed("which values are wrong", lambda: settled(model, best))
+    best = steps.timed("which values are wrong", lambda: settled(model, _plainest(model, best)))
     level2 = _level(model, best.whole, level0.fit)
     return Found(model, search, best, (level0, level1, level2), steps)
+
+
+def _plainest(model: Model, best: Explanation) -> Explanation:
+    """The explanation, or its twin that is nearer to what was believed."""
+    fit = best.whole
+    twin = model.twin(fit.values)
+    if twin is None:
+        return best
+    problem = Problem(model, tuple(fit.starts), fit.effects, fit.quantities)
+    other = solve(problem, twin, fit.starts)
+    return replace(best, whole=other) if other.cost < fit.cost + 1.0 else best
 
 
 def _base(model: Model, first: Fit) -> Explanation:
@@ -186,7 +207,8 @@ def answer(it: Found) -> Diagnosis:
     intervals = estimates(best.whole)
     moved = wrong(best.whole)
     nominal_left = max(rms(misfit(level0.fit)), held[0])
-    verdict = verdict_of(best, search.base, nominal_left, (held[1], held[2]), bool(moved))
+    apart = held[1], held[2]
+    verdict = verdict_of(best, search.base, nominal_left, apart, model.inexact, moved=bool(moved))
     findings = _findings(best, search, intervals, (level1, level2), it.rivals)
     if verdict == "parameters":
         findings = tuple(Finding(q.name, 1.0, {q.name: intervals[q.name]}, 1.0) for q in moved)
@@ -208,8 +230,8 @@ def answer(it: Found) -> Diagnosis:
         nominal=level0.misfits,
         refitted=level1.misfits,
         final=level2.misfits,
-        before=level0.held(),
-        after=level2.held(),
+        before=level0.unseen(),
+        after=level2.unseen(),
         values=dict(best.whole.values),
         seconds=dict(steps.seconds),
         converged=best.whole.converged,
@@ -250,9 +272,17 @@ def _tried(one: Explanation, best: Explanation) -> Tried:
 
 
 def _summary(verdict: str, findings: tuple[Finding, ...], before: Level, after: Level) -> str:
+    held = any(one.held_out for one in after.misfits)
+    where = (
+        "On recordings that were not fitted"
+        if held
+        else "On each recording, predicted from the others,"
+        if len(after.misfits) > 1
+        else "On the one recording there is, which was fitted,"
+    )
     numbers = (
-        f"On recordings that were not fitted the simulation was {before.held():.2f} sigma off, "
-        f"and is {after.held():.2f} sigma off now; 1 is the noise."
+        f"{where} the simulation was {before.unseen():.2f} sigma off, "
+        f"and is {after.unseen():.2f} sigma off now; 1 is the noise."
     )
     names = " and ".join(one.name.replace("_", " ") for one in findings)
     opening = {

@@ -21,7 +21,7 @@ from rr_opt.diagnose.model import Array, Model, Piece, Quantity
 from rr_opt.diagnose.normal import Normal, normal_of
 
 _DAMPINGS = (0.0, 1e-4, 1e-3, 1e-2, 1e-1, 1.0)
-_TRIES, _UPHILL = 2, 1e3
+_TRIES, _UPHILL = 4, 1e3
 _STRIDE = 3.0
 """A scaled quantity moves by no more in a step."""
 
@@ -151,7 +151,7 @@ def solve(
 
     What the data see best is 10^4 times as well seen as what they see least, and a long step along
     the one bends away from the valley of the other. So a step may go uphill: the next ones, from a
-    new linearisation, get two tries to come back lower than before, until it is damped instead.
+    new linearisation, get a few tries to come back lower than before, until it is damped instead.
     """
     cost, count = problem.cost(values, starts)
     best = _Point(dict(values), dict(starts), cost, problem.beforehand(values))

@@ -145,6 +145,11 @@ class Model(Protocol):
         ...
 
     @property
+    def inexact(self) -> float:
+        """Misfit, RMS in sigma, by which machines of this kind differ from any model of them."""
+        ...
+
+    @property
     def parameters(self) -> tuple[Quantity, ...]:
         """Of the nominal model, with what is known of each."""
         ...
@@ -166,6 +171,10 @@ class Model(Protocol):
 
     def propose(self, name: str, form: int, fit: Fit) -> Sequence[Proposal]:
         """From where to look for an effect that jumps, beside a fit without it."""
+        ...
+
+    def twin(self, values: Mapping[str, float]) -> Mapping[str, float] | None:
+        """Values that predict the same and are nearer to what was believed, if there are any."""
         ...
 
     def start(self, piece: Piece) -> Array:

@@ -51,6 +51,7 @@ class Pendulum:
     """Recordings of a pendulum and its nominal J, ml, b; answers `diagnose.model.Model`."""
 
     channels = ("angle",)
+    inexact = 0.0
     jumping = dear = frozenset(name for name, extra in EXTRAS.items() if not extra.smooth)
 
     def __init__(
@@ -79,6 +80,9 @@ class Pendulum:
     def propose(self, name: str, form: int, fit: Fit) -> Sequence[Proposal]:
         """Where the effect's form says; a fit of a pendulum is cheap, so each is worth it."""
         return [Proposal(start, fit.cost) for start in self.catalogue[name].forms[form].starts]
+
+    def twin(self, values: Mapping[str, float]) -> None:
+        """None: no two sets of values of a pendulum are alike."""
 
     def start(self, piece: Piece) -> Array:
         """Angle and speed (rad, rad/s) by a straight line through the first tenth of a second."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from functools import cached_property, lru_cache
 
@@ -25,6 +26,10 @@ SETTLING = 0.05
 """After a start from rest the motor saturates for some 20 ms; that much, s, is left out."""
 
 
+INEXACT = 5e-4
+"""Of the way travelled, by which even a fine simulation of wheels that press on a floor is off."""
+
+
 class RollerRacer:
     """An experiment with a Roller Racer; answers `diagnose.model.Model`."""
 
@@ -45,6 +50,21 @@ class RollerRacer:
     @cached_property
     def _runs(self) -> Sequence[Data]:
         return [_data(run) for run in self.experiment.runs]
+
+    @cached_property
+    def _inexact(self) -> float:
+        """Of the way travelled, the square of the channels' misfit averaged over all runs."""
+        squares = [
+            np.nanmean((INEXACT * _travelled(run)[:, None] / run.sigma[:, :2]) ** 2)
+            for run in self.runs
+        ]
+        # In x and y together as much as along the way, in psi and phi nothing.
+        return float(np.sqrt(np.mean(squares) / len(CHANNELS)))
+
+    @property
+    def inexact(self) -> float:
+        """Misfit, RMS in sigma, by which robots of this kind differ from any model of them."""
+        return self._inexact
 
     @property
     def parameters(self) -> tuple[Quantity, ...]:
@@ -98,6 +118,20 @@ class RollerRacer:
             return self._mapped[1][form]
         find = of_slip if CATALOGUE[name].stiff else of_servo
         return find(self, name, self.catalogue[name].forms[form], fit)
+
+    def twin(self, values: Mapping[str, float]) -> Mapping[str, float] | None:
+        """The other way to see two halves of a floor: which is the usual, and which the patch."""
+        if "floor_patch.normal" not in values:
+            return None
+        factor = values["floor_patch.multiplier"]
+        own = [name for name in ("kappa1", "kappa2") if name in values]
+        away = sum(math.log(values[name] / self.nominal[name]) for name in own)
+        if factor <= 0 or abs(away + len(own) * math.log(factor)) >= abs(away):
+            return None
+        normal = values["floor_patch.normal"]
+        turned = normal - math.copysign(math.pi, normal)
+        other = {"floor_patch.multiplier": 1 / factor, "floor_patch.normal": turned}
+        return {**values, **other, **{name: factor * values[name] for name in own}}
 
     def start(self, piece: Piece) -> Array:
         """x, y, psi as first recorded, and for z, which swings less than v, the mean of v."""
@@ -218,6 +252,15 @@ def _system(effects: tuple[str, ...]) -> tuple[System, tuple[str, ...]]:
     motion = floor_motion(effects)
     stiff = len(motion.free) if motion.slips else 0
     return System(motion.rates, motion.seen, stiff, lasts=True), motion.parameters
+
+
+def _travelled(data: Data) -> Array:
+    """The way so far, m (n,), from places half a second apart, so that noise does not count."""
+    seen = np.isfinite(data.values[:, :2]).all(axis=1)
+    at = np.arange(data.t[0], data.t[-1], 0.5)
+    x, y = (np.interp(at, data.t[seen], data.values[seen, k]) for k in (0, 1))
+    way = np.append(0.0, np.cumsum(np.hypot(np.diff(x), np.diff(y))))
+    return np.interp(data.t, at, way)
 
 
 def _data(run: Run) -> Data:

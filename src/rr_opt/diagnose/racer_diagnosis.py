@@ -14,12 +14,16 @@ from rr_opt.diagnose.indistinguishable import groups
 from rr_opt.diagnose.next_experiment import next_experiment
 from rr_opt.diagnose.racer import RollerRacer
 from rr_opt.diagnose.residue import residue
+from rr_opt.diagnose.stages.located import located
+from rr_opt.diagnose.stages.stages import stages
 
 
 def diagnose_racer(racer: RollerRacer, steps: Steps | None = None) -> Diagnosis:
     """Diagnose a Roller Racer from its recordings."""
     it = found(racer, steps or Steps())
     said = answer(it)
+    tested = it.steps.timed("where", lambda: stages(racer, it.search.base.whole))
+    said = located(said, tested, racer.catalogue)
     said = _told_apart(racer, it, said)
     if said.verdict == "unexplained":
         left = it.steps.timed("what is left", lambda: residue(racer, it.search.base))

@@ -24,6 +24,10 @@ class Drives:
         self._runs, self._joint = runs, joint
         self._of = lru_cache(maxsize=64)(self._made)
 
+    def __reduce__(self) -> tuple:
+        """For another process: what is kept stays here."""
+        return Drives, (self._runs, self._joint)
+
     def of(self, run: int, given: Mapping[str, float], effects: tuple[str, ...]) -> Drive:
         """What the servo makes of the gait that it is told in a run."""
         own = tuple(

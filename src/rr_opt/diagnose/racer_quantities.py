@@ -44,10 +44,7 @@ def nominal(experiment: Experiment) -> dict[str, float]:
 def uncertain(experiment: Experiment, setting: Setting) -> tuple[Quantity, ...]:
     """The robot's own values that are not known exactly, and those of the effects that it has."""
     values = nominal(experiment)
-    known = experiment.uncertainty
-    free = dict(known)
-    if all(known.get(f"kappa{i}", Uncertainty()).factor for i in (1, 2)):
-        free.pop("h", None)  # the wheel's radius counts through kappa/h^2 alone
+    free = experiment.uncertainty
     own = [_parameter(name, values[name], free[name]) for name in _EVERYTHING if name in free]
     return (*own, *(q for use in experiment.robot.physics for q in _present(use, setting)))
 

@@ -37,6 +37,9 @@ _IN_WINDOWS, _DEAR, _WHOLE = 5, 4, 3
 _WORTH = 0.05
 """Of what the best promises, any but the first few have to promise that share."""
 
+_PLAIN = 0.05
+"""Misfit in windows, in sigma squared, that is plain to see."""
+
 _LUCK = 25.0
 """So much lower a chi-square is, by luck, where the best of many places was chosen."""
 
@@ -94,9 +97,9 @@ def rms(excess: float) -> float:
     return math.sqrt(max(excess, 0.0))
 
 
-def certain(excess: float, count: int) -> float:
+def certain(excess: float, count: int, z: float = 3.1) -> float:
     """The misfit of so many values, RMS in sigma, less what noise reaches once in a thousand."""
-    return rms(excess - 3.1 * math.sqrt(2 / max(count, 1)))
+    return rms(excess - z * math.sqrt(2 / max(count, 1)))
 
 
 @dataclass
@@ -152,7 +155,7 @@ class Search:
 
     def _round(self, best: Explanation) -> list[Explanation]:
         """The explanations with one effect more that promise most."""
-        fit = best.windows
+        fit = _sight(best)
         promised = screen(self.model, fit, best.chosen) + self._jumps(best, dear=False)
         promised.sort(key=lambda one: one.cost)
         most = fit.cost - _WORTH * (fit.cost - promised[0].cost) if promised else 0.0
@@ -165,8 +168,9 @@ class Search:
 
     def _jumps(self, best: Explanation, *, dear: bool) -> list[Promise]:
         """The effects that jump, of which each promises more than luck."""
-        most = best.windows.cost - _LUCK * doubt(best.windows.cost, best.windows.count)
-        promised = jumps(self.model, best.windows, best.chosen, dear=dear)
+        fit = _sight(best)
+        most = fit.cost - _LUCK * doubt(fit.cost, fit.count)
+        promised = jumps(self.model, fit, best.chosen, dear=dear)
         return [one for one in promised if one.cost < most]
 
     def _fitted(
@@ -222,6 +226,16 @@ class _Whole:
         """The fit over whole runs, from that over windows."""
         one, fit = pair
         return Explanation((*self.have, one), fit, joined(self.model, fit))
+
+
+def _sight(best: Explanation) -> Fit:
+    """The fit to look out from for what is missing.
+
+    What is plain in windows is nearly linear there. What is not adds up over whole runs, and is
+    small enough to be linear over them.
+    """
+    seen = best.windows.cost / best.windows.count - 1.0
+    return best.windows if seen > _PLAIN else best.whole
 
 
 def _hopeless(fit: Fit, best: Fit) -> bool:

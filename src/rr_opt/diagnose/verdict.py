@@ -17,24 +17,41 @@ LEFT = 0.35
 SHARE = 0.1
 """Nor is more than this share of the misfit that the parameters alone leave."""
 
+NEAR, SHARE_OF_NOMINAL = 0.5, 0.05
+"""Where the held-out recordings are predicted to within the first, RMS in sigma beyond the noise,
+the second share is enough of the misfit of the model as believed, which parameters imitate."""
+
+_LIKELY = 2.33
+"""Noise reaches so many standard deviations once in a hundred."""
+
 
 def verdict_of(
-    best: Explanation, base: Explanation, nominal: float, held: tuple[float, float], moved: bool
+    best: Explanation,
+    base: Explanation,
+    nominal: float,
+    held: tuple[float, float],
+    inexact: float,
+    *,
+    moved: bool,
 ) -> Verdict:
     """The verdict.
 
     nominal  misfit of the model as believed, RMS in sigma beyond the noise
     held     the same of the held-out recordings, with the parameters alone and with everything
+    inexact  misfit of the model as believed that says nothing about its values
     moved    whether a parameter left what was known of it
     """
     if not best.chosen:
-        explained = max(certain(base.misfit, base.whole.count), held[0]) <= max(LEFT, FLOOR)
-        if not explained:
+        left = certain(base.misfit, base.whole.count, _LIKELY)
+        if left > FLOOR or held[0] > LEFT:
             return "unexplained"
-        return "parameters" if moved and nominal > FLOOR else "consistent"
+        return "parameters" if moved and nominal > max(FLOOR, inexact) else "consistent"
     left = max(certain(best.misfit, best.whole.count), held[1])
     before = max(rms(base.misfit), held[0])
-    return "missing_physics" if left <= max(LEFT, SHARE * before) else "unexplained"
+    explained = left <= max(LEFT, SHARE * before)
+    if held[1] <= NEAR and left <= SHARE_OF_NOMINAL * nominal:
+        explained = True
+    return "missing_physics" if explained else "unexplained"
 
 
 def confidence(best: Explanation, rivals: Sequence[Explanation]) -> float:

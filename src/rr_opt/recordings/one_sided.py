@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-_NEIGHBOURS = 7
+_NEIGHBOURS = 9
 _REACH = 21.0
 """Steps of time within which they have to be."""
 
@@ -22,7 +22,7 @@ def misses(
     """By how many standard deviations y[rows] is off a parabola through its neighbours.
 
     u: (n,), times in steps; good: (n,), what may be a neighbour; noise: (n,), standard deviations.
-    Two arrays (m,): from the seven before and the seven after; infinite where they are not there.
+    Two arrays (m,): from the nine before and the nine after; infinite where they are not there.
     """
     at = np.flatnonzero(good)
     place = np.searchsorted(at, rows)

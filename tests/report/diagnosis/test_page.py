@@ -15,8 +15,8 @@ CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))
 DESK, PHONE = 1200, 412
 FIGURES = {
     "consistent": 3,
-    "parameters": 3,
-    "missing_physics": 4,
+    "parameters": 4,
+    "missing_physics": 5,
     "unexplained": 5,
 }
 

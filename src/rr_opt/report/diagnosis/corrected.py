@@ -13,7 +13,7 @@ from rr_opt.diagnose.diagnosis import Diagnosis
 from rr_opt.experiment.experiment import Experiment
 from rr_opt.physics.effects import CATALOGUE
 from rr_opt.report.robot_record import robot_record
-from rr_opt.robot.parameters import EffectUse, Platform, Robot
+from rr_opt.robot.parameters import EffectUse, Platform, Robot, Servo
 
 _PARTS = ("m", "I", "c", "a", "b", "kappa")
 _DIGITS = 7
@@ -29,6 +29,7 @@ def corrected_robot(experiment: Experiment, found: Diagnosis) -> Robot:
         platform1=_platform(robot.platform1, 1, fitted),
         platform2=_platform(robot.platform2, 2, fitted),
         h=fitted.get("h", robot.h),
+        servo=_servo(robot.servo, fitted),
         physics=_physics(robot, fitted),
         provenance=MappingProxyType({**robot.provenance, **_provenance(experiment, found)}),
         name=f"{robot.name or experiment.name}, corrected",
@@ -56,6 +57,12 @@ def robot_yaml(robot: Robot, title: str) -> str:
 def _platform(platform: Platform, number: int, fitted: Mapping[str, float]) -> Platform:
     own = {part: fitted[f"{part}{number}"] for part in _PARTS if f"{part}{number}" in fitted}
     return replace(platform, **own)
+
+
+def _servo(servo: Servo, fitted: Mapping[str, float]) -> Servo:
+    """The servo, no faster than it was seen to be: gaits are then sought that it can make."""
+    seen = fitted.get("servo_rate_limit.rate_limit", math.inf)
+    return replace(servo, rate_limit=min(servo.rate_limit, seen))
 
 
 def _physics(robot: Robot, fitted: Mapping[str, float]) -> tuple[EffectUse, ...]:

@@ -10,7 +10,9 @@ import numpy as np
 
 from rr_opt.diagnose.diagnosis import Diagnosis, Misfit, Stage
 from rr_opt.experiment.experiment import Experiment
+from rr_opt.physics.effects import CATALOGUE
 from rr_opt.report.diagnosis.corrected import corrected_robot
+from rr_opt.report.diagnosis.loss import Loss, NotTold, loss
 from rr_opt.robot.parameters import Robot
 
 
@@ -33,6 +35,19 @@ class Diagnosed:
         """The robot with what was found in it."""
         return corrected_robot(self.experiment, self.found)
 
+    @cached_property
+    def loss(self) -> Loss | NotTold | None:
+        """What the best gait of the robot as believed loses; None where that robot is right."""
+        if self.found.verdict == "consistent":
+            return None
+        curved = any(CATALOGUE[use.name].nameless for use in self.corrected.physics)
+        if self.found.verdict == "unexplained" and not curved:
+            return NotTold(
+                "What the best gait of the robot as believed would lose is not told: the robot as "
+                "found lacks what has no name."
+            )
+        return loss(self.experiment, self.corrected)
+
     @property
     def guilty(self) -> tuple[Stage, ...]:
         """The stages in which a fault sits."""
@@ -47,6 +62,14 @@ class Diagnosed:
     def marked(self) -> bool:
         """Whether the experiment keeps a recording apart from the fit."""
         return any(one.held_out for one in self.found.final)
+
+    @property
+    def proven_on(self) -> str:
+        """What the misfits before and after are of, in words."""
+        if self.marked:
+            return "held-out recordings"
+        several = len(self.found.final) > 1
+        return "each recording, from the others" if several else "the one recording, fitted"
 
     @property
     def proof(self) -> tuple[int, ...]:

@@ -13,7 +13,7 @@ from rr_opt.report.diagnosis.record import record
 from rr_opt.report.diagnosis.words import headline
 
 RECORD, ROBOT, PAGE = "diagnosis.json", "robot-corrected.yaml", "report.html"
-FIGURES = ("evidence", "paths", "bands", "misfit", "residue")
+FIGURES = ("evidence", "paths", "bands", "misfit", "residue", "loss")
 
 
 def write_diagnosis(
@@ -24,6 +24,7 @@ def write_diagnosis(
     What an earlier run left under the same names is removed before.
     """
     remove(folder, (RECORD, ROBOT, PAGE, *(f"{name}.svg" for name in FIGURES)))
+    progress("the best gait, as believed and as found")
     title = f"{headline(one.found)}.\nFrom {one.name} by rr-opt {__version__} diagnose."
     written = [
         write_json(folder / RECORD, record(one)),

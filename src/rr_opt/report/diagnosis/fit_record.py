@@ -11,7 +11,11 @@ from rr_opt.report.diagnosis.diagnosed import Diagnosed, rms
 
 
 def fit_record(one: Diagnosed) -> dict[str, Any]:
-    """Everything in sigma; 1 is the noise. Fitted recordings stand in for held-out ones."""
+    """Everything in sigma; 1 is the noise.
+
+    Where none is held out, `heldout_rms_before` and `_after` are of the fitted recordings, each
+    predicted from the others, and `heldout_rms_parameters` is of the fitted ones as they are.
+    """
     found = one.found
     levels = {"before": found.nominal, "parameters": found.refitted, "after": found.final}
     fitted = {name: [m for m in level if not m.held_out] for name, level in levels.items()}

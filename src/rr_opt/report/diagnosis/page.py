@@ -7,6 +7,8 @@ from html import escape
 
 from rr_opt import __version__
 from rr_opt.report.diagnosis.diagnosed import Diagnosed
+from rr_opt.report.diagnosis.loss import Loss, NotTold
+from rr_opt.report.diagnosis.loss_words import share_lost
 from rr_opt.report.diagnosis.recording_tables import misfit_table, recordings_table
 from rr_opt.report.diagnosis.strip import STYLE, strip
 from rr_opt.report.diagnosis.tables import (
@@ -23,6 +25,7 @@ _TITLES = {
     "paths": "Before and after: paths",
     "misfit": "Before and after: misfit of each recording",
     "bands": "Before and after: what the simulation leaves",
+    "loss": "What the wrong model would cost",
 }
 
 _CANDIDATES = (
@@ -45,6 +48,7 @@ def page(one: Diagnosed, figures: Mapping[str, str], captions: Mapping[str, str]
         _tiles(one),
         f'<div class="flow">{drawn}</div>' if drawn else "",
         card("What was found", effects_table(one)),
+        card("What the wrong model would cost", _no_loss(one)),
         card("What cannot be told, and what to record next", _open(one)),
         card("What was tried", _with_note(candidates_table(one), _CANDIDATES)),
         card("The robot's parameters", parameters_table(one)),
@@ -66,9 +70,8 @@ def _header(one: Diagnosed) -> str:
 
 def _tiles(one: Diagnosed) -> str:
     found = one.found
-    kind = "held-out recordings" if one.marked else "fitted recordings"
     tiles = [
-        (f"{found.before:.2f} σ", f"off before, {kind}"),
+        (f"{found.before:.2f} σ", f"off before, {one.proven_on}"),
         (f"{found.after:.2f} σ", "off now; 1 is the noise"),
     ]
     for finding in found.findings[:3]:
@@ -81,6 +84,8 @@ def _tiles(one: Diagnosed) -> str:
                 (name, value_text(each)) for name, each in list(finding.parameters.items())[:2]
             )
         ]
+    if isinstance(one.loss, Loss):
+        tiles.append((share_lost(one.loss), "of the speed lost by the best gait as believed"))
     inner = "".join(
         f'<div class="tile"><b>{escape(value)}</b><span>{escape(words)}</span></div>'
         for value, words in tiles
@@ -105,6 +110,11 @@ def _open(one: Diagnosed) -> str:
             f"part {between} by {asked.separation:.1f} σ RMS."
         )
     return "".join(f"<p>{escape(sentence)}</p>" for sentence in said)
+
+
+def _no_loss(one: Diagnosed) -> str:
+    """Why no loss is told, where none is."""
+    return f"<p>{escape(one.loss.sentence)}</p>" if isinstance(one.loss, NotTold) else ""
 
 
 def _with_note(body: str, note: str) -> str:

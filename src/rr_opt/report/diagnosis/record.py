@@ -9,6 +9,7 @@ from rr_opt import __version__
 from rr_opt.diagnose.diagnosis import Curve, Estimate, Finding, Residue, Stage, Tried
 from rr_opt.report.diagnosis.diagnosed import Diagnosed
 from rr_opt.report.diagnosis.fit_record import fit_record, number_of
+from rr_opt.report.diagnosis.loss_words import loss_record
 
 
 def record(one: Diagnosed) -> dict[str, Any]:
@@ -28,6 +29,7 @@ def record(one: Diagnosed) -> dict[str, Any]:
         "indistinguishable": [list(group) for group in found.indistinguishable],
         "next_experiment": _next(one),
         "fit": fit_record(one),
+        "loss": loss_record(one.loss),
         "residue": [_residue(each) for each in found.residue],
         "parameters": {name: _estimate(each) for name, each in found.parameters.items()},
         "values": {name: number_of(value) for name, value in found.values.items()},

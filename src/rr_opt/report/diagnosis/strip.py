@@ -13,13 +13,14 @@ from rr_opt.report.diagnosis.stage_words import size_text, stage_words
 STYLE = """
 ol.strip { list-style:none; margin:0; padding:0; display:grid; gap:8px;
   grid-template-columns:repeat(auto-fit,minmax(120px,1fr)); }
-ol.strip li { border:1px solid var(--line); border-radius:8px; padding:10px 12px; min-width:0;
+ol.strip li { border:1px solid var(--line); border-radius:8px; padding:10px; min-width:0;
   background:var(--ground); overflow-wrap:anywhere; }
 ol.strip b, ol.strip span { display:block; }
+ol.strip b { font-size:.92rem; }
 ol.strip b::first-letter { text-transform:uppercase; }
 ol.strip span { color:var(--grey); font-size:.86rem; }
 ol.strip .mark { color:var(--good); font-weight:650; }
-ol.strip .after .mark, ol.strip .untested .mark { color:var(--grey); }
+ol.strip .after .mark, ol.strip .unclear .mark, ol.strip .untested .mark { color:var(--grey); }
 ol.strip .guilty { background:var(--bad); border-color:var(--bad); }
 ol.strip .guilty b, ol.strip .guilty span { color:#fff; }
 .flow { columns:2; column-gap:20px; margin-bottom:20px; }
@@ -64,6 +65,7 @@ def strip(one: Diagnosed) -> str:
 _LOOKS = {
     "fault": ("guilty", "✗ fault"),
     "clear": ("clear", "✓ clear"),
+    "not clear": ("unclear", "? not clear"),
     "after the fault": ("after", "after the fault"),
 }
 
@@ -88,10 +90,12 @@ def _told(one: Diagnosed) -> str:
     if not one.found.stages:
         lit = "" if one.found.channel == "none" else " Lit: where the accepted effect acts."
         return f"The stages were not tested one by one.{lit}"
+    where = f"{one.where[0].upper()}{one.where[1:].removesuffix('.')}. " if one.where else ""
     if not one.guilty:
-        return "No stage has a fault that counts. σ: one standard deviation of the noise."
-    where = f"{one.where[0].upper()}{one.where[1:]}. " if one.where else ""
-    return (
-        f"{where}Each stage is tested with what comes before it set right, so a fault does not "
-        "blame the stages after it. σ: one standard deviation of the noise."
-    )
+        return f"{where or 'No stage has a fault that counts. '}{_SIGMA}"
+    named = one.found.verdict == "missing_physics"
+    lit = "the stage in which what was named acts" if named else "the first stage with a fault"
+    return f"{where}Lit: {lit}; a fault shows in the stages after it too. {_SIGMA}"
+
+
+_SIGMA = "σ: one standard deviation of the noise."

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from rr_opt.diagnose.diagnosis import Finding
 from rr_opt.report.diagnosis.diagnosed import Diagnosed
+from rr_opt.report.diagnosis.loss_words import loss_line
 from rr_opt.report.diagnosis.stage_words import size_text, stage_words
 from rr_opt.report.diagnosis.words import (
     candidate_words,
@@ -39,6 +40,8 @@ def summary(one: Diagnosed, written: Sequence[Path]) -> str:
         for group in found.indistinguishable
     ]
     rows += [("left over", each.sentence) for each in found.residue]
+    if one.loss is not None:
+        rows.append(("lost speed", loss_line(one.loss)))
     if found.next_experiment is not None:
         rows.append(("record next", found.next_experiment.sentence))
     rows.append(("took", f"{sum(found.seconds.values()):.0f} s"))
@@ -60,8 +63,11 @@ def _finding(finding: Finding, verdict: str) -> list[tuple[str, ...]]:
 
 def _misfit(one: Diagnosed) -> list[tuple[str, ...]]:
     found = one.found
-    what = "held out" if one.marked else "fitted"
-    return [
-        ("misfit", f"{found.before:.2f} sigma before, {found.after:.2f} after, 1 is the noise "
-            f"({len(one.proof)} {what} recording{'s' if len(one.proof) != 1 else ''})")
-    ]  # fmt: skip
+    before, after = f"{found.before:.2f} sigma before", f"{found.after:.2f} after"
+    return [("misfit", f"{before}, {after}, 1 is the noise ({_proof(one)})")]
+
+
+def _proof(one: Diagnosed) -> str:
+    if not one.marked:
+        return one.proven_on
+    return f"{len(one.proof)} held out recording{'s' if len(one.proof) != 1 else ''}"

@@ -10,6 +10,13 @@ from rr_opt.report.figures.diagnosis.look import NOISE, NOMINAL
 from rr_opt.report.figures.style import GREY
 
 _Z = 1.96
+_NAMES = {
+    "phase": "phase of the cycle",
+    "rate": "commanded rate",
+    "along": "place along x",
+    "across": "place along y",
+    "time": "time since the start",
+}
 
 
 def curve(ax: Axes, one: Curve | Residue, label: str) -> Axes:
@@ -18,7 +25,7 @@ def curve(ax: Axes, one: Curve | Residue, label: str) -> Axes:
     ax.axhline(0, color=NOISE, lw=1)
     ax.fill_between(one.at, low, high, color=NOMINAL, alpha=0.22, lw=0)
     ax.plot(one.at, one.mean, "o-", color=NOMINAL, ms=3.5, lw=1.4)
-    name = one.variable.replace("_", " ")
+    name = _NAMES.get(one.variable, one.variable.replace("_", " "))
     ax.set_xlabel(f"{name}, {one.unit}" if one.unit else name)
     ax.set_ylabel(label)
     seen = np.concatenate([low, high])

@@ -7,14 +7,17 @@ from matplotlib.figure import Figure
 
 from rr_opt.experiment.recording import CHANNELS
 from rr_opt.report.diagnosis.diagnosed import Diagnosed
+from rr_opt.report.diagnosis.loss import Loss
+from rr_opt.report.diagnosis.loss_words import loss_sentences
 from rr_opt.report.figures.diagnosis.bands import bands
 from rr_opt.report.figures.diagnosis.evidence import curve
 from rr_opt.report.figures.diagnosis.look import FINAL, NOISE, NOMINAL, WIDTH
+from rr_opt.report.figures.diagnosis.lost_speed import lost_speed
 from rr_opt.report.figures.diagnosis.misfit import misfit
 from rr_opt.report.figures.diagnosis.paths import flat, path
 from rr_opt.report.figures.style import figure, styled, svg
 
-NAMES = ("evidence", "paths", "bands", "misfit", "residue")
+NAMES = ("evidence", "paths", "bands", "misfit", "residue", "loss")
 
 _MOST_PATHS, _MOST_BANDS, _MOST_CURVES = 4, 4, 8
 
@@ -23,7 +26,7 @@ def draw(one: Diagnosed) -> tuple[dict[str, str], dict[str, str]]:
     """SVG texts by name, and what to write under each; those for which there is something."""
     drawn: dict[str, str] = {}
     told: dict[str, str] = {}
-    makers = (_evidence, _paths, _bands, _misfit, _residue)
+    makers = (_evidence, _paths, _bands, _misfit, _residue, _loss)
     with styled():
         for name, make in zip(NAMES, makers, strict=True):
             made = make(one)
@@ -96,7 +99,7 @@ def _misfit(one: Diagnosed) -> tuple[Figure, str]:
     misfit(ax := made.subplots(), found.nominal, found.refitted, found.final)
     made.legend(*ax.get_legend_handles_labels(), loc="outside lower center", ncols=3)
     held = "Held-out recordings took no part in the fit." if one.marked else (
-        "No recording was held out: mark one with `use: holdout`."
+        "All of them were fitted: mark one with `use: holdout` to see it predicted."
     )  # fmt: skip
     return made, f"RMS of simulated less recorded over all channels, in σ of the noise. {held}"
 
@@ -109,3 +112,11 @@ def _residue(one: Diagnosed) -> tuple[Figure, str] | None:
     for ax, each in zip(np.atleast_1d(made.subplots(len(some), 1)), some, strict=True):
         curve(ax, each, f"{each.kind.replace('_', ' ')}, N")
     return made, " ".join(each.sentence for each in some)
+
+
+def _loss(one: Diagnosed) -> tuple[Figure, str] | None:
+    if not isinstance(one.loss, Loss):
+        return None
+    made = figure(WIDTH, 3.0)
+    lost_speed(made.subplots(), one.loss)
+    return made, loss_sentences(one.loss)

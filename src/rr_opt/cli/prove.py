@@ -1,0 +1,148 @@
+"""`rr-opt prove`: sealed cases by lot, diagnosed blind, opened and scored."""
+
+from __future__ import annotations
+
+from contextlib import closing
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from rr_opt.cli.options import out_option
+from rr_opt.cli.study_progress import CaseProgress
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rr_opt.batch.pool import Pool
+
+
+def prove(
+    *,
+    cases: Annotated[int, typer.Option(help="How many.", min=1, max=999)] = 100,
+    seed: Annotated[
+        str | None,
+        typer.Option(
+            metavar="HEX",
+            help="Of all lots; left out, the hash of the commit.",
+            show_default="commit",
+        ),
+    ] = None,
+    kinds: Annotated[
+        str | None,
+        typer.Option(
+            help="Only these: null, single, pair, parameters, outside.", show_default="all"
+        ),
+    ] = None,
+    out: Annotated[Path | None, out_option("out/proof")] = None,
+    workers: Annotated[
+        int | None, typer.Option(help="Processes here.", min=1, show_default="one a core")
+    ] = None,
+    scheduler: Annotated[
+        str | None, typer.Option(help="Work on a dask cluster: tcp://HOST:PORT of its scheduler.")
+    ] = None,
+    case: Annotated[
+        int | None,
+        typer.Option(metavar="ID", help="Make and diagnose this case alone, and tell both.", min=1),
+    ] = None,
+    restart: Annotated[
+        bool, typer.Option("--restart", help="Forget the cases of an earlier run.")
+    ] = False,
+    json: Annotated[bool, typer.Option("--json", help="Print proof.json alone on stdout.")] = False,
+) -> None:
+    """Try `diagnose` on cases of the laboratory whose answers are sealed, and count.
+
+    A run that was stopped goes on where it was when the same command is given again.
+    """
+    from rr_opt.batch.run import run  # noqa: PLC0415
+    from rr_opt.lab.engine import engine  # noqa: PLC0415
+    from rr_opt.proof.lots import KINDS, read_kinds  # noqa: PLC0415
+    from rr_opt.proof.trial import tidy  # noqa: PLC0415
+    from rr_opt.proof.whole import whole_trial  # noqa: PLC0415
+    from rr_opt.report.archive import folder_for_results, strict_json  # noqa: PLC0415
+    from rr_opt.report.archive import write_bytes as keep  # noqa: PLC0415
+
+    folder = folder_for_results(out or Path("out/proof"))
+    chosen = read_kinds(kinds) if kinds is not None else KINDS
+    # A laboratory without its engine is told before any case is, and not for each.
+    engine()
+    if case is not None:
+        typer.echo(_one(folder, _seed_of_one(seed, folder), case, chosen, json=json), nl=False)
+        return
+    word = _seed(seed, folder)
+    with closing(_pool(workers, scheduler)) as pool:
+        opened = whole_trial(
+            folder,
+            word,
+            range(1, cases + 1),
+            chosen,
+            keep=keep,
+            run=partial(run, pool),
+            count=partial(_count, total=cases),
+            restart=restart,
+        )
+    from rr_opt.report.proof.files import write_proof  # noqa: PLC0415
+    from rr_opt.report.proof.record import record  # noqa: PLC0415
+    from rr_opt.report.proof.summary import summary  # noqa: PLC0415
+
+    written = write_proof(opened, folder)
+    tidy(folder, [case.id for case in opened.cases if not case.missed])
+    typer.echo(strict_json(record(opened)) if json else summary(opened), nl=False)
+    if not json:
+        typer.echo("\n" + "".join(f"{path}\n" for path in written), nl=False)
+
+
+def _count(words: str, steps: Iterator[int], done: int, total: int) -> None:
+    """Carry the steps out and show how many are done."""
+    if done:
+        typer.echo(f"{done} of {total} cases are {words} from an earlier run.", err=True)
+    try:
+        with CaseProgress(done, total) as progress:
+            for _ in steps:
+                done += 1
+                progress()
+    except KeyboardInterrupt:
+        kept = f"{done} of {total} cases are {words}"
+        typer.echo(f"{kept} and kept. The same command goes on with the others.", err=True)
+        raise
+
+
+def _one(folder: Path, seed: str, number: int, kinds: tuple[str, ...], *, json: bool) -> str:
+    """Make one case again, diagnose it, and tell what was hidden and what was said."""
+    from rr_opt.cli.steps import Steps  # noqa: PLC0415
+    from rr_opt.proof.lots import draw_lot  # noqa: PLC0415
+    from rr_opt.proof.one import one_case  # noqa: PLC0415
+    from rr_opt.report.archive import strict_json, write_bytes  # noqa: PLC0415
+    from rr_opt.report.proof.record import case_record  # noqa: PLC0415
+    from rr_opt.report.proof.told import told  # noqa: PLC0415
+
+    lot = draw_lot(seed, number, kinds)
+    place = folder / "again" / lot.id
+    with Steps() as steps:
+        found = one_case(lot, place, write_bytes, steps)
+    return strict_json(case_record(found)) if json else told(found, place)
+
+
+def _seed(text: str | None, folder: Path) -> str:
+    from rr_opt.proof.commit import read_seed, seed_of_commit  # noqa: PLC0415
+    from rr_opt.proof.whole import PACKAGE  # noqa: PLC0415
+
+    return seed_of_commit(PACKAGE, folder) if text in (None, "commit") else read_seed(text)
+
+
+def _seed_of_one(text: str | None, folder: Path) -> str:
+    """The seed given, or that of the trial in the folder."""
+    from rr_opt.proof.trial import seed_of  # noqa: PLC0415
+
+    return (seed_of(folder) if text is None else None) or _seed(text, folder)
+
+
+def _pool(workers: int | None, scheduler: str | None) -> Pool:
+    if scheduler:
+        from rr_opt.batch.cluster import ClusterPool  # noqa: PLC0415
+
+        return ClusterPool(scheduler)
+    from rr_opt.batch.local import LocalPool  # noqa: PLC0415
+
+    return LocalPool(workers)

@@ -1,0 +1,76 @@
+"""What the wrong model would have cost, in sentences and for scripts."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from rr_opt.report.diagnosis.loss import Loss, NotTold
+from rr_opt.report.quantities import number, with_unit
+from rr_opt.robot.gait import Gait
+
+_NONE = 5e-4
+"""A smaller share of the speed is not told as a loss."""
+
+
+def share_lost(one: Loss) -> str:
+    """`12 %`; `nothing` where it is less than a tenth of a per cent."""
+    return "nothing" if one.share < _NONE else f"{number(100 * one.share, 2)} %"
+
+
+def pace(speed: float) -> str:
+    """`298.3 mm/s forward`."""
+    return f"{1e3 * abs(speed):.1f} mm/s {'forward' if speed > 0 else 'backward'}"
+
+
+def loss_sentences(one: Loss | NotTold | None) -> str:
+    """A few sentences; nothing where the robot as believed is right."""
+    if one is None:
+        return ""
+    if isinstance(one, NotTold):
+        return one.sentence
+    said = (
+        f"The best gait for the robot as believed ({gait_words(one.believed)}) promises "
+        f"{pace(one.promised)}; the robot as found makes {pace(one.reached)} of it. Its own best "
+        f"gait ({gait_words(one.best)}) makes {pace(one.speed)}. "
+        f"Lost by the wrong model: {share_lost(one)}."
+    )
+    if one.unseen:
+        said += " These gaits ask for more than was recorded: this is foretold, and not seen."
+    return said
+
+
+def loss_line(one: Loss | NotTold) -> str:
+    """The same in a line."""
+    if isinstance(one, NotTold):
+        return one.sentence
+    return (
+        f"{share_lost(one)}: the best gait as believed promises {pace(one.promised)} and makes "
+        f"{pace(one.reached)}; the best as found makes {pace(one.speed)}"
+    )
+
+
+def gait_words(gait: Gait) -> str:
+    """`1.51 rad, 1.73 s`, and an offset if there is one."""
+    said = f"{with_unit(gait.amplitude, 'rad', 3)}, {with_unit(gait.period, 's', 3)}"
+    return f"{said}, offset {with_unit(gait.offset, 'rad', 3)}" if gait.offset else said
+
+
+def loss_record(one: Loss | NotTold | None) -> dict[str, Any] | None:
+    """diagnosis.json's `loss`: null where the robot as believed is right; SI."""
+    if one is None:
+        return None
+    if isinstance(one, NotTold):
+        return {"not_told": one.sentence}
+    return {
+        "gait_as_believed": _gait(one.believed),
+        "speed_promised": one.promised,
+        "speed_reached": one.reached,
+        "gait_as_found": _gait(one.best),
+        "speed_as_found": one.speed,
+        "share_lost": one.share,
+        "beyond_what_was_recorded": one.unseen,
+    }
+
+
+def _gait(gait: Gait) -> dict[str, float]:
+    return {"amplitude": gait.amplitude, "period": gait.period, "offset": gait.offset}

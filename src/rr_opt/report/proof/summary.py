@@ -1,0 +1,145 @@
+"""The outcome of a blind trial as text: on the terminal, and as README.md of its folder."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from rr_opt.proof.opened import Opened
+from rr_opt.proof.score import coverage, spread
+from rr_opt.proof.score.measures import measures
+from rr_opt.proof.score.p_values import DEFINITION, evenness
+from rr_opt.proof.score.rate import Rate, rate
+from rr_opt.report.proof.record import page_of
+from rr_opt.report.proof.words import (
+    hidden_text,
+    rate_text,
+    said_text,
+    share_text,
+    visible_text,
+)
+from rr_opt.report.quantities import number
+
+ISOLATION = (
+    "The laboratory drew and sealed every case before the first was diagnosed. Each was diagnosed "
+    "by a program of its own, `rr-opt diagnose`, in a temporary folder that holds a copy of the "
+    "recordings and their experiment.yaml, with arguments and environment that tell nothing else. "
+    "It runs as the same user, so nothing but its own code keeps it from other files."
+)
+
+CHANGED = (
+    "The code of rr-opt changed while this ran, so the counts are of no one code. Begin anew with "
+    "--restart."
+)
+
+
+def summary(opened: Opened) -> str:
+    """The whole text, in Markdown that reads well as it is."""
+    parts = [
+        f"# {headline(opened)}",
+        f"Seed `{opened.seed}`, rr-opt {opened.version}, {len(opened.cases)} cases. {ISOLATION}",
+        CHANGED if opened.changed else "",
+        _measures(opened),
+        _coverage(opened),
+        _held_out(opened),
+        _p_values(opened),
+        _times(opened),
+        _misses(opened),
+        _not_made(opened),
+    ]
+    return "\n\n".join(part for part in parts if part) + "\n"
+
+
+def headline(opened: Opened) -> str:
+    """The two numbers that matter most."""
+    found = {one.name: one.rate for one in measures(opened.cases)}
+    single, null = found["single"], found["false_claims"]
+    told = []
+    if single.total:
+        told.append(f"{rate_text(single)} single effects named")
+    if null.total:
+        told.append(f"{rate_text(null)} nulls with a false claim")
+    return "Blind trial: " + (", ".join(told) or f"{len(opened.misses)} misses")
+
+
+def _measures(opened: Opened) -> str:
+    every = [one for one in measures(opened.cases) if one.rate.total]
+    rows = [(one.title, *_cells(one.rate)) for one in every]
+    lines = [f"- **{one.title.removeprefix('... ')}**: {one.definition}" for one in every]
+    head = ("what", "count", "share, 95 % interval")
+    return markdown(head, rows) + "\n\nWhat is counted:\n\n" + "\n".join(lines)
+
+
+def _coverage(opened: Opened) -> str:
+    every = coverage.intervals(opened.cases)
+    if not every:
+        return ""
+    rows = [("all", *_cells(rate(one.held for one in every)))]
+    rows += [(name, *_cells(one)) for name, one in coverage.by_quantity(every).items()]
+    head = ("quantity", "count", "share, 95 % interval")
+    return f"## Intervals that hold the true value\n\n{coverage.DEFINITION}\n\n" + markdown(
+        head, rows
+    )
+
+
+def _held_out(opened: Opened) -> str:
+    rows = []
+    for kind, row in spread.held_out(opened.cases).items():
+        after = row["after"]
+        cells = (row["before"].median, row["refitted"].median, after.median, after.most)
+        rows.append((kind, str(after.count), *("–" if c is None else number(c, 3) for c in cells)))
+    head = ("kind", "cases", "as believed", "parameters", "as found", "as found, 90 % below")
+    return f"## Held-out error\n\n{spread.HELD_OUT} Medians.\n\n" + markdown(head, rows)
+
+
+def _p_values(opened: Opened) -> str:
+    tests = evenness(opened.cases)
+    rows = [
+        (test, str(one["count"]), number(one["distance"], 2), number(one["chance"], 2),
+         str(one["below_005"]))
+        for test, one in tests.items()
+    ]  # fmt: skip
+    head = ("test", "nulls", "distance", "chance", "below 0.05")
+    return (
+        f"## p-values where nothing is hidden\n\n{DEFINITION}\n\n" + markdown(head, rows)
+        if (rows)
+        else ""
+    )
+
+
+def _times(opened: Opened) -> str:
+    rows = [
+        (f"{name} s", *("–" if c is None else number(c, 3) for c in (s.median, s.most, s.largest)))
+        for name, s in spread.times(opened.cases).items()
+    ]
+    return f"## Time\n\n{spread.TIME}\n\n" + markdown(("", "median", "90 % below", "most"), rows)
+
+
+def _misses(opened: Opened) -> str:
+    if not opened.misses:
+        return "## Misses\n\nNone."
+    rows = [
+        (f"[{case.id}]({page_of(case)})", case.outcome, hidden_text(case), visible_text(case),
+         said_text(case))
+        for case in opened.misses
+    ]  # fmt: skip
+    head = ("case", "outcome", "hidden", "visible", "said")
+    again = "`rr-opt prove --case ID` makes and diagnoses one again."
+    return f"## Misses\n\nEvery one, with its page. {again}\n\n" + markdown(head, rows)
+
+
+def _not_made(opened: Opened) -> str:
+    lines = [f"- {case}: {why}" for case, why in opened.failed.items()]
+    return "## Cases that the laboratory could not make\n\n" + "\n".join(lines) if lines else ""
+
+
+def _cells(one: Rate) -> tuple[str, str]:
+    return rate_text(one), share_text(one)
+
+
+def markdown(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """A table in Markdown, padded so that it reads well as plain text."""
+    table = [list(head), *(list(row) for row in rows)]
+    widths = [max(3, *(len(row[i]) for row in table)) for i in range(len(head))]
+    lines = ["| " + " | ".join(map(str.ljust, row, widths)) + " |" for row in table]
+    lines.insert(1, "|" + "|".join("-" * (width + 2) for width in widths) + "|")
+    return "\n".join(lines)

@@ -1,0 +1,60 @@
+"""`rr-opt prove` refuses what it cannot do, in three sentences, and does one case again."""
+
+import json
+import sys
+from dataclasses import replace
+
+import pytest
+from typer.testing import CliRunner
+
+from rr_opt.cli.main import app
+from rr_opt.proof import one
+from rr_opt.proof.child import diagnose_apart
+from tests.proof.test_trial import STUB, made_up
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["--seed", "xyz"], "--seed: Read 'xyz'. Expected hexadecimal digits"),
+        (["--seed", "1", "--kinds", "odd"], "--kinds: Read 'odd'. Expected some of null"),
+        (["--seed", "1", "--scheduler", "nowhere"], "No dask scheduler answers at 'nowhere'"),
+    ],
+)
+def test_wrong_input(words, told, tmp_path):
+    done = CliRunner().invoke(app, ["prove", *words, "--out", str(tmp_path / "proof")])
+    assert done.exit_code == 2
+    assert told in done.stderr
+    assert not (tmp_path / "proof").exists()
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_shared_work_comes_in_order_with_any_number_of_processes(workers):
+    from rr_opt.cli.shared_work import SharedWork  # noqa: PLC0415
+
+    work = SharedWork(workers)
+    try:
+        assert work(abs, [-3, 1, -2]) == [3, 1, 2]
+    finally:
+        work.close()
+
+
+def test_one_case_again_tells_what_was_hidden_and_what_was_said(tmp_path, monkeypatch):
+    def stub(task):
+        return diagnose_apart(replace(task, command=(sys.executable, STUB, "well")))
+
+    monkeypatch.setattr(one, "make", made_up)
+    monkeypatch.setattr(one, "diagnose_apart", stub)
+    words = ["prove", "--case", "2", "--out", str(tmp_path), "--seed", "5eed", "--kinds", "null"]
+    done = CliRunner().invoke(app, words)
+    assert done.exit_code == 0, done.output
+    for line in ("hidden  nothing", "said    consistent", "outcome  right"):
+        assert line.split() in [told.split() for told in done.stdout.splitlines()]
+    again = tmp_path / "again" / "002"
+    found = {str(path.relative_to(again)) for path in again.rglob("*") if path.is_file()}
+    assert found == {
+        "answer.json", "recordings/experiment.yaml", "said/diagnosis.json", "said/report.html",
+        "said/output.txt",
+    }  # fmt: skip
+    told = json.loads(CliRunner().invoke(app, [*words, "--json"]).stdout)
+    assert (told["case"], told["outcome"]) == ("002", "right")

@@ -1,0 +1,94 @@
+"""The loss is what a long simulation and a plain sweep make of the two robots."""
+
+import math
+from dataclasses import replace
+from types import MappingProxyType
+
+import numpy as np
+import pytest
+
+from rr_opt.motion.rollout import rollout
+from rr_opt.problem import GaitBounds, Limits, Problem
+from rr_opt.report.diagnosis.corrected import corrected_robot
+from rr_opt.report.diagnosis.loss import Loss, NotTold, loss
+from rr_opt.report.diagnosis.record import record
+from rr_opt.report.diagnosis.servo_made import servo_made
+from rr_opt.robot.gait import SineGait
+from rr_opt.robot.parameters import EffectUse
+from rr_opt.verify.sweep import sweep
+
+
+def with_effect(robot, name, **values):
+    return replace(robot, physics=(EffectUse(name, MappingProxyType(values)),))
+
+
+def test_what_the_gait_makes_is_what_a_long_drive_makes(missing):
+    told = missing.loss
+    assert isinstance(told, Loss)
+    # From rest by CVODES until it has settled; then the distance of one period.
+    T = told.believed.period
+    driven = rollout(missing.corrected, told.believed, 60 * T, "rest", 50 / T)
+    last = np.hypot(driven.x[-1] - driven.x[-51], driven.y[-1] - driven.y[-51])
+    assert abs(told.reached) == pytest.approx(last / T, rel=1e-4)
+    assert abs(told.promised) > abs(told.reached)
+
+
+def test_no_gait_of_a_sweep_is_faster_than_the_best(missing):
+    robot = missing.corrected
+    servo = robot.servo
+    limits = Limits(servo.angle_limit, servo.rate_limit, servo.torque_limit)
+    tried = sweep(Problem(robot, limits, GaitBounds()), {"amplitude": 12, "period": 12})
+    best = abs(tried.refined.speed)
+    assert best <= abs(missing.loss.speed) * (1 + 1e-4)
+    assert best > 0.9 * abs(missing.loss.speed)
+    assert 0 < missing.loss.share < 1
+
+
+def test_a_right_model_loses_nothing(missing, consistent):
+    assert consistent.loss is None
+    same = loss(missing.experiment, missing.experiment.robot)
+    assert abs(same.share) < 1e-6
+    assert same.promised == pytest.approx(same.reached)
+
+
+@pytest.mark.parametrize("effect", ["floor_patch", "floor_tilt", "lateral_slip"])
+def test_what_has_no_steady_motion_is_told_in_a_sentence(missing, effect):
+    robot = with_effect(missing.experiment.robot, effect)
+    told = loss(missing.experiment, robot)
+    assert isinstance(told, NotTold)
+    assert effect.replace("_", " ") in told.sentence
+
+
+def test_what_the_capture_system_sees_changes_no_speed(missing):
+    told = loss(missing.experiment, with_effect(missing.experiment.robot, "marker_offset", dx=0.01))
+    assert abs(told.share) < 1e-6
+
+
+def test_a_lagging_servo_makes_less_and_later(missing):
+    gait, tau = SineGait(0.6, 1.2, 0.1), 0.05
+    made = servo_made(with_effect(missing.experiment.robot, "servo_lag", tau=tau), gait)
+    turn = gait.angular_frequency * tau
+    assert made.amplitude == pytest.approx(0.6 / math.hypot(1, turn), rel=1e-6)
+    assert made.offset == pytest.approx(0.1)
+    t = np.linspace(0, 1.2, 50)
+    later = np.sin(gait.angular_frequency * t - math.atan(turn))
+    assert np.allclose(made.angle(t), 0.1 + made.amplitude * later, atol=1e-6)
+
+
+def test_a_servo_that_was_seen_to_be_slow_gets_gaits_it_can_make(missing):
+    values = {"servo_rate_limit.rate_limit": 1.7}
+    found = replace(missing.found, values=values, parameters={})
+    robot = corrected_robot(missing.experiment, found)
+    assert robot.servo.rate_limit == 1.7
+    told = loss(missing.experiment, robot)
+    assert told.best.peak_rate == pytest.approx(1.7, rel=1e-4)
+    # A triangle at the limit is what a servo makes that is asked for far more.
+    slow = servo_made(robot, SineGait(1.0, 1.0))
+    assert slow.amplitude == pytest.approx(1.7 / 4, rel=0.03)
+
+
+def test_the_record_has_it(missing, consistent, unexplained):
+    told = record(missing)["loss"]
+    assert told["share_lost"] == pytest.approx(1 - told["speed_reached"] / told["speed_as_found"])
+    assert record(consistent)["loss"] is None
+    assert "no name" in record(unexplained)["loss"]["not_told"]
