@@ -9,9 +9,10 @@ from dataclasses import replace
 import numpy as np
 
 from rr_opt.diagnose.explain import Chosen, explain, joined, nominal, parameters, windows
+from rr_opt.diagnose.explanation import Explanation
 from rr_opt.diagnose.model import Array, Piece
 from rr_opt.diagnose.racer import RollerRacer
-from rr_opt.diagnose.search import Explanation, Search
+from rr_opt.diagnose.search import Search
 from rr_opt.experiment.experiment import Experiment, Noise, Run, Start, Uncertainty
 from rr_opt.experiment.recording import CHANNELS, Recording
 from rr_opt.robot.gait import SineGait
@@ -104,6 +105,6 @@ def explained(model: RollerRacer, base: Explanation, *chosen: Chosen) -> Explana
 
 def search_of(model: RollerRacer, base: Explanation, *tried: Explanation) -> Search:
     """A search that tried these."""
-    search = Search(model, nominal(model, list(base.windows.starts)), base)
+    search = Search(model, nominal(model, list(base.windows.starts)), base, first=1.0)
     search.tried = [base, *tried]
     return search

@@ -14,11 +14,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rr_opt.diagnose.explanation import Explanation
 from rr_opt.diagnose.fit import Fit, Problem, bounded_step, box, doubt, scaled, unscaled
 from rr_opt.diagnose.model import Array, Piece, Quantity
 from rr_opt.diagnose.plans import Imagined, Plan, imagined
 from rr_opt.diagnose.racer import RollerRacer
-from rr_opt.diagnose.search import Explanation
 
 RANKED_RATE, _CHECKED_RATE = 25.0, 100.0
 """Samples a second of a made-up recording, to choose and to check."""

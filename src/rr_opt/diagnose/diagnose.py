@@ -12,11 +12,12 @@ import numpy as np
 
 from rr_opt.diagnose.diagnosis import Diagnosis, Finding, Misfit, Tried
 from rr_opt.diagnose.explain import joined, nominal, parameters, whole, windows
+from rr_opt.diagnose.explanation import Explanation, certain, misfit, rms
 from rr_opt.diagnose.fit import Fit, Problem, solve
 from rr_opt.diagnose.intervals import estimates
 from rr_opt.diagnose.left_out import left_out
 from rr_opt.diagnose.model import Array, Model, Piece
-from rr_opt.diagnose.search import Explanation, Search, certain, misfit, rms
+from rr_opt.diagnose.search import Search
 from rr_opt.diagnose.values import settled, wrong
 from rr_opt.diagnose.verdict import confidence, finding, verdict_of
 
@@ -109,7 +110,8 @@ def found(model: Model, steps: Steps) -> Found:
     )
     base = steps.timed("its parameters", lambda: _base(model, first))
     level1 = steps.timed("held-out recordings", lambda: _level(model, base.whole, level0.fit))
-    search = Search(model, first, base, steps.say, steps.each)
+    fitted_first = rms(misfit(joined(model, first)))
+    search = Search(model, first, base, fitted_first, steps.say, steps.each)
     best = steps.timed("what is missing", search.run)
     best = steps.timed("which values are wrong", lambda: settled(model, _plainest(model, best)))
     level2 = _level(model, best.whole, level0.fit)

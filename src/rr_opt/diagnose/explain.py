@@ -11,6 +11,9 @@ import numpy as np
 from rr_opt.diagnose.fit import Fit, Problem, solve
 from rr_opt.diagnose.model import Form, Model, Piece
 
+_NEAR = 0.5
+"""In windows, whose fit only begins another, a step that would lower the cost by less ends it."""
+
 
 def whole(model: Model, runs: Sequence[int]) -> list[Piece]:
     """The runs in one piece each."""
@@ -82,9 +85,11 @@ def explain(
         for found in itertools.product(*places)
     ]
     if len(each) == 1:
-        return solve(problem, each[0], nominal.starts)
-    best = min((solve(problem, v, nominal.starts, steps=3) for v in each), key=lambda f: f.cost)
-    return best if best.converged else solve(problem, best.values, best.starts)
+        return solve(problem, each[0], nominal.starts, done=_NEAR)
+    best = min(
+        (solve(problem, v, nominal.starts, steps=3, done=_NEAR) for v in each), key=lambda f: f.cost
+    )
+    return best if best.converged else solve(problem, best.values, best.starts, done=_NEAR)
 
 
 def joined(model: Model, fit: Fit) -> Fit:
@@ -95,4 +100,4 @@ def joined(model: Model, fit: Fit) -> Fit:
     first = {piece.run: start for piece, start in fit.starts.items() if piece.first == 0}
     starts = {piece: first[piece.run] for piece in problem.pieces}
     alone = solve(Problem(model, problem.pieces, fit.effects, (), fit.values), {}, starts, steps=4)
-    return solve(problem, fit.values, alone.starts, steps=30)
+    return solve(problem, fit.values, alone.starts, steps=24)

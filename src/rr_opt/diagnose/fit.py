@@ -57,6 +57,11 @@ class Fit:
         return scaled(self.quantities, self.values)
 
 
+_FAR, _CRAWL, _PATIENCE = 2.0, 5e-3, 2
+"""A fit that is that far above the noise, mean square in sigma, and has lowered what is above it by
+less than such a share in each of several steps, has gone down a wrong valley, and is given up."""
+
+
 def scaled(quantities: Sequence[Quantity], values: Mapping[str, float]) -> Array:
     """(value - where it starts)/scale."""
     return np.array([(values[q.name] - q.value) / q.scale for q in quantities])
@@ -155,7 +160,7 @@ def solve(
     """
     cost, count = problem.cost(values, starts)
     best = _Point(dict(values), dict(starts), cost, problem.beforehand(values))
-    at, tries, damping, converged = best, 0, 0, False
+    at, tries, damping, crawled, converged = best, 0, 0, 0, False
     kept: dict[Piece, Normal] = {}
     for _ in range(steps):
         if at is not best or not kept:
@@ -173,6 +178,9 @@ def solve(
             kept, tries, damping = {}, 0, max(damping - 1, 0)
             if before - after < max(done, 1e-6 * before):
                 converged = True
+                break
+            crawled = crawled + 1 if before - after < _CRAWL * (before - count) else 0
+            if crawled > _PATIENCE and before > _FAR * count:
                 break
         elif tries < _TRIES and after < _UPHILL * before:
             at, tries = trial, tries + 1

@@ -11,11 +11,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from rr_opt.diagnose.explanation import Explanation
 from rr_opt.diagnose.fit import Fit, Problem, solve
 from rr_opt.diagnose.model import Quantity
 from rr_opt.diagnose.pushed import observed
 from rr_opt.diagnose.racer import RollerRacer
-from rr_opt.diagnose.search import Explanation
 from rr_opt.physics.effects.rolling_force_curve import EFFECT
 
 _FAST = 0.98

@@ -21,10 +21,11 @@ import numpy as np
 from scipy.optimize import lsq_linear
 
 from rr_opt.diagnose.explain import Chosen, explain, joined
+from rr_opt.diagnose.explanation import FLOOR, Explanation
 from rr_opt.diagnose.fit import Fit, Problem, box, doubt, scaled
 from rr_opt.diagnose.model import Array, Model, Quantity
 from rr_opt.diagnose.screen import every, linear
-from rr_opt.diagnose.search import FLOOR, Explanation, Search
+from rr_opt.diagnose.search import Search
 from rr_opt.diagnose.values import wrong
 
 CERTAIN = 20.0

@@ -169,6 +169,11 @@ class Model(Protocol):
         """Those of them that are dear to look for, and so only where nothing else will do."""
         ...
 
+    @property
+    def rough(self) -> frozenset[str]:
+        """Quantities of effects of which there are as many models as machines, none exact."""
+        ...
+
     def propose(self, name: str, form: int, fit: Fit) -> Sequence[Proposal]:
         """From where to look for an effect that jumps, beside a fit without it."""
         ...

@@ -13,9 +13,9 @@ from dataclasses import replace
 
 from rr_opt.diagnose.contest import Contest, Rival, as_rival, extent, name_of
 from rr_opt.diagnose.diagnosis import NextExperiment
+from rr_opt.diagnose.explanation import Explanation
 from rr_opt.diagnose.plans import Plan, gaits
 from rr_opt.diagnose.racer import RollerRacer
-from rr_opt.diagnose.search import Explanation
 from rr_opt.diagnose.worst_known import Narrowing
 
 _SHORT, _LONG = 30.0, 60.0

@@ -110,6 +110,12 @@ class RollerRacer:
         """Those of them that are not the servo's."""
         return frozenset(name for name in self.jumping if CATALOGUE[name].actuate is None)
 
+    @property
+    def rough(self) -> frozenset[str]:
+        """The quantities of effects of which there are as many models as machines."""
+        every = ((effect, q) for effect in CATALOGUE.values() for q in effect.parameters)
+        return frozenset(f"{effect.name}.{q.name}" for effect, q in every if q.rough)
+
     def propose(self, name: str, form: int, fit: Fit) -> Sequence[Proposal]:
         """From where to look for an effect that jumps; see `racer_proposals`."""
         if CATALOGUE[name].family == "floor":

@@ -14,12 +14,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from rr_opt.diagnose.diagnosis import Residue
+from rr_opt.diagnose.explanation import FLOOR, Explanation
 from rr_opt.diagnose.model import Array
 from rr_opt.diagnose.pushed import observed
 from rr_opt.diagnose.racer import RollerRacer
 from rr_opt.diagnose.residue_problem import Columns, Linearised, Point, linearised, moved, thinned
 from rr_opt.diagnose.residue_terms import Term, terms
-from rr_opt.diagnose.search import FLOOR, Explanation
 from rr_opt.diagnose.shape_words import shape
 from rr_opt.physics.effects import CATALOGUE
 

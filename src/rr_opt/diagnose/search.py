@@ -11,16 +11,12 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 
-import numpy as np
-from scipy.stats import chi2
-
 from rr_opt.diagnose.explain import Chosen, explain, joined
-from rr_opt.diagnose.fit import Fit, Problem, doubt, scaled, solve
+from rr_opt.diagnose.explanation import FLOOR, Explanation, rms
+from rr_opt.diagnose.fit import Fit, Problem, doubt, solve
 from rr_opt.diagnose.model import Model
 from rr_opt.diagnose.screen import Promise, jumps, screen
-
-FLOOR = 0.1
-"""A misfit of a tenth of a sigma, RMS, is none: no machine is ever exactly its model."""
+from rr_opt.diagnose.values import settled, wrong
 
 RELEVANT = 0.01
 """By so much, in sigma squared per value, an effect has to lower the misfit to be one."""
@@ -28,8 +24,9 @@ RELEVANT = 0.01
 MOST = 3
 """So many effects together, at most."""
 
-EXACT = 0.015
-"""Nor is an effect's model: by that share of the first misfit, what is left is none."""
+EXACT, ROUGH = 0.005, 0.03
+"""Nor is an effect's model: what is left is none by the first share of the misfit of the model as
+believed; by the second for an effect of which there are as many models as machines."""
 
 _IN_WINDOWS, _DEAR, _WHOLE = 5, 4, 3
 """How many of a round are fitted in windows, of those the dear ones, and over whole runs."""
@@ -40,90 +37,41 @@ _WORTH = 0.05
 _PLAIN = 0.05
 """Misfit in windows, in sigma squared, that is plain to see."""
 
+_BETTER = 2.0
+"""So much, in chi-square, an effect has to be better than wrong values."""
+
 _LUCK = 25.0
 """So much lower a chi-square is, by luck, where the best of many places was chosen."""
 
 Say = Callable[[str], None]
 
 
-@dataclass(frozen=True)
-class Explanation:
-    """A set of effects, fitted in windows and over whole runs.
-
-    misfit  mean square of the residuals over whole runs less 1, in sigma squared; 0 is the noise
-    """
-
-    chosen: tuple[Chosen, ...]
-    windows: Fit
-    whole: Fit
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """The effects, in order of choice."""
-        return tuple(one.name for one in self.chosen)
-
-    @property
-    def misfit(self) -> float:
-        """Mean square over whole runs, less that of noise with as many quantities fitted."""
-        return misfit(self.whole)
-
-    @property
-    def strain(self) -> float:
-        """Chi-square of the parameters against what was known of them."""
-        known = [q for q in self.whole.quantities if q.known and not q.free]
-        return float(np.sum(scaled(known, self.whole.values) ** 2))
-
-    @property
-    def strained(self) -> bool:
-        """Whether the parameters are where what was known of them hardly lets them be."""
-        known = sum(q.known and not q.free for q in self.whole.quantities)
-        return self.strain > 2 * float(chi2.isf(0.01, known)) if known else False
-
-    @property
-    def score(self) -> float:
-        """Chi-square of data and knowledge, and what each quantity costs (BIC)."""
-        added = sum(not q.known for q in self.whole.quantities)
-        return self.whole.cost + self.strain + added * math.log(self.whole.count)
-
-
-def misfit(fit: Fit) -> float:
-    """Mean square of the residuals in sigma, less 1."""
-    fitted = sum(start.size for start in fit.starts.values()) + len(fit.quantities)
-    return fit.cost / max(fit.count - fitted, 1) - 1.0
-
-
-def rms(excess: float) -> float:
-    """The misfit as RMS in sigma, 0 at or below the noise."""
-    return math.sqrt(max(excess, 0.0))
-
-
-def certain(excess: float, count: int, z: float = 3.1) -> float:
-    """The misfit of so many values, RMS in sigma, less what noise reaches once in a thousand."""
-    return rms(excess - z * math.sqrt(2 / max(count, 1)))
-
-
 @dataclass
 class Search:
-    """A search under way, and all that it tried."""
+    """A search under way, and all that it tried.
+
+    first  misfit of the model as believed, RMS in sigma
+    """
 
     model: Model
     nominal: Fit
     base: Explanation
+    first: float
     say: Say = lambda _: None
     each: Callable[..., Iterable] = map
     tried: list[Explanation] = field(default_factory=list)
 
-    @property
-    def floor(self) -> float:
-        """A misfit that is none, RMS in sigma."""
-        return max(FLOOR, EXACT * rms(self.base.misfit))
+    def floor(self, best: Explanation) -> float:
+        """A misfit that is none, RMS in sigma, of a model with the effects of `best`."""
+        rough = any(q.name in self.model.rough for q in best.whole.quantities)
+        return max(FLOOR, (ROUGH if rough else EXACT) * self.first)
 
     def run(self) -> Explanation:
         """The best explanation, the base itself where nothing relevant is missing."""
         best = self.base
         self.tried.append(best)
         for _ in range(MOST):
-            if rms(best.misfit) <= self.floor and (best.chosen or not best.strained):
+            if rms(best.misfit) <= self.floor(best) and (best.chosen or not _unbelievable(best)):
                 break
             found = self._round(best)
             if not found:
@@ -132,7 +80,7 @@ class Search:
             better = min(found, key=lambda one: one.score)
             if not _outright(better, best):
                 best = self._again(best, better)
-            if not _gains(better, best):
+            if not self._gains(better, best):
                 break
             best = better
         return self._backward(best)
@@ -161,7 +109,7 @@ class Search:
         most = fit.cost - _WORTH * (fit.cost - promised[0].cost) if promised else 0.0
         worth = [one for k, one in enumerate(promised) if k < _WHOLE or one.cost < most]
         found = self._fitted(best, worth[:_IN_WINDOWS], _WHOLE)
-        if min((rms(one.misfit) for one in found), default=math.inf) > self.floor:
+        if min((rms(one.misfit) for one in found), default=math.inf) > self.floor(best):
             # What cannot be linearised is dear, and tried where nothing else will do.
             found += self._fitted(best, self._jumps(best, dear=True)[:_DEAR], _WHOLE)
         return found
@@ -187,6 +135,31 @@ class Search:
         self.say(f"over whole runs: {', '.join(one.name for one, _ in hopeful)}")
         return list(self.each(_Whole(self.model, best.chosen), hopeful))
 
+    def _gains(self, more: Explanation, less: Explanation) -> bool:
+        """Whether what `more` adds to `less` is relevant, and certain in spite of model error."""
+        relevant = max(RELEVANT, self.floor(less) ** 2 - FLOOR**2)
+        sure = less.score - more.score > 20 * doubt(more.whole.cost, more.whole.count)
+        if sure and rms(less.misfit) > FLOOR and less.misfit - more.misfit > relevant:
+            return True
+        return self._believable(more, less)
+
+    def _believable(self, more: Explanation, less: Explanation) -> bool:
+        """Whether parameters explain the data, but with values that nobody would believe.
+
+        An effect stands for that if with it they are likelier than with the wrong ones let go.
+        """
+        if (
+            rms(less.misfit) > 2 * FLOOR
+            or more.misfit > less.misfit + 1e-3
+            or not _unbelievable(less)
+        ):
+            return False
+        released = settled(self.model, less)
+        let_go = _free(released) - _free(less)
+        added = len(more.whole.quantities) - len(less.whole.quantities)
+        price = (added - let_go) * math.log(less.whole.count)
+        return more.strain + price < released.strain - _BETTER
+
     def _backward(self, best: Explanation) -> Explanation:
         for one in best.chosen if len(best.chosen) > 1 else ():
             rest = tuple(other for other in best.chosen if other != one)
@@ -198,7 +171,7 @@ class Search:
                 self.tried.append(without)
             if not _outright(best, without):
                 without = self._again(without, best)
-            if not _gains(best, without):
+            if not self._gains(best, without):
                 return self._backward(without)
         return best
 
@@ -228,6 +201,15 @@ class _Whole:
         return Explanation((*self.have, one), fit, joined(self.model, fit))
 
 
+def _unbelievable(best: Explanation) -> bool:
+    """Whether it takes a value that is not what it was believed to be."""
+    return any(not q.free for q in wrong(best.whole))
+
+
+def _free(one: Explanation) -> int:
+    return sum(q.free for q in one.whole.quantities)
+
+
 def _sight(best: Explanation) -> Fit:
     """The fit to look out from for what is missing.
 
@@ -248,16 +230,3 @@ def _outright(more: Explanation, less: Explanation) -> bool:
     """Whether `more` wins in windows already, which have no valleys to go down."""
     wins = less.windows.cost - more.windows.cost
     return wins > 0.3 * (less.whole.cost - more.whole.cost) and more.misfit < FLOOR
-
-
-def _gains(more: Explanation, less: Explanation) -> bool:
-    """Whether what `more` adds to `less` is relevant, and certain in spite of model error."""
-    gained = less.score - more.score
-    certain = gained > 20 * doubt(more.whole.cost, more.whole.count)
-    if rms(less.misfit) > FLOOR:
-        return certain and less.misfit - more.misfit > RELEVANT
-    # Parameters explain the data, but with values that nobody would believe. An effect stands for
-    # that only if with it they are believable.
-    known = sum(q.known and not q.free for q in less.whole.quantities)
-    usual = float(chi2.isf(0.01, known))
-    return certain and more.strain < usual < less.strain / 2

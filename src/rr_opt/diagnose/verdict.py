@@ -8,8 +8,8 @@ from collections.abc import Mapping, Sequence
 from scipy.stats import chi2
 
 from rr_opt.diagnose.diagnosis import Estimate, Finding, Verdict
+from rr_opt.diagnose.explanation import FLOOR, Explanation, certain, rms
 from rr_opt.diagnose.fit import doubt
-from rr_opt.diagnose.search import FLOOR, Explanation, certain, rms
 
 LEFT = 0.35
 """More misfit than this on the held-out recordings, RMS in sigma, is not explained."""

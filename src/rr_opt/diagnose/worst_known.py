@@ -13,12 +13,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from rr_opt.diagnose.contest import RANKED_RATE, Rival, curvature, extent
+from rr_opt.diagnose.explanation import Explanation
 from rr_opt.diagnose.fit import Problem, box, unscaled
 from rr_opt.diagnose.intervals import covariance
 from rr_opt.diagnose.model import Array, Quantity
 from rr_opt.diagnose.plans import Plan, imagined
 from rr_opt.diagnose.racer import RollerRacer
-from rr_opt.diagnose.search import Explanation
 
 
 @dataclass(frozen=True)

@@ -49,6 +49,7 @@ class Parameter:
     natural: Callable[[Setting], float] | None = None
     trials: tuple[float, ...] = (0.05,)
     placed: bool = False
+    rough: bool = False
 
     def size(self, setting: Setting) -> float:
         """Its usual size for a robot and what was asked of it."""

@@ -53,7 +53,12 @@ EFFECT = Effect(
     port=Port.CONSTRAINT,
     parameters=(
         Parameter("creep_compliance", "m/(N s)", (0.0, 1.0), 0.002),
-        Parameter("mu", "dimensionless", (0.001, 10.0), 0.1, neutral=10.0, trials=(3.0, 0.5)),
+        Parameter(
+            *("mu", "dimensionless", (0.001, 10.0), 0.1),
+            neutral=10.0,
+            trials=(3.0, 0.5),
+            rough=True,
+        ),
     ),
     sentence="The wheels slip sideways under load.",
     enter=_enter,

@@ -94,7 +94,7 @@ EFFECT = Effect(
     name="servo_backlash",
     family="actuation",
     port=Port.ACTUATION,
-    parameters=(Parameter("width", "rad", (0.0, 0.5), 0.02, trials=(0.5,)),),
+    parameters=(Parameter("width", "rad", (0.0, 0.5), 0.02, trials=(0.5,), rough=True),),
     sentence="There is play between the servo and the platform that it turns.",
     actuate=_actuate,
     smooth=False,

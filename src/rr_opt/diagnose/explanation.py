@@ -1,0 +1,64 @@
+"""A set of effects fitted to the recordings, and how much of them it leaves."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from rr_opt.diagnose.explain import Chosen
+from rr_opt.diagnose.fit import Fit, scaled
+
+FLOOR = 0.1
+"""A misfit of a tenth of a sigma, RMS, is none: no machine is ever exactly its model."""
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """A set of effects, fitted in windows and over whole runs.
+
+    misfit  mean square of the residuals over whole runs less 1, in sigma squared; 0 is the noise
+    """
+
+    chosen: tuple[Chosen, ...]
+    windows: Fit
+    whole: Fit
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The effects, in order of choice."""
+        return tuple(one.name for one in self.chosen)
+
+    @property
+    def misfit(self) -> float:
+        """Mean square over whole runs, less that of noise with as many quantities fitted."""
+        return misfit(self.whole)
+
+    @property
+    def strain(self) -> float:
+        """Chi-square of the parameters against what was known of them."""
+        known = [q for q in self.whole.quantities if q.known and not q.free]
+        return float(np.sum(scaled(known, self.whole.values) ** 2))
+
+    @property
+    def score(self) -> float:
+        """Chi-square of data and knowledge, and what each quantity costs (BIC)."""
+        added = sum(not q.known for q in self.whole.quantities)
+        return self.whole.cost + self.strain + added * math.log(self.whole.count)
+
+
+def misfit(fit: Fit) -> float:
+    """Mean square of the residuals in sigma, less 1."""
+    fitted = sum(start.size for start in fit.starts.values()) + len(fit.quantities)
+    return fit.cost / max(fit.count - fitted, 1) - 1.0
+
+
+def rms(excess: float) -> float:
+    """The misfit as RMS in sigma, 0 at or below the noise."""
+    return math.sqrt(max(excess, 0.0))
+
+
+def certain(excess: float, count: int, z: float = 3.1) -> float:
+    """The misfit of so many values, RMS in sigma, less what noise reaches once in a thousand."""
+    return rms(excess - z * math.sqrt(2 / max(count, 1)))
