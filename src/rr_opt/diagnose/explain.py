@@ -9,7 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from rr_opt.diagnose.fit import Fit, Problem, solve
-from rr_opt.diagnose.model import Form, Model, Piece
+from rr_opt.diagnose.model import Array, Form, Model, Piece
+
+_LONG_WAY = 1.5
+"""Mean square in sigma: above it over whole runs, and below it in windows, is a long way."""
 
 _NEAR = 0.5
 """In windows, whose fit only begins another, a step that would lower the cost by less ends it."""
@@ -93,11 +96,30 @@ def explain(
 
 
 def joined(model: Model, fit: Fit) -> Fit:
-    """The same fit over whole runs, from one over windows."""
-    problem = Problem(
-        model, whole(model, sorted({p.run for p in fit.starts})), fit.effects, fit.quantities
-    )
-    first = {piece.run: start for piece, start in fit.starts.items() if piece.first == 0}
-    starts = {piece: first[piece.run] for piece in problem.pieces}
-    alone = solve(Problem(model, problem.pieces, fit.effects, (), fit.values), {}, starts, steps=4)
-    return solve(problem, fit.values, alone.starts, steps=24)
+    """The same fit over whole runs, from one over windows.
+
+    Where that is a long way, by pieces of three windows: a long run has wrong minima near which a
+    shorter one has none.
+    """
+    far = _alone(model, fit, len(fit.starts))
+    if fit.quantities and far.cost > _LONG_WAY * far.count and fit.cost < _LONG_WAY * fit.count:
+        near = _alone(model, fit, 3)
+        problem = Problem(model, tuple(near.starts), fit.effects, fit.quantities)
+        between = solve(problem, fit.values, near.starts, steps=12, done=_NEAR)
+        far = _alone(model, between, len(between.starts))
+        fit = between
+    problem = Problem(model, tuple(far.starts), fit.effects, fit.quantities)
+    return solve(problem, fit.values, far.starts, steps=24)
+
+
+def _alone(model: Model, fit: Fit, most: int) -> Fit:
+    """The same values over so many pieces joined into one, of which the starts alone are fitted."""
+    starts: dict[Piece, Array] = {}
+    for run in sorted({piece.run for piece in fit.starts}):
+        pieces = sorted((p for p in fit.starts if p.run == run), key=lambda piece: piece.first)
+        for k in range(0, len(pieces), most):
+            together = pieces[k : k + most]
+            one = Piece(run, together[0].first, together[-1].last)
+            starts[one] = fit.starts[together[0]]
+    problem = Problem(model, tuple(starts), fit.effects, (), fit.values)
+    return solve(problem, {}, starts, steps=4)

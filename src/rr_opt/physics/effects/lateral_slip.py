@@ -8,6 +8,9 @@ which is s/creep while that is small against mu N, and mu N beyond. Without cree
 sliding is smoothed at s0 = 0.5 mm/s. That lets wheels that hold creep by s0/(mu N), so it has to be
 small; below that, derivatives over steps of 2.5 ms lose it. N is the wheel's share of the weight in
 the straight posture, from the balance of moments about either axle.
+
+Contacts begin to slide more or less gradually. So sliding is looked for together with creep, which
+adds to s0 as a root of squares and stands for however gradual it is.
 """
 
 from __future__ import annotations
@@ -63,6 +66,6 @@ EFFECT = Effect(
     sentence="The wheels slip sideways under load.",
     enter=_enter,
     stiff=True,
-    forms=(("creep_compliance",), ("mu",)),
+    forms=(("creep_compliance",), ("creep_compliance", "mu")),
     smooth=False,
 )
