@@ -75,7 +75,7 @@ real: $(DEV) ## diagnose a real pendulum (DATA=/path/to/data_measured.csv)
 	$(BIN)/python scripts/real_pendulum.py "$(DATA)"
 
 prove: $(DEV) ## try the diagnosis on 100 sealed cases, of the commit's own seed (hours)
-	$(BIN)/rr-opt prove --workers $(WORKERS)
+	$(BIN)/rr-opt prove --workers $(WORKERS) --out results/proof
 
 demo: $(DEV) ## record, diagnose, open the seal, correct, predict: some minutes (SEED=5)
 	$(BIN)/python scripts/demonstration.py --seed $(SEED)

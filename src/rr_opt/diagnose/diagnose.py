@@ -106,15 +106,15 @@ def found(model: Model, steps: Steps) -> Found:
     )
     first = _of_runs(start, fitted)
     level0 = steps.timed(
-        "against the recordings", lambda: _level(model, joined(model, start), start)
+        "against the recordings", lambda: level_of(model, joined(model, start), start)
     )
     base = steps.timed("its parameters", lambda: _base(model, first))
-    level1 = steps.timed("held-out recordings", lambda: _level(model, base.whole, level0.fit))
+    level1 = steps.timed("held-out recordings", lambda: level_of(model, base.whole, level0.fit))
     fitted_first = rms(misfit(joined(model, first)))
     search = Search(model, first, base, fitted_first, steps.say, steps.each)
     best = steps.timed("what is missing", search.run)
     best = steps.timed("which values are wrong", lambda: settled(model, _plainest(model, best)))
-    level2 = _level(model, best.whole, level0.fit)
+    level2 = level_of(model, best.whole, level0.fit)
     return Found(model, search, best, (level0, level1, level2), steps)
 
 
@@ -145,7 +145,7 @@ def _of_runs(fit: Fit, runs: list[int]) -> Fit:
     )
 
 
-def _level(model: Model, fit: Fit, start: Fit) -> Level:
+def level_of(model: Model, fit: Fit, start: Fit) -> Level:
     """What a fit leaves of every run: those it did not see get the start that fits them best."""
     seen = {piece.run for piece in fit.starts}
     pieces = whole(model, range(len(model.runs)))
@@ -219,7 +219,7 @@ def answer(it: Found) -> Diagnosis:
     channel = model.catalogue[best.names[0]].channel if findings and best.names else "none"
     return Diagnosis(
         verdict=verdict,
-        summary=_summary(verdict, findings, level0, level2),
+        summary=summary_of(verdict, findings, level0, level2),
         channel=channel,
         where="",
         stages=(),
@@ -273,7 +273,8 @@ def _tried(one: Explanation, best: Explanation) -> Tried:
     )
 
 
-def _summary(verdict: str, findings: tuple[Finding, ...], before: Level, after: Level) -> str:
+def summary_of(verdict: str, findings: tuple[Finding, ...], before: Level, after: Level) -> str:
+    """The answer in two sentences."""
     held = any(one.held_out for one in after.misfits)
     where = (
         "On recordings that were not fitted"

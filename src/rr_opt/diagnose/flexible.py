@@ -7,10 +7,9 @@ the parameters; the speed of its last knot is that which the wheels seldom excee
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
+from rr_opt.diagnose.explain import joined
 from rr_opt.diagnose.explanation import Explanation
 from rr_opt.diagnose.fit import Fit, Problem, solve
 from rr_opt.diagnose.model import Quantity
@@ -22,21 +21,24 @@ _FAST = 0.98
 """Quantile of the wheels' speeds at which the curve ends."""
 
 
-def with_force_curve(model: RollerRacer, best: Explanation) -> Fit:
-    """An explanation with the curve beside it, over whole runs; its values include the speed."""
-    fit, name = best.whole, EFFECT.name
+def with_force_curve(model: RollerRacer, base: Explanation, nominal: Fit) -> Fit:
+    """The parameters with the curve beside them, over whole runs.
+
+    Begun in windows, where the parameters are not yet bent; `nominal` are the starts there.
+    """
+    fit, name = base.whole, EFFECT.name
     seen = [observed(model, p, fit.values, fit.effects, s) for p, s in fit.starts.items()]
     speed = float(np.quantile(np.abs(np.concatenate([one.u.ravel() for one in seen])), _FAST))
     robot = model.experiment.robot
     size = (robot.k1 + robot.k2) / 2 * speed
-    forces = tuple(
-        Quantity(f"{name}.{q.name}", q.unit, 0.0, size, False, *q.bounds, q.neutral)
+    curve = tuple(
+        # The speed is where the curve ends, and stays.
+        Quantity(f"{name}.{q.name}", q.unit, speed, speed, False, speed, speed, speed)
+        if q.name == "speed"
+        else Quantity(f"{name}.{q.name}", q.unit, 0.0, size, False, *q.bounds, q.neutral)
         for q in EFFECT.parameters
-        if q.name != "speed"
     )
-    fixed = {f"{name}.speed": speed}
-    quantities = (*fit.quantities, *forces)
-    problem = Problem(model, tuple(fit.starts), (*fit.effects, name), quantities, fixed)
-    values = dict(fit.values) | {q.name: 0.0 for q in forces}
-    found = solve(problem, values, fit.starts)
-    return replace(found, values=dict(found.values) | fixed)
+    quantities = (*model.parameters, *curve)
+    problem = Problem(model, tuple(nominal.starts), (name,), quantities)
+    values = {q.name: q.value for q in quantities}
+    return joined(model, solve(problem, values, nominal.starts))

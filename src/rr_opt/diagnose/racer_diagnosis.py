@@ -8,9 +8,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from rr_opt.diagnose.diagnose import Found, Steps, answer, found
+from rr_opt.diagnose.diagnose import Found, Level, Steps, answer, found, level_of, summary_of
 from rr_opt.diagnose.diagnosis import Diagnosis
+from rr_opt.diagnose.flexible import with_force_curve
 from rr_opt.diagnose.indistinguishable import groups
+from rr_opt.diagnose.intervals import estimates
 from rr_opt.diagnose.next_experiment import next_experiment
 from rr_opt.diagnose.racer import RollerRacer
 from rr_opt.diagnose.residue import residue
@@ -27,8 +29,31 @@ def diagnose_racer(racer: RollerRacer, steps: Steps | None = None) -> Diagnosis:
     said = _told_apart(racer, it, said)
     if said.verdict == "unexplained":
         left = it.steps.timed("what is left", lambda: residue(racer, it.search.base))
+        said = it.steps.timed("without a name", lambda: _nameless(racer, it, said))
         said = replace(said, residue=left)
     return replace(said, seconds=dict(it.steps.seconds))
+
+
+def _nameless(racer: RollerRacer, it: Found, said: Diagnosis) -> Diagnosis:
+    """The robot that predicts the held-out recordings best, though what it lacks has no name.
+
+    It is the robot as believed, or has other parameters: alone, with a force over speed beside
+    them, or with the effects that came nearest.
+    """
+    start = it.levels[0].fit
+    search = it.search
+    curved = level_of(racer, with_force_curve(racer, search.base, search.nominal), start)
+    best = min((it.levels[0], it.levels[1], curved, it.levels[2]), key=Level.held)
+    values = dict(best.fit.values)
+    intervals = estimates(best.fit)
+    return replace(
+        said,
+        final=best.misfits,
+        after=best.unseen(),
+        values=values,
+        parameters={q.name: intervals[q.name] for q in best.fit.quantities},
+        summary=summary_of(said.verdict, (), it.levels[0], best),
+    )
 
 
 def _told_apart(racer: RollerRacer, it: Found, said: Diagnosis) -> Diagnosis:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
+from rr_opt.diagnose.diagnosis import Stage
 from rr_opt.experiment.recording import CHANNELS
 from rr_opt.report.diagnosis.diagnosed import Diagnosed
 from rr_opt.report.diagnosis.loss import Loss
@@ -37,22 +38,33 @@ def draw(one: Diagnosed) -> tuple[dict[str, str], dict[str, str]]:
 
 def _evidence(one: Diagnosed) -> tuple[Figure, str] | None:
     curves = [
-        (stage.name.replace("_", " "), each) for stage in one.guilty for each in stage.curves
+        (stage.name.replace("_", " "), each, _measured(stage))
+        for stage in one.guilty
+        for each in stage.curves
     ][:_MOST_CURVES]
     if not curves:
         return None
     rows = -(-len(curves) // 2)
     made = figure(WIDTH, 0.4 + 2.1 * rows)
     axes = np.atleast_1d(made.subplots(rows, min(len(curves), 2))).ravel()
-    for ax, (_, each) in zip(axes, curves, strict=False):
-        curve(ax, each, "residual, σ")
+    for ax, (_, each, label) in zip(axes, curves, strict=False):
+        curve(ax, each, label)
     for ax in axes[len(curves) :]:
         ax.remove()
-    names = dict.fromkeys(name for name, _ in curves)
+    names = dict.fromkeys(name for name, *_ in curves)
     return made, (
         f"Residual of the stage {' and '.join(names)}, mean in bins with a 95 % band. On the line "
         "at zero there is no fault."
     )
+
+
+def _measured(stage: Stage) -> str:
+    """What the curves of a stage show."""
+    if stage.channel == "actuation":
+        return "residual, σ"
+    if stage.channel == "measurement" or stage.channel.startswith("constraint"):
+        return "side speed, σ/s"
+    return "acceleration, σ/s²"
 
 
 def _paths(one: Diagnosed) -> tuple[Figure, str]:
