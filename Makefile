@@ -70,6 +70,7 @@ bench: $(DEV) ## measure against other ways to the same answer, into results/ben
 	$(BIN)/python -m benchmarks.turn
 	$(BIN)/python -m benchmarks.study
 	$(BIN)/python -m benchmarks.recordings
+	$(BIN)/python -m benchmarks.diagnose
 
 real: $(DEV) ## diagnose a real pendulum (DATA=/path/to/data_measured.csv)
 	$(BIN)/python scripts/real_pendulum.py "$(DATA)"

@@ -1,1 +1,1 @@
-"""How many optimisations a study does in an hour, and what a case costs beside its solve."""
+"""How long marker files take to read, fit and clean."""

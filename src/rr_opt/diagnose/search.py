@@ -37,6 +37,9 @@ _WORTH = 0.05
 _PLAIN = 0.05
 """Misfit in windows, in sigma squared, that is plain to see."""
 
+_GAINED = 0.5
+"""A third effect is looked for where the second has left no more than that share of the misfit."""
+
 _BETTER = 2.0
 """So much, in chi-square, an effect has to be better than wrong values."""
 
@@ -68,10 +71,11 @@ class Search:
 
     def run(self) -> Explanation:
         """The best explanation, the base itself where nothing relevant is missing."""
-        best = self.base
+        best, gained = self.base, True
         self.tried.append(best)
         for _ in range(MOST):
-            if rms(best.misfit) <= self.floor(best) and (best.chosen or not _unbelievable(best)):
+            explained = rms(best.misfit) <= self.floor(best)
+            if (explained and (best.chosen or not _unbelievable(best))) or not gained:
                 break
             found = self._round(best)
             if not found:
@@ -82,6 +86,8 @@ class Search:
                 best = self._again(best, better)
             if not self._gains(better, best):
                 break
+            # What is not there is imitated by one effect after the other, each gaining little.
+            gained = not best.chosen or better.misfit < _GAINED * best.misfit
             best = better
         return self._backward(best)
 

@@ -1,0 +1,1 @@
+"""How long a diagnosis takes, and where the time goes."""
