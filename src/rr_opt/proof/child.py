@@ -86,6 +86,7 @@ def diagnose_apart(task: Task) -> Said:
             name: (top / SAID / name).read_bytes() for name in KEPT if (top / SAID / name).is_file()
         }
         printed = (top / "output.txt").read_text(encoding="utf-8", errors="replace")
+        printed = printed.replace(f"{top}{os.sep}", "")  # the folder is gone, and tells nothing
     code, wall, cpu, late = ended
     return Said(code, files, printed[-_LONGEST:], wall, cpu, late)
 
