@@ -71,9 +71,17 @@ class Search:
 
     def run(self) -> Explanation:
         """The best explanation, the base itself where nothing relevant is missing."""
-        best, gained = self.base, True
-        self.tried.append(best)
-        for _ in range(MOST):
+        self.tried.append(self.base)
+        forward = self._forward(self.base)
+        best = self._backward(forward)
+        if len(best.chosen) < len(forward.chosen):
+            # What came first only imitated the others, and has left its place to one more.
+            best = self._backward(self._forward(best))
+        return best
+
+    def _forward(self, best: Explanation) -> Explanation:
+        gained = True
+        for _ in range(len(best.chosen), MOST):
             explained = rms(best.misfit) <= self.floor(best)
             if (explained and (best.chosen or not _unbelievable(best))) or not gained:
                 break
@@ -89,7 +97,7 @@ class Search:
             # What is not there is imitated by one effect after the other, each gaining little.
             gained = not best.chosen or better.misfit < _GAINED * best.misfit
             best = better
-        return self._backward(best)
+        return best
 
     def _again(self, less: Explanation, more: Explanation) -> Explanation:
         """`less` from where `more` ended, if that is better.
