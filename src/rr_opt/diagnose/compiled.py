@@ -8,36 +8,29 @@ What was compiled is kept in the user's cache folder, by the hash of its source.
 from __future__ import annotations
 
 import ctypes
-import hashlib
-import os
-import shutil
-import subprocess
-import tempfile
 from collections.abc import Sequence
 from importlib.resources import files
-from pathlib import Path
 
 import casadi as ca
 import numpy as np
 
 from rr_opt.diagnose.model import Array
+from rr_opt.physics.machine_code import library
 
 _FLAGS = ("-O1", "-fPIC", "-shared")
-_SECONDS = 60
-"""A compiler that takes longer is not waited for."""
 
 
 class Compiled:
     """The loops over a run, for one system."""
 
-    def __init__(self, library: ctypes.CDLL, sizes: tuple[int, int, int, int]) -> None:
+    def __init__(self, made: ctypes.CDLL, sizes: tuple[int, int, int, int]) -> None:
         """sizes: of state, drive, p and channels."""
         whole, array = ctypes.c_longlong, ctypes.c_void_p
-        library.rr_predict.argtypes = [whole] * 2 + [array] * 5
-        library.rr_slopes.argtypes = [whole] * 5 + [array] * 10
-        library.rr_predict.restype = library.rr_slopes.restype = None
-        self._library = library
-        self._size, self._drive, self._p, self._channels = sizes
+        made.rr_predict.argtypes = [whole] * 2 + [array] * 5
+        made.rr_slopes.argtypes = [whole] * 5 + [array] * 10
+        made.rr_predict.restype = made.rr_slopes.restype = None
+        self._library = made
+        self._size, _, _, self._channels = sizes
 
     def predict(
         self, start: Array, inputs: Array, at: Array, each: int, p: Array
@@ -86,20 +79,8 @@ class Compiled:
 
 def found(source: str, sizes: tuple[int, int, int, int], *, make: bool) -> Compiled | None:
     """A system that was compiled before, or is now; None where that cannot be."""
-    compiler = shutil.which(os.environ.get("CC", "cc"))
-    folder = _cache()
-    if not compiler or not folder:
-        return None
-    key = hashlib.sha256("\n".join((source, compiler, *_FLAGS)).encode()).hexdigest()[:32]
-    library = folder / f"{key}.so"
-    try:
-        if not library.exists():
-            if not make:
-                return None
-            _compile(compiler, source, library)
-        return Compiled(ctypes.CDLL(str(library)), sizes)
-    except (OSError, subprocess.SubprocessError):
-        return None
+    made = library(source, _FLAGS, make=make)
+    return None if made is None else Compiled(made, sizes)
 
 
 def source_of(functions: Sequence[ca.Function], sizes: tuple[int, int, int, int]) -> str:
@@ -116,28 +97,3 @@ def source_of(functions: Sequence[ca.Function], sizes: tuple[int, int, int, int]
     head = "\n".join(f"#define {name} {n}" for name, n in zip(names, [*sizes, *work], strict=True))
     loop = files("rr_opt").joinpath("data", "diagnose_loop.c").read_text(encoding="utf-8")
     return f"{generator.dump()}\n{head}\n{loop}"
-
-
-def _compile(compiler: str, source: str, library: Path) -> None:
-    with tempfile.TemporaryDirectory(dir=library.parent) as place:
-        code, made = Path(place) / "system.c", Path(place) / "system.so"
-        code.write_text(source, encoding="utf-8")
-        subprocess.run(
-            [compiler, *_FLAGS, "-o", str(made), str(code), "-lm"],
-            check=True,
-            capture_output=True,
-            timeout=_SECONDS,
-        )
-        made.replace(library)
-
-
-def _cache() -> Path | None:
-    base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
-    folder = Path(base) / "rr-opt"
-    try:
-        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-    except OSError:
-        return None
-    # Code that another user could have put there is not run.
-    mine = not hasattr(os, "getuid") or folder.stat().st_uid == os.getuid()
-    return folder if mine and os.access(folder, os.W_OK) else None

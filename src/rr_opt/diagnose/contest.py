@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rr_opt.diagnose.explanation import Explanation
-from rr_opt.diagnose.fit import Fit, Problem, bounded_step, box, doubt, scaled, unscaled
+from rr_opt.diagnose.fit import Problem, bounded_step, box, scaled, unscaled
 from rr_opt.diagnose.model import Array, Piece, Quantity
 from rr_opt.diagnose.plans import Imagined, Plan, imagined
 from rr_opt.diagnose.racer import RollerRacer
@@ -116,13 +116,7 @@ def _step(rival: Rival, H: Array, g: Array, u: Array, moved: Array) -> Array:
 def as_rival(other: Explanation) -> Rival:
     """Another explanation as the rival."""
     fit = other.whole
-    return Rival(name_of(other), fit.effects, fit.quantities, fit.values, curvature(fit))
-
-
-def curvature(fit: Fit) -> Array:
-    """Of the present cost with what was known beforehand, scaled (nq, nq)."""
-    known = np.array([float(q.known) for q in fit.quantities]) * doubt(fit.cost, fit.count)
-    return sum((n.H for n in fit.normals.values()), np.diag(known))
+    return Rival(name_of(other), fit.effects, fit.quantities, fit.values, fit.total().H)
 
 
 def name_of(explanation: Explanation) -> str:

@@ -104,14 +104,14 @@ def found(model: Model, steps: Steps) -> Found:
     start = steps.timed(
         "the model as it is believed to be", lambda: nominal(model, windows(model, fitted + held))
     )
-    first = _of_runs(start, fitted)
+    first = _of_runs(model, start, fitted)
     level0 = steps.timed(
         "against the recordings", lambda: level_of(model, joined(model, start), start)
     )
+    believed = rms(misfit(_of_runs(model, level0.fit, fitted)))
     base = steps.timed("its parameters", lambda: _base(model, first))
     level1 = steps.timed("held-out recordings", lambda: level_of(model, base.whole, level0.fit))
-    fitted_first = rms(misfit(joined(model, first)))
-    search = Search(model, first, base, fitted_first, steps.say, steps.each)
+    search = Search(model, first, base, believed, steps.say, steps.each)
     best = steps.timed("what is missing", search.run)
     best = steps.timed("which values are wrong", lambda: settled(model, _plainest(model, best)))
     level2 = level_of(model, best.whole, level0.fit)
@@ -134,14 +134,15 @@ def _base(model: Model, first: Fit) -> Explanation:
     return Explanation((), fit, joined(model, fit))
 
 
-def _of_runs(fit: Fit, runs: list[int]) -> Fit:
+def _of_runs(model: Model, fit: Fit, runs: list[int]) -> Fit:
     pieces = [piece for piece in fit.starts if piece.run in runs]
-    cost = sum(fit.normals[piece].cost for piece in pieces)
+    seen = (model.runs[piece.run].values[piece.span] for piece in pieces)
     return replace(
         fit,
         starts={piece: fit.starts[piece] for piece in pieces},
         normals={piece: fit.normals[piece] for piece in pieces},
-        cost=cost,
+        cost=sum(fit.normals[piece].cost for piece in pieces),
+        count=sum(int(np.isfinite(values).sum()) for values in seen),
     )
 
 

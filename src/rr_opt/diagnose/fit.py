@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rr_opt.diagnose.model import Array, Model, Piece, Quantity
-from rr_opt.diagnose.normal import Normal, normal_of
+from rr_opt.diagnose.normal import Normal, Quadratic, normal_of, total
 
 _DAMPINGS = (0.0, 1e-4, 1e-3, 1e-2, 1e-1, 1.0)
 _TRIES, _UPHILL = 4, 1e3
@@ -55,6 +55,15 @@ class Fit:
     def scaled(self) -> Array:
         """The quantities in their scaled units."""
         return scaled(self.quantities, self.values)
+
+    @property
+    def prior(self) -> Array:
+        """Weights of what was known of them (nq,), beside these data."""
+        return doubt(self.cost, self.count) * np.array([float(q.known) for q in self.quantities])
+
+    def total(self) -> Quadratic:
+        """The cost of the data and of what was known, linearised."""
+        return total(self.normals.values(), self.prior, self.scaled)
 
 
 _FAR, _CRAWL, _PATIENCE = 2.0, 5e-3, 2
@@ -209,11 +218,9 @@ def _stepped(
     """The best point of the linearised problem, inside the box and not too far away."""
     u = scaled(problem.quantities, at.values)
     low, high = box(problem.quantities)
-    prior = problem.prior * weight
-    g = sum((n.g for n in normals.values()), prior * u)
-    H = sum((n.H for n in normals.values()), np.diag(prior))
+    whole = total(normals.values(), weight * problem.prior, u)
     near, far = np.maximum(low, u - _STRIDE), np.minimum(high, u + _STRIDE)
-    d = bounded_step(H, g, damping, u, near, far)
+    d = bounded_step(whole.H, whole.g, damping, u, near, far)
     values = unscaled(problem.quantities, u + d)
     starts = {one: at.starts[one] + n.shift + n.follow @ d for one, n in normals.items()}
     cost, _ = problem.cost(values, starts)

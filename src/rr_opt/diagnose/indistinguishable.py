@@ -24,6 +24,7 @@ from rr_opt.diagnose.explain import Chosen, explain, joined
 from rr_opt.diagnose.explanation import FLOOR, Explanation
 from rr_opt.diagnose.fit import Fit, Problem, box, doubt, scaled
 from rr_opt.diagnose.model import Array, Model, Quantity
+from rr_opt.diagnose.normal import total
 from rr_opt.diagnose.screen import every, linear
 from rr_opt.diagnose.search import Search
 from rr_opt.diagnose.values import wrong
@@ -178,10 +179,10 @@ class _Pass:
         values = {q.name: q.neutral for q in added} | dict(fit.values)
         problem = Problem(model, tuple(fit.starts), effects, quantities)
         normals = [problem.normal(piece, values, start) for piece, start in fit.starts.items()]
-        H = sum((n.H for n in normals), np.diag(problem.prior * doubt(fit.cost, fit.count)))
         moved = np.array([(values[q.name] - q.neutral) / q.scale for q in quantities])
         low, high = box(quantities)
         u = scaled(quantities, values)
+        H = total(normals, doubt(fit.cost, fit.count) * problem.prior, u).H
         return cls(quantities, H, moved, low - u, high - u)
 
     def left(self, free: Sequence[int], signature: Sequence[int]) -> float:
@@ -206,16 +207,14 @@ class _Pass:
 def _parameters(fit: Fit, moved: Quantity) -> list[Alike]:
     """Parameters in the place of one, each without what is known of it."""
     own = [q.name for q in fit.quantities].index(moved.name)
-    data = sum((n.H for n in fit.normals.values()), np.zeros((len(fit.quantities),) * 2))
-    known = np.array([float(q.known) for q in fit.quantities]) * doubt(fit.cost, fit.count)
+    known, together = fit.prior, fit.total().H
     low, high = box(fit.quantities)
     u, out = fit.scaled, []
     off = np.where(np.arange(u.size) == own, u, 0.0)
     rest = [k for k in range(u.size) if k != own]
-    whole = _Pass(fit.quantities, data + np.diag(known), off, low - u, high - u).left(rest, [own])
+    whole = _Pass(fit.quantities, together, off, low - u, high - u).left(rest, [own])
     for k in rest:
-        freed = np.where(np.arange(u.size) == k, 0.0, known)
-        H = data + np.diag(freed)
+        H = together - np.diag(np.where(np.arange(u.size) == k, known, 0.0))
         left = _Pass(fit.quantities, H, off, low - u, high - u).left(rest, [own])
         fraction = math.sqrt(left / whole) if whole > 0 else math.nan
         out.append(Alike(moved.name, (fit.quantities[k].name,), fraction, left))

@@ -21,9 +21,7 @@ _Z = 1.959963984540054
 def covariance(fit: Fit) -> Array:
     """Of the scaled quantities (nq, nq)."""
     wider = doubt(fit.cost, fit.count)
-    prior = np.diag([float(q.known) for q in fit.quantities]) * wider
-    H = sum((n.H for n in fit.normals.values()), prior)
-    return np.asarray(wider * np.linalg.pinv(H, hermitian=True), float)
+    return np.asarray(wider * np.linalg.pinv(fit.total().H, hermitian=True), float)
 
 
 def estimates(fit: Fit) -> Mapping[str, Estimate]:

@@ -6,9 +6,8 @@ the others would have given; at these, with a start of its own, the run is what 
 
 from __future__ import annotations
 
-import numpy as np
-
-from rr_opt.diagnose.fit import Fit, bounded_step, box, doubt
+from rr_opt.diagnose.fit import Fit, bounded_step, box
+from rr_opt.diagnose.normal import total
 
 
 def left_out(fit: Fit) -> float:
@@ -16,13 +15,11 @@ def left_out(fit: Fit) -> float:
     if len(fit.normals) < 2:
         return float("nan")
     u, (low, high) = fit.scaled, box(fit.quantities)
-    prior = np.array([float(q.known) for q in fit.quantities]) * doubt(fit.cost, fit.count)
-    total = 0.0
+    left = 0.0
     for piece, own in fit.normals.items():
         others = [n for other, n in fit.normals.items() if other != piece]
-        g = sum((n.g for n in others), prior * u)
-        H = sum((n.H for n in others), np.diag(prior))
-        d = bounded_step(H, g, 1e-9, u, low, high) if u.size else u
-        total += own.at(d)
+        rest = total(others, fit.prior, u)
+        d = bounded_step(rest.H, rest.g, 1e-9, u, low, high) if u.size else u
+        left += own.at(d)
     starts = sum(normal.shift.size for normal in fit.normals.values())
-    return total / max(fit.count - starts, 1) - 1.0
+    return left / max(fit.count - starts, 1) - 1.0

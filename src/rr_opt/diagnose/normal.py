@@ -11,6 +11,7 @@ without going back to the data.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,21 +23,36 @@ _RIDGE = 1e-9
 
 
 @dataclass(frozen=True)
-class Normal:
-    """|residuals|^2 after the best start, at a change d (nv,) of the scaled quantities.
-
-    cost, g (nv,), H (nv, nv) as above; start + shift + follow @ d is the best start.
-    """
+class Quadratic:
+    """cost + 2 g'd + d'H d at a change d (nv,) of the scaled quantities; g (nv,), H (nv, nv)."""
 
     cost: float
     g: Array
     H: Array
-    shift: Array
-    follow: Array
 
     def at(self, d: Array) -> float:
         """The cost after a change of the quantities."""
         return float(self.cost + 2 * self.g @ d + d @ self.H @ d)
+
+
+@dataclass(frozen=True)
+class Normal(Quadratic):
+    """|residuals|^2 after the best start, which is start + shift + follow @ d."""
+
+    shift: Array
+    follow: Array
+
+
+def total(parts: Iterable[Quadratic], prior: Array, u: Array) -> Quadratic:
+    """The parts at u (nv,), and u' prior u of what was known; prior (nv, nv), or its diagonal."""
+    prior = np.diag(prior) if prior.ndim == 1 else prior
+    known = prior @ u
+    every = (*parts, Quadratic(float(u @ known), known, prior))
+    return Quadratic(
+        sum(one.cost for one in every),
+        np.sum([one.g for one in every], axis=0),
+        np.sum([one.H for one in every], axis=0),
+    )
 
 
 def normal_of(r: Array, Jv: Array, Js: Array) -> Normal:

@@ -21,7 +21,6 @@ from rr_opt.diagnose.racer import RollerRacer, state_of, v_of_z_by
 from rr_opt.diagnose.racer_quantities import values_by, values_of
 from rr_opt.diagnose.shoot import DrivePath, DriveSlopes, System, predict, slopes
 from rr_opt.physics.assembly import Assembly, assembled
-from rr_opt.physics.effects import CATALOGUE
 from rr_opt.physics.floor_motion import FloorMotion, solved
 from rr_opt.physics.kane import equations
 from rr_opt.physics.kinematics import Force, Frame, Mechanism
@@ -94,7 +93,7 @@ def respond(
 
     pushes  (k, 7, n), rows as PUSHES;  amounts  (k,) how much of each there is
     """
-    mechanical = tuple(name for name in CATALOGUE if name in effects)
+    mechanical = model.every(effects)
     system, motion = _system(mechanical)
     given = {**model.nominal, **values}
     names = motion.parameters[:-_FURTHER]
@@ -105,9 +104,7 @@ def respond(
     pushed_path = _with_drives(path, np.tensordot(amounts, drives, 1))
     made = predict(system, pushed_path, state_of(mechanical, path, start, p), p)
     n, rows = len(wanted), len(path.at)
-    by = np.zeros((p.size, n + len(pushes)))
-    for k, name in enumerate(wanted):
-        by[:, k] = values_by(given, names, name)
+    by = np.hstack([values_by(given, names, wanted), np.zeros((p.size, len(pushes)))])
     at, middle = _at(drives, path.h.size)
     drive_by = DriveSlopes(
         np.zeros((rows + _FURTHER, t.size, by.shape[1])),
@@ -140,7 +137,7 @@ def observed(
     start: Array,
 ) -> Along:
     """The motion that was recorded: the prediction, and the smooth part of what it is off."""
-    mechanical = tuple(name for name in CATALOGUE if name in effects)
+    mechanical = model.every(effects)
     system, motion = _system(mechanical)
     given = {**model.nominal, **values}
     p = values_of(given, motion.parameters[:-_FURTHER])

@@ -174,9 +174,7 @@ class RollerRacer:
         made = predict(system, path, state_of(mechanical, path, start, p), p)
         if wanted is None:
             return Response(made.seen)
-        by = np.zeros((p.size, len(wanted)))
-        for k, name in enumerate(wanted):
-            by[:, k] = values_by(given, parameters, name)
+        by = values_by(given, parameters, wanted)
         drive_by = self.drive_slopes(piece.run, given, mechanical, t, wanted)
         out = slopes(system, path, made, p, by, drive_by)
         by_value = out.by_parameter

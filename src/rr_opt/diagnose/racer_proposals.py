@@ -8,7 +8,7 @@ wheels are linearised where they slip.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
@@ -18,6 +18,7 @@ from scipy.optimize import minimize_scalar
 from rr_opt.diagnose.fit import Fit, Problem, bounded_step, box, doubt, scaled
 from rr_opt.diagnose.floor_map import Found, cells_of, likely, with_cells
 from rr_opt.diagnose.model import Data, Form, Model, Proposal, Quantity, Response
+from rr_opt.diagnose.normal import total
 from rr_opt.diagnose.shoot import System
 
 if TYPE_CHECKING:
@@ -54,12 +55,8 @@ def of_servo(model: RollerRacer, name: str, form: Form, fit: Fit) -> Sequence[Pr
     k = int(np.argmin(found))
     low, high = values[max(k - 1, 0)], values[min(k + 1, _TRIED - 1)]
     best = minimize_scalar(left, bounds=(low, high), method="bounded", options={"maxiter": 12})
-    value, least = min((float(best.x), float(best.fun)), (float(values[k]), found[k]), key=_second)
+    least, value = min((float(best.fun), float(best.x)), (found[k], float(values[k])))
     return [Proposal({q.name: value}, before - least)]
-
-
-def _second(pair: tuple[float, float]) -> float:
-    return pair[1]
 
 
 def of_slip(model: RollerRacer, name: str, form: Form, fit: Fit) -> Sequence[Proposal]:
@@ -68,22 +65,16 @@ def of_slip(model: RollerRacer, name: str, form: Form, fit: Fit) -> Sequence[Pro
     problem = Problem(cast("Model", model), tuple(fit.starts), (*fit.effects, name), quantities)
     low, high = box(quantities)
     prior = problem.prior * doubt(fit.cost, fit.count)
-    before = fit.cost + float(prior @ scaled(quantities, _at(fit, form.starts[0])) ** 2)
+    before = fit.cost + float(fit.prior @ fit.scaled**2)
     found = []
     for start in form.starts:
-        values = _at(fit, start)
+        values = {**fit.values, **start}
         parts = [problem.normal(piece, values, begin) for piece, begin in fit.starts.items()]
         u = scaled(quantities, values)
-        g = sum((one.g for one in parts), prior * u)
-        H = sum((one.H for one in parts), np.diag(prior))
-        d = bounded_step(H, g, 1e-9, u, np.maximum(low, u - 3), np.minimum(high, u + 3))
-        after = sum(one.cost for one in parts) + prior @ u**2 + 2 * g @ d + d @ H @ d
-        found.append(Proposal(start, before - float(after)))
+        whole = total(parts, prior, u)
+        d = bounded_step(whole.H, whole.g, 1e-9, u, np.maximum(low, u - 3), np.minimum(high, u + 3))
+        found.append(Proposal(start, before - whole.at(d)))
     return found
-
-
-def _at(fit: Fit, start: Mapping[str, float]) -> dict[str, float]:
-    return {**fit.values, **start}
 
 
 def of_patch(model: RollerRacer, fit: Fit) -> tuple[Sequence[Proposal], Sequence[Proposal]]:
@@ -99,9 +90,9 @@ def of_patch(model: RollerRacer, fit: Fit) -> tuple[Sequence[Proposal], Sequence
     values = dict(fit.values) | dict.fromkeys(cells.names, 0.0)
     parts = [problem.normal(piece, values, start) for piece, start in fit.starts.items()]
     n = len(fit.quantities)
-    prior = np.diag(problem.prior * doubt(fit.cost, fit.count))
-    u = scaled(quantities, values)
-    H, g = sum((one.H for one in parts), prior), sum((one.g for one in parts), prior @ u)
+    prior = doubt(fit.cost, fit.count) * problem.prior
+    whole = total(parts, prior, scaled(quantities, values))
+    H, g = whole.H, whole.g
     onto = np.linalg.pinv(H[:n, :n], hermitian=True) @ H[:n, n:] if n else H[:0, n:]
     circles, edges = likely(cells, g[n:] - onto.T @ g[:n], H[n:, n:] - onto.T @ H[:n, n:])
     return _named(circles), _named(edges)

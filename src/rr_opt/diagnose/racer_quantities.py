@@ -68,15 +68,19 @@ def values_of(given: dict[str, float], parameters: tuple[str, ...]) -> Array:
     return np.array([friction.get(name, given.get(name, math.nan)) for name in parameters])
 
 
-def values_by(given: dict[str, float], parameters: tuple[str, ...], name: str) -> Array:
-    """How p changes with a quantity."""
-    out = np.array([float(own == name) for own in parameters])
+def values_by(
+    given: dict[str, float], parameters: tuple[str, ...], wanted: tuple[str, ...]
+) -> Array:
+    """How p changes with each quantity that is wanted, (np, nw)."""
+    out = np.array([[float(own == name) for name in wanted] for own in parameters])
+    out = out.reshape(len(parameters), len(wanted))
     for i in (1, 2):
         own = parameters.index(f"k{i}")
-        if name == f"kappa{i}":
-            out[own] = 1 / given["h"] ** 2
-        if name == "h":
-            out[own] = -2 * given[f"kappa{i}"] / given["h"] ** 3
+        for column, name in enumerate(wanted):
+            if name == f"kappa{i}":
+                out[own, column] = 1 / given["h"] ** 2
+            if name == "h":
+                out[own, column] = -2 * given[f"kappa{i}"] / given["h"] ** 3
     return out
 
 

@@ -16,7 +16,7 @@ from scipy.linalg import block_diag
 
 from rr_opt.diagnose.fit import Fit, bounded_step, box, doubt, scaled, unscaled
 from rr_opt.diagnose.model import Array, Piece
-from rr_opt.diagnose.normal import Normal, normal_of
+from rr_opt.diagnose.normal import Normal, normal_of, total
 from rr_opt.diagnose.pushed import respond
 from rr_opt.diagnose.racer import RollerRacer
 
@@ -48,11 +48,11 @@ class Linearised:
     def left(self, columns: Columns) -> float:
         """Misfit of the runs, each predicted from the others: mean square in sigma, less 1."""
         every = list(self.normals.values())
-        total = 0.0
+        left = 0.0
         for n in every:
             others = [other for other in every if other is not n] or every
-            total += n.at(self.step(others, columns))
-        return total / max(self.count - 4 * len(every), 1) - 1.0
+            left += n.at(self.step(others, columns))
+        return left / max(self.count - 4 * len(every), 1) - 1.0
 
     def step(self, normals: Sequence[Normal], columns: Columns) -> Array:
         """The best change (n,) with some columns free and the others at zero."""
@@ -60,10 +60,10 @@ class Linearised:
         d = np.zeros(self.u.size)
         d[self.fitted :] = -self.u[self.fitted :]
         d[own] = 0.0
-        H = sum((n.H for n in normals), self.prior)
-        g = sum((n.g for n in normals), self.prior @ self.u) + H @ d
+        whole = total(normals, self.prior, self.u)
+        g = whole.g + whole.H @ d
         d[own] = bounded_step(
-            H[np.ix_(own, own)], g[own], 1e-9, self.u[own], self.low[own], self.high[own]
+            whole.H[np.ix_(own, own)], g[own], 1e-9, self.u[own], self.low[own], self.high[own]
         )
         return d
 
@@ -77,7 +77,7 @@ class Linearised:
         own, every = self._own(columns), list(self.normals.values())
         d = self.step(every, columns)
         wider = doubt(self.cost(columns), self.count)
-        H = sum((n.H for n in every), self.prior)[np.ix_(own, own)]
+        H = total(every, self.prior, self.u).H[np.ix_(own, own)]
         spread = np.asarray(wider * np.linalg.inv(H), float)
         return (self.u + d)[columns], spread[self.fitted :, self.fitted :]
 

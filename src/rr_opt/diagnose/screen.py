@@ -7,7 +7,6 @@ cannot be linearised there the model proposes from where to look for it, and wha
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -15,18 +14,19 @@ import numpy as np
 
 from rr_opt.diagnose.explain import Chosen
 from rr_opt.diagnose.fit import Fit, Problem, bounded_step, box, doubt, scaled
-from rr_opt.diagnose.model import Array, Model
+from rr_opt.diagnose.model import Model
+from rr_opt.diagnose.normal import Quadratic, total
 
 
 @dataclass(frozen=True)
 class Promise:
-    """What adding effects would leave of the cost, linearised.
+    """What adding an effect would gain, in chi-square with what is known, linearised.
 
     begins  where to begin, if the effect jumps
     """
 
-    chosen: tuple[Chosen, ...]
-    cost: float
+    chosen: Chosen
+    gain: float
     begins: tuple[Mapping[str, float], ...] = ()
 
 
@@ -49,8 +49,8 @@ def jumps(model: Model, fit: Fit, have: Sequence[Chosen], *, dear: bool) -> list
         if proposals:
             gain = max(proposal.gain for proposal in proposals)
             begins = tuple(proposal.values for proposal in proposals)
-            found.append(Promise((one,), fit.cost - gain, begins))
-    return sorted(found, key=lambda promise: promise.cost)
+            found.append(Promise(one, gain, begins))
+    return sorted(found, key=lambda promise: -promise.gain)
 
 
 def every(model: Model) -> list[Chosen]:
@@ -62,8 +62,8 @@ def every(model: Model) -> list[Chosen]:
     ]
 
 
-def screen(model: Model, fit: Fit, have: Sequence[Chosen], together: int = 1) -> list[Promise]:
-    """What each effect, or each set of `together`, promises beside those already there."""
+def screen(model: Model, fit: Fit, have: Sequence[Chosen]) -> list[Promise]:
+    """What each effect promises beside those already there."""
     names = {one.name for one in have}
     new = [one for one in every(model) if one.name not in names and linear(model, one)]
     quantities = tuple(q for one in new for q in one.of(model).quantities)
@@ -72,23 +72,14 @@ def screen(model: Model, fit: Fit, have: Sequence[Chosen], together: int = 1) ->
     effects = (*fit.effects, *dict.fromkeys(one.name for one in new))
     problem = Problem(model, tuple(fit.starts), effects, own)
     normals = [problem.normal(piece, values, start) for piece, start in fit.starts.items()]
-    u = scaled(own, values)
-    prior = problem.prior * doubt(fit.cost, fit.count)
-    g = sum((n.g for n in normals), prior * u)
-    H = sum((n.H for n in normals), np.diag(prior))
-    whole = sum(n.cost for n in normals) + prior @ u**2
-    low, high = box(own)
+    u, (low, high) = scaled(own, values), box(own)
+    whole = total(normals, doubt(fit.cost, fit.count) * problem.prior, u)
     base = list(range(len(fit.quantities)))
     place = {q.name: k for k, q in enumerate(own)}
     promises = []
-    for some in itertools.combinations(new, together):
-        if len({one.name for one in some}) < together:
-            continue
-        k = np.array(base + [place[q.name] for one in some for q in one.of(model).quantities])
-        d = _best(g[k], H[np.ix_(k, k)], u[k], low[k], high[k])
-        promises.append(Promise(some, float(whole + 2 * g[k] @ d + d @ H[np.ix_(k, k)] @ d)))
-    return sorted(promises, key=lambda promise: promise.cost)
-
-
-def _best(g: Array, H: Array, u: Array, low: Array, high: Array) -> Array:
-    return bounded_step(H, g, 1e-9, u, low, high)
+    for one in new:
+        k = np.array(base + [place[q.name] for q in one.of(model).quantities])
+        some = Quadratic(0.0, whole.g[k], whole.H[np.ix_(k, k)])
+        d = bounded_step(some.H, some.g, 1e-9, u[k], low[k], high[k])
+        promises.append(Promise(one, -some.at(d)))
+    return sorted(promises, key=lambda promise: -promise.gain)

@@ -119,9 +119,9 @@ class Search:
         """The explanations with one effect more that promise most."""
         fit = _sight(best)
         promised = screen(self.model, fit, best.chosen) + self._jumps(best, dear=False)
-        promised.sort(key=lambda one: one.cost)
-        most = fit.cost - _WORTH * (fit.cost - promised[0].cost) if promised else 0.0
-        worth = [one for k, one in enumerate(promised) if k < _WHOLE or one.cost < most]
+        promised.sort(key=lambda one: -one.gain)
+        least = _WORTH * promised[0].gain if promised else 0.0
+        worth = [one for k, one in enumerate(promised) if k < _WHOLE or one.gain > least]
         found = self._fitted(best, worth[:_IN_WINDOWS], _WHOLE)
         if min((rms(one.misfit) for one in found), default=math.inf) > self.floor(best):
             # What cannot be linearised is dear, and tried where nothing else will do.
@@ -131,16 +131,16 @@ class Search:
     def _jumps(self, best: Explanation, *, dear: bool) -> list[Promise]:
         """The effects that jump, of which each promises more than luck."""
         fit = _sight(best)
-        most = fit.cost - _LUCK * doubt(fit.cost, fit.count)
+        luck = _LUCK * doubt(fit.cost, fit.count)
         promised = jumps(self.model, fit, best.chosen, dear=dear)
-        return [one for one in promised if one.cost < most]
+        return [one for one in promised if one.gain > luck]
 
     def _fitted(
         self, best: Explanation, promised: Sequence[Promise], most: int
     ) -> list[Explanation]:
         if not promised:
             return []
-        self.say(f"fitting {', '.join(one.chosen[0].name for one in promised)}")
+        self.say(f"fitting {', '.join(one.chosen.name for one in promised)}")
         in_windows = list(
             self.each(_InWindows(self.model, best.chosen, self.nominal, best.windows), promised)
         )
@@ -199,8 +199,7 @@ class _InWindows:
 
     def __call__(self, promise: Promise) -> tuple[Chosen, Fit]:
         """The effect beside those that are there."""
-        (one,) = promise.chosen
-        every = (*self.have, one)
+        one, every = promise.chosen, (*self.have, promise.chosen)
         return one, explain(self.model, every, self.nominal, self.fit, promise.begins)
 
 

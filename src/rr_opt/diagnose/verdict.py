@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 
-from scipy.stats import chi2
-
 from rr_opt.diagnose.diagnosis import Estimate, Finding, Verdict
 from rr_opt.diagnose.explanation import FLOOR, Explanation, certain, rms
 from rr_opt.diagnose.fit import doubt
@@ -61,13 +59,6 @@ def confidence(best: Explanation, rivals: Sequence[Explanation]) -> float:
         math.exp(-min(max(rival.score - best.score, 0.0) / (2 * wider), 700.0)) for rival in rivals
     )
     return 1.0 / (1.0 + against)
-
-
-def mismatch_p(explained: Explanation) -> float:
-    """Chance of so large a misfit from noise alone."""
-    fit = explained.whole
-    fitted = sum(start.size for start in fit.starts.values()) + len(fit.quantities)
-    return float(chi2.sf(fit.cost, max(fit.count - fitted, 1)))
 
 
 def finding(name: str, sure: float, intervals: Mapping[str, Estimate], removes: float) -> Finding:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rr_opt.diagnose.contest import RANKED_RATE, Rival, curvature, extent
+from rr_opt.diagnose.contest import RANKED_RATE, Rival, extent
 from rr_opt.diagnose.explanation import Explanation
 from rr_opt.diagnose.fit import Problem, box, unscaled
 from rr_opt.diagnose.intervals import covariance
@@ -55,7 +55,7 @@ class Narrowing:
             fit.effects,
             tuple(fit.quantities[j] for j in rest),
             values,
-            curvature(fit)[np.ix_(rest, rest)],
+            fit.total().H[np.ix_(rest, rest)],
             f"It would tell most about {q.name}, which is {fit.values[q.name]:.3g} {q.unit} and "
             f"would be known to {then:.2g} (one standard deviation) instead of {now:.2g}.",
         )
@@ -70,7 +70,7 @@ class Narrowing:
         if not np.isfinite(data.values[1:]).any() or extent([data.values[:, :2]]) > self.room:
             return None
         problem = Problem(made.model, (made.piece,), fit.effects, fit.quantities)
-        H = curvature(fit)
+        H = fit.total().H
         added = problem.normal(made.piece, fit.values, made.start).H
         before, after = (
             np.sqrt(np.diag(np.linalg.pinv(M, hermitian=True))) for M in (H, H + added)

@@ -42,7 +42,6 @@ TIME_LIMIT = 3600.0
 """s; a case that takes longer counts as one without an answer."""
 
 _VARIABLES = ("PATH", "HOME", "LANG", "LC_ALL", "MPLCONFIGDIR", "SYSTEMROOT")
-_THREADS = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 _LONGEST = 20_000
 """Characters of output that are kept."""
 
@@ -135,4 +134,4 @@ def _kill(process: subprocess.Popen[bytes]) -> None:
 
 def _environment(top: Path) -> dict[str, str]:
     kept = {name: os.environ[name] for name in _VARIABLES if name in os.environ}
-    return {**kept, **_THREADS, "TMPDIR": str(top)}
+    return {**kept, "TMPDIR": str(top)}

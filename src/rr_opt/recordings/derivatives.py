@@ -12,7 +12,6 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from rr_opt.experiment.recording import Recording
 from rr_opt.recordings.noise import noise_of
 from rr_opt.recordings.smooth import Smooth, smoothed
 from rr_opt.recordings.strength import strength
@@ -35,8 +34,3 @@ def derivatives(t: Array, y: Array, sigma: Array | float | None = None) -> Smoot
         usual = max(1e-9 * size, 1e-300)
         sigma = usual
     return smoothed(t, y, sigma, strength(y, usual))
-
-
-def channel_derivatives(recording: Recording, channel: str) -> Smooth:
-    """Those of a channel of a recording, from its unflagged samples and with its sigma."""
-    return derivatives(recording.t, recording.data(channel), recording.sigma[channel])

@@ -75,6 +75,14 @@ def tail(x: Array, flipping: bool) -> Array:
     return np.abs(_apply(_tail, x, flipping)).max(axis=0)
 
 
+def matrices(n: int, flipping: bool) -> tuple[Array, Array, Array]:
+    """What stands behind `integral` over a span of 1, `tail` and `peak`, as matrices (.., n)."""
+    integral, fastest, dense = (
+        _matrix(operation, n, flipping) for operation in (_integral, _tail, _resampled)
+    )
+    return integral, fastest, dense
+
+
 def _apply(operation: _Operation, x: Array, flipping: bool) -> Array:
     if len(x) <= _DENSE:
         return _matrix(operation, len(x), flipping) @ x
