@@ -18,6 +18,10 @@ INSTALL := $(PIP) install -qq
 # that was moved, need a new environment; a touched file does not.
 checksum = $(shell { pwd; cat pyproject.toml $(1); } | cksum | cut -d' ' -f1)
 RUN := $(VENV)/run-$(call checksum,requirements/run.txt)
+BENCHMARKS ?= startup optimise turn sweep fit study recordings diagnose
+BENCH_VENV := .venv-bench
+BENCH := $(BENCH_VENV)/ready-$(call checksum,requirements/run.txt requirements/bench.txt)
+MEASURE := OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 $(BENCH_VENV)/bin/python -W ignore
 DEV := $(VENV)/dev-$(call checksum,requirements/run.txt requirements/dev.txt)
 
 .DEFAULT_GOAL := help
@@ -65,12 +69,10 @@ results: $(DEV) ## write the results that are kept in results/
 	$(BIN)/rr-opt reproduce --out results/paper
 	$(BIN)/rr-opt calibrate --out results/calibration
 
-bench: $(DEV) ## measure against other ways to the same answer, into results/bench
-	$(BIN)/python -m benchmarks.optimise
-	$(BIN)/python -m benchmarks.turn
-	$(BIN)/python -m benchmarks.study
-	$(BIN)/python -m benchmarks.recordings
-	$(BIN)/python -m benchmarks.diagnose
+bench: $(BENCH) ## measure against other ways to the same answer, into results/bench (an hour)
+	@for name in $(BENCHMARKS); do \
+	  echo "== $$name"; $(MEASURE) -m benchmarks.$$name || exit 1; \
+	done; $(MEASURE) -m benchmarks.regression
 
 real: $(DEV) ## diagnose a real pendulum (DATA=/path/to/data_measured.csv)
 	$(BIN)/python scripts/real_pendulum.py "$(DATA)"
@@ -85,7 +87,7 @@ pins: $(RUN) ## pin the newest dependencies that pyproject.toml allows
 	$(BIN)/python scripts/pins.py
 
 clean: ## remove the environment and everything temporary
-	rm -rf $(VENV) build dist out .pytest_cache .hypothesis .ruff_cache .import_linter_cache
+	rm -rf $(VENV) $(BENCH_VENV) build dist out .pytest_cache .hypothesis .ruff_cache .import_linter_cache
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
 	rm -rf src/*.egg-info
 
@@ -111,4 +113,11 @@ $(RUN): | requirements/run.txt
 $(DEV): $(RUN)
 	@echo "Installing what tests and checks need ..."
 	@$(INSTALL) -r requirements/dev.txt
+	@touch $@
+
+$(BENCH): $(RUN)
+	@echo "Installing what to measure against, into $(BENCH_VENV) ..."
+	@$(BIN)/python -m venv --clear $(BENCH_VENV)
+	@PIP_DISABLE_PIP_VERSION_CHECK=1 $(BENCH_VENV)/bin/python -m pip --no-input install -qq --no-deps -r requirements/bench.txt
+	@PIP_DISABLE_PIP_VERSION_CHECK=1 $(BENCH_VENV)/bin/python -m pip --no-input install -qq --no-deps --no-build-isolation -e .
 	@touch $@

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import json
 import os
-import platform
 import statistics
 import subprocess
 import sys
@@ -21,6 +20,7 @@ from pathlib import Path
 import numpy as np
 import yaml
 
+from benchmarks.results import machine, spread, write, yardstick
 from rr_opt.diagnose.model import Piece
 from rr_opt.diagnose.racer import RollerRacer
 from rr_opt.experiment.experiment import Experiment, Noise, Run
@@ -28,7 +28,6 @@ from rr_opt.experiment.recording import CHANNELS, Recording
 from rr_opt.robot.gait import SineGait
 from rr_opt.robot.parameters import Platform, Robot, Servo
 
-RESULT = Path(__file__).parents[2] / "results" / "bench" / "diagnose.md"
 PLATFORMS = ((0.5, 0.004, 0.15, 0.03, 0.05, 1.2e-5), (0.3, 0.003, 0.08, 0.03, 0.05, 1.2e-5))
 ROBOT = Robot(Platform(*PLATFORMS[0]), Platform(*PLATFORMS[1]), 0.02, Servo(2.6, 6.28, 1.5))
 GAITS = [
@@ -57,35 +56,38 @@ def main() -> None:
     lines = [
         "# `rr-opt diagnose`, eight recordings of 30 s at 100 Hz",
         "",
-        f"Written by `python -m benchmarks.diagnose`. {platform.machine()}, {os.cpu_count()} "
-        f"cores, Python {platform.python_version()}. Wall-clock seconds of the whole command, page "
-        f"included, median of {TIMES} (least to most).",
+        f"Written by `python -m benchmarks.diagnose`. {machine()}. Wall-clock seconds of the "
+        f"whole command, page included, median of {TIMES} (least to most).",
         "",
         f"| hidden | {' | '.join(WAYS)} | verdict | where the time goes |",
         "|---|---|---|---|---|---|",
     ]
+    ratios = {}
     with tempfile.TemporaryDirectory() as place:
         for name, (effect, values) in HIDDEN.items():
             folder = Path(place) / name.replace(" ", "-")
-            write(folder, effect, values)
-            cells, found = [], {}
+            record(folder, effect, values)
+            yard, cells, middle, found = yardstick(), [], {}, {}
             for way in WAYS:
                 walls = []
                 for k in range(TIMES):
                     wall, found = timed(folder, Path(place), way, k)
                     walls.append(wall)
-                cells.append(
-                    f"{statistics.median(walls):.1f} ({min(walls):.1f} to {max(walls):.1f})"
-                )
+                cells.append(spread(walls, 1))
+                middle[way] = statistics.median(walls)
             steps = sorted(found["seconds"].items(), key=lambda pair: -pair[1])[:3]
             told = ", ".join(f"{step} {seconds:.1f}" for step, seconds in steps)
             lines.append(f"| {name} | {' | '.join(cells)} | {found['verdict']} | {told} |")
+            ratios[f"{name}, yardstick/compiled before"] = yard / middle["compiled before"]
+            ratios[f"{name}, no compiler/compiled before"] = (
+                middle["no compiler"] / middle["compiled before"]
+            )
             print(lines[-1], flush=True)
     lines += ["", "The last column is of the runs without a compiler."]
-    RESULT.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    write("diagnose", lines, ratios)
 
 
-def write(folder: Path, effect: str, values: dict[str, float]) -> None:
+def record(folder: Path, effect: str, values: dict[str, float]) -> None:
     """An experiment folder of a robot with the effect, from the model itself."""
     t = np.arange(3001) / 100.0
     empty = np.zeros((t.size, 4))

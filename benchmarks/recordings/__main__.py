@@ -8,7 +8,6 @@ recording, three times, the median; the peak of the memory.
 
 from __future__ import annotations
 
-import platform
 import statistics
 import subprocess
 import sys
@@ -17,11 +16,11 @@ from pathlib import Path
 
 import numpy as np
 
+from benchmarks.results import machine, write, yardstick
 from rr_opt.files import read_problem
 from rr_opt.motion.rollout import rollout
 from rr_opt.robot.gait import SineGait
 
-RESULT = Path(__file__).parents[2] / "results" / "bench" / "recordings.md"
 PLACES = {
     "L1": (1, 0.05, 0.03),
     "R1": (1, 0.05, -0.035),
@@ -53,12 +52,13 @@ def main() -> None:
     lines = [
         "# Marker files: read, fitted and cleaned",
         "",
-        f"Written by `python -m benchmarks.recordings`. {platform.machine()}, Python "
-        f"{platform.python_version()}. Fresh processes, imports included; median of three.",
+        f"Written by `python -m benchmarks.recordings`. {machine()}. "
+        "Fresh processes, imports included; median of three.",
         "",
         "| file | wall, s | CPU, s | peak memory, MiB |",
         "|---|---|---|---|",
     ]
+    yard, ratios = yardstick(), {}
     with tempfile.TemporaryDirectory() as folder:
         for name, minutes in (("10 minutes", 10), ("1 hour", 60)):
             path = Path(folder) / f"{minutes}.csv"
@@ -68,8 +68,9 @@ def main() -> None:
                 f"| {name}, {path.stat().st_size / 2**20:.0f} MiB | {statistics.median(walls):.2f} "
                 f"| {statistics.median(cpus):.2f} | {max(peaks) / 2**20:.0f} |"
             )
+            ratios[f"{name}, yardstick/CPU"] = yard / statistics.median(cpus)
             print(lines[-1], flush=True)
-    RESULT.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    write("recordings", lines, ratios)
 
 
 def vicon(path: Path, minutes: int) -> None:

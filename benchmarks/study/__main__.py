@@ -9,7 +9,6 @@ case to a process, taking its row back and syncing the journal cost.
 from __future__ import annotations
 
 import argparse
-import platform
 import tempfile
 import time
 from collections.abc import Callable, Mapping
@@ -17,6 +16,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from benchmarks.results import machine, write, yardstick
 from rr_opt.batch.journal import Journal
 from rr_opt.batch.local import LocalPool
 from rr_opt.batch.run import run
@@ -27,7 +27,6 @@ from rr_opt.design.study.solve_study import solve_study
 from rr_opt.files.study.file import Study, read_study
 from rr_opt.outcome import Status
 
-RESULT = Path(__file__).parents[2] / "results" / "bench" / "study.md"
 STUDY = """
 problem:
   gait: {{amplitude: [0.05, 1.5], period: [0.4 s, 3 s]}}
@@ -84,13 +83,13 @@ def line(name: str, taken: float, rows: Mapping[int, Row]) -> dict[str, Any]:
     }
 
 
-def table(lines: list[dict[str, Any]], apart: float) -> str:
+def table(lines: list[dict[str, Any]], apart: float) -> list[str]:
     """The measurements as Markdown."""
     text = [
         "# Study: seconds for a batch",
         "",
-        f"{platform.machine()}, {platform.system()}, Python {platform.python_version()}. "
-        "Times per case are ms. `cold`: cases solved from cold starts; `checked`: from neighbours' "
+        f"{machine()}. Times per case are ms. "
+        "`cold`: cases solved from cold starts; `checked`: from neighbours' "
         "optima and from cold starts; the others from neighbours' optima alone.",
         "",
         "| run | cases | wall, s | wall per case | CPU per case | cold | checked |",
@@ -101,8 +100,17 @@ def table(lines: list[dict[str, Any]], apart: float) -> str:
             f"| {one['run']} | {one['cases']} | {one['wall']:.1f} | {one['per case']:.1f} | "
             f"{one['cpu per case']:.1f} | {one['cold']} | {one['checked']} |"
         )
-    text += ["", f"Largest difference of a speed, warm against cold, relative: {apart:.0e}."]
-    return "\n".join(text) + "\n"
+    return [*text, "", f"Largest difference of a speed, warm against cold, relative: {apart:.0e}."]
+
+
+def compared(lines: list[dict[str, Any]], yard: float) -> dict[str, float]:
+    """What neighbours' optima and a second process save, and a case against the yardstick."""
+    _, cold, warm, several = lines
+    return {
+        "cold/warm, CPU": cold["cpu per case"] / warm["cpu per case"],
+        "one process/several, wall": warm["wall"] / several["wall"],
+        "yardstick/warm case, CPU": 1e3 * yard / warm["cpu per case"],
+    }
 
 
 def main() -> None:
@@ -112,7 +120,7 @@ def main() -> None:
     parser.add_argument("--workers", type=int, default=2)
     asked = parser.parse_args()
     study = study_of(asked.cases)
-    lines, speeds = [], {}
+    lines, speeds, yard = [], {}, yardstick()
     for name, workers, solve, cold in (
         ("idle, 1 process", 1, idle, True),
         ("cold, 1 process", 1, solve_case, True),
@@ -125,9 +133,9 @@ def main() -> None:
         print(lines[-1], flush=True)
     cold, warm = speeds["cold, 1 process"], speeds["warm, 1 process"]
     apart = max(abs(warm[case] / speed - 1) for case, speed in cold.items())
-    RESULT.parent.mkdir(parents=True, exist_ok=True)
-    RESULT.write_text(table(lines, apart))
-    print(RESULT.read_text())
+    text = table(lines, apart)
+    write("study", text, compared(lines, yard))
+    print("\n".join(text))
 
 
 if __name__ == "__main__":

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -147,4 +146,6 @@ def _sha256(source: Path) -> str:
 
     if is_experiment(source):
         return read_plan(source)[0].sha256
+    import hashlib  # noqa: PLC0415 - loads OpenSSL, which help can do without
+
     return hashlib.sha256(source.read_bytes()).hexdigest()

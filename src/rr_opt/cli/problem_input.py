@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import typer
 
 from rr_opt.cli.passed_over import tell_passed_over
-from rr_opt.problem import Problem
+
+if TYPE_CHECKING:
+    from rr_opt.problem import Problem
 
 
 def read(path: Path | None) -> tuple[Problem, str]:

@@ -10,6 +10,7 @@ not fitted itself.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import combinations
 from typing import Protocol
 
@@ -117,11 +118,16 @@ def _each(terrain: Terrain, trial: Array, sign: Array) -> Array:
 def _monomials(s: Array) -> Array:
     """1, s_i, s_i^2 and s_i s_j of steps (..., d), (..., M)."""
     d = s.shape[-1]
-    mixed = [s[..., i] * s[..., j] for i, j in combinations(range(d), 2)]
-    parts = [np.ones_like(s[..., :1]), s, s**2]
-    return np.concatenate([*parts, np.stack(mixed, -1)] if mixed else parts, axis=-1)
+    parts = np.empty((*s.shape[:-1], 1 + 2 * d + d * (d - 1) // 2))
+    parts[..., 0] = 1.0
+    parts[..., 1 : d + 1] = s
+    np.square(s, out=parts[..., d + 1 : 2 * d + 1])
+    for at, (i, j) in enumerate(combinations(range(d), 2), start=2 * d + 1):
+        np.multiply(s[..., i], s[..., j], out=parts[..., at])
+    return parts
 
 
+@lru_cache
 def _stencil(d: int) -> tuple[Array, Array]:
     """Just enough points for a quadratic in d variables, and what turns values at them into its
     coefficients."""
@@ -144,14 +150,13 @@ def _best_step(models: Array, centre: Array, size: Array, merit: Merit) -> Array
     middle, reach = np.zeros_like(centre), 2.0
     for _ in range(4):
         steps = np.clip(middle[:, None] + reach * cloud, low[:, None], high[:, None])
-        basis = _monomials(steps)
-        top = merit(np.array([np.einsum("kmp,kp->km", basis, one) for one in models])).argmax(
-            axis=1
-        )
+        seen = _monomials(steps) @ models.transpose(1, 2, 0)
+        top = merit(seen.transpose(2, 0, 1)).argmax(axis=1)
         middle, reach = steps[np.arange(len(steps)), top], reach / 3
     return middle
 
 
+@lru_cache
 def _cloud(d: int) -> Array:
     """The origin and low-discrepancy points of [-1.2, 1.2]^d."""
     return np.concatenate([np.zeros((1, d)), 2.4 * (spread(_SAMPLES, d) - 0.5)])

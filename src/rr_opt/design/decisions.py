@@ -96,6 +96,21 @@ class Decisions:
         amplitude = low + unit[:, 2] * np.maximum(most - low, 0.0)
         return np.array([amplitude, period, offset, unit[:, 3]])
 
+    def unit(self, amplitude: float, period: float, offset: float, share: float) -> Array:
+        """The point of the unit box (4,) at or next to a gait; 0 along what is fixed."""
+        point = np.zeros(4)
+        if not self.period.fixed:
+            point[0] = math.log(period / self.period.low) / math.log(
+                self.period.high / self.period.low
+            )
+        if not self.offset.fixed:
+            point[1] = (offset - self.offset.low) / (self.offset.high - self.offset.low)
+        low, most = self.physical(np.array([[*point[:2], k, 0.0] for k in (0.0, 1.0)]))[0]
+        if most > low:
+            point[2] = (amplitude - low) / (most - low)
+        point[3] = share
+        return np.clip(point, 0.0, 1.0)
+
 
 def decisions(problem: Problem) -> Decisions:
     """The decisions of a problem with their bounds tightened by its limits."""

@@ -9,6 +9,7 @@ from typing import Any
 import casadi as ca
 
 from rr_opt.design.layout import COMMON, DYNAMIC, MEANS
+from rr_opt.design.machine import Code, Functions
 from rr_opt.design.period import PeriodTerms, named
 from rr_opt.design.shapes import Shape
 from rr_opt.motion.tableau import Tableau
@@ -27,8 +28,9 @@ def interval_of(
 class IntervalTerms:
     """What one interval contributes: values, first and second derivatives.
 
-    step       (local, theta, width, looks, z, fixed) -> states at the end, integrals, path rows
-    slopes, curves   sparsity of its Jacobian and, weighted, Hessian in (local, z)
+    code       step (local, theta, width, looks, z, fixed) -> states at the end, integrals, path
+               rows; its Jacobian and, weighted, Hessian in (local, z)
+    slopes, curves   their sparsity; they are given dense
     period     the rows of a whole period
     shared     length of `fixed`: robot, loads and ballast range
     """
@@ -70,9 +72,13 @@ class IntervalTerms:
         curves = ca.hessian(ca.dot(weights, out), inner)[0]
         self.shared = fixed.numel()
         self.slopes, self.curves = slopes.sparsity(), curves.sparsity()
-        self.step = ca.Function("step", inputs, [out])
-        self.jacobian = ca.Function("jacobian", inputs, [ca.cse(ca.densify(slopes))])
-        self.hessian = ca.Function("hessian", [*inputs, weights], [ca.cse(ca.densify(curves))])
+        self.code = Code(
+            Functions(
+                ca.Function("step", inputs, [out]),
+                ca.Function("jacobian", inputs, [ca.cse(ca.densify(slopes))]),
+                ca.Function("hessian", [*inputs, weights], [ca.cse(ca.densify(curves))]),
+            )
+        )
         c1, c2 = (fixed[parameters.index(name)] for name in ("c1", "c2"))
         self.period = PeriodTerms(shape, z, fixed, c1, c2)
 

@@ -16,6 +16,7 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
+from rr_opt.design.landscape_code import LandscapeCode
 from rr_opt.physics.arrays import ArrayFunction, over_arrays
 from rr_opt.physics.dynamics import Dynamics, derive
 from rr_opt.problem import Interval
@@ -57,6 +58,7 @@ class Landscape:
     def __init__(self, dynamics: Dynamics, robot: Robot, by: By, loads: Loads, ballast: Interval):
         functions = _array_functions(dynamics.effects)
         self._rates, self._torque, self._affine, self._tangent = functions
+        self._code = _code(dynamics.effects) if dynamics.linear else None
         self._values = list(dynamics.values(robot))
         self._names = dynamics.parameters
         self.linear = dynamics.linear
@@ -66,6 +68,11 @@ class Landscape:
     def cycles(self, gaits: Array, nodes: int) -> Cycles:
         """Steady cycles of gaits (4, K): amplitude, period, offset, ballast share."""
         count = gaits.shape[1]
+        if self._code and self._code.ready(count * nodes):
+            p = np.empty((count, len(self._names)))
+            for column, values in zip(p.T, self._parameters(gaits[3]), strict=True):
+                column[:] = values
+            return Cycles(*self._code.cycles(gaits, p, nodes))
         blocks = math.ceil(count * nodes / _BLOCK)
         # A gait that does not settle comes out as inf or nan, which is the caller's to see.
         with np.errstate(all="ignore"):
@@ -153,19 +160,28 @@ def _array_functions(effects: tuple[str, ...]) -> tuple[ArrayFunction, ...]:
     vdot and its slope in v of (v, phi, dphi, ddphi, p)."""
     motion = derive(effects).motion
     names = motion.name_in()
-    v, phi, dphi, ddphi = (ca.SX.sym(name) for name in names[:4])
+    return (
+        over_arrays(motion.factory("rates", names, ["vdot", "w", "side"])),
+        over_arrays(motion.factory("torque", names, ["torque"])),
+        over_arrays(_affine(motion)),
+        over_arrays(motion.factory("tangent", names, ["vdot", "jac:vdot:v"])),
+    )
+
+
+@lru_cache
+def _code(effects: tuple[str, ...]) -> LandscapeCode:
+    motion = derive(effects).motion
+    return LandscapeCode(_affine(motion), motion.factory("torque", motion.name_in(), ["torque"]))
+
+
+def _affine(motion: ca.Function) -> ca.Function:
+    v, phi, dphi, ddphi = (ca.SX.sym(name) for name in motion.name_in()[:4])
     p = ca.SX.sym("p", motion.numel_in(4))
     parts = []
     for rate in motion(v, phi, dphi, ddphi, p)[:3]:
         parts += [ca.substitute(part, v, ca.SX(0)) for part in (ca.jacobian(rate, v), rate)]
-    affine = ca.Function(
+    return ca.Function(
         "affine", [phi, dphi, ddphi, p], ca.vertsplit(ca.cse(ca.densify(ca.vertcat(*parts))))
-    )
-    return (
-        over_arrays(motion.factory("rates", names, ["vdot", "w", "side"])),
-        over_arrays(motion.factory("torque", names, ["torque"])),
-        over_arrays(affine),
-        over_arrays(motion.factory("tangent", names, ["vdot", "jac:vdot:v"])),
     )
 
 

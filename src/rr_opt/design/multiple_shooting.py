@@ -28,12 +28,13 @@ kind.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import casadi as ca
 
 from rr_opt.design.interval import IntervalTerms, interval_of
 from rr_opt.design.layout import Layout
+from rr_opt.design.machine import Functions
 from rr_opt.design.shapes import Shape
 from rr_opt.motion.tableau import BUTCHER6, Tableau
 from rr_opt.robot.ballast import By
@@ -64,12 +65,27 @@ _IPOPT = {
 class Shooting:
     """The program for one shape and number of intervals.
 
-    solver  nlpsol over the unknowns and rows of `layout`, p = (robot, loads, ballast range,
-            checked phases, direction, node phases, looks interval by interval)
+    A solver is an nlpsol over the unknowns and rows of `layout`, p = (robot, loads, ballast range,
+    checked phases, direction, node phases, looks interval by interval).
     """
 
     layout: Layout
-    solver: ca.Function
+    terms: IntervalTerms
+
+    @cached_property
+    def solver(self) -> ca.Function:
+        """The solver by CasADi's virtual machine."""
+        return _Program(self.layout, self.terms, self.terms.code.functions).solver()
+
+    @property
+    def fastest(self) -> ca.Function:
+        """The same of machine code, where there is some."""
+        return self.solver if self.terms.code.compiled is None else self._compiled
+
+    @cached_property
+    def _compiled(self) -> ca.Function:
+        compiled = self.terms.code.compiled or self.terms.code.functions
+        return _Program(self.layout, self.terms, compiled).solver()
 
 
 @lru_cache
@@ -82,18 +98,16 @@ def shooting(
     substeps: int = 1,
     method: Tableau = BUTCHER6,
 ) -> Shooting:
-    """Build the program for robots with these effects and this way of changing the inertia."""
-    layout = Layout(shape, intervals, looks)
+    """The program for robots with these effects and this way of changing the inertia."""
     terms = interval_of(effects, by, shape, looks, substeps, method)
-    program = _Program(layout, terms)
-    return Shooting(layout, program.solver())
+    return Shooting(Layout(shape, intervals, looks), terms)
 
 
 class _Program:
     """The parts of the program as expressions."""
 
-    def __init__(self, layout: Layout, terms: IntervalTerms):
-        self.layout, self.terms = layout, terms
+    def __init__(self, layout: Layout, terms: IntervalTerms, functions: Functions):
+        self.layout, self.terms, self.functions = layout, terms, functions
         n, nz, nm = layout.intervals, len(layout.decisions), len(layout.means)
         self.states, self.wrt = len(layout.states), len(layout.local) + nz
         self.x = ca.MX.sym("x", nz + nm + n * len(layout.local))
@@ -135,7 +149,7 @@ class _Program:
 
     def _rows(self) -> ca.MX:
         n, states = self.layout.intervals, self.states
-        ends = self.terms.step.map(n)(*self.per_node, self.z, self.fixed)
+        ends = self.functions.step.map(n)(*self.per_node, self.z, self.fixed)
         sums = ends[states : states + self.mean.numel(), :]
         path = ends[states + self.mean.numel() :, :]
         gaps = [ends[i, :].T - self.shift @ self.local[:, i] for i in range(states)]
@@ -151,7 +165,7 @@ class _Program:
         interval in turn."""
         n, nm, wrt = self.layout.intervals, self.mean.numel(), self.wrt
         nl, outputs = len(self.layout.local), self.terms.slopes.size1()
-        slopes = self.terms.jacobian.map(n)(*self.per_node, self.z, self.fixed)
+        slopes = self.functions.jacobian.map(n)(*self.per_node, self.z, self.fixed)
 
         def node_by_node(row: int) -> list[ca.MX]:
             known = self.terms.slopes
@@ -195,7 +209,7 @@ class _Program:
             ca.repmat(on_sums, 1, n),
             ca.reshape(on_path, n, -1).T,
         )
-        curves = self.terms.hessian.map(n)(*self.per_node, self.z, self.fixed, weights)
+        curves = self.functions.hessian.map(n)(*self.per_node, self.z, self.fixed, weights)
         summed = [ca.sum2(curves[nl:, j::wrt]) for j in range(nl, wrt)]
         limit_z, cross, limit_mean = self.terms.period.curves(*self.per_period, on_limits)
         of_mean = ca.hessian(self.f, self.x)[0][nz : nz + nm, nz : nz + nm]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
+from rr_opt.design.basin import leads_to
 from rr_opt.design.decisions import decisions
 from rr_opt.design.finds import Finds
 from rr_opt.design.infeasible import direction_clash, posture_clashes, torque_clash
@@ -40,6 +41,11 @@ def find_sines(problem: Problem, progress: Progress) -> Finds:
     finds = Finds()
     for number, (setting, seed) in enumerate(starts, 1):
         progress(f"start {number} of {len(starts)}")
+        known = [one for other, one in finds.pairs if other is setting]
+        if not problem.turn and any(
+            leads_to(setting.landscape, box, problem.limits.torque, seed, one) for one in known
+        ):
+            continue
         amplitude, period, offset, share = map(float, box.physical(seed.point[None])[:, 0])
         if setting.fixed_share is not None:
             share = setting.fixed_share

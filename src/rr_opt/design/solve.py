@@ -17,7 +17,7 @@ from rr_opt.design.multiple_shooting import shooting
 from rr_opt.design.setting import Setting
 from rr_opt.design.shapes import Shape, shape_of
 from rr_opt.problem import Interval
-from rr_opt.robot.gait import Gait
+from rr_opt.robot.gait import Gait, SineGait
 
 Array = NDArray[np.float64]
 
@@ -99,8 +99,10 @@ def solve(setting: Setting, sign: int, gait: Gait, share: float, mesh: Mesh) -> 
     )
     lbx, ubx, lbg, ubg = _bounds(setting, layout, mesh.margin)
     x0 = _start(setting.landscape, layout, gait, share, mesh.phases)
-    result = program.solver(x0=np.clip(x0, lbx, ubx), p=p, lbx=lbx, ubx=ubx, lbg=lbg, ubg=ubg)
-    stats = program.solver.stats()
+    solver = program.fastest
+    result = solver(x0=np.clip(x0, lbx, ubx), p=p, lbx=lbx, ubx=ubx, lbg=lbg, ubg=ubg)
+    stats = solver.stats()
+    program.terms.code.used((1 + int(stats["iter_count"])) * mesh.intervals)
     x, g, lam_x, lam_g = (np.array(result[key]).ravel() for key in ("x", "g", "lam_x", "lam_g"))
     violation = float(np.max(np.maximum(np.maximum(lbg - g, g - ubg), 0.0)))
     status = stats["return_status"]
@@ -163,6 +165,10 @@ def _start(landscape: Landscape, layout: Layout, gait: Gait, share: float, phase
 
 def cycle_along(landscape: Landscape, gait: Gait, share: float, nodes: int) -> Cycles:
     """The steady cycle of one gait of any shape."""
+    if isinstance(gait, SineGait):
+        return landscape.cycles(
+            np.array([[gait.amplitude, gait.period, gait.offset, share]]).T, nodes
+        )
     t = np.arange(2 * nodes) / (2 * nodes) * gait.period
     phi, rate, acceleration = gait.angle(t), gait.rate(t), gait.acceleration(t)
     angle = phi[:, None], rate[:, None], acceleration[:, None]

@@ -202,8 +202,8 @@ def _residuals(misfits: tuple[Misfit, ...], *, held_out: bool) -> Array:
     return np.concatenate([m.residuals.ravel() for m in some])
 
 
-def answer(it: Found) -> Diagnosis:
-    """What was found as an answer."""
+def answer(it: Found, *, systematic: bool = False) -> Diagnosis:
+    """What was found as an answer; see `verdict_of`."""
     model, search, best, levels, steps = it.model, it.search, it.best, it.levels, it.steps
     level0, level1, level2 = levels
     held = tuple(certain(level.held() ** 2 - 1, level.count()) for level in levels)
@@ -211,7 +211,12 @@ def answer(it: Found) -> Diagnosis:
     moved = wrong(best.whole)
     nominal_left = max(rms(misfit(level0.fit)), held[0])
     apart = held[1], held[2]
-    verdict = verdict_of(best, search.base, nominal_left, apart, model.inexact, moved=bool(moved))
+    verdict = verdict_of(
+        *(best, search.base, nominal_left, apart, model.inexact),
+        moved=bool(moved),
+        rough=search.rough(best),
+        systematic=systematic,
+    )
     findings = _findings(best, search, intervals, (level1, level2), it.rivals)
     if verdict == "parameters":
         findings = tuple(Finding(q.name, 1.0, {q.name: intervals[q.name]}, 1.0) for q in moved)

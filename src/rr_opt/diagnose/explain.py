@@ -17,18 +17,21 @@ _LONG_WAY = 1.5
 _NEAR = 0.5
 """In windows, whose fit only begins another, a step that would lower the cost by less ends it."""
 
+_LOOK = 3
+"""So many steps from each of several places to begin say which leads lowest."""
+
 
 def whole(model: Model, runs: Sequence[int]) -> list[Piece]:
     """The runs in one piece each."""
     return [Piece(run, 0, len(model.runs[run].t)) for run in runs]
 
 
-def windows(model: Model, runs: Sequence[int]) -> list[Piece]:
-    """The runs in pieces of about the model's window, which end where the next begins."""
+def windows(model: Model, runs: Sequence[int], seconds: float | None = None) -> list[Piece]:
+    """The runs in pieces of about so long, else the model's window; each ends where one begins."""
     pieces = []
     for run in runs:
         t = model.runs[run].t
-        count = max(round((t[-1] - t[0]) / model.window), 1)
+        count = max(round((t[-1] - t[0]) / (seconds or model.window)), 1)
         edges = np.linspace(0, len(t), count + 1).astype(int)
         pieces += [Piece(run, a, b) for a, b in itertools.pairwise(edges)]
     return pieces
@@ -90,7 +93,8 @@ def explain(
     if len(each) == 1:
         return solve(problem, each[0], nominal.starts, done=_NEAR)
     best = min(
-        (solve(problem, v, nominal.starts, steps=3, done=_NEAR) for v in each), key=lambda f: f.cost
+        (solve(problem, v, nominal.starts, steps=_LOOK, done=_NEAR) for v in each),
+        key=lambda f: f.cost,
     )
     return best if best.converged else solve(problem, best.values, best.starts, done=_NEAR)
 

@@ -47,6 +47,18 @@ class Explanation:
         added = sum(not q.known for q in self.whole.quantities)
         return self.whole.cost + self.strain + added * math.log(self.whole.count)
 
+    def apart(self) -> float:
+        """Of what the effect that came last does, squared, the share that no values imitate."""
+        fit, own = self.whole, f"{self.names[-1]}."
+        total, u = fit.total(), fit.scaled
+        its = np.array([q.name.startswith(own) for q in fit.quantities])
+        neutral = scaled(fit.quantities, {q.name: q.neutral for q in fit.quantities})
+        gone = (neutral - u)[its]
+        push = total.H[np.ix_(~its, its)] @ gone
+        does = float(gone @ total.H[np.ix_(its, its)] @ gone)
+        imitated = float(push @ np.linalg.pinv(total.H[np.ix_(~its, ~its)], hermitian=True) @ push)
+        return 1.0 - imitated / does if does > 0 else 0.0
+
 
 def misfit(fit: Fit) -> float:
     """Mean square of the residuals in sigma, less 1."""

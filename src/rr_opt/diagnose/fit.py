@@ -23,7 +23,7 @@ from rr_opt.diagnose.normal import Normal, Quadratic, normal_of, total
 _DAMPINGS = (0.0, 1e-4, 1e-3, 1e-2, 1e-1, 1.0)
 _TRIES, _UPHILL = 4, 1e3
 _STRIDE = 3.0
-"""A scaled quantity moves by no more in a step."""
+"""A scaled quantity moves by no more in a step, an effect's by no more than that or twofold."""
 
 _ALIKE = 150
 """So many samples of a misfit, 1.5 s at 100 Hz, count as one."""
@@ -219,12 +219,18 @@ def _stepped(
     u = scaled(problem.quantities, at.values)
     low, high = box(problem.quantities)
     whole = total(normals.values(), weight * problem.prior, u)
-    near, far = np.maximum(low, u - _STRIDE), np.minimum(high, u + _STRIDE)
+    reach = np.array([_reach(q, at.values[q.name]) for q in problem.quantities])
+    near, far = np.maximum(low, u - reach), np.minimum(high, u + reach)
     d = bounded_step(whole.H, whole.g, damping, u, near, far)
     values = unscaled(problem.quantities, u + d)
     starts = {one: at.starts[one] + n.shift + n.follow @ d for one, n in normals.items()}
     cost, _ = problem.cost(values, starts)
     return _Point(values, starts, cost, problem.beforehand(values))
+
+
+def _reach(q: Quantity, value: float) -> float:
+    """How far a quantity may move in one step, scaled."""
+    return _STRIDE if q.known else max(_STRIDE, abs(value) / q.scale)
 
 
 def box(quantities: Sequence[Quantity]) -> tuple[Array, Array]:

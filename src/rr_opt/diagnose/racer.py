@@ -12,9 +12,10 @@ import numpy as np
 from rr_opt.diagnose.fit import Fit
 from rr_opt.diagnose.model import Array, Candidate, Data, Piece, Proposal, Quantity, Response
 from rr_opt.diagnose.racer_drive import Drives, drive_path, drive_slopes, lateness
+from rr_opt.diagnose.racer_kept import Kept
 from rr_opt.diagnose.racer_proposals import of_patch, of_servo, of_slip
 from rr_opt.diagnose.racer_quantities import candidate, nominal, uncertain, values_by, values_of
-from rr_opt.diagnose.shoot import DrivePath, DriveSlopes, System, predict, slopes
+from rr_opt.diagnose.shoot import DrivePath, DriveSlopes, System, slopes
 from rr_opt.experiment.experiment import Experiment, Run
 from rr_opt.experiment.recording import CHANNELS
 from rr_opt.physics.effects import CATALOGUE, Setting
@@ -40,6 +41,7 @@ class RollerRacer:
         self.experiment = experiment
         self.nominal = nominal(experiment)
         self._given = frozenset(use.name for use in experiment.robot.physics)
+        self._kept = Kept()
         self._mapped: tuple[Fit, tuple[Sequence[Proposal], Sequence[Proposal]]] | None = None
 
     @property
@@ -170,8 +172,13 @@ class RollerRacer:
         given = {**self.nominal, **values}
         p = values_of(given, parameters)
         t = self.runs[piece.run].t[piece.span]
-        path = self.drive_path(piece.run, given, mechanical, t)
-        made = predict(system, path, state_of(mechanical, path, start, p), p)
+        drive, late = self._drives.of(piece.run, given, mechanical), lateness(given, mechanical)
+        path = self._kept.path(
+            *(piece, drive, late, mechanical),
+            lambda: drive_path(drive, t, mechanical, late, smooth=drive.smooth),
+        )
+        state = state_of(mechanical, path, start, p)
+        made = self._kept.predicted(piece, system, path, state, p)
         if wanted is None:
             return Response(made.seen)
         by = values_by(given, parameters, wanted)

@@ -15,7 +15,7 @@ from rr_opt.diagnose.indistinguishable import groups
 from rr_opt.diagnose.intervals import estimates
 from rr_opt.diagnose.next_experiment import next_experiment
 from rr_opt.diagnose.racer import RollerRacer
-from rr_opt.diagnose.residue import residue
+from rr_opt.diagnose.residue import residue, systematic
 from rr_opt.diagnose.stages.located import located
 from rr_opt.diagnose.stages.stages import stages
 
@@ -23,7 +23,8 @@ from rr_opt.diagnose.stages.stages import stages
 def diagnose_racer(racer: RollerRacer, steps: Steps | None = None) -> Diagnosis:
     """Diagnose a Roller Racer from its recordings."""
     it = found(racer, steps or Steps())
-    said = answer(it)
+    left = it.steps.timed("is that all", lambda: systematic(racer, it.best))
+    said = answer(it, systematic=left)
     tested = it.steps.timed("where", lambda: stages(racer, it.search.base.whole))
     said = located(said, tested, racer.catalogue)
     said = _told_apart(racer, it, said)

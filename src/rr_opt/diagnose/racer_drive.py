@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 
@@ -13,8 +14,8 @@ from rr_opt.experiment.experiment import Run
 from rr_opt.physics.drive import Drive, FreeJoint, told
 from rr_opt.physics.effects import CATALOGUE
 
-_FINE = 4
-"""Steps between two samples where the drive is not smooth, or the wheels slip."""
+_LONGEST, _FINE = 0.012, 0.003
+"""A step is no longer, s; than the second where the drive is not smooth, or the wheels slip."""
 
 
 class Drives:
@@ -51,7 +52,8 @@ def drive_path(
 ) -> DrivePath:
     """The drive over the steps between the samples; dphi jumps where it is not smooth."""
     stiff = any(CATALOGUE[name].stiff for name in effects)
-    each = _FINE if stiff or not smooth else 1
+    longest = _FINE if stiff or not smooth else _LONGEST
+    each = 2 ** max(math.ceil(math.log2(float(np.median(np.diff(t))) / longest)), 0)
     inner = np.arange(each) / each
     edges = np.append((t[:-1, None] + np.diff(t)[:, None] * inner).ravel(), t[-1])
     h = np.diff(edges)

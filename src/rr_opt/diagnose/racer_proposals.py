@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from rr_opt.diagnose.fit import Fit, Problem, bounded_step, box, doubt, scaled
+from rr_opt.diagnose.explain import windows
+from rr_opt.diagnose.fit import Fit, Problem, bounded_step, box, doubt, scaled, solve
 from rr_opt.diagnose.floor_map import Found, cells_of, likely, with_cells
 from rr_opt.diagnose.model import Data, Form, Model, Proposal, Quantity, Response
 from rr_opt.diagnose.normal import total
@@ -26,6 +27,9 @@ if TYPE_CHECKING:
 
 _TRIED = 14
 """Values of an effect of the servo, between next to nothing and a lot."""
+
+_MUCH, _SHORT = 2.0, 1.0
+"""With more misfit, mean square in sigma, a patch is looked for over so many seconds as well."""
 
 
 def of_servo(model: RollerRacer, name: str, form: Form, fit: Fit) -> Sequence[Proposal]:
@@ -78,7 +82,23 @@ def of_slip(model: RollerRacer, name: str, form: Form, fit: Fit) -> Sequence[Pro
 
 
 def of_patch(model: RollerRacer, fit: Fit) -> tuple[Sequence[Proposal], Sequence[Proposal]]:
-    """Circles and edges that would gain most; see `floor_map`."""
+    """Circles and edges that would gain most; see `floor_map`.
+
+    A strong patch takes a robot far from where it would be without, and the map is blurred. So
+    where much is left it is looked for over pieces too that are too short for that.
+    """
+    circles, edges = _on_map(model, fit)
+    if fit.cost > _MUCH * fit.count:
+        machine = cast("Model", model)
+        pieces = windows(machine, sorted({p.run for p in fit.starts}), _SHORT)
+        problem = Problem(machine, pieces, fit.effects, fit.quantities)
+        short = solve(problem, fit.values, {piece: model.start(piece) for piece in pieces})
+        more_circles, more_edges = _on_map(model, short)
+        circles, edges = circles + more_circles, edges + more_edges
+    return circles, edges
+
+
+def _on_map(model: RollerRacer, fit: Fit) -> tuple[list[Proposal], list[Proposal]]:
     cells = cells_of([model.runs[piece.run].values[piece.span, :2] for piece in fit.starts])
     motion = with_cells(model.every(fit.effects), cells)
     stiff = len(motion.free) if motion.slips else 0

@@ -9,19 +9,21 @@ one.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from rr_opt.diagnose.diagnosis import Residue
 from rr_opt.diagnose.explanation import FLOOR, Explanation
-from rr_opt.diagnose.model import Array
+from rr_opt.diagnose.fit import Fit, doubt
+from rr_opt.diagnose.model import Array, Piece
 from rr_opt.diagnose.pushed import observed
 from rr_opt.diagnose.racer import RollerRacer
 from rr_opt.diagnose.residue_problem import Columns, Linearised, Point, linearised, moved, thinned
 from rr_opt.diagnose.residue_terms import Term, terms
 from rr_opt.diagnose.shape_words import shape
-from rr_opt.physics.effects import CATALOGUE
+from rr_opt.physics.effects import CATALOGUE, Effect
 
 MOST = 3
 """So many variables, at most."""
@@ -38,6 +40,9 @@ LEAST = 0.15
 ALIKE = 0.05
 """Terms that differ by less of the misfit do about as well."""
 
+PATTERN = 40.0
+"""A gain in chi-square, in terms of model error, that noise and small model errors do not make."""
+
 _AGAIN = 3
 """So often the problem is linearised again."""
 
@@ -50,24 +55,14 @@ def residue(model: RollerRacer, best: Explanation) -> tuple[Residue, ...]:
     fit = best.whole
     if best.misfit <= FLOOR**2:
         return ()
-    less, starts = thinned(model, fit)
-    seen = {p: observed(less, p, fit.values, fit.effects, start) for p, start in starts.items()}
-    slips = any(CATALOGUE[name].stiff for name in fit.effects)
-    every = terms(list(seen.values()), model.nominal["h"], slips=slips)
-    sizes = [term.kind.size(*_usual(model)) for term in every]
-    pushes = {
-        piece: np.concatenate([s * t.pushes(along) for t, s in zip(every, sizes, strict=True)])
-        for piece, along in seen.items()
-    }
-    weights = [term.weights for term in every]
-    edges = np.cumsum([len(fit.quantities), *map(len, weights)])
-    places = [np.arange(a, b) for a, b in itertools.pairwise(edges)]
-    point = Point(fit.values, starts, np.zeros(edges[-1] - edges[0]))
-    problem = linearised(less, fit, point, pushes, weights)
+    asked = _asked(model, fit)
+    every, sizes, places = asked.terms, asked.sizes, asked.places
+    point = asked.begin
+    problem = asked.at(point)
     chosen = _chosen(problem, places)
     for _ in range(_AGAIN if chosen else 0):
         point = moved(fit, point, problem, _joined(places, chosen))
-        problem = linearised(less, fit, point, pushes, weights)
+        problem = asked.at(point)
         chosen = _chosen(problem, places)
     if not chosen:
         return ()
@@ -79,6 +74,62 @@ def residue(model: RollerRacer, best: Explanation) -> tuple[Residue, ...]:
         at = own.stop
         out.append(_told(every[k], sizes[k], values[own], spread[own, own], share))
     return tuple(out)
+
+
+def systematic(model: RollerRacer, best: Explanation) -> bool:
+    """Whether what an explanation leaves, however little, still depends on something.
+
+    Effects that imitate what is really there leave such a pattern. A servo that jumps and wheels
+    that slide leave one even if the effect is right, as no two machines do so alike: not asked.
+    """
+    if not best.chosen or any(_blurred(CATALOGUE[name]) for name in best.names):
+        return False
+    asked = _asked(model, best.whole)
+    problem = asked.at(asked.begin)
+    before = problem.cost(_joined(asked.places, []))
+    return any(
+        before - after > PATTERN * doubt(after, problem.count)
+        for after in (problem.cost(columns) for columns in asked.places)
+    )
+
+
+def _blurred(effect: Effect) -> bool:
+    jumps = effect.actuate is not None and not effect.smooth
+    return jumps or any(q.rough for q in effect.parameters)
+
+
+@dataclass(frozen=True)
+class _Asked:
+    """All terms beside a fit: their usual sizes, the columns of each, and how they push."""
+
+    model: RollerRacer
+    fit: Fit
+    begin: Point
+    terms: Sequence[Term]
+    sizes: Sequence[float]
+    places: Sequence[Columns]
+    pushes: Mapping[Piece, Array]
+
+    def at(self, point: Point) -> Linearised:
+        """The linearised problem at a point."""
+        weights = [term.weights for term in self.terms]
+        return linearised(self.model, self.fit, point, self.pushes, weights)
+
+
+def _asked(model: RollerRacer, fit: Fit) -> _Asked:
+    less, starts = thinned(model, fit)
+    seen = {p: observed(less, p, fit.values, fit.effects, start) for p, start in starts.items()}
+    slips = any(CATALOGUE[name].stiff for name in fit.effects)
+    every = terms(list(seen.values()), model.nominal["h"], slips=slips)
+    sizes = [term.kind.size(*_usual(model)) for term in every]
+    pushes = {
+        piece: np.concatenate([s * t.pushes(along) for t, s in zip(every, sizes, strict=True)])
+        for piece, along in seen.items()
+    }
+    edges = np.cumsum([len(fit.quantities), *(term.columns for term in every)])
+    places = [np.arange(a, b) for a, b in itertools.pairwise(edges)]
+    begin = Point(fit.values, starts, np.zeros(edges[-1] - edges[0]))
+    return _Asked(less, fit, begin, every, sizes, places, pushes)
 
 
 def _joined(places: Sequence[Columns], chosen: Sequence[int]) -> Columns:

@@ -17,6 +17,9 @@ from rr_opt.diagnose.fit import Fit, Problem, bounded_step, box, doubt, scaled
 from rr_opt.diagnose.model import Model
 from rr_opt.diagnose.normal import Quadratic, total
 
+LUCK = 25.0
+"""So much lower a chi-square is, by luck, where the best of many places was chosen."""
+
 
 @dataclass(frozen=True)
 class Promise:

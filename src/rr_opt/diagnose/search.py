@@ -15,7 +15,7 @@ from rr_opt.diagnose.explain import Chosen, explain, joined
 from rr_opt.diagnose.explanation import FLOOR, Explanation, rms
 from rr_opt.diagnose.fit import Fit, Problem, doubt, solve
 from rr_opt.diagnose.model import Model
-from rr_opt.diagnose.screen import Promise, jumps, screen
+from rr_opt.diagnose.screen import LUCK, Promise, jumps, screen
 from rr_opt.diagnose.values import settled, wrong
 
 RELEVANT = 0.01
@@ -40,11 +40,17 @@ _PLAIN = 0.05
 _GAINED = 0.5
 """A third effect is looked for where the second has left no more than that share of the misfit."""
 
+_NEARLY_ALL = 0.9
+"""What removes that share of a misfit is not only another way to make a rough model's error."""
+
+_IMITATED = 0.05
+"""Values that nobody would believe imitate an effect if they leave less of it, squared."""
+
+_AS_MUCH = 0.5
+"""Of what the others gain, a dear effect has to promise that share to be looked at beside them."""
+
 _BETTER = 2.0
 """So much, in chi-square, an effect has to be better than wrong values."""
-
-_LUCK = 25.0
-"""So much lower a chi-square is, by luck, where the best of many places was chosen."""
 
 Say = Callable[[str], None]
 
@@ -66,8 +72,11 @@ class Search:
 
     def floor(self, best: Explanation) -> float:
         """A misfit that is none, RMS in sigma, of a model with the effects of `best`."""
-        rough = any(q.name in self.model.rough for q in best.whole.quantities)
-        return max(FLOOR, (ROUGH if rough else EXACT) * self.first)
+        return max(FLOOR, (ROUGH if self.rough(best) else EXACT) * self.first)
+
+    def rough(self, best: Explanation) -> bool:
+        """Whether an effect of `best` is one of which there are as many models as machines."""
+        return any(q.name in self.model.rough for q in best.whole.quantities)
 
     def run(self) -> Explanation:
         """The best explanation, the base itself where nothing relevant is missing."""
@@ -82,7 +91,7 @@ class Search:
     def _forward(self, best: Explanation) -> Explanation:
         gained = True
         for _ in range(len(best.chosen), MOST):
-            explained = rms(best.misfit) <= self.floor(best)
+            explained = rms(best.misfit) <= max(FLOOR, EXACT * self.first)
             if (explained and (best.chosen or not _unbelievable(best))) or not gained:
                 break
             found = self._round(best)
@@ -123,15 +132,18 @@ class Search:
         least = _WORTH * promised[0].gain if promised else 0.0
         worth = [one for k, one in enumerate(promised) if k < _WHOLE or one.gain > least]
         found = self._fitted(best, worth[:_IN_WINDOWS], _WHOLE)
-        if min((rms(one.misfit) for one in found), default=math.inf) > self.floor(best):
-            # What cannot be linearised is dear, and tried where nothing else will do.
-            found += self._fitted(best, self._jumps(best, dear=True)[:_DEAR], _WHOLE)
-        return found
+        # What cannot be linearised is dear, and tried where nothing else will do, or where it
+        # promises, from one step, about as much as the others gain.
+        dear = self._jumps(best, dear=True)[:_DEAR]
+        if min((rms(one.misfit) for one in found), default=math.inf) <= self.floor(best):
+            least = _AS_MUCH * max(fit.cost - _same(one, best, fit).cost for one in found)
+            dear = [one for one in dear if one.gain > least]
+        return found + self._fitted(best, dear, _WHOLE)
 
     def _jumps(self, best: Explanation, *, dear: bool) -> list[Promise]:
         """The effects that jump, of which each promises more than luck."""
         fit = _sight(best)
-        luck = _LUCK * doubt(fit.cost, fit.count)
+        luck = LUCK * doubt(fit.cost, fit.count)
         promised = jumps(self.model, fit, best.chosen, dear=dear)
         return [one for one in promised if one.gain > luck]
 
@@ -153,20 +165,25 @@ class Search:
         """Whether what `more` adds to `less` is relevant, and certain in spite of model error."""
         relevant = max(RELEVANT, self.floor(less) ** 2 - FLOOR**2)
         sure = less.score - more.score > 20 * doubt(more.whole.cost, more.whole.count)
-        if sure and rms(less.misfit) > FLOOR and less.misfit - more.misfit > relevant:
-            return True
+        if sure and rms(less.misfit) > FLOOR:
+            gain = less.misfit - more.misfit
+            if gain > relevant or gain > max(RELEVANT, _NEARLY_ALL * less.misfit):
+                return True
         return self._believable(more, less)
 
     def _believable(self, more: Explanation, less: Explanation) -> bool:
         """Whether parameters explain the data, but with values that nobody would believe.
 
-        An effect stands for that if with it they are likelier than with the wrong ones let go.
+        An effect stands for that if with it they are likelier than with the wrong ones let go, and
+        if what it does is what values do.
         """
         if (
             rms(less.misfit) > 2 * FLOOR
             or more.misfit > less.misfit + 1e-3
             or not _unbelievable(less)
         ):
+            return False
+        if more.apart() > _IMITATED:
             return False
         released = settled(self.model, less)
         let_go = _free(released) - _free(less)
@@ -231,6 +248,11 @@ def _sight(best: Explanation) -> Fit:
     """
     seen = best.windows.cost / best.windows.count - 1.0
     return best.windows if seen > _PLAIN else best.whole
+
+
+def _same(one: Explanation, best: Explanation, sight: Fit) -> Fit:
+    """The fit of an explanation that is over what another was looked out from."""
+    return one.windows if sight is best.windows else one.whole
 
 
 def _hopeless(fit: Fit, best: Fit) -> bool:

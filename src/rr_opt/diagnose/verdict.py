@@ -12,8 +12,9 @@ from rr_opt.diagnose.fit import doubt
 LEFT = 0.35
 """More misfit than this on the held-out recordings, RMS in sigma, is not explained."""
 
-SHARE = 0.1
-"""Nor is more than this share of the misfit that the parameters alone leave."""
+SHARE, SHARE_OF_ROUGH = 0.02, 0.1
+"""Nor is more than this share of the misfit that the parameters alone leave; the second where an
+effect is rough."""
 
 NEAR, SHARE_OF_NOMINAL = 0.5, 0.05
 """Where the held-out recordings are predicted to within the first, RMS in sigma beyond the noise,
@@ -31,6 +32,8 @@ def verdict_of(
     inexact: float,
     *,
     moved: bool,
+    rough: bool,
+    systematic: bool,
 ) -> Verdict:
     """The verdict.
 
@@ -38,6 +41,8 @@ def verdict_of(
     held     the same of the held-out recordings, with the parameters alone and with everything
     inexact  misfit of the model as believed that says nothing about its values
     moved    whether a parameter left what was known of it
+    rough    whether an effect is one of which there are as many models as machines
+    systematic  whether what is left with the effects still depends on something
     """
     if not best.chosen:
         left = certain(base.misfit, base.whole.count, _LIKELY)
@@ -46,10 +51,10 @@ def verdict_of(
         return "parameters" if moved and nominal > max(FLOOR, inexact) else "consistent"
     left = max(certain(best.misfit, best.whole.count), held[1])
     before = max(rms(base.misfit), held[0])
-    explained = left <= max(LEFT, SHARE * before)
+    explained = left <= max(LEFT, (SHARE_OF_ROUGH if rough else SHARE) * before)
     if held[1] <= NEAR and left <= SHARE_OF_NOMINAL * nominal:
         explained = True
-    return "missing_physics" if explained else "unexplained"
+    return "missing_physics" if explained and not systematic else "unexplained"
 
 
 def confidence(best: Explanation, rivals: Sequence[Explanation]) -> float:

@@ -90,7 +90,9 @@ def in_stages(function: ca.Function, name: str, stages: Sequence[int]) -> Stages
     parts = []
     for stage in range(last + 1):
         earlier = "".join(f", const V* restrict kept_{s}" for s in range(stage))
-        parts.append(f"INLINE void {name}_{stage}(const V* restrict x{earlier}, V* restrict out) {{")
+        parts.append(
+            f"INLINE void {name}_{stage}(const V* restrict x{earlier}, V* restrict out) {{"
+        )
         parts += [f"  (void)kept_{s};" for s in range(stage)]
 
         def named(k: int, stage: int = stage) -> str:
@@ -140,7 +142,8 @@ def _values(function: ca.Function, stages: Sequence[int]) -> tuple[list[_Value],
                 divisor = needs[1]
                 if divisor not in inverse:
                     inverse[divisor] = len(values)
-                    values.append(_Value("1.0 / {}", (divisor,), values[divisor].stage))
+                    stage = max(0, values[divisor].stage)
+                    values.append(_Value("1.0 / {}", (divisor,), stage))
                 needs = (needs[0], inverse[divisor])
             value = _Value(text, needs, max(0, *(values[need].stage for need in needs)))
         else:

@@ -63,8 +63,8 @@ class SpeedPowers:
             *(w[0], w[1], s[0], s[1]),
             *(torque[0, 0] / 2, torque[0, 1], t[0], torque[1, 1] / 2, t[1], t[2]),
         )
-        self._function = ca.Function("powers", [phi, p], ca.vertsplit(ca.cse(powers)))
-        self._over_arrays = over_arrays(self._function)
+        self.function = ca.Function("powers", [phi, p], ca.vertsplit(ca.cse(powers)))
+        self._over_arrays = over_arrays(self.function)
 
     def __call__(self, phi: ArrayLike, p: ArrayLike) -> Powers:
         """phi: an array; p: one array per parameter."""

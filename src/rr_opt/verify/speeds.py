@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,35 +11,13 @@ from rr_opt.physics.dynamics import derive, dynamics_of
 from rr_opt.problem import Problem
 from rr_opt.robot.ballast import with_inertia_ratio
 from rr_opt.robot.parameters import Robot
+from rr_opt.verify.resolve import least_S1, resolved
+from rr_opt.verify.steady import Speeds
 from rr_opt.verify.steady_fourier import SteadyFourier
 
+__all__ = ["Speeds", "least_S1", "model_of", "robot_with", "speeds"]
+
 Array = NDArray[np.float64]
-
-FEWEST, MOST = 16, 4096
-"""Samples of half a period of a straight gait; of a whole period twice as many."""
-
-_MARGIN = {True: 10.0, False: 0.01}
-"""The fastest harmonics of the velocity may be so many times as large as the speed's error. It
-comes from their products where friction is viscous (True); where it is not, those of the
-friction count, which are stronger."""
-
-_CHUNK = 16384
-"""Samples of shapes in one go."""
-
-
-class Speeds(NamedTuple):
-    """Arrays of one shape; NaN where not converged.
-
-    speed        signed, m/s
-    turn         heading gained per period, rad
-    peak_torque  N m
-    converged    a steady cycle was found and is resolved
-    """
-
-    speed: Array
-    turn: Array
-    peak_torque: Array
-    converged: NDArray[np.bool_]
 
 
 def robot_with(problem: Problem, ratio: float | None) -> Robot:
@@ -96,7 +73,7 @@ def speeds(
     alpha, phi0, J = (np.broadcast_to(part, rows).ravel() for part in (alpha, phi0, J))
     T = np.broadcast_to(np.asarray(period, float), shape).reshape(len(alpha), periods)
     which, p = _parameters(problem, None if ratio is None else J)
-    found = _adaptive(problem.robot, alpha, phi0, T, which, p, tolerance)
+    found = resolved(model_of(problem.robot), problem.robot, alpha, phi0, T, which, p, tolerance)
     speed, turn, torque = (part.reshape(shape) for part in found[:3])
     return Speeds(speed, turn, torque, found.converged.reshape(shape))
 
@@ -110,55 +87,3 @@ def _parameters(problem: Problem, ratio: Array | None) -> tuple[NDArray[np.int_]
     columns = [dynamics.values(robot_with(problem, value)) for value in values.tolist()]
     p = np.array(columns).T
     return (None, p) if len(values) == 1 else (which, p)
-
-
-def least_S1(robot: Robot, amplitude: ArrayLike, offset: ArrayLike) -> Array:
-    """The least S1 = c1 cos phi + c2 over a gait's cycle, m."""
-    reach = np.abs(np.asarray(amplitude, float)) + np.abs(np.asarray(offset, float))
-    return robot.platform1.c * np.cos(np.minimum(reach, np.pi)) + robot.platform2.c
-
-
-def _adaptive(
-    robot: Robot,
-    alpha: Array,
-    phi0: Array,
-    T: Array,
-    which: NDArray[np.int_] | None,
-    p: Array,
-    tolerance: float,
-) -> Speeds:
-    """alpha, phi0 (G,), T (G, B), p (len, R) with column which[g] for row g."""
-    model = model_of(robot)
-    speed, turn, torque = (np.full(T.shape, np.nan) for _ in range(3))
-    converged = np.zeros(T.shape, bool)
-    asked = np.isfinite(T) & (T > 0)
-    period = np.where(asked, T, 1.0)
-    regular = (least_S1(robot, alpha, phi0) > 0) & asked.any(axis=1)
-    needed = _samples(robot, np.abs(alpha) + np.abs(phi0))
-    for straight in (True, False):
-        halves = 1 if straight else 2
-        pending = np.flatnonzero(regular & (((phi0 == 0) & model.mirrored) == straight))
-        n = FEWEST * halves if model.viscous else 4 * FEWEST
-        while len(pending) and n <= MOST * halves:
-            now = pending[needed[pending] * halves <= n]
-            for block in np.array_split(now, max(1, len(now) * n // _CHUNK)) if len(now) else ():
-                robots = p if which is None else p[:, which[block]]
-                shapes = alpha[block], phi0[block], period[block]
-                found = model.cycles(*shapes, robots, n, straight, tolerance)
-                good = (found.error <= _MARGIN[model.viscous] * tolerance) & asked[block]
-                converged[block] = good
-                for into, values in zip((speed, turn, torque), found, strict=False):
-                    into[block] = np.where(good, values, np.nan)
-            poor = (asked & ~converged)[pending].any(axis=1)
-            pending, n = pending[poor], 2 * n
-    return Speeds(speed, turn, torque, converged)
-
-
-def _samples(robot: Robot, reach: Array) -> Array:
-    """Samples of half a period without which a gait that goes so far is not resolved.
-
-    The motion is analytic in the complex phase up to where alpha sin(theta) reaches the singular
-    posture, y = arccosh(phi*/reach) off the real axis: its harmonics fall as exp(-k y).
-    """
-    ratio = robot.singular_angle / np.maximum(reach, 1e-9)
-    return 6.0 / np.arccosh(np.maximum(ratio, 1 + 1e-9))

@@ -19,9 +19,11 @@ from numpy.typing import NDArray
 
 from rr_opt.physics.arrays import over_arrays
 from rr_opt.physics.dynamics import Dynamics
+from rr_opt.verify.compiled_cycles import CompiledCycles, compiled
 from rr_opt.verify.periodic_linear import solve, solve_stiff
 from rr_opt.verify.spectral import derivative, integral, peak, refined, tail
 from rr_opt.verify.speed_powers import Powers, SpeedPowers
+from rr_opt.verify.steady import Steady
 
 Array = NDArray[np.float64]
 
@@ -39,21 +41,8 @@ _BLOCK = {True: 4096, False: 16384}
 """Samples in one go where friction is viscous (True) or not: so long that NumPy's own time per
 operation hardly counts, so short that some arrays fit the processor's cache."""
 
-
-class Steady(NamedTuple):
-    """Steady cycles of G shapes at B periods; every array (G, B).
-
-    speed        along the mean circle, signed along platform 1's mean heading, m/s
-    turn         heading gained per period, rad
-    peak_torque  largest |torque|, between the samples too, N m
-    error        size of the fastest harmonics of the velocity, relative to the speed; inf where
-                 no steady cycle was found
-    """
-
-    speed: Array
-    turn: Array
-    peak_torque: Array
-    error: Array
+_PAYS = {True: 200_000, False: 1000}
+"""From so many points on NumPy takes longer than to compile."""
 
 
 class _Angle(NamedTuple):
@@ -80,6 +69,20 @@ class SteadyFourier:
         self.mirrored = dynamics.mirrored
         self._motion = over_arrays(motion)
         self._tangent = over_arrays(motion.factory("tangent", names, ["vdot", "jac:vdot:v"]))
+        self._dynamics, self._asked = dynamics, 0
+        self._compiled: CompiledCycles | None = None
+
+    def compiled(self, points: int) -> CompiledCycles | None:
+        """The same as machine code, if there is a compiler and it pays, with so many more points
+        to come; what was compiled once is there at once."""
+        before, self._asked = self._asked, self._asked + points
+        if self._compiled is None and (before == 0 or before < _PAYS[self.viscous] <= self._asked):
+            self._compiled = compiled(
+                self._dynamics,
+                self._powers.function if self.viscous else None,
+                make=self._asked >= _PAYS[self.viscous],
+            )
+        return self._compiled
 
     # What is not finite has no settled cycle, and comes out as such.
     @np.errstate(divide="ignore", over="ignore", invalid="ignore")

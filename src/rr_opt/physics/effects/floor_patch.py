@@ -12,7 +12,7 @@ from collections.abc import Mapping
 
 import casadi as ca
 
-from rr_opt.physics.effects.effect import Effect, Parameter, Port
+from rr_opt.physics.effects.effect import Effect, Parameter, Port, Setting
 from rr_opt.physics.kinematics import Mechanism, Wheel, with_wheel_forces
 
 BORDER = 0.005
@@ -34,18 +34,23 @@ def _enter(mechanism: Mechanism, values: Mapping[str, ca.SX]) -> Mechanism:
     return with_wheel_forces(mechanism, law)
 
 
+def _near(setting: Setting) -> float:
+    """So far a patch is moved with care: a part of the robot's length."""
+    return (setting.robot.platform1.c + setting.robot.platform2.c) / 5
+
+
 EFFECT = Effect(
     name="floor_patch",
     family="floor",
     port=Port.FORCE,
     parameters=(
         Parameter("multiplier", "dimensionless", (0.0, 1000.0), 2.0, neutral=1.0),
-        Parameter("x", "m", (-100.0, 100.0), 0.3, placed=True),
-        Parameter("y", "m", (-100.0, 100.0), 0.3),
-        Parameter("radius", "m", (0.0, 100.0), 0.3),
+        Parameter("x", "m", (-100.0, 100.0), 0.3, natural=_near, placed=True),
+        Parameter("y", "m", (-100.0, 100.0), 0.3, natural=_near),
+        Parameter("radius", "m", (0.0, 100.0), 0.3, natural=_near),
         Parameter("normal", "rad", (-2 * math.pi, 2 * math.pi), 0.3),
-        Parameter("edge_x", "m", (-100.0, 100.0), 0.3, placed=True),
-        Parameter("edge_y", "m", (-100.0, 100.0), 0.3),
+        Parameter("edge_x", "m", (-100.0, 100.0), 0.3, natural=_near, placed=True),
+        Parameter("edge_y", "m", (-100.0, 100.0), 0.3, natural=_near),
     ),
     sentence="On a part of the floor the wheels roll harder, or more easily, than elsewhere.",
     enter=_enter,

@@ -1,0 +1,1 @@
+"""Six parameters of a Roller Racer fitted to six recordings, by this project and by others."""

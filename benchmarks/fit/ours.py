@@ -1,0 +1,49 @@
+"""This project: its engine's growing horizon, windows of 5 s first and whole recordings then."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from benchmarks.fit.case import BOX, TRUE, Array, Case
+from benchmarks.fit.equations import B1, B2, C1, C2, M1, M2, PARAMETERS, H
+from rr_opt.diagnose.explain import joined, nominal, windows
+from rr_opt.diagnose.fit import Problem, solve
+from rr_opt.diagnose.model import Quantity
+from rr_opt.diagnose.racer import RollerRacer
+from rr_opt.experiment.experiment import Experiment, Noise, Run
+from rr_opt.experiment.recording import CHANNELS, Recording
+from rr_opt.robot.gait import SineGait
+from rr_opt.robot.parameters import Platform, Robot
+
+
+def fit(case: Case, start: Array) -> Array:
+    """The six parameters, from a start."""
+    model = RollerRacer(_experiment(case, start))
+    begin = dict(zip(PARAMETERS, start.tolist(), strict=True))
+    quantities = tuple(
+        Quantity(name, "", value, value, False, true / BOX, BOX * true, value)
+        for (name, value), true in zip(begin.items(), TRUE.tolist(), strict=True)
+    )
+    pieces = windows(model, range(len(case.gaits)))
+    problem = Problem(model, pieces, (), quantities)
+    near = solve(problem, begin, nominal(model, pieces).starts)
+    found = joined(model, near).values
+    return np.array([found[name] for name in PARAMETERS])
+
+
+def _experiment(case: Case, start: Array) -> Experiment:
+    kappa1, kappa2, I1, I2, a1, a2 = start.tolist()
+    robot = Robot(Platform(M1, I1, C1, a1, B1, kappa1), Platform(M2, I2, C2, a2, B2, kappa2), H)
+    noise = Noise(case.sigma[0], case.sigma[2])
+    runs = tuple(
+        Run(_recording(case, k, noise), SineGait(*gait)) for k, gait in enumerate(case.gaits)
+    )
+    return Experiment(robot, noise, {}, runs, "fit")
+
+
+def _recording(case: Case, run: int, noise: Noise) -> Recording:
+    flags = {name: np.zeros(case.t.size, np.uint8) for name in CHANNELS}
+    sigma = {name: np.full(case.t.size, noise.of(name)) for name in CHANNELS}
+    return Recording(
+        f"run{run}", case.t, dict(zip(CHANNELS, case.values[run].T, strict=True)), sigma, flags
+    )

@@ -1,0 +1,1 @@
+"""How fast steady speeds of many gaits are computed, by this project and in other ways."""
