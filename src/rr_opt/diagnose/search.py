@@ -156,8 +156,11 @@ class Search:
         in_windows = list(
             self.each(_InWindows(self.model, best.chosen, self.nominal, best.windows), promised)
         )
-        in_windows.sort(key=lambda pair: pair[1].cost)
-        hopeful = [pair for pair in in_windows[:most] if not _hopeless(pair[1], in_windows[0][1])]
+        if _sight(best) is best.windows:
+            # Else windows say next to nothing, and what was promised counts.
+            in_windows.sort(key=lambda pair: pair[1].cost)
+        least = min((fit for _, fit in in_windows), key=lambda fit: fit.cost)
+        hopeful = [pair for pair in in_windows[:most] if not _hopeless(pair[1], least)]
         self.say(f"over whole runs: {', '.join(one.name for one, _ in hopeful)}")
         return list(self.each(_Whole(self.model, best.chosen), hopeful))
 
