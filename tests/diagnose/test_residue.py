@@ -28,7 +28,7 @@ def _falling(u):
     return -FORCE * (1 + 2 * ca.exp(-((u / SPEED) ** 2))) / 3 * ca.tanh(u / 0.002)
 
 
-def _plant(law):
+def plant(law):
     """predict(run, start) by scipy, of a robot with law(wheel, u) at its wheels."""
     given = experiment(MANY, seconds=20.0)
     plain = assembled(())
@@ -54,7 +54,7 @@ def _plant(law):
 
 @pytest.fixture(scope="module")
 def falling():
-    model = _plant(lambda wheel, u: _falling(u))
+    model = plant(lambda wheel, u: _falling(u))
     return residue(model, base_of(model))
 
 

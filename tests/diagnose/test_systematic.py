@@ -1,0 +1,41 @@
+"""Dry friction that explains the recordings is believed, unless what it leaves is no noise."""
+
+import casadi as ca
+import pytest
+
+from rr_opt.diagnose.explain import Chosen
+from rr_opt.diagnose.explanation import FLOOR
+from rr_opt.diagnose.residue import systematic
+from tests.diagnose.made_up import base_of, explained, with_effect
+from tests.diagnose.test_residue import plant
+
+FORCE, SPEED = 0.003, 0.05
+
+
+def _accepted(model):
+    return explained(model, base_of(model), Chosen("coulomb_friction"))
+
+
+@pytest.fixture(scope="module")
+def imitated():
+    model = plant(lambda _, u: -FORCE * (1 + 2 * ca.exp(-((u / SPEED) ** 2))) * ca.tanh(u / 2e-3))
+    return model, _accepted(model)
+
+
+def test_dry_friction_that_is_there_leaves_nothing():
+    model = with_effect(
+        {"coulomb_friction.force1": FORCE, "coulomb_friction.force2": FORCE},
+        ("coulomb_friction",),
+    )
+    best = _accepted(model)
+    assert best.misfit < FLOOR**2
+    assert not systematic(model, best)
+
+
+def test_friction_that_falls_with_speed_is_nearly_explained_by_dry_friction(imitated):
+    _, best = imitated
+    assert best.misfit < 1.0
+
+
+def test_but_what_is_left_tells_that_it_is_not_that(imitated):
+    assert systematic(*imitated)
