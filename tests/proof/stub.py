@@ -16,6 +16,7 @@ SAID = {
     "effects": [],
     "indistinguishable": [],
     "fit": {"heldout_rms_before": 1.0, "heldout_rms_after": 1.0},
+    "mismatch": {"rms_beyond_noise": 0.0, "p_value": 0.5},
     "location": {"evidence": [{"test": "angle", "p_value": 0.5}]},
 }
 

@@ -10,9 +10,9 @@ from typing import TypeVar
 
 import numpy as np
 
-from rr_opt.diagnose.diagnosis import Diagnosis, Finding, Misfit, Tried
+from rr_opt.diagnose.diagnosis import Diagnosis, Finding, Misfit, Mismatch, Tried
 from rr_opt.diagnose.explain import joined, nominal, parameters, whole, windows
-from rr_opt.diagnose.explanation import Explanation, certain, misfit, rms
+from rr_opt.diagnose.explanation import Explanation, certain, chance, misfit, rms
 from rr_opt.diagnose.fit import Fit, Problem, solve
 from rr_opt.diagnose.intervals import estimates
 from rr_opt.diagnose.left_out import left_out
@@ -226,6 +226,7 @@ def answer(it: Found, *, systematic: bool = False) -> Diagnosis:
     return Diagnosis(
         verdict=verdict,
         summary=summary_of(verdict, findings, level0, level2),
+        mismatch=Mismatch(rms(search.base.misfit), chance(search.base.whole)),
         channel=channel,
         where="",
         stages=(),

@@ -98,6 +98,19 @@ class Stage:
 
 
 @dataclass(frozen=True)
+class Mismatch:
+    """Whether the model with its values re-fitted is off at all, on the recordings it is fitted to.
+
+    rms      in sigma, beyond the noise
+    p_value  chance that noise alone leaves as much, by chi-square: the residuals of a model that
+             is right are as white as the noise
+    """
+
+    rms: float
+    p_value: float
+
+
+@dataclass(frozen=True)
 class Misfit:
     """How far a recording is from a prediction: RMS in sigma by channel; 1 is the noise.
 
@@ -161,6 +174,7 @@ class Diagnosis:
 
     verdict: Verdict
     summary: str
+    mismatch: Mismatch
     channel: str
     where: str
     stages: tuple[Stage, ...]

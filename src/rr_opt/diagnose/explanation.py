@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.stats import chi2
 
 from rr_opt.diagnose.explain import Chosen
 from rr_opt.diagnose.fit import Fit, scaled
@@ -62,8 +63,18 @@ class Explanation:
 
 def misfit(fit: Fit) -> float:
     """Mean square of the residuals in sigma, less 1."""
+    return fit.cost / _freedom(fit) - 1.0
+
+
+def chance(fit: Fit) -> float:
+    """Of noise alone to leave as much."""
+    return float(chi2.sf(fit.cost, _freedom(fit)))
+
+
+def _freedom(fit: Fit) -> int:
+    """The values there are beyond those that were fitted."""
     fitted = sum(start.size for start in fit.starts.values()) + len(fit.quantities)
-    return fit.cost / max(fit.count - fitted, 1) - 1.0
+    return max(fit.count - fitted, 1)
 
 
 def rms(excess: float) -> float:

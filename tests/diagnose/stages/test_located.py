@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from rr_opt.diagnose.diagnosis import Diagnosis, Estimate, Finding, Stage
+from rr_opt.diagnose.diagnosis import Diagnosis, Estimate, Finding, Mismatch, Stage
 from rr_opt.diagnose.stages.located import located
 from tests.diagnose.stages.world import recorded
 
@@ -37,7 +37,8 @@ def marked(*lit: str) -> tuple[Stage, ...]:
 
 def said(verdict: str, *findings: Finding) -> Diagnosis:
     return Diagnosis(
-        verdict, "", "none", "", (), findings, {}, (), (), None, (), (), (), (), 2.0, 1.0, {}, {}
+        *(verdict, "", Mismatch(2.0, 0.0), "none", "", (), findings, {}, (), (), None, ()),
+        *((), (), (), 2.0, 1.0, {}, {}),
     )  # type: ignore[arg-type]
 
 

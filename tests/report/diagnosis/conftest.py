@@ -12,6 +12,7 @@ from rr_opt.diagnose.diagnosis import (
     Estimate,
     Finding,
     Misfit,
+    Mismatch,
     NextExperiment,
     Residue,
     Stage,
@@ -97,6 +98,7 @@ def _found(experiment):
     return Diagnosis(
         verdict="missing_physics",
         summary="The model leaves out coulomb friction. It was 8.1 sigma off.",
+        mismatch=Mismatch(8.0, 0.0),
         channel="rolling",
         where="",
         stages=_stages(),

@@ -62,9 +62,8 @@ def claim_record(diagnosis: Mapping[str, Any]) -> dict[str, Any]:
         ],
         "indistinguishable": [list(group) for group in diagnosis["indistinguishable"]],
         "fit": {name: diagnosis["fit"].get(name) for name in _FIT},
-        "p_values": {
-            one["test"]: one["p_value"] for one in diagnosis["location"].get("evidence", [])
-        },
+        "p_values": {"any mismatch": diagnosis["mismatch"]["p_value"]}
+        | {one["test"]: one["p_value"] for one in diagnosis["location"].get("evidence", [])},
     }
 
 

@@ -52,7 +52,7 @@ def page(one: Diagnosed, figures: Mapping[str, str], captions: Mapping[str, str]
         card("What cannot be told, and what to record next", _open(one)),
         card("What was tried", _with_note(candidates_table(one), _CANDIDATES)),
         card("The robot's parameters", parameters_table(one)),
-        card("Misfit by channel, before → after, σ", misfit_table(one)),
+        card("Misfit by channel, before → after, σ", _with_note(misfit_table(one), _off(one))),
         card("Recordings", recordings_table(one) + _doubts(one)),
         _footer(one),
     ]
@@ -91,6 +91,15 @@ def _tiles(one: Diagnosed) -> str:
         for value, words in tiles
     )
     return f'<div class="tiles">{inner}</div>'
+
+
+def _off(one: Diagnosed) -> str:
+    off = one.found.mismatch
+    return (
+        "With the robot's values re-fitted within what was stated of them, the fitted recordings "
+        f"are {off.rms:.2f} σ off beyond the noise; noise alone leaves that much or more with "
+        f"probability {off.p_value:.2g}."
+    )
 
 
 def _open(one: Diagnosed) -> str:

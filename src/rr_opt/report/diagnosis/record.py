@@ -19,6 +19,10 @@ def record(one: Diagnosed) -> dict[str, Any]:
         "name": one.name,
         "verdict": found.verdict,
         "summary": found.summary,
+        "mismatch": {
+            "rms_beyond_noise": number_of(found.mismatch.rms),
+            "p_value": number_of(found.mismatch.p_value),
+        },
         "location": {
             "channel": found.channel,
             "where": one.where,
