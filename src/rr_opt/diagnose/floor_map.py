@@ -12,20 +12,18 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-import casadi as ca
 import numpy as np
 
 from rr_opt.diagnose.model import Array
-from rr_opt.physics.assembly import Assembly, assembled
-from rr_opt.physics.floor_motion import FloorMotion, solved
-from rr_opt.physics.kinematics import Wheel, with_wheel_forces
+from rr_opt.diagnose.pushed import PUSHES, Along
 
-_ACROSS = 6
+_ACROSS = 10
 """Cells across the longer side of the visited floor."""
 
 _SMALLEST = 0.12
 """Side of a cell, m, at least: the wheels of a robot are some 10 cm apart."""
 
+_LEAST, _MOST = 0.1, 30.0
 _DIRECTIONS = 16
 _BEST = 2
 
@@ -37,11 +35,6 @@ class Cells:
     centres: Array
     side: float
 
-    @property
-    def names(self) -> tuple[str, ...]:
-        """One for each."""
-        return tuple(f"cell{k}" for k in range(len(self.centres)))
-
 
 def cells_of(paths: Sequence[Array]) -> Cells:
     """Cells where the robot was, from the paths (n, 2) of its joint."""
@@ -52,28 +45,19 @@ def cells_of(paths: Sequence[Array]) -> Cells:
     return Cells(visited * side, side)
 
 
-def with_cells(effects: tuple[str, ...], cells: Cells) -> FloorMotion:
-    """The motion with a share of drag in each cell as a parameter, 0 for none."""
-    plain = assembled(effects)
-    shares = ca.SX.sym("share", len(cells.centres))
-    robot = plain.mechanism
+def drags(cells: Cells, along: Along, k: Array) -> Array:
+    """Pushes (cells, 7, n) by drag of each cell, as much of it as all the floor has.
 
-    def law(wheel: Wheel, u: ca.SX) -> ca.SX:
-        place = robot.on_floor(wheel.platform, wheel.point)
-        near = [
-            ca.fmax(0, 1 - ca.fabs(place[k] - cells.centres[:, k]) / cells.side) for k in (0, 1)
-        ]
-        return -robot.parameters[f"k{wheel.platform}"] * ca.dot(shares, near[0] * near[1]) * u
+    k  of the wheels (4,), N s/m
 
-    return solved(
-        Assembly(
-            plain.effects,
-            with_wheel_forces(robot, law),
-            plain.seen,
-            (*plain.parameters, *cells.names),
-            ca.vertcat(plain.p, shares),
-        )
-    )
+    Places and speeds are those recorded: with them the drag is right however strong it is, where
+    predicted ones would have the robot drive on.
+    """
+    apart = np.abs(along.places - cells.centres[:, None, :, None]) / cells.side
+    near = np.maximum(0.0, 1.0 - apart).prod(axis=2)
+    out = np.zeros((len(near), len(PUSHES), along.t.size))
+    out[:, :4] = -k[:, None] * near * along.u
+    return out
 
 
 Found = tuple[float, Mapping[str, float]]
@@ -104,10 +88,12 @@ def likely(cells: Cells, g: Array, H: Array) -> tuple[list[Found], list[Found]]:
 
 
 def _gain(inside: Array, g: Array, H: Array) -> tuple[float, float]:
+    """What a patch gains with the multiplier that is best for it, and that: none is below zero."""
     slope, bend = float(inside @ g), float(inside @ H @ inside)
     if bend <= 0:
         return 0.0, 1.0
-    return slope**2 / bend, min(max(1.0 - slope / bend, 0.1), 8.0)
+    share = min(max(-slope / bend, _LEAST - 1.0), _MOST - 1.0)
+    return -share * (2 * slope + bend * share), 1.0 + share
 
 
 def _top(found: list[Found]) -> list[Found]:

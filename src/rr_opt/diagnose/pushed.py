@@ -11,19 +11,23 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
 import casadi as ca
 import numpy as np
 from scipy.signal import savgol_filter
 
 from rr_opt.diagnose.model import Array, Piece
-from rr_opt.diagnose.racer import RollerRacer, state_of, v_of_z_by
 from rr_opt.diagnose.racer_quantities import values_by, values_of
+from rr_opt.diagnose.racer_state import state_of, v_of_z_by
 from rr_opt.diagnose.shoot import DrivePath, DriveSlopes, System, predict, slopes
 from rr_opt.physics.assembly import Assembly, assembled
 from rr_opt.physics.floor_motion import FloorMotion, solved
 from rr_opt.physics.kane import equations
 from rr_opt.physics.kinematics import Force, Frame, Mechanism
+
+if TYPE_CHECKING:
+    from rr_opt.diagnose.racer import RollerRacer
 
 PUSHES = ("wheel1l", "wheel1r", "wheel2l", "wheel2r", "side1", "side2", "angle")
 """Rolling force at each wheel (N), side speed of each axle (m/s), error of the angle (rad)."""
@@ -47,6 +51,7 @@ class Along:
     u       rolling speed of the wheels (4, n), in the order of PUSHES, m/s
     w       yaw rate of platform 1 and 2 (2, n), rad/s
     rolled  how far the wheels rolled since the recording began (4, n), m
+    places  of the wheels on the floor (4, 2, n), m
     """
 
     t: Array
@@ -59,6 +64,7 @@ class Along:
     u: Array
     w: Array
     rolled: Array
+    places: Array
 
     @property
     def axles(self) -> Array:
@@ -154,6 +160,7 @@ def observed(
     phi, dphi = path.at[:2]
     v = rate[0] * np.cos(pose[2]) + rate[1] * np.sin(pose[2])
     u = np.array(_rolling(mechanical).map(t.size)(np.array([v, s1, s2, dphi]), phi, p))
+    places = np.array(_places(mechanical).map(t.size)(pose, phi, p)).reshape(4, 2, t.size)
     steps = np.diff(t) * (u[:, 1:] + u[:, :-1]) / 2
     return Along(
         t=t,
@@ -166,6 +173,7 @@ def observed(
         u=u,
         w=np.array([w, w + dphi]),
         rolled=np.concatenate([np.zeros((4, 1)), np.cumsum(steps, axis=1)], axis=1),
+        places=places,
     )
 
 
@@ -225,6 +233,15 @@ def _rolling(effects: tuple[str, ...]) -> ca.Function:
     robot = assembly.mechanism
     rolling = ca.vertcat(*(robot.rolling_speed(wheel) for wheel in robot.wheels))
     return ca.Function("rolling", [robot.speeds, robot.phi, assembly.p], [rolling])
+
+
+@lru_cache
+def _places(effects: tuple[str, ...]) -> ca.Function:
+    """(pose, phi, p) -> x, y of the wheels on the floor, one wheel after the other (8,), m."""
+    assembly = assembled(effects)
+    robot = assembly.mechanism
+    places = ca.vertcat(*(robot.on_floor(wheel.platform, wheel.point) for wheel in robot.wheels))
+    return ca.Function("places", [robot.pose, robot.phi, assembly.p], [places])
 
 
 @lru_cache

@@ -6,7 +6,6 @@ import math
 from collections.abc import Mapping, Sequence
 from functools import cached_property, lru_cache
 
-import casadi as ca
 import numpy as np
 
 from rr_opt.diagnose.fit import Fit
@@ -15,13 +14,13 @@ from rr_opt.diagnose.racer_drive import Drives, drive_path, drive_slopes, latene
 from rr_opt.diagnose.racer_kept import Kept
 from rr_opt.diagnose.racer_proposals import of_patch, of_servo, of_slip
 from rr_opt.diagnose.racer_quantities import candidate, nominal, uncertain, values_by, values_of
+from rr_opt.diagnose.racer_state import state_of, v_of_z_by
 from rr_opt.diagnose.shoot import DrivePath, DriveSlopes, System, slopes
 from rr_opt.experiment.experiment import Experiment, Run
 from rr_opt.experiment.recording import CHANNELS
 from rr_opt.physics.effects import CATALOGUE, Setting
 from rr_opt.physics.floor_motion import floor_motion
 from rr_opt.physics.free_joint import free_joint
-from rr_opt.physics.kinematics import ROBOT_PARAMETERS
 
 SETTLING = 0.05
 """After a start from rest the motor saturates for some 20 ms; that much, s, is left out."""
@@ -161,14 +160,10 @@ class RollerRacer:
         effects: tuple[str, ...],
         start: Array,
         wanted: tuple[str, ...] | None = None,
-        derived: tuple[System, tuple[str, ...]] | None = None,
     ) -> Response:
-        """Predict a piece of a run; see `diagnose.model.Model`.
-
-        derived  the motion and its parameters, where they are not those of the catalogue alone
-        """
+        """Predict a piece of a run; see `diagnose.model.Model`."""
         mechanical = self.every(effects)
-        system, parameters = derived or _system(mechanical)
+        system, parameters = _system(mechanical)
         given = {**self.nominal, **values}
         p = values_of(given, parameters)
         t = self.runs[piece.run].t[piece.span]
@@ -223,39 +218,6 @@ class RollerRacer:
     ) -> DriveSlopes | None:
         """How the drive changes with what is wanted; None if it does not."""
         return drive_slopes(self._drives, run, t, given, effects, wanted)
-
-
-def state_of(effects: tuple[str, ...], path: DrivePath, start: Array, p: Array) -> Array:
-    """The state that belongs to x, y, psi and z = v - g dphi, which is 0 of a robot at rest.
-
-    Where the axles may slip it holds v, and they begin without: what they slip at first is over in
-    milliseconds.
-    """
-    if not floor_motion(effects).slips:
-        return start
-    speeds = floor_motion().speeds
-    v = float(speeds(start, path.at[:2, 0], p[: len(ROBOT_PARAMETERS)])[0])
-    return np.array([*start[:3], v, 0.0, 0.0])
-
-
-def v_of_z_by(
-    path: DrivePath, start: Array, p: Array, by: Array, drive_by: DriveSlopes | None
-) -> Array:
-    """How the v that belongs to a start's z changes with what is asked for, (nw,)."""
-    v_by = _v_by()
-    known = len(ROBOT_PARAMETERS)
-    slope = np.asarray(v_by(start, path.at[:2, 0], p[:known]))[0]
-    own = slope[2:] @ by[:known]
-    return own if drive_by is None else own + slope[:2] @ drive_by.at[:2, 0]
-
-
-@lru_cache
-def _v_by() -> ca.Function:
-    """(state, drive, p) -> the derivatives of v by the drive and by p, (1, 2 + np)."""
-    speeds = floor_motion().speeds
-    state, drive, p = speeds.sx_in()
-    by = ca.densify(ca.jacobian(speeds(state, drive, p)[0], ca.vertcat(drive, p)))
-    return ca.Function("v_by", [state, drive, p], [by])
 
 
 @lru_cache

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
 import numpy as np
@@ -17,10 +16,12 @@ from scipy.optimize import minimize_scalar
 
 from rr_opt.diagnose.explain import windows
 from rr_opt.diagnose.fit import Fit, Problem, bounded_step, box, doubt, scaled, solve
-from rr_opt.diagnose.floor_map import Found, cells_of, likely, with_cells
-from rr_opt.diagnose.model import Data, Form, Model, Proposal, Quantity, Response
+from rr_opt.diagnose.floor_map import Found, cells_of, drags, likely
+from rr_opt.diagnose.model import Form, Model, Proposal
 from rr_opt.diagnose.normal import total
-from rr_opt.diagnose.shoot import System
+from rr_opt.diagnose.pushed import observed
+from rr_opt.diagnose.residue_problem import Point, linearised
+from rr_opt.diagnose.screen import LUCK
 
 if TYPE_CHECKING:
     from rr_opt.diagnose.racer import RollerRacer
@@ -94,24 +95,38 @@ def of_patch(model: RollerRacer, fit: Fit) -> tuple[Sequence[Proposal], Sequence
         problem = Problem(machine, pieces, fit.effects, fit.quantities)
         short = solve(problem, fit.values, {piece: model.start(piece) for piece in pieces})
         more_circles, more_edges = _on_map(model, short)
-        circles, edges = circles + more_circles, edges + more_edges
+        circles += _refined(machine, short, more_circles[0])
+        edges += _refined(machine, short, more_edges[0])
     return circles, edges
+
+
+def _refined(model: Model, fit: Fit, place: Proposal) -> list[Proposal]:
+    """A place on the map, fitted over the pieces of a fit without it."""
+    if place.gain < LUCK * doubt(fit.cost, fit.count):
+        return []
+    own = next(
+        form.quantities
+        for form in model.catalogue["floor_patch"].forms
+        if {q.name for q in form.quantities} == set(place.values)
+    )
+    quantities = (*fit.quantities, *own)
+    problem = Problem(model, tuple(fit.starts), (*fit.effects, "floor_patch"), quantities)
+    fitted = solve(problem, {**fit.values, **place.values}, fit.starts)
+    return [Proposal({q.name: fitted.values[q.name] for q in own}, fit.cost - fitted.cost)]
 
 
 def _on_map(model: RollerRacer, fit: Fit) -> tuple[list[Proposal], list[Proposal]]:
     cells = cells_of([model.runs[piece.run].values[piece.span, :2] for piece in fit.starts])
-    motion = with_cells(model.every(fit.effects), cells)
-    stiff = len(motion.free) if motion.slips else 0
-    mapped = System(motion.rates, motion.seen, stiff), motion.parameters
-    quantities = (*fit.quantities, *(_share(name) for name in cells.names))
-    problem = Problem(
-        cast("Model", _Mapped(model, mapped)), tuple(fit.starts), fit.effects, quantities
-    )
-    values = dict(fit.values) | dict.fromkeys(cells.names, 0.0)
-    parts = [problem.normal(piece, values, start) for piece, start in fit.starts.items()]
-    n = len(fit.quantities)
-    prior = doubt(fit.cost, fit.count) * problem.prior
-    whole = total(parts, prior, scaled(quantities, values))
+    given = {**model.nominal, **fit.values}
+    k = np.repeat([given["kappa1"], given["kappa2"]], 2) / given["h"] ** 2
+    pushes = {
+        piece: drags(cells, observed(model, piece, fit.values, fit.effects, start), k)
+        for piece, start in fit.starts.items()
+    }
+    n, added = len(fit.quantities), len(cells.centres)
+    point = Point(fit.values, fit.starts, np.zeros(added))
+    problem = linearised(model, fit, point, pushes, [np.zeros((added, added))])
+    whole = total(problem.normals.values(), problem.prior, problem.u)
     H, g = whole.H, whole.g
     onto = np.linalg.pinv(H[:n, :n], hermitian=True) @ H[:n, n:] if n else H[:0, n:]
     circles, edges = likely(cells, g[n:] - onto.T @ g[:n], H[n:, n:] - onto.T @ H[:n, n:])
@@ -123,24 +138,3 @@ def _named(places: Sequence[Found]) -> list[Proposal]:
         Proposal({f"floor_patch.{key}": value for key, value in values.items()}, gain)
         for gain, values in places
     ]
-
-
-@dataclass(frozen=True)
-class _Mapped:
-    """A Roller Racer on a floor of cells."""
-
-    racer: RollerRacer
-    derived: tuple[System, tuple[str, ...]]
-
-    @property
-    def runs(self) -> Sequence[Data]:
-        """Those of the robot."""
-        return self.racer.runs
-
-    def respond(self, *given) -> Response:
-        """As the robot, with drag of its own in every cell."""
-        return self.racer.respond(*given, derived=self.derived)
-
-
-def _share(name: str) -> Quantity:
-    return Quantity(name, "", 0.0, 1.0, False, -1.0, 100.0, 0.0)

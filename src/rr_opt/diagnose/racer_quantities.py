@@ -109,7 +109,10 @@ def _parameter(name: str, value: float, known: Uncertainty) -> Quantity:
 def _form(effect: str, parameters: Sequence[Parameter], setting: Setting) -> Form:
     sizes = [q.size(setting) for q in parameters]
     quantities = tuple(
-        Quantity(f"{effect}.{q.name}", q.unit, q.neutral, size, False, *q.bounds, q.neutral)
+        Quantity(
+            *(f"{effect}.{q.name}", q.unit, q.neutral, size, False),
+            *(max(q.bounds[0], q.least), q.bounds[1], q.neutral),
+        )
         for q, size in zip(parameters, sizes, strict=True)
     )
     choices = [

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -20,7 +20,7 @@ from rr_opt.diagnose.fit import Fit, doubt
 from rr_opt.diagnose.model import Array, Piece
 from rr_opt.diagnose.pushed import observed
 from rr_opt.diagnose.racer import RollerRacer
-from rr_opt.diagnose.residue_problem import Columns, Linearised, Point, linearised, moved, thinned
+from rr_opt.diagnose.residue_problem import Columns, Linearised, Point, linearised, moved
 from rr_opt.diagnose.residue_terms import Term, terms
 from rr_opt.diagnose.shape_words import shape
 from rr_opt.physics.effects import CATALOGUE, Effect
@@ -42,6 +42,9 @@ ALIKE = 0.05
 
 PATTERN = 40.0
 """A gain in chi-square, in terms of model error, that noise and small model errors do not make."""
+
+_RATE = 50.0
+"""So many samples a second are enough here: what is looked for is slower than the sampling."""
 
 _AGAIN = 3
 """So often the problem is linearised again."""
@@ -117,7 +120,7 @@ class _Asked:
 
 
 def _asked(model: RollerRacer, fit: Fit) -> _Asked:
-    less, starts = thinned(model, fit)
+    less, starts = _thinned(model, fit)
     seen = {p: observed(less, p, fit.values, fit.effects, start) for p, start in starts.items()}
     slips = any(CATALOGUE[name].stiff for name in fit.effects)
     every = terms(list(seen.values()), model.nominal["h"], slips=slips)
@@ -130,6 +133,22 @@ def _asked(model: RollerRacer, fit: Fit) -> _Asked:
     places = [np.arange(a, b) for a, b in itertools.pairwise(edges)]
     begin = Point(fit.values, starts, np.zeros(edges[-1] - edges[0]))
     return _Asked(less, fit, begin, every, sizes, places, pushes)
+
+
+def _thinned(model: RollerRacer, fit: Fit) -> tuple[RollerRacer, Mapping[Piece, Array]]:
+    """The model with fewer samples, and the fit's starts of whole runs in it."""
+    runs = []
+    for run in model.experiment.runs:
+        r = run.recording
+        every = max(round(1 / (_RATE * float(np.median(np.diff(r.t))))), 1)
+        few = {name: getattr(r, name) for name in ("values", "sigma", "flags")}
+        few = {
+            name: {key: column[::every] for key, column in one.items()} for name, one in few.items()
+        }
+        runs.append(replace(run, recording=replace(r, t=r.t[::every], **few)))
+    less = RollerRacer(replace(model.experiment, runs=tuple(runs)))
+    starts = {Piece(p.run, 0, len(less.runs[p.run].t)): start for p, start in fit.starts.items()}
+    return less, starts
 
 
 def _joined(places: Sequence[Columns], chosen: Sequence[int]) -> Columns:

@@ -8,7 +8,8 @@ terms leads.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,15 +19,14 @@ from rr_opt.diagnose.fit import Fit, bounded_step, box, doubt, scaled, unscaled
 from rr_opt.diagnose.model import Array, Piece
 from rr_opt.diagnose.normal import Normal, normal_of, total
 from rr_opt.diagnose.pushed import respond
-from rr_opt.diagnose.racer import RollerRacer
+
+if TYPE_CHECKING:
+    from rr_opt.diagnose.racer import RollerRacer
 
 Columns = NDArray[np.int_]
 
 _LARGEST, _ROUGHEST = 30.0, 3.0
 """The functions, and their changes from knot to knot, in usual sizes, are about no larger."""
-
-_RATE = 50.0
-"""So many samples a second are enough here: what is looked for is slower than the sampling."""
 
 
 @dataclass(frozen=True)
@@ -94,22 +94,6 @@ class Point:
     amounts: Array
 
 
-def thinned(model: RollerRacer, fit: Fit) -> tuple[RollerRacer, Mapping[Piece, Array]]:
-    """The model with fewer samples, and the fit's starts of whole runs in it."""
-    runs = []
-    for run in model.experiment.runs:
-        r = run.recording
-        every = max(round(1 / (_RATE * float(np.median(np.diff(r.t))))), 1)
-        few = {name: getattr(r, name) for name in ("values", "sigma", "flags")}
-        few = {
-            name: {key: column[::every] for key, column in one.items()} for name, one in few.items()
-        }
-        runs.append(replace(run, recording=replace(r, t=r.t[::every], **few)))
-    less = RollerRacer(replace(model.experiment, runs=tuple(runs)))
-    starts = {Piece(p.run, 0, len(less.runs[p.run].t)): start for p, start in fit.starts.items()}
-    return less, starts
-
-
 def linearised(
     model: RollerRacer,
     fit: Fit,
@@ -129,11 +113,11 @@ def linearised(
         out = respond(
             model, piece, point.values, fit.effects, start, names, pushes[piece], point.amounts
         )
-        r = (out.predicted - data.values) / data.sigma
+        sigma = data.sigma[piece.span]
+        r = (out.predicted - data.values[piece.span]) / sigma
         good = np.isfinite(r)
         by_value, by_push, by_start = (
-            (part / data.sigma[:, :, None])[good]
-            for part in (out.by_value, out.by_push, out.by_start)
+            (part / sigma[:, :, None])[good] for part in (out.by_value, out.by_push, out.by_start)
         )
         normals[piece] = normal_of(r[good], np.column_stack([by_value * scale, by_push]), by_start)
         count += int(good.sum())

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
@@ -38,6 +39,9 @@ class Parameter:
              them: a value as large as `typical` would be for the paper's prototype
     trials   from where to look for it, in natural sizes from neutral (absolute ones, if neutral is
              not zero): more than one where the way from the first may lead nowhere
+    placed   where to look for it is told by the recordings alone
+    rough    there are as many models of it as machines
+    least    a fit goes no lower, as the effect turns into another there
     """
 
     name: str
@@ -50,6 +54,7 @@ class Parameter:
     trials: tuple[float, ...] = (0.05,)
     placed: bool = False
     rough: bool = False
+    least: float = -math.inf
 
     def size(self, setting: Setting) -> float:
         """Its usual size for a robot and what was asked of it."""

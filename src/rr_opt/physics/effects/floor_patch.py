@@ -47,7 +47,7 @@ EFFECT = Effect(
         Parameter("multiplier", "dimensionless", (0.0, 1000.0), 2.0, neutral=1.0),
         Parameter("x", "m", (-100.0, 100.0), 0.3, natural=_near, placed=True),
         Parameter("y", "m", (-100.0, 100.0), 0.3, natural=_near),
-        Parameter("radius", "m", (0.0, 100.0), 0.3, natural=_near),
+        Parameter("radius", "m", (0.0, 100.0), 0.3, natural=_near, least=4 * BORDER),
         Parameter("normal", "rad", (-2 * math.pi, 2 * math.pi), 0.3),
         Parameter("edge_x", "m", (-100.0, 100.0), 0.3, natural=_near, placed=True),
         Parameter("edge_y", "m", (-100.0, 100.0), 0.3, natural=_near),
