@@ -113,7 +113,7 @@ def joined(model: Model, fit: Fit) -> Fit:
         far = _alone(model, between, len(between.starts))
         fit = between
     problem = Problem(model, tuple(far.starts), fit.effects, fit.quantities)
-    return solve(problem, fit.values, far.starts, steps=24)
+    return solve(problem, fit.values, far.starts, steps=40)
 
 
 def _alone(model: Model, fit: Fit, most: int) -> Fit:

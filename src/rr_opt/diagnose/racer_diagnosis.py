@@ -23,7 +23,7 @@ from rr_opt.diagnose.stages.stages import stages
 def diagnose_racer(racer: RollerRacer, steps: Steps | None = None) -> Diagnosis:
     """Diagnose a Roller Racer from its recordings."""
     it = found(racer, steps or Steps())
-    left = it.steps.timed("is that all", lambda: systematic(racer, it.best))
+    left = it.steps.timed("is that all", lambda: systematic(racer, it.best, it.search.base))
     said = answer(it, systematic=left)
     tested = it.steps.timed("where", lambda: stages(racer, it.search.base.whole))
     said = located(said, tested, racer.catalogue)

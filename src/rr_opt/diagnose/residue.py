@@ -43,6 +43,9 @@ ALIKE = 0.05
 PATTERN = 40.0
 """A gain in chi-square, in terms of model error, that noise and small model errors do not make."""
 
+BORDERED = 0.03
+"""A share of the misfit that a part of the floor may leave."""
+
 _RATE = 50.0
 """So many samples a second are enough here: what is looked for is slower than the sampling."""
 
@@ -79,13 +82,19 @@ def residue(model: RollerRacer, best: Explanation) -> tuple[Residue, ...]:
     return tuple(out)
 
 
-def systematic(model: RollerRacer, best: Explanation) -> bool:
+def systematic(model: RollerRacer, best: Explanation, base: Explanation) -> bool:
     """Whether what an explanation leaves, however little, still depends on something.
 
     Effects that imitate what is really there leave such a pattern. A servo that jumps and wheels
     that slide leave one even if the effect is right, as no two machines do so alike: not asked.
+    Nor is a part of the floor if it explains nearly all that the parameters alone (`base`) leave:
+    where its border lies is a matter of millimetres.
     """
-    if not best.chosen or any(_blurred(CATALOGUE[name]) for name in best.names):
+    effects = [CATALOGUE[name] for name in best.names]
+    bordered = any(effect.family == "floor" and not effect.smooth for effect in effects)
+    if not best.chosen or any(_blurred(effect) for effect in effects):
+        return False
+    if bordered and best.misfit < BORDERED**2 * base.misfit:
         return False
     asked = _asked(model, best.whole)
     problem = asked.at(asked.begin)
