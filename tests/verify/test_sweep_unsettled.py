@@ -13,7 +13,7 @@ STUCK = Robot(
     BENCHMARK.platform1,
     BENCHMARK.platform2,
     BENCHMARK.h,
-    physics=(EffectUse("coulomb_friction", {"force1": 8.0, "force2": 8.0}),),
+    physics=(EffectUse("coulomb_friction", {"force1": 800.0, "force2": 800.0}),),
 )
 
 
