@@ -1,11 +1,8 @@
-"""What the tests of the command line share: a runner, and small problems."""
+"""What the tests of the command line share: small problems."""
 
 from pathlib import Path
 
 import pytest
-from typer.testing import CliRunner
-
-from rr_opt.cli.main import app
 
 QUICK = """
 gait: {amplitude: [0.1, 1.0], period: 1 s, offset: 0.0}
@@ -16,17 +13,6 @@ IMPOSSIBLE = """
 gait: {amplitude: [1.0, 2.0], period: [0.3, 0.5]}
 limits: {rate: 1 rpm}
 """
-
-
-@pytest.fixture
-def run(monkeypatch, tmp_path):
-    """Runs `rr-opt` in an empty folder; the result has exit_code, stdout and stderr."""
-    monkeypatch.chdir(tmp_path)
-
-    def command(*arguments: str):
-        return CliRunner().invoke(app, list(arguments))
-
-    return command
 
 
 @pytest.fixture

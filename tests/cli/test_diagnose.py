@@ -10,17 +10,10 @@ from rr_opt.cli.shared_work import SharedWork
 from rr_opt.motion.rollout import rollout
 from rr_opt.robot.gait import SineGait
 from tests.cli.test_interrupt import PROGRAM, interrupted
+from tests.diagnose.bad_data.folder import HEAD
 from tests.robots import BENCHMARK
 
 GAITS = ((0.5, 1.0, 0.0), (0.7, 1.2, 0.1), (0.4, 0.8, -0.1))
-HEAD = """
-robot:
-  platform1: {m: 0.469, I: 0.00386, c: 0.236, a: 0.05, b: 0.05, kappa: 2.0e-5}
-  platform2: {m: 0.25, I: 0.001158, c: 0.0941, a: 0.05, b: 0.05, kappa: 2.0e-5}
-  h: 0.02
-noise: {position: 0.001, angle: 0.003}
-recordings:
-"""
 KEYS = {"verdict", "summary", "location", "effects", "candidates", "indistinguishable",
         "next_experiment", "fit", "version", "input_sha256"}  # fmt: skip
 

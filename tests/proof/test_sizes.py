@@ -104,3 +104,19 @@ def test_confusion():
         ("no known effect", "no known effect"): 1,
         ("a wrong value", "a wrong value"): 1,
     }
+
+
+@pytest.mark.parametrize(("normal", "held"), [(3.98, True), (-2.30, True), (-2.60, False)])
+def test_a_direction_is_the_same_a_turn_on_and_a_point_on_an_edge_is_not_counted(normal, held):
+    true = {"floor_patch": {"multiplier": 2.0, "normal": -2.302, "edge_x": 0.2, "edge_y": 1.0}}
+    ends = {
+        "floor_patch": {
+            "multiplier": (1.9, 2.1),
+            "normal": (normal - 0.01, normal + 0.01),
+            "edge_x": (5.0, 6.0),
+            "edge_y": (5.0, 6.0),
+        }
+    }
+    claim = said("missing_physics", "floor_patch", intervals=ends)
+    found = intervals([single("floor_patch", claim, values=true)])
+    assert {one.parameter: one.held for one in found} == {"multiplier": True, "normal": held}

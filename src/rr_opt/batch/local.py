@@ -13,7 +13,8 @@ from typing import Any
 from joblib import cpu_count
 from joblib.externals.loky import ProcessPoolExecutor
 
-_THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+from rr_opt.batch.threads import ONE_THREAD
+
 _LOOK = 1.0  # s
 _HANDED_ON = 1.0
 """So long the executor may take to hand work on before it is ended, s."""
@@ -70,7 +71,7 @@ class LocalPool:
             timeout=None,
             initializer=_begin,
             initargs=(os.getpid(),),
-            env=dict.fromkeys(_THREADS, "1"),
+            env=ONE_THREAD,
         )
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 
+from rr_opt.batch.threads import ONE_THREAD
 from rr_opt.cli import interrupt
 from rr_opt.outcome import EXIT_INTERRUPTED
 
@@ -15,8 +16,8 @@ def main() -> None:
     """
     try:
         interrupt.watch()
-        for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
-            os.environ.setdefault(name, "1")  # the matrices are small: threads would only spin
+        for name, count in ONE_THREAD.items():
+            os.environ.setdefault(name, count)
         from rr_opt.cli.main import app  # noqa: PLC0415
 
         app()

@@ -105,7 +105,7 @@ def respond(
     names = motion.parameters[:-_FURTHER]
     p = values_of(given, names)
     t = model.runs[piece.run].t[piece.span]
-    path = model.drive_path(piece.run, given, mechanical, t)
+    path = model.drive_path(piece, given, mechanical)
     drives = _drives(pushes, t)
     pushed_path = _with_drives(path, np.tensordot(amounts, drives, 1))
     made = predict(system, pushed_path, state_of(mechanical, path, start, p), p)
@@ -116,7 +116,7 @@ def respond(
         np.zeros((rows + _FURTHER, t.size, by.shape[1])),
         np.zeros((rows + _FURTHER, path.h.size, by.shape[1])),
     )
-    own = model.drive_slopes(piece.run, given, mechanical, t, wanted)
+    own = model.drive_slopes(piece, given, mechanical, wanted)
     if own is not None:
         drive_by.at[:rows, :, :n], drive_by.middle[:rows, :, :n] = own.at, own.middle
     for there, push in ((drive_by.at, at), (drive_by.middle, middle)):
@@ -149,7 +149,7 @@ def observed(
     p = values_of(given, motion.parameters[:-_FURTHER])
     data = model.runs[piece.run]
     t = data.t[piece.span]
-    path = model.drive_path(piece.run, given, mechanical, t)
+    path = model.drive_path(piece, given, mechanical)
     still = _with_drives(path, np.zeros((len(_DRIVES), t.size)))
     made = predict(system, still, state_of(mechanical, path, start, p), p)
     pose, rate = _smooth(t, made.seen[:, :3], data.values[piece.span, :3])

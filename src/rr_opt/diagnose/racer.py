@@ -166,18 +166,13 @@ class RollerRacer:
         system, parameters = _system(mechanical)
         given = {**self.nominal, **values}
         p = values_of(given, parameters)
-        t = self.runs[piece.run].t[piece.span]
-        drive, late = self._drives.of(piece.run, given, mechanical), lateness(given, mechanical)
-        path = self._kept.path(
-            *(piece, drive, late, mechanical),
-            lambda: drive_path(drive, t, mechanical, late, smooth=drive.smooth),
-        )
+        path = self.drive_path(piece, given, mechanical)
         state = state_of(mechanical, path, start, p)
         made = self._kept.predicted(piece, system, path, state, p)
         if wanted is None:
             return Response(made.seen)
         by = values_by(given, parameters, wanted)
-        drive_by = self.drive_slopes(piece.run, given, mechanical, t, wanted)
+        drive_by = self.drive_slopes(piece, given, mechanical, wanted)
         out = slopes(system, path, made, p, by, drive_by)
         by_value = out.by_parameter
         if floor_motion(mechanical).slips:
@@ -201,23 +196,26 @@ class RollerRacer:
         return drive.at(self.runs[run].t + lateness(given, mechanical))[0]
 
     def drive_path(
-        self, run: int, given: Mapping[str, float], effects: tuple[str, ...], t: Array
+        self, piece: Piece, given: Mapping[str, float], effects: tuple[str, ...]
     ) -> DrivePath:
-        """The drive over the steps between the samples t (n,) of a run."""
-        drive = self._drives.of(run, given, effects)
-        late = lateness(given, effects)
-        return drive_path(drive, t, effects, late, smooth=drive.smooth)
+        """The drive over the steps between the samples of a piece: most fits leave it as it is."""
+        drive, late = self._drives.of(piece.run, given, effects), lateness(given, effects)
+        t = self.runs[piece.run].t[piece.span]
+        return self._kept.path(
+            *(piece, drive, late, effects),
+            lambda: drive_path(drive, t, effects, late, smooth=drive.smooth),
+        )
 
     def drive_slopes(
         self,
-        run: int,
+        piece: Piece,
         given: Mapping[str, float],
         effects: tuple[str, ...],
-        t: Array,
         wanted: tuple[str, ...],
     ) -> DriveSlopes | None:
         """How the drive changes with what is wanted; None if it does not."""
-        return drive_slopes(self._drives, run, t, given, effects, wanted)
+        t = self.runs[piece.run].t[piece.span]
+        return drive_slopes(self._drives, piece.run, t, given, effects, wanted)
 
 
 @lru_cache

@@ -95,20 +95,17 @@ def of_patch(model: RollerRacer, fit: Fit) -> tuple[Sequence[Proposal], Sequence
         problem = Problem(machine, pieces, fit.effects, fit.quantities)
         short = solve(problem, fit.values, {piece: model.start(piece) for piece in pieces})
         more_circles, more_edges = _on_map(model, short)
-        circles += _refined(machine, short, more_circles[0])
-        edges += _refined(machine, short, more_edges[0])
+        round_one, straight = model.catalogue["floor_patch"].forms
+        circles += _refined(machine, short, round_one, more_circles)
+        edges += _refined(machine, short, straight, more_edges)
     return circles, edges
 
 
-def _refined(model: Model, fit: Fit, place: Proposal) -> list[Proposal]:
-    """A place on the map, fitted over the pieces of a fit without it."""
-    if place.gain < LUCK * doubt(fit.cost, fit.count):
+def _refined(model: Model, fit: Fit, form: Form, places: Sequence[Proposal]) -> list[Proposal]:
+    """The best place on the map, if there is one, fitted over the pieces of a fit without it."""
+    if not places or places[0].gain < LUCK * doubt(fit.cost, fit.count):
         return []
-    own = next(
-        form.quantities
-        for form in model.catalogue["floor_patch"].forms
-        if {q.name for q in form.quantities} == set(place.values)
-    )
+    place, own = places[0], form.quantities
     quantities = (*fit.quantities, *own)
     problem = Problem(model, tuple(fit.starts), (*fit.effects, "floor_patch"), quantities)
     fitted = solve(problem, {**fit.values, **place.values}, fit.starts)

@@ -1,7 +1,5 @@
 """A runner of the command line."""
 
-from __future__ import annotations
-
 import pytest
 from typer.testing import CliRunner
 
