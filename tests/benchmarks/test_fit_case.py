@@ -17,14 +17,15 @@ def of_model(run, p):
     """What the model of the diagnosis predicts of a recording, (n, 4)."""
     model = RollerRacer(ours._experiment(case(), TRUE))
     given = model.nominal | dict(zip(PARAMETERS, p.tolist(), strict=True))
-    path = model.drive_path(run, given, (), model.runs[run].t)
+    whole = Piece(run, 0, len(model.runs[run].t))
+    path = model.drive_path(whole, given, ())
     own = floor_motion()
     values = values_of(given, own.parameters)
     # The state holds z = v - g dphi: with z = 0, v is what dphi alone makes.
     x, y, psi, v = BEGINS[run]
     still = float(own.speeds([x, y, psi, 0.0], path.at[:2, 0], values)[0])
     start = np.array([x, y, psi, v - still])
-    return model.respond(Piece(run, 0, len(model.runs[run].t)), given, (), start).predicted
+    return model.respond(whole, given, (), start).predicted
 
 
 @pytest.mark.parametrize("run", range(len(GAITS)))
