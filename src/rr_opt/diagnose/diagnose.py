@@ -66,6 +66,10 @@ class Level:
             apart = left_out(self.fit)
         return math.sqrt(apart + 1.0) if np.isfinite(apart) else self.held()
 
+    def surplus(self) -> float:
+        """What `unseen` is above the noise and a usual chance of it, mean square in sigma."""
+        return max(self.unseen() ** 2 - 1.0 - math.sqrt(2 / max(self.count(), 1)), 0.0)
+
     def count(self) -> int:
         """The values that this is of."""
         return int(np.isfinite(_residuals(self.misfits, held_out=True)).sum())
@@ -207,7 +211,7 @@ def answer(it: Found, *, systematic: bool = False) -> Diagnosis:
     model, search, best, levels, steps = it.model, it.search, it.best, it.levels, it.steps
     level0, level1, level2 = levels
     held = tuple(certain(level.held() ** 2 - 1, level.count()) for level in levels)
-    intervals = estimates(best.whole)
+    intervals = estimates(model, best.whole, level2.surplus())
     moved = wrong(best.whole)
     nominal_left = max(rms(misfit(level0.fit)), held[0])
     apart = held[1], held[2]

@@ -105,8 +105,10 @@ class Problem:
         out = self.model.respond(piece, self.fixed | dict(values), self.effects, start)
         return (out.predicted - data.values[piece.span]) / data.sigma[piece.span]
 
-    def normal(self, piece: Piece, values: Mapping[str, float], start: Array) -> Normal:
-        """The linearised problem of a piece."""
+    def normal(
+        self, piece: Piece, values: Mapping[str, float], start: Array, *, stray: bool = False
+    ) -> Normal:
+        """The linearised problem of a piece; `stray` takes in what no model of it has exactly."""
         data = self.model.runs[piece.run]
         names = tuple(q.name for q in self.quantities)
         given = self.fixed | dict(values)
@@ -118,6 +120,12 @@ class Problem:
         scale = np.array([q.scale for q in self.quantities])
         Jv = (by_value / sigma[:, :, None])[seen] * scale
         Js = (by_start / sigma[:, :, None])[seen]
+        if stray:
+            # One more unknown of the run, of which it is known that it is 0 to within 1.
+            column = (self.model.stray(out.predicted) / sigma)[seen]
+            Js = np.block([[Js, column[:, None]], [np.zeros(Js.shape[1]), 1.0]])
+            Jv, r = np.vstack([Jv, np.zeros(Jv.shape[1])]), np.append(r[seen], 0.0)
+            return normal_of(r, Jv, Js)
         return normal_of(r[seen], Jv, Js)
 
     def cost(self, values: Mapping[str, float], starts: Mapping[Piece, Array]) -> tuple[float, int]:

@@ -149,6 +149,10 @@ class Model(Protocol):
         """Misfit, RMS in sigma, by which machines of this kind differ from any model of them."""
         ...
 
+    def stray(self, predicted: Array) -> Array:
+        """One sigma of that in a run's prediction (n, channels), by channel: (n, channels)."""
+        ...
+
     @property
     def parameters(self) -> tuple[Quantity, ...]:
         """Of the nominal model, with what is known of each."""

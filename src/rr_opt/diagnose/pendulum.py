@@ -78,6 +78,10 @@ class Pendulum:
             name: _candidate(extra, torque, max(*speeds, 1e-3)) for name, extra in EXTRAS.items()
         }
 
+    def stray(self, predicted: Array) -> Array:
+        """None: what a pendulum's model leaves out is not known beforehand."""
+        return np.zeros_like(predicted)
+
     def propose(self, name: str, form: int, fit: Fit) -> Sequence[Proposal]:
         """Where the effect's form says; a fit of a pendulum is cheap, so each is worth it."""
         return [Proposal(start, fit.cost) for start in self.catalogue[name].forms[form].starts]

@@ -229,7 +229,7 @@ def _finely(drives: Array, steps: int) -> Array:
 @lru_cache
 def _rolling(effects: tuple[str, ...]) -> ca.Function:
     """(speeds, phi, p) -> the rolling speeds of the wheels (4,), m/s."""
-    assembly = assembled(effects)
+    assembly = assembled(effects, sharp=True)
     robot = assembly.mechanism
     rolling = ca.vertcat(*(robot.rolling_speed(wheel) for wheel in robot.wheels))
     return ca.Function("rolling", [robot.speeds, robot.phi, assembly.p], [rolling])
@@ -238,7 +238,7 @@ def _rolling(effects: tuple[str, ...]) -> ca.Function:
 @lru_cache
 def _places(effects: tuple[str, ...]) -> ca.Function:
     """(pose, phi, p) -> x, y of the wheels on the floor, one wheel after the other (8,), m."""
-    assembly = assembled(effects)
+    assembly = assembled(effects, sharp=True)
     robot = assembly.mechanism
     places = ca.vertcat(*(robot.on_floor(wheel.platform, wheel.point) for wheel in robot.wheels))
     return ca.Function("places", [robot.pose, robot.phi, assembly.p], [places])
@@ -247,7 +247,7 @@ def _places(effects: tuple[str, ...]) -> ca.Function:
 @lru_cache
 def _system(effects: tuple[str, ...]) -> tuple[System, FloorMotion]:
     """The motion with the pushes as further drives."""
-    plain = assembled(effects)
+    plain = assembled(effects, sharp=True)
     push = ca.SX.sym("push", _FURTHER)
     motion = solved(
         Assembly(

@@ -10,11 +10,12 @@ import numpy as np
 
 from rr_opt.diagnose.fit import Fit
 from rr_opt.diagnose.model import Array, Candidate, Data, Piece, Proposal, Quantity, Response
-from rr_opt.diagnose.racer_drive import Drives, drive_path, drive_slopes, lateness
+from rr_opt.diagnose.racer_drive import Drives, drive_slopes, grain, lateness
 from rr_opt.diagnose.racer_kept import Kept
 from rr_opt.diagnose.racer_proposals import of_patch, of_servo, of_slip
 from rr_opt.diagnose.racer_quantities import candidate, nominal, uncertain, values_by, values_of
 from rr_opt.diagnose.racer_state import state_of, v_of_z_by
+from rr_opt.diagnose.racer_steps import drive_path, steps_of
 from rr_opt.diagnose.shoot import DrivePath, DriveSlopes, System, slopes
 from rr_opt.experiment.experiment import Experiment, Run
 from rr_opt.experiment.recording import CHANNELS
@@ -66,6 +67,12 @@ class RollerRacer:
     def inexact(self) -> float:
         """Misfit, RMS in sigma, by which robots of this kind differ from any model of them."""
         return self._inexact
+
+    def stray(self, predicted: Array) -> Array:
+        """The way from the start, too long or too short by as much."""
+        out = np.zeros_like(predicted)
+        out[:, :2] = INEXACT * (predicted[:, :2] - predicted[0, :2])
+        return out
 
     @property
     def parameters(self) -> tuple[Quantity, ...]:
@@ -203,7 +210,7 @@ class RollerRacer:
         t = self.runs[piece.run].t[piece.span]
         return self._kept.path(
             *(piece, drive, late, effects),
-            lambda: drive_path(drive, t, effects, late, smooth=drive.smooth),
+            lambda: drive_path(drive, steps_of(drive, t, late, **grain(effects)), late),
         )
 
     def drive_slopes(

@@ -46,7 +46,7 @@ def _nameless(racer: RollerRacer, it: Found, said: Diagnosis) -> Diagnosis:
     curved = level_of(racer, with_force_curve(racer, search.base, search.nominal), start)
     best = min((it.levels[0], it.levels[1], curved, it.levels[2]), key=Level.held)
     values = dict(best.fit.values)
-    intervals = estimates(best.fit)
+    intervals = estimates(racer, best.fit, best.surplus())
     return replace(
         said,
         final=best.misfits,

@@ -1,21 +1,18 @@
-"""The joint's angle in a run, as the steps of a prediction need it, and how it changes."""
+"""The joint's angle in a run, and how it changes with what the servo does wrong."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 
 import numpy as np
 
 from rr_opt.diagnose.model import Array
+from rr_opt.diagnose.racer_steps import drive_path, steps_of
 from rr_opt.diagnose.shoot import DrivePath, DriveSlopes
 from rr_opt.experiment.experiment import Run
 from rr_opt.physics.drive import Drive, FreeJoint, told
 from rr_opt.physics.effects import CATALOGUE
-
-_LONGEST, _FINE = 0.012, 0.003
-"""A step is no longer, s; than the second where the drive is not smooth, or the wheels slip."""
 
 
 class Drives:
@@ -47,31 +44,6 @@ class Drives:
         return drive
 
 
-def drive_path(
-    drive: Drive, t: Array, effects: tuple[str, ...], late: float, *, smooth: bool
-) -> DrivePath:
-    """The drive over the steps between the samples; dphi jumps where it is not smooth."""
-    stiff = any(CATALOGUE[name].stiff for name in effects)
-    longest = _FINE if stiff or not smooth else _LONGEST
-    each = 2 ** max(math.ceil(math.log2(float(np.median(np.diff(t))) / longest)), 0)
-    inner = np.arange(each) / each
-    edges = np.append((t[:-1, None] + np.diff(t)[:, None] * inner).ravel(), t[-1])
-    h = np.diff(edges)
-    at_edges = drive.at(edges + late)[:2]
-    middle = drive.at(edges[:-1] + h / 2 + late)[:2]
-    nodes = np.stack([at_edges[:, :-1], middle, at_edges[:, 1:]], axis=1)
-    if not smooth:
-        # Where dphi jumps within a step, the step keeps its end points.
-        nodes[1] = (np.diff(at_edges[0]) / h)[None]
-        nodes[0, 1] = (nodes[0, 0] + nodes[0, 2]) / 2
-    at = at_edges[:, ::each]
-    if stiff:
-        mean = np.diff(at_edges[1]) / h
-        nodes = np.concatenate([nodes, np.tile(mean, (1, 3, 1))])
-        at = np.vstack([at, np.append(mean, mean[-1])[::each]])
-    return DrivePath(h, nodes, at, each)
-
-
 def drive_slopes(
     drives: Drives,
     run: int,
@@ -90,15 +62,18 @@ def drive_slopes(
         return None
     here = drives.of(run, given, effects)
 
+    steps = steps_of(here, t, lateness(given, effects), **grain(effects))
+
     def path_at(values: Mapping[str, float]) -> DrivePath:
-        drive = drives.of(run, values, effects)
-        return drive_path(drive, t, effects, lateness(values, effects), smooth=here.smooth)
+        # The very steps that predict are moved, each at one rate where dphi jumps, so that a jump
+        # counts wherever in it it is.
+        drive, late = drives.of(run, values, effects), lateness(values, effects)
+        return drive_path(drive, steps, late, mean=not here.smooth)
 
     path = path_at(given)
     at = np.zeros((*path.at.shape, len(wanted)))
     middle = np.zeros((*path.nodes[:, 1].shape, len(wanted)))
     for k, name in moving:
-        # The very steps that predict are moved, so that a jump of dphi counts where it does.
         least, size = _extent(name)
         step = 1e-3 * size
         low, high = max(given[name] - step, least), given[name] + step
@@ -116,6 +91,12 @@ def drive_slopes(
 def lateness(given: Mapping[str, float], effects: tuple[str, ...]) -> float:
     """By how much the recording's clock is behind the command's, s."""
     return sum(given[f"{n}.{CATALOGUE[n].delay}"] for n in effects if CATALOGUE[n].delay)
+
+
+def grain(effects: Sequence[str]) -> dict[str, bool]:
+    """Whether some states settle at once, and whether some forces jump with the speed."""
+    every = [CATALOGUE[name] for name in effects]
+    return {"stiff": any(one.stiff for one in every), "sharp": any(one.sharp for one in every)}
 
 
 def _of_drive(name: str) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import casadi as ca
 import numpy as np
@@ -34,9 +34,9 @@ class Assembly:
     p: ca.SX
 
 
-def assembled(effects: tuple[str, ...]) -> Assembly:
+def assembled(effects: tuple[str, ...], *, sharp: bool = False) -> Assembly:
     """The paper's robot with those of the named effects that change it or how it is seen."""
-    robot = mechanism()
+    robot = replace(mechanism(), sharp=sharp)
     seen = Seen(robot.pose[0], robot.pose[1], robot.pose[2], robot.phi)
     symbols = {name: robot.parameters[name] for name in ROBOT_PARAMETERS}
     for name in sorted(

@@ -20,14 +20,33 @@ class Drive:
 
     at      t (n,) s -> phi, dphi, ddphi (3, n): rad, rad/s, rad/s2
     period  s
-    smooth   whether dphi never jumps
     rest    the robot stands still until t = 0; else it has been driven for ever
+    jumps   when dphi jumps, (n,) s in order; for a robot driven for ever in some period, else from
+            t = 0 on, where the last period repeats. None if it never does
     """
 
     at: Callable[[Array], Array]
     period: float
     rest: bool
-    smooth: bool = True
+    jumps: Array | None = None
+
+    @property
+    def smooth(self) -> bool:
+        """Whether dphi never jumps."""
+        return self.jumps is None
+
+    def jumps_within(self, low: float, high: float) -> Array:
+        """When dphi jumps between two times, (n,) s in order."""
+        if self.jumps is None or not self.jumps.size:
+            return np.zeros(0)
+        T, first = self.period, self.jumps
+        repeats = first[first > first[-1] - T]
+        turns = np.arange(np.floor((low - repeats[-1]) / T), np.ceil((high - repeats[0]) / T) + 1)
+        if self.rest:
+            turns = turns[turns > 0]
+        often = (repeats + T * turns[:, None]).ravel()
+        every = np.concatenate([first, often]) if self.rest else often
+        return np.sort(every[(every > low) & (every < high)])
 
 
 @dataclass(frozen=True)

@@ -63,8 +63,11 @@ class FloorMotion:
 
 @lru_cache
 def floor_motion(effects: tuple[str, ...] = ()) -> FloorMotion:
-    """Derive the motion with the named effects; those of the servo are for who drives it."""
-    return solved(assembled(effects))
+    """Derive the motion with the named effects; those of the servo are for who drives it.
+
+    It is for predictions, so dry friction is as sharp as steps can follow.
+    """
+    return solved(assembled(effects, sharp=True))
 
 
 def solved(assembly: Assembly) -> FloorMotion:

@@ -115,6 +115,7 @@ class Mechanism:
     parameters   symbol of every robot parameter by name
     frames       motion of platforms 1 and 2
     held         the side speeds that are held at zero
+    sharp        whether forces may jump nearly as they do: for predictions, not for optimisers
     """
 
     pose: ca.SX
@@ -127,6 +128,7 @@ class Mechanism:
     wheels: tuple[Wheel, ...]
     forces: tuple[Force, ...] = ()
     held: frozenset[str] = frozenset({"s1", "s2"})
+    sharp: bool = False
 
     def rolling_speed(self, wheel: Wheel) -> ca.SX:
         """Speed of the wheel's contact point along its rolling direction, m/s."""
@@ -165,7 +167,8 @@ def with_turned_axles(mechanism: Mechanism, toe1: ca.SX, toe2: ca.SX) -> Mechani
     Everything is assembled anew, as every force depends on it: what else is to enter comes after.
     """
     robot = mechanism
-    return _assembled(robot.pose, robot.phi, robot.speeds, robot.parameters, toe1, toe2)
+    turned = _assembled(robot.pose, robot.phi, robot.speeds, robot.parameters, toe1, toe2)
+    return replace(turned, sharp=robot.sharp)
 
 
 def _assembled(

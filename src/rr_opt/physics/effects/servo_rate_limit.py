@@ -50,7 +50,7 @@ def _actuate(told: Drive, values: Mapping[str, float], _: FreeJoint | None = Non
         turning = angles[k] + rates[k] * (folded - starts[k]), rates[k], np.zeros_like(folded)
         return np.where((rates[k] == 0) | (folded < 0), told.at(t), np.array(turning))
 
-    return replace(told, at=at, smooth=False)
+    return replace(told, at=at, jumps=starts[1:])
 
 
 def _stretches(
