@@ -197,7 +197,7 @@ def main() -> int:
         print(f"diagnosing it in {parts} part{'s' * (parts > 1)}", file=sys.stderr)
         model, _ = cut(data, sigma, parts, out)
         found = diagnose(model)
-        terms = estimates(with_published_terms(model, found.values))
+        terms = estimates(model, with_published_terms(model, found.values))
         cuts.append(Cut(parts, tuple(k + 1 for k in out), found, terms))
     first, found = next(iter(CUTS)), cuts[0].found
     model, begins = cut(data, sigma, first, CUTS[first])

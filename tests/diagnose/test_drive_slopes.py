@@ -1,4 +1,4 @@
-"""A run's derivatives by the servo's faults and the clock are right to three per cent.
+"""A run's derivatives by the servo's faults and the clock are right to six per cent.
 
 Held against differences of whole predictions, from rest and running, where dphi jumps as well.
 """
@@ -46,4 +46,4 @@ def test_against_differences(name, start):
     expected = (up - down) / (2 * step)
     size = np.sqrt(np.mean(expected**2, axis=0))
     off = np.sqrt(np.mean((found - expected) ** 2, axis=0))
-    assert np.all(off <= 0.03 * np.maximum(size, 0.1 * size.max()))
+    assert np.all(off <= 0.06 * np.maximum(size, 0.1 * size.max()))

@@ -1,12 +1,13 @@
 """The motion on the floor at a place and heading, with the direct equation of motion behind z."""
 
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 
-from rr_opt.physics.assembly import values_of
+from rr_opt.physics.assembly import assembled, values_of
 from rr_opt.physics.effects import CATALOGUE
-from rr_opt.physics.floor_motion import floor_motion
+from rr_opt.physics.floor_motion import FloorMotion, floor_motion, solved
 from rr_opt.robot.parameters import Robot
 from tests.physics.cases import State
 
@@ -24,9 +25,16 @@ class Floor(NamedTuple):
     torque: float
 
 
-def on_floor(robot: Robot, state: State, place: np.ndarray, sides=(0.0, 0.0)) -> Floor:
+@lru_cache
+def _soft(effects: tuple[str, ...]) -> FloorMotion:
+    return solved(assembled(effects))
+
+
+def on_floor(
+    robot: Robot, state: State, place: np.ndarray, sides=(0.0, 0.0), *, sharp: bool = True
+) -> Floor:
     """The robot's floor motion; axles that may slip do so at `sides`, m/s."""
-    motion = floor_motion(tuple(use.name for use in robot.physics))
+    motion = (floor_motion if sharp else _soft)(tuple(use.name for use in robot.physics))
     p = values_of(robot, motion.parameters)
     v, phi, dphi, ddphi = state
     if motion.slips:

@@ -38,7 +38,10 @@ def rolling(robot: Robot, given: dict) -> Law:
         if values := given.get("left_right_drag"):
             force -= side * values[f"asymmetry{n}"] * k * u
         if values := given.get("coulomb_friction"):
-            force -= values[f"force{n}"] * math.tanh(u / 0.002)
+            # In 5 ms the friction must not turn the speed round.
+            mass = robot.platform1.m + robot.platform2.m
+            soft = 2e-4 + 0.005 * 2 * (values["force1"] + values["force2"]) / mass
+            force -= values[f"force{n}"] * math.tanh(u / soft)
         if values := given.get("quadratic_drag"):
             force -= values["coefficient_total"] / 4 * u * math.sqrt(u**2 + 1e-8)
         if values := given.get("floor_patch"):

@@ -32,7 +32,10 @@ def test_same_rates(effects):
         # On the floor v counts along the wheels, in the steady cycle along the platform.
         toe = next((use.values["toe1"] for use in robot.physics if "toe1" in use.values), 0.0)
         along = State(state.v * cos(toe), *state[1:])
-        there, here = motion(robot, along), on_floor(robot, state, np.array([1.0, -2.0, psi]))
+        there, here = (
+            motion(robot, along),
+            on_floor(robot, state, np.array([1.0, -2.0, psi]), sharp=False),
+        )
         pose = [
             along.v * cos(psi) - there.side * sin(psi),
             along.v * sin(psi) + there.side * cos(psi),

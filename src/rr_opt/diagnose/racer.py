@@ -21,7 +21,6 @@ from rr_opt.experiment.experiment import Experiment, Run
 from rr_opt.experiment.recording import CHANNELS
 from rr_opt.physics.effects import CATALOGUE, Setting
 from rr_opt.physics.floor_motion import floor_motion
-from rr_opt.physics.free_joint import free_joint
 
 SETTLING = 0.05
 """After a start from rest the motor saturates for some 20 ms; that much, s, is left out."""
@@ -194,7 +193,7 @@ class RollerRacer:
     @cached_property
     def _drives(self) -> Drives:
         """What the servo makes of the gaits, of the nominal robot."""
-        return Drives(self.experiment.runs, free_joint(self.experiment.robot))
+        return Drives(self.experiment.runs)
 
     def angle(self, run: int, given: Mapping[str, float], effects: tuple[str, ...]) -> Array:
         """phi (n,) of a run as the servo makes it, rad, at the samples."""

@@ -8,23 +8,25 @@ from functools import lru_cache
 import numpy as np
 
 from rr_opt.diagnose.model import Array
+from rr_opt.diagnose.racer_quantities import values_of
 from rr_opt.diagnose.racer_steps import drive_path, steps_of
 from rr_opt.diagnose.shoot import DrivePath, DriveSlopes
 from rr_opt.experiment.experiment import Run
 from rr_opt.physics.drive import Drive, FreeJoint, told
 from rr_opt.physics.effects import CATALOGUE
+from rr_opt.physics.free_joint import free_joint_of
 
 
 class Drives:
     """The drives of runs, each kept until others were asked for."""
 
-    def __init__(self, runs: Sequence[Run], joint: FreeJoint) -> None:
-        self._runs, self._joint = runs, joint
+    def __init__(self, runs: Sequence[Run]) -> None:
+        self._runs = runs
         self._of = lru_cache(maxsize=64)(self._made)
 
     def __reduce__(self) -> tuple:
         """For another process: what is kept stays here."""
-        return Drives, (self._runs, self._joint)
+        return Drives, (self._runs,)
 
     def of(self, run: int, given: Mapping[str, float], effects: tuple[str, ...]) -> Drive:
         """What the servo makes of the gait that it is told in a run."""
@@ -33,14 +35,20 @@ class Drives:
             for name in effects
             if CATALOGUE[name].actuate
         )
-        return self._of(run, own)
+        loose = any(CATALOGUE[name].loose for name, _ in own)
+        return self._of(run, own, joint_of(given) if loose else None)
 
-    def _made(self, run: int, own: tuple[tuple[str, tuple[tuple[str, float], ...]], ...]) -> Drive:
+    def _made(
+        self,
+        run: int,
+        own: tuple[tuple[str, tuple[tuple[str, float], ...]], ...],
+        joint: FreeJoint | None,
+    ) -> Drive:
         drive = told(self._runs[run].gait, self._runs[run].start == "rest")
         for name, values in own:
             actuate = CATALOGUE[name].actuate
             if actuate:
-                drive = actuate(drive, dict(values), self._joint)
+                drive = actuate(drive, dict(values), joint)
         return drive
 
 
@@ -91,6 +99,11 @@ def drive_slopes(
 def lateness(given: Mapping[str, float], effects: tuple[str, ...]) -> float:
     """By how much the recording's clock is behind the command's, s."""
     return sum(given[f"{n}.{CATALOGUE[n].delay}"] for n in effects if CATALOGUE[n].delay)
+
+
+def joint_of(given: Mapping[str, float]) -> FreeJoint:
+    """The joint of a robot with these values, free of its servo."""
+    return free_joint_of(lambda parameters: values_of(given, parameters))
 
 
 def grain(effects: Sequence[str]) -> dict[str, bool]:

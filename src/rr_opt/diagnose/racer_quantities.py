@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -62,7 +62,7 @@ def candidate(effect: Effect, setting: Setting) -> Candidate:
     )
 
 
-def values_of(given: dict[str, float], parameters: tuple[str, ...]) -> Array:
+def values_of(given: Mapping[str, float], parameters: tuple[str, ...]) -> Array:
     """The parameters p of a motion, with k = kappa/h^2."""
     friction = {f"k{i}": given[f"kappa{i}"] / given["h"] ** 2 for i in (1, 2)}
     return np.array([friction.get(name, given.get(name, math.nan)) for name in parameters])

@@ -40,7 +40,7 @@ class Drive:
         if self.jumps is None or not self.jumps.size:
             return np.zeros(0)
         T, first = self.period, self.jumps
-        repeats = first[first > first[-1] - T]
+        repeats = first[first > first[-1] - T * (1 - 1e-9)]
         turns = np.arange(np.floor((low - repeats[-1]) / T), np.ceil((high - repeats[0]) / T) + 1)
         if self.rest:
             turns = turns[turns > 0]

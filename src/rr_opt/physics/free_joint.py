@@ -9,6 +9,7 @@ of which the first is affine in ddphi. A blow on the joint changes dphi at once 
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
 from functools import lru_cache
 
 import casadi as ca
@@ -21,7 +22,12 @@ from rr_opt.robot.parameters import Robot
 
 def free_joint(robot: Robot) -> FreeJoint:
     """The joint of a robot with nothing but the paper's friction."""
-    return FreeJoint(_swing(), tuple(values_of(robot, floor_motion().parameters)))
+    return free_joint_of(lambda parameters: values_of(robot, parameters))
+
+
+def free_joint_of(values: Callable[[tuple[str, ...]], Iterable[float]]) -> FreeJoint:
+    """The same of a robot that is told by the values of its parameters, SI."""
+    return FreeJoint(_swing(), tuple(values(floor_motion().parameters)))
 
 
 @lru_cache

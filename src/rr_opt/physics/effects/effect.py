@@ -94,6 +94,7 @@ class Effect:
     observe  (seen, symbols) -> what is recorded of what there is to see: measurement
     delay    the parameter by which the recording's clock is behind the command's: measurement
     stiff    whether it lets the axles slip, which they stop doing at once
+    loose    whether the joint swings by itself, so that the robot's values count for its angle
     sharp    whether its force all but jumps with the speed, so that predictions take short steps
     smooth   whether it has derivatives by its parameters where it vanishes
     nameless whether it is a curve that imitates what has no name: no candidate of a diagnosis
@@ -112,6 +113,7 @@ class Effect:
     observe: Callable[[Seen, Mapping[str, ca.SX]], Seen] | None = None
     delay: str | None = None
     stiff: bool = False
+    loose: bool = False
     sharp: bool = False
     smooth: bool = True
     nameless: bool = False

@@ -14,7 +14,7 @@ stepped over many periods, the last of which repeats.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
@@ -127,7 +127,7 @@ def _stepped(
     given = np.vstack([servo[:, :-1], servo[:, 1:], np.full((2, n), [[half], [dt]])])
     rolled = np.asarray(_roller(swing, n)(np.append(before, _MISSED), given, p))
     ahead = np.column_stack([before[:2] - servo[:, 0], rolled[:2] - servo[:, 1:]])
-    return _Play(dt, *ahead, rolled[3]), rolled[:3, _STEPS - 1 :: _STEPS]
+    return _Play(dt, ahead[0], ahead[1], rolled[3]), rolled[:3, _STEPS - 1 :: _STEPS]
 
 
 @lru_cache
@@ -138,7 +138,7 @@ def _coasting() -> ca.Function:
 
 
 @lru_cache
-def _roller(swing: ca.Function, steps: int) -> ca.Function:
+def _roller(swing: ca.Function, steps: int) -> Callable[..., ca.DM]:
     """The joint (phi, dphi, z) from step to step, and the part of the step after which it hits a
     stop, from the servo's angle and rate at both ends, half the play, and the step."""
     joint, given = ca.SX.sym("joint", 4), ca.SX.sym("given", 6)
@@ -162,7 +162,8 @@ def _roller(swing: ca.Function, steps: int) -> ca.Function:
     toward = u * ca.sign(side) + root
     part = 2 * ca.fabs(side - a) / ca.fmax(toward, 1e-300)
     was_held = ca.fabs(a) >= (1 - 1e-9) * half
-    hit = ca.if_else(ca.logic_and(held, ca.logic_not(was_held)), ca.fmin(part, 1.0), _MISSED)
+    new = ca.logic_and(held, ca.logic_not(was_held))
+    hit = ca.if_else(new, ca.fmin(part, 1.0), _MISSED)
     end = ca.vertcat(ca.if_else(held, stop + side, phi), ca.if_else(held, rate, dphi), z, hit)
     return ca.Function("step", [joint, given, p], [ca.cse(end)]).mapaccum(steps)
 
@@ -174,5 +175,6 @@ EFFECT = Effect(
     parameters=(Parameter("width", "rad", (0.0, 0.5), 0.02, trials=(0.5,), rough=True),),
     sentence="There is play between the servo and the platform that it turns.",
     actuate=_actuate,
+    loose=True,
     smooth=False,
 )

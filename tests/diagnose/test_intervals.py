@@ -1,0 +1,44 @@
+"""Intervals know noise, what no model has exactly, and what held-out recordings say."""
+
+import numpy as np
+import pytest
+
+from rr_opt.diagnose import racer
+from rr_opt.diagnose.intervals import estimates
+from tests.diagnose.made_up import base_of, with_effect
+
+
+@pytest.fixture(scope="module")
+def fitted():
+    model = with_effect({}, (), seconds=20.0)
+    return model, base_of(model).whole
+
+
+def widths(fitted, held=0.0):
+    return {name: one.high - one.low for name, one in estimates(*fitted, held).items()}
+
+
+def test_wider_with_what_no_model_has(fitted, monkeypatch):
+    usual = widths(fitted)
+    monkeypatch.setattr(racer, "INEXACT", 0.05)
+    wider = widths(fitted)
+    assert all(wider[name] >= usual[name] * (1 - 1e-9) for name in usual)
+    assert max(wider[name] / usual[name] for name in usual) > 1.1
+
+
+def test_that_is_half_a_thousandth_of_the_way(fitted):
+    model, fit = fitted
+    piece = next(iter(fit.starts))
+    path = model.respond(piece, fit.values, (), fit.starts[piece]).predicted
+    off = model.stray(path)
+    assert np.hypot(*off[-1, :2]) == pytest.approx(
+        5e-4 * np.hypot(*(path[-1, :2] - path[0, :2])), rel=1e-9
+    )
+    assert not off[:, 2:].any()
+
+
+def test_wider_by_the_root_of_what_is_left_of_held_out_recordings(fitted):
+    plain, doubted = widths(fitted), widths(fitted, held=0.02)
+    assert all(doubted[name] >= plain[name] * (1 - 1e-9) for name in plain)
+    # Of what these data see far better than was known before.
+    assert max(doubted[name] / plain[name] for name in plain) == pytest.approx(2.0, rel=0.1)
