@@ -45,7 +45,7 @@ CURVE = {f"force{k}": force for k, force in enumerate((0.03, 0.0, 0.03, 0.0, 0.0
 HIDDEN: dict[str, tuple[str, dict[str, float]]] = {
     "nothing": ("", {}),
     "dry friction": ("coulomb_friction", {"force1": 0.002, "force2": 0.001}),
-    "slipping wheels": ("lateral_slip", {"creep_compliance": 0.004}),
+    "slipping wheels": ("lateral_slip", {"creep_compliance": 0.02}),
     "no name": ("rolling_force_curve", CURVE | {"speed": 0.12}),
 }
 WAYS = ("compiled before", "compiled now", "no compiler")

@@ -236,7 +236,10 @@ def answer(it: Found, *, systematic: bool = False) -> Diagnosis:
         stages=(),
         findings=findings,
         parameters={q.name: intervals[q.name] for q in best.whole.quantities},
-        tried=tuple(_tried(one, best) for one in sorted(search.tried, key=lambda e: e.score)),
+        tried=tuple(
+            _tried(one, best if verdict != "unexplained" else None)
+            for one in sorted(search.tried, key=lambda e: e.score)
+        ),
         indistinguishable=(),
         next_experiment=None,
         residue=(),
@@ -273,14 +276,14 @@ def _findings(
     return tuple(sorted(out, key=lambda f: -f.removes))
 
 
-def _tried(one: Explanation, best: Explanation) -> Tried:
+def _tried(one: Explanation, accepted: Explanation | None) -> Tried:
     return Tried(
         one.names,
         rms(one.misfit),
         rms(left_out(one.whole)),
         one.score,
         {k: v for k, v in one.whole.values.items() if "." in k},
-        one.chosen == best.chosen,
+        accepted is not None and one.chosen == accepted.chosen,
     )
 
 

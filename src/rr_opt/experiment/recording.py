@@ -21,7 +21,6 @@ class Flag(IntFlag):
 
     MISSING = 1
     OUTLIER = 2
-    SWAPPED = 4
     OUT_OF_ORDER = 8
 
 

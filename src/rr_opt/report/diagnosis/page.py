@@ -109,15 +109,8 @@ def _open(one: Diagnosed) -> str:
         for group in found.indistinguishable
     ]
     said += [each.sentence for each in found.residue]
-    asked = found.next_experiment
-    if asked is not None:
-        said.append(asked.sentence)
-        between = " and ".join(name.replace("_", " ") for name in asked.between)
-        said.append(
-            f"Amplitude {asked.amplitude:.3g} rad, period {asked.period:.3g} s, offset "
-            f"{asked.offset:.3g} rad, start: {asked.start}, {asked.seconds:.3g} s: expected to "
-            f"part {between} by {asked.separation:.1f} σ RMS."
-        )
+    if found.next_experiment is not None:
+        said.append(found.next_experiment.sentence)
     return "".join(f"<p>{escape(sentence)}</p>" for sentence in said)
 
 
