@@ -11,10 +11,10 @@ from rr_opt.verify.steady import Speeds
 Array = NDArray[np.float64]
 _Places = tuple[NDArray[np.int_], NDArray[np.int_]]
 
-_MOST = 16384
+MOST = 16384
 """Samples of half a period where friction is not viscous."""
 
-_SAFETY = 0.25
+SAFETY = 0.25
 """Where friction turns suddenly, what a doubling of the samples changes depends on where they
 fall: the error may be larger. So much of the tolerance is what it may change."""
 
@@ -58,10 +58,10 @@ def by_newton(
 ) -> None:
     """Any friction: written to the places `at` where it is resolved to the tolerance."""
     pending, n = np.arange(len(points.period)), first
-    while len(pending) and n < _MOST * (1 if straight else 2):
+    while len(pending) and n < MOST * (1 if straight else 2):
         # The few that need many samples are put together, as the points of a vector register
         # all take as many as the worst of them.
         n *= 4
-        found = compiled.newton(points.only(pending), p, first, n, straight, _SAFETY * tolerance)
-        into.keep((at[0][pending], at[1][pending]), found, found.error <= _SAFETY * tolerance)
+        found = compiled.newton(points.only(pending), p, first, n, straight, SAFETY * tolerance)
+        into.keep((at[0][pending], at[1][pending]), found, found.error <= SAFETY * tolerance)
         pending = pending[~into.converged[at][pending]]

@@ -86,7 +86,7 @@ class CompiledCycles:
             return out
 
         speed, turn, torque, error = in_pieces(work, len(columns[0]), self._piece)
-        return Steady(speed, turn, torque, error)
+        return Steady(speed, turn, torque, error, np.abs(speed))
 
 
 def compiled(

@@ -6,8 +6,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rr_opt.robot.parameters import Robot
-from rr_opt.verify.by_machine import by_newton, by_series
+from rr_opt.verify.by_machine import MOST as MOST_BY_NEWTON
+from rr_opt.verify.by_machine import SAFETY, by_newton, by_series
 from rr_opt.verify.compiled_cycles import Points
+from rr_opt.verify.doublings import Doublings
 from rr_opt.verify.steady import Speeds
 from rr_opt.verify.steady_fourier import SteadyFourier
 
@@ -16,10 +18,10 @@ Array = NDArray[np.float64]
 FEWEST, MOST = 16, 4096
 """Samples of half a period of a straight gait; of a whole period twice as many."""
 
-_MARGIN = {True: 10.0, False: 0.01}
-"""The fastest harmonics of the velocity may be so many times as large as the speed's error. It
-comes from their products where friction is viscous (True); where it is not, those of the
-friction count, which are stronger."""
+_MARGIN = 10.0
+"""The fastest harmonics of the velocity may be so many times as large as the speed's error, which
+comes from their products where friction is viscous. Where it is not, those of the friction are
+stronger, and what doubling the samples changes is the error."""
 
 _CHUNK = 16384
 """Samples of shapes in one go, where NumPy does it."""
@@ -55,17 +57,22 @@ def resolved(
             if not model.viscous:
                 by_newton(compiled, points, p, straight, n, tolerance, at, into)
                 continue
-            worst, fewest = _MARGIN[True] * tolerance, needed[at[0]] * halves
+            worst, fewest = _MARGIN * tolerance, needed[at[0]] * halves
             n = by_series(compiled, points, p, straight, n, fewest, worst, at, into)
             pending = pending[(asked & ~into.converged)[pending].any(axis=1)]
-        while len(pending) and n <= MOST * halves:
+        doublings = Doublings(T.shape)
+        most = halves * (MOST if model.viscous else MOST_BY_NEWTON)
+        while len(pending) and n <= most:
             now = pending[needed[pending] * halves <= n]
             for block in np.array_split(now, max(1, len(now) * n // _CHUNK)) if len(now) else ():
                 robots = p if which is None else p[:, which[block]]
                 shapes = alpha[block], phi0[block], period[block]
                 found = model.cycles(*shapes, robots, n, straight, tolerance)
-                good = (found.error <= _MARGIN[model.viscous] * tolerance) & asked[block]
-                into.keep(block, found, good)
+                if model.viscous:
+                    good = found.error <= _MARGIN * tolerance
+                else:
+                    good = doublings.error(block, found) <= SAFETY * tolerance
+                into.keep(block, found, good & asked[block])
             poor = (asked & ~into.converged)[pending].any(axis=1)
             pending, n = pending[poor], 2 * n
     return into

@@ -19,12 +19,14 @@ class Steady(NamedTuple):
     peak_torque  largest |torque|, between the samples too, N m
     error        size of the fastest harmonics of the velocity, relative to the speed; inf where
                  no steady cycle was found
+    scale        what an error of the speed is relative to, m/s
     """
 
     speed: Array
     turn: Array
     peak_torque: Array
     error: Array
+    scale: Array
 
 
 class Speeds(NamedTuple):

@@ -136,7 +136,7 @@ class SteadyFourier:
             scale = np.maximum(np.abs(speed), _SMALL * np.abs(v).max(axis=0)) + _TINY
             error = (tail(v, False) + tail(side, straight)) / scale
             error = np.where(settled & np.isfinite(speed), error, np.inf)
-            results = (speed, turn, peak(torque, straight), error)
+            results = (speed, turn, peak(torque, straight), error, scale)
             parts.append([result.reshape(T.shape) for result in results])
         return Steady(*(np.concatenate(results) for results in zip(*parts, strict=True)))
 
