@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from rr_opt.diagnose.model import Piece
-from rr_opt.diagnose.pushed import observed, respond
+from rr_opt.diagnose.observed import observed
+from rr_opt.diagnose.pushed import respond
 from tests.diagnose.made_up import with_effect
 
 PIECE = Piece(1, 0, 300)

@@ -13,7 +13,7 @@ from rr_opt.diagnose.explain import joined
 from rr_opt.diagnose.explanation import Explanation
 from rr_opt.diagnose.fit import Fit, Problem, solve
 from rr_opt.diagnose.model import Quantity
-from rr_opt.diagnose.pushed import observed
+from rr_opt.diagnose.observed import observed
 from rr_opt.diagnose.racer import RollerRacer
 from rr_opt.physics.effects.rolling_force_curve import EFFECT
 

@@ -15,7 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from rr_opt.diagnose.model import Array
-from rr_opt.diagnose.pushed import PUSHES, Along
+from rr_opt.diagnose.observed import Along
+from rr_opt.diagnose.pushed_motion import PUSHES
 
 _ACROSS = 10
 """Cells across the longer side of the visited floor."""

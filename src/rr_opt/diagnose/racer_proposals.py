@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, cast
 
 import numpy as np
 from scipy.optimize import minimize_scalar
@@ -19,12 +18,10 @@ from rr_opt.diagnose.fit import Fit, Problem, bounded_step, box, doubt, scaled, 
 from rr_opt.diagnose.floor_map import Found, cells_of, drags, likely
 from rr_opt.diagnose.model import Form, Model, Proposal
 from rr_opt.diagnose.normal import total
-from rr_opt.diagnose.pushed import observed
+from rr_opt.diagnose.observed import observed
+from rr_opt.diagnose.racer_protocol import Racer
 from rr_opt.diagnose.residue_problem import Point, linearised
 from rr_opt.diagnose.screen import LUCK
-
-if TYPE_CHECKING:
-    from rr_opt.diagnose.racer import RollerRacer
 
 _TRIED = 14
 """Values of an effect of the servo, between next to nothing and a lot."""
@@ -33,7 +30,7 @@ _MUCH, _SHORT = 2.0, 1.0
 """With more misfit, mean square in sigma, a patch is looked for over so many seconds as well."""
 
 
-def of_servo(model: RollerRacer, name: str, form: Form, fit: Fit) -> Sequence[Proposal]:
+def of_servo(model: Racer, name: str, form: Form, fit: Fit) -> Sequence[Proposal]:
     """The value that fits the recorded angle best; phi is the last channel."""
     (q,) = form.quantities
     effects = (*fit.effects, name)
@@ -64,10 +61,10 @@ def of_servo(model: RollerRacer, name: str, form: Form, fit: Fit) -> Sequence[Pr
     return [Proposal({q.name: value}, before - least)]
 
 
-def of_slip(model: RollerRacer, name: str, form: Form, fit: Fit) -> Sequence[Proposal]:
+def of_slip(model: Racer, name: str, form: Form, fit: Fit) -> Sequence[Proposal]:
     """Where the form says, and what one step from there promises."""
     quantities = (*fit.quantities, *form.quantities)
-    problem = Problem(cast("Model", model), tuple(fit.starts), (*fit.effects, name), quantities)
+    problem = Problem(model, tuple(fit.starts), (*fit.effects, name), quantities)
     low, high = box(quantities)
     prior = problem.prior * doubt(fit.cost, fit.count)
     before = fit.cost + float(fit.prior @ fit.scaled**2)
@@ -82,7 +79,7 @@ def of_slip(model: RollerRacer, name: str, form: Form, fit: Fit) -> Sequence[Pro
     return found
 
 
-def of_patch(model: RollerRacer, fit: Fit) -> tuple[Sequence[Proposal], Sequence[Proposal]]:
+def of_patch(model: Racer, fit: Fit) -> tuple[Sequence[Proposal], Sequence[Proposal]]:
     """Circles and edges that would gain most; see `floor_map`.
 
     A strong patch takes a robot far from where it would be without, and the map is blurred. So
@@ -90,14 +87,13 @@ def of_patch(model: RollerRacer, fit: Fit) -> tuple[Sequence[Proposal], Sequence
     """
     circles, edges = _on_map(model, fit)
     if fit.cost > _MUCH * fit.count:
-        machine = cast("Model", model)
-        pieces = windows(machine, sorted({p.run for p in fit.starts}), _SHORT)
-        problem = Problem(machine, pieces, fit.effects, fit.quantities)
+        pieces = windows(model, sorted({p.run for p in fit.starts}), _SHORT)
+        problem = Problem(model, pieces, fit.effects, fit.quantities)
         short = solve(problem, fit.values, {piece: model.start(piece) for piece in pieces})
         more_circles, more_edges = _on_map(model, short)
         round_one, straight = model.catalogue["floor_patch"].forms
-        circles += _refined(machine, short, round_one, more_circles)
-        edges += _refined(machine, short, straight, more_edges)
+        circles += _refined(model, short, round_one, more_circles)
+        edges += _refined(model, short, straight, more_edges)
     return circles, edges
 
 
@@ -112,7 +108,7 @@ def _refined(model: Model, fit: Fit, form: Form, places: Sequence[Proposal]) -> 
     return [Proposal({q.name: fitted.values[q.name] for q in own}, fit.cost - fitted.cost)]
 
 
-def _on_map(model: RollerRacer, fit: Fit) -> tuple[list[Proposal], list[Proposal]]:
+def _on_map(model: Racer, fit: Fit) -> tuple[list[Proposal], list[Proposal]]:
     cells = cells_of([model.runs[piece.run].values[piece.span, :2] for piece in fit.starts])
     given = {**model.nominal, **fit.values}
     k = np.repeat([given["kappa1"], given["kappa2"]], 2) / given["h"] ** 2

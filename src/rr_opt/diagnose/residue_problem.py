@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,9 +18,7 @@ from rr_opt.diagnose.fit import Fit, bounded_step, box, doubt, scaled, unscaled
 from rr_opt.diagnose.model import Array, Piece
 from rr_opt.diagnose.normal import Normal, normal_of, total
 from rr_opt.diagnose.pushed import respond
-
-if TYPE_CHECKING:
-    from rr_opt.diagnose.racer import RollerRacer
+from rr_opt.diagnose.racer_protocol import Racer
 
 Columns = NDArray[np.int_]
 
@@ -95,7 +92,7 @@ class Point:
 
 
 def linearised(
-    model: RollerRacer,
+    model: Racer,
     fit: Fit,
     point: Point,
     pushes: Mapping[Piece, Array],

@@ -13,7 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from rr_opt.diagnose.model import Array
-from rr_opt.diagnose.pushed import PUSHES, Along
+from rr_opt.diagnose.observed import Along
+from rr_opt.diagnose.pushed_motion import PUSHES
 from rr_opt.physics.effects.coulomb_friction import SMOOTHING_SPEED
 
 KNOTS = 8
