@@ -39,17 +39,19 @@ def verdict_of(
 
     nominal  misfit of the model as believed, RMS in sigma beyond the noise
     held     the same of the held-out recordings, with the parameters alone and with everything
-    inexact  misfit of the model as believed that says nothing about its values
+    inexact  misfit of the model as believed that says nothing about its values, and of held-out
+             recordings that says nothing about what is missing
     moved    whether a parameter left what was known of it
     rough    whether an effect is one of which there are as many models as machines
     systematic  whether what is left with the effects still depends on something
     """
     if not best.chosen:
         left = certain(base.misfit, base.whole.count, _LIKELY)
-        if left > FLOOR or held[0] > LEFT:
+        if left > FLOOR or held[0] > max(LEFT, inexact):
             return "unexplained"
         return "parameters" if moved and nominal > max(FLOOR, inexact) else "consistent"
-    left = max(certain(best.misfit, best.whole.count), held[1])
+    apart = held[1] if held[1] > inexact else 0.0
+    left = max(certain(best.misfit, best.whole.count), apart)
     before = max(rms(base.misfit), held[0])
     explained = left <= max(LEFT, (SHARE_OF_ROUGH if rough else SHARE) * before)
     if held[1] <= NEAR and left <= SHARE_OF_NOMINAL * nominal:
