@@ -1,0 +1,25 @@
+"""What held-out recordings say counts only beyond what any model of the machine is off by."""
+
+import pytest
+
+from rr_opt.diagnose.verdict import verdict_of
+from tests.diagnose.made_up import base_of, with_effect
+
+
+@pytest.fixture(scope="module")
+def base():
+    return base_of(with_effect({}, ()))
+
+
+@pytest.mark.parametrize(
+    ("held", "inexact", "verdict"),
+    [
+        (0.0, 0.0, "consistent"),
+        (0.5, 0.0, "unexplained"),
+        (0.5, 0.6, "consistent"),
+        (0.7, 0.6, "unexplained"),
+    ],
+)
+def test_without_effects(base, held, inexact, verdict):
+    flags = {"moved": False, "rough": False, "systematic": False}
+    assert verdict_of(base, base, 0.0, (held, held), inexact, **flags) == verdict
