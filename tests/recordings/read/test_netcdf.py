@@ -103,7 +103,7 @@ def test_another_program_finds_values_units_and_flags(tmp_path, run):
         }  # fmt: skip
         assert file["psi_sigma"][:].tolist() == [3e-3] * 3
         assert file["x_flag"][:].tolist() == [0, 1, 0]
-        assert file["x_flag"].attrs["flag_meanings"] == "missing outlier swapped out_of_order"
+        assert file["x_flag"].attrs["flag_meanings"] == "missing outlier out_of_order"
         assert json.loads(file.attrs["source"])["format"] == "plain CSV"
 
 
