@@ -64,7 +64,8 @@ def resolved(
         most = halves * (MOST if model.viscous else MOST_BY_NEWTON)
         while len(pending) and n <= most:
             now = pending[needed[pending] * halves <= n]
-            for block in np.array_split(now, max(1, len(now) * n // _CHUNK)) if len(now) else ():
+            parts = min(len(now), max(1, len(now) * n // _CHUNK))
+            for block in np.array_split(now, parts) if parts else ():
                 robots = p if which is None else p[:, which[block]]
                 shapes = alpha[block], phi0[block], period[block]
                 found = model.cycles(*shapes, robots, n, straight, tolerance)
