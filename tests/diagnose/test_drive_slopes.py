@@ -47,3 +47,12 @@ def test_against_differences(name, start):
     size = np.sqrt(np.mean(expected**2, axis=0))
     off = np.sqrt(np.mean((found - expected) ** 2, axis=0))
     assert np.all(off <= 0.06 * np.maximum(size, 0.1 * size.max()))
+
+
+def test_the_joint_swings_in_its_play_as_the_fitted_robot_would():
+    model, effects, width = racer("running"), ("servo_backlash",), {"servo_backlash.width": 0.05}
+    given = {**model.nominal, **width}
+    light, heavy = (
+        model.angle(0, {**given, "I2": share * given["I2"]}, effects) for share in (0.5, 2.0)
+    )
+    assert np.abs(light - heavy).max() > 1e-3

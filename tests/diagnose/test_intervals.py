@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from rr_opt.diagnose import racer
+from rr_opt.diagnose.explain import nominal, whole
 from rr_opt.diagnose.intervals import estimates
 from tests.diagnose.made_up import base_of, with_effect
 
@@ -42,3 +43,8 @@ def test_wider_by_the_root_of_what_is_left_of_held_out_recordings(fitted):
     assert all(doubted[name] >= plain[name] * (1 - 1e-9) for name in plain)
     # Of what these data see far better than was known before.
     assert max(doubted[name] / plain[name] for name in plain) == pytest.approx(2.0, rel=0.1)
+
+
+def test_where_nothing_was_fitted_there_is_no_interval(fitted):
+    model, _ = fitted
+    assert estimates(model, nominal(model, whole(model, [0]))) == {}

@@ -68,7 +68,7 @@ class Level:
 
     def surplus(self) -> float:
         """What `unseen` is above the noise and a usual chance of it, mean square in sigma."""
-        return max(self.unseen() ** 2 - 1.0 - math.sqrt(2 / max(self.count(), 1)), 0.0)
+        return certain(self.unseen() ** 2 - 1, self.count(), z=1.0) ** 2
 
     def count(self) -> int:
         """The values that this is of."""

@@ -150,7 +150,7 @@ class Model(Protocol):
         ...
 
     def stray(self, predicted: Array) -> Array:
-        """One sigma of that in a run's prediction (n, channels), by channel: (n, channels)."""
+        """By how much a run's prediction (n, channels) is then off, one sigma of it, as large."""
         ...
 
     @property

@@ -14,9 +14,9 @@ from rr_opt.diagnose.model import Array, Piece
 from rr_opt.diagnose.racer_protocol import Racer
 from rr_opt.diagnose.racer_quantities import values_of
 from rr_opt.diagnose.racer_state import state_of
-from rr_opt.diagnose.shoot import System, predict
+from rr_opt.diagnose.racer_system import driven
+from rr_opt.diagnose.shoot import predict
 from rr_opt.physics.assembly import assembled
-from rr_opt.physics.floor_motion import FloorMotion, floor_motion
 
 _WINDOW = 0.5
 """What the prediction is off changes little over so long a time, s."""
@@ -60,7 +60,7 @@ def observed(
 ) -> Along:
     """The motion that was recorded: the prediction, and the smooth part of what it is off."""
     mechanical = model.every(effects)
-    system, motion = _system(mechanical)
+    system, motion = driven(mechanical)
     given = {**model.nominal, **values}
     p = values_of(given, motion.parameters)
     data = model.runs[piece.run]
@@ -119,9 +119,3 @@ def _places(effects: tuple[str, ...]) -> ca.Function:
     robot = assembly.mechanism
     places = ca.vertcat(*(robot.on_floor(wheel.platform, wheel.point) for wheel in robot.wheels))
     return ca.Function("places", [robot.pose, robot.phi, assembly.p], [places])
-
-
-@lru_cache
-def _system(effects: tuple[str, ...]) -> tuple[System, FloorMotion]:
-    motion = floor_motion(effects)
-    return System(motion.rates, motion.seen, len(motion.free) if motion.slips else 0), motion

@@ -1,8 +1,4 @@
-"""The motion of a Roller Racer with pushes: what else drives it beside its servo.
-
-PUSHES are rolling forces at the wheels (N), side speeds of the axles (m/s), and an error of the
-angle (rad).
-"""
+"""The motion of a Roller Racer with pushes: what else drives it beside its servo."""
 
 from __future__ import annotations
 
@@ -11,6 +7,7 @@ from functools import lru_cache
 
 import casadi as ca
 
+from rr_opt.diagnose.racer_system import stiff_states
 from rr_opt.diagnose.shoot import System
 from rr_opt.physics.assembly import Assembly, assembled
 from rr_opt.physics.floor_motion import FloorMotion, solved
@@ -50,7 +47,7 @@ def pushed_motion(effects: tuple[str, ...]) -> tuple[System, FloorMotion]:
     rates, seen = (
         ca.Function(f.name(), [state, drive, p], [f(*inputs)]) for f in (motion.rates, motion.seen)
     )
-    return System(rates, seen, len(motion.free) if motion.slips else 0), motion
+    return System(rates, seen, stiff_states(motion)), motion
 
 
 def _pushed(robot: Mechanism, push: ca.SX) -> Mechanism:

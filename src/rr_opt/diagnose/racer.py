@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from functools import cached_property, lru_cache
+from functools import cached_property
 
 import numpy as np
 
@@ -16,11 +16,11 @@ from rr_opt.diagnose.racer_proposals import of_patch, of_servo, of_slip
 from rr_opt.diagnose.racer_quantities import candidate, nominal, uncertain, values_by, values_of
 from rr_opt.diagnose.racer_state import state_of, v_of_z_by
 from rr_opt.diagnose.racer_steps import drive_path, steps_of
-from rr_opt.diagnose.shoot import DrivePath, DriveSlopes, System, slopes
+from rr_opt.diagnose.racer_system import driven
+from rr_opt.diagnose.shoot import DrivePath, DriveSlopes, slopes
 from rr_opt.experiment.experiment import Experiment, Run
 from rr_opt.experiment.recording import CHANNELS
 from rr_opt.physics.effects import CATALOGUE, Setting
-from rr_opt.physics.floor_motion import floor_motion
 
 SETTLING = 0.05
 """After a start from rest the motor saturates for some 20 ms; that much, s, is left out."""
@@ -169,19 +169,19 @@ class RollerRacer:
     ) -> Response:
         """Predict a piece of a run; see `diagnose.model.Model`."""
         mechanical = self.every(effects)
-        system, parameters = _system(mechanical)
+        system, motion = driven(mechanical)
         given = {**self.nominal, **values}
-        p = values_of(given, parameters)
+        p = values_of(given, motion.parameters)
         path = self.drive_path(piece, given, mechanical)
         state = state_of(mechanical, path, start, p)
         made = self._kept.predicted(piece, system, path, state, p)
         if wanted is None:
             return Response(made.seen)
-        by = values_by(given, parameters, wanted)
+        by = values_by(given, motion.parameters, wanted)
         drive_by = self.drive_slopes(piece, given, mechanical, wanted)
         out = slopes(system, path, made, p, by, drive_by)
         by_value = out.by_parameter
-        if floor_motion(mechanical).slips:
+        if motion.slips:
             # The start is given in z and the state holds v, which moves with what is asked.
             by_value = by_value + out.by_start[:, :, 3:4] * v_of_z_by(path, start, p, by, drive_by)
         return Response(made.seen, by_value, out.by_start[:, :, : start.size])
@@ -192,7 +192,7 @@ class RollerRacer:
 
     @cached_property
     def _drives(self) -> Drives:
-        """What the servo makes of the gaits, of the nominal robot."""
+        """What the servo makes of the gaits."""
         return Drives(self.experiment.runs)
 
     def angle(self, run: int, given: Mapping[str, float], effects: tuple[str, ...]) -> Array:
@@ -222,13 +222,6 @@ class RollerRacer:
         """How the drive changes with what is wanted; None if it does not."""
         t = self.runs[piece.run].t[piece.span]
         return drive_slopes(self._drives, piece.run, t, given, effects, wanted)
-
-
-@lru_cache
-def _system(effects: tuple[str, ...]) -> tuple[System, tuple[str, ...]]:
-    motion = floor_motion(effects)
-    stiff = len(motion.free) if motion.slips else 0
-    return System(motion.rates, motion.seen, stiff, lasts=True), motion.parameters
 
 
 def _travelled(data: Data) -> Array:

@@ -69,7 +69,6 @@ def drive_slopes(
     if not moving:
         return None
     here = drives.of(run, given, effects)
-
     steps = steps_of(here, t, lateness(given, effects), **grain(effects))
 
     def path_at(values: Mapping[str, float]) -> DrivePath:

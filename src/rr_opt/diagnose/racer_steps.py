@@ -50,7 +50,7 @@ def steps_of(
     most = int((order + to_come).max(initial=-1)) + 1
     fewest = max(float(np.median(np.diff(t))) / longest, most + 1.0)
     each = 2 ** max(math.ceil(math.log2(fewest)), 0)
-    edges = (t[:-1, None] + np.diff(t)[:, None] * np.arange(each) / each).copy()
+    edges = t[:-1, None] + np.diff(t)[:, None] * np.arange(each) / each
     at = np.rint(each * (jumps - t[k]) / (t[k + 1] - t[k])).astype(int)
     for n in range(most):
         # Each jump takes the nearest edge that leaves the others theirs.

@@ -3,8 +3,8 @@
 The jump of the sign at u = 0 is smoothed to tanh(u/u0). At u0 = 2 mm/s the wheels of a robot
 that moves at decimetres per second spend a per cent of their time inside the smoothed part,
 and the equations stay differentiable, which the optimiser needs. Against recordings that is too
-soft: a robot whose wheels turn back often is then off by as much as a millimetre a second. There
-u0 is a tenth of that, or what the friction changes the robot's speed by in a step, if that is more.
+soft: of one robot whose wheels often turn back, the force of an axle came out at half of what it
+was. There u0 is a tenth of that, and what the friction changes the robot's speed by in 5 ms.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from rr_opt.physics.kinematics import Mechanism, with_wheel_forces
 SMOOTHING_SPEED = 0.002
 """u0, m/s."""
 _SHARP, _STEP = 2e-4, 5e-3
-"""u0, m/s, where a prediction may be sharp, and half the step, s, by which it goes on."""
+"""u0, m/s, of a sharp prediction; friction adds what it changes a speed by in so many seconds."""
 
 
 def _enter(mechanism: Mechanism, values: Mapping[str, ca.SX]) -> Mechanism:
