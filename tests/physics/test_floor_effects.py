@@ -34,22 +34,22 @@ def rolling(robot: Robot, given: dict) -> Law:
     def law(wheel: Wheel, u: float) -> float:
         n, side, place = wheel
         k = (robot.k1, robot.k2)[n - 1]
-        force = -k * u
         if values := given.get("left_right_drag"):
-            force -= side * values[f"asymmetry{n}"] * k * u
+            k *= 1 + side * values[f"asymmetry{n}"]
+        force = -k * u
         if values := given.get("coulomb_friction"):
             # In 5 ms the friction must not turn the speed round.
             mass = robot.platform1.m + robot.platform2.m
             soft = 2e-4 + 0.005 * 2 * (values["force1"] + values["force2"]) / mass
             force -= values[f"force{n}"] * math.tanh(u / soft)
-        if values := given.get("quadratic_drag"):
-            force -= values["coefficient_total"] / 4 * u * math.sqrt(u**2 + 1e-8)
         if values := given.get("floor_patch"):
             away = math.sqrt(math.dist(place, (values["x"], values["y"])) ** 2 + 0.0005**2)
             into = (math.cos(values["normal"]), math.sin(values["normal"]))
             beyond = float(np.dot(place - (values["edge_x"], values["edge_y"]), into))
             depth = values["radius"] - away if values["radius"] > 0 else beyond
-            force -= k * (values["multiplier"] - 1) * float(expit(2 * depth / 0.005)) * u
+            force *= 1 + (values["multiplier"] - 1) * float(expit(2 * depth / 0.005))
+        if values := given.get("quadratic_drag"):
+            force -= values["coefficient_total"] / 4 * u * math.sqrt(u**2 + 1e-8)
         return force
 
     return law

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
 import numpy as np
 
+from rr_opt.diagnose.agreement import together
 from rr_opt.diagnose.diagnosis import Diagnosis, Finding, Misfit, Mismatch, Tried
 from rr_opt.diagnose.explain import joined, nominal, parameters, whole, windows
 from rr_opt.diagnose.explanation import Explanation, certain, chance, misfit, rms
@@ -19,7 +20,10 @@ from rr_opt.diagnose.left_out import left_out
 from rr_opt.diagnose.model import Array, Model, Piece
 from rr_opt.diagnose.search import Search
 from rr_opt.diagnose.values import settled, wrong
-from rr_opt.diagnose.verdict import confidence, finding, verdict_of
+from rr_opt.diagnose.verdict import LEFT, NEAR, confidence, finding, verdict_of
+
+_BETTER = 0.5
+"""Of the held-out misfit that the parameters alone leave, RMS, an effect has to leave less."""
 
 _POOR = 1.1
 """With more misfit a run's start is looked for from elsewhere too, mean square in sigma."""
@@ -48,10 +52,14 @@ class Steps:
 
 @dataclass(frozen=True)
 class Level:
-    """A fit of the shared quantities and what it leaves of every run, held out or not."""
+    """A fit of the shared quantities and what it leaves of every run, held out or not.
+
+    starts  of all runs, whole
+    """
 
     fit: Fit
     misfits: tuple[Misfit, ...]
+    starts: Mapping[Piece, Array]
 
     def held(self) -> float:
         """RMS in sigma over the held-out runs; over the fitted ones where none is held out."""
@@ -79,7 +87,9 @@ class Level:
 class Found:
     """What the steps of a diagnosis found.
 
-    levels  the model as believed, with its parameters re-estimated, and with what is missing
+    levels    the model as believed, with its parameters re-estimated, and with what is missing
+    together  with what is missing, fitted to all recordings, where those that were not fitted told
+              what the others left open
     """
 
     model: Model
@@ -87,6 +97,7 @@ class Found:
     best: Explanation
     levels: tuple[Level, Level, Level]
     steps: Steps
+    together: Level | None = None
 
     @property
     def rivals(self) -> list[Explanation]:
@@ -119,7 +130,8 @@ def found(model: Model, steps: Steps) -> Found:
     best = steps.timed("what is missing", search.run)
     best = steps.timed("which values are wrong", lambda: settled(model, _plainest(model, best)))
     level2 = level_of(model, best.whole, level0.fit)
-    return Found(model, search, best, (level0, level1, level2), steps)
+    every = steps.timed("all recordings", lambda: _together(model, best, (level1, level2)))
+    return Found(model, search, best, (level0, level1, level2), steps, every)
 
 
 def _plainest(model: Model, best: Explanation) -> Explanation:
@@ -131,6 +143,19 @@ def _plainest(model: Model, best: Explanation) -> Explanation:
     problem = Problem(model, tuple(fit.starts), fit.effects, fit.quantities)
     other = solve(problem, twin, fit.starts)
     return replace(best, whole=other) if other.cost < fit.cost + 1.0 else best
+
+
+def _together(model: Model, best: Explanation, levels: tuple[Level, Level]) -> Level | None:
+    """The explanation fitted to all recordings, where those held out were predicted better with it
+    than without, but not well."""
+    before, after = (rms(level.held() ** 2 - 1) for level in levels)
+    if not best.chosen or not NEAR < after < _BETTER * before:
+        return None
+    if not any(run.held_out for run in model.runs):
+        return None
+    fit = together(model, best, levels[1].starts)
+    level = fit and level_of(model, fit, fit)
+    return level if level and level.held() ** 2 - 1 < LEFT**2 else None
 
 
 def _base(model: Model, first: Fit) -> Explanation:
@@ -160,28 +185,52 @@ def level_of(model: Model, fit: Fit, start: Fit) -> Level:
     alone = Problem(model, fresh, fit.effects, (), fit.values)
     starts = dict(fit.starts)
     if fresh:
-        guesses = [
-            {piece: first[piece.run] for piece in fresh},
-            {piece: model.start(piece) for piece in fresh},
-        ]
-        starts |= _best_starts(alone, guesses)
-    return Level(fit, tuple(_misfit(problem, piece, starts[piece]) for piece in pieces))
+        starts |= _best_starts(alone, first)
+    misfits = tuple(_misfit(problem, piece, starts[piece]) for piece in pieces)
+    return Level(fit, misfits, {piece: starts[piece] for piece in pieces})
 
 
-def _best_starts(problem: Problem, guesses: Sequence[Mapping[Piece, Array]]) -> dict[Piece, Array]:
-    """Each run's start, from whichever of the guesses leads lowest.
+def _best_starts(problem: Problem, first: Mapping[int, Array]) -> dict[Piece, Array]:
+    """Each run's start: from the first guess that leaves little, else from that which leaves least.
 
-    Where dry friction holds a machine at first, the misfit has no slope by its starting speed.
+    first  guesses, by run
     """
     out: dict[Piece, Array] = {}
     for piece in problem.pieces:
-        alone = Problem(problem.model, [piece], problem.effects, (), problem.fixed)
         fits: list[Fit] = []
-        for guess in guesses:
-            if not fits or fits[-1].cost > _POOR * fits[-1].count:
-                fits.append(solve(alone, {}, {piece: guess[piece]}))
+        for guess in _guesses(problem, piece, first[piece.run]):
+            fits.append(_started(problem, piece, guess))
+            if fits[-1].cost <= _POOR * fits[-1].count:
+                break
         out |= min(fits, key=lambda fit: fit.cost).starts
     return out
+
+
+def _guesses(problem: Problem, piece: Piece, first: Array) -> Iterator[Array]:
+    """Where dry friction holds a machine at first, the misfit has no slope by its starting speed.
+
+    Where a border is crossed or not, a long run has wrong minima.
+    """
+    yield first
+    yield problem.model.start(piece)
+    yield _grown(problem, piece)
+
+
+def _grown(problem: Problem, piece: Piece) -> Array:
+    """The start that fits the run's beginning, and then three times as much of it at a time."""
+    model = problem.model
+    t = model.runs[piece.run].t
+    start, seconds = model.start(piece), model.window
+    while seconds < t[-1] - t[0]:
+        part = replace(piece, last=int(np.searchsorted(t, t[0] + seconds)))
+        start = _started(problem, part, start).starts[part]
+        seconds *= 3
+    return start
+
+
+def _started(problem: Problem, piece: Piece, start: Array) -> Fit:
+    alone = Problem(problem.model, [piece], problem.effects, (), problem.fixed)
+    return solve(alone, {}, {piece: start})
 
 
 def _misfit(problem: Problem, piece, start) -> Misfit:
@@ -210,8 +259,10 @@ def answer(it: Found, *, systematic: bool = False) -> Diagnosis:
     """What was found as an answer; see `verdict_of`."""
     model, search, best, levels, steps = it.model, it.search, it.best, it.levels, it.steps
     level0, level1, level2 = levels
-    held = tuple(certain(level.held() ** 2 - 1, level.count()) for level in levels)
-    intervals = estimates(model, best.whole, level2.surplus())
+    told = it.together or level2
+    best = replace(best, whole=told.fit)
+    held = tuple(certain(level.held() ** 2 - 1, level.count()) for level in (level0, level1, told))
+    intervals = estimates(model, best.whole, told.surplus())
     moved = wrong(best.whole)
     nominal_left = max(rms(misfit(level0.fit)), held[0])
     apart = held[1], held[2]
@@ -221,7 +272,7 @@ def answer(it: Found, *, systematic: bool = False) -> Diagnosis:
         rough=search.rough(best),
         systematic=systematic,
     )
-    findings = _findings(best, search, intervals, (level1, level2), it.rivals)
+    findings = _findings(it.best, search, intervals, (level1, level2), it.rivals)
     if verdict == "parameters":
         findings = tuple(Finding(q.name, 1.0, {q.name: intervals[q.name]}, 1.0) for q in moved)
     if verdict in ("consistent", "unexplained"):
@@ -229,7 +280,7 @@ def answer(it: Found, *, systematic: bool = False) -> Diagnosis:
     channel = model.catalogue[best.names[0]].channel if findings and best.names else "none"
     return Diagnosis(
         verdict=verdict,
-        summary=summary_of(verdict, findings, level0, level2),
+        summary=summary_of(verdict, findings, level0, level2, it.together),
         mismatch=Mismatch(rms(search.base.misfit), chance(search.base.whole)),
         channel=channel,
         where="",
@@ -287,8 +338,14 @@ def _tried(one: Explanation, accepted: Explanation | None) -> Tried:
     )
 
 
-def summary_of(verdict: str, findings: tuple[Finding, ...], before: Level, after: Level) -> str:
-    """The answer in two sentences."""
+def summary_of(
+    verdict: str,
+    findings: tuple[Finding, ...],
+    before: Level,
+    after: Level,
+    together: Level | None = None,
+) -> str:
+    """The answer in two sentences, or three."""
     held = any(one.held_out for one in after.misfits)
     where = (
         "On recordings that were not fitted"
@@ -308,4 +365,9 @@ def summary_of(verdict: str, findings: tuple[Finding, ...], before: Level, after
         "missing_physics": f"The model leaves out {names}.",
         "unexplained": "Something is left out, and no effect of the catalogue accounts for it.",
     }[verdict]
+    if verdict == "missing_physics" and together:
+        numbers += (
+            " The others do not tell all values; those given here fit all recordings, "
+            f"and leave {together.held():.2f} sigma."
+        )
     return f"{opening} {numbers}"

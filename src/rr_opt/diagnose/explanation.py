@@ -11,6 +11,9 @@ from scipy.stats import chi2
 from rr_opt.diagnose.explain import Chosen
 from rr_opt.diagnose.fit import Fit, scaled
 
+_UNSEEN = 1e-3
+"""Chi-square that says nothing of a quantity: of where along an edge a point of it is."""
+
 FLOOR = 0.1
 """A misfit of a tenth of a sigma, RMS, is none: no machine is ever exactly its model."""
 
@@ -44,9 +47,11 @@ class Explanation:
 
     @property
     def score(self) -> float:
-        """Chi-square of data and knowledge, and what each quantity costs (BIC)."""
-        added = sum(not q.known for q in self.whole.quantities)
-        return self.whole.cost + self.strain + added * math.log(self.whole.count)
+        """Chi-square of data and knowledge, and what each quantity that they tell costs (BIC)."""
+        added = [k for k, q in enumerate(self.whole.quantities) if not q.known]
+        seen = self.whole.total().H[np.ix_(added, added)]
+        told = int(np.linalg.matrix_rank(seen, tol=_UNSEEN, hermitian=True)) if added else 0
+        return self.whole.cost + self.strain + told * math.log(self.whole.count)
 
     def apart(self) -> float:
         """Of what the effect that came last does, squared, the share that no values imitate."""

@@ -174,6 +174,11 @@ class Model(Protocol):
         ...
 
     @property
+    def placed(self) -> frozenset[str]:
+        """Those that are at some place, so that they can follow what is missing elsewhere."""
+        ...
+
+    @property
     def rough(self) -> frozenset[str]:
         """Quantities of effects of which there are as many models as machines, none exact."""
         ...

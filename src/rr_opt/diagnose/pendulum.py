@@ -53,6 +53,7 @@ class Pendulum:
     channels = ("angle",)
     inexact = 0.0
     rough: frozenset[str] = frozenset()
+    placed: frozenset[str] = frozenset()
     jumping = dear = frozenset(name for name, extra in EXTRAS.items() if not extra.smooth)
 
     def __init__(

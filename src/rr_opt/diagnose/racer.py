@@ -118,6 +118,11 @@ class RollerRacer:
         return frozenset(name for name in self.jumping if CATALOGUE[name].actuate is None)
 
     @property
+    def placed(self) -> frozenset[str]:
+        """Those that are on a part of the floor."""
+        return frozenset(name for name in self.jumping if CATALOGUE[name].family == "floor")
+
+    @property
     def rough(self) -> frozenset[str]:
         """The quantities of effects of which there are as many models as machines."""
         every = ((effect, q) for effect in CATALOGUE.values() for q in effect.parameters)

@@ -8,26 +8,25 @@ wheels are linearised where they slip.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 from scipy.optimize import minimize_scalar
 
 from rr_opt.diagnose.explain import windows
 from rr_opt.diagnose.fit import Fit, Problem, bounded_step, box, doubt, scaled, solve
-from rr_opt.diagnose.floor_map import Found, cells_of, drags, likely
-from rr_opt.diagnose.model import Form, Model, Proposal
+from rr_opt.diagnose.floor_map import floor_map
+from rr_opt.diagnose.floor_shapes import ROUND, STRAIGHT, likely
+from rr_opt.diagnose.model import Form, Proposal
 from rr_opt.diagnose.normal import total
-from rr_opt.diagnose.observed import observed
 from rr_opt.diagnose.racer_protocol import Racer
-from rr_opt.diagnose.residue_problem import Point, linearised
-from rr_opt.diagnose.screen import LUCK
 
 _TRIED = 14
 """Values of an effect of the servo, between next to nothing and a lot."""
 
-_MUCH, _SHORT = 2.0, 1.0
-"""With more misfit, mean square in sigma, a patch is looked for over so many seconds as well."""
+_LONG = 3
+"""Windows that a piece may last in which a patch is looked for that does not show in one."""
 
 
 def of_servo(model: Racer, name: str, form: Form, fit: Fit) -> Sequence[Proposal]:
@@ -80,53 +79,31 @@ def of_slip(model: Racer, name: str, form: Form, fit: Fit) -> Sequence[Proposal]
 
 
 def of_patch(model: Racer, fit: Fit) -> tuple[Sequence[Proposal], Sequence[Proposal]]:
-    """Circles and edges that would gain most; see `floor_map`.
+    """Circles and edges that would gain most; see `floor_map`."""
+    floor = floor_map(model, _unbent(model, fit))
+    round_ones, straight = (_named(likely(floor, shape)) for shape in (ROUND, STRAIGHT))
+    return round_ones, straight
 
-    A strong patch takes a robot far from where it would be without, and the map is blurred. So
-    where much is left it is looked for over pieces too that are too short for that.
+
+def _unbent(model: Racer, fit: Fit) -> Fit:
+    """The fit over pieces that are short enough for a map, of which the starts alone are fitted.
+
+    In windows parameters are as they are believed to be: a strong patch has bent them to imitate
+    it. Over whole runs what is missing is little, and they are as fitted.
     """
-    circles, edges = _on_map(model, fit)
-    if fit.cost > _MUCH * fit.count:
-        pieces = windows(model, sorted({p.run for p in fit.starts}), _SHORT)
-        problem = Problem(model, pieces, fit.effects, fit.quantities)
-        short = solve(problem, fit.values, {piece: model.start(piece) for piece in pieces})
-        more_circles, more_edges = _on_map(model, short)
-        round_one, straight = model.catalogue["floor_patch"].forms
-        circles += _refined(model, short, round_one, more_circles)
-        edges += _refined(model, short, straight, more_edges)
-    return circles, edges
+    runs = sorted({piece.run for piece in fit.starts})
+    if len(fit.starts) > len(runs):
+        values = {q.name: q.value if q.known else fit.values[q.name] for q in fit.quantities}
+        pieces = list(fit.starts)
+    else:
+        values, pieces = fit.values, windows(model, runs, _LONG * model.window)
+    problem = Problem(model, pieces, fit.effects, (), values)
+    starts = {piece: fit.starts.get(piece, model.start(piece)) for piece in pieces}
+    alone = solve(problem, {}, starts)
+    return replace(alone, quantities=fit.quantities, values=values)
 
 
-def _refined(model: Model, fit: Fit, form: Form, places: Sequence[Proposal]) -> list[Proposal]:
-    """The best place on the map, if there is one, fitted over the pieces of a fit without it."""
-    if not places or places[0].gain < LUCK * doubt(fit.cost, fit.count):
-        return []
-    place, own = places[0], form.quantities
-    quantities = (*fit.quantities, *own)
-    problem = Problem(model, tuple(fit.starts), (*fit.effects, "floor_patch"), quantities)
-    fitted = solve(problem, {**fit.values, **place.values}, fit.starts)
-    return [Proposal({q.name: fitted.values[q.name] for q in own}, fit.cost - fitted.cost)]
-
-
-def _on_map(model: Racer, fit: Fit) -> tuple[list[Proposal], list[Proposal]]:
-    cells = cells_of([model.runs[piece.run].values[piece.span, :2] for piece in fit.starts])
-    given = {**model.nominal, **fit.values}
-    k = np.repeat([given["kappa1"], given["kappa2"]], 2) / given["h"] ** 2
-    pushes = {
-        piece: drags(cells, observed(model, piece, fit.values, fit.effects, start), k)
-        for piece, start in fit.starts.items()
-    }
-    n, added = len(fit.quantities), len(cells.centres)
-    point = Point(fit.values, fit.starts, np.zeros(added))
-    problem = linearised(model, fit, point, pushes, [np.zeros((added, added))])
-    whole = total(problem.normals.values(), problem.prior, problem.u)
-    H, g = whole.H, whole.g
-    onto = np.linalg.pinv(H[:n, :n], hermitian=True) @ H[:n, n:] if n else H[:0, n:]
-    circles, edges = likely(cells, g[n:] - onto.T @ g[:n], H[n:, n:] - onto.T @ H[:n, n:])
-    return _named(circles), _named(edges)
-
-
-def _named(places: Sequence[Found]) -> list[Proposal]:
+def _named(places: Sequence[tuple[float, Mapping[str, float]]]) -> list[Proposal]:
     return [
         Proposal({f"floor_patch.{key}": value for key, value in values.items()}, gain)
         for gain, values in places

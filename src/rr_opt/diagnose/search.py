@@ -14,6 +14,7 @@ from dataclasses import dataclass, field, replace
 from rr_opt.diagnose.explain import Chosen, explain, joined
 from rr_opt.diagnose.explanation import FLOOR, Explanation, rms
 from rr_opt.diagnose.fit import Fit, Problem, doubt, solve
+from rr_opt.diagnose.left_out import left_out
 from rr_opt.diagnose.model import Model
 from rr_opt.diagnose.screen import LUCK, Promise, jumps, screen
 from rr_opt.diagnose.values import settled, wrong
@@ -45,6 +46,9 @@ _NEARLY_ALL = 0.9
 
 _IMITATED = 0.05
 """Values that nobody would believe imitate an effect if they leave less of it, squared."""
+
+_ACROSS = 5.0
+"""A recording predicted from the others may leave so many times what is left of all, RMS."""
 
 _AS_MUCH = 0.5
 """Of what the others gain, a dear effect has to promise that share to be looked at beside them."""
@@ -86,7 +90,24 @@ class Search:
         if len(best.chosen) < len(forward.chosen):
             # What came first only imitated the others, and has left its place to one more.
             best = self._backward(self._forward(best))
-        return best
+        moved = self._looked_for_again(best)
+        best = best if moved is best else self._backward(moved)
+        return min(best, self._otherwise(best), key=lambda one: one.score)
+
+    def _otherwise(self, best: Explanation) -> Explanation:
+        """What the search finds without what is at a place at first, if that of `best` is doubtful.
+
+        With its free place a patch follows a few recordings whatever they lack, but each of them is
+        then predicted badly from the others.
+        """
+        across = rms(left_out(best.whole))
+        placed = self.model.placed & set(best.names)
+        if not placed or across <= _ACROSS * max(rms(best.misfit), FLOOR):
+            return best
+        others = [one for one in self.tried if len(one.chosen) == 1 and one.names[0] not in placed]
+        if not others:
+            return best
+        return self._backward(self._forward(min(others, key=lambda one: one.score)))
 
     def _forward(self, best: Explanation) -> Explanation:
         gained = True
@@ -196,18 +217,39 @@ class Search:
 
     def _backward(self, best: Explanation) -> Explanation:
         for one in best.chosen if len(best.chosen) > 1 else ():
-            rest = tuple(other for other in best.chosen if other != one)
-            without = next((tried for tried in self.tried if tried.chosen == rest), None)
-            if without is None:
-                self.say(f"leaving out {one.name}")
-                fit = explain(self.model, rest, self.nominal, best.windows)
-                without = Explanation(rest, fit, joined(self.model, fit))
-                self.tried.append(without)
+            without = self._without(best, one)
             if not _outright(best, without):
                 without = self._again(without, best)
             if not self._gains(best, without):
                 return self._backward(without)
         return best
+
+    def _looked_for_again(self, best: Explanation) -> Explanation:
+        """One that leaves something, with what is at a place looked for again beside the others.
+
+        It was found where it made up best for what they had not yet accounted for.
+        """
+        if len(best.chosen) < 2 or rms(best.misfit) <= self.floor(best):
+            return best
+        for one in best.chosen:
+            if one.name in self.model.placed:
+                without = self._without(best, one)
+                places = [p for p in self._jumps(without, dear=True) if p.chosen.name == one.name]
+                found = self._fitted(without, places, _WHOLE)
+                self.tried += found
+                best = min([best, *found], key=lambda tried: tried.score)
+        return best
+
+    def _without(self, best: Explanation, one: Chosen) -> Explanation:
+        """The explanation that leaves one effect out, as it was tried or as it is now."""
+        rest = tuple(other for other in best.chosen if other.name != one.name)
+        tried = next((tried for tried in self.tried if tried.chosen == rest), None)
+        if tried is None:
+            self.say(f"leaving out {one.name}")
+            fit = explain(self.model, rest, self.nominal, best.windows)
+            tried = Explanation(rest, fit, joined(self.model, fit))
+            self.tried.append(tried)
+        return tried
 
 
 @dataclass(frozen=True)

@@ -29,7 +29,7 @@ the joint gives, in its direction alone,
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 
 import casadi as ca
@@ -88,13 +88,15 @@ class Rotor:
 class Wheel:
     """A wheel of platform 1 or 2, on its left (+1) or right (-1), at a point (2, m) of it.
 
-    direction (2,) is the unit vector along which it rolls, in the platform's axes.
+    direction (2,) is the unit vector along which it rolls, in the platform's axes, and `resistance`
+    (N along it) what comes of its rolling on this floor: another floor makes more or less of it.
     """
 
     platform: int
     side: int
     point: ca.SX
     direction: ca.SX
+    resistance: ca.SX = field(default_factory=lambda: ca.SX(0))
 
 
 @dataclass(frozen=True)
@@ -205,11 +207,24 @@ def _assembled(
             for side in (1, -1)
         ),
     )
-    return with_wheel_forces(bare, lambda wheel, u: -p[f"k{wheel.platform}"] * u)
+    return with_resistance(bare, lambda wheel, u: -p[f"k{wheel.platform}"] * u)
 
 
-def with_wheel_forces(mechanism: Mechanism, law: Callable[[Wheel, ca.SX], ca.SX]) -> Mechanism:
-    """Add at every wheel the rolling force law(wheel, u), N along the wheel, u its speed, m/s."""
+Law = Callable[[Wheel, ca.SX], ca.SX]
+"""law(wheel, u): the rolling force at a wheel, N along it, of which u is the speed, m/s."""
+
+
+def with_resistance(mechanism: Mechanism, law: Law) -> Mechanism:
+    """Add at every wheel a rolling force that comes of its rolling on this floor."""
+    wheels = tuple(
+        replace(wheel, resistance=wheel.resistance + law(wheel, mechanism.rolling_speed(wheel)))
+        for wheel in mechanism.wheels
+    )
+    return replace(with_wheel_forces(mechanism, law), wheels=wheels)
+
+
+def with_wheel_forces(mechanism: Mechanism, law: Law) -> Mechanism:
+    """Add at every wheel a rolling force."""
     added = tuple(
         Force(
             wheel.platform,

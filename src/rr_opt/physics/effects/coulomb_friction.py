@@ -14,7 +14,7 @@ from collections.abc import Mapping
 import casadi as ca
 
 from rr_opt.physics.effects.effect import Effect, Parameter, Port, Setting
-from rr_opt.physics.kinematics import Mechanism, with_wheel_forces
+from rr_opt.physics.kinematics import Mechanism, with_resistance
 
 SMOOTHING_SPEED = 0.002
 """u0, m/s."""
@@ -24,7 +24,7 @@ _SHARP, _STEP = 2e-4, 5e-3
 
 def _enter(mechanism: Mechanism, values: Mapping[str, ca.SX]) -> Mechanism:
     u0 = _sharp(mechanism, values) if mechanism.sharp else SMOOTHING_SPEED
-    return with_wheel_forces(
+    return with_resistance(
         mechanism, lambda wheel, u: -values[f"force{wheel.platform}"] * ca.tanh(u / u0)
     )
 

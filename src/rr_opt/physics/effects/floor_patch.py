@@ -1,7 +1,9 @@
 """A part of the floor on which the wheels roll harder, or more easily.
 
 It is a circle of a radius about (x, y), or, where the radius is 0, all that lies beyond a straight
-edge through (edge_x, edge_y) in the direction `normal`. Each wheel feels the floor under itself.
+edge through (edge_x, edge_y) in the direction `normal`. Each wheel feels the floor under itself,
+and all that comes of its rolling there is so many times as much: its own viscous drag and its dry
+friction, but not a drag that grows with the square of the speed, as that of the air does.
 The border is smoothed over 5 mm, about the length of a wheel's contact with a carpet.
 """
 
@@ -20,7 +22,7 @@ BORDER = 0.005
 
 
 def _enter(mechanism: Mechanism, values: Mapping[str, ca.SX]) -> Mechanism:
-    def law(wheel: Wheel, u: ca.SX) -> ca.SX:
+    def law(wheel: Wheel, _: ca.SX) -> ca.SX:
         place = mechanism.on_floor(wheel.platform, wheel.point)
         from_centre = place - ca.vertcat(values["x"], values["y"])
         distance = ca.sqrt(ca.sumsqr(from_centre) + BORDER**2 / 100)
@@ -28,8 +30,7 @@ def _enter(mechanism: Mechanism, values: Mapping[str, ca.SX]) -> Mechanism:
         beyond = ca.dot(place - ca.vertcat(values["edge_x"], values["edge_y"]), into)
         depth = ca.if_else(values["radius"] > 0, values["radius"] - distance, beyond)
         inside = (1 + ca.tanh(depth / BORDER)) / 2
-        extra = mechanism.parameters[f"k{wheel.platform}"] * (values["multiplier"] - 1)
-        return -extra * inside * u
+        return wheel.resistance * (values["multiplier"] - 1) * inside
 
     return with_wheel_forces(mechanism, law)
 

@@ -7,12 +7,12 @@ from collections.abc import Mapping
 import casadi as ca
 
 from rr_opt.physics.effects.effect import Effect, Parameter, Port
-from rr_opt.physics.kinematics import Mechanism, with_wheel_forces
+from rr_opt.physics.kinematics import Mechanism, with_resistance
 
 
 def _enter(mechanism: Mechanism, values: Mapping[str, ca.SX]) -> Mechanism:
     k = mechanism.parameters
-    return with_wheel_forces(
+    return with_resistance(
         mechanism,
         lambda wheel, u: (
             -k[f"k{wheel.platform}"] * wheel.side * values[f"asymmetry{wheel.platform}"] * u
