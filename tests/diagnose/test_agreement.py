@@ -3,9 +3,9 @@
 from dataclasses import replace
 
 from rr_opt.diagnose.agreement import together
-from rr_opt.diagnose.diagnose import level_of
 from rr_opt.diagnose.explain import Chosen, nominal, windows
 from rr_opt.diagnose.explanation import misfit
+from rr_opt.diagnose.level import level_of
 from rr_opt.diagnose.racer import RollerRacer
 from tests.diagnose.made_up import base_of, explained, with_effect
 

@@ -91,3 +91,22 @@ def test_nothing_breaks_where_the_robot_hardly_moves():
     assert fit.cost > 2 * fit.count
     for found in of_patch(model, fit):
         assert all(np.isfinite(list(one.values.values())).all() for one in found)
+
+
+def test_the_direction_of_an_edge_is_told_within_half_a_turn():
+    model = with_effect({}, ())
+    values = {"kappa1": 4e-6, "kappa2": 4e-6, **EDGE}
+    assert model.twin(values) is None
+    turned = model.twin({**values, "floor_patch.normal": 2.2 - 2 * math.pi})
+    assert turned == pytest.approx(values)
+
+
+def test_two_halves_of_a_floor_are_told_as_what_was_believed_and_a_patch():
+    model = with_effect({}, ())
+    believed = {"kappa1": 4e-6, "kappa2": 4e-6, **EDGE}
+    seen = {
+        **{"kappa1": 12e-6, "kappa2": 12e-6, **EDGE},
+        "floor_patch.multiplier": 1 / 3,
+        "floor_patch.normal": 2.2 - math.pi,
+    }
+    assert model.twin(seen) == pytest.approx(believed)

@@ -3,8 +3,9 @@
 import numpy as np
 from scipy.stats import kstest
 
-from rr_opt.diagnose.diagnose import Steps, answer, found
+from rr_opt.diagnose.diagnose import answer
 from rr_opt.diagnose.explanation import chance
+from rr_opt.diagnose.found import Steps, found
 from tests.diagnose.made_up import base_of, with_effect
 
 

@@ -64,7 +64,7 @@ def _diagnosed(experiment: Experiment, steps: Steps, workers: int | None) -> Dia
     from rr_opt.cli.shared_work import SharedWork  # noqa: PLC0415
 
     with closing(SharedWork(workers)) as work:
-        from rr_opt.diagnose.diagnose import Steps as Told  # noqa: PLC0415
+        from rr_opt.diagnose.found import Steps as Told  # noqa: PLC0415
         from rr_opt.diagnose.racer import RollerRacer  # noqa: PLC0415
         from rr_opt.diagnose.racer_diagnosis import diagnose_racer  # noqa: PLC0415
 

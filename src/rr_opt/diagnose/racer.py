@@ -138,16 +138,20 @@ class RollerRacer:
         return find(self, name, self.catalogue[name].forms[form], fit)
 
     def twin(self, values: Mapping[str, float]) -> Mapping[str, float] | None:
-        """The other way to see two halves of a floor: which is the usual, and which the patch."""
+        """The other way to see two halves of a floor: which is the usual, and which the patch.
+
+        Or the same way, with an edge's direction in half a turn either way.
+        """
         if "floor_patch.normal" not in values:
             return None
+        normal = math.remainder(values["floor_patch.normal"], math.tau)
         factor = values["floor_patch.multiplier"]
         own = [name for name in ("kappa1", "kappa2") if name in values]
         away = sum(math.log(values[name] / self.nominal[name]) for name in own)
         if factor <= 0 or abs(away + len(own) * math.log(factor)) >= abs(away):
-            return None
-        normal = values["floor_patch.normal"]
-        turned = normal - math.copysign(math.pi, normal)
+            plain = {**values, "floor_patch.normal": normal}
+            return None if plain == values else plain
+        turned = math.remainder(normal + math.pi, math.tau)
         other = {"floor_patch.multiplier": 1 / factor, "floor_patch.normal": turned}
         return {**values, **other, **{name: factor * values[name] for name in own}}
 

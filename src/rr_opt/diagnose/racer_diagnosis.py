@@ -8,11 +8,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from rr_opt.diagnose.diagnose import Found, Level, Steps, answer, found, level_of, summary_of
+from rr_opt.diagnose.diagnose import answer, summary_of
 from rr_opt.diagnose.diagnosis import Diagnosis
 from rr_opt.diagnose.flexible import with_force_curve
+from rr_opt.diagnose.found import Found, Steps, found
 from rr_opt.diagnose.indistinguishable import groups
 from rr_opt.diagnose.intervals import estimates
+from rr_opt.diagnose.level import Level, level_of
 from rr_opt.diagnose.next_experiment import next_experiment
 from rr_opt.diagnose.racer import RollerRacer
 from rr_opt.diagnose.residue import residue, systematic

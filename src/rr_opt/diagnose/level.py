@@ -1,0 +1,132 @@
+"""What a fit leaves of every recording, also of those it did not see."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rr_opt.diagnose.diagnosis import Misfit
+from rr_opt.diagnose.explain import whole
+from rr_opt.diagnose.explanation import certain
+from rr_opt.diagnose.fit import Fit, Problem, solve
+from rr_opt.diagnose.left_out import left_out
+from rr_opt.diagnose.model import Array, Model, Piece
+
+_POOR = 1.1
+"""With more misfit a run's start is looked for from elsewhere too, mean square in sigma."""
+
+
+@dataclass(frozen=True)
+class Level:
+    """A fit of the shared quantities and what it leaves of every run, held out or not.
+
+    starts  of all runs, whole
+    """
+
+    fit: Fit
+    misfits: tuple[Misfit, ...]
+    starts: Mapping[Piece, Array]
+
+    def held(self) -> float:
+        """RMS in sigma over the held-out runs; over the fitted ones where none is held out."""
+        return _rms_of(self.misfits, held_out=True)
+
+    def unseen(self) -> float:
+        """The same for the answer; where none is held out, of the runs each predicted from the
+        others. The verdict does not rest on that: of two or three runs, one may be all that tells a
+        parameter, and what the others say of it is then far off through no fault of the model."""
+        apart = float("nan")
+        if not any(one.held_out for one in self.misfits):
+            apart = left_out(self.fit)
+        return math.sqrt(apart + 1.0) if np.isfinite(apart) else self.held()
+
+    def surplus(self) -> float:
+        """What `unseen` is above the noise and a usual chance of it, mean square in sigma."""
+        return certain(self.unseen() ** 2 - 1, self.count(), z=1.0) ** 2
+
+    def count(self) -> int:
+        """The values that this is of."""
+        return int(np.isfinite(_residuals(self.misfits, held_out=True)).sum())
+
+
+def level_of(model: Model, fit: Fit, start: Fit) -> Level:
+    """What a fit leaves of every run: those it did not see get the start that fits them best."""
+    seen = {piece.run for piece in fit.starts}
+    pieces = whole(model, range(len(model.runs)))
+    first = {piece.run: state for piece, state in start.starts.items() if piece.first == 0}
+    problem = Problem(model, pieces, fit.effects, (), fit.values)
+    fresh = [piece for piece in pieces if piece.run not in seen]
+    alone = Problem(model, fresh, fit.effects, (), fit.values)
+    starts = dict(fit.starts)
+    if fresh:
+        starts |= _best_starts(alone, first)
+    misfits = tuple(_misfit(problem, piece, starts[piece]) for piece in pieces)
+    return Level(fit, misfits, {piece: starts[piece] for piece in pieces})
+
+
+def _best_starts(problem: Problem, first: Mapping[int, Array]) -> dict[Piece, Array]:
+    """Each run's start: from the first guess that leaves little, else from that which leaves least.
+
+    first  guesses, by run
+    """
+    out: dict[Piece, Array] = {}
+    for piece in problem.pieces:
+        fits: list[Fit] = []
+        for guess in _guesses(problem, piece, first[piece.run]):
+            fits.append(_started(problem, piece, guess))
+            if fits[-1].cost <= _POOR * fits[-1].count:
+                break
+        out |= min(fits, key=lambda fit: fit.cost).starts
+    return out
+
+
+def _guesses(problem: Problem, piece: Piece, first: Array) -> Iterator[Array]:
+    """Where dry friction holds a machine at first, the misfit has no slope by its starting speed.
+
+    Where a border is crossed or not, a long run has wrong minima.
+    """
+    yield first
+    yield problem.model.start(piece)
+    yield _grown(problem, piece)
+
+
+def _grown(problem: Problem, piece: Piece) -> Array:
+    """The start that fits the run's beginning, and then three times as much of it at a time."""
+    model = problem.model
+    t = model.runs[piece.run].t
+    start, seconds = model.start(piece), model.window
+    while seconds < t[-1] - t[0]:
+        part = replace(piece, last=int(np.searchsorted(t, t[0] + seconds)))
+        start = _started(problem, part, start).starts[part]
+        seconds *= 3
+    return start
+
+
+def _started(problem: Problem, piece: Piece, start: Array) -> Fit:
+    alone = Problem(problem.model, [piece], problem.effects, (), problem.fixed)
+    return solve(alone, {}, {piece: start})
+
+
+def _misfit(problem: Problem, piece, start) -> Misfit:
+    data = problem.model.runs[piece.run]
+    response = problem.model.respond(piece, problem.fixed, problem.effects, start)
+    r = (response.predicted - data.values) / data.sigma
+    channels = {
+        name: float(np.sqrt(np.nanmean(r[:, k] ** 2)))
+        for k, name in enumerate(problem.model.channels)
+        if np.isfinite(r[:, k]).any()
+    }
+    total = float(np.sqrt(np.nanmean(r**2)))
+    return Misfit(data.name, data.held_out, total, channels, data.t, response.predicted, r)
+
+
+def _rms_of(misfits: tuple[Misfit, ...], *, held_out: bool) -> float:
+    return float(np.sqrt(np.nanmean(_residuals(misfits, held_out=held_out) ** 2)))
+
+
+def _residuals(misfits: tuple[Misfit, ...], *, held_out: bool) -> Array:
+    some = [m for m in misfits if m.held_out == held_out] or list(misfits)
+    return np.concatenate([m.residuals.ravel() for m in some])

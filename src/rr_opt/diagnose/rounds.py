@@ -1,0 +1,141 @@
+"""A round of the search: which effects promise most beside an explanation, fitted.
+
+A linearised pass over all effects (`screen`) ranks them at once. The most promising few are fitted
+in windows, and the best of those over whole runs, where small effects add up and show.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+
+from rr_opt.diagnose.explain import Chosen, explain, joined
+from rr_opt.diagnose.explanation import FLOOR, Explanation, rms
+from rr_opt.diagnose.fit import Fit, doubt
+from rr_opt.diagnose.model import Model
+from rr_opt.diagnose.screen import LUCK, Promise, jumps, screen
+
+EXACT, ROUGH = 0.005, 0.03
+"""Nor is an effect's model: what is left is none by the first share of the misfit of the model as
+believed; by the second for an effect of which there are as many models as machines."""
+
+_IN_WINDOWS, _DEAR, _WHOLE = 5, 4, 3
+"""How many of a round are fitted in windows, of those the dear ones, and over whole runs."""
+
+_WORTH = 0.05
+"""Of what the best promises, any but the first few have to promise that share."""
+
+_PLAIN = 0.05
+"""Misfit in windows, in sigma squared, that is plain to see."""
+
+_AS_MUCH = 0.5
+"""Of what the others gain, a dear effect has to promise that share to be looked at beside them."""
+
+Say = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Rounds:
+    """What every round of a search begins with.
+
+    first  misfit of the model as believed, RMS in sigma
+    """
+
+    model: Model
+    nominal: Fit
+    first: float
+    say: Say = lambda _: None
+    each: Callable[..., Iterable] = map
+
+    def floor(self, best: Explanation) -> float:
+        """A misfit that is none, RMS in sigma, of a model with the effects of `best`."""
+        return max(FLOOR, (ROUGH if self.rough(best) else EXACT) * self.first)
+
+    def rough(self, best: Explanation) -> bool:
+        """Whether an effect of `best` is one of which there are as many models as machines."""
+        return any(q.name in self.model.rough for q in best.whole.quantities)
+
+    def next_to(self, best: Explanation) -> list[Explanation]:
+        """The explanations with one effect more that promise most."""
+        fit = _sight(best)
+        promised = screen(self.model, fit, best.chosen) + self.jumping(best, dear=False)
+        promised.sort(key=lambda one: -one.gain)
+        least = _WORTH * promised[0].gain if promised else 0.0
+        worth = [one for k, one in enumerate(promised) if k < _WHOLE or one.gain > least]
+        found = self.fitted(best, worth[:_IN_WINDOWS])
+        # What cannot be linearised is dear, and tried where nothing else will do, or where it
+        # promises, from one step, about as much as the others gain.
+        dear = self.jumping(best, dear=True)[:_DEAR]
+        if min((rms(one.misfit) for one in found), default=math.inf) <= self.floor(best):
+            least = _AS_MUCH * max(fit.cost - _same(one, best, fit).cost for one in found)
+            dear = [one for one in dear if one.gain > least]
+        return found + self.fitted(best, dear)
+
+    def jumping(self, best: Explanation, *, dear: bool) -> list[Promise]:
+        """The effects that jump, of which each promises more than luck."""
+        fit = _sight(best)
+        luck = LUCK * doubt(fit.cost, fit.count)
+        promised = jumps(self.model, fit, best.chosen, dear=dear)
+        return [one for one in promised if one.gain > luck]
+
+    def fitted(self, best: Explanation, promised: Sequence[Promise]) -> list[Explanation]:
+        """The explanation with each of these beside it, the best of them over whole runs."""
+        if not promised:
+            return []
+        self.say(f"fitting {', '.join(one.chosen.name for one in promised)}")
+        in_windows = list(
+            self.each(_InWindows(self.model, best.chosen, self.nominal, best.windows), promised)
+        )
+        if _sight(best) is best.windows:
+            # Else windows say next to nothing, and what was promised counts.
+            in_windows.sort(key=lambda pair: pair[1].cost)
+        least = min((fit for _, fit in in_windows), key=lambda fit: fit.cost)
+        hopeful = [pair for pair in in_windows[:_WHOLE] if not _hopeless(pair[1], least)]
+        self.say(f"over whole runs: {', '.join(one.name for one, _ in hopeful)}")
+        return list(self.each(_Whole(self.model, best.chosen), hopeful))
+
+
+@dataclass(frozen=True)
+class _InWindows:
+    model: Model
+    have: tuple[Chosen, ...]
+    nominal: Fit
+    fit: Fit
+
+    def __call__(self, promise: Promise) -> tuple[Chosen, Fit]:
+        """The effect beside those that are there."""
+        one, every = promise.chosen, (*self.have, promise.chosen)
+        return one, explain(self.model, every, self.nominal, self.fit, promise.begins)
+
+
+@dataclass(frozen=True)
+class _Whole:
+    model: Model
+    have: tuple[Chosen, ...]
+
+    def __call__(self, pair: tuple[Chosen, Fit]) -> Explanation:
+        """The fit over whole runs, from that over windows."""
+        one, fit = pair
+        return Explanation((*self.have, one), fit, joined(self.model, fit))
+
+
+def _sight(best: Explanation) -> Fit:
+    """The fit to look out from for what is missing.
+
+    What is plain in windows is nearly linear there. What is not adds up over whole runs, and is
+    small enough to be linear over them.
+    """
+    seen = best.windows.cost / best.windows.count - 1.0
+    return best.windows if seen > _PLAIN else best.whole
+
+
+def _same(one: Explanation, best: Explanation, sight: Fit) -> Fit:
+    """The fit of an explanation that is over what another was looked out from."""
+    return one.windows if sight is best.windows else one.whole
+
+
+def _hopeless(fit: Fit, best: Fit) -> bool:
+    """Whether even in windows far more is left than with another effect."""
+    left = fit.cost / fit.count - 1.0
+    return left > 0.1 and left > 20 * (best.cost / best.count - 1.0)
