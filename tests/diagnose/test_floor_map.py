@@ -110,3 +110,15 @@ def test_two_halves_of_a_floor_are_told_as_what_was_believed_and_a_patch():
         "floor_patch.normal": 2.2 - math.pi,
     }
     assert model.twin(seen) == pytest.approx(believed)
+
+
+def test_a_circle_is_no_larger_than_twice_the_room_there_was():
+    model = with_effect({}, ())
+    places = np.vstack([run.values[:, :2] for run in model.runs])
+    room = (np.nanmax(places, axis=0) - np.nanmin(places, axis=0)).max()
+    (radius,) = (
+        q
+        for q in model.catalogue["floor_patch"].forms[0].quantities
+        if q.name == "floor_patch.radius"
+    )
+    assert radius.high == pytest.approx(max(2 * room, 0.5))

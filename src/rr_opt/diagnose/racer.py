@@ -105,7 +105,10 @@ class RollerRacer:
             for d in self.runs
         ]
         fastest = max(gait.peak_rate for gait in gaits)
-        return Setting(self.experiment.robot, fastest, max(float(np.median(distances)), 1e-3))
+        places = np.vstack([d.values[:, :2] for d in self.runs])
+        room = float(np.max(np.nanmax(places, axis=0) - np.nanmin(places, axis=0)))
+        speed = max(float(np.median(distances)), 1e-3)
+        return Setting(self.experiment.robot, fastest, speed, room)
 
     @property
     def jumping(self) -> frozenset[str]:

@@ -106,12 +106,16 @@ def _parameter(name: str, value: float, known: Uncertainty) -> Quantity:
     return Quantity(name, unit, value, known.sigma, True, low, 3 * value, value)
 
 
+def _highest(q: Parameter, setting: Setting) -> float:
+    return min(q.bounds[1], q.most(setting)) if q.most else q.bounds[1]
+
+
 def _form(effect: str, parameters: Sequence[Parameter], setting: Setting) -> Form:
     sizes = [q.size(setting) for q in parameters]
     quantities = tuple(
         Quantity(
             *(f"{effect}.{q.name}", q.unit, q.neutral, size, False),
-            *(max(q.bounds[0], q.least), q.bounds[1], q.neutral),
+            *(max(q.bounds[0], q.least), _highest(q, setting), q.neutral),
         )
         for q, size in zip(parameters, sizes, strict=True)
     )

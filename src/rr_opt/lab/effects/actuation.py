@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from scipy.signal import lfilter
 
 from rr_opt.lab.effects.hidden import HiddenEffect, Parameter, Values
 from rr_opt.lab.rig import Array, Rig
@@ -16,6 +15,8 @@ def _lag(rig: Rig, values: Values) -> None:
     tau = values["tau"]
 
     def follow(t: Array, angle: Array) -> Array:
+        from scipy.signal import lfilter  # noqa: PLC0415  takes a second
+
         dt = t[1] - t[0]
         keep = np.exp(-dt / tau)
         ramp = 1 - (1 - keep) * tau / dt

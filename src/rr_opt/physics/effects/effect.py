@@ -42,6 +42,7 @@ class Parameter:
     placed   where to look for it is told by the recordings alone
     rough    there are as many models of it as machines
     least    a fit goes no lower, as the effect turns into another there
+    most     nor higher than this, for a given robot and what was asked of it
     """
 
     name: str
@@ -55,6 +56,7 @@ class Parameter:
     placed: bool = False
     rough: bool = False
     least: float = -math.inf
+    most: Callable[[Setting], float] | None = None
 
     def size(self, setting: Setting) -> float:
         """Its usual size for a robot and what was asked of it."""
@@ -67,11 +69,13 @@ class Setting:
 
     rate   of the servo, rad/s
     speed  of the wheels, m/s
+    room   across all places where it was, m
     """
 
     robot: Robot
     rate: float
     speed: float
+    room: float = math.inf
 
 
 class Actuate(Protocol):

@@ -40,6 +40,11 @@ def _near(setting: Setting) -> float:
     return (setting.robot.platform1.c + setting.robot.platform2.c) / 5
 
 
+def _straight(setting: Setting) -> float:
+    """The border of so large a circle is straight: that is the other form."""
+    return max(2 * setting.room, 0.5)
+
+
 EFFECT = Effect(
     name="floor_patch",
     family="floor",
@@ -48,7 +53,9 @@ EFFECT = Effect(
         Parameter("multiplier", "dimensionless", (0.0, 1000.0), 2.0, neutral=1.0),
         Parameter("x", "m", (-100.0, 100.0), 0.3, natural=_near, placed=True),
         Parameter("y", "m", (-100.0, 100.0), 0.3, natural=_near),
-        Parameter("radius", "m", (0.0, 100.0), 0.3, natural=_near, least=4 * BORDER),
+        Parameter(
+            *("radius", "m", (0.0, 100.0), 0.3), natural=_near, least=4 * BORDER, most=_straight
+        ),
         Parameter("normal", "rad", (-2 * math.pi, 2 * math.pi), 0.3),
         Parameter("edge_x", "m", (-100.0, 100.0), 0.3, natural=_near, placed=True),
         Parameter("edge_y", "m", (-100.0, 100.0), 0.3, natural=_near),
