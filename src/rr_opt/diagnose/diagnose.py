@@ -69,6 +69,7 @@ def answer(it: Found, *, systematic: bool = False) -> Diagnosis:
         values=dict(best.whole.values),
         seconds=dict(steps.seconds),
         converged=best.whole.converged,
+        together=it.together.held() if it.together and verdict == "missing_physics" else None,
     )
 
 

@@ -170,6 +170,8 @@ class Diagnosis:
                                within what is known, with the accepted effects
     before, after              RMS over the held-out recordings in sigma, 1 is the noise
     values                     of all parameters and effects that the corrected robot has, SI
+    together                   RMS over the held-out recordings with values that fit them too, where
+                               the answer gives these, as the others do not tell all
     """
 
     verdict: Verdict
@@ -192,3 +194,4 @@ class Diagnosis:
     values: Mapping[str, float]
     seconds: Mapping[str, float]
     converged: bool = True
+    together: float | None = None

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rr_opt.diagnose.model import Array, Piece
-from rr_opt.diagnose.pushed_motion import DRIVES, FURTHER, pushed_motion
+from rr_opt.diagnose.pushed_motion import FURTHER, pushed_motion
 from rr_opt.diagnose.racer_protocol import Racer
 from rr_opt.diagnose.racer_quantities import values_by, values_of
 from rr_opt.diagnose.racer_state import state_of, v_of_z_by
@@ -120,12 +120,11 @@ def _with_drives(path: DrivePath, drives: Array, moments: Array) -> DrivePath:
 
 def _at(drives: Array, moments: Array) -> tuple[Array, Array]:
     """Drives (k, 10, n), last index first: at the samples, and in the middle of the steps."""
-    middle = np.array([_finely(one, moments[1::2]) for one in drives])
-    middle = middle.reshape(len(drives), len(DRIVES), moments.size // 2)
-    return drives.transpose(1, 2, 0), middle.transpose(1, 2, 0)
+    return drives.transpose(1, 2, 0), _finely(drives, moments[1::2]).transpose(1, 2, 0)
 
 
 def _finely(drives: Array, moments: Array) -> Array:
-    """Drives (10, n) at moments counted in samples."""
-    samples = np.arange(drives.shape[1])
-    return np.array([np.interp(moments, samples, row) for row in drives])
+    """Drives (..., n) at moments counted in samples."""
+    before = np.minimum(moments.astype(int), drives.shape[-1] - 2)
+    beyond = moments - before
+    return drives[..., before] * (1 - beyond) + drives[..., before + 1] * beyond

@@ -15,6 +15,7 @@ def fit_record(one: Diagnosed) -> dict[str, Any]:
 
     Where none is held out, `heldout_rms_before` and `_after` are of the fitted recordings, each
     predicted from the others, and `heldout_rms_parameters` is of the fitted ones as they are.
+    `heldout_rms_fitted_too` is null but where the values given fit the held-out ones too.
     """
     found = one.found
     levels = {"before": found.nominal, "parameters": found.refitted, "after": found.final}
@@ -24,6 +25,7 @@ def fit_record(one: Diagnosed) -> dict[str, Any]:
         "heldout_rms_before": number_of(found.before),
         "heldout_rms_parameters": number_of(rms(held["parameters"] or fitted["parameters"])),
         "heldout_rms_after": number_of(found.after),
+        "heldout_rms_fitted_too": number_of(found.together),
         "heldout_recordings": [m.recording for m in held["after"]],
         **{f"fitted_rms_{name}": number_of(rms(level)) for name, level in fitted.items()},
         "recordings": [

@@ -64,6 +64,8 @@ def _finding(finding: Finding, verdict: str) -> list[tuple[str, ...]]:
 def _misfit(one: Diagnosed) -> list[tuple[str, ...]]:
     found = one.found
     before, after = f"{found.before:.2f} sigma before", f"{found.after:.2f} after"
+    if found.together is not None:
+        after += f" ({found.together:.2f} with values that fit all recordings)"
     return [("misfit", f"{before}, {after}, 1 is the noise ({_proof(one)})")]
 
 
