@@ -87,7 +87,7 @@ def values_by(
 def _present(use: EffectUse, setting: Setting) -> Iterator[Quantity]:
     """The values of an effect that the nominal robot has: how strong it is, is not known."""
     for q in CATALOGUE[use.name].parameters:
-        value = use.values[q.name]
+        value = use.values.get(q.name, q.neutral)
         if value != q.neutral and not q.placed:
             size = max(abs(value), 0.1 * q.size(setting))
             yield Quantity(

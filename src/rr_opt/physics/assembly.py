@@ -55,9 +55,14 @@ def assembled(effects: tuple[str, ...], *, sharp: bool = False) -> Assembly:
 
 
 def values_of(robot: Robot, parameters: tuple[str, ...]) -> NDArray[np.float64]:
-    """The numbers behind an assembly's parameters for a robot that has its effects, SI."""
+    """The numbers behind an assembly's parameters for a robot that has its effects, SI.
+
+    A parameter of an effect that the robot does not give is neutral.
+    """
     own = dict(zip(ROBOT_PARAMETERS, robot_values(robot), strict=True))
     beyond = {
-        f"{use.name}.{name}": value for use in robot.physics for name, value in use.values.items()
+        f"{use.name}.{q.name}": use.values.get(q.name, q.neutral)
+        for use in robot.physics
+        for q in CATALOGUE[use.name].parameters
     }
     return np.array([(own | beyond)[name] for name in parameters])

@@ -46,6 +46,7 @@ class HiddenEffect:
 
     enter    changes a rig by the values of the parameters; those not given are neutral
     named    whether it is in the catalogue, so that a diagnosis can name it
+    own_way  what else a robot file may say of it, and the engine does in its own way
     what     one sentence for the sealed answer
     """
 
@@ -54,6 +55,7 @@ class HiddenEffect:
     parameters: tuple[Parameter, ...]
     enter: Callable[[Rig, Values], None]
     named: bool = True
+    own_way: frozenset[str] = frozenset()
 
     def parameter(self, name: str) -> Parameter:
         """By name; raises KeyError."""

@@ -35,6 +35,7 @@ ROLLING = (
         "dry friction of the wheels",
         (Parameter("force1", "N", 2e-3, most=0.1), Parameter("force2", "N", 2e-3, most=0.1)),
         _coulomb,
+        own_way=frozenset({"onset"}),
     ),
     HiddenEffect(
         "quadratic_drag",

@@ -2,9 +2,10 @@
 
 The jump of the sign at u = 0 is smoothed to tanh(u/u0). At u0 = 2 mm/s the wheels of a robot
 that moves at decimetres per second spend a per cent of their time inside the smoothed part,
-and the equations stay differentiable, which the optimiser needs. Against recordings that is too
-soft: of one robot whose wheels often turn back, the force of an axle came out at half of what it
-was. There u0 is a tenth of that, and what the friction changes the robot's speed by in 5 ms.
+and the equations stay differentiable, which the optimiser needs. Against recordings it matters: of
+two plants, one whose friction sets in over 2 mm/s and one over a tenth of that, each, predicted
+with the other's, has an axle's force half as large or twice as large as it is. So predictions have
+u0 as a parameter, `onset`, and add to it what the friction changes the robot's speed by in 5 ms.
 """
 
 from __future__ import annotations
@@ -17,9 +18,9 @@ from rr_opt.physics.effects.effect import Effect, Parameter, Port, Setting
 from rr_opt.physics.kinematics import Mechanism, with_resistance
 
 SMOOTHING_SPEED = 0.002
-"""u0, m/s."""
-_SHARP, _STEP = 2e-4, 5e-3
-"""u0, m/s, of a sharp prediction; friction adds what it changes a speed by in so many seconds."""
+"""u0, m/s, for an optimiser, and where `onset` is not given."""
+_STEP = 5e-3
+"""A prediction's u0 is larger by what friction changes a speed by in so many seconds."""
 
 
 def _enter(mechanism: Mechanism, values: Mapping[str, ca.SX]) -> Mechanism:
@@ -31,7 +32,8 @@ def _enter(mechanism: Mechanism, values: Mapping[str, ca.SX]) -> Mechanism:
 
 def _sharp(mechanism: Mechanism, values: Mapping[str, ca.SX]) -> ca.SX:
     p = mechanism.parameters
-    return _SHARP + _STEP * 2 * (values["force1"] + values["force2"]) / (p["m1"] + p["m2"])
+    forces = 2 * (values["force1"] + values["force2"])
+    return values["onset"] + _STEP * forces / (p["m1"] + p["m2"])
 
 
 def _viscous(setting: Setting) -> float:
@@ -46,6 +48,7 @@ EFFECT = Effect(
     parameters=(
         Parameter("force1", "N", (0.0, 10.0), 0.02, aliases=("F1",), natural=_viscous),
         Parameter("force2", "N", (0.0, 10.0), 0.02, aliases=("F2",), natural=_viscous),
+        Parameter(*("onset", "m/s", (2e-4, 0.01), 1e-3), neutral=SMOOTHING_SPEED, trials=(1.0,)),
     ),
     sentence="Each wheel resists rolling with a force that does not depend on its speed.",
     enter=_enter,
