@@ -26,6 +26,14 @@ def test_lag_turns_and_shrinks_the_sine():
     np.testing.assert_allclose(phi, expected, atol=1e-5)
 
 
+def test_lag_of_second_order_turns_further():
+    tau, beta, omega = 0.05, 1e-3, GAIT.angular_frequency
+    t, phi = phi_with("servo_lag", tau=tau, beta=beta)
+    answer = 1 / (1 - beta * omega**2 + 1j * omega * tau)
+    expected = 0.1 + 0.6 * abs(answer) * np.sin(omega * t + np.angle(answer))
+    np.testing.assert_allclose(phi, expected, atol=2e-5)
+
+
 def test_rate_limit_is_kept_and_used():
     t, phi = phi_with("servo_rate_limit", rate_limit=2.0)
     rate = np.diff(phi) / np.diff(t)

@@ -50,7 +50,7 @@ def rig_with(robot: Robot, effects: Iterable[EffectUse] = ()) -> Rig:
     for use in (*robot.physics, *effects):
         effect = effect_named(use.name)
         known = {parameter.name for parameter in effect.parameters}
-        if unknown := sorted(set(use.values) - known - effect.own_way):
+        if unknown := sorted(set(use.values) - known - effect.further):
             raise InputError(
                 f"The effect {use.name} has no parameter {', '.join(unknown)}. Expected: "
                 f"{', '.join(sorted(known))}. Correct the name."

@@ -11,19 +11,18 @@ from rr_opt.lab.rig import Array, Rig
 
 
 def _lag(rig: Rig, values: Values) -> None:
-    """A first-order follower, tau dy/dt = u - y, exact for a command that is straight in a step."""
-    tau = values["tau"]
+    """A follower of first order, tau dy/dt = u - y, or with beta of second.
+
+    Exact for a command that is straight in a step.
+    """
+    tau, beta = values["tau"], values.get("beta", 0.0)
 
     def follow(t: Array, angle: Array) -> Array:
-        from scipy.signal import lfilter  # noqa: PLC0415  takes a second
+        from scipy.signal import cont2discrete, lfilter  # noqa: PLC0415  takes a second
 
-        dt = t[1] - t[0]
-        keep = np.exp(-dt / tau)
-        ramp = 1 - (1 - keep) * tau / dt
-        rest = angle[0]
-        # y' = keep y + (1 - keep - ramp) u + ramp u', with u as it was and as it is.
-        out = lfilter([ramp, 1 - keep - ramp], [1, -keep], angle - rest)
-        return np.asarray(out) + rest
+        system = [1.0], [beta, tau, 1.0] if beta else [tau, 1.0]
+        above, below, _ = cont2discrete(system, t[1] - t[0], method="foh")
+        return np.asarray(lfilter(above[0], below, angle - angle[0])) + angle[0]
 
     rig.shapers.append(follow)
 
@@ -56,6 +55,7 @@ ACTUATION = (
         "the servo follows its command late and smaller, by a first-order lag",
         (Parameter("tau", "s", 0.02, most=0.3),),
         _lag,
+        further=frozenset({"beta"}),
     ),
     HiddenEffect(
         "servo_rate_limit",

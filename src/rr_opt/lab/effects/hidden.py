@@ -46,7 +46,7 @@ class HiddenEffect:
 
     enter    changes a rig by the values of the parameters; those not given are neutral
     named    whether it is in the catalogue, so that a diagnosis can name it
-    own_way  what else a robot file may say of it, and the engine does in its own way
+    further  what else a robot file may say of it: it is not drawn by lot
     what     one sentence for the sealed answer
     """
 
@@ -55,7 +55,7 @@ class HiddenEffect:
     parameters: tuple[Parameter, ...]
     enter: Callable[[Rig, Values], None]
     named: bool = True
-    own_way: frozenset[str] = frozenset()
+    further: frozenset[str] = frozenset()
 
     def parameter(self, name: str) -> Parameter:
         """By name; raises KeyError."""

@@ -7,7 +7,8 @@ from rr_opt.lab.rig import Rig
 
 
 def _coulomb(rig: Rig, values: Values) -> None:
-    """MuJoCo's friction loss of a hinge; a force F at the rim is a torque F h."""
+    """MuJoCo's friction loss of a hinge; a force F at the rim is a torque F h. How softly it sets
+    in is MuJoCo's own."""
     one, two = (values.get(name, 0.0) * rig.robot.h for name in ("force1", "force2"))
     rig.dry = [dry + more for dry, more in zip(rig.dry, (one, one, two, two), strict=True)]
 
@@ -35,7 +36,7 @@ ROLLING = (
         "dry friction of the wheels",
         (Parameter("force1", "N", 2e-3, most=0.1), Parameter("force2", "N", 2e-3, most=0.1)),
         _coulomb,
-        own_way=frozenset({"onset"}),
+        further=frozenset({"onset"}),
     ),
     HiddenEffect(
         "quadratic_drag",
