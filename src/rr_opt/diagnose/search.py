@@ -69,7 +69,27 @@ class Search:
             best = self._backward(self._forward(best))
         moved = self._looked_for_again(best)
         best = best if moved is best else self._backward(moved)
-        return min(best, self._otherwise(best), key=lambda one: one.score)
+        return self._simpler(min(best, self._otherwise(best), key=lambda one: one.score))
+
+    def _simpler(self, best: Explanation) -> Explanation:
+        """The explanation with a simpler form of an effect, where that does as well: what another
+        form had more was of use while something else was missing."""
+        for one in best.chosen:
+            own = {q.name for q in one.of(self.model).quantities}
+            for k, form in enumerate(self.model.catalogue[one.name].forms):
+                gone = own - {q.name for q in form.quantities}
+                if not gone or len(form.quantities) != len(own) - len(gone):
+                    continue
+                chosen = tuple(Chosen(one.name, k) if c is one else c for c in best.chosen)
+                quantities = tuple(q for q in best.whole.quantities if q.name not in gone)
+                starts = best.whole.starts
+                problem = Problem(self.model, tuple(starts), best.names, quantities)
+                values = {q.name: best.whole.values[q.name] for q in quantities}
+                simpler = replace(best, chosen=chosen, whole=solve(problem, values, starts))
+                if simpler.score < best.score:
+                    self.tried.append(simpler)
+                    best = simpler
+        return best
 
     def _otherwise(self, best: Explanation) -> Explanation:
         """What the search finds without what is at a place at first, if that of `best` is doubtful.
