@@ -2,10 +2,11 @@
 
 import math
 
+import numpy as np
 import pytest
 
 from rr_opt.diagnose.explain import Chosen
-from rr_opt.diagnose.indistinguishable import alike, groups, margin
+from rr_opt.diagnose.indistinguishable import _Pass, alike, groups, margin
 from rr_opt.robot.gait import SineGait
 from tests.diagnose.made_up import base_of, explained, search_of, with_effect
 
@@ -28,7 +29,7 @@ def test_a_late_servo_and_a_late_clock_are_one_thing_where_no_run_starts_from_re
 
 
 def test_runs_from_rest_and_of_many_periods_tell_them_apart():
-    model, base, best = _late_clock(-0.03)
+    model, base, best = _late_clock(-0.06)
     assert groups(search_of(model, base, best), best) == ()
 
 
@@ -63,3 +64,13 @@ def test_of_a_signature_its_double_leaves_little_and_a_stranger_nearly_all():
     left = {one.other: one.left for one in alike(search_of(model, base, best), best)}
     assert left[("servo_lag",)] < 0.1
     assert left[("floor_tilt",)] > 0.9
+
+
+def test_what_the_runs_hardly_see_may_be_below_zero_by_rounding():
+    seen = np.diag([1e12, 1e12, 1.0])
+    seen[0, 1] = seen[1, 0] = 1e12 * (1 + 1e-12)
+    far = np.full(3, 10.0)
+    pass_ = _Pass((), seen, np.array([0.0, 0.0, 2.0]), -far, far)
+    assert np.linalg.eigvalsh(seen)[0] < 0
+    assert pass_.left([0, 1], [2]) == pytest.approx(4.0)
+    assert _Pass((), seen, np.array([0.0, 2.0, 0.0]), -far, far).left([0], [1]) < 1e-3 * 4e12

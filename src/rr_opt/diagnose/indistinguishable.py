@@ -36,6 +36,9 @@ CERTAIN = 20.0
 _FITS = 3
 """So many fits, at most, to confirm what is only linearised."""
 
+_UNSEEN = 1e-9
+"""Of what is seen best, each quantity in its own size: less than that is rounding."""
+
 
 @dataclass(frozen=True)
 class Alike:
@@ -197,10 +200,14 @@ class _Pass:
         whole = float(gone @ self.H[np.ix_(list(signature), list(signature))] @ gone)
         if not own:
             return whole
-        # As least squares, |L'd + L^-1 g|^2, inside the bounds; d = 0 is always allowed.
-        L = np.linalg.cholesky(H + np.diag(1e-9 * (1 + np.diag(H))))
+        # As least squares, |R d + R'^-1 g|^2 with R'R = H, inside the bounds; d = 0 is always
+        # allowed. By eigenvalues, as what the runs hardly see may be below zero by rounding.
+        size = np.sqrt(1e-9 + np.maximum(np.diag(H), 0.0))
+        seen, V = np.linalg.eigh(H / np.outer(size, size))
+        seen = np.sqrt(np.maximum(seen, _UNSEEN))[:, None]
         bounds = np.minimum(self.low[own], -1e-12), np.maximum(self.high[own], 1e-12)
-        d = lsq_linear(L.T, -np.linalg.solve(L, g), bounds, method="bvls").x
+        R, rest = seen * V.T * size, (V.T @ (g / size)) / seen[:, 0]
+        d = lsq_linear(R, -rest, bounds, method="bvls").x
         return max(whole + 2 * float(g @ d) + float(d @ H @ d), 0.0)
 
 
