@@ -19,7 +19,9 @@ def test_names_and_aliases(write, robot_text):
         "[{name: coulomb_friction, F1: 20 mN, force2: 0.03}, {name: wheel_inertia, J: 1e-6}]",
     )
     assert read_robot(write(text)).physics == (
-        EffectUse("coulomb_friction", {"force1": pytest.approx(0.02), "force2": 0.03}),
+        EffectUse(
+            "coulomb_friction", {"force1": pytest.approx(0.02), "force2": 0.03, "onset": 0.002}
+        ),
         EffectUse("wheel_inertia", {"J": 1e-6}),
     )
 

@@ -112,7 +112,7 @@ def test_each_parameter_at_its_usual_size_is_felt(name, parameter):
 @pytest.mark.parametrize("name", ACTING)
 def test_servo_at_its_usual_size_is_seen(name):
     effect = CATALOGUE[name]
-    (parameter,) = effect.parameters
+    parameter = effect.parameters[0]
     command = told(GAIT, False)
     made = effect.actuate(command, {parameter.name: parameter.typical}, free_joint(BENCHMARK))
     assert np.ptp(made.at(TIMES)[0] - command.at(TIMES)[0]) > 1e-3 or name == "servo_offset"
