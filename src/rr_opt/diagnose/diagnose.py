@@ -39,6 +39,7 @@ def answer(it: Found, *, systematic: bool = False) -> Diagnosis:
         rough=search.rounds.rough(best),
         systematic=systematic,
     )
+    together = it.together if verdict == "missing_physics" else None
     findings = _findings(it.best, search, intervals, (level1, level2), it.rivals)
     if verdict == "parameters":
         findings = tuple(Finding(q.name, 1.0, {q.name: intervals[q.name]}, 1.0) for q in moved)
@@ -47,7 +48,7 @@ def answer(it: Found, *, systematic: bool = False) -> Diagnosis:
     channel = model.catalogue[best.names[0]].channel if findings and best.names else "none"
     return Diagnosis(
         verdict=verdict,
-        summary=summary_of(verdict, findings, level0, level2, it.together),
+        summary=summary_of(verdict, findings, level0, level2, together),
         mismatch=Mismatch(rms(search.base.misfit), chance(search.base.whole)),
         channel=channel,
         where="",
@@ -69,7 +70,7 @@ def answer(it: Found, *, systematic: bool = False) -> Diagnosis:
         values=dict(best.whole.values),
         seconds=dict(steps.seconds),
         converged=best.whole.converged,
-        together=it.together.held() if it.together and verdict == "missing_physics" else None,
+        together=together and together.held(),
     )
 
 
@@ -133,7 +134,7 @@ def summary_of(
         "missing_physics": f"The model leaves out {names}.",
         "unexplained": "Something is left out, and no effect of the catalogue accounts for it.",
     }[verdict]
-    if verdict == "missing_physics" and together:
+    if together:
         numbers += (
             " The others do not tell all values; those given here fit all recordings, "
             f"and leave {together.held():.2f} sigma."

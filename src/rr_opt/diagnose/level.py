@@ -59,28 +59,19 @@ def level_of(model: Model, fit: Fit, start: Fit) -> Level:
     first = {piece.run: state for piece, state in start.starts.items() if piece.first == 0}
     problem = Problem(model, pieces, fit.effects, (), fit.values)
     fresh = [piece for piece in pieces if piece.run not in seen]
-    alone = Problem(model, fresh, fit.effects, (), fit.values)
-    starts = dict(fit.starts)
-    if fresh:
-        starts |= _best_starts(alone, first)
+    starts = {**fit.starts, **{p: _best_start(problem, p, first[p.run]) for p in fresh}}
     misfits = tuple(_misfit(problem, piece, starts[piece]) for piece in pieces)
     return Level(fit, misfits, {piece: starts[piece] for piece in pieces})
 
 
-def _best_starts(problem: Problem, first: Mapping[int, Array]) -> dict[Piece, Array]:
-    """Each run's start: from the first guess that leaves little, else from that which leaves least.
-
-    first  guesses, by run
-    """
-    out: dict[Piece, Array] = {}
-    for piece in problem.pieces:
-        fits: list[Fit] = []
-        for guess in _guesses(problem, piece, first[piece.run]):
-            fits.append(_started(problem, piece, guess))
-            if fits[-1].cost <= _POOR * fits[-1].count:
-                break
-        out |= min(fits, key=lambda fit: fit.cost).starts
-    return out
+def _best_start(problem: Problem, piece: Piece, first: Array) -> Array:
+    """A run's start: from the first guess that leaves little, else from that which leaves least."""
+    fits: list[Fit] = []
+    for guess in _guesses(problem, piece, first):
+        fits.append(_started(problem, piece, guess))
+        if fits[-1].cost <= _POOR * fits[-1].count:
+            break
+    return min(fits, key=lambda fit: fit.cost).starts[piece]
 
 
 def _guesses(problem: Problem, piece: Piece, first: Array) -> Iterator[Array]:

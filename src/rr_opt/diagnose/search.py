@@ -77,11 +77,11 @@ class Search:
         for one in best.chosen:
             own = {q.name for q in one.of(self.model).quantities}
             for k, form in enumerate(self.model.catalogue[one.name].forms):
-                gone = own - {q.name for q in form.quantities}
-                if not gone or len(form.quantities) != len(own) - len(gone):
+                names = {q.name for q in form.quantities}
+                if not names < own:
                     continue
                 chosen = tuple(Chosen(one.name, k) if c is one else c for c in best.chosen)
-                quantities = tuple(q for q in best.whole.quantities if q.name not in gone)
+                quantities = tuple(q for q in best.whole.quantities if q.name not in own - names)
                 starts = best.whole.starts
                 problem = Problem(self.model, tuple(starts), best.names, quantities)
                 values = {q.name: best.whole.values[q.name] for q in quantities}

@@ -65,7 +65,7 @@ class FloorMotion:
 def floor_motion(effects: tuple[str, ...] = ()) -> FloorMotion:
     """Derive the motion with the named effects; those of the servo are for who drives it.
 
-    It is for predictions, so dry friction is as sharp as steps can follow.
+    It is for predictions, so dry friction sets in as softly as its `onset` says.
     """
     return solved(assembled(effects, sharp=True))
 
