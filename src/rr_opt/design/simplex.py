@@ -10,7 +10,6 @@ from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import minimize
 
 Array = NDArray[np.float64]
 
@@ -21,6 +20,8 @@ _WORST = 1e9
 def polished(value: Callable[[Array], float], point: Array, free: list[int]) -> tuple[Array, float]:
     """The point (4,) that the simplex method leads to along the free coordinates, begun anew
     until it gains nothing, and its value."""
+    from scipy.optimize import minimize  # noqa: PLC0415 - compiled code does without
+
     best, top = point.copy(), value(point)
 
     def cost(x: Array) -> float:

@@ -11,7 +11,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import least_squares
 
 from rr_opt.experiment.experiment import Noise
 from rr_opt.lab.capture import captured
@@ -53,6 +52,7 @@ class Reference:
 
     def left(self, seen: Array) -> float:
         """RMS deviation of a run from this one, in sigma, once its initial state is fitted."""
+        from scipy.optimize import least_squares  # noqa: PLC0415 - seldom needed
 
         def residual(p: Array) -> Array:
             x, y, psi, phi = self.path + p[3] * self.change

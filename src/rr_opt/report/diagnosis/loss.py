@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
-from rr_opt.design.maximize_speed import maximize_speed
 from rr_opt.experiment.experiment import Experiment
 from rr_opt.files import read_problem
 from rr_opt.motion.steady_cycle import steady_cycle
@@ -60,6 +59,9 @@ def loss(experiment: Experiment, corrected: Robot) -> Loss | NotTold:
 
     Takes a second or two.
     """
+    # Only a robot found to be another one needs the optimiser.
+    from rr_opt.design.maximize_speed import maximize_speed  # noqa: PLC0415
+
     gone = [name for name in passed_over(corrected) if name not in _harmless(corrected)]
     if gone:
         names = " and ".join(name.replace("_", " ") for name in gone)
