@@ -70,7 +70,9 @@ def recorded(given: Experiment, predict: Callable[[int, Array], Array], seed: in
     rng = np.random.default_rng(seed)
     runs = []
     for k, run in enumerate(given.runs):
-        start = np.array([0.1 * k, -0.1 * k, 0.9 * k, 0.0 if run.start == "rest" else 0.03])
+        start = np.array(
+            [0.1 * k, -0.1 * k, 0.9 * k, 0.0 if run.start == "rest" else 0.03, 0.0, 0.0]
+        )
         clean = predict(k, start)
         noisy = clean + rng.normal(size=clean.shape) * [NOISE.of(name) for name in CHANNELS]
         runs.append(replace(run, recording=_recording(run.name, run.recording.t, noisy)))

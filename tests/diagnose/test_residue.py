@@ -46,7 +46,7 @@ def plant(law):
             return np.array(motion.rates(x, drive(t), p)).ravel()
 
         t = run.recording.t
-        out = solve_ivp(rates, (t[0], t[-1]), start, t_eval=t, max_step=0.02)
+        out = solve_ivp(rates, (t[0], t[-1]), start[:4], t_eval=t, max_step=0.02)
         return np.column_stack([out.y[:3].T, run.gait.angle(t)])
 
     return recorded(given, predict, seed=2)

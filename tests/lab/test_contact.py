@@ -3,8 +3,10 @@
 import numpy as np
 import pytest
 
+from rr_opt.lab.drive import Outing, drive
 from rr_opt.lab.plant import Plant
 from rr_opt.lab.rig import Rig
+from rr_opt.robot.gait import SineGait
 from tests.lab.reduced import LONG
 
 STEP = 5e-4
@@ -46,3 +48,24 @@ def test_slides_beyond_the_grip(share, slides):
     _, wheels = pushed(Rig(LONG, mu=0.1), share * 0.1 * WEIGHT, 0.2)
     assert (np.abs(wheels) > 1e-2).all() == slides
     assert slides or (np.abs(wheels) < 1e-4).all()
+
+
+def test_sliding_wheels_carry_their_share_of_the_weight(monkeypatch):
+    plants, loads, of = [], [], Plant.of
+    monkeypatch.setattr(Plant, "of", lambda *given: plants.append(of(*given)) or plants[-1])
+
+    def look(_):
+        force, own = np.zeros(6), np.zeros(2)
+        data = plants[0].data
+        for n in range(data.ncon):
+            plants[0].mujoco.mj_contactForce(plants[0].model, data, n, force)
+            wheel = plants[0].model.geom(int(max(data.contact[n].geom))).name
+            own[int("2" in wheel)] += force[0]
+        loads.append(own)
+
+    drive(Rig(LONG, mu=0.02, laws=[look]), SineGait(0.6, 1.2, 0.2), Outing(3.0), STEP)
+    one, two = LONG.platform1, LONG.platform2
+    length = one.c + two.c
+    on1 = 9.81 * (one.m * (length - one.a) + two.m * two.a) / length
+    seen = np.array(loads)[len(loads) // 5 :] / [on1, WEIGHT - on1]
+    assert np.abs(np.quantile(seen, [0.05, 0.95], axis=0) - 1).max() < 0.03

@@ -2,18 +2,24 @@
 
 The side force is the one that held axles would take, as long as the slip is small; without creep
 and with much grip the robot moves as if it could not slip at all.
+Wheels that slide are held against their slip, whatever its direction: two equations for the force
+and the lag of a wheel, solved by bisection, are the second way to it.
 """
 
 from dataclasses import replace
 
+import casadi as ca
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
 
 from rr_opt.motion.integrator import cvodes
 from rr_opt.physics.assembly import values_of
 from rr_opt.physics.dynamics import dynamics_of
+from rr_opt.physics.effects import lateral_slip
 from rr_opt.physics.floor_motion import floor_motion
+from rr_opt.physics.kinematics import ROBOT_PARAMETERS, mechanism, robot_values
 from rr_opt.robot.gait import SineGait
 from rr_opt.robot.parameters import EffectUse
 from tests.robots import BENCHMARK
@@ -68,3 +74,43 @@ def motion_without_slip() -> np.ndarray:
     """x, y, psi at the end of the gait's period, of held axles."""
     _, psi, x, y, _ = cvodes(BENCHMARK, GAIT, 0.1, TIMES)[:, -1]
     return np.array([x, y, psi])
+
+
+def pushed(values, v, s1):
+    """Force (2, N) along and square to a wheel of platform 1 at speeds v, s1 (m/s), the robot
+    straight and without yaw."""
+    robot = mechanism()
+    symbols = {name: ca.SX.sym(name) for name in values}
+    changed = lateral_slip.EFFECT.enter(robot, symbols)
+    added = changed.forces[len(robot.forces)].vector
+    own = next(force for force in robot.forces if force.platform == 1).vector
+    given = [robot.phi, robot.speeds, *robot.parameters.values(), *symbols.values()]
+    force = ca.Function("force", given, [own + added])
+    # Axle 2 slips so that the joint's ends move alike and nothing turns.
+    at = [0.0, [v, s1, s1, 0.0], *robot_values(BENCHMARK), *values.values()]
+    return force(*at).full().ravel()
+
+
+@pytest.mark.parametrize("ratio", [0.5, 1.0])
+@pytest.mark.parametrize("mu", [0.01, 0.05])
+@pytest.mark.parametrize("slip", [3e-3, 0.05])
+def test_sliding_wheels_turn_more_slowly(ratio, mu, slip):
+    v, p = 0.3, dict(zip(ROBOT_PARAMETERS, robot_values(BENCHMARK), strict=True))
+    most = mu * float(lateral_slip.wheel_loads(p)[1])
+
+    def yields(u):
+        return np.sqrt(slip**2 + u**2 + lateral_slip.SMOOTHING_SPEED**2) / most
+
+    u = brentq(lambda u: ratio * p["k1"] * (v - ratio * u) - u / yields(u), 0.0, v / ratio)
+    along, square = pushed({"creep_compliance": 0.0, "mu": mu, "mu_ratio": ratio}, v, slip)
+    assert along == pytest.approx(-p["k1"] * (v - ratio * u), rel=0.01)
+    assert square == pytest.approx(-slip / yields(u), rel=0.01)
+    if ratio == 1.0:
+        # On the circle of friction.
+        assert np.hypot(along, square) <= 1.01 * most
+
+
+def test_rolling_is_as_it_was_where_only_the_side_force_is_limited():
+    k1 = dict(zip(ROBOT_PARAMETERS, robot_values(BENCHMARK), strict=True))["k1"]
+    along, _ = pushed({"creep_compliance": 0.0, "mu": 0.01, "mu_ratio": 0.0}, 0.3, 0.05)
+    assert along == pytest.approx(-0.3 * k1)

@@ -91,12 +91,24 @@ def explain(
         for found in itertools.product(*places)
     ]
     if len(each) == 1:
-        return solve(problem, each[0], nominal.starts, done=_NEAR)
+        return solve(problem, each[0], _starts(problem, each[0], nominal), done=_NEAR)
     best = min(
-        (solve(problem, v, nominal.starts, steps=_LOOK, done=_NEAR) for v in each),
+        (solve(problem, v, _starts(problem, v, nominal), steps=_LOOK, done=_NEAR) for v in each),
         key=lambda f: f.cost,
     )
     return best if best.converged else solve(problem, best.values, best.starts, done=_NEAR)
+
+
+def _starts(problem: Problem, values: Mapping[str, float], nominal: Fit) -> Mapping[Piece, Array]:
+    """The starts of the nominal fit, or, where they are worse with these values than without, those
+    that fit each piece by itself: one that goes astray takes all others with it."""
+    if problem.cost(values, nominal.starts)[0] <= nominal.cost:
+        return nominal.starts
+    out: dict[Piece, Array] = {}
+    for piece, start in nominal.starts.items():
+        alone = Problem(problem.model, (piece,), problem.effects, (), values)
+        out |= solve(alone, {}, {piece: start}, done=_NEAR).starts
+    return out
 
 
 def joined(model: Model, fit: Fit) -> Fit:

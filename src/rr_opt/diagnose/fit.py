@@ -21,6 +21,7 @@ from rr_opt.diagnose.model import Array, Model, Piece, Quantity
 from rr_opt.diagnose.normal import Normal, Quadratic, normal_of, total
 
 _DAMPINGS = (0.0, 1e-4, 1e-3, 1e-2, 1e-1, 1.0)
+_PARTS = (1.0, 0.6, 0.3, 0.1, 0.03, 0.01)
 _TRIES, _UPHILL = 4, 1e3
 _STRIDE = 3.0
 """A scaled quantity moves by no more in a step, an effect's by no more than that or twofold."""
@@ -120,13 +121,12 @@ class Problem:
         scale = np.array([q.scale for q in self.quantities])
         Jv = (by_value / sigma[:, :, None])[seen] * scale
         Js = (by_start / sigma[:, :, None])[seen]
+        within, begun = self.model.start_within, start
         if stray:
             # One more unknown of the run, of which it is known that it is 0 to within 1.
-            column = (self.model.stray(out.predicted) / sigma)[seen]
-            Js = np.block([[Js, column[:, None]], [np.zeros(Js.shape[1]), 1.0]])
-            Jv, r = np.vstack([Jv, np.zeros(Jv.shape[1])]), np.append(r[seen], 0.0)
-            return normal_of(r, Jv, Js)
-        return normal_of(r[seen], Jv, Js)
+            Js = np.column_stack([Js, (self.model.stray(out.predicted) / sigma)[seen]])
+            within, begun = np.append(within, 1.0), np.append(start, 0.0)
+        return normal_of(r[seen], Jv, Js, begun / within, 1 / within)
 
     def cost(self, values: Mapping[str, float], starts: Mapping[Piece, Array]) -> tuple[float, int]:
         """Chi-square of the data, infinite where the prediction leaves the numbers; their count."""
@@ -135,6 +135,7 @@ class Problem:
             r = self.residuals(piece, values, starts[piece])
             seen = np.isfinite(self.model.runs[piece.run].values[piece.span])
             total += float(np.sum(r[seen] ** 2))
+            total += float(np.sum((starts[piece] / self.model.start_within) ** 2))
             count += int(seen.sum())
         return (total if np.isfinite(total) else np.inf), count
 
@@ -188,7 +189,7 @@ def solve(
         else:
             normals = kept
         weight = doubt(best.cost, count)
-        trial = _stepped(problem, at, normals, weight, _DAMPINGS[damping])
+        trial = _stepped(problem, at, normals, weight, damping)
         before, after = best.total(weight), trial.total(weight)
         if after < before:
             best = at = trial
@@ -201,7 +202,7 @@ def solve(
                 break
         elif tries < _TRIES and after < _UPHILL * before:
             at, tries = trial, tries + 1
-        elif damping + 1 < len(_DAMPINGS) and problem.quantities:
+        elif damping + 1 < len(_DAMPINGS):
             at, tries, damping = best, 0, damping + 1
         else:
             converged = True
@@ -221,7 +222,7 @@ def solve(
 
 
 def _stepped(
-    problem: Problem, at: _Point, normals: Mapping[Piece, Normal], weight: float, damping: float
+    problem: Problem, at: _Point, normals: Mapping[Piece, Normal], weight: float, damping: int
 ) -> _Point:
     """The best point of the linearised problem, inside the box and not too far away."""
     u = scaled(problem.quantities, at.values)
@@ -229,9 +230,11 @@ def _stepped(
     whole = total(normals.values(), weight * problem.prior, u)
     reach = np.array([_reach(q, at.values[q.name]) for q in problem.quantities])
     near, far = np.maximum(low, u - reach), np.minimum(high, u + reach)
-    d = bounded_step(whole.H, whole.g, damping, u, near, far)
+    d = bounded_step(whole.H, whole.g, _DAMPINGS[damping], u, near, far)
     values = unscaled(problem.quantities, u + d)
-    starts = {one: at.starts[one] + n.shift + n.follow @ d for one, n in normals.items()}
+    # Starts alone are not damped but go a part of the way.
+    part = 1.0 if problem.quantities else _PARTS[damping]
+    starts = {one: at.starts[one] + part * (n.shift + n.follow @ d) for one, n in normals.items()}
     cost, _ = problem.cost(values, starts)
     return _Point(values, starts, cost, problem.beforehand(values))
 

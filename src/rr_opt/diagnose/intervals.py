@@ -1,9 +1,9 @@
 """How sure the fitted values are: 95 % intervals from the curvature of the cost.
 
 Noise is one part. Another is what no model of the machine has exactly, which is taken in as an
-unknown of every run. And where misfit is left, in the recordings that were fitted or in those that
-were not, its samples say the same for a second or two, and the intervals are wider by the root of
-`doubt`.
+unknown of every run, and what models of an effect do not agree on. And where misfit is left, in the
+recordings that were fitted or in those that were not, its samples say the same for a second or two,
+and the intervals are wider by the root of `doubt`.
 """
 
 from __future__ import annotations
@@ -38,6 +38,7 @@ def estimates(model: Model, fit: Fit, held: float = 0.0) -> Mapping[str, Estimat
     out = {}
     for q, s in zip(fit.quantities, spread, strict=True):
         value, half = fit.values[q.name], _Z * float(s) * q.scale
+        half = math.hypot(half, _Z * model.vague.get(q.name, 0.0) * value)
         half = half if math.isfinite(half) else math.inf
         out[q.name] = Estimate(value, max(value - half, q.low), min(value + half, q.high), q.unit)
     return out

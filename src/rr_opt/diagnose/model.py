@@ -183,6 +183,11 @@ class Model(Protocol):
         """Quantities of effects of which there are as many models as machines, none exact."""
         ...
 
+    @property
+    def vague(self) -> Mapping[str, float]:
+        """By what share of such a quantity's value those models differ in it, one sigma."""
+        ...
+
     def propose(self, name: str, form: int, fit: Fit) -> Sequence[Proposal]:
         """From where to look for an effect that jumps, beside a fit without it."""
         ...
@@ -193,6 +198,11 @@ class Model(Protocol):
 
     def start(self, piece: Piece) -> Array:
         """A first guess of the state in which a piece of a run starts."""
+        ...
+
+    @property
+    def start_within(self) -> Array:
+        """One sigma of each number of a start of which it is known that it is about 0, or inf."""
         ...
 
     def respond(

@@ -55,11 +55,18 @@ def total(parts: Iterable[Quadratic], prior: Array, u: Array) -> Quadratic:
     )
 
 
-def normal_of(r: Array, Jv: Array, Js: Array) -> Normal:
-    """Reduce r (n,), Jv (n, nv), Js (n, ns), all in sigmas."""
+def normal_of(r: Array, Jv: Array, Js: Array, begun: Array, known: Array) -> Normal:
+    """Reduce r (n,), Jv (n, nv), Js (n, ns), all in sigmas.
+
+    begun  (ns,) the start, in what is known of it; known (ns,) how much a unit of it is in that
+    """
     J = np.column_stack([Js, Jv, r])
     S = J.T @ J
     ns = Js.shape[1]
+    S[np.diag_indices(ns)] += known**2
+    S[:ns, -1] += known * begun
+    S[-1, :ns] += known * begun
+    S[-1, -1] += begun @ begun
     A = S[:ns, :ns]
     size = np.sqrt(np.maximum(np.diag(A), 1e-300))
     scaled = A / np.outer(size, size)

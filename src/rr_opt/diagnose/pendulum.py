@@ -12,6 +12,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from types import MappingProxyType
 
 import casadi as ca
 import numpy as np
@@ -53,6 +54,7 @@ class Pendulum:
     channels = ("angle",)
     inexact = 0.0
     rough: frozenset[str] = frozenset()
+    vague: Mapping[str, float] = MappingProxyType({})
     placed: frozenset[str] = frozenset()
     jumping = dear = frozenset(name for name, extra in EXTRAS.items() if not extra.smooth)
 
@@ -97,6 +99,11 @@ class Pendulum:
         early = (t - t[0] <= 0.1) & np.isfinite(angle)
         slope, at = np.polyfit(t[early] - t[0], angle[early], 1)
         return np.array([at, slope])
+
+    @property
+    def start_within(self) -> Array:
+        """Nothing is known."""
+        return np.full(2, np.inf)
 
     def respond(
         self,

@@ -81,7 +81,7 @@ def imagined(
     It starts from where the recorded runs did, in the middle of them.
     """
     first = np.nanmedian([data.values[:20, :2] for data in model.runs], axis=(0, 1))
-    start = np.array([*first, plan.heading, 0.0])
+    start = np.array([*first, plan.heading, 0.0, 0.0, 0.0])
     if plan.start == "running":
         start[3] = _settled(model, plan, values, effects, start)
     t = np.arange(round(plan.seconds * rate) + 1) / rate

@@ -17,7 +17,7 @@ from rr_opt.diagnose.model import Array, Piece
 from rr_opt.diagnose.pushed_motion import FURTHER, pushed_motion
 from rr_opt.diagnose.racer_protocol import Racer
 from rr_opt.diagnose.racer_quantities import values_by, values_of
-from rr_opt.diagnose.racer_state import state_of, v_of_z_by
+from rr_opt.diagnose.racer_state import by_start_of, state_of, v_of_z_by
 from rr_opt.diagnose.shoot import DrivePath, DriveSlopes, predict, slopes
 
 _ANGLE = 6
@@ -84,7 +84,7 @@ def respond(
         made.seen,
         by_value,
         out.by_parameter[:, :, n:],
-        out.by_start[:, :, : start.size],
+        by_start_of(out.by_start, start),
     )
 
 

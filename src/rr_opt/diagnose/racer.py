@@ -12,12 +12,13 @@ from rr_opt.diagnose.fit import Fit
 from rr_opt.diagnose.model import Array, Candidate, Data, Piece, Proposal, Quantity, Response
 from rr_opt.diagnose.racer_drive import Drives, drive_slopes, grain, lateness
 from rr_opt.diagnose.racer_kept import Kept
-from rr_opt.diagnose.racer_proposals import of_patch, of_servo, of_slip
+from rr_opt.diagnose.racer_proposals import of_patch, of_servo
 from rr_opt.diagnose.racer_quantities import candidate, nominal, uncertain, values_by, values_of
-from rr_opt.diagnose.racer_state import state_of, v_of_z_by
+from rr_opt.diagnose.racer_state import HELD, by_start_of, side_speeds, state_of, v_of_z_by
 from rr_opt.diagnose.racer_steps import drive_path, steps_of
 from rr_opt.diagnose.racer_system import driven
 from rr_opt.diagnose.shoot import DrivePath, DriveSlopes, slopes
+from rr_opt.diagnose.slip_proposals import of_slip
 from rr_opt.experiment.experiment import Experiment, Run
 from rr_opt.experiment.recording import CHANNELS
 from rr_opt.physics.effects import CATALOGUE, Setting
@@ -131,14 +132,21 @@ class RollerRacer:
         every = ((effect, q) for effect in CATALOGUE.values() for q in effect.parameters)
         return frozenset(f"{effect.name}.{q.name}" for effect, q in every if q.rough)
 
+    @property
+    def vague(self) -> Mapping[str, float]:
+        """How far such models differ in a quantity."""
+        every = ((effect, q) for effect in CATALOGUE.values() for q in effect.parameters)
+        return {f"{effect.name}.{q.name}": q.vague for effect, q in every if q.vague}
+
     def propose(self, name: str, form: int, fit: Fit) -> Sequence[Proposal]:
         """From where to look for an effect that jumps; see `racer_proposals`."""
         if CATALOGUE[name].family == "floor":
             if not self._mapped or self._mapped[0] is not fit:
                 self._mapped = fit, of_patch(self, fit)
             return self._mapped[1][form]
-        find = of_slip if CATALOGUE[name].stiff else of_servo
-        return find(self, name, self.catalogue[name].forms[form], fit)
+        if CATALOGUE[name].stiff:
+            return of_slip(self, name, form, fit)
+        return of_servo(self, name, self.catalogue[name].forms[form], fit)
 
     def twin(self, values: Mapping[str, float]) -> Mapping[str, float] | None:
         """The other way to see two halves of a floor: which is the usual, and which the patch.
@@ -159,17 +167,24 @@ class RollerRacer:
         return {**values, **other, **{name: factor * values[name] for name in own}}
 
     def start(self, piece: Piece) -> Array:
-        """x, y, psi as first recorded, and for z, which swings less than v, the mean of v."""
+        """x, y, psi as first recorded; for z, which swings less than v, the mean of v; side speeds
+        as they look in the first moments."""
         data = self.runs[piece.run]
         t, values = data.t[piece.span], data.values[piece.span]
         first = [column[np.isfinite(column)][0] for column in values.T[:3]]
         # The mean speed along the axis over the first period is near enough to begin with.
-        period = t - t[0] <= self.experiment.runs[piece.run].gait.period
+        run = self.experiment.runs[piece.run]
+        period = t - t[0] <= run.gait.period
         seen = values[period & np.isfinite(values[:, :3]).all(axis=1)]
         dx, dy = seen[-1, :2] - seen[0, :2]
         heading = seen[:, 2].mean()
         v = (dx * np.cos(heading) + dy * np.sin(heading)) / max(t[period][-1] - t[0], 1e-9)
-        return np.array([*first, v])
+        return np.array([*first, v, *side_speeds(self.experiment.robot, run.gait, t, values)])
+
+    @property
+    def start_within(self) -> Array:
+        """Side speeds of up to the robot's own."""
+        return np.array([*[np.inf] * HELD, *[self.setting.speed] * 2])
 
     def respond(
         self,
@@ -196,7 +211,7 @@ class RollerRacer:
         if motion.slips:
             # The start is given in z and the state holds v, which moves with what is asked.
             by_value = by_value + out.by_start[:, :, 3:4] * v_of_z_by(path, start, p, by, drive_by)
-        return Response(made.seen, by_value, out.by_start[:, :, : start.size])
+        return Response(made.seen, by_value, by_start_of(out.by_start, start))
 
     def every(self, effects: tuple[str, ...]) -> tuple[str, ...]:
         """The effects with those that the nominal robot has already, in the catalogue's order."""

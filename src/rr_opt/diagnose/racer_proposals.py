@@ -1,8 +1,8 @@
 """From where to look for the effects of a Roller Racer that jump, and what each promises.
 
 What the servo does shows in the joint's angle alone, which needs no dynamics: the values that fit
-the angle best are where to begin. A patch of other floor is looked for on a map of it. Slipping
-wheels are linearised where they slip.
+the angle best are where to begin. A patch of other floor is looked for on a map of it. For slipping
+wheels see `slip_proposals`.
 """
 
 from __future__ import annotations
@@ -15,11 +15,10 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from rr_opt.diagnose.explain import windows
-from rr_opt.diagnose.fit import Fit, Problem, bounded_step, box, doubt, scaled, solve
+from rr_opt.diagnose.fit import Fit, Problem, solve
 from rr_opt.diagnose.floor_map import floor_map
 from rr_opt.diagnose.floor_shapes import ROUND, STRAIGHT, likely
 from rr_opt.diagnose.model import Form, Proposal
-from rr_opt.diagnose.normal import total
 from rr_opt.diagnose.racer_protocol import Racer
 
 _TRIED = 14
@@ -58,24 +57,6 @@ def of_servo(model: Racer, name: str, form: Form, fit: Fit) -> Sequence[Proposal
     best = minimize_scalar(left, bounds=(low, high), method="bounded", options={"maxiter": 12})
     least, value = min((float(best.fun), float(best.x)), (found[k], float(values[k])))
     return [Proposal({q.name: value}, before - least)]
-
-
-def of_slip(model: Racer, name: str, form: Form, fit: Fit) -> Sequence[Proposal]:
-    """Where the form says, and what one step from there promises."""
-    quantities = (*fit.quantities, *form.quantities)
-    problem = Problem(model, tuple(fit.starts), (*fit.effects, name), quantities)
-    low, high = box(quantities)
-    prior = problem.prior * doubt(fit.cost, fit.count)
-    before = fit.cost + float(fit.prior @ fit.scaled**2)
-    found = []
-    for start in form.starts:
-        values = {**fit.values, **start}
-        parts = [problem.normal(piece, values, begin) for piece, begin in fit.starts.items()]
-        u = scaled(quantities, values)
-        whole = total(parts, prior, u)
-        d = bounded_step(whole.H, whole.g, 1e-9, u, np.maximum(low, u - 3), np.minimum(high, u + 3))
-        found.append(Proposal(start, before - whole.at(d)))
-    return found
 
 
 def of_patch(model: Racer, fit: Fit) -> tuple[Sequence[Proposal], Sequence[Proposal]]:

@@ -104,6 +104,7 @@ def linearised(
     """
     names = tuple(q.name for q in fit.quantities)
     scale = np.array([q.scale for q in fit.quantities])
+    within = model.start_within
     normals, count, cost = {}, 0, 0.0
     for piece, start in point.starts.items():
         data = model.runs[piece.run]
@@ -116,7 +117,13 @@ def linearised(
         by_value, by_push, by_start = (
             (part / sigma[:, :, None])[good] for part in (out.by_value, out.by_push, out.by_start)
         )
-        normals[piece] = normal_of(r[good], np.column_stack([by_value * scale, by_push]), by_start)
+        normals[piece] = normal_of(
+            r[good],
+            np.column_stack([by_value * scale, by_push]),
+            by_start,
+            start / within,
+            1 / within,
+        )
         count += int(good.sum())
         cost += float(r[good] @ r[good])
     added = point.amounts.size

@@ -21,6 +21,9 @@ WHEELS = ("1L", "1R", "2L", "2R")
 
 GRAVITY = 9.81
 
+GRIPS = 50.0
+"""The grip of wheels that never slide."""
+
 Shaper = Callable[[Array, Array], Array]
 """(times, angles the servo was to make) -> angles it makes; rad at equal steps, s."""
 
@@ -83,7 +86,7 @@ class Rig:
     J: list[float] = field(default_factory=lambda: [0.0] * 4)
     toe: list[float] = field(default_factory=lambda: [0.0, 0.0])
     left: list[float] = field(default_factory=lambda: [0.0, 0.0])
-    mu: float = 50.0
+    mu: float = GRIPS
     creep: float = 0.0
     tilt: tuple[float, float] = (0.0, 0.0)
     play: float = 0.0

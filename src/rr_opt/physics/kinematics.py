@@ -29,7 +29,7 @@ the joint gives, in its direction alone,
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 import casadi as ca
@@ -84,19 +84,24 @@ class Rotor:
     rate: ca.SX
 
 
+def _nothing(_: ca.SX) -> ca.SX:
+    return ca.SX(0)
+
+
 @dataclass(frozen=True)
 class Wheel:
     """A wheel of platform 1 or 2, on its left (+1) or right (-1), at a point (2, m) of it.
 
-    direction (2,) is the unit vector along which it rolls, in the platform's axes, and `resistance`
-    (N along it) what comes of its rolling on this floor: another floor makes more or less of it.
+    direction (2,) is the unit vector along which it rolls, in the platform's axes, and `resists`
+    tells, of the speed (m/s) at which it rolls, the force (N along it) that comes of its rolling
+    on this floor: another floor makes more or less of it.
     """
 
     platform: int
     side: int
     point: ca.SX
     direction: ca.SX
-    resistance: ca.SX = field(default_factory=lambda: ca.SX(0))
+    resists: Callable[[ca.SX], ca.SX] = _nothing
 
 
 @dataclass(frozen=True)
@@ -216,11 +221,12 @@ Law = Callable[[Wheel, ca.SX], ca.SX]
 
 def with_resistance(mechanism: Mechanism, law: Law) -> Mechanism:
     """Add at every wheel a rolling force that comes of its rolling on this floor."""
-    wheels = tuple(
-        replace(wheel, resistance=wheel.resistance + law(wheel, mechanism.rolling_speed(wheel)))
-        for wheel in mechanism.wheels
-    )
+    wheels = tuple(replace(wheel, resists=_both(wheel, law)) for wheel in mechanism.wheels)
     return replace(with_wheel_forces(mechanism, law), wheels=wheels)
+
+
+def _both(wheel: Wheel, law: Law) -> Callable[[ca.SX], ca.SX]:
+    return lambda u: wheel.resists(u) + law(wheel, u)
 
 
 def with_wheel_forces(mechanism: Mechanism, law: Law) -> Mechanism:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
@@ -21,7 +22,8 @@ def _lag(rig: Rig, values: Values) -> None:
         from scipy.signal import cont2discrete, lfilter  # noqa: PLC0415  takes a second
 
         system = [1.0], [beta, tau, 1.0] if beta else [tau, 1.0]
-        above, below, _ = cont2discrete(system, t[1] - t[0], method="foh")
+        discrete: Any = cont2discrete(system, t[1] - t[0], method="foh")
+        above, below = discrete[:2]
         return np.asarray(lfilter(above[0], below, angle - angle[0])) + angle[0]
 
     rig.shapers.append(follow)

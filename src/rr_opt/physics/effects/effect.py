@@ -41,6 +41,7 @@ class Parameter:
              not zero): more than one where the way from the first may lead nowhere
     placed   where to look for it is told by the recordings alone
     rough    there are as many models of it as machines
+    vague    and by such a share of its value, one sigma, do they differ in it
     least    a fit goes no lower, as the effect turns into another there
     most     nor higher than this, for a given robot and what was asked of it
     """
@@ -55,6 +56,7 @@ class Parameter:
     trials: tuple[float, ...] = (0.05,)
     placed: bool = False
     rough: bool = False
+    vague: float = 0.0
     least: float = -math.inf
     most: Callable[[Setting], float] | None = None
 

@@ -15,14 +15,14 @@ from collections.abc import Mapping
 import casadi as ca
 
 from rr_opt.physics.effects.effect import Effect, Parameter, Port, Setting
-from rr_opt.physics.kinematics import Mechanism, Wheel, with_wheel_forces
+from rr_opt.physics.kinematics import Mechanism, Wheel, with_resistance
 
 BORDER = 0.005
 """Over which the drag changes, m."""
 
 
 def _enter(mechanism: Mechanism, values: Mapping[str, ca.SX]) -> Mechanism:
-    def law(wheel: Wheel, _: ca.SX) -> ca.SX:
+    def law(wheel: Wheel, u: ca.SX) -> ca.SX:
         place = mechanism.on_floor(wheel.platform, wheel.point)
         from_centre = place - ca.vertcat(values["x"], values["y"])
         distance = ca.sqrt(ca.sumsqr(from_centre) + BORDER**2 / 100)
@@ -30,9 +30,9 @@ def _enter(mechanism: Mechanism, values: Mapping[str, ca.SX]) -> Mechanism:
         beyond = ca.dot(place - ca.vertcat(values["edge_x"], values["edge_y"]), into)
         depth = ca.if_else(values["radius"] > 0, values["radius"] - distance, beyond)
         inside = (1 + ca.tanh(depth / BORDER)) / 2
-        return wheel.resistance * (values["multiplier"] - 1) * inside
+        return wheel.resists(u) * (values["multiplier"] - 1) * inside
 
-    return with_wheel_forces(mechanism, law)
+    return with_resistance(mechanism, law)
 
 
 def _near(setting: Setting) -> float:
