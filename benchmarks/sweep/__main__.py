@@ -16,7 +16,7 @@ for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
 
 def main(quick: bool) -> None:
     from benchmarks.results import machine, write  # noqa: PLC0415
-    from benchmarks.sweep import both_cores, cold, page  # noqa: PLC0415
+    from benchmarks.sweep import both_cores, cold, page, profiled  # noqa: PLC0415
     from benchmarks.sweep.case import plane, space  # noqa: PLC0415
     from benchmarks.sweep.measure import measured  # noqa: PLC0415
     from benchmarks.sweep.ways import WAYS  # noqa: PLC0415
@@ -42,7 +42,9 @@ def main(quick: bool) -> None:
                 starts[way.name][friction] = cold.seconds(way, friction)
     busy = both_cores.lines(cases["viscous, four dimensions"], 3)
     busy += both_cores.lines(cases["dry friction, alpha and T"], 3)
-    lines, ratios = page.written(machine(), cases, found, starts, busy)
+    nonlinear = {label: work for label, work in cases.items() if work.friction != "viscous"}
+    uncompiled = profiled.lines(nonlinear)
+    lines, ratios = page.written(machine(), cases, found, starts, busy, uncompiled)
     print("\n".join(lines))
     if not quick:
         write("sweep", lines, ratios)
