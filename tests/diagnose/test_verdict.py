@@ -1,7 +1,10 @@
 """What held-out recordings say counts only beyond what any model of the machine is off by."""
 
+from dataclasses import replace
+
 import pytest
 
+from rr_opt.diagnose.explain import Chosen
 from rr_opt.diagnose.verdict import verdict_of
 from tests.diagnose.made_up import base_of, with_effect
 
@@ -23,3 +26,18 @@ def base():
 def test_without_effects(base, held, inexact, verdict):
     flags = {"moved": False, "rough": False, "systematic": False}
     assert verdict_of(base, base, 0.0, (held, held), inexact, **flags) == verdict
+
+
+@pytest.mark.parametrize(
+    ("held", "inexact", "verdict"),
+    [
+        (0.45, 2.0, "missing_physics"),
+        (0.45, 0.0, "unexplained"),
+        # What was fitted is at the noise: it is not the machine that no model has exactly.
+        (1.8, 2.0, "unexplained"),
+    ],
+)
+def test_with_effects(base, held, inexact, verdict):
+    best = replace(base, chosen=(Chosen("floor_tilt"),))
+    flags = {"moved": False, "rough": False, "systematic": False}
+    assert verdict_of(best, base, 5.0, (4.0, held), inexact, **flags) == verdict

@@ -20,6 +20,10 @@ NEAR, SHARE_OF_NOMINAL = 0.5, 0.05
 """Where the held-out recordings are predicted to within the first, RMS in sigma beyond the noise,
 the second share is enough of the misfit of the model as believed, which parameters imitate."""
 
+_ALIKE = 3.0
+"""Recordings that were fitted are as inexact as those that were not: of these no more than so many
+times what is left of the others, RMS, is put down to that."""
+
 _LIKELY = 2.33
 """Noise reaches so many standard deviations once in a hundred."""
 
@@ -50,7 +54,8 @@ def verdict_of(
         if left > FLOOR or held[0] > max(LEFT, inexact):
             return "unexplained"
         return "parameters" if moved and nominal > max(FLOOR, inexact) else "consistent"
-    apart = held[1] if held[1] > inexact else 0.0
+    excused = min(inexact, max(NEAR, _ALIKE * rms(best.misfit)))
+    apart = held[1] if held[1] > excused else 0.0
     left = max(certain(best.misfit, best.whole.count), apart)
     before = max(rms(base.misfit), held[0])
     explained = left <= max(LEFT, (SHARE_OF_ROUGH if rough else SHARE) * before)
