@@ -45,7 +45,7 @@ CURVE = {f"force{k}": force for k, force in enumerate((0.03, 0.0, 0.03, 0.0, 0.0
 HIDDEN: dict[str, tuple[str, dict[str, float]]] = {
     "nothing": ("", {}),
     "dry friction": ("coulomb_friction", {"force1": 0.002, "force2": 0.001}),
-    "slipping wheels": ("lateral_slip", {"creep_compliance": 0.02}),
+    "slipping wheels": ("lateral_slip", {"mu": 0.03}),
     "no name": ("rolling_force_curve", CURVE | {"speed": 0.12}),
 }
 WAYS = ("compiled before", "compiled now", "no compiler")
@@ -99,7 +99,7 @@ def record(folder: Path, effect: str, values: dict[str, float]) -> None:
     told = []
     for k, gait in enumerate(GAITS):
         given = {f"{effect}.{key}": value for key, value in values.items()}
-        start = np.array([0.0, 0.0, 0.7 * k, 0.05])
+        start = np.array([0.0, 0.0, 0.7 * k, 0.05, 0.0, 0.0])
         effects = (effect,) if effect else ()
         clean = model.respond(Piece(k, 0, t.size), given, effects, start).predicted
         noisy = clean + rng.normal(size=clean.shape) * [NOISE.of(name) for name in CHANNELS]

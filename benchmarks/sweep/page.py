@@ -15,7 +15,7 @@ GOALS = {OURS.name: 500_000, PLAIN.name: 120_000}
 
 _FLOOR = (
     "An operation here is NumPy's pass over arrays: it reads one or two and writes one, 16 to 24 "
-    "bytes a value, which at 0.5 to 0.7 ns is about what the processor's cache delivers. So the "
+    "bytes a value, at this rate about what the processor's cache delivers. So the "
     "evaluations, half of the time, are at their floor, and fewer of them, or several operations "
     "on a value while it is in a register, would be needed to get to Numba's rate. The second is "
     "what a compiler does: with one the same method is ahead of Numba in all four cases. Numba "
