@@ -13,6 +13,7 @@ from typing import Any
 from joblib import cpu_count
 from joblib.externals.loky import ProcessPoolExecutor
 
+from rr_opt.batch.held_back import held_back
 from rr_opt.batch.threads import ONE_THREAD
 
 _LOOK = 1.0  # s
@@ -38,13 +39,10 @@ class LocalPool:
 
     def submit(self, function: Callable[[Any], Any], argument: Any) -> Future[Any]:
         """Have function(argument) computed."""
-        # Ctrl-C in the middle would leave work behind that nobody knows of.
-        before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-        try:
+        # An interrupt in the middle would leave work behind that nobody knows of.
+        with held_back(signal.SIGINT, signal.SIGTERM):
             future = self._executor.submit(function, argument)
             self._given = {one for one in self._given if not one.done()} | {future}
-        finally:
-            signal.pthread_sigmask(signal.SIG_SETMASK, before)
         return future
 
     def is_lost(self, error: BaseException) -> bool:  # noqa: ARG002 - as every pool
