@@ -22,10 +22,11 @@ from scipy.signal import butter, sosfiltfilt
 from rr_opt.diagnose.diagnose import diagnose
 from rr_opt.diagnose.diagnosis import Misfit
 from rr_opt.diagnose.explain import whole
-from rr_opt.diagnose.fit import Fit, Problem, solve
+from rr_opt.diagnose.fit import Fit, solve
 from rr_opt.diagnose.intervals import estimates
 from rr_opt.diagnose.model import Piece
 from rr_opt.diagnose.pendulum import Pendulum, Swing
+from rr_opt.diagnose.problem import Problem
 from rr_opt.experiment.experiment import Uncertainty
 from rr_opt.outcome import InputError
 from rr_opt.report.archive import write_json, write_text

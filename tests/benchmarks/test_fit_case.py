@@ -18,7 +18,7 @@ def of_model(run, p):
     model = RollerRacer(ours._experiment(case(), TRUE))
     given = model.nominal | dict(zip(PARAMETERS, p.tolist(), strict=True))
     whole = Piece(run, 0, len(model.runs[run].t))
-    path = model.drive_path(whole, given, ())
+    path = model.simulated.drive_path(whole, given, ())
     own = floor_motion()
     values = values_of(given, own.parameters)
     # The state holds z = v - g dphi: with z = 0, v is what dphi alone makes.

@@ -13,10 +13,10 @@ FRICTION = {"coulomb_friction.force1": 0.003, "coulomb_friction.force2": 0.001}
 TILT = {"floor_tilt.tilt_x": 0.002, "floor_tilt.tilt_y": 0.0}
 
 
-def told(fitted, held_out):
+def told(fitted, held_out, **about):
     """Dry friction fitted to some runs, and then to the others too."""
     others = [replace(run, use="holdout") for run in held_out]
-    every = with_effect({}, ()).experiment
+    every = with_effect({}, (), **about).experiment
     few = RollerRacer(replace(every, runs=tuple(fitted)))
     model = RollerRacer(replace(every, runs=(*fitted, *others)))
     best = explained(few, base_of(few), Chosen("coulomb_friction"))
@@ -25,8 +25,8 @@ def told(fitted, held_out):
 
 
 def test_what_one_recording_left_open():
-    runs = with_effect(FRICTION, ("coulomb_friction",)).experiment.runs
-    fit, level = told(runs[:1], runs[1:])
+    runs = with_effect(FRICTION, ("coulomb_friction",), seconds=2.0).experiment.runs
+    fit, level = told(runs[:1], runs[1:], seconds=2.0)
     assert level.held() ** 2 - 1 > 1.0
     assert fit is not None
     assert misfit(fit) < 0.05

@@ -8,7 +8,9 @@ import pytest
 
 from rr_opt.diagnose import shoot
 from rr_opt.diagnose.compiled import found
-from rr_opt.diagnose.shoot import DriveSlopes, predict, slopes
+from rr_opt.diagnose.gram import Asked, Recorded, grams
+from rr_opt.diagnose.linear import DriveSlopes
+from rr_opt.diagnose.shoot import DrivePath, predict_all
 from rr_opt.physics.assembly import values_of
 from rr_opt.physics.floor_motion import floor_motion
 from tests.diagnose.test_slopes import CASES
@@ -24,53 +26,81 @@ def own_cache(tmp_path, monkeypatch):
     return tmp_path / "rr-opt"
 
 
-def both(system, drive, start, p):
-    """Prediction and derivatives, by p and by what moves the drive: compiled if that pays."""
-    wanted = np.random.default_rng(1).normal(size=(p.size, 3)) * (np.arange(3) != 1)
+def both(system, drives, starts, p):
+    """Predictions, and J'J by p and by what moves the drive: compiled if that pays."""
     rng = np.random.default_rng(2)
-    moved = DriveSlopes(
-        rng.normal(size=(*drive.at.shape, 3)), rng.normal(size=(*drive.nodes[:, 1].shape, 3))
+    made = predict_all(
+        system, [(drive, start, p) for drive, start in zip(drives, starts, strict=True)]
     )
-    made = predict(system, drive, start, p)
-    return made, slopes(system, drive, made, p, wanted, moved), slopes(
-        system, drive, made, p, wanted, None
-    )  # fmt: skip
+    asked, still = [], []
+    for drive, one in zip(drives, made, strict=True):
+        wanted = rng.normal(size=(p.size, 3)) * (np.arange(3) != 1)
+        moved = DriveSlopes(
+            rng.normal(size=(*drive.at.shape, 3)) * (np.arange(3) != 0),
+            rng.normal(size=(*drive.nodes.shape, 3)) * (np.arange(3) != 0),
+        )
+        values = one.seen + rng.normal(size=one.seen.shape)
+        values[rng.uniform(size=values.shape) < 0.2] = np.nan
+        recorded = Recorded.of(values, rng.uniform(0.5, 2.0, values.shape))
+        more = rng.normal(size=(*values.shape, 1))
+        asked.append(Asked(drive, one, p, wanted, moved, recorded, more))
+        still.append(replace(asked[-1], drive_by=None, more=None))
+    return made, grams(system, asked), grams(system, still)
+
+
+def shorter(drive, samples):
+    steps = (samples - 1) * drive.each
+    return DrivePath(drive.h[:steps], drive.nodes[:, :, :steps], drive.at[:, :samples], drive.each)
 
 
 @needs_compiler
 @pytest.mark.parametrize("name", CASES)
 def test_the_same_numbers(name, monkeypatch, own_cache):
     system, drive, start, p, _ = CASES[name]
-    start = np.array(start)
     p = values_of(BENCHMARK, floor_motion().parameters) if p is None else np.array(p)
-    plain, *plain_slopes = both(system, drive, start, p)
+    # More runs than there are lanes, of different lengths.
+    drives = [shorter(drive, samples) for samples in (101, 60, 101, 33, 80, 101, 101, 2, 50, 101)]
+    starts = [np.array(start) + 0.01 * k for k in range(len(drives))]
+    plain = both(system, drives, starts, p)
     monkeypatch.setattr(shoot, "_FEW", 0)
     monkeypatch.setattr(shoot, "_PAYS", 0)
-    fast, *fast_slopes = both(replace(system, lasts=True), drive, start, p)
+    fast = both(replace(system, lasts=True), drives, starts, p)
     assert list(own_cache.glob("*.so"))
-    np.testing.assert_allclose(fast.states, plain.states, rtol=1e-12, atol=1e-14)
-    np.testing.assert_allclose(fast.seen, plain.seen, rtol=1e-12, atol=1e-14)
-    for mine, other in zip(fast_slopes, plain_slopes, strict=True):
-        for a, b in (
-            (mine.by_parameter, other.by_parameter),
-            (mine.by_start, other.by_start),
-        ):
-            np.testing.assert_allclose(a, b, atol=1e-11 * np.abs(b).max())
+    for mine, other in zip(fast[0], plain[0], strict=True):
+        np.testing.assert_allclose(mine.states, other.states, rtol=1e-12, atol=1e-14)
+        np.testing.assert_allclose(mine.seen, other.seen, rtol=1e-12, atol=1e-14)
+    for fast_grams, plain_grams in zip(fast[1:], plain[1:], strict=True):
+        for a, b in zip(fast_grams, plain_grams, strict=True):
+            size = np.sqrt(np.diag(b))
+            np.testing.assert_allclose(a, b, atol=1e-11 * np.outer(size, size).max())
+
+
+@needs_compiler
+def test_steps_of_different_length_side_by_side(monkeypatch):
+    system, drive, start, p, _ = CASES["fine"]
+    one, p = CASES["smooth"][1], np.array(p)
+    drives, starts = [drive, one, drive], [np.array(start)] * 3
+    plain = both(system, drives, starts, p)
+    monkeypatch.setattr(shoot, "_FEW", 0)
+    monkeypatch.setattr(shoot, "_PAYS", 0)
+    fast = both(replace(system, lasts=True), drives, starts, p)
+    for a, b in zip(fast[1], plain[1], strict=True):
+        np.testing.assert_allclose(a, b, atol=1e-11 * np.abs(b).max())
 
 
 @needs_compiler
 def test_what_does_not_compile_is_done_without(own_cache):
-    assert found("this is not C", (1, 1, 1, 1), make=True) is None
+    assert found("this is not C", 1, 1, make=True) is None
     assert not list(own_cache.iterdir())
 
 
 def test_without_a_compiler(monkeypatch):
     monkeypatch.setenv("CC", "no-such-compiler")
-    assert found("int x;", (1, 1, 1, 1), make=True) is None
+    assert found("int x;", 1, 1, make=True) is None
 
 
 @needs_compiler
 def test_a_cache_that_cannot_be_written_is_done_without(tmp_path, monkeypatch):
     (tmp_path / "file").touch()
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
-    assert found("int x;", (1, 1, 1, 1), make=True) is None
+    assert found("int x;", 1, 1, make=True) is None

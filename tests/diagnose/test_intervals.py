@@ -31,7 +31,7 @@ def test_that_is_half_a_thousandth_of_the_way(fitted):
     model, fit = fitted
     piece = next(iter(fit.starts))
     path = model.respond(piece, fit.values, (), fit.starts[piece]).predicted
-    off = model.stray(path)
+    off = model._stray(path)
     assert np.hypot(*off[-1, :2]) == pytest.approx(
         5e-4 * np.hypot(*(path[-1, :2] - path[0, :2])), rel=1e-9
     )

@@ -8,10 +8,11 @@ import pytest
 
 from rr_opt.diagnose.contest import Contest, as_rival
 from rr_opt.diagnose.explain import Chosen
-from rr_opt.diagnose.fit import Problem, doubt, solve
+from rr_opt.diagnose.fit import solve
 from rr_opt.diagnose.model import Piece
 from rr_opt.diagnose.next_experiment import next_experiment
 from rr_opt.diagnose.plans import Plan, allowed, gaits, imagined
+from rr_opt.diagnose.problem import Problem, doubt
 from rr_opt.diagnose.racer import RollerRacer
 from rr_opt.robot.gait import SineGait
 from tests.diagnose.made_up import ROBOT, base_of, explained, with_effect

@@ -8,7 +8,8 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from rr_opt.diagnose.shoot import DrivePath, System, predict, slopes
+from rr_opt.diagnose.linear import slopes
+from rr_opt.diagnose.shoot import DrivePath, System, predict
 from rr_opt.physics.assembly import values_of
 from rr_opt.physics.floor_motion import floor_motion
 from rr_opt.robot.gait import SineGait
@@ -54,10 +55,10 @@ def path(rows: int, each: int) -> DrivePath:
 
 
 CASES = {
-    "smooth": (pendulum(), path(2, 1), [0.4, -0.2], [9.0, 0.3], 1e-5),
-    "fine": (pendulum(), path(2, 4), [0.4, -0.2], [9.0, 0.3], 1e-3),
+    "smooth": (pendulum(), path(2, 1), [0.4, -0.2], [9.0, 0.3], 1e-8),
+    "fine": (pendulum(), path(2, 4), [0.4, -0.2], [9.0, 0.3], 1e-8),
     "stiff": (stiff(), path(3, 4), [0.4, 0.1], [0.5, 0.7], 2e-2),
-    "racer": (racer(), path(2, 1), [0.1, 0.2, 0.3, 0.05], None, 1e-4),
+    "racer": (racer(), path(2, 1), [0.1, 0.2, 0.3, 0.05], None, 1e-7),
 }
 
 

@@ -52,7 +52,7 @@ def test_as_casadi(function, flags, tmp_path, monkeypatch):
     later, first, out = function.numel_in(0), function.numel_in(1), function.numel_out(0)
     sizes = {"NP": first, "N0": first, "N1": later, "NY": out, "NK0": stages.kept[0]}
     head = "".join(f"#define {name} {size}\n" for name, size in sizes.items())
-    lanes = files("rr_opt").joinpath("data", "sweep_lanes.c").read_text(encoding="utf-8")
+    lanes = files("rr_opt").joinpath("data", "lanes.c").read_text(encoding="utf-8")
     source = head + lanes + stages.source + LOOP
     made = library(source, (*flags, "-fPIC", "-shared"), make=True)
     assert made

@@ -79,10 +79,11 @@ def _library(affine: ca.Function, torque: ca.Function, *, make: bool) -> ctypes.
         )
     except NotImplementedError:
         return None
-    lanes, loop = (
+    lanes, points, loop = (
         files("rr_opt").joinpath("data", f"{name}.c").read_text(encoding="utf-8")
-        for name in ("sweep_lanes", "landscape")
+        for name in ("lanes", "gait_points", "landscape")
     )
     head = f"#define NP {affine.nnz_in(3)}\n"
     head += f"#define NK_AFFINE {lines.kept[0]}\n#define NK_TORQUE {load.kept[0]}\n"
-    return library("".join([head, lanes, lines.source, load.source, loop]), _FLAGS, make=make)
+    parts = [head, lanes, points, lines.source, load.source, loop]
+    return library("".join(parts), _FLAGS, make=make)

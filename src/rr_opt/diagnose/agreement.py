@@ -12,8 +12,9 @@ from collections.abc import Mapping
 from scipy.stats import chi2
 
 from rr_opt.diagnose.explanation import Explanation
-from rr_opt.diagnose.fit import Fit, Problem, doubt, solve
+from rr_opt.diagnose.fit import Fit, solve
 from rr_opt.diagnose.model import Array, Model, Piece
+from rr_opt.diagnose.problem import Problem, doubt
 
 _CHANCE = 1e-3
 """Of values that are right to lie so far from those fitted first."""

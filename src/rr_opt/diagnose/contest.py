@@ -15,9 +15,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from rr_opt.diagnose.explanation import Explanation
-from rr_opt.diagnose.fit import Problem, bounded_step, box, scaled, unscaled
 from rr_opt.diagnose.model import Array, Piece, Quantity
+from rr_opt.diagnose.normal import bounded_step
 from rr_opt.diagnose.plans import Imagined, Plan, imagined
+from rr_opt.diagnose.problem import Problem, box, scaled, unscaled
 from rr_opt.diagnose.racer import RollerRacer
 
 RANKED_RATE, _CHECKED_RATE = 25.0, 100.0

@@ -8,8 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rr_opt.diagnose.fit import Fit, Problem, solve
+from rr_opt.diagnose.fit import Fit, solve
 from rr_opt.diagnose.model import Array, Form, Model, Piece
+from rr_opt.diagnose.problem import Problem
+from rr_opt.diagnose.starts import fit_starts
 
 _LONG_WAY = 1.5
 """Mean square in sigma: above it over whole runs, and below it in windows, is a long way."""
@@ -52,7 +54,7 @@ class Chosen:
 def nominal(model: Model, pieces: Sequence[Piece]) -> Fit:
     """The model as it is believed to be: the starts alone are fitted, each piece on its own."""
     problem = Problem(model, pieces, (), ())
-    return solve(problem, {}, {piece: model.start(piece) for piece in pieces})
+    return fit_starts(problem, {piece: model.start(piece) for piece in pieces})
 
 
 def parameters(model: Model, start: Fit) -> Fit:
@@ -104,11 +106,8 @@ def _starts(problem: Problem, values: Mapping[str, float], nominal: Fit) -> Mapp
     that fit each piece by itself: one that goes astray takes all others with it."""
     if problem.cost(values, nominal.starts)[0] <= nominal.cost:
         return nominal.starts
-    out: dict[Piece, Array] = {}
-    for piece, start in nominal.starts.items():
-        alone = Problem(problem.model, (piece,), problem.effects, (), values)
-        out |= solve(alone, {}, {piece: start}, done=_NEAR).starts
-    return out
+    alone = Problem(problem.model, problem.pieces, problem.effects, (), values)
+    return fit_starts(alone, nominal.starts, done=_NEAR).starts
 
 
 def joined(model: Model, fit: Fit) -> Fit:
@@ -124,6 +123,10 @@ def joined(model: Model, fit: Fit) -> Fit:
         between = solve(problem, fit.values, near.starts, steps=12, done=_NEAR)
         far = _alone(model, between, len(between.starts))
         fit = between
+    if not fit.quantities:
+        return fit_starts(
+            Problem(model, tuple(far.starts), fit.effects, (), fit.values), far.starts
+        )
     problem = Problem(model, tuple(far.starts), fit.effects, fit.quantities)
     return solve(problem, fit.values, far.starts, steps=40)
 
@@ -138,4 +141,4 @@ def _alone(model: Model, fit: Fit, most: int) -> Fit:
             one = Piece(run, together[0].first, together[-1].last)
             starts[one] = fit.starts[together[0]]
     problem = Problem(model, tuple(starts), fit.effects, (), fit.values)
-    return solve(problem, {}, starts, steps=4)
+    return fit_starts(problem, starts, steps=4)

@@ -9,7 +9,8 @@ import numpy as np
 from scipy.stats import chi2
 
 from rr_opt.diagnose.explain import Chosen
-from rr_opt.diagnose.fit import Fit, scaled
+from rr_opt.diagnose.fit import Fit
+from rr_opt.diagnose.problem import scaled
 
 _UNSEEN = 1e-3
 """Chi-square that says nothing of a quantity: of where along an edge a point of it is."""

@@ -11,9 +11,10 @@ import numpy as np
 
 from rr_opt.diagnose.explain import joined
 from rr_opt.diagnose.explanation import Explanation
-from rr_opt.diagnose.fit import Fit, Problem, solve
+from rr_opt.diagnose.fit import Fit, solve
 from rr_opt.diagnose.model import Quantity
 from rr_opt.diagnose.observed import observed
+from rr_opt.diagnose.problem import Problem
 from rr_opt.diagnose.racer import RollerRacer
 from rr_opt.physics.effects.rolling_force_curve import EFFECT
 

@@ -12,9 +12,10 @@ import numpy as np
 from rr_opt.diagnose.agreement import together
 from rr_opt.diagnose.explain import joined, nominal, parameters, windows
 from rr_opt.diagnose.explanation import Explanation, misfit, rms
-from rr_opt.diagnose.fit import Fit, Problem, solve
+from rr_opt.diagnose.fit import Fit, solve
 from rr_opt.diagnose.level import Level, level_of
 from rr_opt.diagnose.model import Model
+from rr_opt.diagnose.problem import Problem
 from rr_opt.diagnose.search import Search
 from rr_opt.diagnose.values import settled
 from rr_opt.diagnose.verdict import LEFT, NEAR

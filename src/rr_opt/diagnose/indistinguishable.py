@@ -22,9 +22,10 @@ from scipy.optimize import lsq_linear
 
 from rr_opt.diagnose.explain import Chosen, explain, joined
 from rr_opt.diagnose.explanation import FLOOR, Explanation
-from rr_opt.diagnose.fit import Fit, Problem, box, doubt, scaled
+from rr_opt.diagnose.fit import Fit
 from rr_opt.diagnose.model import Array, Model, Quantity
 from rr_opt.diagnose.normal import total
+from rr_opt.diagnose.problem import Problem, box, doubt, scaled
 from rr_opt.diagnose.screen import every, linear
 from rr_opt.diagnose.search import Search
 from rr_opt.diagnose.values import wrong
@@ -181,7 +182,7 @@ class _Pass:
         quantities = (*fit.quantities, *added)
         values = {q.name: q.neutral for q in added} | dict(fit.values)
         problem = Problem(model, tuple(fit.starts), effects, quantities)
-        normals = [problem.normal(piece, values, start) for piece, start in fit.starts.items()]
+        normals = problem.normals(values, fit.starts).values()
         moved = np.array([(values[q.name] - q.neutral) / q.scale for q in quantities])
         low, high = box(quantities)
         u = scaled(quantities, values)

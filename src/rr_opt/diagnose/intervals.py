@@ -14,9 +14,10 @@ from collections.abc import Mapping
 import numpy as np
 
 from rr_opt.diagnose.diagnosis import Estimate
-from rr_opt.diagnose.fit import Fit, Problem, doubt
+from rr_opt.diagnose.fit import Fit
 from rr_opt.diagnose.model import Array, Model
 from rr_opt.diagnose.normal import total
+from rr_opt.diagnose.problem import Problem, doubt
 
 _Z = 1.959963984540054
 
@@ -30,7 +31,7 @@ def covariance(fit: Fit) -> Array:
 def estimates(model: Model, fit: Fit, held: float = 0.0) -> Mapping[str, Estimate]:
     """Every fitted quantity with its interval; `held` is the misfit of recordings held out."""
     problem = Problem(model, tuple(fit.starts), fit.effects, fit.quantities)
-    normals = [problem.normal(p, fit.values, fit.starts[p], stray=True) for p in problem.pieces]
+    normals = problem.normals(fit.values, fit.starts, stray=True).values()
     wider = max(doubt(fit.cost, fit.count), doubt(1.0 + held, 1))
     prior = wider * np.array([float(q.known) for q in fit.quantities])
     H = total(normals, prior, fit.scaled).H

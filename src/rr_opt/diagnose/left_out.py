@@ -6,8 +6,9 @@ the others would have given; at these, with a start of its own, the run is what 
 
 from __future__ import annotations
 
-from rr_opt.diagnose.fit import Fit, bounded_step, box
-from rr_opt.diagnose.normal import total
+from rr_opt.diagnose.fit import Fit
+from rr_opt.diagnose.normal import bounded_step, total
+from rr_opt.diagnose.problem import box
 
 
 def left_out(fit: Fit) -> float:

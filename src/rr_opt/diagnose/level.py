@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,9 +11,11 @@ import numpy as np
 from rr_opt.diagnose.diagnosis import Misfit
 from rr_opt.diagnose.explain import whole
 from rr_opt.diagnose.explanation import certain
-from rr_opt.diagnose.fit import Fit, Problem, solve
+from rr_opt.diagnose.fit import Fit
 from rr_opt.diagnose.left_out import left_out
 from rr_opt.diagnose.model import Array, Model, Piece
+from rr_opt.diagnose.problem import Problem
+from rr_opt.diagnose.starts import fit_starts
 
 _POOR = 1.1
 """With more misfit a run's start is looked for from elsewhere too, mean square in sigma."""
@@ -59,29 +61,38 @@ def level_of(model: Model, fit: Fit, start: Fit) -> Level:
     first = {piece.run: state for piece, state in start.starts.items() if piece.first == 0}
     problem = Problem(model, pieces, fit.effects, (), fit.values)
     fresh = [piece for piece in pieces if piece.run not in seen]
-    starts = {**fit.starts, **{p: _best_start(problem, p, first[p.run]) for p in fresh}}
+    starts = {**fit.starts, **_best_starts(problem, {p: first[p.run] for p in fresh})}
     misfits = tuple(_misfit(problem, piece, starts[piece]) for piece in pieces)
     return Level(fit, misfits, {piece: starts[piece] for piece in pieces})
 
 
-def _best_start(problem: Problem, piece: Piece, first: Array) -> Array:
-    """A run's start: from the first guess that leaves little, else from that which leaves least."""
-    fits: list[Fit] = []
-    for guess in _guesses(problem, piece, first):
-        fits.append(_started(problem, piece, guess))
-        if fits[-1].cost <= _POOR * fits[-1].count:
-            break
-    return min(fits, key=lambda fit: fit.cost).starts[piece]
+def _best_starts(problem: Problem, first: Mapping[Piece, Array]) -> dict[Piece, Array]:
+    """Each run's start: from the first guess that leaves little, else from that which leaves least.
 
-
-def _guesses(problem: Problem, piece: Piece, first: Array) -> Iterator[Array]:
-    """Where dry friction holds a machine at first, the misfit has no slope by its starting speed.
-
+    Where dry friction holds a machine at first, the misfit has no slope by its starting speed.
     Where a border is crossed or not, a long run has wrong minima.
     """
-    yield first
-    yield problem.model.start(piece)
-    yield _grown(problem, piece)
+    costs: dict[Piece, float] = {}
+    best: dict[Piece, Array] = {}
+    model = problem.model
+    guesses: tuple[Callable[[Piece], Array], ...] = (
+        lambda piece: first[piece],
+        model.start,
+        lambda piece: _grown(problem, piece),
+    )
+    for guess in guesses:
+        poor = [p for p in first if p not in costs or costs[p] > _POOR * _count(model, p)]
+        if not poor:
+            break
+        found = _started(problem, {piece: guess(piece) for piece in poor})
+        for piece, normal in found.normals.items():
+            if piece not in costs or normal.cost < costs[piece]:
+                costs[piece], best[piece] = normal.cost, found.starts[piece]
+    return best
+
+
+def _count(model: Model, piece: Piece) -> int:
+    return int(np.isfinite(model.runs[piece.run].values[piece.span]).sum())
 
 
 def _grown(problem: Problem, piece: Piece) -> Array:
@@ -91,14 +102,14 @@ def _grown(problem: Problem, piece: Piece) -> Array:
     start, seconds = model.start(piece), model.window
     while seconds < t[-1] - t[0]:
         part = replace(piece, last=int(np.searchsorted(t, t[0] + seconds)))
-        start = _started(problem, part, start).starts[part]
+        start = _started(problem, {part: start}).starts[part]
         seconds *= 3
     return start
 
 
-def _started(problem: Problem, piece: Piece, start: Array) -> Fit:
-    alone = Problem(problem.model, [piece], problem.effects, (), problem.fixed)
-    return solve(alone, {}, {piece: start})
+def _started(problem: Problem, starts: Mapping[Piece, Array]) -> Fit:
+    alone = Problem(problem.model, tuple(starts), problem.effects, (), problem.fixed)
+    return fit_starts(alone, starts)
 
 
 def _misfit(problem: Problem, piece, start) -> Misfit:

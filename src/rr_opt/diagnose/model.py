@@ -126,6 +126,15 @@ class Response:
         return self.by_value, self.by_start
 
 
+@dataclass(frozen=True)
+class Asked:
+    """A piece of a run, and the values and the start with which it is to be predicted."""
+
+    piece: Piece
+    values: Mapping[str, float]
+    start: Array
+
+
 class Model(Protocol):
     """A machine with a catalogue of what may be missing from its nominal model."""
 
@@ -147,10 +156,6 @@ class Model(Protocol):
     @property
     def inexact(self) -> float:
         """Misfit, RMS in sigma, by which machines of this kind differ from any model of them."""
-        ...
-
-    def stray(self, predicted: Array) -> Array:
-        """By how much a run's prediction (n, channels) is then off, one sigma of it, as large."""
         ...
 
     @property
@@ -214,4 +219,20 @@ class Model(Protocol):
         wanted: tuple[str, ...] | None = None,
     ) -> Response:
         """Predict a piece of a run from its start; derivatives by `wanted`, if any."""
+        ...
+
+    def off(self, asked: Sequence[Asked], effects: tuple[str, ...]) -> Sequence[Array]:
+        """(predicted - recorded)/sigma (n, channels) of each piece, 0 where there are no data."""
+        ...
+
+    def grams(
+        self,
+        asked: Sequence[Asked],
+        effects: tuple[str, ...],
+        wanted: tuple[str, ...],
+        *,
+        stray: bool = False,
+    ) -> Sequence[Array]:
+        """J'J of each piece, J = [by the start | by `wanted` | off] in sigmas at all data; with
+        `stray` what no model has exactly, one sigma of it, is one more number of the start."""
         ...

@@ -55,14 +55,12 @@ def total(parts: Iterable[Quadratic], prior: Array, u: Array) -> Quadratic:
     )
 
 
-def normal_of(r: Array, Jv: Array, Js: Array, begun: Array, known: Array) -> Normal:
-    """Reduce r (n,), Jv (n, nv), Js (n, ns), all in sigmas.
+def normal_of(gram: Array, begun: Array, known: Array) -> Normal:
+    """Reduce J'J, J = [Js | Jv | r] in sigmas, with (ns + nv + 1) columns.
 
     begun  (ns,) the start, in what is known of it; known (ns,) how much a unit of it is in that
     """
-    J = np.column_stack([Js, Jv, r])
-    S = J.T @ J
-    ns = Js.shape[1]
+    S, ns = gram.copy(), begun.size
     S[np.diag_indices(ns)] += known**2
     S[:ns, -1] += known * begun
     S[-1, :ns] += known * begun
@@ -84,3 +82,22 @@ def normal_of(r: Array, Jv: Array, Js: Array, begun: Array, known: Array) -> Nor
         shift=-solved[:, -1],
         follow=-solved[:, :-1],
     )
+
+
+def bounded_step(H: Array, g: Array, damping: float, u: Array, low: Array, high: Array) -> Array:
+    """Minimise 2 g'd + d'Hd inside the box: what would leave it is held at its edge."""
+    n = g.size
+    d = np.zeros(n)
+    free = np.ones(n, bool)
+    damped = H + np.diag(damping * np.diag(H) + 1e-10 * (1 + np.diag(H)))
+    for _ in range(n + 1):
+        if not free.any():
+            break
+        rhs = -(g[free] + damped[np.ix_(free, ~free)] @ d[~free])
+        d[free] = np.linalg.solve(damped[np.ix_(free, free)], rhs)
+        over = free & ((u + d < low - 1e-12) | (u + d > high + 1e-12))
+        if not over.any():
+            break
+        d[over] = np.where(u + d < low, low - u, high - u)[over]
+        free &= ~over
+    return d

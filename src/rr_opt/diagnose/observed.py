@@ -59,13 +59,13 @@ def observed(
     start: Array,
 ) -> Along:
     """The motion that was recorded: the prediction, and the smooth part of what it is off."""
-    mechanical = model.every(effects)
+    mechanical = model.simulated.every(effects)
     system, motion = driven(mechanical)
     given = {**model.nominal, **values}
     p = values_of(given, motion.parameters)
     data = model.runs[piece.run]
     t = data.t[piece.span]
-    path = model.drive_path(piece, given, mechanical)
+    path = model.simulated.drive_path(piece, given, mechanical)
     made = predict(system, path, state_of(mechanical, path, start, p), p)
     pose, rate = _smooth(t, made.seen[:, :3], data.values[piece.span, :3])
     states = made.states[:, :: path.each]

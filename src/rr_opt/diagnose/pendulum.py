@@ -18,9 +18,21 @@ import casadi as ca
 import numpy as np
 
 from rr_opt.diagnose.fit import Fit
-from rr_opt.diagnose.model import Array, Candidate, Data, Form, Piece, Proposal, Quantity, Response
+from rr_opt.diagnose.gram import Recorded, gram_of
+from rr_opt.diagnose.linear import DriveSlopes, slopes
+from rr_opt.diagnose.model import (
+    Array,
+    Asked,
+    Candidate,
+    Data,
+    Form,
+    Piece,
+    Proposal,
+    Quantity,
+    Response,
+)
 from rr_opt.diagnose.pendulum_effects import EXTRAS, Extra
-from rr_opt.diagnose.shoot import DrivePath, DriveSlopes, System, predict, slopes
+from rr_opt.diagnose.shoot import DrivePath, System, predict
 from rr_opt.experiment.experiment import Uncertainty
 
 G = 9.81
@@ -81,10 +93,6 @@ class Pendulum:
             name: _candidate(extra, torque, max(*speeds, 1e-3)) for name, extra in EXTRAS.items()
         }
 
-    def stray(self, predicted: Array) -> Array:
-        """None: what a pendulum's model leaves out is not known beforehand."""
-        return np.zeros_like(predicted)
-
     def propose(self, name: str, form: int, fit: Fit) -> Sequence[Proposal]:
         """Where the effect's form says; a fit of a pendulum is cheap, so each is worth it."""
         return [Proposal(start, fit.cost) for start in self.catalogue[name].forms[form].starts]
@@ -130,6 +138,38 @@ class Pendulum:
         out = slopes(system, path, made, p, by, by_delay)
         return Response(made.seen, out.by_parameter, out.by_start)
 
+    def off(self, asked: Sequence[Asked], effects: tuple[str, ...]) -> Sequence[Array]:
+        """(predicted - recorded)/sigma; see `diagnose.model.Model`."""
+        return [
+            self._recorded(one.piece).off(
+                self.respond(one.piece, one.values, effects, one.start).predicted
+            )
+            for one in asked
+        ]
+
+    def grams(
+        self,
+        asked: Sequence[Asked],
+        effects: tuple[str, ...],
+        wanted: tuple[str, ...],
+        *,
+        stray: bool = False,
+    ) -> Sequence[Array]:
+        """J'J of each piece. What a pendulum's model leaves out is not known beforehand: that
+        column is 0."""
+        out = []
+        for one in asked:
+            made = self.respond(one.piece, one.values, effects, one.start, wanted)
+            recorded = self._recorded(one.piece)
+            by_value, by_start = (part[:, 0] * recorded.weight for part in made.slopes)
+            off = recorded.off(made.predicted)
+            out.append(gram_of(by_start, *[np.zeros_like(off)] * stray, by_value, off))
+        return out
+
+    def _recorded(self, piece: Piece) -> Recorded:
+        data = self.runs[piece.run]
+        return Recorded.of(data.values[piece.span], data.sigma[piece.span])
+
 
 def _data(swing: Swing) -> Data:
     sigma = np.full((swing.t.size, 1), swing.sigma)
@@ -163,7 +203,8 @@ def _path_by_delay(
         out[0][:, delays] = ((ahead - behind) / (2 * step))[:, None]
         return out
 
-    return DriveSlopes(slope(t), slope(begins + path.h / 2))
+    nodes = [slope(begins + part * path.h) for part in (0.0, 0.5, 1.0)]
+    return DriveSlopes(slope(t), np.stack(nodes, axis=1))
 
 
 @lru_cache

@@ -12,13 +12,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
+from rr_opt.diagnose.linear import DriveSlopes, Hats, Linear, linear
 from rr_opt.diagnose.model import Array, Piece
 from rr_opt.diagnose.pushed_motion import FURTHER, pushed_motion
 from rr_opt.diagnose.racer_protocol import Racer
 from rr_opt.diagnose.racer_quantities import values_by, values_of
 from rr_opt.diagnose.racer_state import by_start_of, state_of, v_of_z_by
-from rr_opt.diagnose.shoot import DrivePath, DriveSlopes, predict, slopes
+from rr_opt.diagnose.shoot import DrivePath, predict
 
 _ANGLE = 6
 """The row of PUSHES that is the servo's own."""
@@ -51,41 +53,65 @@ def respond(
 
     pushes  (k, 7, n), rows as PUSHES;  amounts  (k,) how much of each there is
     """
-    mechanical = model.every(effects)
+    mechanical = model.simulated.every(effects)
     system, motion = pushed_motion(mechanical)
     given = {**model.nominal, **values}
     names = motion.parameters[:-FURTHER]
     p = values_of(given, names)
     t = model.runs[piece.run].t[piece.span]
-    path = model.drive_path(piece, given, mechanical)
+    path = model.simulated.drive_path(piece, given, mechanical)
     drives = _drives(pushes, t)
     moments = _moments(path, t)
     pushed_path = _with_drives(path, np.tensordot(amounts, drives, 1), moments)
     made = predict(system, pushed_path, state_of(mechanical, path, start, p), p)
-    n, rows = len(wanted), len(path.at)
-    by = np.hstack([values_by(given, names, wanted), np.zeros((p.size, len(pushes)))])
-    at, middle = _at(drives, moments)
-    drive_by = DriveSlopes(
-        np.zeros((rows + FURTHER, t.size, by.shape[1])),
-        np.zeros((rows + FURTHER, path.h.size, by.shape[1])),
+    by, own = (
+        values_by(given, names, wanted),
+        model.simulated.drive_slopes(piece, given, mechanical, wanted),
     )
-    own = model.drive_slopes(piece, given, mechanical, wanted)
-    if own is not None:
-        drive_by.at[:rows, :, :n], drive_by.middle[:rows, :, :n] = own.at, own.middle
-    for there, push in ((drive_by.at, at), (drive_by.middle, middle)):
-        there[rows:, :, n:] = push[:FURTHER]
-        there[:2, :, n:] += push[FURTHER:]
-    out = slopes(system, pushed_path, made, p, by, drive_by)
-    by_value = out.by_parameter[:, :, :n]
+    rows = len(path.at)
+    hats = Hats(np.append(rows + np.arange(FURTHER), (0, 1)), _passed(moments, path.each))
+    how = linear(system, pushed_path, made, p, by, own and _widened(own), hats)
+    by_start, by_value, by_push = _carried(how, len(wanted), hats.rows, drives)
     if motion.slips:
-        moved = v_of_z_by(path, start, p, by[:, :n], own)
-        by_value = by_value + out.by_start[:, :, 3:4] * moved
-    return Pushed(
-        made.seen,
-        by_value,
-        out.by_parameter[:, :, n:],
-        by_start_of(out.by_start, start),
+        by_value = by_value + by_start[:, :, 3:4] * v_of_z_by(path, start, p, by, own)
+    return Pushed(made.seen, by_value, by_push, by_start_of(by_start, start))
+
+
+def _carried(
+    how: Linear, wanted: int, rows: NDArray[np.int_], drives: Array
+) -> tuple[Array, Array, Array]:
+    """Derivatives of what is seen, (n, channels, ...), by the start, by what is wanted, and by
+    pushes with DRIVES (k, 10, n)."""
+    samples, _, size = how.by_state.shape
+    at = np.ascontiguousarray(drives.transpose(2, 1, 0))
+    earlier, later = np.split(how.B[:, :, wanted:], 2, axis=2)
+    pushed = size + wanted
+    carried = np.empty((samples, size, pushed + len(drives)))
+    carried[0] = np.eye(size, pushed + len(drives))
+    for k in range(samples - 1):
+        now = carried[k + 1]
+        np.matmul(how.A[k], carried[k], out=now)
+        now[:, size:pushed] += how.B[k, :, :wanted]
+        now[:, pushed:] += earlier[k] @ at[k] + later[k] @ at[k + 1]
+    seen = how.by_state @ carried
+    seen[:, :, size:pushed] += how.by_wanted
+    seen[:, :, pushed:] += how.by_drive[:, :, rows] @ at
+    return seen[:, :, :size], seen[:, :, size:pushed], seen[:, :, pushed:]
+
+
+def _widened(own: DriveSlopes) -> DriveSlopes:
+    """How the servo's own part of the drive changes, with the pushes' rows, which do not."""
+    at, nodes = (
+        np.concatenate([part, np.zeros((FURTHER, *part.shape[1:]))]) for part in (own.at, own.nodes)
     )
+    return DriveSlopes(at, nodes)
+
+
+def _passed(moments: Array, each: int) -> Array:
+    """How much of the time between two samples has passed at each node of the steps (3, steps)."""
+    steps = (moments.size - 1) // 2
+    nodes = np.stack([moments[:-1:2], moments[1::2], moments[2::2]])
+    return nodes - np.arange(steps) // each
 
 
 def _drives(pushes: Array, t: Array) -> Array:
@@ -116,11 +142,6 @@ def _with_drives(path: DrivePath, drives: Array, moments: Array) -> DrivePath:
         nodes=np.concatenate([servo, nodes[:FURTHER]]),
         at=np.vstack([at, drives[:FURTHER]]),
     )
-
-
-def _at(drives: Array, moments: Array) -> tuple[Array, Array]:
-    """Drives (k, 10, n), last index first: at the samples, and in the middle of the steps."""
-    return drives.transpose(1, 2, 0), _finely(drives, moments[1::2]).transpose(1, 2, 0)
 
 
 def _finely(drives: Array, moments: Array) -> Array:

@@ -9,15 +9,20 @@ from functools import cached_property
 import numpy as np
 
 from rr_opt.diagnose.fit import Fit
-from rr_opt.diagnose.model import Array, Candidate, Data, Piece, Proposal, Quantity, Response
-from rr_opt.diagnose.racer_drive import Drives, drive_slopes, grain, lateness
-from rr_opt.diagnose.racer_kept import Kept
+from rr_opt.diagnose.model import (
+    Array,
+    Asked,
+    Candidate,
+    Data,
+    Piece,
+    Proposal,
+    Quantity,
+    Response,
+)
 from rr_opt.diagnose.racer_proposals import of_patch, of_servo
-from rr_opt.diagnose.racer_quantities import candidate, nominal, uncertain, values_by, values_of
-from rr_opt.diagnose.racer_state import HELD, by_start_of, side_speeds, state_of, v_of_z_by
-from rr_opt.diagnose.racer_steps import drive_path, steps_of
-from rr_opt.diagnose.racer_system import driven
-from rr_opt.diagnose.shoot import DrivePath, DriveSlopes, slopes
+from rr_opt.diagnose.racer_quantities import candidate, nominal, uncertain
+from rr_opt.diagnose.racer_simulated import Simulated
+from rr_opt.diagnose.racer_state import HELD, side_speeds
 from rr_opt.diagnose.slip_proposals import of_slip
 from rr_opt.experiment.experiment import Experiment, Run
 from rr_opt.experiment.recording import CHANNELS
@@ -40,8 +45,6 @@ class RollerRacer:
     def __init__(self, experiment: Experiment) -> None:
         self.experiment = experiment
         self.nominal = nominal(experiment)
-        self._given = frozenset(use.name for use in experiment.robot.physics)
-        self._kept = Kept()
         self._mapped: tuple[Fit, tuple[Sequence[Proposal], Sequence[Proposal]]] | None = None
 
     @property
@@ -68,12 +71,6 @@ class RollerRacer:
         """Misfit, RMS in sigma, by which robots of this kind differ from any model of them."""
         return self._inexact
 
-    def stray(self, predicted: Array) -> Array:
-        """The way from the start, too long or too short by as much."""
-        out = np.zeros_like(predicted)
-        out[:, :2] = INEXACT * (predicted[:, :2] - predicted[0, :2])
-        return out
-
     @property
     def parameters(self) -> tuple[Quantity, ...]:
         """The robot's parameters that are not known exactly."""
@@ -93,7 +90,7 @@ class RollerRacer:
         return {
             name: candidate(effect, self.setting)
             for name, effect in CATALOGUE.items()
-            if name not in self._given and not effect.nameless
+            if name not in self.simulated.built_in and not effect.nameless
         }
 
     @cached_property
@@ -195,60 +192,38 @@ class RollerRacer:
         wanted: tuple[str, ...] | None = None,
     ) -> Response:
         """Predict a piece of a run; see `diagnose.model.Model`."""
-        mechanical = self.every(effects)
-        system, motion = driven(mechanical)
-        given = {**self.nominal, **values}
-        p = values_of(given, motion.parameters)
-        path = self.drive_path(piece, given, mechanical)
-        state = state_of(mechanical, path, start, p)
-        made = self._kept.predicted(piece, system, path, state, p)
-        if wanted is None:
-            return Response(made.seen)
-        by = values_by(given, motion.parameters, wanted)
-        drive_by = self.drive_slopes(piece, given, mechanical, wanted)
-        out = slopes(system, path, made, p, by, drive_by)
-        by_value = out.by_parameter
-        if motion.slips:
-            # The start is given in z and the state holds v, which moves with what is asked.
-            by_value = by_value + out.by_start[:, :, 3:4] * v_of_z_by(path, start, p, by, drive_by)
-        return Response(made.seen, by_value, by_start_of(out.by_start, start))
+        return self.simulated.respond(piece, values, effects, start, wanted)
 
-    def every(self, effects: tuple[str, ...]) -> tuple[str, ...]:
-        """The effects with those that the nominal robot has already, in the catalogue's order."""
-        return tuple(name for name in CATALOGUE if name in effects or name in self._given)
+    def off(self, asked: Sequence[Asked], effects: tuple[str, ...]) -> Sequence[Array]:
+        """(predicted - recorded)/sigma; see `diagnose.model.Model`."""
+        return self.simulated.off(asked, effects)
 
-    @cached_property
-    def _drives(self) -> Drives:
-        """What the servo makes of the gaits."""
-        return Drives(self.experiment.runs)
-
-    def angle(self, run: int, given: Mapping[str, float], effects: tuple[str, ...]) -> Array:
-        """phi (n,) of a run as the servo makes it, rad, at the samples."""
-        mechanical = self.every(effects)
-        drive = self._drives.of(run, given, mechanical)
-        return drive.at(self.runs[run].t + lateness(given, mechanical))[0]
-
-    def drive_path(
-        self, piece: Piece, given: Mapping[str, float], effects: tuple[str, ...]
-    ) -> DrivePath:
-        """The drive over the steps between the samples of a piece: most fits leave it as it is."""
-        drive, late = self._drives.of(piece.run, given, effects), lateness(given, effects)
-        t = self.runs[piece.run].t[piece.span]
-        return self._kept.path(
-            *(piece, drive, late, effects),
-            lambda: drive_path(drive, steps_of(drive, t, late, **grain(effects)), late),
-        )
-
-    def drive_slopes(
+    def grams(
         self,
-        piece: Piece,
-        given: Mapping[str, float],
+        asked: Sequence[Asked],
         effects: tuple[str, ...],
         wanted: tuple[str, ...],
-    ) -> DriveSlopes | None:
-        """How the drive changes with what is wanted; None if it does not."""
-        t = self.runs[piece.run].t[piece.span]
-        return drive_slopes(self._drives, piece.run, t, given, effects, wanted)
+        *,
+        stray: bool = False,
+    ) -> Sequence[Array]:
+        """J'J of each piece; see `diagnose.model.Model`."""
+        return self.simulated.grams(asked, effects, wanted, self._stray if stray else None)
+
+    def _stray(self, predicted: Array) -> Array:
+        """The way from the start, too long or too short by as much as no model has exactly."""
+        out = np.zeros_like(predicted)
+        out[:, :2] = INEXACT * (predicted[:, :2] - predicted[0, :2])
+        return out
+
+    @property
+    def simulated(self) -> Simulated:
+        """Its runs, simulated."""
+        return self._simulated
+
+    @cached_property
+    def _simulated(self) -> Simulated:
+        given = frozenset(use.name for use in self.experiment.robot.physics)
+        return Simulated(self.experiment.runs, self.runs, self.nominal, given)
 
 
 def _travelled(data: Data) -> Array:

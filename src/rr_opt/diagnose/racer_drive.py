@@ -7,10 +7,11 @@ from functools import lru_cache
 
 import numpy as np
 
+from rr_opt.diagnose.linear import DriveSlopes
 from rr_opt.diagnose.model import Array
 from rr_opt.diagnose.racer_quantities import values_of
 from rr_opt.diagnose.racer_steps import drive_path, steps_of
-from rr_opt.diagnose.shoot import DrivePath, DriveSlopes
+from rr_opt.diagnose.shoot import DrivePath
 from rr_opt.experiment.experiment import Run
 from rr_opt.physics.drive import Drive, FreeJoint, told
 from rr_opt.physics.effects import CATALOGUE
@@ -79,20 +80,20 @@ def drive_slopes(
 
     path = path_at(given)
     at = np.zeros((*path.at.shape, len(wanted)))
-    middle = np.zeros((*path.nodes[:, 1].shape, len(wanted)))
+    nodes = np.zeros((*path.nodes.shape, len(wanted)))
     for k, name in moving:
         least, size = _extent(name)
         step = 1e-3 * size
         low, high = max(given[name] - step, least), given[name] + step
         ends = [path_at({**given, name: value}) for value in (low, high)]
         at[:, :, k] = (ends[1].at - ends[0].at) / (high - low)
-        middle[:, :, k] = (ends[1].nodes[:, 1] - ends[0].nodes[:, 1]) / (high - low)
+        nodes[:, :, :, k] = (ends[1].nodes - ends[0].nodes) / (high - low)
     if here.smooth and here.rest:
         # How dphi sets in may change at once, and more than a step shows: what the first step
         # integrates to is the change of phi.
-        rise = (at[0, 1] - at[0, 0]) / path.h[0]
-        at[1, 0] = middle[1, 0] = (6 * rise - at[1, 1]) / 5
-    return DriveSlopes(at, middle)
+        rise = (nodes[0, 2, 0] - nodes[0, 0, 0]) / path.h[0]
+        at[1, 0] = nodes[1, :2, 0] = (6 * rise - nodes[1, 2, 0]) / 5
+    return DriveSlopes(at, nodes)
 
 
 def lateness(given: Mapping[str, float], effects: tuple[str, ...]) -> float:

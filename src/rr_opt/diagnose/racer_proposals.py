@@ -15,11 +15,13 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from rr_opt.diagnose.explain import windows
-from rr_opt.diagnose.fit import Fit, Problem, solve
+from rr_opt.diagnose.fit import Fit
 from rr_opt.diagnose.floor_map import floor_map
 from rr_opt.diagnose.floor_shapes import ROUND, STRAIGHT, likely
 from rr_opt.diagnose.model import Form, Proposal
+from rr_opt.diagnose.problem import Problem
 from rr_opt.diagnose.racer_protocol import Racer
+from rr_opt.diagnose.starts import fit_starts
 
 _TRIED = 14
 """Values of an effect of the servo, between next to nothing and a lot."""
@@ -39,7 +41,7 @@ def of_servo(model: Racer, name: str, form: Form, fit: Fit) -> Sequence[Proposal
         total = 0.0
         for run in runs:
             data = model.runs[run]
-            r = (model.angle(run, given, used) - data.values[:, -1]) / data.sigma[:, -1]
+            r = (model.simulated.angle(run, given, used) - data.values[:, -1]) / data.sigma[:, -1]
             total += float(np.nansum(r**2))
         return total
 
@@ -80,7 +82,7 @@ def _unbent(model: Racer, fit: Fit) -> Fit:
         values, pieces = fit.values, windows(model, runs, _LONG * model.window)
     problem = Problem(model, pieces, fit.effects, (), values)
     starts = {piece: fit.starts.get(piece, model.start(piece)) for piece in pieces}
-    alone = solve(problem, {}, starts)
+    alone = fit_starts(problem, starts)
     return replace(alone, quantities=fit.quantities, values=values)
 
 

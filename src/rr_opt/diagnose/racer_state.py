@@ -7,8 +7,9 @@ from functools import lru_cache
 import casadi as ca
 import numpy as np
 
+from rr_opt.diagnose.linear import DriveSlopes
 from rr_opt.diagnose.model import Array
-from rr_opt.diagnose.shoot import DrivePath, DriveSlopes
+from rr_opt.diagnose.shoot import DrivePath
 from rr_opt.physics.floor_motion import floor_motion
 from rr_opt.physics.kinematics import ROBOT_PARAMETERS
 from rr_opt.robot.gait import Gait

@@ -16,9 +16,10 @@ import numpy as np
 
 from rr_opt.diagnose.diagnosis import Residue
 from rr_opt.diagnose.explanation import FLOOR, Explanation
-from rr_opt.diagnose.fit import Fit, doubt
+from rr_opt.diagnose.fit import Fit
 from rr_opt.diagnose.model import Array, Piece
 from rr_opt.diagnose.observed import observed
+from rr_opt.diagnose.problem import doubt
 from rr_opt.diagnose.racer import RollerRacer
 from rr_opt.diagnose.residue_problem import Columns, Linearised, Point, linearised, moved
 from rr_opt.diagnose.residue_terms import Term, terms

@@ -14,9 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import block_diag
 
-from rr_opt.diagnose.fit import Fit, bounded_step, box, doubt, scaled, unscaled
+from rr_opt.diagnose.fit import Fit
+from rr_opt.diagnose.gram import gram_of
 from rr_opt.diagnose.model import Array, Piece
-from rr_opt.diagnose.normal import Normal, normal_of, total
+from rr_opt.diagnose.normal import Normal, bounded_step, normal_of, total
+from rr_opt.diagnose.problem import box, doubt, scaled, unscaled
 from rr_opt.diagnose.pushed import respond
 from rr_opt.diagnose.racer_protocol import Racer
 
@@ -117,13 +119,8 @@ def linearised(
         by_value, by_push, by_start = (
             (part / sigma[:, :, None])[good] for part in (out.by_value, out.by_push, out.by_start)
         )
-        normals[piece] = normal_of(
-            r[good],
-            np.column_stack([by_value * scale, by_push]),
-            by_start,
-            start / within,
-            1 / within,
-        )
+        gram = gram_of(by_start, by_value * scale, by_push, r[good])
+        normals[piece] = normal_of(gram, start / within, 1 / within)
         count += int(good.sum())
         cost += float(r[good] @ r[good])
     added = point.amounts.size

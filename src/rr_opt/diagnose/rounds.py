@@ -12,8 +12,9 @@ from dataclasses import dataclass
 
 from rr_opt.diagnose.explain import Chosen, explain, joined
 from rr_opt.diagnose.explanation import FLOOR, Explanation, rms
-from rr_opt.diagnose.fit import Fit, doubt
+from rr_opt.diagnose.fit import Fit
 from rr_opt.diagnose.model import Model
+from rr_opt.diagnose.problem import doubt
 from rr_opt.diagnose.screen import LUCK, Promise, jumps, screen
 
 EXACT, ROUGH = 0.005, 0.03

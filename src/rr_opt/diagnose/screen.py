@@ -13,9 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from rr_opt.diagnose.explain import Chosen
-from rr_opt.diagnose.fit import Fit, Problem, bounded_step, box, doubt, scaled
+from rr_opt.diagnose.fit import Fit
 from rr_opt.diagnose.model import Model
-from rr_opt.diagnose.normal import Quadratic, total
+from rr_opt.diagnose.normal import Quadratic, bounded_step, total
+from rr_opt.diagnose.problem import Problem, box, doubt, scaled
 
 LUCK = 25.0
 """So much lower a chi-square is, by luck, where the best of many places was chosen."""
@@ -74,7 +75,7 @@ def screen(model: Model, fit: Fit, have: Sequence[Chosen]) -> list[Promise]:
     values = {q.name: q.neutral for q in quantities} | dict(fit.values)
     effects = (*fit.effects, *dict.fromkeys(one.name for one in new))
     problem = Problem(model, tuple(fit.starts), effects, own)
-    normals = [problem.normal(piece, values, start) for piece, start in fit.starts.items()]
+    normals = problem.normals(values, fit.starts).values()
     u, (low, high) = scaled(own, values), box(own)
     whole = total(normals, doubt(fit.cost, fit.count) * problem.prior, u)
     base = list(range(len(fit.quantities)))

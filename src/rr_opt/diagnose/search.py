@@ -11,9 +11,10 @@ from dataclasses import dataclass, field, replace
 
 from rr_opt.diagnose.explain import Chosen, explain, joined
 from rr_opt.diagnose.explanation import FLOOR, Explanation, rms
-from rr_opt.diagnose.fit import Fit, Problem, doubt, solve
+from rr_opt.diagnose.fit import Fit, solve
 from rr_opt.diagnose.left_out import left_out
 from rr_opt.diagnose.model import Model
+from rr_opt.diagnose.problem import Problem, doubt
 from rr_opt.diagnose.rounds import EXACT, Rounds, Say
 from rr_opt.diagnose.values import settled, wrong
 

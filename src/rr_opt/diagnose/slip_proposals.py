@@ -12,9 +12,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rr_opt.diagnose.fit import Fit, Problem, bounded_step, box, doubt, scaled, solve
+from rr_opt.diagnose.fit import Fit, solve
 from rr_opt.diagnose.model import Array, Form, Model, Piece, Proposal
-from rr_opt.diagnose.normal import total
+from rr_opt.diagnose.normal import bounded_step, total
+from rr_opt.diagnose.problem import Problem, box, doubt, scaled
+from rr_opt.diagnose.starts import fit_starts
 
 _PIECES, _KEPT, _STEPS = 8, 2, 8
 """Pieces that are looked at; of the places, how many are fitted, in so many steps."""
@@ -54,7 +56,7 @@ class _Look:
         plain = {**self.fit.values} | {q.name: q.value for q in self.fit.quantities if q.known}
         if _many(self.form):
             alone = Problem(self.model, some, self.fit.effects, (), plain)
-            places += self._places(problem, plain, solve(alone, {}, starts, steps=4).starts)
+            places += self._places(problem, plain, fit_starts(alone, starts, steps=4).starts)
         fits = [solve(problem, values, starts, steps=_STEPS) for values, starts in places]
         weight = doubt(before, count)
         costs = [one.cost + weight * problem.beforehand(one.values) for one in fits]
@@ -78,7 +80,7 @@ def _after(
     """The cost that one step promises."""
     low, high = box(problem.quantities)
     u = scaled(problem.quantities, values)
-    parts = [problem.normal(piece, values, start) for piece, start in starts.items()]
-    whole = total(parts, doubt(fit.cost, fit.count) * problem.prior, u)
+    parts = problem.normals(values, starts)
+    whole = total(parts.values(), doubt(fit.cost, fit.count) * problem.prior, u)
     near, far = np.maximum(low, u - 3), np.minimum(high, u + 3)
     return whole.at(bounded_step(whole.H, whole.g, 1e-9, u, near, far))

@@ -18,9 +18,10 @@ import numpy as np
 from scipy.stats import norm
 
 from rr_opt.diagnose.explanation import FLOOR, Explanation, misfit, rms
-from rr_opt.diagnose.fit import Fit, Problem, scaled, solve
+from rr_opt.diagnose.fit import Fit, solve
 from rr_opt.diagnose.intervals import covariance
 from rr_opt.diagnose.model import Array, Model, Quantity
+from rr_opt.diagnose.problem import Problem, scaled
 
 FALSE_ALARM = 0.01
 """Chance that any value is called wrong where all are right."""

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 
 from rr_opt.diagnose.diagnosis import Estimate, Finding, Verdict
 from rr_opt.diagnose.explanation import FLOOR, Explanation, certain, rms
-from rr_opt.diagnose.fit import doubt
+from rr_opt.diagnose.problem import doubt
 
 LEFT = 0.35
 """More misfit than this on the held-out recordings, RMS in sigma, is not explained."""

@@ -14,10 +14,10 @@ import numpy as np
 
 from rr_opt.diagnose.contest import RANKED_RATE, Rival, extent
 from rr_opt.diagnose.explanation import Explanation
-from rr_opt.diagnose.fit import Problem, box, unscaled
 from rr_opt.diagnose.intervals import covariance
 from rr_opt.diagnose.model import Array, Quantity
 from rr_opt.diagnose.plans import Plan, imagined
+from rr_opt.diagnose.problem import Problem, box, unscaled
 from rr_opt.diagnose.racer import RollerRacer
 
 

@@ -1,7 +1,7 @@
 """C source of a derived CasADi function for several points at once, in stages.
 
 CasADi's own C computes everything of one point. Here each value is a vector `V` of some points
-(see data/sweep_lanes.c), and what depends on the first inputs alone is computed by a function of
+(see data/lanes.c), and what depends on the first inputs alone is computed by a function of
 its own: on the robot once for a whole gait, on the posture once for all tries of the speed.
 """
 
@@ -71,8 +71,12 @@ class Stages:
     kept: tuple[int, ...]
 
 
-def in_stages(function: ca.Function, name: str, stages: Sequence[int]) -> Stages:
+def in_stages(
+    function: ca.Function, name: str, stages: Sequence[int], how: str = "INLINE"
+) -> Stages:
     """An SX function whose i-th input comes in at stage stages[i] (0, 1, ..).
+
+    how  INLINE or ALONE, of data/lanes.c: copied to where it is called, or called
 
     Raises NotImplementedError for an operation that has no C here.
     """
@@ -90,9 +94,7 @@ def in_stages(function: ca.Function, name: str, stages: Sequence[int]) -> Stages
     parts = []
     for stage in range(last + 1):
         earlier = "".join(f", const V* restrict kept_{s}" for s in range(stage))
-        parts.append(
-            f"INLINE void {name}_{stage}(const V* restrict x{earlier}, V* restrict out) {{"
-        )
+        parts.append(f"{how} void {name}_{stage}(const V* restrict x{earlier}, V* restrict out) {{")
         parts += [f"  (void)kept_{s};" for s in range(stage)]
 
         def named(k: int, stage: int = stage) -> str:

@@ -27,8 +27,8 @@ def newton_source(dynamics: Dynamics) -> str:
 
 def _source(stages: Stages, parameters: int, loops: str) -> str:
     sizes = [f"#define NK{k} {kept}\n" for k, kept in enumerate(stages.kept)]
-    lanes, around = (
-        files("rr_opt").joinpath("data", f"sweep_{name}.c").read_text(encoding="utf-8")
-        for name in ("lanes", loops)
+    lanes, points, around = (
+        files("rr_opt").joinpath("data", f"{name}.c").read_text(encoding="utf-8")
+        for name in ("lanes", "gait_points", f"sweep_{loops}")
     )
-    return "".join([f"#define NP {parameters}\n", *sizes, lanes, stages.source, around])
+    return "".join([f"#define NP {parameters}\n", *sizes, lanes, points, stages.source, around])

@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rr_opt.diagnose.fit import doubt
 from rr_opt.diagnose.model import Array, Quantity
+from rr_opt.diagnose.problem import doubt
 from rr_opt.diagnose.stages.ports import linearised
 
 

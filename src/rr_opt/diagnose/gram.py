@@ -1,0 +1,85 @@
+"""J'J of predicted runs against what was recorded: all that a least-squares step needs of them.
+
+J has the derivatives of what is seen, in sigmas, at every sample and channel with data: by the
+start, by what is asked for, any further columns, and last what the prediction is off.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from rr_opt.diagnose.compiled import Sought
+from rr_opt.diagnose.linear import DriveSlopes, slopes
+from rr_opt.diagnose.model import Array
+from rr_opt.diagnose.shoot import DrivePath, Path, System, code_of
+
+
+@dataclass(frozen=True)
+class Recorded:
+    """What was recorded (samples, channels), 0 for no data, and 1/sigma, 0 for no data."""
+
+    values: Array
+    weight: Array
+
+    @classmethod
+    def of(cls, values: Array, sigma: Array) -> Recorded:
+        """From values that are NaN where there are no data."""
+        seen = np.isfinite(values)
+        return cls(np.where(seen, values, 0.0), np.where(seen, 1 / sigma, 0.0))
+
+    def off(self, predicted: Array) -> Array:
+        """(predicted - recorded)/sigma, 0 for no data."""
+        return (predicted - self.values) * self.weight
+
+
+@dataclass(frozen=True)
+class Asked:
+    """A predicted run, and by what it is to be differentiated; see `linear.linear`.
+
+    more  (samples, channels, k) further columns
+    """
+
+    path: DrivePath
+    made: Path
+    p: Array
+    wanted: Array
+    drive_by: DriveSlopes | None
+    recorded: Recorded
+    more: Array | None = None
+
+
+def grams(system: System, asked: Sequence[Asked]) -> list[Array]:
+    """J'J (n, n) of each run."""
+    if not asked:
+        return []
+    code = code_of(system, 4 * sum(one.path.h.size for one in asked))
+    return (
+        code.grams([_sought(one) for one in asked]) if code else [_gram(system, a) for a in asked]
+    )
+
+
+def gram_of(*columns: Array) -> Array:
+    """J'J of columns (samples, k) side by side."""
+    J = np.column_stack(columns)
+    return J.T @ J
+
+
+def _sought(one: Asked) -> Sought:
+    by, path = one.drive_by, one.path
+    moved = (by.at, by.nodes) if by else None
+    return Sought(
+        *(path.inputs, path.at, path.each, one.p, one.made.states, one.wanted, moved),
+        *(one.recorded.values, one.recorded.weight, one.more),
+    )
+
+
+def _gram(system: System, one: Asked) -> Array:
+    by = slopes(system, one.path, one.made, one.p, one.wanted, one.drive_by)
+    weight = one.recorded.weight
+    parts = [by.by_start, by.by_parameter, *([] if one.more is None else [one.more])]
+    rows = weight.size
+    columns = [(part * weight[:, :, None]).reshape(rows, -1) for part in parts]
+    return gram_of(*columns, one.recorded.off(one.made.seen).reshape(rows, 1))
