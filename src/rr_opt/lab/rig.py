@@ -1,4 +1,4 @@
-"""The robot on the laboratory's bench: what it is made of, before MuJoCo is told.
+"""The robot on the laboratory's bench: what it is made of, before an engine is told.
 
 A hidden effect changes a rig. A rig that no effect has touched is the nominal robot.
 """
@@ -66,6 +66,8 @@ class Rig:
     """A robot and what is hidden in it. Lists of four are by WHEELS, of two by platform.
 
     kappa      viscous friction, N m s; quadratic, N m s2; dry, N m; J, kg m2: hidden spin inertia
+    onset      m/s at the rim, over which dry friction sets in; None: an engine's own. MuJoCo has
+               its own always
     toe        rad, the axle turned counter-clockwise about its centre
     left       m, the centre of mass to the left of the axis
     mu         grip of the wheels; large by default, so that none slides
@@ -84,6 +86,7 @@ class Rig:
     quadratic: list[float] = field(default_factory=lambda: [0.0] * 4)
     dry: list[float] = field(default_factory=lambda: [0.0] * 4)
     J: list[float] = field(default_factory=lambda: [0.0] * 4)
+    onset: float | None = None
     toe: list[float] = field(default_factory=lambda: [0.0, 0.0])
     left: list[float] = field(default_factory=lambda: [0.0, 0.0])
     mu: float = GRIPS

@@ -9,7 +9,7 @@ from rr_opt.lab.rig import Rig
 
 
 def _slip(rig: Rig, values: Values) -> None:
-    """`mu`: MuJoCo's elliptic friction cone; `creep_compliance`: a soft contact."""
+    """`mu`: the grip that lets go; `creep_compliance`: side speed per side force."""
     if "mu" in values:
         rig.mu = values["mu"]
     rig.creep += values.get("creep_compliance", 0.0)

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import math
-
-import numpy as np
-
 from rr_opt.lab.effects.hidden import HiddenEffect, Parameter, Values
-from rr_opt.lab.rig import Rig, Turning
+from rr_opt.lab.laws import Circle, Edge, Patch
+from rr_opt.lab.rig import Rig
 
 
 def _tilt(rig: Rig, values: Values) -> None:
@@ -17,25 +14,12 @@ def _tilt(rig: Rig, values: Values) -> None:
 
 def _patch(rig: Rig, values: Values) -> None:
     """The drag of each wheel times `multiplier` within a circle, or beyond an edge."""
-    times = values["multiplier"]
+    within: Circle | Edge
     if "radius" in values:
-        centre, radius = np.array([values["x"], values["y"]]), values["radius"]
-
-        def inside(places: np.ndarray) -> np.ndarray:
-            return ((places - centre) ** 2).sum(1) < radius**2
+        within = Circle(values["x"], values["y"], values["radius"])
     else:
-        corner = np.array([values["edge_x"], values["edge_y"]])
-        normal = np.array([math.cos(values["normal"]), math.sin(values["normal"])])
-
-        def inside(places: np.ndarray) -> np.ndarray:
-            return (places - corner) @ normal > 0
-
-    def law(wheels: Turning) -> None:
-        factor = np.where(inside(wheels.places), times, 1.0)
-        wheels.damping *= factor
-        wheels.dry *= factor
-
-    rig.laws.append(law)
+        within = Edge(values["edge_x"], values["edge_y"], values["normal"])
+    rig.laws.append(Patch(values["multiplier"], within))
 
 
 FLOOR = (

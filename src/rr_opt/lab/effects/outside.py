@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from rr_opt.lab.effects.hidden import HiddenEffect, Parameter, Values
-from rr_opt.lab.rig import Rig, Tether, Turning
+from rr_opt.lab.laws import Drift, Falling, Rub
+from rr_opt.lab.rig import Rig, Tether
 
 
 def _tether(rig: Rig, values: Values) -> None:
@@ -14,39 +13,21 @@ def _tether(rig: Rig, values: Values) -> None:
 
 def _stribeck(rig: Rig, values: Values) -> None:
     """Dry friction that falls from `force` to `force/3` as the rim's speed grows past `speed`."""
-    force, speed, h = values["force"], values["speed"], rig.robot.h
-
-    def law(wheels: Turning) -> None:
-        fall = np.exp(-((wheels.rate * h / speed) ** 2))
-        wheels.dry += force * h * (1 + 2 * fall) / 3
-
-    rig.laws.append(law)
+    h = rig.robot.h
+    rig.laws.append(Falling(values["force"] * h, values["speed"] / h))
 
 
 def _drift(rig: Rig, values: Values) -> None:
-    """Viscous friction that changes by the fraction `change` with the time constant `time`."""
-    change, time = values["change"], values["time"]
-
-    def law(wheels: Turning) -> None:
-        wheels.damping *= 1 + change * (1 - np.exp(-max(wheels.t, 0.0) / time))
-
-    rig.laws.append(law)
+    rig.laws.append(Drift(values["change"], values["time"]))
 
 
 def _sprung(rig: Rig, values: Values) -> None:
-    """MuJoCo's torsion springs half way between joint and axles; `give` is 1/stiffness."""
+    """`give` is 1/stiffness."""
     rig.spring = 1 / values["give"]
 
 
 def _fault(rig: Rig, values: Values) -> None:
-    """The left wheel of platform 1 rubs over a fifth of each turn."""
-    torque = values["force"] * rig.robot.h
-
-    def law(wheels: Turning) -> None:
-        if wheels.angle[0] % (2 * np.pi) < 0.4 * np.pi:
-            wheels.dry[0] += torque
-
-    rig.laws.append(law)
+    rig.laws.append(Rub(values["force"] * rig.robot.h))
 
 
 def _pin(rig: Rig, values: Values) -> None:

@@ -1,4 +1,4 @@
-"""What brakes the wheels, or keeps them turning: all on the wheels' own hinges."""
+"""What brakes the wheels, or keeps them turning: all of it turns with them."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from rr_opt.lab.rig import Rig
 
 
 def _coulomb(rig: Rig, values: Values) -> None:
-    """MuJoCo's friction loss of a hinge; a force F at the rim is a torque F h. How softly it sets
-    in is MuJoCo's own."""
+    """A force F at the rim is a torque F h."""
     one, two = (values.get(name, 0.0) * rig.robot.h for name in ("force1", "force2"))
     rig.dry = [dry + more for dry, more in zip(rig.dry, (one, one, two, two), strict=True)]
+    rig.onset = values.get("onset", rig.onset)
 
 
 def _quadratic(rig: Rig, values: Values) -> None:
-    """MuJoCo's damping that grows with the rate; (c/4) v^2 at the rim is (c/4) h^3 omega^2."""
+    """(c/4) v^2 at the rim is (c/4) h^3 omega^2."""
     each = values["coefficient_total"] / 4 * rig.robot.h**3
     rig.quadratic = [coefficient + each for coefficient in rig.quadratic]
 
