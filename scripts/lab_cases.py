@@ -12,6 +12,7 @@ import time
 from pathlib import Path
 
 from rr_opt.lab.answer import answer
+from rr_opt.lab.engines import ENGINES
 from rr_opt.lab.folder import folder_of
 from rr_opt.lab.random_case import NAMED, random_case
 from rr_opt.report.archive import write_bytes, write_json
@@ -28,6 +29,7 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=0, help="of the first case; then one more each")
     parser.add_argument("--seconds", type=float, default=30.0)
     parser.add_argument("--visibility", type=float, help="of each effect, sigma; drawn if left out")
+    parser.add_argument("--engine", choices=ENGINES, default="mujoco")
     parser.add_argument("--spread", type=float, default=0.0, help="0: nominal values are exact")
     asked = parser.parse_args()
     for n in range(asked.count):
@@ -39,6 +41,7 @@ def main() -> None:
             seconds=asked.seconds,
             target=asked.visibility,
             spread=asked.spread,
+            engine=asked.engine,
         )
         folder = asked.out / case.name
         for name, content in folder_of(case):

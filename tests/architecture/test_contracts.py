@@ -40,6 +40,7 @@ PLANTED = [
     ("proof-apart", "proof/planted.py", "import rr_opt.diagnose.verdict"),
     ("lab-apart", "lab/planted.py", "import rr_opt.motion.cycle"),
     ("lab-apart", "lab/planted.py", "import rr_opt.files.units"),
+    ("engines-apart", "lab/planar/planted.py", "import rr_opt.lab.plant"),
     ("lab-unknown", "diagnose/planted.py", "import rr_opt.lab.rig"),
 ]
 

@@ -26,6 +26,11 @@ def test_simulation_breaks_down(tmp_path, monkeypatch):
     assert list(tmp_path.iterdir()) == []
 
 
+def test_planar_motion_is_lost():
+    with pytest.raises(NotConvergedError, match="broke down"):
+        record(LONG, SineGait(100.0, 0.01), 1.0, engine="planar")
+
+
 @pytest.mark.parametrize(
     ("name", "values", "expected"),
     [

@@ -1,5 +1,6 @@
 """A case by lot is plausible, the same for the same seed, and says what is hidden in it."""
 
+import json
 from dataclasses import replace
 
 import numpy as np
@@ -94,6 +95,13 @@ def test_wrong_values_are_told_and_wrong(seed):
             assert abs(true - believed) >= 3.99 * known.sigma
         else:
             assert 1.49 < max(true / believed, believed / true) < known.factor
+
+
+def test_engines_are_given_the_same_case_and_tell_themselves():
+    one, other = (drawn(5, "single:floor_tilt", engine=engine) for engine in ("mujoco", "planar"))
+    assert replace(other, engine="mujoco") == one
+    assert [answer(case)["engine"] for case in (one, other)] == ["mujoco", "planar"]
+    assert json.loads(sealed_text(other))["engine"] == "planar"
 
 
 def test_spread_moves_the_values_within_their_uncertainty():

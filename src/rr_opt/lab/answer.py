@@ -20,6 +20,7 @@ def answer(case: Case) -> dict[str, Any]:
         "verdict": case.verdict,
         "effects": _effects(case),
         "case": case.name,
+        "engine": case.engine,
         "seed": case.seed,
         "rms_deviation_from_nominal_in_sigma": dict(case.notes),
     }

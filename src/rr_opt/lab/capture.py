@@ -48,5 +48,5 @@ def captured(
         values[channel] = np.where(lost, np.nan, exact + size * rng.standard_normal(n))
         sigma[channel] = np.full(n, size)
         flags[channel] = np.where(lost, np.uint8(Flag.MISSING), np.uint8(0))
-    source = {"laboratory": "MuJoCo", "rate": f"{1 / (motion.t[1] - motion.t[0]):g} Hz"}
+    source = {"laboratory": "virtual", "rate": f"{1 / (motion.t[1] - motion.t[0]):g} Hz"}
     return Recording(name, motion.t, values, sigma, flags, source)

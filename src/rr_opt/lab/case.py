@@ -9,8 +9,9 @@ from typing import Literal
 
 from rr_opt.experiment.experiment import Experiment, Noise, Run, Start, Uncertainty, Use
 from rr_opt.lab.capture import captured
-from rr_opt.lab.drive import STEP, Motion, Outing, drive
+from rr_opt.lab.drive import Motion, Outing
 from rr_opt.lab.effects import rig_with
+from rr_opt.lab.engines import Engine, driven
 from rr_opt.lab.streams import stream
 from rr_opt.robot.gait import SineGait
 from rr_opt.robot.parameters import EffectUse, Robot
@@ -44,6 +45,7 @@ class Case:
     effects   what is hidden in it; verdict, what a right diagnosis says of it
     changed   names of the parameters in which robot and nominal differ, for `parameters`
     missing   fraction of the samples that the capture system loses
+    engine    what drives it
     """
 
     name: str
@@ -57,16 +59,17 @@ class Case:
     seed: int
     changed: tuple[str, ...] = ()
     missing: float = 0.0
+    engine: Engine = "mujoco"
     notes: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
 
 
-def motion_of(case: Case, plan: Plan, step: float = STEP) -> Motion:
-    """What truly happens in a run."""
-    return drive(rig_with(case.robot, case.effects), plan.gait, plan.outing, step)
+def motion_of(case: Case, plan: Plan, step: float | None = None) -> Motion:
+    """What truly happens in a run; step: s, of the integration, the engine's own if left out."""
+    return driven(case.engine, rig_with(case.robot, case.effects), plan.gait, plan.outing, step)
 
 
 def play(
-    case: Case, progress: Callable[[str], None] = lambda _: None, step: float = STEP
+    case: Case, progress: Callable[[str], None] = lambda _: None, step: float | None = None
 ) -> Experiment:
     """Make all recordings of a case; `progress` is told of each before it is made."""
     tracked = rig_with(case.robot, case.effects).tracked

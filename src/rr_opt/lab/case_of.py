@@ -8,6 +8,7 @@ from dataclasses import replace
 from rr_opt.experiment.experiment import Noise
 from rr_opt.lab.case import Case, Plan
 from rr_opt.lab.effects import effect_named, rig_with
+from rr_opt.lab.engines import Engine
 from rr_opt.lab.random_case import bare_case, hidden_in
 from rr_opt.robot.parameters import EffectUse, Robot
 
@@ -22,6 +23,7 @@ def case_of(
     seed: int | None = None,
     seconds: float = 30.0,
     missing: float = 0.0,
+    engine: Engine = "mujoco",
 ) -> Case:
     """A case with the effects given, or with what a kind of case draws, see `random_case`.
 
@@ -31,7 +33,7 @@ def case_of(
     """
     if seed is None:
         seed = secrets.randbits(48) if kind else 0
-    case = bare_case(seed, seconds, robot=robot)
+    case = bare_case(seed, seconds, robot=robot, engine=engine)
     case = replace(case, plans=plans or case.plans, noise=noise or case.noise, missing=missing)
     if kind:
         return hidden_in(case, kind)

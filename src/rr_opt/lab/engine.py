@@ -15,7 +15,7 @@ def engine() -> Any:
     except ImportError:
         raise InputError(
             "The virtual laboratory has no engine: MuJoCo is not installed. Expected the package "
-            "mujoco. Install it with: pip install 'rr-opt[lab]'."
+            "mujoco. Install it with: pip install 'rr-opt[lab]', or take the engine planar."
         ) from None
     # Its warnings would go to a file in the working folder; `Plant.require_sound` looks for them.
     mujoco.set_mju_user_warning(_silent)

@@ -13,6 +13,7 @@ from rr_opt.lab.draw.plans import draw_plans
 from rr_opt.lab.draw.robot import draw_noise, draw_robot, usual_uncertainty
 from rr_opt.lab.draw.wrong_values import draw_near, draw_wrong
 from rr_opt.lab.effects import EFFECTS, effect_named
+from rr_opt.lab.engines import Engine
 from rr_opt.lab.streams import stream
 from rr_opt.lab.strength import at_visibility
 from rr_opt.lab.visibility import Gauge
@@ -40,8 +41,9 @@ def random_case(
     spread: float = 0.0,
     target: float | None = None,
     visibility: Visibility | None = None,
+    engine: Engine = "mujoco",
 ) -> Case:
-    """Draw a case; the same seed and kind give the same.
+    """Draw a case; the same seed, kind and engine give the same.
 
     kind        null, parameters, single, single:EFFECT, pair, outside, outside:EFFECT or random
     spread      0: but for what is hidden the nominal values are true; 1: they are off by chance, as
@@ -49,14 +51,20 @@ def random_case(
     target      visibility of each effect, sigma; drawn if left out
     visibility  RMS deviation of a case from its nominal, in sigma; by default the laboratory's own
                 `Gauge`
+    engine      what drives it; robot, runs and effects are drawn alike for all
     Raises InputError for an unknown kind.
     """
-    case = bare_case(seed, seconds, spread=spread)
+    case = bare_case(seed, seconds, spread=spread, engine=engine)
     return hidden_in(case, kind, target=target, visibility=visibility)
 
 
 def bare_case(
-    seed: int, seconds: float, *, spread: float = 0.0, robot: Robot | None = None
+    seed: int,
+    seconds: float,
+    *,
+    spread: float = 0.0,
+    robot: Robot | None = None,
+    engine: Engine = "mujoco",
 ) -> Case:
     """A case with nothing hidden, of the robot or of one drawn."""
     nominal = robot or draw_robot(stream(seed, "robot"))
@@ -74,6 +82,7 @@ def bare_case(
         uncertainty,
         "consistent",
         seed,
+        engine=engine,
     )
 
 

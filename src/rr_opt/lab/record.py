@@ -10,8 +10,9 @@ import numpy as np
 from rr_opt.experiment.experiment import Noise
 from rr_opt.experiment.recording import Recording
 from rr_opt.lab.capture import captured
-from rr_opt.lab.drive import STEP, Outing, drive
+from rr_opt.lab.drive import Outing
 from rr_opt.lab.effects import rig_with
+from rr_opt.lab.engines import Engine, driven
 from rr_opt.robot.gait import Gait
 from rr_opt.robot.parameters import EffectUse, Robot
 
@@ -34,17 +35,18 @@ def record(
     periods: int = 3,
     missing: float = 0.0,
     torque: bool = False,
-    step: float = STEP,
+    step: float | None = None,
+    engine: Engine = "mujoco",
 ) -> Recording:
     """Drive a gait on the virtual robot and record it `rate` times a second.
 
     start    `rest`: the command begins at t = 0; `running`: `periods` whole periods earlier
     pose     x (m), y (m) and heading (rad) where the robot is put down
     missing  fraction of the samples that are lost
-    step     of the integration, s
-    Raises InputError for an unknown effect, or if MuJoCo is not installed.
+    step     of the integration, s; the engine's own if left out
+    Raises InputError for an unknown effect, or if MuJoCo is asked for and not installed.
     """
     rig = rig_with(robot, effects)
-    motion = drive(rig, gait, Outing(seconds, start, pose, rate, periods), step)
+    motion = driven(engine, rig, gait, Outing(seconds, start, pose, rate, periods), step)
     rng = np.random.default_rng(seed)
     return captured(motion, name, noise, rng, tracked=rig.tracked, missing=missing, torque=torque)

@@ -15,8 +15,9 @@ from numpy.typing import NDArray
 from rr_opt.experiment.experiment import Noise
 from rr_opt.lab.capture import captured
 from rr_opt.lab.case import Case, Plan, motion_of
-from rr_opt.lab.drive import Motion, drive
+from rr_opt.lab.drive import Motion
 from rr_opt.lab.effects import rig_with
+from rr_opt.lab.engines import driven
 from rr_opt.lab.streams import stream
 
 Array = NDArray[np.float64]
@@ -44,7 +45,13 @@ class Reference:
         sigma = np.array([case.noise.of(channel) for channel in ("x", "y", "psi", "phi")])
         base, nudged = (
             _channels(
-                drive(rig_with(case.nominal), plan.gait, replace(plan.outing, nudge=nudge), COARSE)
+                driven(
+                    case.engine,
+                    rig_with(case.nominal),
+                    plan.gait,
+                    replace(plan.outing, nudge=nudge),
+                    COARSE,
+                )
             )
             for nudge in (0.0, NUDGE)
         )
