@@ -41,6 +41,17 @@ def test_an_effect_changes_the_motion_and_nothing_else(run, recorded, tmp_path):
     assert answer["effects"][0]["parameters"]["force1"]["value"] == 2e-3
 
 
+def test_either_engine_records_the_same_run(run, tmp_path):
+    ends = []
+    for engine in ("mujoco", "planar"):
+        words = ("--seconds", "2", "--noise", "1 um, 1 urad", "--out", engine, "--engine", engine)
+        assert run("record", *RUNS, *words).exit_code == 0
+        last = (tmp_path / engine / "run02.csv").read_text().splitlines()[-1]
+        ends.append([float(cell) for cell in last.split(",")])
+    assert ends[0] == pytest.approx(ends[1], abs=1e-3)
+    assert ends[0] != ends[1]
+
+
 def test_a_hidden_case_is_sealed(run, tmp_path):
     told = run(
         *("record", *RUNS, "--hide", "parameters", "--seconds", "1", "--out", "case"),

@@ -66,6 +66,10 @@ def record(
     missing: Annotated[
         float, typer.Option(help="Fraction of the samples that are lost.", min=0, max=0.9)
     ] = 0.0,
+    engine: Annotated[
+        Literal["mujoco", "planar"],
+        typer.Option(help="What drives the robot: MuJoCo, or two bodies in the plane."),
+    ] = "mujoco",
     form: Annotated[
         Literal["csv", "vicon", "c3d"],
         typer.Option("--format", help="Joint and angles, or markers."),
@@ -79,7 +83,7 @@ def record(
         bool, typer.Option("--json", help="Print a machine-readable summary alone on stdout.")
     ] = False,
 ) -> None:
-    """Record a virtual robot in MuJoCo.
+    """Record a virtual robot.
 
     Writes an experiment folder: experiment.yaml, and a recording for each run.
     """
@@ -117,6 +121,7 @@ def record(
             seed=seed,
             seconds=long,
             missing=missing,
+            engine=engine,
         )
         delivery = Delivery(form, servo_log, drawn_clock(stream(case.seed, "servo")), torque=torque)
         written = write_case(case, folder, seal, delivery, steps)
