@@ -5,13 +5,13 @@ from rr_opt.proof.score.claim import Claim, Named
 from rr_opt.proof.score.truth import Truth
 
 
-def truth(kind, *hidden, remains=5.0, seen=10.0, values=None, spread=0.0):
+def truth(kind, *hidden, remains=5.0, seen=10.0, values=None, spread=0.0, engine="mujoco"):
     """What was hidden; every effect leaves `remains` sigma after the re-fit."""
     names = ("unknown",) if kind == "outside" else hidden
     values = values or {name: {} for name in names}
     effects = () if kind == "parameters" else hidden
     each = dict.fromkeys(effects, seen)
-    return Truth(kind, effects, values, each, dict.fromkeys(effects, remains), spread)
+    return Truth(kind, effects, values, each, dict.fromkeys(effects, remains), spread, engine)
 
 
 def said(verdict, *names, sure=1.0, groups=(), intervals=None, **more):

@@ -14,7 +14,7 @@ DRAG, SLIP = "quadratic_drag", "lateral_slip"
 VALUES = {DRAG: {"coefficient_total": 0.5}}
 CASES = (
     case(truth("null"), said("consistent", before=1.0, after=1.0), "001"),
-    case(truth("null"), said("parameters", "m1"), "002"),
+    case(truth("null", engine="planar"), said("parameters", "m1"), "002"),
     case(
         truth("single", DRAG, values=VALUES),
         said("missing_physics", DRAG, intervals={DRAG: {"coefficient_total": (0.4, 0.6)}}),
@@ -58,6 +58,22 @@ def test_every_miss_is_listed_with_its_page(folder):
     for text in ((folder / "README.md").read_text(), (folder / "report.html").read_text()):
         for page in pages.values():
             assert page in text
+
+
+def test_each_engine_is_counted_and_told(folder):
+    told = json.loads((folder / "proof.json").read_text())
+    assert told["engines"]["planar"]["false_claims"]["count"] == 1
+    assert told["engines"]["mujoco"]["false_claims"]["count"] == 0
+    assert told["misses"][0]["engine"] == "planar"
+    with (folder / "cases.csv").open(newline="") as file:
+        rows = [row["engine"] for row in csv.DictReader(file)]
+    assert rows == ["mujoco", "planar", *["mujoco"] * 5]
+    assert "## By engine" in (folder / "README.md").read_text()
+    assert "<h2>By engine</h2>" in (folder / "report.html").read_text()
+    assert (
+        '<td data-label="Engine"><span class="cell">planar</span></td>'
+        in (folder / "report.html").read_text()
+    )
 
 
 def test_the_table_has_a_row_a_case(folder):

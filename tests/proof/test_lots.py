@@ -2,9 +2,11 @@
 
 import hashlib
 from collections import Counter
+from dataclasses import replace
 
 import pytest
 
+from rr_opt.lab.engines import ENGINES
 from rr_opt.outcome import InputError
 from rr_opt.proof.lots import BLOCK, SINGLES, STRENGTHS, case_seed, draw_lot, read_kinds
 
@@ -55,6 +57,25 @@ def test_half_of_each_kind_has_nominal_values_that_are_off():
         off = [lot.spread for lot in HUNDRED if kind(lot) == name]
         assert set(off) == {0.0, 1.0}
         assert abs(sum(off) - len(off) / 2) <= 1
+
+
+def test_half_of_each_kind_is_driven_by_each_engine():
+    for name in BLOCK:
+        engines = [lot.engine for lot in HUNDRED if kind(lot) == name]
+        assert set(engines) == set(ENGINES)
+        assert abs(engines.count("planar") - len(engines) / 2) <= 1
+
+
+def test_what_is_hidden_does_not_depend_on_the_engine():
+    for number, lot in enumerate(HUNDRED[:20], 1):
+        alone = draw_lot(SEED, number, engines=("planar",))
+        assert alone == replace(lot, engine="planar")
+
+
+def test_halves_do_not_go_together():
+    """Engines and nominal values that are off are in all four combinations."""
+    nulls = [lot for lot in HUNDRED if kind(lot) == "null"]
+    assert len({(lot.engine, lot.spread) for lot in nulls}) == 4
 
 
 def test_only_the_kinds_asked_for():

@@ -28,7 +28,7 @@ def made_up(lot):
     """A case with nothing hidden, made of nothing."""
     answer = {
         "kind": "null", "hidden": [], "spread": 0.0, "effects": [], "stays_visible": {},
-        "rms_deviation_from_nominal_in_sigma": {}, "salt": str(lot.seed),
+        "rms_deviation_from_nominal_in_sigma": {}, "engine": lot.engine, "salt": str(lot.seed),
     }  # fmt: skip
     text = json.dumps(answer)
     return Made({"experiment.yaml": b"robot: {}\n"}, text, seal_of(text), 1.0)

@@ -13,6 +13,10 @@ from rr_opt.proof.child import diagnose_apart
 from tests.proof.test_trial import STUB, made_up
 
 
+def stub(task):
+    return diagnose_apart(replace(task, command=(sys.executable, STUB, "well")))
+
+
 @pytest.mark.parametrize(
     ("words", "told"),
     [
@@ -28,6 +32,21 @@ def test_wrong_input(words, told, tmp_path):
     assert not (tmp_path / "proof").exists()
 
 
+def test_planar_cases_need_no_mujoco(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "mujoco", None)
+    seen = []
+    monkeypatch.setattr(one, "make", lambda lot: seen.append(lot) or made_up(lot))
+    monkeypatch.setattr(one, "diagnose_apart", stub)
+    words = ["prove", "--case", "2", "--out", str(tmp_path), "--seed", "5eed", "--kinds", "null"]
+    done = CliRunner().invoke(app, words)
+    assert done.exit_code == 2
+    assert "MuJoCo is not installed" in done.stderr
+    done = CliRunner().invoke(app, [*words, "--engine", "planar"])
+    assert done.exit_code == 0, done.output
+    assert [lot.engine for lot in seen] == ["planar"]
+    assert ["engine", "planar"] in [told.split() for told in done.stdout.splitlines()]
+
+
 @pytest.mark.parametrize("workers", [1, 2])
 def test_shared_work_comes_in_order_with_any_number_of_processes(workers):
     from rr_opt.cli.shared_work import SharedWork  # noqa: PLC0415
@@ -40,9 +59,6 @@ def test_shared_work_comes_in_order_with_any_number_of_processes(workers):
 
 
 def test_one_case_again_tells_what_was_hidden_and_what_was_said(tmp_path, monkeypatch):
-    def stub(task):
-        return diagnose_apart(replace(task, command=(sys.executable, STUB, "well")))
-
     monkeypatch.setattr(one, "make", made_up)
     monkeypatch.setattr(one, "diagnose_apart", stub)
     words = ["prove", "--case", "2", "--out", str(tmp_path), "--seed", "5eed", "--kinds", "null"]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from contextlib import closing
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from rr_opt.batch.pool import Pool
+    from rr_opt.lab.engines import Engine
 
 
 def prove(
@@ -35,6 +36,10 @@ def prove(
             help="Only these: null, single, pair, parameters, outside.", show_default="all"
         ),
     ] = None,
+    engine: Annotated[
+        Literal["mujoco", "planar", "both"],
+        typer.Option(help="What drives the cases: one of the two, or each half of each kind."),
+    ] = "both",
     out: Annotated[Path | None, out_option("out/proof")] = None,
     workers: Annotated[
         int | None, typer.Option(help="Processes here.", min=1, show_default="one a core")
@@ -56,7 +61,8 @@ def prove(
     A run that was stopped goes on where it was when the same command is given again.
     """
     from rr_opt.batch.run import run  # noqa: PLC0415
-    from rr_opt.lab.engine import engine  # noqa: PLC0415
+    from rr_opt.lab.engine import engine as mujoco  # noqa: PLC0415
+    from rr_opt.lab.engines import ENGINES  # noqa: PLC0415
     from rr_opt.proof.lots import KINDS, read_kinds  # noqa: PLC0415
     from rr_opt.proof.trial import tidy  # noqa: PLC0415
     from rr_opt.proof.whole import whole_trial  # noqa: PLC0415
@@ -65,10 +71,14 @@ def prove(
 
     folder = folder_for_results(out or Path("out/proof"))
     chosen = read_kinds(kinds) if kinds is not None else KINDS
+    engines = ENGINES if engine == "both" else (engine,)
     # A laboratory without its engine is told before any case is, and not for each.
-    engine()
+    if "mujoco" in engines:
+        mujoco()
     if case is not None:
-        typer.echo(_one(folder, _seed_of_one(seed, folder), case, chosen, json=json), nl=False)
+        typer.echo(
+            _one(folder, _seed_of_one(seed, folder), case, chosen, engines, json=json), nl=False
+        )
         return
     word = _seed(seed, folder)
     with closing(_pool(workers, scheduler)) as pool:
@@ -77,6 +87,7 @@ def prove(
             word,
             range(1, cases + 1),
             chosen,
+            engines,
             keep=keep,
             run=partial(run, pool),
             count=partial(_count, total=cases),
@@ -108,7 +119,15 @@ def _count(words: str, steps: Iterator[int], done: int, total: int) -> None:
         raise
 
 
-def _one(folder: Path, seed: str, number: int, kinds: tuple[str, ...], *, json: bool) -> str:
+def _one(
+    folder: Path,
+    seed: str,
+    number: int,
+    kinds: tuple[str, ...],
+    engines: tuple[Engine, ...],
+    *,
+    json: bool,
+) -> str:
     """Make one case again, diagnose it, and tell what was hidden and what was said."""
     from rr_opt.cli.steps import Steps  # noqa: PLC0415
     from rr_opt.proof.lots import draw_lot  # noqa: PLC0415
@@ -117,7 +136,7 @@ def _one(folder: Path, seed: str, number: int, kinds: tuple[str, ...], *, json: 
     from rr_opt.report.proof.record import case_record  # noqa: PLC0415
     from rr_opt.report.proof.told import told  # noqa: PLC0415
 
-    lot = draw_lot(seed, number, kinds)
+    lot = draw_lot(seed, number, kinds, engines)
     place = folder / "again" / lot.id
     with Steps() as steps:
         found = one_case(lot, place, write_bytes, steps)

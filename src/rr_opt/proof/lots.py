@@ -8,9 +8,11 @@ from __future__ import annotations
 
 import hashlib
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 
+from rr_opt.lab.engines import ENGINES, Engine
 from rr_opt.lab.random_case import KINDS, NAMED, STRANGE
 from rr_opt.lab.streams import stream
 from rr_opt.outcome import InputError
@@ -25,6 +27,7 @@ STRENGTHS = {"faint": (2.0, 5.0), "medium": (5.0, 15.0), "strong": (15.0, 40.0)}
 SINGLES = tuple(name for name in NAMED if name != "wheel_inertia")
 
 _BITS = 48
+_Name = TypeVar("_Name")
 
 
 @dataclass(frozen=True)
@@ -35,6 +38,7 @@ class Lot:
     target  visibility of a single effect, sigma; None: drawn by the laboratory
     spread  0: the nominal values are true; 1: they are off by chance, as their uncertainties say
     seed    the case's own
+    engine  what drives it
     """
 
     number: int
@@ -42,6 +46,7 @@ class Lot:
     target: float | None
     spread: float
     seed: int
+    engine: Engine = "mujoco"
 
     @property
     def id(self) -> str:
@@ -55,14 +60,20 @@ def case_seed(seed: str, number: int) -> int:
     return int.from_bytes(digest[: _BITS // 8])
 
 
-def draw_lot(seed: str, number: int, kinds: tuple[str, ...] = KINDS) -> Lot:
-    """The lot of case 1, 2, ..., among the kinds given."""
+def draw_lot(
+    seed: str,
+    number: int,
+    kinds: tuple[str, ...] = KINDS,
+    engines: tuple[Engine, ...] = ENGINES,
+) -> Lot:
+    """The lot of case 1, 2, ..., among the kinds and with the engines given."""
     entries = [(kind, n) for kind in BLOCK if kind in kinds for n in range(BLOCK[kind])]
     block, place = divmod(number - 1, len(entries))
     kind, n = entries[int(_stream(seed, "order", block).permutation(len(entries))[place])]
     # Which of its kind the case is in the whole trial: halves, thirds and names take turns by it.
     turn = block * BLOCK[kind] + n
     own = case_seed(seed, number)
+    engine: Engine = _in_turn(seed, engines, turn, "engine", kind)
     target = None
     if kind == "single":
         low, high = list(STRENGTHS.values())[turn % len(STRENGTHS)]
@@ -72,7 +83,7 @@ def draw_lot(seed: str, number: int, kinds: tuple[str, ...] = KINDS) -> Lot:
         kind = f"{kind}:{_in_turn(seed, names, turn)}"
     # The laboratory changes values of the nominal robot: the others stay true.
     spread = 0.0 if kind == "parameters" else float(turn % 2)
-    return Lot(number, kind, target, spread, own)
+    return Lot(number, kind, target, spread, own, engine)
 
 
 def read_kinds(text: str) -> tuple[str, ...]:
@@ -87,10 +98,10 @@ def read_kinds(text: str) -> tuple[str, ...]:
     return tuple(kind for kind in BLOCK if kind in kinds)
 
 
-def _in_turn(seed: str, names: tuple[str, ...], turn: int) -> str:
+def _in_turn(seed: str, names: tuple[_Name, ...], turn: int, *purpose: object) -> _Name:
     """Every name once, in an order by lot, before any comes again."""
     again, place = divmod(turn, len(names))
-    order = _stream(seed, "names", len(names), again).permutation(len(names))
+    order = _stream(seed, "names", *purpose, len(names), again).permutation(len(names))
     return names[int(order[place])]
 
 

@@ -33,12 +33,17 @@ class Made:
 def make(lot: Lot, seconds: float = 30.0) -> Made:
     """Draw, drive and record a case; seconds: length of each run.
 
-    A motion that MuJoCo loses is told, and not raised.
+    A motion that the engine loses is told, and not raised.
     """
     began = time.process_time()
     try:
         case = random_case(
-            lot.seed, lot.kind, target=lot.target, spread=lot.spread, seconds=seconds
+            lot.seed,
+            lot.kind,
+            target=lot.target,
+            spread=lot.spread,
+            seconds=seconds,
+            engine=lot.engine,
         )
         text = _answer_text(case, lot)
         files = dict(folder_of(case))

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from rr_opt import __version__
 from rr_opt.batch.journal import Journal
+from rr_opt.lab.engines import Engine
 from rr_opt.proof.commit import fingerprint
 from rr_opt.proof.lots import draw_lot
 from rr_opt.proof.opened import Opened, open_trial
@@ -25,6 +26,7 @@ def whole_trial(
     seed: str,
     numbers: range,
     kinds: tuple[str, ...],
+    engines: tuple[Engine, ...],
     *,
     keep: Callable[[Path, bytes], object],
     run: Run,
@@ -37,8 +39,9 @@ def whole_trial(
     the folder has another trial, or an answer that was changed.
     """
     code = fingerprint(PACKAGE)
-    identity = {"seed": seed, "kinds": list(kinds), "code": code, "version": __version__}
-    lots = [draw_lot(seed, number, kinds) for number in numbers]
+    drawn = {"seed": seed, "kinds": list(kinds), "engines": list(engines)}
+    identity = {**drawn, "code": code, "version": __version__}
+    lots = [draw_lot(seed, number, kinds, engines) for number in numbers]
     trial = Trial(folder, keep, lots)
     with (
         Journal(folder / MADE, identity, restart=restart) as made,

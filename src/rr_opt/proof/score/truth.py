@@ -22,6 +22,7 @@ class Truth:
     seen       RMS deviation of each effect alone from the nominal runs, sigma
     remains    the same after the nominal parameters are re-fitted
     spread     0: the nominal values are true; 1: off by chance
+    engine     what drove the robot
     """
 
     kind: str
@@ -30,6 +31,7 @@ class Truth:
     seen: Mapping[str, float]
     remains: Mapping[str, float]
     spread: float = 0.0
+    engine: str = "mujoco"
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -64,4 +66,5 @@ def truth_from(answer: Mapping[str, Any]) -> Truth:
         seen={name: told[f"visibility_{name}"] for name in hidden},
         remains={name: answer["stays_visible"][name] for name in hidden},
         spread=answer["spread"],
+        engine=answer["engine"],
     )

@@ -7,12 +7,13 @@ from html import escape
 
 from rr_opt.proof.opened import Opened
 from rr_opt.proof.score import coverage
+from rr_opt.proof.score.by_engine import by_engine, side_by_side
 from rr_opt.proof.score.confusion import DEFINITION
 from rr_opt.proof.score.measure import Measure
 from rr_opt.proof.score.measures import measures
 from rr_opt.report.html import card, document, figure, table
 from rr_opt.report.proof.record import page_of
-from rr_opt.report.proof.summary import CHANGED, ISOLATION, headline
+from rr_opt.report.proof.summary import CHANGED, ENGINES_TOLD, ISOLATION, headline
 from rr_opt.report.proof.words import (
     hidden_text,
     rate_text,
@@ -32,6 +33,7 @@ def page(opened: Opened, drawn: str) -> str:
         _tiles(every),
         figure(drawn, "What was said of what was hidden", DEFINITION),
         card("Counts", _counts(every)),
+        card("By engine", _engines(opened)),
         card("Misses", _misses(opened)),
         card("Intervals that hold the true value", _coverage(opened)),
         f"<footer>rr-opt {escape(opened.version)} · seed <code>{escape(opened.seed)}</code> · code "
@@ -65,12 +67,24 @@ def _counts(every: Sequence[Measure]) -> str:
     return table(head, rows)
 
 
+def _engines(opened: Opened) -> str:
+    head = ["What", *by_engine(opened.cases)]
+    rows = [
+        [title, *(f"{rate_text(one.rate)}, {share_text(one.rate)}" for one in own)]
+        for title, own in side_by_side(opened.cases)
+    ]
+    return f"<p>{escape(ENGINES_TOLD)}</p>{table(head, rows)}"
+
+
 def _misses(opened: Opened) -> str:
     if not opened.misses:
         return "<p>None.</p>"
-    head = ["Case", "Outcome", "Hidden", "Visible", "Said"]
+    head = ["Case", "Outcome", "Engine", "Hidden", "Visible", "Said"]
     rows = [
-        [case.id, case.outcome, hidden_text(case), visible_text(case), said_text(case)]
+        [
+            *(case.id, case.outcome, case.truth.engine),
+            *(hidden_text(case), visible_text(case), said_text(case)),
+        ]
         for case in opened.misses
     ]
     links = " · ".join(

@@ -6,6 +6,7 @@ from typing import Any
 
 from rr_opt.proof.opened import Opened
 from rr_opt.proof.score import coverage, p_values, spread
+from rr_opt.proof.score.by_engine import by_engine
 from rr_opt.proof.score.case import Case
 from rr_opt.proof.score.confusion import DEFINITION, confusion
 from rr_opt.proof.score.measures import measures
@@ -25,6 +26,10 @@ def record(opened: Opened) -> dict[str, Any]:
         "cases": len(cases),
         "measures": {
             one.name: {"definition": one.definition, **one.rate.record} for one in measures(cases)
+        },
+        "engines": {
+            engine: {one.name: one.rate.record for one in own}
+            for engine, own in by_engine(cases).items()
         },
         "confusion": _confusion(opened),
         "coverage": _coverage(opened),
@@ -72,6 +77,7 @@ def case_record(case: Case) -> dict[str, Any]:
     return {
         "case": case.id,
         "kind": case.truth.kind,
+        "engine": case.truth.engine,
         "outcome": case.outcome,
         "counted": case.scored,
         "hidden": hidden_text(case),

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 
 from rr_opt.proof.opened import Opened
 from rr_opt.proof.score import coverage, spread
+from rr_opt.proof.score.by_engine import by_engine, side_by_side
 from rr_opt.proof.score.measures import measures
 from rr_opt.proof.score.p_values import DEFINITION, evenness
 from rr_opt.proof.score.rate import Rate, rate
@@ -26,6 +27,11 @@ ISOLATION = (
     "It runs as the same user, so nothing but its own code keeps it from other files."
 )
 
+ENGINES_TOLD = (
+    "The same counts of the cases that each of the laboratory's engines drove: a robot in three "
+    "dimensions in MuJoCo, and two bodies in the plane with contacts of another kind."
+)
+
 CHANGED = (
     "The code of rr-opt changed while this ran, so the counts are of no one code. Begin anew with "
     "--restart."
@@ -39,6 +45,7 @@ def summary(opened: Opened) -> str:
         f"Seed `{opened.seed}`, rr-opt {opened.version}, {len(opened.cases)} cases. {ISOLATION}",
         CHANGED if opened.changed else "",
         _measures(opened),
+        _engines(opened),
         _coverage(opened),
         _held_out(opened),
         _p_values(opened),
@@ -67,6 +74,17 @@ def _measures(opened: Opened) -> str:
     lines = [f"- **{one.title.removeprefix('... ')}**: {one.definition}" for one in every]
     head = ("what", "count", "share, 95 % interval")
     return markdown(head, rows) + "\n\nWhat is counted:\n\n" + "\n".join(lines)
+
+
+def _engines(opened: Opened) -> str:
+    if not opened.cases:
+        return ""
+    rows = [
+        (title, *(cell for one in own for cell in _cells(one.rate)))
+        for title, own in side_by_side(opened.cases)
+    ]
+    head = ("what", *(word for name in by_engine(opened.cases) for word in (name, "share")))
+    return "## By engine\n\n" + ENGINES_TOLD + "\n\n" + markdown(head, rows)
 
 
 def _coverage(opened: Opened) -> str:
@@ -118,11 +136,11 @@ def _misses(opened: Opened) -> str:
     if not opened.misses:
         return "## Misses\n\nNone."
     rows = [
-        (f"[{case.id}]({page_of(case)})", case.outcome, hidden_text(case), visible_text(case),
-         said_text(case))
+        (f"[{case.id}]({page_of(case)})", case.outcome, case.truth.engine, hidden_text(case),
+         visible_text(case), said_text(case))
         for case in opened.misses
     ]  # fmt: skip
-    head = ("case", "outcome", "hidden", "visible", "said")
+    head = ("case", "outcome", "engine", "hidden", "visible", "said")
     again = "`rr-opt prove --case ID` makes and diagnoses one again."
     return f"## Misses\n\nEvery one, with its page. {again}\n\n" + markdown(head, rows)
 

@@ -11,9 +11,9 @@ from rr_opt.proof.score.case import Case
 from rr_opt.report.proof.words import hidden_text, said_text
 
 HEAD = (
-    "case", "kind", "strength", "nominal_off", "hidden", "visible_sigma", "refitted_sigma",
-    "counted", "said", "outcome", "missed", "groups", "heldout_before", "heldout_refitted",
-    "heldout_after", "wall_s", "cpu_s",
+    "case", "kind", "engine", "strength", "nominal_off", "hidden", "visible_sigma",
+    "refitted_sigma", "counted", "said", "outcome", "missed", "groups", "heldout_before",
+    "heldout_refitted", "heldout_after", "wall_s", "cpu_s",
 )  # fmt: skip
 
 
@@ -32,6 +32,7 @@ def _row(case: Case) -> list[Any]:
     return [
         case.id,
         truth.kind,
+        truth.engine,
         truth.strength,
         truth.spread > 0,
         hidden_text(case),

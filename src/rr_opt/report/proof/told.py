@@ -14,6 +14,7 @@ def told(case: Case, folder: Path) -> str:
     rows = [
         ("case", case.id),
         ("kind", case.truth.kind),
+        ("engine", case.truth.engine),
         ("hidden", hidden_text(case)),
         ("visible", visible_text(case)),
         ("said", said_text(case)),
