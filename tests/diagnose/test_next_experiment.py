@@ -48,15 +48,16 @@ def test_the_plan_tells_what_it_promises_when_it_is_made_and_all_is_fitted_again
     assert told is not None
     gait = SineGait(told.amplitude, told.period, told.offset)
     assert allowed(ROBOT, gait)
-    start = "rest" if told.start == "rest" else "running"
-    plan = Plan(gait, told.seconds, start, told.heading)
-    made = imagined(model, plan, 100.0, coulomb.whole.values, coulomb.whole.effects)
+    begin = "rest" if told.start == "rest" else "running"
+    plan = Plan(gait, told.seconds, begin, told.heading)
+    made = imagined(model, [plan], 100.0, coulomb.whole.values, coulomb.whole.effects)
     runs = (*model.experiment.runs, *made.model.experiment.runs)
     both = RollerRacer(replace(model.experiment, runs=runs))
-    new = Piece(len(runs) - 1, 0, made.piece.last)
+    ((piece, start),) = made.starts.items()
+    new = Piece(len(runs) - 1, 0, piece.last)
     pieces = (*drag.whole.starts, new)
     problem = Problem(both, pieces, drag.whole.effects, drag.whole.quantities)
-    starts = {**drag.whole.starts, new: made.start}
+    starts = {**drag.whole.starts, new: start}
     again = solve(problem, drag.whole.values, starts)
     values = made.model.runs[0].values.size
     more = math.sqrt(max(again.cost - drag.whole.cost, 0.0) / values)
@@ -69,11 +70,11 @@ def test_the_winner_tells_more_than_what_was_recorded_already_does(case):
     told = next_experiment(model, coulomb, drag)
     assert told is not None
     old = [
-        contest.promise(Plan(SineGait(g.amplitude, g.period, g.offset), 30.0, run.start, 0.0))
+        Plan(SineGait(g.amplitude, g.period, g.offset), 30.0, run.start, 0.0)
         for run in model.experiment.runs
         for g in [run.gait]
     ]
-    assert told.separation > max(old)
+    assert told.separation > max(contest.promises(old))
     assert "coulomb friction and quadratic drag" in told.sentence
 
 

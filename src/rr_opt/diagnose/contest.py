@@ -50,37 +50,42 @@ class Contest:
     rival: Rival
     room: float
 
-    def promise(self, plan: Plan) -> float:
-        """By how much the two would differ after re-fitting, RMS in sigma, linearised; 0 if the
-        plan leaves the floor there is."""
-        made = self._made(plan, RANKED_RATE)
-        data = made.model.runs[0]
-        if not np.isfinite(data.values[1:]).any() or extent([data.values[:, :2]]) > self.room:
-            return 0.0
-        normal = self._problem(made).normal(made.piece, self.rival.values, made.start)
-        u = scaled(self.rival.quantities, self.rival.values)
-        d = _step(self.rival, normal.H, normal.g, u, np.zeros_like(u))
-        cost = normal.at(d) + float(d @ self.rival.H @ d)
-        return math.sqrt(max(cost, 0.0) / data.values.size) if math.isfinite(cost) else 0.0
+    def promises(self, plans: Sequence[Plan]) -> list[float]:
+        """By how much the two would differ on each plan's recording after re-fitting, RMS in sigma,
+        linearised; 0 if the plan leaves the floor there is."""
+        made = self._made(plans, RANKED_RATE)
+        rival, near = self.rival, made.within(self.room)
+        normals = self._problem(made).normals(rival.values, near)
+        u = scaled(rival.quantities, rival.values)
+        out = []
+        for piece in made.starts:
+            promise = 0.0
+            if piece in near:
+                normal, count = normals[piece], made.model.runs[piece.run].values.size
+                d = _step(rival, normal.H, normal.g, u, np.zeros_like(u))
+                cost = normal.at(d) + float(d @ rival.H @ d)
+                promise = math.sqrt(max(cost, 0.0) / count) if math.isfinite(cost) else 0.0
+            out.append(promise)
+        return out
 
     def checked(self, plan: Plan, steps: int = 6) -> float:
         """The same from simulations: the rival is fitted to the recording step by step."""
-        made = self._made(plan, _CHECKED_RATE)
+        made = self._made([plan], _CHECKED_RATE)
         problem, rival = self._problem(made), self.rival
-        start = made.start
+        ((piece, start),) = made.starts.items()
         u0 = scaled(rival.quantities, rival.values)
         u, least = u0, math.inf
         for _ in range(steps):
             values = dict(rival.values) | unscaled(rival.quantities, u)
-            normal = problem.normal(made.piece, values, start)
-            now = self._total(problem, made.piece, values, start, u - u0)
+            normal = problem.normal(piece, values, start)
+            now = self._total(problem, piece, values, start, u - u0)
             least = min(least, now)
             d = _step(rival, normal.H, normal.g, u, u - u0)
             # A step that is too long is halved until it helps.
             for part in (1.0, 0.5, 0.25, 0.1):
                 moved = start + normal.shift + normal.follow @ (part * d)
                 trial = dict(rival.values) | unscaled(rival.quantities, u + part * d)
-                reached = self._total(problem, made.piece, trial, moved, u + part * d - u0)
+                reached = self._total(problem, piece, trial, moved, u + part * d - u0)
                 if reached < now:
                     break
             else:
@@ -96,15 +101,14 @@ class Contest:
         """What the new recording and the present ones cost together, in chi-square."""
         return problem.cost(values, {piece: start})[0] + float(d @ self.rival.H @ d)
 
-    def _made(self, plan: Plan, rate: float) -> Imagined:
-        return imagined(
-            self.model, plan, rate, self.accepted.whole.values, self.accepted.whole.effects
-        )
+    def _made(self, plans: Sequence[Plan], rate: float) -> Imagined:
+        fit = self.accepted.whole
+        return imagined(self.model, plans, rate, fit.values, fit.effects)
 
     def _problem(self, made: Imagined) -> Problem:
         rival = self.rival
         return Problem(
-            made.model, (made.piece,), rival.effects, rival.quantities, dict(rival.values)
+            made.model, tuple(made.starts), rival.effects, rival.quantities, dict(rival.values)
         )
 
 
@@ -123,12 +127,3 @@ def as_rival(other: Explanation) -> Rival:
 def name_of(explanation: Explanation) -> str:
     """Its effects, for a person."""
     return " + ".join(explanation.names).replace("_", " ") or "the model as it is"
-
-
-def extent(paths: Sequence[Array]) -> float:
-    """How far any of the paths (n, 2) goes from where it starts, m."""
-    return max(float(np.nanmax(np.hypot(*(path - path[_first(path)]).T))) for path in paths)
-
-
-def _first(path: Array) -> int:
-    return int(np.flatnonzero(np.isfinite(path).all(axis=1))[0])

@@ -11,10 +11,10 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
-from rr_opt.diagnose.contest import Contest, Rival, as_rival, extent, name_of
+from rr_opt.diagnose.contest import Contest, Rival, as_rival, name_of
 from rr_opt.diagnose.diagnosis import NextExperiment
 from rr_opt.diagnose.explanation import Explanation
-from rr_opt.diagnose.plans import Plan, gaits
+from rr_opt.diagnose.plans import Plan, extent, gaits
 from rr_opt.diagnose.racer import RollerRacer
 from rr_opt.diagnose.worst_known import Narrowing
 
@@ -31,6 +31,9 @@ _ROOM = 1.5
 """So much farther than the present recordings, the next may go."""
 
 
+Promises = Callable[[Sequence[Plan]], Sequence[float]]
+
+
 def next_experiment(
     model: RollerRacer, best: Explanation, rival: Explanation | None = None
 ) -> NextExperiment | None:
@@ -41,40 +44,40 @@ def next_experiment(
     room = _ROOM * extent([data.values[:, :2] for data in model.runs])
     if rival is None:
         narrowing = Narrowing(model, best, room)
-        plan = _leading(narrowing.promise, model)
+        plan = _leading(narrowing.promises, model)
         other = narrowing.rival(plan) if plan else None
     else:
         other = as_rival(rival)
-        plan = _leading(Contest(model, best, other, room).promise, model)
+        plan = _leading(Contest(model, best, other, room).promises, model)
     if plan is None or other is None:
         return None
     return _checked(Contest(model, best, other, room), plan, other, name_of(best))
 
 
-def _leading(promise: Callable[[Plan], float], model: RollerRacer) -> Plan | None:
+def _leading(promises: Promises, model: RollerRacer) -> Plan | None:
     """The plan that promises most: gaits first, then starts and headings of the best."""
     allowed = gaits(model.experiment.robot)
     some = allowed[:: max(len(allowed) // _TRIED, 1)]
-    first = _ranked(promise, [Plan(gait, _SHORT, "rest", 0.0) for gait in some])[:_FINALISTS]
+    first = _ranked(promises, [Plan(gait, _SHORT, "rest", 0.0) for gait in some])[:_FINALISTS]
     varied = [
         replace(plan, start=start, heading=heading)
         for plan in first
         for start in ("rest", "running")
         for heading in _HEADINGS
     ]
-    return next(iter(_ranked(promise, varied)), None)
+    return next(iter(_ranked(promises, varied)), None)
 
 
-def _ranked(promise: Callable[[Plan], float], plans: Sequence[Plan]) -> list[Plan]:
+def _ranked(promises: Promises, plans: Sequence[Plan]) -> list[Plan]:
     """Those that promise anything, most first."""
-    found = [(promise(plan), -k) for k, plan in enumerate(plans)]
-    return [plans[-k] for promised, k in sorted(found, reverse=True) if promised > 0]
+    found = sorted(zip(promises(plans), range(0, -len(plans), -1), strict=True), reverse=True)
+    return [plans[-k] for promised, k in found if promised > 0]
 
 
 def _checked(contest: Contest, plan: Plan, other: Rival, name: str) -> NextExperiment:
     told = contest.checked(plan)
     longer = replace(plan, seconds=_LONG)
-    if told < _CLEAR and contest.promise(longer) > 0:
+    if told < _CLEAR and contest.promises([longer])[0] > 0:
         plan, told = longer, contest.checked(longer)
     return _told(plan, (name, other.name), told, other.tells)
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rr_opt.diagnose.model import Array, Piece
+from rr_opt.diagnose.model import Array, Asked, Piece
 from rr_opt.diagnose.racer import RollerRacer
 from rr_opt.experiment.experiment import Run, Start
 from rr_opt.experiment.recording import CHANNELS, Recording
@@ -62,64 +62,112 @@ def allowed(robot: Robot, gait: SineGait) -> bool:
 
 @dataclass(frozen=True)
 class Imagined:
-    """A run that was never made, as the one run of a model, and the state in which it starts."""
+    """Runs that were never made, as those of a model, and the states in which they start."""
 
     model: RollerRacer
-    piece: Piece
-    start: Array
+    starts: Mapping[Piece, Array]
+
+    def within(self, room: float) -> dict[Piece, Array]:
+        """Those that go no farther than `room`, m, and keep to the numbers."""
+        values = {piece: self.model.runs[piece.run].values for piece in self.starts}
+        return {
+            piece: start
+            for piece, start in self.starts.items()
+            if np.isfinite(values[piece][1:]).any() and extent([values[piece][:, :2]]) <= room
+        }
 
 
 def imagined(
     model: RollerRacer,
-    plan: Plan,
+    plans: Sequence[Plan],
     rate: float,
     values: Mapping[str, float],
     effects: tuple[str, ...],
 ) -> Imagined:
-    """The run of a plan, sampled at `rate`, 1/s, as the model with the effects predicts it.
+    """The runs of plans, sampled at `rate`, 1/s, as the model with the effects predicts them.
 
-    It starts from where the recorded runs did, in the middle of them.
+    They start from where the recorded runs did, in the middle of them.
     """
     first = np.nanmedian([data.values[:20, :2] for data in model.runs], axis=(0, 1))
-    start = np.array([*first, plan.heading, 0.0, 0.0, 0.0])
-    if plan.start == "running":
-        start[3] = _settled(model, plan, values, effects, start)
-    t = np.arange(round(plan.seconds * rate) + 1) / rate
-    empty = _one_run(model, plan, t, np.zeros((t.size, len(CHANNELS))))
-    piece = Piece(0, 0, t.size)
-    predicted = empty.respond(piece, values, effects, start).predicted
-    return Imagined(_one_run(model, plan, t, predicted), piece, start)
+    starts = [np.array([*first, plan.heading, 0.0, 0.0, 0.0]) for plan in plans]
+    for k, z in _settled(model, plans, values, effects, starts).items():
+        starts[k][3] = z
+    times = [np.arange(round(plan.seconds * rate) + 1) / rate for plan in plans]
+    empty, predicted = _driven(model, plans, times, values, effects, starts)
+    runs = [
+        replace(run, recording=_recording(model, t, seen))
+        for run, t, seen in zip(empty.experiment.runs, times, predicted, strict=True)
+    ]
+    made = RollerRacer(replace(model.experiment, runs=tuple(runs)))
+    pieces = (Piece(k, 0, t.size) for k, t in enumerate(times))
+    return Imagined(made, dict(zip(pieces, starts, strict=True)))
 
 
 def _settled(
     model: RollerRacer,
-    plan: Plan,
+    plans: Sequence[Plan],
     values: Mapping[str, float],
     effects: tuple[str, ...],
-    start: Array,
-) -> float:
-    """z, m/s, after whole periods of the gait, begun at rest."""
-    period = plan.gait.period
-    end = math.ceil(_SETTLING / period) * period
-    t = np.append(np.arange(0.0, end - period / 40, period / 40), [end - 1e-3, end])
-    before = _one_run(model, replace(plan, start="rest"), t, np.zeros((t.size, len(CHANNELS))))
-    seen = before.respond(Piece(0, 0, t.size), values, effects, start).predicted
-    dx, dy = (seen[-1, :2] - seen[-2, :2]) / 1e-3
-    # P moves at v along platform 1's axis, and the state holds z = v - g dphi.
-    v = float(dx * np.cos(seen[-1, 2]) + dy * np.sin(seen[-1, 2]))
+    starts: Sequence[Array],
+) -> dict[int, float]:
+    """z, m/s, of the plans that start running, after whole periods of the gait begun at rest."""
+    running = [k for k, plan in enumerate(plans) if plan.start == "running"]
+    before = [replace(plans[k], start="rest") for k in running]
+    times = []
+    for plan in before:
+        period = plan.gait.period
+        end = math.ceil(_SETTLING / period) * period
+        t = np.arange(0.0, end - period / 40, period / 40)
+        times.append(np.append(t, [end - 1e-3, end]))
+    _, predicted = _driven(model, before, times, values, effects, [starts[k] for k in running])
     p = robot_values(model.experiment.robot)
-    angle = [float(plan.gait.angle(0.0)), float(plan.gait.rate(0.0))]
-    return v - float(floor_motion().speeds([*start[:3], 0.0], angle, p)[0])
+    out = {}
+    for k, seen in zip(running, predicted, strict=True):
+        dx, dy = (seen[-1, :2] - seen[-2, :2]) / 1e-3
+        # P moves at v along platform 1's axis, and the state holds z = v - g dphi.
+        v = float(dx * np.cos(seen[-1, 2]) + dy * np.sin(seen[-1, 2]))
+        gait = plans[k].gait
+        angle = [float(gait.angle(0.0)), float(gait.rate(0.0))]
+        out[k] = v - float(floor_motion().speeds([*starts[k][:3], 0.0], angle, p)[0])
+    return out
 
 
-def _one_run(model: RollerRacer, plan: Plan, t: Array, values: Array) -> RollerRacer:
+def _driven(
+    model: RollerRacer,
+    plans: Sequence[Plan],
+    times: Sequence[Array],
+    values: Mapping[str, float],
+    effects: tuple[str, ...],
+    starts: Sequence[Array],
+) -> tuple[RollerRacer, Sequence[Array]]:
+    """A model with the runs of plans, still empty, and its predictions of them (n, 4)."""
+    runs = tuple(
+        Run(_recording(model, t, np.zeros((t.size, len(CHANNELS)))), plan.gait, "fit", plan.start)
+        for plan, t in zip(plans, times, strict=True)
+    )
+    empty = RollerRacer(replace(model.experiment, runs=runs))
+    asked = [
+        Asked(Piece(k, 0, t.size), values, start)
+        for k, (t, start) in enumerate(zip(times, starts, strict=True))
+    ]
+    return empty, empty.simulated.predicted(asked, effects)
+
+
+def _recording(model: RollerRacer, t: Array, values: Array) -> Recording:
     noise = model.experiment.noise
-    recording = Recording(
+    return Recording(
         "to be made",
         t,
         dict(zip(CHANNELS, values.T, strict=True)),
         {name: np.full(t.size, noise.of(name)) for name in CHANNELS},
         {name: np.zeros(t.size, np.uint8) for name in CHANNELS},
     )
-    run = Run(recording, plan.gait, "fit", plan.start)
-    return RollerRacer(replace(model.experiment, runs=(run,)))
+
+
+def extent(paths: Sequence[Array]) -> float:
+    """How far any of the paths (n, 2) goes from where it starts, m."""
+    return max(float(np.nanmax(np.hypot(*(path - path[_first(path)]).T))) for path in paths)
+
+
+def _first(path: Array) -> int:
+    return int(np.flatnonzero(np.isfinite(path).all(axis=1))[0])

@@ -103,6 +103,10 @@ class Simulated:
             by_value = by_value + out.by_start[:, :, _V : _V + 1] * v_by
         return Response(made.seen, by_value, by_start_of(out.by_start, start))
 
+    def predicted(self, asked: Sequence[Asked], effects: tuple[str, ...]) -> list[Array]:
+        """What is seen of each piece (n, channels)."""
+        return [made.seen for _, made, _, _ in self._predicted(asked, self.every(effects))]
+
     def off(self, asked: Sequence[Asked], effects: tuple[str, ...]) -> Sequence[Array]:
         """(predicted - recorded)/sigma; see `diagnose.model.Model`."""
         made = self._predicted(asked, self.every(effects))

@@ -9,13 +9,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 from rr_opt.diagnose.explain import Chosen, explain, joined
 from rr_opt.diagnose.explanation import FLOOR, Explanation, rms
 from rr_opt.diagnose.fit import Fit
 from rr_opt.diagnose.model import Model
 from rr_opt.diagnose.problem import doubt
-from rr_opt.diagnose.screen import LUCK, Promise, jumps, screen
+from rr_opt.diagnose.screen import LUCK, Look, Promise, looks, screen
 
 EXACT, ROUGH = 0.005, 0.03
 """Nor is an effect's model: what is left is none by the first share of the misfit of the model as
@@ -34,6 +35,7 @@ _AS_MUCH = 0.5
 """Of what the others gain, a dear effect has to promise that share to be looked at beside them."""
 
 Say = Callable[[str], None]
+T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -60,41 +62,76 @@ class Rounds:
     def next_to(self, best: Explanation) -> list[Explanation]:
         """The explanations with one effect more that promise most."""
         fit = _sight(best)
-        promised = screen(self.model, fit, best.chosen) + self.jumping(best, dear=False)
+        promised = screen(self.model, fit, best.chosen)
+        promised += self._more_than_luck(fit, self._looks(best, dear=False))
         promised.sort(key=lambda one: -one.gain)
         least = _WORTH * promised[0].gain if promised else 0.0
         worth = [one for k, one in enumerate(promised) if k < _WHOLE or one.gain > least]
-        found = self.fitted(best, worth[:_IN_WINDOWS])
-        # What cannot be linearised is dear, and tried where nothing else will do, or where it
-        # promises, from one step, about as much as the others gain.
-        dear = self.jumping(best, dear=True)[:_DEAR]
+        # What cannot be linearised is dear to look for: beside the fits, as they need one another
+        # for nothing.
+        self._say_fitting(worth[:_IN_WINDOWS])
+        looks = self._looks(best, dear=True)
+        tried = [self._in_windows(best, one) for one in worth[:_IN_WINDOWS]]
+        done = list(self.each(_done, [*looks, *tried]))
+        found = self._over_whole_runs(best, done[len(looks) :])
+        dear = self._more_than_luck(fit, done[: len(looks)])[:_DEAR]
+        # It is tried where nothing else will do, or where it promises, from one step, about as much
+        # as the others gain.
         if min((rms(one.misfit) for one in found), default=math.inf) <= self.floor(best):
             least = _AS_MUCH * max(fit.cost - _same(one, best, fit).cost for one in found)
             dear = [one for one in dear if one.gain > least]
         return found + self.fitted(best, dear)
 
-    def jumping(self, best: Explanation, *, dear: bool) -> list[Promise]:
-        """The effects that jump, of which each promises more than luck."""
+    def looked_for(self, best: Explanation, name: str) -> list[Promise]:
+        """What one dear effect promises beside an explanation, if it is more than luck."""
         fit = _sight(best)
+        looks = [look for look in self._looks(best, dear=True) if look.name == name]
+        return self._more_than_luck(fit, looks)
+
+    def _looks(self, best: Explanation, *, dear: bool) -> list[Look]:
+        return looks(self.model, _sight(best), best.chosen, dear=dear)
+
+    def _more_than_luck(self, fit: Fit, found: Iterable[Sequence[Promise] | Look]) -> list[Promise]:
+        """The effects that jump, of which each promises more than luck; most first."""
         luck = LUCK * doubt(fit.cost, fit.count)
-        promised = jumps(self.model, fit, best.chosen, dear=dear)
-        return [one for one in promised if one.gain > luck]
+        every = [one for look in found for one in (look() if isinstance(look, Look) else look)]
+        return sorted((one for one in every if one.gain > luck), key=lambda one: -one.gain)
 
     def fitted(self, best: Explanation, promised: Sequence[Promise]) -> list[Explanation]:
         """The explanation with each of these beside it, the best of them over whole runs."""
         if not promised:
             return []
-        self.say(f"fitting {', '.join(one.chosen.name for one in promised)}")
-        in_windows = list(
-            self.each(_InWindows(self.model, best.chosen, self.nominal, best.windows), promised)
+        self._say_fitting(promised)
+        return self._over_whole_runs(
+            best, list(self.each(_done, [self._in_windows(best, one) for one in promised]))
         )
+
+    def _say_fitting(self, promised: Sequence[Promise]) -> None:
+        self.say(f"fitting {', '.join(one.chosen.name for one in promised)}")
+
+    def _in_windows(self, best: Explanation, promise: Promise) -> _InWindows:
+        return _InWindows(self.model, best.chosen, self.nominal, best.windows, promise)
+
+    def _over_whole_runs(
+        self, best: Explanation, in_windows: list[tuple[Chosen, Fit]]
+    ) -> list[Explanation]:
+        """The best of those fitted in windows, over whole runs."""
+        if not in_windows:
+            return []
         if _sight(best) is best.windows:
             # Else windows say next to nothing, and what was promised counts.
             in_windows.sort(key=lambda pair: pair[1].cost)
         least = min((fit for _, fit in in_windows), key=lambda fit: fit.cost)
         hopeful = [pair for pair in in_windows[:_WHOLE] if not _hopeless(pair[1], least)]
         self.say(f"over whole runs: {', '.join(one.name for one, _ in hopeful)}")
-        return list(self.each(_Whole(self.model, best.chosen), hopeful))
+        return list(
+            self.each(_done, [_Whole(self.model, best.chosen, one, fit) for one, fit in hopeful])
+        )
+
+
+def _done(task: Callable[[], T]) -> T:
+    """Do a task, here or in another process."""
+    return task()
 
 
 @dataclass(frozen=True)
@@ -103,22 +140,24 @@ class _InWindows:
     have: tuple[Chosen, ...]
     nominal: Fit
     fit: Fit
+    promise: Promise
 
-    def __call__(self, promise: Promise) -> tuple[Chosen, Fit]:
+    def __call__(self) -> tuple[Chosen, Fit]:
         """The effect beside those that are there."""
-        one, every = promise.chosen, (*self.have, promise.chosen)
-        return one, explain(self.model, every, self.nominal, self.fit, promise.begins)
+        one, every = self.promise.chosen, (*self.have, self.promise.chosen)
+        return one, explain(self.model, every, self.nominal, self.fit, self.promise.begins)
 
 
 @dataclass(frozen=True)
 class _Whole:
     model: Model
     have: tuple[Chosen, ...]
+    one: Chosen
+    fit: Fit
 
-    def __call__(self, pair: tuple[Chosen, Fit]) -> Explanation:
+    def __call__(self) -> Explanation:
         """The fit over whole runs, from that over windows."""
-        one, fit = pair
-        return Explanation((*self.have, one), fit, joined(self.model, fit))
+        return Explanation((*self.have, self.one), self.fit, joined(self.model, self.fit))
 
 
 def _sight(best: Explanation) -> Fit:

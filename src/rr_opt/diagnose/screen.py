@@ -39,22 +39,34 @@ def linear(model: Model, chosen: Chosen) -> bool:
     return chosen.name not in model.jumping
 
 
-def jumps(model: Model, fit: Fit, have: Sequence[Chosen], *, dear: bool) -> list[Promise]:
-    """What those that jump promise, beside a fit: of the dear ones, or of the others."""
+@dataclass(frozen=True)
+class Look:
+    """A look for an effect that jumps, in all its forms, beside a fit; dear for some."""
+
+    model: Model
+    fit: Fit
+    name: str
+
+    def __call__(self) -> list[Promise]:
+        """What each form promises, if it is proposed."""
+        found = []
+        for form in range(len(self.model.catalogue[self.name].forms)):
+            proposals = self.model.propose(self.name, form, self.fit)
+            if proposals:
+                gain = max(proposal.gain for proposal in proposals)
+                begins = tuple(proposal.values for proposal in proposals)
+                found.append(Promise(Chosen(self.name, form), gain, begins))
+        return found
+
+
+def looks(model: Model, fit: Fit, have: Sequence[Chosen], *, dear: bool) -> list[Look]:
+    """The looks for what jumps, beside a fit: of the dear ones, or of the others."""
     names = {one.name for one in have}
-    new = [
-        one
-        for one in every(model)
-        if one.name in model.jumping and (one.name in model.dear) == dear and one.name not in names
+    return [
+        Look(model, fit, name)
+        for name in model.catalogue
+        if name in model.jumping and (name in model.dear) == dear and name not in names
     ]
-    found = []
-    for one in new:
-        proposals = model.propose(one.name, one.form, fit)
-        if proposals:
-            gain = max(proposal.gain for proposal in proposals)
-            begins = tuple(proposal.values for proposal in proposals)
-            found.append(Promise(one, gain, begins))
-    return sorted(found, key=lambda promise: -promise.gain)
 
 
 def every(model: Model) -> list[Chosen]:

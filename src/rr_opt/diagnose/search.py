@@ -45,6 +45,7 @@ class Search:
     """A search under way, and all that it tried.
 
     first  misfit of the model as believed, RMS in sigma
+    been   the rounds it has been through: next to what, and what was found
     """
 
     model: Model
@@ -54,6 +55,7 @@ class Search:
     say: Say = lambda _: None
     each: Callable[..., Iterable] = map
     tried: list[Explanation] = field(default_factory=list)
+    been: list[tuple[Explanation, list[Explanation]]] = field(default_factory=list)
 
     @property
     def rounds(self) -> Rounds:
@@ -113,10 +115,9 @@ class Search:
             explained = rms(best.misfit) <= max(FLOOR, EXACT * self.first)
             if (explained and (best.chosen or not _unbelievable(best))) or not gained:
                 break
-            found = self.rounds.next_to(best)
+            found = self._next_to(best)
             if not found:
                 break
-            self.tried += found
             better = min(found, key=lambda one: one.score)
             if not _outright(better, best):
                 best = self._again(best, better)
@@ -126,6 +127,16 @@ class Search:
             gained = not best.chosen or better.misfit < _GAINED * best.misfit
             best = better
         return best
+
+    def _next_to(self, best: Explanation) -> list[Explanation]:
+        """The explanations with one effect more that promise most, looked for once."""
+        for been, found in self.been:
+            if been is best:
+                return found
+        found = self.rounds.next_to(best)
+        self.been.append((best, found))
+        self.tried += found
+        return found
 
     def _again(self, less: Explanation, more: Explanation) -> Explanation:
         """`less` from where `more` ended, if that is better.
@@ -192,9 +203,7 @@ class Search:
         for one in best.chosen:
             if one.name in self.model.placed:
                 without = self._without(best, one)
-                places = [
-                    p for p in self.rounds.jumping(without, dear=True) if p.chosen.name == one.name
-                ]
+                places = self.rounds.looked_for(without, one.name)
                 found = self.rounds.fitted(without, places)
                 self.tried += found
                 best = min([best, *found], key=lambda tried: tried.score)

@@ -8,11 +8,12 @@ or, of an effect and of what nothing was known of, against the value itself.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from rr_opt.diagnose.contest import RANKED_RATE, Rival, extent
+from rr_opt.diagnose.contest import RANKED_RATE, Rival
 from rr_opt.diagnose.explanation import Explanation
 from rr_opt.diagnose.intervals import covariance
 from rr_opt.diagnose.model import Array, Quantity
@@ -29,16 +30,18 @@ class Narrowing:
     accepted: Explanation
     room: float
 
-    def promise(self, plan: Plan) -> float:
-        """By how much a value's relative standard deviation would fall at most; 0 if the plan
-        leaves the floor there is."""
-        both = self._deviations(plan)
-        return 0.0 if both is None else float(self._drops(*both).max())
+    def promises(self, plans: Sequence[Plan]) -> list[float]:
+        """By how much a value's relative standard deviation would fall at most with each plan's
+        recording; 0 if the plan leaves the floor there is."""
+        return [
+            0.0 if both is None else float(self._drops(*both).max())
+            for both in self._deviations(plans)
+        ]
 
     def rival(self, plan: Plan) -> Rival | None:
         """The accepted explanation, but the value that the plan narrows most is off by one
         standard deviation, and all others adjusted so that the present recordings hardly tell."""
-        both, fit = self._deviations(plan), self.accepted.whole
+        (both,), fit = self._deviations([plan]), self.accepted.whole
         if both is None:
             return None
         k, spread = int(np.argmax(self._drops(*both))), covariance(fit)
@@ -60,29 +63,33 @@ class Narrowing:
             f"would be known to {then:.2g} (one standard deviation) instead of {now:.2g}.",
         )
 
-    def _deviations(self, plan: Plan) -> tuple[Array, Array] | None:
-        """Standard deviations of the values, scaled, now and then."""
+    def _deviations(self, plans: Sequence[Plan]) -> list[tuple[Array, Array] | None]:
+        """Standard deviations of the values, scaled, now and with each plan's recording."""
         fit = self.accepted.whole
         if not fit.quantities:
-            return None
-        made = imagined(self.model, plan, RANKED_RATE, fit.values, fit.effects)
-        data = made.model.runs[0]
-        if not np.isfinite(data.values[1:]).any() or extent([data.values[:, :2]]) > self.room:
-            return None
-        problem = Problem(made.model, (made.piece,), fit.effects, fit.quantities)
-        H = fit.total().H
-        added = problem.normal(made.piece, fit.values, made.start).H
-        before, after = (
-            np.sqrt(np.diag(np.linalg.pinv(M, hermitian=True))) for M in (H, H + added)
-        )
-        now = np.sqrt(np.diag(covariance(fit)))
-        # The model is doubted then as it is now.
-        then = now * after / before
-        return (now, then) if np.isfinite(then).all() else None
+            return [None] * len(plans)
+        made = imagined(self.model, plans, RANKED_RATE, fit.values, fit.effects)
+        problem = Problem(made.model, tuple(made.starts), fit.effects, fit.quantities)
+        normals = problem.normals(fit.values, made.within(self.room))
+        H, now = fit.total().H, np.sqrt(np.diag(covariance(fit)))
+        before = _deviations(H)
+        out: list[tuple[Array, Array] | None] = []
+        for piece in made.starts:
+            both = None
+            if piece in normals:
+                # The model is doubted then as it is now.
+                then = now * _deviations(H + normals[piece].H) / before
+                both = (now, then) if np.isfinite(then).all() else None
+            out.append(both)
+        return out
 
     def _drops(self, now: Array, then: Array) -> Array:
         fit = self.accepted.whole
         return (now - then) / [_size(q, fit.values[q.name]) for q in fit.quantities]
+
+
+def _deviations(H: Array) -> Array:
+    return np.sqrt(np.diag(np.linalg.pinv(H, hermitian=True)))
 
 
 def _size(q: Quantity, value: float) -> float:
