@@ -20,7 +20,7 @@ from rr_opt.diagnose.model import (
     Response,
 )
 from rr_opt.diagnose.racer_proposals import of_patch, of_servo
-from rr_opt.diagnose.racer_quantities import candidate, nominal, uncertain
+from rr_opt.diagnose.racer_quantities import ZERO_OFFSET, ZEROS, candidate, nominal, uncertain
 from rr_opt.diagnose.racer_simulated import Simulated
 from rr_opt.diagnose.racer_state import HELD, side_speeds
 from rr_opt.diagnose.slip_proposals import of_slip
@@ -223,6 +223,8 @@ class RollerRacer:
     @cached_property
     def _simulated(self) -> Simulated:
         given = frozenset(use.name for use in self.experiment.robot.physics)
+        if any(name in self.experiment.uncertainty for name in ZEROS.values()):
+            given |= {ZERO_OFFSET}
         return Simulated(self.experiment.runs, self.runs, self.nominal, given)
 
 

@@ -20,6 +20,7 @@ from rr_opt.diagnose.racer import RollerRacer
 from rr_opt.diagnose.residue import residue, systematic
 from rr_opt.diagnose.stages.located import located
 from rr_opt.diagnose.stages.stages import stages
+from rr_opt.diagnose.zeroed import zeroed
 
 
 def diagnose_racer(racer: RollerRacer, steps: Steps | None = None) -> Diagnosis:
@@ -27,7 +28,9 @@ def diagnose_racer(racer: RollerRacer, steps: Steps | None = None) -> Diagnosis:
     it = found(racer, steps or Steps())
     left = it.steps.timed("is that all", lambda: systematic(racer, it.best, it.search.base))
     said = answer(it, systematic=left)
-    tested = it.steps.timed("where", lambda: stages(racer, it.search.base.whole))
+    tested = it.steps.timed(
+        "where", lambda: stages(zeroed(racer, it.search.base.whole), it.search.base.whole)
+    )
     said = located(said, tested, racer.catalogue)
     said = _told_apart(racer, it, said)
     if said.verdict == "unexplained":

@@ -26,6 +26,10 @@ _CHANNELS = {
 _PARTS = {"m": "kg", "I": "kg m^2", "c": "m", "a": "m", "b": "m", "kappa": "N m s"}
 _EVERYTHING = (*(f"{part}{i}" for i in (1, 2) for part in _PARTS), "h")
 
+ZERO_OFFSET = "zero_offset"
+ZEROS = {f"{ZERO_OFFSET}.{name}": f"{name}_zero" for name in ("psi", "phi")}
+"""The parameters of the capture system's zeros, and what an experiment calls them."""
+
 
 def nominal(experiment: Experiment) -> dict[str, float]:
     """Every value of the robot and of all effects, SI; an effect that it has not is neutral."""
@@ -38,14 +42,16 @@ def nominal(experiment: Experiment) -> dict[str, float]:
         for q in effect.parameters
     }
     given = {f"{use.name}.{name}": v for use in robot.physics for name, v in use.values.items()}
-    return {**out, "h": robot.h, **neutral, **given}
+    return {**out, "h": robot.h, **neutral, **given, **dict.fromkeys(ZEROS.values(), 0.0)}
 
 
 def uncertain(experiment: Experiment, setting: Setting) -> tuple[Quantity, ...]:
-    """The robot's own values that are not known exactly, and those of the effects that it has."""
+    """The robot's own values that are not known exactly, those of the effects that it has, and the
+    capture system's zeros."""
     values = nominal(experiment)
     free = experiment.uncertainty
     own = [_parameter(name, values[name], free[name]) for name in _EVERYTHING if name in free]
+    own += [_zero(name, free[name].sigma) for name in ZEROS.values() if name in free]
     return (*own, *(q for use in experiment.robot.physics for q in _present(use, setting)))
 
 
@@ -65,14 +71,16 @@ def candidate(effect: Effect, setting: Setting) -> Candidate:
 def values_of(given: Mapping[str, float], parameters: tuple[str, ...]) -> Array:
     """The parameters p of a motion, with k = kappa/h^2."""
     friction = {f"k{i}": given[f"kappa{i}"] / given["h"] ** 2 for i in (1, 2)}
-    return np.array([friction.get(name, given.get(name, math.nan)) for name in parameters])
+    names = [ZEROS.get(name, name) for name in parameters]
+    return np.array([friction.get(name, given.get(name, math.nan)) for name in names])
 
 
 def values_by(
     given: dict[str, float], parameters: tuple[str, ...], wanted: tuple[str, ...]
 ) -> Array:
     """How p changes with each quantity that is wanted, (np, nw)."""
-    out = np.array([[float(own == name) for name in wanted] for own in parameters])
+    own_names = [ZEROS.get(own, own) for own in parameters]
+    out = np.array([[float(own == name) for name in wanted] for own in own_names])
     out = out.reshape(len(parameters), len(wanted))
     for i in (1, 2):
         own = parameters.index(f"k{i}")
@@ -104,6 +112,10 @@ def _parameter(name: str, value: float, known: Uncertainty) -> Quantity:
         return Quantity(name, unit, value, value, True, low, high, value, free=True)
     low = 0.0 if name.startswith("a") else value / 3
     return Quantity(name, unit, value, known.sigma, True, low, 3 * value, value)
+
+
+def _zero(name: str, sigma: float) -> Quantity:
+    return Quantity(name, "rad", 0.0, sigma, True, -1.0, 1.0, 0.0)
 
 
 def _highest(q: Parameter, setting: Setting) -> float:

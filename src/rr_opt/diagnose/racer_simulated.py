@@ -13,7 +13,7 @@ from rr_opt.diagnose.linear import DriveSlopes, slopes
 from rr_opt.diagnose.model import Array, Asked, Data, Piece, Response
 from rr_opt.diagnose.racer_drive import Drives, drive_slopes, grain, lateness
 from rr_opt.diagnose.racer_kept import Kept
-from rr_opt.diagnose.racer_quantities import values_by, values_of
+from rr_opt.diagnose.racer_quantities import ZERO_OFFSET, ZEROS, values_by, values_of
 from rr_opt.diagnose.racer_state import by_start_of, state_of, v_of_z_by
 from rr_opt.diagnose.racer_steps import drive_path, steps_of
 from rr_opt.diagnose.racer_system import driven
@@ -52,10 +52,11 @@ class Simulated:
         return Drives(self._runs)
 
     def angle(self, run: int, given: Mapping[str, float], effects: tuple[str, ...]) -> Array:
-        """phi (n,) of a run as the servo makes it, rad, at the samples."""
+        """phi (n,) of a run as the servo makes it and it is told, rad, at the samples."""
         mechanical = self.every(effects)
         drive = self._drives.of(run, given, mechanical)
-        return drive.at(self._data[run].t + lateness(given, mechanical))[0]
+        phi = drive.at(self._data[run].t + lateness(given, mechanical))[0]
+        return phi + given[ZEROS[f"{ZERO_OFFSET}.phi"]]
 
     def drive_path(
         self, piece: Piece, given: Mapping[str, float], effects: tuple[str, ...]

@@ -25,6 +25,7 @@ from rr_opt.physics.effects import (
     servo_offset,
     servo_rate_limit,
     wheel_inertia,
+    zero_offset,
 )
 from rr_opt.physics.effects.effect import Effect, Parameter, Port, Setting
 
@@ -45,6 +46,7 @@ _MODULES = (
     com_offset,
     marker_offset,
     clock_offset,
+    zero_offset,
 )
 
 CATALOGUE: Mapping[str, Effect] = MappingProxyType({m.EFFECT.name: m.EFFECT for m in _MODULES})

@@ -103,7 +103,8 @@ class Effect:
     loose    whether the joint swings by itself, so that the robot's values count for its angle
     sharp    whether its force all but jumps with the speed, so that predictions take short steps
     smooth   whether it has derivatives by its parameters where it vanishes
-    nameless whether it is a curve that imitates what has no name: no candidate of a diagnosis
+    nameless no candidate of a diagnosis: a curve that imitates what has no name, or what an
+             experiment says of itself
     forms    which parameters are looked for together; one form of them all, if none is given
 
     `symbols` and `values` map each parameter's name to its symbol or its value, SI.

@@ -1,0 +1,113 @@
+"""What the time of a diagnosis goes into, and the operations of its loops counted."""
+
+from __future__ import annotations
+
+import time
+from collections import Counter
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any
+from unittest.mock import patch
+
+import numpy as np
+
+from rr_opt.cli.diagnose_input import read, usable
+from rr_opt.diagnose import gram, problem, pushed, shoot
+from rr_opt.diagnose.found import Steps
+from rr_opt.diagnose.racer import RollerRacer
+from rr_opt.diagnose.racer_diagnosis import diagnose_racer
+from rr_opt.diagnose.shoot import System
+from rr_opt.diagnose.stages import gram as stages_gram
+
+WATCHED = {
+    "derivatives, summed up": (gram, "grams"),
+    "predictions": (shoot, "predict_all"),
+    "least squares": (problem, "normal_of"),
+    "pushes without a name": (pushed, "linear"),
+    "stages": (stages_gram, "products"),
+}
+
+
+def lines(folder: Path) -> list[str]:
+    """A paragraph: shares of the CPU time of one process, and operations counted."""
+    experiment, _ = usable(read(folder)[2])
+    model = RollerRacer(experiment)
+    spent, done, works = Counter[str](), Counter[str](), Counter[str]()
+    with ExitStack() as stack:
+        for name, (owner, attribute) in WATCHED.items():
+            if hasattr(owner, attribute):
+                inner = getattr(owner, attribute)
+                watch = _watched(inner, name, spent, done, works)
+                for module in _users(attribute, inner):
+                    stack.enter_context(patch.object(module, attribute, watch))
+        begun = time.process_time()
+        diagnose_racer(model, Steps())
+        whole = time.process_time() - begun
+    shares = ", ".join(f"{name} {spent[name] / whole:.0%}" for name in WATCHED if spent[name])
+    rest = 1 - sum(spent.values()) / whole
+    counted = "; ".join(
+        f"{name}: {done[name] / 1e6:.1f} million steps of a run, {works[name] / done[name]:,.0f} "
+        f"operations each, {1e9 * spent[name] / works[name]:.3f} ns an operation"
+        for name in ("derivatives, summed up", "predictions")
+    )
+    return [
+        f"{whole:.1f} s of CPU in one process: {shares}, the rest {rest:.0%}.",
+        "",
+        f"{counted}.",
+    ]
+
+
+def _users(attribute: str, inner: Callable) -> list[Any]:
+    """The modules that call a function by that name."""
+    import sys  # noqa: PLC0415
+
+    return [
+        module
+        for name, module in list(sys.modules.items())
+        if name.startswith("rr_opt.diagnose") and getattr(module, attribute, None) is inner
+    ]
+
+
+def _watched(
+    call: Callable, name: str, spent: Counter[str], done: Counter[str], works: Counter[str]
+) -> Callable:
+    def watched(first: Any, *args: Any, **named: Any) -> Any:
+        begun = time.process_time()
+        try:
+            return call(first, *args, **named)
+        finally:
+            spent[name] += time.process_time() - begun
+            if isinstance(first, System) and args and isinstance(args[0], Sequence):
+                steps = sum(_steps(one) for one in args[0])
+                done[name] += steps
+                works[name] += steps * _operations(first, name)
+
+    return watched
+
+
+def _steps(asked: Any) -> int:
+    path = asked[0] if isinstance(asked, tuple) else asked.path
+    return int(np.size(path.h))
+
+
+_counts: dict[tuple[System, str], int] = {}
+
+
+def _operations(system: System, name: str) -> int:
+    """Operations that CasADi counts in a step: of the step, or of its four (stiff: one) Jacobians.
+
+    What is done with those, some ten more for each quantity that is asked for, is not counted.
+    """
+    key = system, name
+    if key not in _counts:
+        if name == "predictions":
+            _counts[key] = shoot._step(system).n_instructions()
+        else:
+            import casadi as ca  # noqa: PLC0415
+
+            inputs = system.rates.sx_in()
+            value = system.rates(*inputs)
+            by = ca.Function("by", inputs, ca.cse([value, ca.jacobian(value, ca.vertcat(*inputs))]))
+            _counts[key] = (1 if system.stiff else 4) * by.n_instructions()
+    return _counts[key]
