@@ -1,4 +1,4 @@
-"""A capture system whose zeros are off: heading and servo angle are told by a constant too large."""
+"""A capture system whose zeros are off: it tells heading and servo angle too large by so much."""
 
 from __future__ import annotations
 
