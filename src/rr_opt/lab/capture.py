@@ -20,13 +20,11 @@ def captured(
     *,
     tracked: tuple[float, float] = (0.0, 0.0),
     missing: float = 0.0,
-    torque: bool = False,
 ) -> Recording:
-    """A motion as it is recorded, with white noise.
+    """A motion as it is recorded, with white noise; with the torque if it was written down.
 
     tracked  the point that is taken for the joint, m, in platform 1's frame
     missing  fraction of the samples that are lost, all channels at once
-    torque   whether the servo's torque is recorded
     """
     x, y, psi = motion.one.T
     phi = motion.two[:, 2] - psi
@@ -38,7 +36,7 @@ def captured(
         # The two headings are unwrapped apart, and may differ by whole turns.
         "phi": phi - 2 * np.pi * np.round(phi[0] / (2 * np.pi)),
     }
-    if torque:
+    if motion.torque is not None:
         true["torque"] = motion.torque
     n = len(motion.t)
     lost = rng.random(n) < missing

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import Literal
 
@@ -63,9 +63,12 @@ class Case:
     notes: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
 
 
-def motion_of(case: Case, plan: Plan, step: float | None = None) -> Motion:
+def motion_of(
+    case: Case, plan: Plan, step: float | None = None, *, torque: bool = False
+) -> Motion:
     """What truly happens in a run; step: s, of the integration, the engine's own if left out."""
-    return driven(case.engine, rig_with(case.robot, case.effects), plan.gait, plan.outing, step)
+    outing = replace(plan.outing, torque=torque)
+    return driven(case.engine, rig_with(case.robot, case.effects), plan.gait, outing, step)
 
 
 def play(

@@ -9,8 +9,10 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from rr_opt.lab.course import Course
 from rr_opt.lab.plant import Plant
 from rr_opt.lab.rig import Rig
+from rr_opt.lab.stepping import stepped
 from rr_opt.robot.gait import Gait
 
 Array = NDArray[np.float64]
@@ -30,6 +32,7 @@ class Outing:
     start           `rest`: the command begins at its time 0; `running`: `periods` whole periods
                     before, from rest
     nudge           m/s, a push at the recording's t = 0, by which the whole mass would be faster
+    torque          whether the servo's is written down too
     pose            x (m), y (m) of P and heading (rad) of platform 1 where it is put down
     """
 
@@ -39,6 +42,7 @@ class Outing:
     rate: float = 100.0
     periods: int = 3
     nudge: float = 0.0
+    torque: bool = False
 
     def begin(self, gait: Gait) -> float:
         """When the command begins, s on its own clock."""
@@ -51,13 +55,13 @@ class Motion:
 
     one, two  x (m), y (m) and heading (rad, unwrapped) of the platforms' joint ends, (n, 3). A
               loose pin sets them apart
-    torque    of the servo on platform 2, N m (n,)
+    torque    of the servo on platform 2, N m (n,), if it was asked for
     """
 
     t: Array
     one: Array
     two: Array
-    torque: Array
+    torque: Array | None = None
 
 
 def drive(rig: Rig, gait: Gait, outing: Outing, step: float = STEP) -> Motion:
@@ -68,10 +72,11 @@ def drive(rig: Rig, gait: Gait, outing: Outing, step: float = STEP) -> Motion:
     plant.model.opt.timestep = dt
     begin = outing.begin(gait)
     before = math.ceil((SETTLE + max(0.0, rig.clock - begin)) / dt)
-    samples = round(outing.seconds * outing.rate) + 1
-    t = rig.clock + (np.arange(before + (samples - 1) * every + 2) - before) * dt
+    count = before + round(outing.seconds * outing.rate) * every + 1
+    t = rig.clock + (np.arange(count + 1) - before) * dt
     angle = _angle(rig, gait, begin, t)
-    return _run(plant, outing, angle, before, every, t, begin)
+    let_go = int(np.searchsorted(t, begin - 1e-12))
+    return _run(plant, outing, angle, t - begin, Course(let_go, before, every, count))
 
 
 def servo_angles(rig: Rig, gait: Gait, outing: Outing, when: Array) -> tuple[Array, Array]:
@@ -89,42 +94,31 @@ def _angle(rig: Rig, gait: Gait, begin: float, t: NDArray[Any]) -> Array:
     return angle
 
 
-def _run(
-    plant: Plant,
-    outing: Outing,
-    angle: Array,
-    before: int,
-    every: int,
-    t: NDArray[Any],
-    begin: float,
-) -> Motion:
-    model, data = plant.model, plant.data
-    dt = model.opt.timestep
+def _run(plant: Plant, outing: Outing, angle: Array, t: NDArray[Any], course: Course) -> Motion:
+    """Step the flywheel through `angle`, rad, at the times t, s since the robot was let go."""
+    model, dt = plant.model, plant.model.opt.timestep
     plant.put_down(outing.pose, angle[0])
-    level = np.array([0.0, 0.0, float(plant.rig.gravity[2])])
-    model.opt.gravity[:] = level
-    let_go = int(np.searchsorted(t, begin - 1e-12))
+    model.opt.gravity[:] = 0.0, 0.0, plant.rig.gravity[2]
     # The acceleration that takes the flywheel, whose steps are q' = q + dt w', through `angle`.
     push = np.diff(np.concatenate([angle[:1], angle]), 2) / dt**2
-    rows: list[tuple[Any, ...]] = []
-    step, control, laws = plant.mujoco.mj_step, data.ctrl, plant.rig.laws
-    for k in range(len(t) - 1):
-        if k == let_go:
+    seen, torques = [], []
+    for start, stop in course.parts(pushed=outing.nudge != 0, torque=outing.torque):
+        if start == course.let_go:
             model.opt.gravity[:] = plant.rig.gravity
-        if laws:
-            plant.brake(t[k] - begin)
         if outing.nudge:
-            plant.push(outing.nudge / dt if k == before else 0.0)
-        control[0] = push[k]
-        since = k - before
-        if since >= 0 and since % every == 0:
-            place = plant.places()
-            step(model, data)
-            rows.append((*place, plant.torque()))
-        else:
-            step(model, data)
+            plant.push(outing.nudge / dt if start == course.first else 0.0)
+        rows = stepped(plant, push[start:stop], t[start:stop])
+        if start >= course.first:
+            seen.append(rows[course.samples(start)])
+        if outing.torque and start in course.recorded:
+            torques.append(plant.torque())
     plant.require_sound()
-    table = np.array(rows)
-    table[:, 2], table[:, 5] = np.unwrap(table[:, 2]), np.unwrap(table[:, 5])
-    when = np.arange(len(table)) / outing.rate
-    return Motion(when, table[:, :3], table[:, 3:6], table[:, 6])
+    one, two = np.hsplit(np.concatenate(seen), 2)
+    when = np.arange(len(one)) / outing.rate
+    return Motion(when, _placed(one), _placed(two), np.array(torques) if outing.torque else None)
+
+
+def _placed(seen: Array) -> Array:
+    """x, y, heading (n, 3) of what the sensors tell of a platform: its place and what is ahead."""
+    heading = list(map(math.atan2, seen[:, 4].tolist(), seen[:, 3].tolist()))
+    return np.column_stack([seen[:, :2], np.unwrap(heading)])

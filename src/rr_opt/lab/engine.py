@@ -12,6 +12,7 @@ def engine() -> Any:
     """The module mujoco. Raises InputError if it is not installed."""
     try:
         mujoco: Any = import_module("mujoco")
+        import_module("mujoco.rollout")
     except ImportError:
         raise InputError(
             "The virtual laboratory has no engine: MuJoCo is not installed. Expected the package "

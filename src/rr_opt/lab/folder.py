@@ -41,7 +41,7 @@ def folder_of(
 
 
 def _recorded(case: Case, plan: Plan, n: int, delivery: Delivery) -> bytes:
-    motion, rng = motion_of(case, plan), stream(case.seed, "noise", n)
+    motion, rng = motion_of(case, plan, torque=delivery.torque), stream(case.seed, "noise", n)
     tracked = rig_with(case.robot, case.effects).tracked
     if delivery.form == "csv":
         recording = captured(
@@ -51,7 +51,6 @@ def _recorded(case: Case, plan: Plan, n: int, delivery: Delivery) -> bytes:
             rng,
             tracked=tracked,
             missing=case.missing,
-            torque=delivery.torque,
         )
         return csv_text(recording).encode()
     sigma = case.noise.position

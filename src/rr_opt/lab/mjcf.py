@@ -6,7 +6,17 @@ the floor at one point below its centre whatever way it heads. Each turns on its
 
 from __future__ import annotations
 
-from rr_opt.lab.mjcf_parts import bent, cord, hook, jointed, loose_load, motor, motor_body, post
+from rr_opt.lab.mjcf_parts import (
+    bent,
+    cord,
+    hook,
+    jointed,
+    loose_load,
+    motor,
+    motor_body,
+    post,
+    sensors,
+)
 from rr_opt.lab.rig import GRIPS, WHEELS, Rig
 from rr_opt.robot.parameters import Platform
 
@@ -53,7 +63,7 @@ def model_text(rig: Rig, step: float) -> str:
 {first}{hook(rig)}{loose_load(rig)}{jointed(rig, second, step)}</body>
 {motor_body()}</worldbody>
 <contact>{"".join(_pair(wheel, rig.mu, step) for wheel in WHEELS)}</contact>
-{cord(rig)}{motor(step)}</mujoco>"""
+{cord(rig)}{motor(step)}{sensors()}</mujoco>"""
 
 
 def _implicit(rig: Rig) -> str:

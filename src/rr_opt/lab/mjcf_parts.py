@@ -61,6 +61,16 @@ def motor(step: float) -> str:
     )
 
 
+def sensors() -> str:
+    """For each platform where its joint end is, and its forward axis: three numbers each."""
+    seen = "".join(
+        f'<{what} objtype="xbody" objname="{platform}"/>'
+        for platform in ("platform1", "platform2")
+        for what in ("framepos", "framexaxis")
+    )
+    return f"<sensor>{seen}</sensor>"
+
+
 def bent(name: str, pivot: float, stiffness: float, axle: str) -> str:
     """An axle on a beam that bends sideways at `pivot`, m from P: a hinge with a torsion spring."""
     damping = 0.1 * (stiffness * BEAM_INERTIA) ** 0.5

@@ -53,16 +53,6 @@ class Plant:
         for name in ("phi", "command"):
             self.data.qpos[self.model.joint(name).qposadr[0]] = angle
 
-    def places(self) -> tuple[float, ...]:
-        """x, y and heading of platform 1, then of platform 2, from the positions as they are."""
-        self.mujoco.mj_kinematics(self.model, self.data)
-        found: list[float] = []
-        for name in ("platform1", "platform2"):
-            body = self.data.body(name)
-            turn = body.xmat
-            found += [body.xpos[0], body.xpos[1], math.atan2(turn[3], turn[0])]
-        return tuple(found)
-
     def torque(self) -> float:
         """Of the servo on platform 2, N m, in the last step."""
         data = self.data
@@ -97,7 +87,7 @@ class Plant:
 
     def require_sound(self) -> None:
         """Raises NotConvergedError if MuJoCo lost the motion."""
-        if any(warning.number for warning in self.data.warning):
+        if self.data.warning.number.any():
             raise NotConvergedError(
                 "The laboratory's simulation broke down: MuJoCo met huge accelerations. Expected a "
                 "motion. Take a gentler gait, a weaker effect or a smaller step."

@@ -47,6 +47,7 @@ def record(
     Raises InputError for an unknown effect, or if MuJoCo is asked for and not installed.
     """
     rig = rig_with(robot, effects)
-    motion = driven(engine, rig, gait, Outing(seconds, start, pose, rate, periods), step)
+    outing = Outing(seconds, start, pose, rate, periods, torque=torque)
+    motion = driven(engine, rig, gait, outing, step)
     rng = np.random.default_rng(seed)
-    return captured(motion, name, noise, rng, tracked=rig.tracked, missing=missing, torque=torque)
+    return captured(motion, name, noise, rng, tracked=rig.tracked, missing=missing)
