@@ -65,3 +65,9 @@ def test_sensors_see_the_beginning_of_each_step():
     np.testing.assert_allclose(first[[0, 1, 6, 7]], [0.3, -0.2, 0.3, -0.2], atol=1e-12)
     np.testing.assert_allclose(first[3:5], [np.cos(0.5), np.sin(0.5)], atol=1e-12)
     np.testing.assert_allclose(first[9:11], [np.cos(0.9), np.sin(0.9)], atol=1e-12)
+
+
+def test_no_part_of_a_step_is_timed():
+    plant = Plant.of(rig_with(LONG), 1e-3)
+    stepped(plant, np.zeros(10), np.zeros(10))
+    assert not plant.data.timer.duration.any()

@@ -51,13 +51,16 @@ def spin_inertia(rig: Rig, step: float) -> float:
 
 
 def model_text(rig: Rig, step: float) -> str:
-    """The MJCF of a rig for a step of `step` s."""
+    """The MJCF of a rig for a step of `step` s.
+
+    All hangs together, so MuJoCo is not to look for islands at every step.
+    """
     h, J = rig.robot.h, spin_inertia(rig, step)
     first = _platform(rig, 0, rig.robot.platform1, 1.0, J)
     second = _platform(rig, 1, rig.robot.platform2, -1.0, J)
     return f"""<mujoco><compiler angle="radian" boundmass="0" boundinertia="0"/>
 <option timestep="{step!r}" cone="elliptic" impratio="10" solver="Newton" iterations="100"
- tolerance="1e-15" integrator="Euler"><flag eulerdamp="{_implicit(rig)}"/></option>
+ tolerance="1e-15" integrator="Euler"><flag eulerdamp="{_implicit(rig)}" island="disable"/></option>
 <worldbody><geom name="floor" type="plane" size="0 0 1" contype="0" conaffinity="0"/>
 {post(rig)}<body name="platform1" pos="0 0 {h!r}"><freejoint name="base"/>
 {first}{hook(rig)}{loose_load(rig)}{jointed(rig, second, step)}</body>
