@@ -50,10 +50,11 @@ class Patch:
 
     def __call__(self, wheels: Turning) -> None:
         """The friction of this instant."""
-        inside = self.within.depth(*wheels.places.T) > 0
-        factor = np.where(inside, self.times, 1.0)
-        wheels.damping *= factor
-        wheels.dry *= factor
+        # Plain numbers: a law is asked at every step, and tables of four cost more than they do.
+        for wheel, place in enumerate(wheels.places.tolist()):
+            if self.within.depth(*place) > 0:
+                wheels.damping[wheel] *= self.times
+                wheels.dry[wheel] *= self.times
 
 
 @dataclass(frozen=True)

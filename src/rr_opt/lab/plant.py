@@ -36,9 +36,9 @@ class Plant:
         model = mujoco.MjModel.from_xml_string(model_text(rig, step))
         data = mujoco.MjData(model)
         joints = [model.joint(f"roll{name}") for name in WHEELS]
-        wheels = np.array([model.body(f"wheel{name}").id for name in WHEELS])
-        rolls = np.array([joint.dofadr[0] for joint in joints])
-        turned = np.array([joint.qposadr[0] for joint in joints])
+        wheels = np.array([model.body(f"wheel{name}").id for name in WHEELS], np.intp)
+        rolls = np.array([joint.dofadr[0] for joint in joints], np.intp)
+        turned = np.array([joint.qposadr[0] for joint in joints], np.intp)
         plant = cls(rig, mujoco, model, data, rolls, turned, wheels)
         if rig.creep:
             plant.soften(rig.creep)
@@ -76,7 +76,7 @@ class Plant:
             t,
             data.qvel[self.rolls],
             data.qpos[self.turned],
-            data.xpos[self.wheels, :2],
+            data.xpos.take(self.wheels, axis=0)[:, :2],
             np.array(rig.kappa),
             np.array(rig.dry),
         )
