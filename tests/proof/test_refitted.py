@@ -52,6 +52,25 @@ def test_an_effect_of_another_kind_stays(case, refit):
     assert refit.left(tilted) > 0.3 * Gauge.of(case)(tilted)
 
 
+@pytest.mark.parametrize(
+    "use",
+    [
+        EffectUse("floor_tilt", {"tilt_x": 5e-3, "tilt_y": 0.0}),
+        EffectUse("servo_backlash", {"width": 0.05}),
+        EffectUse("lateral_slip", {"creep_compliance": 0.6}),
+    ],
+    ids=lambda use: use.name,
+)
+def test_the_step_drops_out(case, refit, use, monkeypatch):
+    """What is left is the same with a fifth of the step, and a tenth for the derivatives."""
+    hidden = replace(case, effects=(use,))
+    coarse = refit.left(hidden)
+    assert coarse > 0.5
+    for name in ("STEP", "DIRECTIONS"):
+        monkeypatch.setattr(f"rr_opt.proof.refitted.{name}", 1e-3)
+    assert Refit.of(case).left(hidden) == pytest.approx(coarse, rel=0.03)
+
+
 def test_a_friction_of_which_nothing_is_known_may_move_by_its_factor(case):
     name = list(case.uncertainty).index("kappa1")
     robot = moved_robot(case, np.eye(len(case.uncertainty))[name])

@@ -63,9 +63,7 @@ class Case:
     notes: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
 
 
-def motion_of(
-    case: Case, plan: Plan, step: float | None = None, *, torque: bool = False
-) -> Motion:
+def motion_of(case: Case, plan: Plan, step: float | None = None, *, torque: bool = False) -> Motion:
     """What truly happens in a run; step: s, of the integration, the engine's own if left out."""
     outing = replace(plan.outing, torque=torque)
     return driven(case.engine, rig_with(case.robot, case.effects), plan.gait, outing, step)

@@ -40,7 +40,7 @@ class Reference:
     sigma: Array
 
     @classmethod
-    def of(cls, case: Case, plan: Plan) -> Reference:
+    def of(cls, case: Case, plan: Plan, step: float = COARSE) -> Reference:
         """Drive the nominal robot twice."""
         sigma = np.array([case.noise.of(channel) for channel in ("x", "y", "psi", "phi")])
         base, nudged = (
@@ -50,7 +50,7 @@ class Reference:
                     rig_with(case.nominal),
                     plan.gait,
                     replace(plan.outing, nudge=nudge),
-                    COARSE,
+                    step,
                 )
             )
             for nudge in (0.0, NUDGE)

@@ -8,6 +8,12 @@ the start of each run free.
 
 The fit is Gauss-Newton with the derivatives of the nominal robot. The best of a few steps is taken:
 where the robot is too far from linear for them, more is called visible than is, never less.
+
+All runs that are held against each other are made with the same coarse step, five times that of the
+visibility: what it makes wrong is wrong in all of them alike and drops out. The derivatives, which
+only say where to look, are told by runs with twice that. Of 28 effects by lot 18 are told within
+2 % of what steps of 1 ms tell, and 25 within 9 %. The other three are where the steps do not
+settle, and the best of the few is one by chance.
 """
 
 from __future__ import annotations
@@ -24,7 +30,7 @@ from rr_opt.lab.case import Case, Plan, motion_of
 from rr_opt.lab.draw.wrong_values import parameter, with_parameter
 from rr_opt.lab.effects import rig_with
 from rr_opt.lab.streams import stream
-from rr_opt.lab.visibility import COARSE, EXACT, Reference
+from rr_opt.lab.visibility import EXACT, Reference
 from rr_opt.robot.parameters import Robot
 
 Array = NDArray[np.float64]
@@ -34,6 +40,9 @@ NUDGE = 0.5
 
 FARTHEST = 3.0
 """Sigma, by which a parameter may be moved."""
+
+STEP, DIRECTIONS = 5e-3, 1e-2
+"""s, of the integration: in the runs that are held against each other, and for derivatives."""
 
 STEPS = 3
 SETTLED = 0.02
@@ -58,20 +67,25 @@ class Refit:
         """Drive the nominal robot, and once for each parameter, on the runs that are fitted."""
         plain = replace(case, robot=case.nominal, effects=())
         plans = tuple(plan for plan in case.plans if plan.use == "fit")
-        references = tuple(Reference.of(plain, plan) for plan in plans)
+        nominal = tuple(Reference.of(plain, plan, DIRECTIONS) for plan in plans)
         moved = [
             replace(plain, robot=moved_robot(case, NUDGE * unit))
             for unit in np.eye(len(case.uncertainty))
         ]
         slopes = tuple(
-            np.stack([(_run(one, plan) - ref.path) / ref.sigma / NUDGE for one in moved], axis=-1)
-            for plan, ref in zip(plans, references, strict=True)
+            np.stack([_run(one, plan, DIRECTIONS) - ref.path for one in moved], axis=-1)
+            / (NUDGE * ref.sigma[..., None])
+            for plan, ref in zip(plans, nominal, strict=True)
+        )
+        references = tuple(
+            replace(ref, path=_run(plain, plan, STEP))
+            for plan, ref in zip(plans, nominal, strict=True)
         )
         return cls(plain, plans, references, slopes)
 
     def left(self, case: Case) -> float:
         """RMS deviation, sigma, of the case's runs from the nominal ones after the re-fit."""
-        seen = [_run(case, plan) for plan in self.plans]
+        seen = [_run(case, plan, STEP) for plan in self.plans]
         at = np.zeros(len(case.uncertainty))
         references, least = self.references, math.inf
         for _ in range(STEPS + 1):
@@ -82,7 +96,7 @@ class Refit:
                 break
             there = replace(self.case, robot=moved_robot(self.case, at))
             references = tuple(
-                replace(ref, path=_run(there, plan))
+                replace(ref, path=_run(there, plan, STEP))
                 for ref, plan in zip(self.references, self.plans, strict=True)
             )
         return least
@@ -128,8 +142,8 @@ def _starts(ref: Reference) -> Array:
     return np.stack([(each / ref.sigma).ravel() for each in made], axis=-1)
 
 
-def _run(case: Case, plan: Plan) -> Array:
+def _run(case: Case, plan: Plan, step: float) -> Array:
     """What is seen of a run without noise, (4, n): x, y, psi, phi."""
     tracked = rig_with(case.robot, case.effects).tracked
-    seen = captured(motion_of(case, plan, COARSE), plan.name, EXACT, stream(0), tracked=tracked)
+    seen = captured(motion_of(case, plan, step), plan.name, EXACT, stream(0), tracked=tracked)
     return np.array(list(seen.values.values()))
