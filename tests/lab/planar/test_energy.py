@@ -70,7 +70,7 @@ CASES = {
 @pytest.mark.parametrize("name", CASES)
 def test_balance(name):
     uses, lost = CASES[name]
-    motion = driven(LONG, GAIT, 2.6, "running", *uses, rate=RATE)
+    motion = driven(LONG, GAIT, 2.6, "running", *uses, rate=RATE, torque=True)
     power = motion.torque * slope(motion.two[:, 2] - motion.one[:, 2])
     losses = lost(*wheel_speeds(motion))
     energy = kinetic(motion)

@@ -118,6 +118,9 @@ def _motion(rig: Rig, outing: Outing, clock: Clock, states: Array, signals: Arra
     ends = ca.Function("ends", [built.q], list(built.ends))
     one, two = (np.asarray(end).T for end in ends(states[:n]))
     made, drive = built.names.index(turned_by(built)), motor(rig.robot)
+    t = np.arange(states.shape[1]) / outing.rate
+    if not outing.torque:
+        return Motion(t, one, two)
     torque = drive.stiffness * (signals[0] - states[made])
     torque += drive.damping * (signals[1] - states[n + made])
-    return Motion(np.arange(states.shape[1]) / outing.rate, one, two, torque)
+    return Motion(t, one, two, torque)
