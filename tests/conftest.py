@@ -1,4 +1,7 @@
-"""A runner of the command line."""
+"""A runner of the command line, and processes that end with their test."""
+
+import subprocess
+import sys
 
 import pytest
 from typer.testing import CliRunner
@@ -15,3 +18,22 @@ def run(monkeypatch, tmp_path):
         return CliRunner().invoke(app, list(arguments))
 
     return command
+
+
+@pytest.fixture
+def started(tmp_path):
+    """Starts Python with arguments; what it prints goes to log0, log1, ... in the folder."""
+    running = []
+
+    def start(*arguments: str):
+        with (tmp_path / f"log{len(running)}").open("w") as log:
+            process = subprocess.Popen(
+                [sys.executable, *arguments], cwd=tmp_path, stdout=log, stderr=log
+            )
+        running.append(process)
+        return process
+
+    yield start
+    for process in running:
+        process.kill()
+        process.wait()

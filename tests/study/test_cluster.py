@@ -4,11 +4,11 @@ import json
 import os
 import signal
 import socket
-import subprocess
-import sys
 import time
 
 import pytest
+
+from tests.cluster import SCHEDULER, WORKER, free_port
 
 pytest.importorskip("distributed")
 
@@ -21,38 +21,11 @@ vary:
 """
 
 
-def free_port():
-    with socket.socket() as one:
-        one.bind(("127.0.0.1", 0))
-        return one.getsockname()[1]
-
-
-@pytest.fixture
-def started(tmp_path):
-    """Starts processes, which are ended with the test."""
-    running = []
-
-    def start(*arguments, **options):
-        with (tmp_path / f"log{len(running)}").open("w") as log:
-            process = subprocess.Popen(
-                [sys.executable, *arguments], cwd=tmp_path, stdout=log, stderr=log, **options
-            )
-        running.append(process)
-        return process
-
-    yield start
-    for process in running:
-        process.kill()
-        process.wait()
-
-
 def test_a_killed_worker_costs_no_row(started, tmp_path):
     (tmp_path / "study.yaml").write_text(STUDY)
     address = f"tcp://127.0.0.1:{free_port()}"
-    started("-m", "distributed.cli.dask_scheduler", "--host", address, "--no-dashboard")
-    worker = ("-m", "distributed.cli.dask_worker", address, "--nthreads", "1", "--no-nanny",
-              "--no-dashboard")  # fmt: skip
-    first, _second = started(*worker), started(*worker)
+    started(*SCHEDULER, address)
+    first, _second = started(*WORKER, address), started(*WORKER, address)
     journal = tmp_path / "res" / "journal.jsonl"
     study = started(
         *("-c", "from rr_opt.cli.entry import main; main()", "study", "study.yaml", "--cold"),
