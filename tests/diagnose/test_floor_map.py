@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from rr_opt.diagnose import racer_proposals
 from rr_opt.diagnose.explain import nominal, parameters, windows
 from rr_opt.diagnose.floor_map import floor_map
 from rr_opt.diagnose.floor_shapes import ROUND, STRAIGHT, likely
@@ -122,3 +123,19 @@ def test_a_circle_is_no_larger_than_twice_the_room_there_was():
         if q.name == "floor_patch.radius"
     )
     assert radius.high == pytest.approx(max(2 * room, 0.5))
+
+
+def test_where_few_runs_are_bent_by_a_patch_the_robot_is_as_believed(monkeypatch):
+    model, fit = fitted({}, ())
+    pieces = windows(model, range(len(model.runs)), 1e9)
+    whole = nominal(model, pieces)
+    bent = {**whole.values, **{q.name: q.value * 1.1 for q in fit.quantities}}
+    seen = []
+    monkeypatch.setattr(
+        racer_proposals, "floor_map", lambda model, one: seen.append(one) or floor_map(model, one)
+    )
+    of_patch(model, replace(whole, quantities=fit.quantities, values=bent))
+    assert [seen[0].values[q.name] for q in fit.quantities] == [q.value for q in fit.quantities]
+    close = {**whole.values, **fit.values}
+    of_patch(model, replace(whole, quantities=fit.quantities, values=close))
+    assert seen[1].values == close

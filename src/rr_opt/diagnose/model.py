@@ -73,11 +73,13 @@ class Candidate:
 class Proposal:
     """From where to look for an effect that jumps.
 
-    gain  by how much it promises to lower the chi-square of a fit without it
+    gain   by how much it promises to lower the chi-square of a fit without it
+    doubt  of that fit; see `problem.doubt`
     """
 
     values: Mapping[str, float]
     gain: float
+    doubt: float
 
 
 @dataclass(frozen=True)

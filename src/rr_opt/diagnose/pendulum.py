@@ -95,7 +95,8 @@ class Pendulum:
 
     def propose(self, name: str, form: int, fit: Fit) -> Sequence[Proposal]:
         """Where the effect's form says; a fit of a pendulum is cheap, so each is worth it."""
-        return [Proposal(start, fit.cost) for start in self.catalogue[name].forms[form].starts]
+        forms = self.catalogue[name].forms
+        return [Proposal(start, fit.cost, 1.0) for start in forms[form].starts]
 
     def twin(self, values: Mapping[str, float]) -> None:
         """None: no two sets of values of a pendulum are alike."""

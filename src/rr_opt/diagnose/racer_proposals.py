@@ -18,8 +18,8 @@ from rr_opt.diagnose.explain import windows
 from rr_opt.diagnose.fit import Fit
 from rr_opt.diagnose.floor_map import floor_map
 from rr_opt.diagnose.floor_shapes import ROUND, STRAIGHT, likely
-from rr_opt.diagnose.model import Form, Proposal
-from rr_opt.diagnose.problem import Problem
+from rr_opt.diagnose.model import Form, Piece, Proposal
+from rr_opt.diagnose.problem import Problem, doubt
 from rr_opt.diagnose.racer_protocol import Racer
 from rr_opt.diagnose.starts import fit_starts
 
@@ -58,13 +58,14 @@ def of_servo(model: Racer, name: str, form: Form, fit: Fit) -> Sequence[Proposal
     low, high = values[max(k - 1, 0)], values[min(k + 1, _TRIED - 1)]
     best = minimize_scalar(left, bounds=(low, high), method="bounded", options={"maxiter": 12})
     least, value = min((float(best.fun), float(best.x)), (found[k], float(values[k])))
-    return [Proposal({q.name: value}, before - least)]
+    return [Proposal({q.name: value}, before - least, doubt(fit.cost, fit.count))]
 
 
 def of_patch(model: Racer, fit: Fit) -> tuple[Sequence[Proposal], Sequence[Proposal]]:
     """Circles and edges that would gain most; see `floor_map`."""
-    floor = floor_map(model, _unbent(model, fit))
-    round_ones, straight = (_named(likely(floor, shape)) for shape in (ROUND, STRAIGHT))
+    plain = _unbent(model, fit)
+    floor, unsure = floor_map(model, plain), doubt(plain.cost, plain.count)
+    round_ones, straight = (_named(likely(floor, shape), unsure) for shape in (ROUND, STRAIGHT))
     return round_ones, straight
 
 
@@ -72,22 +73,29 @@ def _unbent(model: Racer, fit: Fit) -> Fit:
     """The fit over pieces that are short enough for a map, of which the starts alone are fitted.
 
     In windows parameters are as they are believed to be: a strong patch has bent them to imitate
-    it. Over whole runs what is missing is little, and they are as fitted.
+    it. What only shows over whole runs may be little, and they are as fitted; or it is in few runs,
+    and they are as believed if that leaves less.
     """
     runs = sorted({piece.run for piece in fit.starts})
+    believed = {q.name: q.value if q.known else fit.values[q.name] for q in fit.quantities}
     if len(fit.starts) > len(runs):
-        values = {q.name: q.value if q.known else fit.values[q.name] for q in fit.quantities}
-        pieces = list(fit.starts)
-    else:
-        values, pieces = fit.values, windows(model, runs, _LONG * model.window)
+        return _starts_alone(model, fit, list(fit.starts), believed)
+    pieces = windows(model, runs, _LONG * model.window)
+    tried = [_starts_alone(model, fit, pieces, values) for values in (fit.values, believed)]
+    return min(tried, key=lambda one: one.cost)
+
+
+def _starts_alone(
+    model: Racer, fit: Fit, pieces: Sequence[Piece], values: Mapping[str, float]
+) -> Fit:
+    """The fit over other pieces, or with other values, of which the starts alone are fitted."""
     problem = Problem(model, pieces, fit.effects, (), values)
     starts = {piece: fit.starts.get(piece, model.start(piece)) for piece in pieces}
-    alone = fit_starts(problem, starts)
-    return replace(alone, quantities=fit.quantities, values=values)
+    return replace(fit_starts(problem, starts), quantities=fit.quantities, values=values)
 
 
-def _named(places: Sequence[tuple[float, Mapping[str, float]]]) -> list[Proposal]:
+def _named(places: Sequence[tuple[float, Mapping[str, float]]], unsure: float) -> list[Proposal]:
     return [
-        Proposal({f"floor_patch.{key}": value for key, value in values.items()}, gain)
+        Proposal({f"floor_patch.{key}": value for key, value in values.items()}, gain, unsure)
         for gain, values in places
     ]

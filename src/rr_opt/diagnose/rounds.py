@@ -15,8 +15,7 @@ from rr_opt.diagnose.explain import Chosen, explain, joined
 from rr_opt.diagnose.explanation import FLOOR, Explanation, rms
 from rr_opt.diagnose.fit import Fit
 from rr_opt.diagnose.model import Model
-from rr_opt.diagnose.problem import doubt
-from rr_opt.diagnose.screen import LUCK, Look, Promise, looks, screen
+from rr_opt.diagnose.screen import Look, Promise, looks, screen
 
 EXACT, ROUGH = 0.005, 0.03
 """Nor is an effect's model: what is left is none by the first share of the misfit of the model as
@@ -63,18 +62,19 @@ class Rounds:
         """The explanations with one effect more that promise most."""
         fit = _sight(best)
         promised = screen(self.model, fit, best.chosen)
-        promised += self._more_than_luck(fit, self._looks(best, dear=False))
+        promised += _more_than_luck(self._looks(best, dear=False))
         promised.sort(key=lambda one: -one.gain)
         least = _WORTH * promised[0].gain if promised else 0.0
         worth = [one for k, one in enumerate(promised) if k < _WHOLE or one.gain > least]
         # What cannot be linearised is dear to look for: beside the fits, as they need one another
         # for nothing.
-        self._say_fitting(worth[:_IN_WINDOWS])
-        looks = self._looks(best, dear=True)
+        if worth:
+            self._say_fitting(worth[:_IN_WINDOWS])
+        looking = self._looks(best, dear=True)
         tried = [self._in_windows(best, one) for one in worth[:_IN_WINDOWS]]
-        done = list(self.each(_done, [*looks, *tried]))
-        found = self._over_whole_runs(best, done[len(looks) :])
-        dear = self._more_than_luck(fit, done[: len(looks)])[:_DEAR]
+        done = list(self.each(_done, [*looking, *tried]))
+        found = self._over_whole_runs(best, done[len(looking) :])
+        dear = _more_than_luck(done[: len(looking)])[:_DEAR]
         # It is tried where nothing else will do, or where it promises, from one step, about as much
         # as the others gain.
         if min((rms(one.misfit) for one in found), default=math.inf) <= self.floor(best):
@@ -84,18 +84,10 @@ class Rounds:
 
     def looked_for(self, best: Explanation, name: str) -> list[Promise]:
         """What one dear effect promises beside an explanation, if it is more than luck."""
-        fit = _sight(best)
-        looks = [look for look in self._looks(best, dear=True) if look.name == name]
-        return self._more_than_luck(fit, looks)
+        return _more_than_luck(look for look in self._looks(best, dear=True) if look.name == name)
 
     def _looks(self, best: Explanation, *, dear: bool) -> list[Look]:
         return looks(self.model, _sight(best), best.chosen, dear=dear)
-
-    def _more_than_luck(self, fit: Fit, found: Iterable[Sequence[Promise] | Look]) -> list[Promise]:
-        """The effects that jump, of which each promises more than luck; most first."""
-        luck = LUCK * doubt(fit.cost, fit.count)
-        every = [one for look in found for one in (look() if isinstance(look, Look) else look)]
-        return sorted((one for one in every if one.gain > luck), key=lambda one: -one.gain)
 
     def fitted(self, best: Explanation, promised: Sequence[Promise]) -> list[Explanation]:
         """The explanation with each of these beside it, the best of them over whole runs."""
@@ -127,6 +119,12 @@ class Rounds:
         return list(
             self.each(_done, [_Whole(self.model, best.chosen, one, fit) for one, fit in hopeful])
         )
+
+
+def _more_than_luck(found: Iterable[Sequence[Promise] | Look]) -> list[Promise]:
+    """The effects that jump, of which each promises more than luck; most first."""
+    every = [one for look in found for one in (look() if isinstance(look, Look) else look)]
+    return sorted((one for one in every if one.gain > one.luck), key=lambda one: -one.gain)
 
 
 def _done(task: Callable[[], T]) -> T:

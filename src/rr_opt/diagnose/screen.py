@@ -19,7 +19,7 @@ from rr_opt.diagnose.normal import Quadratic, bounded_step, total
 from rr_opt.diagnose.problem import Problem, box, doubt, scaled
 
 LUCK = 25.0
-"""So much lower a chi-square is, by luck, where the best of many places was chosen."""
+"""So much lower a chi-square is, by luck, where the best of many places was chosen; times doubt."""
 
 
 @dataclass(frozen=True)
@@ -27,11 +27,13 @@ class Promise:
     """What adding an effect would gain, in chi-square with what is known, linearised.
 
     begins  where to begin, if the effect jumps
+    luck    what the best of many places that are nothing would promise
     """
 
     chosen: Chosen
     gain: float
     begins: tuple[Mapping[str, float], ...] = ()
+    luck: float = 0.0
 
 
 def linear(model: Model, chosen: Chosen) -> bool:
@@ -53,9 +55,10 @@ class Look:
         for form in range(len(self.model.catalogue[self.name].forms)):
             proposals = self.model.propose(self.name, form, self.fit)
             if proposals:
-                gain = max(proposal.gain for proposal in proposals)
+                best = max(proposals, key=lambda proposal: proposal.gain)
                 begins = tuple(proposal.values for proposal in proposals)
-                found.append(Promise(Chosen(self.name, form), gain, begins))
+                luck = LUCK * best.doubt
+                found.append(Promise(Chosen(self.name, form), best.gain, begins, luck))
         return found
 
 

@@ -63,7 +63,7 @@ class _Look:
         best = int(np.argmin(costs))
         gain = before + weight * less.beforehand(self.fit.values) - costs[best]
         values = {q.name: fits[best].values[q.name] for q in self.form.quantities}
-        return [Proposal(values, gain * len(every) / len(some))]
+        return [Proposal(values, gain * len(every) / len(some), weight)]
 
     def _places(
         self, problem: Problem, values: Mapping[str, float], starts: Mapping[Piece, Array]
