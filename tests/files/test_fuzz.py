@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 import yaml
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
 from rr_opt.files import InvalidFileError, lint_file, read_problem, read_robot
@@ -81,6 +81,7 @@ def test_lines_of_the_shipped_files_in_any_order(tmp_path: Path, lines: list[str
 
 @FUZZ
 @given(key=st.sampled_from(["m", "I", "c", "a", "b", "kappa"]), value=VALUES)
+@example(key="c", value=1e200)
 def test_any_value_in_a_platform(tmp_path: Path, key: str, value: object):
     data = yaml.safe_load((SHIPPED / "robot.yaml").read_text())
     data["platform1"][key] = value

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from rr_opt.files import lint_file, read_robot
-from rr_opt.physics.effects import CATALOGUE
+from rr_opt.physics.effects import OF_ROBOTS
 from rr_opt.robot.parameters import EffectUse
 
 
@@ -26,19 +26,19 @@ def test_names_and_aliases(write, robot_text):
     )
 
 
-@pytest.mark.parametrize("name", CATALOGUE)
+@pytest.mark.parametrize("name", OF_ROBOTS)
 def test_every_effect_of_the_catalogue(write, robot_text, name: str):
-    effect = CATALOGUE[name]
+    effect = OF_ROBOTS[name]
     given = ", ".join(f"{q.name}: {q.typical!r} {q.unit}" for q in effect.parameters)
     typical = read_robot(write(with_physics(robot_text, f"[{{name: {name}, {given}}}]"))).physics
     expected = {q.name: pytest.approx(q.typical) for q in effect.parameters}
     assert typical == (EffectUse(name, expected),)
 
 
-@pytest.mark.parametrize("name", CATALOGUE)
+@pytest.mark.parametrize("name", OF_ROBOTS)
 def test_parameters_not_given_are_neutral_and_warned_about(write, robot_text, name: str):
     path = write(with_physics(robot_text, f"[{{name: {name}}}]"))
-    neutral = {q.name: q.neutral for q in CATALOGUE[name].parameters}
+    neutral = {q.name: q.neutral for q in OF_ROBOTS[name].parameters}
     assert read_robot(path).physics == (EffectUse(name, neutral),)
     (issue,) = lint_file(path)
     assert (issue.level, issue.path) == ("warning", "physics[0]")
@@ -69,3 +69,9 @@ def test_wrong(write, robot_text, physics: str, told: tuple[str, str]):
     (issue,) = lint_file(write(with_physics(robot_text, physics)))
     assert (issue.level, issue.path) == ("error", told[0])
     assert told[1] in issue.message
+
+
+def test_the_zeros_of_a_capture_system_are_no_robots(write, robot_text):
+    path = write(with_physics(robot_text, "[{name: zero_offset, psi: 0.02}]"))
+    (issue,) = lint_file(path)
+    assert "zero_offset" in issue.message

@@ -9,7 +9,7 @@ from rr_opt.files.document import Document
 from rr_opt.files.issue import Issue, shown, unknown_word
 from rr_opt.files.quantity import Quantity
 from rr_opt.outcome import InputError
-from rr_opt.physics.effects import CATALOGUE, Effect, Parameter
+from rr_opt.physics.effects import OF_ROBOTS, Effect, Parameter
 from rr_opt.robot.parameters import EffectUse
 
 
@@ -33,13 +33,13 @@ def read_effects(document: Document) -> tuple[tuple[EffectUse, ...], list[Issue]
             note((index,), f"Read {shown(entry)}. Expected {{name: ..., and its parameters}}.")
             continue
         name = entry.get("name")
-        effect = CATALOGUE.get(name) if isinstance(name, str) else None
+        effect = OF_ROBOTS.get(name) if isinstance(name, str) else None
         if effect is None:
             message = (
-                unknown_word(name, list(CATALOGUE), "effect")
+                unknown_word(name, list(OF_ROBOTS), "effect")
                 if isinstance(name, str)
                 else (
-                    f"Read {shown(name)}. Expected the name of an effect: {', '.join(CATALOGUE)}."
+                    f"Read {shown(name)}. Expected the name of an effect: {', '.join(OF_ROBOTS)}."
                 )
             )
             note((index, "name"), message)
@@ -88,7 +88,7 @@ def _quantity(parameter: Parameter) -> Quantity:
 
 def effects_json_schema() -> dict[str, Any]:
     """JSON Schema of the list of effects, one alternative for each effect of the catalogue."""
-    return {"type": "array", "items": {"oneOf": [_json_schema(e) for e in CATALOGUE.values()]}}
+    return {"type": "array", "items": {"oneOf": [_json_schema(e) for e in OF_ROBOTS.values()]}}
 
 
 def _json_schema(effect: Effect) -> dict[str, Any]:

@@ -54,7 +54,7 @@ def robot_from(document: Document) -> tuple[Robot | None, list[Issue]]:
 
 
 def _platform(model: PlatformModel, h: float) -> Platform:
-    kappa = (model.kappa or 0.0) if model.k is None else model.k * h**2
+    kappa = (model.kappa or 0.0) if model.k is None else model.k * (h * h)
     return Platform(m=model.m, I=model.I, c=model.c, a=model.a, b=model.b, kappa=kappa)
 
 

@@ -38,7 +38,9 @@ class Platform:
     @property
     def joint_inertia(self) -> float:
         """Moment of inertia about P by the parallel-axis theorem, kg m2."""
-        return self.I + self.m * self.joint_to_centre**2
+        # Products overflow to infinity, which is then told of; powers raise.
+        reach = self.joint_to_centre
+        return self.I + self.m * (reach * reach)
 
 
 @dataclass(frozen=True)
@@ -77,12 +79,12 @@ class Robot:
     @property
     def k1(self) -> float:
         """Viscous friction per wheel of platform 1 along the floor, kappa1/h^2, N s/m."""
-        return self.platform1.kappa / self.h**2
+        return self.platform1.kappa / (self.h * self.h)
 
     @property
     def k2(self) -> float:
         """Viscous friction per wheel of platform 2 along the floor, kappa2/h^2, N s/m."""
-        return self.platform2.kappa / self.h**2
+        return self.platform2.kappa / (self.h * self.h)
 
     @property
     def singular_angle(self) -> float:

@@ -51,4 +51,9 @@ _MODULES = (
 
 CATALOGUE: Mapping[str, Effect] = MappingProxyType({m.EFFECT.name: m.EFFECT for m in _MODULES})
 
-__all__ = ["CATALOGUE", "Effect", "Parameter", "Port", "Setting"]
+OF_ROBOTS: Mapping[str, Effect] = MappingProxyType(
+    {name: effect for name, effect in CATALOGUE.items() if effect is not zero_offset.EFFECT}
+)
+"""What a robot file may list: a capture system's zeros are those of an experiment."""
+
+__all__ = ["CATALOGUE", "OF_ROBOTS", "Effect", "Parameter", "Port", "Setting"]
