@@ -104,3 +104,41 @@ def test_a_cache_that_cannot_be_written_is_done_without(tmp_path, monkeypatch):
     (tmp_path / "file").touch()
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
     assert found("int x;", 1, 1, make=True) is None
+
+
+@needs_compiler
+def test_what_leaves_the_numbers_counts_for_nothing(monkeypatch):
+    system, drive, start, p, _ = CASES["fine"]
+    (made,) = predict_all(system, [(drive, np.array(start), np.array(p))])
+    lost, gap = made.seen.copy(), made.seen.shape[0] // 2
+    lost[gap:] = np.nan
+    recorded = Recorded.of(made.seen + 0.1, np.ones_like(made.seen))
+    first = replace(recorded, weight=np.where(np.isnan(lost), 0.0, recorded.weight))
+    states = made.states.copy()
+    states[:, gap * drive.each :] = np.nan
+    wanted = np.eye(len(p))
+    asked = Asked(
+        drive, replace(made, states=states, seen=lost), np.array(p), wanted, None, recorded
+    )
+    whole = Asked(drive, made, np.array(p), wanted, None, first)
+    for few in (10**9, 0):
+        monkeypatch.setattr(shoot, "_FEW", few)
+        monkeypatch.setattr(shoot, "_PAYS", few)
+        (one,), (other,) = (grams(replace(system, lasts=not few), [a]) for a in (asked, whole))
+        np.testing.assert_allclose(one, other, rtol=1e-9)
+
+
+@needs_compiler
+def test_a_run_whose_drive_stays_beside_one_whose_drive_is_moved(monkeypatch):
+    system, drive, start, p, _ = CASES["fine"]
+    (made,) = predict_all(system, [(drive, np.array(start), np.array(p))])
+    moved = DriveSlopes(np.ones((*drive.at.shape, 1)), np.ones((*drive.nodes.shape, 1)))
+    recorded = Recorded.of(made.seen + 0.1, np.ones_like(made.seen))
+    asked = [
+        Asked(drive, made, np.array(p), np.ones((len(p), 1)), by, recorded) for by in (moved, None)
+    ]
+    plain = grams(system, asked)
+    monkeypatch.setattr(shoot, "_FEW", 0)
+    monkeypatch.setattr(shoot, "_PAYS", 0)
+    for fast, slow in zip(grams(replace(system, lasts=True), asked), plain, strict=True):
+        np.testing.assert_allclose(fast, slow, rtol=1e-9)

@@ -6,6 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from rr_opt.diagnose import next_experiment as next_experiment_module
+from rr_opt.diagnose import plans
 from rr_opt.diagnose.contest import Contest, as_rival
 from rr_opt.diagnose.explain import Chosen
 from rr_opt.diagnose.fit import solve
@@ -86,3 +88,27 @@ def test_without_a_rival_it_narrows_down_a_value(case):
     then, now = (float(told.sentence.split(word)[1].split()[0].rstrip(".")) for word in
                  ("be known to ", "instead of "))  # fmt: skip
     assert then < now
+
+
+def test_no_gait_that_the_servo_can_do_is_no_plan(case, monkeypatch):
+    model, *_ = case
+    slow = replace(ROBOT, servo=replace(ROBOT.servo, rate_limit=0.1))
+    assert not gaits(slow)
+    monkeypatch.setattr(next_experiment_module, "gaits", lambda robot: gaits(slow))
+    assert next_experiment(*case) is None
+    assert next_experiment(model, case[1]) is None
+
+
+def test_a_plan_that_leaves_the_numbers_takes_no_other_with_it(case, monkeypatch):
+    model, best, rival = case
+    contest = Contest(model, best, as_rival(rival), room=10.0)
+    every = [Plan(gait, 10.0, "rest", 0.0) for gait in gaits(model.experiment.robot)[:3]]
+    alone = contest.promises(every[:2])
+    driven = plans._driven
+
+    def lost(*arguments):
+        empty, predicted = driven(*arguments)
+        return empty, [*predicted[:-1], *(np.full_like(one, np.nan) for one in predicted[-1:])]
+
+    monkeypatch.setattr(plans, "_driven", lost)
+    assert contest.promises(every) == pytest.approx([*alone, 0.0])

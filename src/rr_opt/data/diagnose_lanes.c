@@ -1,13 +1,15 @@
 /* Predict runs, and linearise them, L of them side by side.
 
    Around functions of a system that were written above:
-     step_1(state, inputs, kept, out)   a step's end; inputs are its length and the drive at its
-                                        beginning, middle and end
-     rates_1(state, drive, kept, out)   d(state)/dt, and the nonzeros of its derivatives
-     seen_1(state, drive, kept, out)    what is seen, and the nonzeros of its derivatives
+     step_1(x, kept, out)    a step's end; x is the state and behind it the step's inputs: its length
+                             and the drive at its beginning, middle and end
+     rates_1(x, kept, out)   d(state)/dt, and the nonzeros of its derivatives; x is the state and
+                             behind it the drive
+     seen_1(x, kept, out)    what is seen, and the nonzeros of its derivatives; x as for the rates
    each after NAME_0(p, kept), which is what they need of p alone. The derivatives' nonzeros come
    column by column: of the state, of the drive, of p. RATES_ROW, RATES_COLUMN, SEEN_ROW and
-   SEEN_COLUMN say where they stand, RX, RD and RP how many there are of each. */
+   SEEN_COLUMN say where they stand; RX, RD and RP how many there are of each for the rates, SX, SD
+   and SP for what is seen. */
 
 #define NODE (1 + 3 * ND)
 
@@ -298,6 +300,12 @@ static void linear_step(const Group* group, const Asked* asked, const Room* room
 
 #endif
 
+/* A prediction that has left the numbers says nothing at this sample, nor in a gap. */
+static void leave_out(V* row, long long wide, int l) {
+  long long c;
+  for (c = 0; c < wide; ++c) row[c][l] = 0.0;
+}
+
 /* What a sample adds to J'J: the rows of J by what is seen there. */
 static void seen_at(const Group* group, const Asked* asked, const Room* room, long long k,
                     long long each, const V* x) {
@@ -338,6 +346,8 @@ static void seen_at(const Group* group, const Asked* asked, const Room* room, lo
         row[n + c][l] = run->more[(place[l] * NY + i) * asked->extras + c];
       row[wide - 1][l] = out[i][l] - run->data[place[l] * NY + i];
     }
+    for (l = 0; l < L; ++l)
+      if (!isfinite(row[wide - 1][l])) leave_out(row, wide, l);
     for (c = 0; c < wide; ++c) row[c] *= weight[i];
     if (!there[i]) S[wide * (wide + 1) / 2 - 1] += row[wide - 1] * row[wide - 1];
   }
@@ -358,8 +368,8 @@ int rr_grams(long long count, const Run* runs, long long each, long long nq, lon
   const Asked asked = {nq, entries, moves, extras, first, column, move};
   long long from, k, c, b;
   Room room;
-  FORGETS;
   if (!room_for(&asked, &room)) return 0;
+  FORGETS;
   for (from = 0; from < count; from += L) {
     Group group;
     V x[NX], end[NX], in[NODE];

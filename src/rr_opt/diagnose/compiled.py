@@ -104,23 +104,33 @@ class Compiled:
 
     def grams(self, runs: Sequence[Sought]) -> list[Array]:
         """J'J of each run, (n, n), with J = [d/dstart | d/dq | more | predicted - recorded] in
-        sigmas. All have entries of `wanted` at the same places, and the same q move the drive."""
+        sigmas.
+
+        Raises ValueError if not all have as many q and further columns.
+        """
         first = runs[0]
+        shapes = {(run.wanted.shape, run.more is None or run.more.shape[2]) for run in runs}
+        if len(shapes) > 1:
+            raise ValueError(f"Read columns of {sorted(map(str, shapes))}. Expected all alike.")
         touched = np.any([run.wanted != 0 for run in runs], axis=0)
         row, column = (index.astype(np.int64) for index in np.nonzero(touched))
         first_of = np.searchsorted(row, np.arange(len(first.wanted) + 1)).astype(np.int64)
         nq, extras = first.wanted.shape[1], 0 if first.more is None else first.more.shape[2]
         moving = _moving(runs)
         n = self._size + nq + extras + 1
+        drive = first.at.shape[0]
         out = [np.empty((n, n)) for _ in runs]
         held = []
         for run, gram in zip(runs, out, strict=True):
             moved = {}
-            if moving.size and run.moved:
-                at, nodes = run.moved
+            if moving.size:
+                at, nodes = run.moved or (
+                    np.zeros((drive, len(run.data), nq)),
+                    np.zeros((drive, 3, len(run.inputs), nq)),
+                )
                 moved["moved_at"] = at[:, :, moving].transpose(1, 0, 2)
                 moved["moved"] = nodes[:, :, :, moving].transpose(2, 1, 0, 3)
-            if run.more is not None:
+            if extras:
                 moved["more"] = run.more
             held.append(
                 _Held(
@@ -164,6 +174,8 @@ class _Held:
     """A run as the C takes it, and the arrays that it points to, kept alive."""
 
     def __init__(self, *, steps: int, **arrays: Array) -> None:
+        if steps < 1:
+            raise ValueError(f"Read a run of {steps} steps. Expected 1 or more.")
         self.arrays = {name: np.ascontiguousarray(one, float) for name, one in arrays.items()}
         # What is written to has to be the caller's own.
         assert all(self.arrays[name] is arrays[name] for name in ("seen", "gram") if name in arrays)

@@ -52,7 +52,7 @@ class Asked:
 
 
 def grams(system: System, asked: Sequence[Asked]) -> list[Array]:
-    """J'J (n, n) of each run."""
+    """J'J (n, n) of each run, without the samples where a prediction has left the numbers."""
     if not asked:
         return []
     code = code_of(system, 4 * sum(one.path.h.size for one in asked))
@@ -78,8 +78,18 @@ def _sought(one: Asked) -> Sought:
 
 def _gram(system: System, one: Asked) -> Array:
     by = slopes(system, one.path, one.made, one.p, one.wanted, one.drive_by)
-    weight = one.recorded.weight
-    parts = [by.by_start, by.by_parameter, *([] if one.more is None else [one.more])]
-    rows = weight.size
-    columns = [(part * weight[:, :, None]).reshape(rows, -1) for part in parts]
-    return gram_of(*columns, one.recorded.off(one.made.seen).reshape(rows, 1))
+    off = one.made.seen - one.recorded.values
+    weight = np.where(np.isfinite(off), one.recorded.weight, 0.0)
+    parts = [
+        by.by_start,
+        by.by_parameter,
+        *([] if one.more is None else [one.more]),
+        off[..., None],
+    ]
+    known = weight[:, :, None] > 0
+    return gram_of(
+        *(
+            np.where(known, part, 0.0).reshape(weight.size, -1) * weight.reshape(-1, 1)
+            for part in parts
+        )
+    )

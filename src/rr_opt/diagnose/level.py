@@ -84,10 +84,10 @@ def _best_starts(problem: Problem, first: Mapping[Piece, Array]) -> dict[Piece, 
         poor = [p for p in first if p not in costs or costs[p] > _POOR * _count(model, p)]
         if not poor:
             break
-        found = _started(problem, {piece: guess(piece) for piece in poor})
-        for piece, normal in found.normals.items():
-            if piece not in costs or normal.cost < costs[piece]:
-                costs[piece], best[piece] = normal.cost, found.starts[piece]
+        starts = _started(problem, {piece: guess(piece) for piece in poor}).starts
+        for piece, cost in problem.costs({}, starts).items():
+            if piece not in costs or cost < costs[piece]:
+                costs[piece], best[piece] = cost, starts[piece]
     return best
 
 

@@ -70,6 +70,8 @@ def _leading(promises: Promises, model: RollerRacer) -> Plan | None:
 
 def _ranked(promises: Promises, plans: Sequence[Plan]) -> list[Plan]:
     """Those that promise anything, most first."""
+    if not plans:
+        return []
     found = sorted(zip(promises(plans), range(0, -len(plans), -1), strict=True), reverse=True)
     return [plans[-k] for promised, k in found if promised > 0]
 

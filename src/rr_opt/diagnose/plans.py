@@ -98,7 +98,8 @@ def imagined(
         replace(run, recording=_recording(model, t, seen))
         for run, t, seen in zip(empty.experiment.runs, times, predicted, strict=True)
     ]
-    made = RollerRacer(replace(model.experiment, runs=tuple(runs)))
+    # A run that leaves the numbers says nothing of what is usual, and no plan changes another's.
+    made = RollerRacer(replace(model.experiment, runs=tuple(runs)), model.setting)
     pieces = (Piece(k, 0, t.size) for k, t in enumerate(times))
     return Imagined(made, dict(zip(pieces, starts, strict=True)))
 
@@ -145,7 +146,7 @@ def _driven(
         Run(_recording(model, t, np.zeros((t.size, len(CHANNELS)))), plan.gait, "fit", plan.start)
         for plan, t in zip(plans, times, strict=True)
     )
-    empty = RollerRacer(replace(model.experiment, runs=runs))
+    empty = RollerRacer(replace(model.experiment, runs=runs), model.setting)
     asked = [
         Asked(Piece(k, 0, t.size), values, start)
         for k, (t, start) in enumerate(zip(times, starts, strict=True))

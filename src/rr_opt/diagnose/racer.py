@@ -42,8 +42,10 @@ class RollerRacer:
     channels = CHANNELS
     window = 5.0
 
-    def __init__(self, experiment: Experiment) -> None:
+    def __init__(self, experiment: Experiment, setting: Setting | None = None) -> None:
+        """setting: what was asked of the robot; left out, it is told from the runs."""
         self.experiment = experiment
+        self._given = setting
         self.nominal = nominal(experiment)
         self._mapped: tuple[Fit, tuple[Sequence[Proposal], Sequence[Proposal]]] | None = None
 
@@ -93,9 +95,13 @@ class RollerRacer:
             if name not in self.simulated.built_in and not effect.nameless
         }
 
-    @cached_property
+    @property
     def setting(self) -> Setting:
         """What was asked of the robot, for the usual sizes of the effects."""
+        return self._given or self._told
+
+    @cached_property
+    def _told(self) -> Setting:
         gaits = [run.gait for run in self.experiment.runs]
         distances = [
             np.nanmedian(np.hypot(*(np.diff(d.values[:: len(d.t) // 20, k]) for k in (0, 1))))

@@ -43,20 +43,21 @@ class Kept:
     ) -> Sequence[Path]:
         """The predictions of pieces along their drives, from states, with p; what is asked for
         next are their derivatives."""
-        missing = [one for one in asked if not self._has(system, *one)]
-        made = predict_all(system, [one[1:] for one in missing])
-        for (piece, path, state, p), one in zip(missing, made, strict=True):
-            self._made[piece] = system, path, state, p, one
-        return [self._made[piece][-1] for piece, *_ in asked]
+        found = [self._made_before(system, *one) for one in asked]
+        missing = [k for k, one in enumerate(found) if one is None]
+        made = dict(zip(missing, predict_all(system, [asked[k][1:] for k in missing]), strict=True))
+        for k, one in made.items():
+            self._made[asked[k][0]] = system, *asked[k][1:], one
+        return [made[k] if one is None else one for k, one in enumerate(found)]
 
-    def _has(self, system: System, piece: Piece, path: DrivePath, state: Array, p: Array) -> bool:
+    def _made_before(
+        self, system: System, piece: Piece, path: DrivePath, state: Array, p: Array
+    ) -> Path | None:
         kept = self._made.get(piece)
-        return (
-            kept is not None
-            and (kept[0] is system and kept[1] is path)
-            and np.array_equal(kept[2], state)
-            and np.array_equal(kept[3], p)
-        )
+        if kept is None or kept[0] is not system or kept[1] is not path:
+            return None
+        alike = np.array_equal(kept[2], state) and np.array_equal(kept[3], p)
+        return kept[-1] if alike else None
 
     def recorded(self, piece: Piece, make: Callable[[], Recorded]) -> Recorded:
         """What was recorded of a piece."""

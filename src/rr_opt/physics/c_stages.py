@@ -2,7 +2,8 @@
 
 CasADi's own C computes everything of one point. Here each value is a vector `V` of some points
 (see data/lanes.c), and what depends on the first inputs alone is computed by a function of
-its own: on the robot once for a whole gait, on the posture once for all tries of the speed.
+its own: of a sweep on the robot once for a whole gait, and on the posture once for all tries of the
+speed; of a diagnosis on the parameters once for all steps of some runs.
 """
 
 from __future__ import annotations
