@@ -7,6 +7,7 @@ from rr_opt.lab.drive import Outing, drive
 from rr_opt.lab.effects import rig_with
 from rr_opt.lab.plant import Plant
 from rr_opt.lab.stepping import stepped
+from rr_opt.outcome import NotConvergedError
 from rr_opt.robot.gait import SineGait
 from rr_opt.robot.parameters import EffectUse
 from tests.lab.reduced import LONG
@@ -71,3 +72,15 @@ def test_no_part_of_a_step_is_timed():
     plant = Plant.of(rig_with(LONG), 1e-3)
     stepped(plant, np.zeros(10), np.zeros(10))
     assert not plant.data.timer.duration.any()
+
+
+@pytest.mark.parametrize("law", [None, lambda wheels: None], ids=["all at once", "one by one"])
+@pytest.mark.parametrize("start", ["rest", "running"])
+def test_a_motion_lost_before_the_recording_is_told(start, law):
+    """What is lost while the robot settles is not seen any more where it is driven on."""
+    rig = rig_with(LONG)
+    rig.shapers.append(lambda t, angle: np.where(np.arange(len(t)) == 10, 1e9, angle))
+    if law:
+        rig.laws.append(law)
+    with pytest.raises(NotConvergedError, match="broke down"):
+        drive(rig, GAIT, Outing(0.2, start), 1e-3)

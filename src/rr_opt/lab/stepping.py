@@ -19,11 +19,15 @@ def stepped(plant: Plant, controls: Array, times: Array) -> Array:
 
     controls  angular accelerations of the flywheel, rad/s2 (n,)
     times     since the robot was let go, s (n,), for the laws
+
+    Raises NotConvergedError if MuJoCo lost the motion.
     """
     # MuJoCo's own loop forgets forces.
-    if plant.rig.laws or plant.data.xfrc_applied.any():
-        return _one_by_one(plant, controls, times)
-    return _all(plant, controls)
+    alone = plant.rig.laws or plant.data.xfrc_applied.any()
+    seen = _one_by_one(plant, controls, times) if alone else _all(plant, controls)
+    # Asked here and not at the end of a run: that loop begins by forgetting earlier warnings.
+    plant.require_sound()
+    return seen
 
 
 def _one_by_one(plant: Plant, controls: Array, times: Array) -> Array:
