@@ -63,10 +63,20 @@ def test_what_is_no_seed(text):
 
 
 def test_the_fingerprint_sees_every_file_of_the_code(tree):
+    source = tree / "src"
+    seen = [fingerprint(source)]
+    (source / "data").mkdir()
+    (source / "data" / "fit.c").write_text("double one = 1;\n")
+    seen.append(fingerprint(source))
+    (source / "data" / "fit.c").write_text("double one = 2;\n")
+    seen.append(fingerprint(source))
+    (source / "code.py").rename(source / "other.py")
+    seen.append(fingerprint(source))
+    assert len(set(seen)) == 4
+
+
+def test_the_fingerprint_is_the_same_once_the_code_has_run(tree):
     before = fingerprint(tree / "src")
-    (tree / "src" / "notes.txt").write_text("no code")
+    (tree / "src" / "__pycache__").mkdir()
+    (tree / "src" / "__pycache__" / "code.cpython-311.pyc").write_bytes(b"compiled")
     assert fingerprint(tree / "src") == before
-    (tree / "src" / "code.py").rename(tree / "src" / "other.py")
-    renamed = fingerprint(tree / "src")
-    (tree / "src" / "other.py").write_text("one = 2\n")
-    assert len({before, renamed, fingerprint(tree / "src")}) == 3

@@ -53,9 +53,11 @@ def read_seed(text: str) -> str:
 
 
 def fingerprint(source: Path) -> str:
-    """SHA-256 over the names and contents of all Python files of a package."""
+    """SHA-256 over the names and contents of all files of a package, as C and YAML decide what is
+    computed too. What Python compiled from them is left out."""
     sums = hashlib.sha256()
-    for path in sorted(source.rglob("*.py")):
+    paths = (path for path in source.rglob("*") if path.is_file())
+    for path in sorted(path for path in paths if "__pycache__" not in path.parts):
         digest = hashlib.sha256(path.read_bytes()).hexdigest()
         sums.update(f"{path.relative_to(source).as_posix()} {digest}\n".encode())
     return sums.hexdigest()
