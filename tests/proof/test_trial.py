@@ -16,7 +16,7 @@ from rr_opt.outcome import InputError
 from rr_opt.proof.lots import draw_lot
 from rr_opt.proof.make import Made
 from rr_opt.proof.opened import open_trial
-from rr_opt.proof.trial import MADE, SAID, SEALS, Trial, seed_of, tidy
+from rr_opt.proof.trial import MADE, SAID, SEALS, Drawn, Trial, drawn_of, tidy
 from rr_opt.report.archive import write_bytes
 
 STUB = str(Path(__file__).parent / "stub.py")
@@ -141,10 +141,14 @@ def test_tidied_it_can_still_be_scored(tmp_path):
     assert tried(tmp_path) == ([], [], opened)
 
 
-def test_the_seed_is_read_from_the_folder(tmp_path):
-    assert seed_of(tmp_path) is None
-    tried(tmp_path)
-    assert seed_of(tmp_path) == "5eed"
+@pytest.mark.parametrize(
+    ("named", "engines"), [({}, ("mujoco",)), ({"engines": ["planar"]}, ("planar",))]
+)
+def test_what_it_is_drawn_from_is_read_from_the_folder(named, engines, tmp_path):
+    """A trial that names no engine is of the time when there was one."""
+    assert drawn_of(tmp_path) is None
+    Journal(tmp_path / MADE, IDENTITY | named).__exit__(None, None, None)
+    assert drawn_of(tmp_path) == Drawn("5eed", ("null",), engines)
 
 
 KILLED = """

@@ -8,8 +8,11 @@ import pytest
 from typer.testing import CliRunner
 
 from rr_opt.cli.main import app
+from rr_opt.lab.engines import ENGINES
 from rr_opt.proof import one
 from rr_opt.proof.child import diagnose_apart
+from rr_opt.proof.lots import KINDS, draw_lot
+from rr_opt.proof.trial import MADE
 from tests.proof.test_trial import STUB, made_up
 
 
@@ -74,3 +77,27 @@ def test_one_case_again_tells_what_was_hidden_and_what_was_said(tmp_path, monkey
     }  # fmt: skip
     told = json.loads(CliRunner().invoke(app, [*words, "--json"]).stdout)
     assert (told["case"], told["outcome"]) == ("002", "right")
+
+
+@pytest.mark.parametrize(
+    ("words", "expected"),
+    [
+        ([], ("5eed", ("pair", "outside"), ("planar",))),
+        (["--seed", "0x5EED"], ("5eed", ("pair", "outside"), ("planar",))),
+        (["--kinds", "single"], ("5eed", ("single",), ("planar",))),
+        (["--engine", "both"], ("5eed", ("pair", "outside"), ENGINES)),
+        (["--seed", "1"], ("1", KINDS, ENGINES)),
+    ],
+    ids=["nothing", "seed", "kinds", "engine", "another seed"],
+)
+def test_one_case_again_is_that_of_the_trial_in_the_folder(words, expected, tmp_path, monkeypatch):
+    """What the options leave out is as the trial was begun; with another seed it is another one."""
+    begun = {"seed": "5eed", "kinds": ["pair", "outside"], "engines": ["planar"]}
+    (tmp_path / MADE).write_text(json.dumps(begun) + "\n")
+    seen = []
+    monkeypatch.setattr(one, "make", lambda lot: seen.append(lot) or made_up(lot))
+    monkeypatch.setattr(one, "diagnose_apart", stub)
+    for number in range(1, 7):
+        again = ["prove", "--case", str(number), "--out", str(tmp_path), *words]
+        assert CliRunner().invoke(app, again).exit_code == 0
+    assert seen == [draw_lot(expected[0], number, *expected[1:]) for number in range(1, 7)]

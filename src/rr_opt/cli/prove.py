@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from rr_opt.batch.pool import Pool
-    from rr_opt.lab.engines import Engine
+    from rr_opt.proof.trial import Drawn
 
 
 def prove(
@@ -37,9 +37,12 @@ def prove(
         ),
     ] = None,
     engine: Annotated[
-        Literal["mujoco", "planar", "both"],
-        typer.Option(help="What drives the cases: one of the two, or each half of each kind."),
-    ] = "both",
+        Literal["mujoco", "planar", "both"] | None,
+        typer.Option(
+            help="What drives the cases: one of the two, or each half of each kind.",
+            show_default="both",
+        ),
+    ] = None,
     out: Annotated[Path | None, out_option("out/proof")] = None,
     workers: Annotated[
         int | None, typer.Option(help="Processes here.", min=1, show_default="one a core")
@@ -49,7 +52,12 @@ def prove(
     ] = None,
     case: Annotated[
         int | None,
-        typer.Option(metavar="ID", help="Make and diagnose this case alone, and tell both.", min=1),
+        typer.Option(
+            metavar="ID",
+            help="Make and diagnose this case alone, of the trial in --out if there is one, and "
+            "tell both.",
+            min=1,
+        ),
     ] = None,
     restart: Annotated[
         bool, typer.Option("--restart", help="Forget the cases of an earlier run.")
@@ -62,32 +70,27 @@ def prove(
     """
     from rr_opt.batch.run import run  # noqa: PLC0415
     from rr_opt.lab.engine import engine as mujoco  # noqa: PLC0415
-    from rr_opt.lab.engines import ENGINES  # noqa: PLC0415
-    from rr_opt.proof.lots import KINDS, read_kinds  # noqa: PLC0415
-    from rr_opt.proof.trial import tidy  # noqa: PLC0415
+    from rr_opt.proof.trial import drawn_of, tidy  # noqa: PLC0415
     from rr_opt.proof.whole import whole_trial  # noqa: PLC0415
     from rr_opt.report.archive import folder_for_results, strict_json  # noqa: PLC0415
     from rr_opt.report.archive import write_bytes as keep  # noqa: PLC0415
 
     folder = folder_for_results(out or Path("out/proof"))
-    chosen = read_kinds(kinds) if kinds is not None else KINDS
-    engines = ENGINES if engine == "both" else (engine,)
+    begun = drawn_of(folder) if case is not None else None
+    drawn = _drawn(begun, seed, kinds, engine, folder)
     # A laboratory without its engine is told before any case is, and not for each.
-    if "mujoco" in engines:
+    if "mujoco" in drawn.engines:
         mujoco()
     if case is not None:
-        typer.echo(
-            _one(folder, _seed_of_one(seed, folder), case, chosen, engines, json=json), nl=False
-        )
+        typer.echo(_one(folder, drawn, case, json=json), nl=False)
         return
-    word = _seed(seed, folder)
     with closing(_pool(workers, scheduler)) as pool:
         opened = whole_trial(
             folder,
-            word,
+            drawn.seed,
             range(1, cases + 1),
-            chosen,
-            engines,
+            drawn.kinds,
+            drawn.engines,
             keep=keep,
             run=partial(run, pool),
             count=partial(_count, total=cases),
@@ -119,15 +122,7 @@ def _count(words: str, steps: Iterator[int], done: int, total: int) -> None:
         raise
 
 
-def _one(
-    folder: Path,
-    seed: str,
-    number: int,
-    kinds: tuple[str, ...],
-    engines: tuple[Engine, ...],
-    *,
-    json: bool,
-) -> str:
+def _one(folder: Path, drawn: Drawn, number: int, *, json: bool) -> str:
     """Make one case again, diagnose it, and tell what was hidden and what was said."""
     from rr_opt.cli.steps import Steps  # noqa: PLC0415
     from rr_opt.proof.lots import draw_lot  # noqa: PLC0415
@@ -136,11 +131,27 @@ def _one(
     from rr_opt.report.proof.record import case_record  # noqa: PLC0415
     from rr_opt.report.proof.told import told  # noqa: PLC0415
 
-    lot = draw_lot(seed, number, kinds, engines)
+    lot = draw_lot(drawn.seed, number, drawn.kinds, drawn.engines)
     place = folder / "again" / lot.id
     with Steps() as steps:
         found = one_case(lot, place, write_bytes, steps)
     return strict_json(case_record(found)) if json else told(found, place)
+
+
+def _drawn(
+    begun: Drawn | None, seed: str | None, kinds: str | None, engine: str | None, folder: Path
+) -> Drawn:
+    """What the options say; what they leave out is as in the trial that was begun."""
+    from rr_opt.lab.engines import ENGINES  # noqa: PLC0415
+    from rr_opt.proof.lots import KINDS, read_kinds  # noqa: PLC0415
+    from rr_opt.proof.trial import Drawn  # noqa: PLC0415
+
+    chosen = read_kinds(kinds) if kinds is not None else None
+    word = begun.seed if begun and seed is None else _seed(seed, folder)
+    # With another seed it is another trial.
+    base = begun if begun and begun.seed == word else Drawn(word, KINDS, ENGINES)
+    engines = {"both": ENGINES, "mujoco": ("mujoco",), "planar": ("planar",), None: base.engines}
+    return Drawn(word, chosen or base.kinds, engines[engine])
 
 
 def _seed(text: str | None, folder: Path) -> str:
@@ -148,13 +159,6 @@ def _seed(text: str | None, folder: Path) -> str:
     from rr_opt.proof.whole import PACKAGE  # noqa: PLC0415
 
     return seed_of_commit(PACKAGE, folder) if text in (None, "commit") else read_seed(text)
-
-
-def _seed_of_one(text: str | None, folder: Path) -> str:
-    """The seed given, or that of the trial in the folder."""
-    from rr_opt.proof.trial import seed_of  # noqa: PLC0415
-
-    return (seed_of(folder) if text is None else None) or _seed(text, folder)
 
 
 def _pool(workers: int | None, scheduler: str | None) -> Pool:

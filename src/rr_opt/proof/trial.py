@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from rr_opt.batch.journal import Journal
+from rr_opt.lab.engines import Engine
 from rr_opt.proof.child import COMMAND, TIME_LIMIT, Said, Task, diagnose_apart
 from rr_opt.proof.ended import ended_row
 from rr_opt.proof.lots import Lot
@@ -99,11 +100,24 @@ def tidy(folder: Path, right: Sequence[str]) -> None:
         shutil.rmtree(folder / "said" / name, ignore_errors=True)
 
 
-def seed_of(folder: Path) -> str | None:
-    """The seed of the trial in a folder; None if there is none."""
+@dataclass(frozen=True)
+class Drawn:
+    """What the lots of a trial are drawn from: its seed, its kinds and its engines."""
+
+    seed: str
+    kinds: tuple[str, ...]
+    engines: tuple[Engine, ...]
+
+
+def drawn_of(folder: Path) -> Drawn | None:
+    """What the trial in a folder is drawn from; None if there is none."""
     journal = folder / MADE
     if not journal.is_file():
         return None
     with journal.open(encoding="utf-8") as lines:
-        head = lines.readline()
-    return json.loads(head)["seed"] if head.endswith("\n") else None
+        text = lines.readline()
+    if not text.endswith("\n"):
+        return None
+    head = json.loads(text)
+    # Trials were all driven by MuJoCo before there was another engine to name.
+    return Drawn(head["seed"], tuple(head["kinds"]), tuple(head.get("engines", ["mujoco"])))

@@ -141,7 +141,10 @@ def _misses(opened: Opened) -> str:
         for case in opened.misses
     ]  # fmt: skip
     head = ("case", "outcome", "engine", "hidden", "visible", "said")
-    again = "`rr-opt prove --case ID` makes and diagnoses one again."
+    again = (
+        "`rr-opt prove --case ID --out FOLDER`, where FOLDER is the one that this is in, makes and "
+        "diagnoses one again, if the code is still that of the trial."
+    )
     return f"## Misses\n\nEvery one, with its page. {again}\n\n" + markdown(head, rows)
 
 
