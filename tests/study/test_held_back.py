@@ -6,6 +6,7 @@ import time
 
 import pytest
 
+from rr_opt.batch.held_back import held_back
 from rr_opt.batch.local import LocalPool
 
 
@@ -35,3 +36,27 @@ def test_interrupted_while_work_is_handed_over(monkeypatch):
     finally:
         pool.close()
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+
+
+def test_stopped_while_the_handlers_are_replaced(monkeypatch):
+    """SIGTERM comes when SIGINT has its other handler and SIGTERM has not."""
+    replace = signal.signal
+
+    def stop(number, frame):
+        raise SystemExit
+
+    def interrupted(number, handler):
+        replace(number, handler)
+        monkeypatch.undo()
+        signal.raise_signal(signal.SIGTERM)
+
+    before = signal.signal(signal.SIGTERM, stop)
+    monkeypatch.setattr(signal, "signal", interrupted)
+    try:
+        with pytest.raises(SystemExit), held_back(signal.SIGINT, signal.SIGTERM):
+            pytest.fail("it went on")
+        assert signal.getsignal(signal.SIGTERM) is stop
+        assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    finally:
+        signal.signal(signal.SIGTERM, before)
+        signal.signal(signal.SIGINT, signal.default_int_handler)

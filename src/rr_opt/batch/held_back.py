@@ -22,12 +22,13 @@ def held_back(*numbers: signal.Signals) -> Iterator[None]:
         return
     came: list[tuple[int, FrameType | None]] = []
     handlers: dict[int, Callable[[int, FrameType | None], Any]] = {}
-    for number in numbers:
-        handler = signal.getsignal(number)
-        if callable(handler):
-            handlers[number] = handler
-            signal.signal(number, lambda *what: came.append(what))
     try:
+        # A handler that is not replaced yet may raise while others are.
+        for number in numbers:
+            handler = signal.getsignal(number)
+            if callable(handler):
+                handlers[number] = handler
+                signal.signal(number, lambda *what: came.append(what))
         yield
     finally:
         for number, handler in handlers.items():
