@@ -31,3 +31,12 @@ def driven(
     from rr_opt.lab.planar import drive as planar  # noqa: PLC0415  CasADi takes a moment
 
     return planar.drive(rig, gait, outing, planar.STEP if step is None else step)
+
+
+def fine_enough(engine: Engine, rig: Rig, step: float) -> float:
+    """The step that an engine drives a rig with where `step` is asked for, s."""
+    if engine == "mujoco":
+        return step
+    from rr_opt.lab.planar import drive as planar  # noqa: PLC0415  CasADi takes a moment
+
+    return planar.fine_enough(rig, step)

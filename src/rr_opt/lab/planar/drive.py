@@ -47,8 +47,7 @@ class Clock:
     @classmethod
     def of(cls, rig: Rig, gait: Gait, outing: Outing, step: float) -> Clock:
         """Steps of about `step` s that begin before the command does."""
-        finest = min(step, STRIKING) if rig.play or rig.pin else step
-        every = max(1, round(1 / (outing.rate * finest)))
+        every = max(1, round(1 / (outing.rate * fine_enough(rig, step))))
         dt = 1 / (outing.rate * every)
         early = (rig.clock - outing.begin(gait)) * outing.rate
         before = max(1, math.ceil(early - 1e-6))
@@ -60,6 +59,12 @@ class Clock:
     def samples(self) -> slice:
         """Of steps: those at whose ends samples are taken."""
         return slice(self.before * self.every - 1, None, self.every)
+
+
+def fine_enough(rig: Rig, step: float) -> float:
+    """The step that a rig is driven with where `step` is asked for, s: no longer than its blows
+    let it be."""
+    return min(step, STRIKING) if rig.play or rig.pin else step
 
 
 def drive(rig: Rig, gait: Gait, outing: Outing, step: float = STEP) -> Motion:
