@@ -32,7 +32,7 @@ Shaper = Callable[[Array, Array], Array]
 class Turning:
     """The wheels at an instant, and what brakes them, which a law may change.
 
-    t        since the robot was put down, s
+    t        since the robot was let go, s; negative while it settles
     rate     of turning of each wheel, rad/s (4,)
     angle    each has turned by, rad (4,)
     places   of the wheels' centres on the floor, m (4, 2)
@@ -65,7 +65,11 @@ class Tether:
 class Rig:
     """A robot and what is hidden in it. Lists of four are by WHEELS, of two by platform.
 
-    kappa      viscous friction, N m s; quadratic, N m s2; dry, N m; J, kg m2: hidden spin inertia
+    robot      its true values
+    kappa      viscous friction, N m s; the robot's by default
+    quadratic  friction, N m s2
+    dry        friction, N m
+    J          kg m2, hidden spin inertia
     onset      m/s at the rim, over which dry friction sets in; None: an engine's own. MuJoCo has
                its own always
     toe        rad, the axle turned counter-clockwise about its centre
@@ -73,10 +77,15 @@ class Rig:
     mu         grip of the wheels; large by default, so that none slides
     creep      m/(N s), side speed per side force of a wheel
     tilt       downhill components, rad
-    play       rad; pin, m, the joint pin's clearance; spring, N m/rad, with
-               which each platform bends half way between joint and axle (None: it is rigid);
-               load, mass (kg) and stiffness (N/m) of what shifts on platform 1
-    shapers    of the command, in order; offset, rad, is added first
+    play       rad, between servo and platform 2
+    pin        m, the joint pin's clearance
+    spring     N m/rad, with which each platform bends half way between joint and axle; None: it is
+               rigid
+    load       mass (kg) and stiffness (N/m) of what shifts on platform 1; None: nothing does
+    tether     the cord that holds platform 1; None: nothing does
+    offset     rad, is added to the command before it is shaped
+    shapers    of the command, in order
+    laws       of the wheels' friction, in order: each changes what the ones before it left
     tracked    m, where the point that is taken for P lies in platform 1's frame
     clock      s, recording time t is command time t + clock
     """
