@@ -41,6 +41,7 @@ PLANTED = [
     ("lab-apart", "lab/planted.py", "import rr_opt.motion.cycle"),
     ("lab-apart", "lab/planted.py", "import rr_opt.files.units"),
     ("engines-apart", "lab/planar/planted.py", "import rr_opt.lab.plant"),
+    ("engines-apart", "lab/planar/planted.py", "import rr_opt.lab.drive"),
     ("lab-unknown", "diagnose/planted.py", "import rr_opt.lab.rig"),
 ]
 

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from rr_opt.lab.drive import Outing, drive
+from rr_opt.lab.drive import drive
+from rr_opt.lab.outing import Outing
 from rr_opt.lab.plant import Plant
 from rr_opt.lab.rig import Rig
 from rr_opt.robot.gait import SineGait

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from rr_opt.lab.drive import Outing, drive
+from rr_opt.lab.drive import drive
 from rr_opt.lab.effects import rig_with
+from rr_opt.lab.outing import Outing
 from rr_opt.lab.plant import Plant
 from rr_opt.lab.stepping import stepped
 from rr_opt.outcome import NotConvergedError

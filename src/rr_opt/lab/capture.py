@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from rr_opt.experiment.experiment import Noise
 from rr_opt.experiment.recording import Flag, Recording
-from rr_opt.lab.drive import Motion
+from rr_opt.lab.outing import Motion
 
 Array = NDArray[np.float64]
 

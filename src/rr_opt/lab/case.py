@@ -9,9 +9,9 @@ from typing import Literal
 
 from rr_opt.experiment.experiment import Experiment, Noise, Run, Start, Uncertainty, Use
 from rr_opt.lab.capture import captured
-from rr_opt.lab.drive import Motion, Outing
 from rr_opt.lab.effects import rig_with
 from rr_opt.lab.engines import Engine, driven
+from rr_opt.lab.outing import Motion, Outing
 from rr_opt.lab.streams import stream
 from rr_opt.robot.gait import SineGait
 from rr_opt.robot.parameters import EffectUse, Robot

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rr_opt.lab.course import Course
+from rr_opt.lab.outing import Motion, Outing, asked_angle
 from rr_opt.lab.plant import Plant
 from rr_opt.lab.rig import Rig
 from rr_opt.lab.stepping import stepped
@@ -24,46 +24,6 @@ STEP = 2.5e-4
 """s. results/lab/README.md shows what it is worth."""
 
 
-@dataclass(frozen=True)
-class Outing:
-    """How a robot is let go.
-
-    seconds, rate   how long is recorded, s, and how often, 1/s
-    start           `rest`: the command begins at its time 0; `running`: `periods` whole periods
-                    before, from rest
-    nudge           m/s, a push at the recording's t = 0, by which the whole mass would be faster
-    torque          whether the servo's is written down too
-    pose            x (m), y (m) of P and heading (rad) of platform 1 where it is put down
-    """
-
-    seconds: float
-    start: Literal["rest", "running"] = "rest"
-    pose: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    rate: float = 100.0
-    periods: int = 3
-    nudge: float = 0.0
-    torque: bool = False
-
-    def begin(self, gait: Gait) -> float:
-        """When the command begins, s on its own clock."""
-        return 0.0 if self.start == "rest" else -self.periods * gait.period
-
-
-@dataclass(frozen=True)
-class Motion:
-    """What truly happened, at the recording's times t (n,), s.
-
-    one, two  x (m), y (m) and heading (rad, unwrapped) of the platforms' joint ends, (n, 3). A
-              loose pin sets them apart
-    torque    of the servo on platform 2, N m (n,), if it was asked for
-    """
-
-    t: Array
-    one: Array
-    two: Array
-    torque: Array | None = None
-
-
 def drive(rig: Rig, gait: Gait, outing: Outing, step: float = STEP) -> Motion:
     """Drive a gait and write down the motion. Raises NotConvergedError if it is lost."""
     plant = Plant.of(rig, step)
@@ -74,7 +34,7 @@ def drive(rig: Rig, gait: Gait, outing: Outing, step: float = STEP) -> Motion:
     before = math.ceil((SETTLE + max(0.0, rig.clock - begin)) / dt)
     count = before + round(outing.seconds * outing.rate) * every + 1
     t = rig.clock + (np.arange(count + 1) - before) * dt
-    angle = _angle(rig, gait, begin, t)
+    angle = asked_angle(rig, gait, begin, t)
     let_go = int(np.searchsorted(t, begin - 1e-12))
     return _run(plant, outing, angle, t - begin, Course(let_go, before, every, count))
 
@@ -83,15 +43,7 @@ def servo_angles(rig: Rig, gait: Gait, outing: Outing, when: Array) -> tuple[Arr
     """The command and the angle of the servo's shaft, rad, at command times `when`, s."""
     begin = outing.begin(gait)
     t = np.arange(min(begin, when.min()) - SETTLE, when.max() + 2 * STEP, STEP)
-    return gait.angle(np.maximum(when, begin)), np.interp(when, t, _angle(rig, gait, begin, t))
-
-
-def _angle(rig: Rig, gait: Gait, begin: float, t: NDArray[Any]) -> Array:
-    """The angle that the servo makes, rad, at the times t: the command, shaped by its faults."""
-    angle = gait.angle(np.maximum(t, begin)) + rig.offset
-    for shaper in rig.shapers:
-        angle = shaper(t, angle)
-    return angle
+    return gait.angle(np.maximum(when, begin)), np.interp(when, t, asked_angle(rig, gait, begin, t))
 
 
 def _run(plant: Plant, outing: Outing, angle: Array, t: NDArray[Any], course: Course) -> Motion:

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from typing import Literal, get_args
 
-from rr_opt.lab.drive import STEP, Motion, Outing, drive
+from rr_opt.lab.drive import STEP, drive
+from rr_opt.lab.outing import Motion, Outing
 from rr_opt.lab.rig import Rig
 from rr_opt.robot.gait import Gait
 

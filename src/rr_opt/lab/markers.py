@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rr_opt.lab.drive import Motion
+from rr_opt.lab.outing import Motion
 from rr_opt.robot.parameters import Robot
 
 Array = NDArray[np.float64]

@@ -10,9 +10,9 @@ import numpy as np
 from rr_opt.experiment.experiment import Noise
 from rr_opt.experiment.recording import Recording
 from rr_opt.lab.capture import captured
-from rr_opt.lab.drive import Outing
 from rr_opt.lab.effects import rig_with
 from rr_opt.lab.engines import Engine, driven
+from rr_opt.lab.outing import Outing
 from rr_opt.robot.gait import Gait
 from rr_opt.robot.parameters import EffectUse, Robot
 

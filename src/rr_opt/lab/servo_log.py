@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from rr_opt.experiment.count_scale import CountScale
-from rr_opt.lab.drive import Outing, servo_angles
+from rr_opt.lab.drive import servo_angles
+from rr_opt.lab.outing import Outing
 from rr_opt.lab.rig import Rig
 from rr_opt.robot.gait import Gait
 

@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 from rr_opt.experiment.experiment import Noise
 from rr_opt.lab.capture import captured
 from rr_opt.lab.case import Case, Plan, motion_of
-from rr_opt.lab.drive import Motion
 from rr_opt.lab.effects import rig_with
 from rr_opt.lab.engines import driven
+from rr_opt.lab.outing import Motion
 from rr_opt.lab.streams import stream
 
 Array = NDArray[np.float64]

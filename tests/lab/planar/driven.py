@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from rr_opt.lab.drive import Outing
 from rr_opt.lab.effects import rig_with
+from rr_opt.lab.outing import Outing
 from rr_opt.lab.planar.drive import STEP, drive
 from rr_opt.lab.rig import Rig
 from rr_opt.robot.parameters import EffectUse

@@ -9,7 +9,7 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
-from rr_opt.lab.drive import Motion, Outing
+from rr_opt.lab.outing import Motion, Outing, asked_angle
 from rr_opt.lab.planar.layout import layout
 from rr_opt.lab.planar.motor import motor, turned_by
 from rr_opt.lab.planar.step import SIGNALS, step_of
@@ -80,14 +80,6 @@ def drive(rig: Rig, gait: Gait, outing: Outing, step: float = STEP) -> Motion:
     signals = np.stack([asked[2:], rate, t - begin, free, nudge])
     assert len(signals) == len(SIGNALS)
     return _motion(rig, outing, clock, _run(rig, clock, outing, asked[1], signals), signals)
-
-
-def asked_angle(rig: Rig, gait: Gait, begin: float, t: Array) -> Array:
-    """The angle that the motor is to make, rad, at the times t: the command as it is shaped."""
-    angle = gait.angle(np.maximum(t, begin)) + rig.offset
-    for shaper in rig.shapers:
-        angle = shaper(t, angle)
-    return angle
 
 
 def _run(rig: Rig, clock: Clock, outing: Outing, angle: float, signals: Array) -> Array:
