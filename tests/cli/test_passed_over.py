@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from rr_opt.physics.effects import CATALOGUE
+from rr_opt.physics.effects import OF_ROBOTS
 from rr_opt.physics.steady_effects import steady_effects
 
 ROBOT = """
@@ -24,7 +24,7 @@ VERBS = {
 def written(tmp_path, names):
     lines = (
         f"  - {{name: {name}, "
-        + ", ".join(f"{q.name}: {q.typical!r} {q.unit}" for q in CATALOGUE[name].parameters)
+        + ", ".join(f"{q.name}: {q.typical!r} {q.unit}" for q in OF_ROBOTS[name].parameters)
         + "}"
         for name in names
     )
@@ -35,10 +35,10 @@ def written(tmp_path, names):
 
 @pytest.mark.parametrize("verb", VERBS)
 def test_one_line_names_them_all(run, tmp_path, verb):
-    done = run(verb, str(written(tmp_path, CATALOGUE)), *GAIT, *VERBS[verb], "--json")
+    done = run(verb, str(written(tmp_path, OF_ROBOTS)), *GAIT, *VERBS[verb], "--json")
     assert done.exit_code == 0, done.stderr
     (line,) = (line for line in done.stderr.splitlines() if "passed over" in line)
-    for name in CATALOGUE:
+    for name in OF_ROBOTS:
         assert (name in line) == (name not in steady_effects())
     assert json.loads(done.stdout)
 

@@ -24,7 +24,7 @@ from rr_opt.physics.machine_code import library
 Indices = NDArray[np.int64]
 
 _FLAGS = (
-    *("-O1", "-march=native", "-fno-math-errno", "-fno-trapping-math"),
+    *("-O2", "-march=native", "-fno-math-errno", "-fno-trapping-math"),
     *("-ffp-contract=fast", "-fPIC", "-shared"),
 )
 

@@ -72,7 +72,7 @@ class Rounds:
             self._say_fitting(worth[:_IN_WINDOWS])
         looking = self._looks(best, dear=True)
         tried = [self._in_windows(best, one) for one in worth[:_IN_WINDOWS]]
-        done = list(self.each(_done, [*looking, *tried]))
+        done = list(self.each(carried_out, [*looking, *tried]))
         found = self._over_whole_runs(best, done[len(looking) :])
         dear = _more_than_luck(done[: len(looking)])[:_DEAR]
         # It is tried where nothing else will do, or where it promises, from one step, about as much
@@ -95,7 +95,7 @@ class Rounds:
             return []
         self._say_fitting(promised)
         return self._over_whole_runs(
-            best, list(self.each(_done, [self._in_windows(best, one) for one in promised]))
+            best, list(self.each(carried_out, [self._in_windows(best, one) for one in promised]))
         )
 
     def _say_fitting(self, promised: Sequence[Promise]) -> None:
@@ -117,7 +117,9 @@ class Rounds:
         hopeful = [pair for pair in in_windows[:_WHOLE] if not _hopeless(pair[1], least)]
         self.say(f"over whole runs: {', '.join(one.name for one, _ in hopeful)}")
         return list(
-            self.each(_done, [_Whole(self.model, best.chosen, one, fit) for one, fit in hopeful])
+            self.each(
+                carried_out, [_Whole(self.model, best.chosen, one, fit) for one, fit in hopeful]
+            )
         )
 
 
@@ -127,7 +129,7 @@ def _more_than_luck(found: Iterable[Sequence[Promise] | Look]) -> list[Promise]:
     return sorted((one for one in every if one.gain > one.luck), key=lambda one: -one.gain)
 
 
-def _done(task: Callable[[], T]) -> T:
+def carried_out(task: Callable[[], T]) -> T:
     """Do a task, here or in another process."""
     return task()
 

@@ -6,7 +6,7 @@ An effect joins only if the misfit falls by more than `RELEVANT`.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 
 from rr_opt.diagnose.explain import Chosen, explain, joined
@@ -15,7 +15,7 @@ from rr_opt.diagnose.fit import Fit, solve
 from rr_opt.diagnose.left_out import left_out
 from rr_opt.diagnose.model import Model
 from rr_opt.diagnose.problem import Problem, doubt
-from rr_opt.diagnose.rounds import EXACT, Rounds, Say
+from rr_opt.diagnose.rounds import EXACT, Rounds, Say, carried_out
 from rr_opt.diagnose.values import settled, wrong
 
 RELEVANT = 0.01
@@ -46,6 +46,7 @@ class Search:
 
     first  misfit of the model as believed, RMS in sigma
     been   the rounds it has been through: next to what, and what was found
+    again  what was fitted once more from where a larger one ended: the two, and what came of it
     """
 
     model: Model
@@ -56,6 +57,7 @@ class Search:
     each: Callable[..., Iterable] = map
     tried: list[Explanation] = field(default_factory=list)
     been: list[tuple[Explanation, list[Explanation]]] = field(default_factory=list)
+    again: list[tuple[Explanation, Explanation, Explanation]] = field(default_factory=list)
 
     @property
     def rounds(self) -> Rounds:
@@ -143,16 +145,19 @@ class Search:
 
         What joins must not win by a valley that the smaller set could have gone down too.
         """
+        for one, other, came in self.again:
+            if one is less and other is more:
+                return came
         whole = less.whole
         values = {q.name: more.whole.values[q.name] for q in whole.quantities}
         problem = Problem(
             self.model, tuple(more.whole.starts), whole.effects, whole.quantities, whole.values
         )
         again = replace(less, whole=solve(problem, values, more.whole.starts))
-        if again.score >= less.score:
-            return less
-        self.tried[:] = [again if one is less else one for one in self.tried]
-        return again
+        came = min(less, again, key=lambda one: one.score)
+        self.again.append((less, more, came))
+        self.tried[:] = [came if one is less else one for one in self.tried]
+        return came
 
     def _gains(self, more: Explanation, less: Explanation) -> bool:
         """Whether what `more` adds to `less` is relevant, and certain in spite of model error."""
@@ -185,7 +190,10 @@ class Search:
         return more.strain + price < released.strain - _BETTER
 
     def _backward(self, best: Explanation) -> Explanation:
-        for one in best.chosen if len(best.chosen) > 1 else ():
+        if len(best.chosen) < 2:
+            return best
+        self._try_without(best, best.chosen)
+        for one in best.chosen:
             without = self._without(best, one)
             if not _outright(best, without):
                 without = self._again(without, best)
@@ -196,12 +204,15 @@ class Search:
     def _looked_for_again(self, best: Explanation) -> Explanation:
         """One that leaves something, with what is at a place looked for again beside the others.
 
-        It was found where it made up best for what they had not yet accounted for.
+        It was found where it made up best for what they had not yet accounted for; what was found
+        beside them is where it is.
         """
         if len(best.chosen) < 2 or rms(best.misfit) <= self.rounds.floor(best):
             return best
         for one in best.chosen:
-            if one.name in self.model.placed:
+            known = any(been.chosen == _rest(best, one) for been, _ in self.been)
+            if one.name in self.model.placed and not known:
+                self._try_without(best, [one])
                 without = self._without(best, one)
                 places = self.rounds.looked_for(without, one.name)
                 found = self.rounds.fitted(without, places)
@@ -210,15 +221,35 @@ class Search:
         return best
 
     def _without(self, best: Explanation, one: Chosen) -> Explanation:
-        """The explanation that leaves one effect out, as it was tried or as it is now."""
-        rest = tuple(other for other in best.chosen if other.name != one.name)
-        tried = next((tried for tried in self.tried if tried.chosen == rest), None)
-        if tried is None:
-            self.say(f"leaving out {one.name}")
-            fit = explain(self.model, rest, self.nominal, best.windows)
-            tried = Explanation(rest, fit, joined(self.model, fit))
-            self.tried.append(tried)
-        return tried
+        """The explanation that leaves one effect out, which was tried."""
+        rest = _rest(best, one)
+        return next(tried for tried in self.tried if tried.chosen == rest)
+
+    def _try_without(self, best: Explanation, every: Sequence[Chosen]) -> None:
+        """Fit what leaves out each of some effects, where that was not tried."""
+        tried = {one.chosen for one in self.tried}
+        new = [one for one in every if _rest(best, one) not in tried]
+        if new:
+            self.say(f"leaving out {', '.join(one.name for one in new)}")
+            tasks = [_Less(self.model, _rest(best, one), self.nominal, best.windows) for one in new]
+            self.tried += self.each(carried_out, tasks)
+
+
+@dataclass(frozen=True)
+class _Less:
+    model: Model
+    rest: tuple[Chosen, ...]
+    nominal: Fit
+    windows: Fit
+
+    def __call__(self) -> Explanation:
+        """Fewer effects, from where the fit of all has them."""
+        fit = explain(self.model, self.rest, self.nominal, self.windows)
+        return Explanation(self.rest, fit, joined(self.model, fit))
+
+
+def _rest(best: Explanation, one: Chosen) -> tuple[Chosen, ...]:
+    return tuple(other for other in best.chosen if other.name != one.name)
 
 
 def _unbelievable(best: Explanation) -> bool:

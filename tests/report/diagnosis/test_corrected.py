@@ -6,7 +6,7 @@ import pytest
 import yaml
 
 from rr_opt.files import lint_file, read_robot
-from rr_opt.physics.effects import CATALOGUE
+from rr_opt.physics.effects import OF_ROBOTS
 from rr_opt.report.diagnosis.corrected import corrected_robot, robot_yaml
 
 
@@ -17,7 +17,7 @@ def written(robot, folder):
 
 
 def _in_full(use):
-    neutral = {q.name: q.neutral for q in CATALOGUE[use.name].parameters}
+    neutral = {q.name: q.neutral for q in OF_ROBOTS[use.name].parameters}
     return replace(use, values=neutral | dict(use.values))
 
 
@@ -39,14 +39,14 @@ def test_it_reads_back_as_it_was(every, verdict, tmp_path):
 def test_every_effect_of_the_catalogue_can_be_written(missing, tmp_path):
     values = {
         f"{effect.name}.{q.name}": q.bounds[1] if q.bounds[1] < 10 else q.typical
-        for effect in CATALOGUE.values()
+        for effect in OF_ROBOTS.values()
         for q in effect.parameters
     }
     found = replace(missing.found, values=values, parameters={})
     robot = corrected_robot(missing.experiment, found)
     path = written(robot, tmp_path)
     assert not [one for one in lint_file(path) if one.level == "error"]
-    assert {use.name for use in read_robot(path).physics} == set(CATALOGUE)
+    assert {use.name for use in read_robot(path).physics} == set(OF_ROBOTS)
 
 
 def test_other_readers_of_yaml_see_numbers_too(missing, tmp_path):
@@ -67,4 +67,4 @@ def test_effects_that_the_robot_had_stay(missing):
 def test_a_value_stays_within_its_bounds(missing):
     found = replace(missing.found, values={"lateral_slip.mu": 10.000004})
     (use,) = corrected_robot(missing.experiment, found).physics
-    assert use.values["mu"] == CATALOGUE["lateral_slip"].parameters[1].bounds[1]
+    assert use.values["mu"] == OF_ROBOTS["lateral_slip"].parameters[1].bounds[1]

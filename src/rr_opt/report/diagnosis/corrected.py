@@ -11,7 +11,7 @@ from typing import Any
 
 from rr_opt.diagnose.diagnosis import Diagnosis
 from rr_opt.experiment.experiment import Experiment
-from rr_opt.physics.effects import CATALOGUE
+from rr_opt.physics.effects import OF_ROBOTS
 from rr_opt.report.robot_record import robot_record
 from rr_opt.robot.parameters import EffectUse, Platform, Robot, Servo
 
@@ -77,7 +77,7 @@ def _physics(robot: Robot, fitted: Mapping[str, float]) -> tuple[EffectUse, ...]
 
 def _within(effect: str, parameter: str, value: float) -> float:
     """The value inside its bounds, which rounding may have left."""
-    low, high = next(q.bounds for q in CATALOGUE[effect].parameters if q.name == parameter)
+    low, high = next(q.bounds for q in OF_ROBOTS[effect].parameters if q.name == parameter)
     return min(max(value, low), high)
 
 
