@@ -8,7 +8,7 @@ import pytest
 
 from rr_opt.diagnose import shoot
 from rr_opt.diagnose.compiled import found
-from rr_opt.diagnose.gram import Asked, Recorded, grams
+from rr_opt.diagnose.gram import Recorded, Sought, grams
 from rr_opt.diagnose.linear import DriveSlopes
 from rr_opt.diagnose.shoot import DrivePath, predict_all
 from rr_opt.physics.assembly import values_of
@@ -43,7 +43,7 @@ def both(system, drives, starts, p):
         values[rng.uniform(size=values.shape) < 0.2] = np.nan
         recorded = Recorded.of(values, rng.uniform(0.5, 2.0, values.shape))
         more = rng.normal(size=(*values.shape, 1))
-        asked.append(Asked(drive, one, p, wanted, moved, recorded, more))
+        asked.append(Sought(drive, one, p, wanted, moved, recorded, more))
         still.append(replace(asked[-1], drive_by=None, more=None))
     return made, grams(system, asked), grams(system, still)
 
@@ -117,10 +117,10 @@ def test_what_leaves_the_numbers_counts_for_nothing(monkeypatch):
     states = made.states.copy()
     states[:, gap * drive.each :] = np.nan
     wanted = np.eye(len(p))
-    asked = Asked(
+    asked = Sought(
         drive, replace(made, states=states, seen=lost), np.array(p), wanted, None, recorded
     )
-    whole = Asked(drive, made, np.array(p), wanted, None, first)
+    whole = Sought(drive, made, np.array(p), wanted, None, first)
     for few in (10**9, 0):
         monkeypatch.setattr(shoot, "_FEW", few)
         monkeypatch.setattr(shoot, "_PAYS", few)
@@ -135,7 +135,7 @@ def test_a_run_whose_drive_stays_beside_one_whose_drive_is_moved(monkeypatch):
     moved = DriveSlopes(np.ones((*drive.at.shape, 1)), np.ones((*drive.nodes.shape, 1)))
     recorded = Recorded.of(made.seen + 0.1, np.ones_like(made.seen))
     asked = [
-        Asked(drive, made, np.array(p), np.ones((len(p), 1)), by, recorded) for by in (moved, None)
+        Sought(drive, made, np.array(p), np.ones((len(p), 1)), by, recorded) for by in (moved, None)
     ]
     plain = grams(system, asked)
     monkeypatch.setattr(shoot, "_FEW", 0)

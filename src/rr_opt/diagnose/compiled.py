@@ -45,7 +45,7 @@ class _Run(ctypes.Structure):
 
 
 @dataclass(frozen=True)
-class Sought:
+class Rows:
     """What derivatives are summed up for, of one run, each array row by row.
 
     inputs, at, each, p, states  as `Compiled.predict` takes and gives them
@@ -102,7 +102,7 @@ class Compiled:
             self._library.rr_predict(len(some), few, each)
         return made
 
-    def grams(self, runs: Sequence[Sought]) -> list[Array]:
+    def grams(self, runs: Sequence[Rows]) -> list[Array]:
         """J'J of each run, (n, n), with J = [d/dstart | d/dq | more | predicted - recorded] in
         sigmas.
 
@@ -157,7 +157,7 @@ class Compiled:
         return out
 
 
-def _moving(runs: Sequence[Sought]) -> Indices:
+def _moving(runs: Sequence[Rows]) -> Indices:
     """The columns of q that move the drive of any run (k,)."""
     changes = [run.moved for run in runs if run.moved]
     if not changes:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rr_opt.diagnose.compiled import Sought
+from rr_opt.diagnose.compiled import Rows
 from rr_opt.diagnose.linear import DriveSlopes, slopes
 from rr_opt.diagnose.model import Array
 from rr_opt.diagnose.shoot import DrivePath, Path, System, code_of
@@ -36,7 +36,7 @@ class Recorded:
 
 
 @dataclass(frozen=True)
-class Asked:
+class Sought:
     """A predicted run, and by what it is to be differentiated; see `linear.linear`.
 
     more  (samples, channels, k) further columns
@@ -51,14 +51,12 @@ class Asked:
     more: Array | None = None
 
 
-def grams(system: System, asked: Sequence[Asked]) -> list[Array]:
+def grams(system: System, asked: Sequence[Sought]) -> list[Array]:
     """J'J (n, n) of each run, without the samples where a prediction has left the numbers."""
     if not asked:
         return []
     code = code_of(system, 4 * sum(one.path.h.size for one in asked))
-    return (
-        code.grams([_sought(one) for one in asked]) if code else [_gram(system, a) for a in asked]
-    )
+    return code.grams([_rows(one) for one in asked]) if code else [_gram(system, a) for a in asked]
 
 
 def gram_of(*columns: Array) -> Array:
@@ -67,16 +65,16 @@ def gram_of(*columns: Array) -> Array:
     return J.T @ J
 
 
-def _sought(one: Asked) -> Sought:
+def _rows(one: Sought) -> Rows:
     by, path = one.drive_by, one.path
     moved = (by.at, by.nodes) if by else None
-    return Sought(
+    return Rows(
         *(path.inputs, path.at, path.each, one.p, one.made.states, one.wanted, moved),
         *(one.recorded.values, one.recorded.weight, one.more),
     )
 
 
-def _gram(system: System, one: Asked) -> Array:
+def _gram(system: System, one: Sought) -> Array:
     by = slopes(system, one.path, one.made, one.p, one.wanted, one.drive_by)
     off = one.made.seen - one.recorded.values
     weight = np.where(np.isfinite(off), one.recorded.weight, 0.0)

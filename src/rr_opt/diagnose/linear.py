@@ -82,7 +82,7 @@ def linear(
     """
     size, nd = made.states.shape[0], path.at.shape[0]
     how = _frozen if system.stiff else _stages
-    A, B = how(_Asked(system, path, made, p, wanted, drive_by, hats))
+    A, B = how(_Along(system, path, made, p, wanted, drive_by, hats))
     for _ in range(int(np.log2(path.each))):
         A, B = A[1::2] @ A[::2], A[1::2] @ B[::2] + B[1::2]
     samples, channels = path.at.shape[1], made.seen.shape[1]
@@ -118,7 +118,7 @@ def slopes(
 
 
 @dataclass(frozen=True)
-class _Asked:
+class _Along:
     """What is linearised, and by what."""
 
     system: System
@@ -152,21 +152,21 @@ class _Asked:
         return arrays_of(self.system, "rates")
 
 
-def _stages(asked: _Asked) -> tuple[Array, Array]:
+def _stages(along: _Along) -> tuple[Array, Array]:
     """Transition matrices: the derivatives of the classical Runge-Kutta step itself.
 
     Where a force sets in within a step, those of the motion between its ends are others.
     """
-    path, x, h = asked.path, asked.made.states[:, :-1], asked.path.h
+    path, x, h = along.path, along.made.states[:, :-1], along.path.h
     slopes = [np.zeros_like(x)]
     for node, reach in ((0, 0.0), (1, 0.5), (1, 0.5)):
         at = x + reach * h * slopes[-1]
-        slope = asked.rates(*at, *path.nodes[:, node], *asked.p)
+        slope = along.rates(*at, *path.nodes[:, node], *along.p)
         slopes.append(np.array(np.broadcast_arrays(*slope)))
 
     def both(k: int, reach: float) -> Array:
         node = (k + 1) // 2
-        return asked.both(asked.jacobian(x + reach * h * slopes[k], path.nodes[:, node]), node)
+        return along.both(along.jacobian(x + reach * h * slopes[k], path.nodes[:, node]), node)
 
     return _combined(h, len(x), both)
 
@@ -193,16 +193,16 @@ def _combined(h: Array, size: int, both: Callable[[int, float], Array]) -> tuple
     return out[:, :, :size], out[:, :, size:]
 
 
-def _frozen(asked: _Asked) -> tuple[Array, Array]:
+def _frozen(along: _Along) -> tuple[Array, Array]:
     """Transition matrices of fine steps where some states settle at once.
 
     The matrix z = h fx of the middle of the step is taken for all of it; exp(z) as its Pade
     approximant (1 + z/3)/(1 - 2z/3 + z^2/6), which damps what settles at once.
     """
-    states, h = asked.made.states, asked.path.h[:, None, None]
+    states, h = along.made.states, along.path.h[:, None, None]
     size = len(states)
     middle = (states[:, 1:] + states[:, :-1]) / 2
-    both = asked.both(asked.jacobian(middle, asked.path.nodes[:, 1]), 1)
+    both = along.both(along.jacobian(middle, along.path.nodes[:, 1]), 1)
     eye, z = np.eye(size), both[:, :, :size] * h
     push = (eye - z / 6) @ (both[:, :, size:] * h)
     left = eye - 2 / 3 * z + z @ z / 6

@@ -7,8 +7,7 @@ from functools import cache, cached_property
 
 import numpy as np
 
-from rr_opt.diagnose.gram import Asked as Sought
-from rr_opt.diagnose.gram import Recorded, grams
+from rr_opt.diagnose.gram import Recorded, Sought, grams
 from rr_opt.diagnose.linear import DriveSlopes, slopes
 from rr_opt.diagnose.model import Array, Asked, Data, Piece, Response
 from rr_opt.diagnose.racer_drive import Drives, drive_slopes, grain, lateness

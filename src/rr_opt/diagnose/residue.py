@@ -62,14 +62,14 @@ def residue(model: RollerRacer, best: Explanation) -> tuple[Residue, ...]:
     fit = best.whole
     if best.misfit <= FLOOR**2:
         return ()
-    asked = _asked(model, fit)
-    every, sizes, places = asked.terms, asked.sizes, asked.places
-    point = asked.begin
-    problem = asked.at(point)
+    ground = _ground(model, fit)
+    every, sizes, places = ground.terms, ground.sizes, ground.places
+    point = ground.begin
+    problem = ground.at(point)
     chosen = _chosen(problem, places)
     for _ in range(_AGAIN if chosen else 0):
         point = moved(fit, point, problem, _joined(places, chosen))
-        problem = asked.at(point)
+        problem = ground.at(point)
         chosen = _chosen(problem, places)
     if not chosen:
         return ()
@@ -97,12 +97,12 @@ def systematic(model: RollerRacer, best: Explanation, base: Explanation) -> bool
         return False
     if bordered and best.misfit < BORDERED**2 * base.misfit:
         return False
-    asked = _asked(model, best.whole)
-    problem = asked.at(asked.begin)
-    before = problem.cost(_joined(asked.places, []))
+    ground = _ground(model, best.whole)
+    problem = ground.at(ground.begin)
+    before = problem.cost(_joined(ground.places, []))
     return any(
         before - after > PATTERN * doubt(after, problem.count)
-        for after in (problem.cost(columns) for columns in asked.places)
+        for after in (problem.cost(columns) for columns in ground.places)
     )
 
 
@@ -112,7 +112,7 @@ def _blurred(effect: Effect) -> bool:
 
 
 @dataclass(frozen=True)
-class _Asked:
+class _Ground:
     """All terms beside a fit: their usual sizes, the columns of each, and how they push."""
 
     model: RollerRacer
@@ -129,7 +129,7 @@ class _Asked:
         return linearised(self.model, self.fit, point, self.pushes, weights)
 
 
-def _asked(model: RollerRacer, fit: Fit) -> _Asked:
+def _ground(model: RollerRacer, fit: Fit) -> _Ground:
     less, starts = _thinned(model, fit)
     seen = {p: observed(less, p, fit.values, fit.effects, start) for p, start in starts.items()}
     slips = any(CATALOGUE[name].stiff for name in fit.effects)
@@ -142,7 +142,7 @@ def _asked(model: RollerRacer, fit: Fit) -> _Asked:
     edges = np.cumsum([len(fit.quantities), *(term.columns for term in every)])
     places = [np.arange(a, b) for a, b in itertools.pairwise(edges)]
     begin = Point(fit.values, starts, np.zeros(edges[-1] - edges[0]))
-    return _Asked(less, fit, begin, every, sizes, places, pushes)
+    return _Ground(less, fit, begin, every, sizes, places, pushes)
 
 
 def _thinned(model: RollerRacer, fit: Fit) -> tuple[RollerRacer, Mapping[Piece, Array]]:
