@@ -1,4 +1,4 @@
-"""A lag of first order is told as one, even if a fit was free to have the second."""
+"""What needs less is told, even if a fit was free to have more."""
 
 import pytest
 
@@ -15,3 +15,17 @@ def test_the_second_order_has_to_pay(beta, form):
     found = search_of(model, base, second)._simpler(second)
     assert found.chosen == (Chosen("servo_lag", form),)
     assert found.whole.values["servo_lag.tau"] == pytest.approx(0.03, rel=0.02)
+
+
+@pytest.mark.parametrize(
+    ("effect", "values"),
+    [("clock_offset", {"offset": -0.03}), ("servo_lag", {"tau": 0.03, "beta": 2e-5})],
+)
+def test_a_lag_that_leaves_the_swing_as_it_is_may_be_a_late_clock(effect, values):
+    model = with_effect({f"{effect}.{name}": value for name, value in values.items()}, (effect,))
+    base = base_of(model)
+    second = explained(model, base, Chosen("servo_lag", 1))
+    search = search_of(model, base, second)
+    found = search._imitated(second)
+    assert found.names == (effect,)
+    assert {("servo_lag",), ("clock_offset",)} <= {one.names for one in search.tried}

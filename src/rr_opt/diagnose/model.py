@@ -59,7 +59,8 @@ class Form:
 class Candidate:
     """An effect that may be missing from the nominal model.
 
-    channel  where it would show, in the words of the verdict
+    channel   where it would show, in the words of the verdict
+    imitates  candidates with fewer quantities that a form of this one comes close to
     """
 
     name: str
@@ -67,6 +68,7 @@ class Candidate:
     channel: str
     sentence: str
     forms: tuple[Form, ...]
+    imitates: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

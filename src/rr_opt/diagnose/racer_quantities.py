@@ -65,6 +65,7 @@ def candidate(effect: Effect, setting: Setting) -> Candidate:
         _CHANNELS[effect.family],
         effect.sentence,
         tuple(_form(effect.name, [own[name] for name in form], setting) for form in forms),
+        effect.imitates,
     )
 
 

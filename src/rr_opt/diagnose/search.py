@@ -74,7 +74,8 @@ class Search:
             best = self._backward(self._forward(best))
         moved = self._looked_for_again(best)
         best = best if moved is best else self._backward(moved)
-        return self._simpler(min(best, self._otherwise(best), key=lambda one: one.score))
+        best = self._simpler(min(best, self._otherwise(best), key=lambda one: one.score))
+        return self._imitated(best)
 
     def _simpler(self, best: Explanation) -> Explanation:
         """The explanation with a simpler form of an effect, where that does as well: what another
@@ -96,6 +97,30 @@ class Search:
                     best = simpler
         return best
 
+    def _imitated(self, best: Explanation) -> Explanation:
+        """The explanation with what an effect only imitates in its place, where that does better:
+        a round that found the one may not have come to fit the other."""
+        for one in best.chosen:
+            for name in self.model.catalogue[one.name].imitates:
+                other = Chosen(name)
+                fewer = len(other.of(self.model).quantities) < len(one.of(self.model).quantities)
+                if name not in best.names and fewer:
+                    chosen = tuple(other if each is one else each for each in best.chosen)
+                    best = min(best, self._tried(chosen, best), key=lambda each: each.score)
+        return best
+
+    def _tried(self, chosen: tuple[Chosen, ...], best: Explanation) -> Explanation:
+        """The explanation with these effects, as it was tried or as it is now."""
+        tried = next((one for one in self.tried if one.chosen == chosen), None)
+        if tried is None:
+            self.say(f"fitting {', '.join(one.name for one in chosen)}")
+            tried = self._task(chosen, best)()
+            self.tried.append(tried)
+        return tried
+
+    def _task(self, chosen: tuple[Chosen, ...], best: Explanation) -> _Fitted:
+        return _Fitted(self.model, chosen, self.nominal, best.windows)
+
     def _otherwise(self, best: Explanation) -> Explanation:
         """What the search finds without what is at a place at first, if that of `best` is doubtful.
 
@@ -115,7 +140,7 @@ class Search:
         gained = True
         for _ in range(len(best.chosen), MOST):
             explained = rms(best.misfit) <= max(FLOOR, EXACT * self.first)
-            if (explained and (best.chosen or not _unbelievable(best))) or not gained:
+            if (explained and (best.chosen or not self._doubtful(best))) or not gained:
                 break
             found = self._next_to(best)
             if not found:
@@ -178,7 +203,7 @@ class Search:
         if (
             rms(less.misfit) > 2 * FLOOR
             or more.misfit > less.misfit + 1e-3
-            or not _unbelievable(less)
+            or not self._doubtful(less)
         ):
             return False
         if more.apart() > _IMITATED:
@@ -188,6 +213,12 @@ class Search:
         added = len(more.whole.quantities) - len(less.whole.quantities)
         price = (added - let_go) * math.log(less.whole.count)
         return more.strain + price < released.strain - _BETTER
+
+    def _doubtful(self, best: Explanation) -> bool:
+        """Whether it takes a value that is not what it was believed to be, to make up for more than
+        what every machine of the kind does otherwise than its model."""
+        told = self.first > max(FLOOR, self.model.inexact)
+        return told and any(not q.free for q in wrong(best.whole))
 
     def _backward(self, best: Explanation) -> Explanation:
         if len(best.chosen) < 2:
@@ -231,30 +262,27 @@ class Search:
         new = [one for one in every if _rest(best, one) not in tried]
         if new:
             self.say(f"leaving out {', '.join(one.name for one in new)}")
-            tasks = [_Less(self.model, _rest(best, one), self.nominal, best.windows) for one in new]
+            tasks = [
+                _Fitted(self.model, _rest(best, one), self.nominal, best.windows) for one in new
+            ]
             self.tried += self.each(carried_out, tasks)
 
 
 @dataclass(frozen=True)
-class _Less:
+class _Fitted:
     model: Model
-    rest: tuple[Chosen, ...]
+    chosen: tuple[Chosen, ...]
     nominal: Fit
     windows: Fit
 
     def __call__(self) -> Explanation:
-        """Fewer effects, from where the fit of all has them."""
-        fit = explain(self.model, self.rest, self.nominal, self.windows)
-        return Explanation(self.rest, fit, joined(self.model, fit))
+        """These effects, from where another fit has them."""
+        fit = explain(self.model, self.chosen, self.nominal, self.windows)
+        return Explanation(self.chosen, fit, joined(self.model, fit))
 
 
 def _rest(best: Explanation, one: Chosen) -> tuple[Chosen, ...]:
     return tuple(other for other in best.chosen if other.name != one.name)
-
-
-def _unbelievable(best: Explanation) -> bool:
-    """Whether it takes a value that is not what it was believed to be."""
-    return any(not q.free for q in wrong(best.whole))
 
 
 def _free(one: Explanation) -> int:

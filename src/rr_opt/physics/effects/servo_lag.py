@@ -77,4 +77,6 @@ EFFECT = Effect(
     sentence="The servo follows its command late, and with a smaller swing.",
     actuate=_actuate,
     forms=(("tau",), ("tau", "beta")),
+    # With beta = tau^2/2 the swing is as large as it was told, and only late.
+    imitates=("clock_offset",),
 )
