@@ -7,15 +7,13 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
-import numpy as np
-
 from rr_opt.diagnose.agreement import together
 from rr_opt.diagnose.explain import joined, nominal, parameters, windows
 from rr_opt.diagnose.explanation import Explanation, misfit, rms
 from rr_opt.diagnose.fit import Fit, solve
 from rr_opt.diagnose.level import Level, level_of
 from rr_opt.diagnose.model import Model
-from rr_opt.diagnose.problem import Problem
+from rr_opt.diagnose.problem import Problem, recorded
 from rr_opt.diagnose.search import Search
 from rr_opt.diagnose.values import settled
 from rr_opt.diagnose.verdict import LEFT, NEAR
@@ -122,11 +120,10 @@ def _base(model: Model, first: Fit) -> Explanation:
 
 def _of_runs(model: Model, fit: Fit, runs: list[int]) -> Fit:
     pieces = [piece for piece in fit.starts if piece.run in runs]
-    seen = (model.runs[piece.run].values[piece.span] for piece in pieces)
     return replace(
         fit,
         starts={piece: fit.starts[piece] for piece in pieces},
         normals={piece: fit.normals[piece] for piece in pieces},
         cost=sum(fit.normals[piece].cost for piece in pieces),
-        count=sum(int(np.isfinite(values).sum()) for values in seen),
+        count=recorded(model, pieces),
     )

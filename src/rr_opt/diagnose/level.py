@@ -14,7 +14,7 @@ from rr_opt.diagnose.explanation import certain
 from rr_opt.diagnose.fit import Fit
 from rr_opt.diagnose.left_out import left_out
 from rr_opt.diagnose.model import Array, Model, Piece
-from rr_opt.diagnose.problem import Problem
+from rr_opt.diagnose.problem import Problem, recorded
 from rr_opt.diagnose.starts import fit_starts
 
 _POOR = 1.1
@@ -81,7 +81,7 @@ def _best_starts(problem: Problem, first: Mapping[Piece, Array]) -> dict[Piece, 
         lambda piece: _grown(problem, piece),
     )
     for guess in guesses:
-        poor = [p for p in first if p not in costs or costs[p] > _POOR * _count(model, p)]
+        poor = [p for p in first if p not in costs or costs[p] > _POOR * recorded(model, [p])]
         if not poor:
             break
         starts = _started(problem, {piece: guess(piece) for piece in poor}).starts
@@ -89,10 +89,6 @@ def _best_starts(problem: Problem, first: Mapping[Piece, Array]) -> dict[Piece, 
             if piece not in costs or cost < costs[piece]:
                 costs[piece], best[piece] = cost, starts[piece]
     return best
-
-
-def _count(model: Model, piece: Piece) -> int:
-    return int(np.isfinite(model.runs[piece.run].values[piece.span]).sum())
 
 
 def _grown(problem: Problem, piece: Piece) -> Array:

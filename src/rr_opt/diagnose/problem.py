@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 
 import numpy as np
@@ -85,8 +85,7 @@ class Problem:
     @cached_property
     def count(self) -> int:
         """How many values were recorded."""
-        seen = (self.model.runs[piece.run].values[piece.span] for piece in self.pieces)
-        return sum(int(np.isfinite(values).sum()) for values in seen)
+        return recorded(self.model, self.pieces)
 
     def _asked(self, values: Mapping[str, float], starts: Mapping[Piece, Array]) -> list[Asked]:
         given = {**self.fixed, **values}
@@ -95,6 +94,12 @@ class Problem:
     def beforehand(self, values: Mapping[str, float]) -> float:
         """Chi-square of what was known."""
         return float(self.prior @ scaled(self.quantities, values) ** 2)
+
+
+def recorded(model: Model, pieces: Iterable[Piece]) -> int:
+    """How many values were recorded of pieces."""
+    seen = (model.runs[piece.run].values[piece.span] for piece in pieces)
+    return sum(int(np.isfinite(values).sum()) for values in seen)
 
 
 def doubt(cost: float, count: int) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from functools import cache, cached_property
+from functools import cached_property
 
 import numpy as np
 
@@ -144,16 +144,14 @@ class Simulated:
         """Each piece's drive and prediction, and the values of all it is predicted with."""
         system, motion = driven(mechanical)
 
-        @cache
-        def known(k: int) -> tuple[dict[str, float], Array]:
-            given = {**self._nominal, **asked[k].values}
-            return given, values_of(given, motion.parameters)
-
         # Most pieces that are asked for at once are so with the same values.
-        first = {id(one.values): k for k, one in reversed(list(enumerate(asked)))}
+        known = {}
+        for values in {id(one.values): one.values for one in asked}.values():
+            given = {**self._nominal, **values}
+            known[id(values)] = given, values_of(given, motion.parameters)
         ready = []
         for one in asked:
-            given, p = known(first[id(one.values)])
+            given, p = known[id(one.values)]
             path = self.drive_path(one.piece, given, mechanical)
             ready.append((path, state_of(mechanical, path, one.start, p), p, given))
         made = self._kept.predicted(

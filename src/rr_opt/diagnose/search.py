@@ -106,20 +106,8 @@ class Search:
                 fewer = len(other.of(self.model).quantities) < len(one.of(self.model).quantities)
                 if name not in best.names and fewer:
                     chosen = tuple(other if each is one else each for each in best.chosen)
-                    best = min(best, self._tried(chosen, best), key=lambda each: each.score)
+                    best = min(best, self._with(chosen, best), key=lambda each: each.score)
         return best
-
-    def _tried(self, chosen: tuple[Chosen, ...], best: Explanation) -> Explanation:
-        """The explanation with these effects, as it was tried or as it is now."""
-        tried = next((one for one in self.tried if one.chosen == chosen), None)
-        if tried is None:
-            self.say(f"fitting {', '.join(one.name for one in chosen)}")
-            tried = self._task(chosen, best)()
-            self.tried.append(tried)
-        return tried
-
-    def _task(self, chosen: tuple[Chosen, ...], best: Explanation) -> _Fitted:
-        return _Fitted(self.model, chosen, self.nominal, best.windows)
 
     def _otherwise(self, best: Explanation) -> Explanation:
         """What the search finds without what is at a place at first, if that of `best` is doubtful.
@@ -223,9 +211,9 @@ class Search:
     def _backward(self, best: Explanation) -> Explanation:
         if len(best.chosen) < 2:
             return best
-        self._try_without(best, best.chosen)
+        self._try([_rest(best, one) for one in best.chosen], best)
         for one in best.chosen:
-            without = self._without(best, one)
+            without = self._with(_rest(best, one), best)
             if not _outright(best, without):
                 without = self._again(without, best)
             if not self._gains(best, without):
@@ -243,28 +231,26 @@ class Search:
         for one in best.chosen:
             known = any(been.chosen == _rest(best, one) for been, _ in self.been)
             if one.name in self.model.placed and not known:
-                self._try_without(best, [one])
-                without = self._without(best, one)
+                without = self._with(_rest(best, one), best)
                 places = self.rounds.looked_for(without, one.name)
                 found = self.rounds.fitted(without, places)
                 self.tried += found
                 best = min([best, *found], key=lambda tried: tried.score)
         return best
 
-    def _without(self, best: Explanation, one: Chosen) -> Explanation:
-        """The explanation that leaves one effect out, which was tried."""
-        rest = _rest(best, one)
-        return next(tried for tried in self.tried if tried.chosen == rest)
+    def _with(self, chosen: tuple[Chosen, ...], best: Explanation) -> Explanation:
+        """The explanation with these effects, as it was tried, or fitted from where `best` is."""
+        self._try([chosen], best)
+        return next(one for one in self.tried if one.chosen == chosen)
 
-    def _try_without(self, best: Explanation, every: Sequence[Chosen]) -> None:
-        """Fit what leaves out each of some effects, where that was not tried."""
+    def _try(self, every: Sequence[tuple[Chosen, ...]], best: Explanation) -> None:
+        """Fit each of some sets of effects that was not tried, side by side."""
         tried = {one.chosen for one in self.tried}
-        new = [one for one in every if _rest(best, one) not in tried]
+        new = [chosen for chosen in every if chosen not in tried]
         if new:
-            self.say(f"leaving out {', '.join(one.name for one in new)}")
-            tasks = [
-                _Fitted(self.model, _rest(best, one), self.nominal, best.windows) for one in new
-            ]
+            names = (" and ".join(one.name for one in chosen) for chosen in new)
+            self.say(f"fitting {', '.join(names)}")
+            tasks = [_Fitted(self.model, chosen, self.nominal, best.windows) for chosen in new]
             self.tried += self.each(carried_out, tasks)
 
 
