@@ -1,5 +1,7 @@
 """Dry friction that explains the recordings is believed, unless what it leaves is no noise."""
 
+from dataclasses import replace
+
 import casadi as ca
 import pytest
 
@@ -40,3 +42,9 @@ def test_friction_that_falls_with_speed_is_nearly_explained_by_dry_friction(imit
 
 def test_but_what_is_left_tells_that_it_is_not_that(imitated):
     assert systematic(*imitated)
+
+
+def test_next_to_nothing_of_a_large_misfit_is_no_pattern(imitated):
+    model, best, base = imitated
+    whole = replace(base.whole, cost=base.whole.count * (1 + best.misfit / 0.004**2))
+    assert not systematic(model, best, replace(base, whole=whole))

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from rr_opt.diagnose.diagnosis import Diagnosis, Finding, Mismatch, Tried
-from rr_opt.diagnose.explanation import Explanation, certain, chance, misfit, rms
+from rr_opt.diagnose.explanation import FLOOR, Explanation, certain, chance, misfit, rms
 from rr_opt.diagnose.found import Found, Steps, found
 from rr_opt.diagnose.intervals import estimates
 from rr_opt.diagnose.left_out import left_out
@@ -14,7 +14,7 @@ from rr_opt.diagnose.level import Level
 from rr_opt.diagnose.model import Model
 from rr_opt.diagnose.search import Search
 from rr_opt.diagnose.values import wrong
-from rr_opt.diagnose.verdict import confidence, finding, verdict_of
+from rr_opt.diagnose.verdict import LEFT, confidence, finding, verdict_of
 
 
 def diagnose(model: Model, steps: Steps | None = None) -> Diagnosis:
@@ -48,7 +48,7 @@ def answer(it: Found, *, systematic: bool = False) -> Diagnosis:
     channel = model.catalogue[best.names[0]].channel if findings and best.names else "none"
     return Diagnosis(
         verdict=verdict,
-        summary=summary_of(verdict, findings, level0, level2, together),
+        summary=summary_of(verdict, findings, level0, level2, together, apart=unseen(it)),
         mismatch=Mismatch(rms(search.base.misfit), chance(search.base.whole)),
         channel=channel,
         where="",
@@ -107,14 +107,29 @@ def _tried(one: Explanation, accepted: Explanation | None) -> Tried:
     )
 
 
+def unseen(it: Found) -> tuple[str, ...]:
+    """The held-out recordings in which alone something shows: those fitted are explained as they
+    are, so that nothing was looked for."""
+    base = it.search.base
+    if it.best.chosen or certain(base.misfit, base.whole.count) > FLOOR:
+        return ()
+    held = [one for one in it.levels[1].misfits if one.held_out]
+    return tuple(one.recording for one in held if one.rms**2 > 1 + LEFT**2)
+
+
 def summary_of(
     verdict: str,
     findings: tuple[Finding, ...],
     before: Level,
     after: Level,
     together: Level | None = None,
+    *,
+    apart: tuple[str, ...] = (),
 ) -> str:
-    """The answer in two sentences, or three."""
+    """The answer in two sentences, or three.
+
+    apart  the recordings that show alone what is left out
+    """
     held = any(one.held_out for one in after.misfits)
     where = (
         "On recordings that were not fitted"
@@ -138,5 +153,11 @@ def summary_of(
         numbers += (
             " The others do not tell all values; those given here fit all recordings, "
             f"and leave {together.held():.2f} sigma."
+        )
+    if apart and verdict == "unexplained":
+        opening = (
+            f"Something is left out that shows in held-out recordings alone: {', '.join(apart)}. "
+            "Those that were fitted lack nothing, so nothing was looked for. Hold out others "
+            "instead, and diagnose again."
         )
     return f"{opening} {numbers}"

@@ -65,9 +65,13 @@ class Fit:
         return total(self.normals.values(), self.prior, self.scaled)
 
 
-_FAR, _CRAWL, _PATIENCE = 2.0, 5e-3, 2
+_FAR, _CRAWL, _PATIENCE = 1.05, 0.02, 10
 """A fit that is that far above the noise, mean square in sigma, and has lowered what is above it by
-less than such a share in each of several steps, has gone down a wrong valley, and is given up."""
+less than such a share in so many steps has gone down a wrong valley, and is given up."""
+
+_KEPT = 0.25
+"""A step that lowers the cost by less than that share of what it promised was too long, and the
+next is damped as much."""
 
 
 @dataclass(frozen=True)
@@ -99,25 +103,29 @@ def solve(
     """
     cost, count = problem.cost(values, starts)
     best = _Point(dict(values), dict(starts), cost, problem.beforehand(values))
-    at, tries, damping, crawled, converged = best, 0, 0, 0, False
+    at, tries, damping, converged = best, 0, 0, False
     kept: dict[Piece, Normal] = {}
-    for _ in range(steps):
+    excess = np.inf
+    for number in range(steps):
+        if number % _PATIENCE == 0:
+            last, excess = excess, best.total(doubt(best.cost, count)) - count
+            if excess > (_FAR - 1) * count and excess > (1 - _CRAWL) * last:
+                break
         if at is not best or not kept:
             normals = problem.normals(at.values, problem.own(at.starts))
             kept = normals if at is best else kept
         else:
             normals = kept
         weight = doubt(best.cost, count)
-        trial = _stepped(problem, at, normals, weight, damping)
+        trial, promised = _stepped(problem, at, normals, weight, damping)
         before, after = best.total(weight), trial.total(weight)
         if after < before:
+            if before - after > _KEPT * (at.total(weight) - promised):
+                damping = max(damping - 1, 0)
             best = at = trial
-            kept, tries, damping = {}, 0, max(damping - 1, 0)
+            kept, tries = {}, 0
             if before - after < max(done, 1e-6 * before):
                 converged = True
-                break
-            crawled = crawled + 1 if before - after < _CRAWL * (before - count) else 0
-            if crawled > _PATIENCE and before > _FAR * count:
                 break
         elif tries < TRIES and after < UPHILL * before:
             at, tries = trial, tries + 1
@@ -142,8 +150,9 @@ def solve(
 
 def _stepped(
     problem: Problem, at: _Point, normals: Mapping[Piece, Normal], weight: float, damping: int
-) -> _Point:
-    """The best point of the linearised problem, inside the box and not too far away."""
+) -> tuple[_Point, float]:
+    """The best point of the linearised problem, inside the box and not too far away, and the whole
+    cost that it promises."""
     u = scaled(problem.quantities, at.values)
     low, high = box(problem.quantities)
     whole = total(normals.values(), weight * problem.prior, u)
@@ -153,7 +162,7 @@ def _stepped(
     values = unscaled(problem.quantities, u + d)
     starts = {one: at.starts[one] + n.shift + n.follow @ d for one, n in normals.items()}
     cost, _ = problem.cost(values, starts)
-    return _Point(values, starts, cost, problem.beforehand(values))
+    return _Point(values, starts, cost, problem.beforehand(values)), whole.at(d)
 
 
 def _reach(q: Quantity, value: float) -> float:

@@ -10,27 +10,27 @@ from __future__ import annotations
 import numpy as np
 
 from rr_opt.diagnose.explain import joined
-from rr_opt.diagnose.explanation import Explanation
 from rr_opt.diagnose.fit import Fit, solve
 from rr_opt.diagnose.model import Quantity
 from rr_opt.diagnose.observed import observed
 from rr_opt.diagnose.problem import Problem
-from rr_opt.diagnose.racer import RollerRacer
+from rr_opt.diagnose.racer_protocol import Racer
 from rr_opt.physics.effects.rolling_force_curve import EFFECT
+from rr_opt.robot.parameters import Robot
 
 _FAST = 0.98
 """Quantile of the wheels' speeds at which the curve ends."""
 
 
-def with_force_curve(model: RollerRacer, base: Explanation, nominal: Fit) -> Fit:
+def with_force_curve(model: Racer, robot: Robot, whole: Fit, windows: Fit) -> Fit:
     """The parameters with the curve beside them, over whole runs.
 
-    Begun in windows, where the parameters are not yet bent; `nominal` are the starts there.
+    whole    the parameters alone, over whole runs, say how fast the wheels are
+    windows  where it begins, as the parameters are not yet bent there
     """
-    fit, name = base.whole, EFFECT.name
-    seen = [observed(model, p, fit.values, fit.effects, s) for p, s in fit.starts.items()]
+    name = EFFECT.name
+    seen = [observed(model, p, whole.values, whole.effects, s) for p, s in whole.starts.items()]
     speed = float(np.quantile(np.abs(np.concatenate([one.u.ravel() for one in seen])), _FAST))
-    robot = model.experiment.robot
     size = (robot.k1 + robot.k2) / 2 * speed
     curve = tuple(
         # The speed is where the curve ends, and stays.
@@ -40,6 +40,6 @@ def with_force_curve(model: RollerRacer, base: Explanation, nominal: Fit) -> Fit
         for q in EFFECT.parameters
     )
     quantities = (*model.parameters, *curve)
-    problem = Problem(model, tuple(nominal.starts), (name,), quantities)
+    problem = Problem(model, tuple(windows.starts), (name,), quantities)
     values = {q.name: q.value for q in quantities}
-    return joined(model, solve(problem, values, nominal.starts))
+    return joined(model, solve(problem, values, windows.starts))

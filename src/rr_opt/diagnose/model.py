@@ -205,6 +205,12 @@ class Model(Protocol):
         """Values that predict the same and are nearer to what was believed, if there are any."""
         ...
 
+    def nameless(self, whole: Fit, windows: Fit) -> Fit | None:
+        """The parameters with a term of its own that has no name, over whole runs, from fits of
+        the parameters over whole runs and of the starts in windows; None if there is no such term.
+        """
+        ...
+
     def start(self, piece: Piece) -> Array:
         """A first guess of the state in which a piece of a run starts."""
         ...

@@ -101,6 +101,9 @@ class Pendulum:
     def twin(self, values: Mapping[str, float]) -> None:
         """None: no two sets of values of a pendulum are alike."""
 
+    def nameless(self, whole: Fit, windows: Fit) -> None:
+        """None: it has no term without a name."""
+
     def start(self, piece: Piece) -> Array:
         """Angle and speed (rad, rad/s) by a straight line through the first tenth of a second."""
         data = self.runs[piece.run]

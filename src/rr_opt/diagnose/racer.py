@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from rr_opt.diagnose.fit import Fit
+from rr_opt.diagnose.flexible import with_force_curve
 from rr_opt.diagnose.model import (
     Array,
     Asked,
@@ -168,6 +169,10 @@ class RollerRacer:
         turned = math.remainder(normal + math.pi, math.tau)
         other = {"floor_patch.multiplier": 1 / factor, "floor_patch.normal": turned}
         return {**values, **other, **{name: factor * values[name] for name in own}}
+
+    def nameless(self, whole: Fit, windows: Fit) -> Fit:
+        """With rolling resistance as a curve of speed."""
+        return with_force_curve(self, self.experiment.robot, whole, windows)
 
     def start(self, piece: Piece) -> Array:
         """x, y, psi as first recorded; for z, which swings less than v, the mean of v; side speeds

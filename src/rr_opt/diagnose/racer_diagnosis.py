@@ -8,9 +8,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from rr_opt.diagnose.diagnose import answer, summary_of
+from rr_opt.diagnose.diagnose import answer, summary_of, unseen
 from rr_opt.diagnose.diagnosis import Diagnosis
-from rr_opt.diagnose.flexible import with_force_curve
 from rr_opt.diagnose.found import Found, Steps, found
 from rr_opt.diagnose.indistinguishable import groups
 from rr_opt.diagnose.intervals import estimates
@@ -26,15 +25,18 @@ from rr_opt.diagnose.zeroed import zeroed
 def diagnose_racer(racer: RollerRacer, steps: Steps | None = None) -> Diagnosis:
     """Diagnose a Roller Racer from its recordings."""
     it = found(racer, steps or Steps())
-    left = it.steps.timed("is that all", lambda: systematic(racer, it.best, it.search.base))
-    said = answer(it, systematic=left)
+    said = answer(it)
+    if said.verdict == "missing_physics" and it.steps.timed(
+        "is that all", lambda: systematic(racer, it.best, it.search.base, it.steps.each)
+    ):
+        said = answer(it, systematic=True)
     tested = it.steps.timed(
         "where", lambda: stages(zeroed(racer, it.search.base.whole), it.search.base.whole)
     )
     said = located(said, tested, racer.catalogue)
     said = _told_apart(racer, it, said)
     if said.verdict == "unexplained":
-        left = it.steps.timed("what is left", lambda: residue(racer, it.search.base))
+        left = it.steps.timed("what is left", lambda: residue(racer, it.search.base, it.steps.each))
         said = it.steps.timed("without a name", lambda: _nameless(racer, it, said))
         said = replace(said, residue=left)
     return replace(said, seconds=dict(it.steps.seconds))
@@ -48,8 +50,8 @@ def _nameless(racer: RollerRacer, it: Found, said: Diagnosis) -> Diagnosis:
     """
     start = it.levels[0].fit
     search = it.search
-    curved = level_of(racer, with_force_curve(racer, search.base, search.nominal), start)
-    best = min((it.levels[0], it.levels[1], curved, it.levels[2]), key=Level.held)
+    curved = [level_of(racer, fit, start) for fit in [search.nameless] if fit]
+    best = min((*it.levels[:2], *curved, it.levels[2]), key=Level.held)
     values = dict(best.fit.values)
     intervals = estimates(racer, best.fit, best.surplus())
     return replace(
@@ -58,7 +60,7 @@ def _nameless(racer: RollerRacer, it: Found, said: Diagnosis) -> Diagnosis:
         after=best.unseen(),
         values=values,
         parameters={q.name: intervals[q.name] for q in best.fit.quantities},
-        summary=summary_of(said.verdict, (), it.levels[0], best),
+        summary=summary_of(said.verdict, (), it.levels[0], best, apart=unseen(it)),
     )
 
 

@@ -9,7 +9,7 @@ one.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -23,6 +23,7 @@ from rr_opt.diagnose.problem import doubt
 from rr_opt.diagnose.racer import RollerRacer
 from rr_opt.diagnose.residue_problem import Columns, Linearised, Point, linearised, moved
 from rr_opt.diagnose.residue_terms import Term, terms
+from rr_opt.diagnose.rounds import EXACT
 from rr_opt.diagnose.shape_words import shape
 from rr_opt.physics.effects import CATALOGUE, Effect
 
@@ -54,7 +55,9 @@ _AGAIN = 3
 """So often the problem is linearised again."""
 
 
-def residue(model: RollerRacer, best: Explanation) -> tuple[Residue, ...]:
+def residue(
+    model: RollerRacer, best: Explanation, each: Callable[..., Iterable] = map
+) -> tuple[Residue, ...]:
     """The functions that the model lacks beyond an explanation, the most telling first.
 
     Returns none where no function predicts the runs better, each from the others.
@@ -62,7 +65,7 @@ def residue(model: RollerRacer, best: Explanation) -> tuple[Residue, ...]:
     fit = best.whole
     if best.misfit <= FLOOR**2:
         return ()
-    ground = _ground(model, fit)
+    ground = _ground(model, fit, each)
     every, sizes, places = ground.terms, ground.sizes, ground.places
     point = ground.begin
     problem = ground.at(point)
@@ -83,21 +86,27 @@ def residue(model: RollerRacer, best: Explanation) -> tuple[Residue, ...]:
     return tuple(out)
 
 
-def systematic(model: RollerRacer, best: Explanation, base: Explanation) -> bool:
+def systematic(
+    model: RollerRacer,
+    best: Explanation,
+    base: Explanation,
+    each: Callable[..., Iterable] = map,
+) -> bool:
     """Whether what an explanation leaves, however little, still depends on something.
 
     Effects that imitate what is really there leave such a pattern. A servo that jumps and wheels
     that slide leave one even if the effect is right, as no two machines do so alike: not asked.
-    Nor is a part of the floor if it explains nearly all that the parameters alone (`base`) leave:
-    where its border lies is a matter of millimetres.
+    Nor where it is next to nothing of what the parameters alone (`base`) leave, as no effect's
+    model is exact; for a part of the floor that is more: where its border lies is a matter of
+    millimetres.
     """
     effects = [CATALOGUE[name] for name in best.names]
     bordered = any(effect.family == "floor" and not effect.smooth for effect in effects)
     if not best.chosen or any(_blurred(effect) for effect in effects):
         return False
-    if bordered and best.misfit < BORDERED**2 * base.misfit:
+    if best.misfit < (BORDERED if bordered else EXACT) ** 2 * base.misfit:
         return False
-    ground = _ground(model, best.whole)
+    ground = _ground(model, best.whole, each)
     problem = ground.at(ground.begin)
     before = problem.cost(_joined(ground.places, []))
     return any(
@@ -122,14 +131,15 @@ class _Ground:
     sizes: Sequence[float]
     places: Sequence[Columns]
     pushes: Mapping[Piece, Array]
+    each: Callable[..., Iterable]
 
     def at(self, point: Point) -> Linearised:
         """The linearised problem at a point."""
         weights = [term.weights for term in self.terms]
-        return linearised(self.model, self.fit, point, self.pushes, weights)
+        return linearised(self.model, self.fit, point, self.pushes, weights, self.each)
 
 
-def _ground(model: RollerRacer, fit: Fit) -> _Ground:
+def _ground(model: RollerRacer, fit: Fit, each: Callable[..., Iterable]) -> _Ground:
     less, starts = _thinned(model, fit)
     seen = {p: observed(less, p, fit.values, fit.effects, start) for p, start in starts.items()}
     slips = any(CATALOGUE[name].stiff for name in fit.effects)
@@ -142,7 +152,7 @@ def _ground(model: RollerRacer, fit: Fit) -> _Ground:
     edges = np.cumsum([len(fit.quantities), *(term.columns for term in every)])
     places = [np.arange(a, b) for a, b in itertools.pairwise(edges)]
     begin = Point(fit.values, starts, np.zeros(edges[-1] - edges[0]))
-    return _Ground(less, fit, begin, every, sizes, places, pushes)
+    return _Ground(less, fit, begin, every, sizes, places, pushes, each)
 
 
 def _thinned(model: RollerRacer, fit: Fit) -> tuple[RollerRacer, Mapping[Piece, Array]]:

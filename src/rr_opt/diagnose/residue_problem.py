@@ -7,7 +7,7 @@ terms leads.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -99,30 +99,16 @@ def linearised(
     point: Point,
     pushes: Mapping[Piece, Array],
     weights: Sequence[Array],
+    each: Callable[..., Iterable] = map,
 ) -> Linearised:
     """The problem at a point; the columns push (columns, 7, n) in each piece.
 
     weights  of each term's columns, against being rough
     """
-    names = tuple(q.name for q in fit.quantities)
-    scale = np.array([q.scale for q in fit.quantities])
-    within = model.start_within
-    normals, count, cost = {}, 0, 0.0
-    for piece, start in point.starts.items():
-        data = model.runs[piece.run]
-        out = respond(
-            model, piece, point.values, fit.effects, start, names, pushes[piece], point.amounts
-        )
-        sigma = data.sigma[piece.span]
-        r = (out.predicted - data.values[piece.span]) / sigma
-        good = np.isfinite(r)
-        by_value, by_push, by_start = (
-            (part / sigma[:, :, None])[good] for part in (out.by_value, out.by_push, out.by_start)
-        )
-        gram = gram_of(by_start, by_value * scale, by_push, r[good])
-        normals[piece] = normal_of(gram, start / within, 1 / within)
-        count += int(good.sum())
-        cost += float(r[good] @ r[good])
+    tasks = [_OfPiece(model, fit, point, piece, pushes[piece]) for piece in point.starts]
+    done = list(each(_linearised, tasks))
+    normals = {task.piece: normal for task, (normal, _, _) in zip(tasks, done, strict=True)}
+    cost, count = sum(one[1] for one in done), sum(one[2] for one in done)
     added = point.amounts.size
     low, high = box(fit.quantities)
     known = np.array([float(q.known) for q in fit.quantities])
@@ -136,6 +122,35 @@ def linearised(
         len(fit.quantities),
         count,
     )
+
+
+@dataclass(frozen=True)
+class _OfPiece:
+    model: Racer
+    fit: Fit
+    point: Point
+    piece: Piece
+    pushes: Array
+
+
+def _linearised(one: _OfPiece) -> tuple[Normal, float, int]:
+    """A piece's problem, its chi-square and how many values it has."""
+    model, piece, quantities = one.model, one.piece, one.fit.quantities
+    names = tuple(q.name for q in quantities)
+    scale = np.array([q.scale for q in quantities])
+    within, start = model.start_within, one.point.starts[piece]
+    values, amounts = one.point.values, one.point.amounts
+    out = respond(model, piece, values, one.fit.effects, start, names, one.pushes, amounts)
+    data = model.runs[piece.run]
+    sigma = data.sigma[piece.span]
+    r = (out.predicted - data.values[piece.span]) / sigma
+    good = np.isfinite(r)
+    by_value, by_push, by_start = (
+        (part / sigma[:, :, None])[good] for part in (out.by_value, out.by_push, out.by_start)
+    )
+    gram = gram_of(by_start, by_value * scale, by_push, r[good])
+    normal = normal_of(gram, start / within, 1 / within)
+    return normal, float(r[good] @ r[good]), int(good.sum())
 
 
 def _known(weights: Array) -> Array:

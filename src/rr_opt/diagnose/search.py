@@ -8,9 +8,10 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 from rr_opt.diagnose.explain import Chosen, explain, joined
-from rr_opt.diagnose.explanation import FLOOR, Explanation, rms
+from rr_opt.diagnose.explanation import FLOOR, Explanation, misfit, rms
 from rr_opt.diagnose.fit import Fit, solve
 from rr_opt.diagnose.left_out import left_out
 from rr_opt.diagnose.model import Model
@@ -58,6 +59,12 @@ class Search:
     tried: list[Explanation] = field(default_factory=list)
     been: list[tuple[Explanation, list[Explanation]]] = field(default_factory=list)
     again: list[tuple[Explanation, Explanation, Explanation]] = field(default_factory=list)
+
+    @cached_property
+    def nameless(self) -> Fit | None:
+        """The parameters with a term beside them that has no name, where the machine has one."""
+        self.say("fitting a term without a name")
+        return self.model.nameless(self.base.whole, self.nominal)
 
     @property
     def rounds(self) -> Rounds:
@@ -130,6 +137,8 @@ class Search:
             explained = rms(best.misfit) <= max(FLOOR, EXACT * self.first)
             if (explained and (best.chosen or not self._doubtful(best))) or not gained:
                 break
+            if len(best.chosen) == MOST - 1 and self._nameless_does():
+                break
             found = self._next_to(best)
             if not found:
                 break
@@ -142,6 +151,13 @@ class Search:
             gained = not best.chosen or better.misfit < _GAINED * best.misfit
             best = better
         return best
+
+    def _nameless_does(self) -> bool:
+        """Whether a term without a name explains alone what takes more than two effects: three that
+        do so too would only take its shape."""
+        return self.nameless is not None and rms(misfit(self.nameless)) <= self.rounds.floor(
+            self.base
+        )
 
     def _next_to(self, best: Explanation) -> list[Explanation]:
         """The explanations with one effect more that promise most, looked for once."""

@@ -15,6 +15,9 @@ from rr_opt.report.diagnosis.corrected import corrected_robot
 from rr_opt.report.diagnosis.loss import Loss, NotTold, loss
 from rr_opt.robot.parameters import Robot
 
+_PREDICTS = 1.2
+"""A term without a name accounts for what is missing if it leaves no more than this, in sigma."""
+
 
 @dataclass(frozen=True)
 class Diagnosed:
@@ -41,7 +44,8 @@ class Diagnosed:
         if self.found.verdict == "consistent":
             return None
         curved = any(CATALOGUE[use.name].nameless for use in self.corrected.physics)
-        if self.found.verdict == "unexplained" and not curved:
+        predicts = curved and self.found.after < _PREDICTS
+        if self.found.verdict == "unexplained" and not predicts:
             return NotTold(
                 "What the best gait of the robot as believed would lose is not told: the robot as "
                 "found lacks what has no name."
