@@ -53,9 +53,19 @@ def plant(law):
 
 
 @pytest.fixture(scope="module")
-def falling():
+def sticky():
     model = plant(lambda wheel, u: _falling(u))
-    return residue(model, base_of(model))
+    return model, base_of(model)
+
+
+@pytest.fixture(scope="module")
+def falling(sticky):
+    return residue(*sticky)
+
+
+def test_nothing_is_told_beside_a_force_over_speed_that_does_by_itself(sticky):
+    (only,) = residue(*sticky, by_speed=True)
+    assert (only.kind, only.variable) == ("rolling force", "speed")
 
 
 def test_friction_that_falls_with_speed_is_found_and_said(falling):

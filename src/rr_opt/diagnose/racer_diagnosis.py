@@ -36,7 +36,11 @@ def diagnose_racer(racer: RollerRacer, steps: Steps | None = None) -> Diagnosis:
     said = located(said, tested, racer.catalogue)
     said = _told_apart(racer, it, said)
     if said.verdict == "unexplained":
-        left = it.steps.timed("what is left", lambda: residue(racer, it.search.base, it.steps.each))
+        search, each = it.search, it.steps.each
+        left = it.steps.timed(
+            "what is left",
+            lambda: residue(racer, search.base, each, by_speed=search.nameless_does),
+        )
         said = it.steps.timed("without a name", lambda: _nameless(racer, it, said))
         said = replace(said, residue=left)
     return replace(said, seconds=dict(it.steps.seconds))

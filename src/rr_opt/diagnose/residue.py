@@ -56,11 +56,18 @@ _AGAIN = 3
 
 
 def residue(
-    model: RollerRacer, best: Explanation, each: Callable[..., Iterable] = map
+    model: RollerRacer,
+    best: Explanation,
+    each: Callable[..., Iterable] = map,
+    *,
+    by_speed: bool = False,
 ) -> tuple[Residue, ...]:
     """The functions that the model lacks beyond an explanation, the most telling first.
 
     Returns none where no function predicts the runs better, each from the others.
+
+    by_speed  whether it is known that a rolling force over speed does by itself: what else would
+              seem to help then makes up for what is not linear
     """
     fit = best.whole
     if best.misfit <= FLOOR**2:
@@ -69,11 +76,12 @@ def residue(
     every, sizes, places = ground.terms, ground.sizes, ground.places
     point = ground.begin
     problem = ground.at(point)
-    chosen = _chosen(problem, places)
+    most = 1 if by_speed else MOST
+    chosen = _chosen(problem, places, most)
     for _ in range(_AGAIN if chosen else 0):
         point = moved(fit, point, problem, _joined(places, chosen))
         problem = ground.at(point)
-        chosen = _chosen(problem, places)
+        chosen = _chosen(problem, places, most)
     if not chosen:
         return ()
     values, spread = problem.curve(_joined(places, chosen))
@@ -175,7 +183,7 @@ def _joined(places: Sequence[Columns], chosen: Sequence[int]) -> Columns:
     return np.concatenate([np.zeros(0, int), *(places[k] for k in chosen)])
 
 
-def _chosen(problem: Linearised, places: Sequence[Columns]) -> list[int]:
+def _chosen(problem: Linearised, places: Sequence[Columns], at_most: int) -> list[int]:
     """Which terms: one by one that which helps most."""
     chosen: list[int] = []
     first = now = problem.left(_joined(places, chosen))
@@ -184,7 +192,7 @@ def _chosen(problem: Linearised, places: Sequence[Columns]) -> list[int]:
     by_speed = problem.left(_joined(places, [0]))
     if by_speed < (1 - MOSTLY) * first and first > FLOOR**2:
         chosen, now = [0], by_speed
-    while len(chosen) < MOST and now > FLOOR**2:
+    while len(chosen) < at_most and now > FLOOR**2:
         tried = {
             k: problem.left(_joined(places, [*chosen, k]))
             for k in range(len(places))

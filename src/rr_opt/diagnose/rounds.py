@@ -18,8 +18,8 @@ from rr_opt.diagnose.model import Model
 from rr_opt.diagnose.screen import Look, Promise, looks, screen
 
 EXACT, ROUGH = 0.005, 0.03
-"""Nor is an effect's model: what is left is none by the first share of the misfit of the model as
-believed; by the second for an effect of which there are as many models as machines."""
+"""Nor is an effect's model: what is left is none by the first share of the misfit without it, by
+the second for an effect of which there are as many models as machines."""
 
 _IN_WINDOWS, _DEAR, _WHOLE = 5, 4, 3
 """How many of a round are fitted in windows, of those the dear ones, and over whole runs."""
@@ -41,18 +41,18 @@ T = TypeVar("T")
 class Rounds:
     """What every round of a search begins with.
 
-    first  misfit of the model as believed, RMS in sigma
+    large  misfit without what is missing, RMS in sigma
     """
 
     model: Model
     nominal: Fit
-    first: float
+    large: float
     say: Say = lambda _: None
     each: Callable[..., Iterable] = map
 
     def floor(self, best: Explanation) -> float:
         """A misfit that is none, RMS in sigma, of a model with the effects of `best`."""
-        return max(FLOOR, (ROUGH if self.rough(best) else EXACT) * self.first)
+        return max(FLOOR, (ROUGH if self.rough(best) else EXACT) * self.large)
 
     def rough(self, best: Explanation) -> bool:
         """Whether an effect of `best` is one of which there are as many models as machines."""

@@ -18,6 +18,7 @@ from rr_opt.diagnose.model import Model
 from rr_opt.diagnose.problem import Problem, doubt
 from rr_opt.diagnose.rounds import EXACT, Rounds, Say, carried_out
 from rr_opt.diagnose.values import settled, wrong
+from rr_opt.diagnose.verdict import LEFT
 
 RELEVANT = 0.01
 """By so much, in sigma squared per value, an effect has to lower the misfit to be one."""
@@ -67,9 +68,15 @@ class Search:
         return self.model.nameless(self.base.whole, self.nominal)
 
     @property
+    def large(self) -> float:
+        """The misfit of which a small share is none, RMS in sigma: what values make up for is not
+        what is missing."""
+        return min(self.first, rms(self.base.misfit))
+
+    @property
     def rounds(self) -> Rounds:
         """Its rounds."""
-        return Rounds(self.model, self.nominal, self.first, self.say, self.each)
+        return Rounds(self.model, self.nominal, self.large, self.say, self.each)
 
     def run(self) -> Explanation:
         """The best explanation, the base itself where nothing relevant is missing."""
@@ -117,16 +124,23 @@ class Search:
         return best
 
     def _otherwise(self, best: Explanation) -> Explanation:
-        """What the search finds without what is at a place at first, if that of `best` is doubtful.
+        """What the search finds without what imitates much at first, if that of `best` is doubtful.
 
         With its free place a patch follows a few recordings whatever they lack, but each of them is
-        then predicted badly from the others.
+        then predicted badly from the others. And wheels that slide do much of what others do, but
+        leave something that nothing beside them accounts for.
         """
         across = rms(left_out(best.whole))
-        placed = self.model.placed & set(best.names)
-        if not placed or across <= _ACROSS * max(rms(best.misfit), FLOOR):
+        doubtful = self.model.placed & set(best.names)
+        if across <= _ACROSS * max(rms(best.misfit), FLOOR):
+            doubtful = frozenset[str]()
+        if rms(best.misfit) > max(LEFT, self.rounds.floor(best)):
+            doubtful |= self.model.dear & set(best.names)
+        if not doubtful:
             return best
-        others = [one for one in self.tried if len(one.chosen) == 1 and one.names[0] not in placed]
+        others = [
+            one for one in self.tried if len(one.chosen) == 1 and one.names[0] not in doubtful
+        ]
         if not others:
             return best
         return self._backward(self._forward(min(others, key=lambda one: one.score)))
@@ -134,10 +148,11 @@ class Search:
     def _forward(self, best: Explanation) -> Explanation:
         gained = True
         for _ in range(len(best.chosen), MOST):
-            explained = rms(best.misfit) <= max(FLOOR, EXACT * self.first)
+            explained = rms(best.misfit) <= max(FLOOR, EXACT * self.large)
             if (explained and (best.chosen or not self._doubtful(best))) or not gained:
                 break
-            if len(best.chosen) == MOST - 1 and self._nameless_does():
+            # Three that do what one term does would only take its shape.
+            if len(best.chosen) == MOST - 1 and self.nameless_does:
                 break
             found = self._next_to(best)
             if not found:
@@ -152,9 +167,9 @@ class Search:
             best = better
         return best
 
-    def _nameless_does(self) -> bool:
-        """Whether a term without a name explains alone what takes more than two effects: three that
-        do so too would only take its shape."""
+    @property
+    def nameless_does(self) -> bool:
+        """Whether a term without a name explains the recordings by itself."""
         return self.nameless is not None and rms(misfit(self.nameless)) <= self.rounds.floor(
             self.base
         )

@@ -172,7 +172,9 @@ EFFECT = Effect(
     name="servo_backlash",
     family="actuation",
     port=Port.ACTUATION,
-    parameters=(Parameter("width", "rad", (0.0, 0.5), 0.02, trials=(0.5,), rough=True),),
+    parameters=(
+        Parameter("width", "rad", (0.0, 0.5), 0.02, trials=(0.5,), rough=True, vague=0.01),
+    ),
     sentence="There is play between the servo and the platform that it turns.",
     actuate=_actuate,
     loose=True,

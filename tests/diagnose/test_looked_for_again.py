@@ -1,0 +1,36 @@
+"""When a search goes on, and when it is made again from another beginning."""
+
+from dataclasses import replace
+
+import pytest
+
+from rr_opt.diagnose.explain import Chosen
+from rr_opt.diagnose.explanation import FLOOR, rms
+from rr_opt.diagnose.search import Search
+from tests.diagnose.made_up import base_of, explained, search_of, with_effect
+
+STICKS = {"coulomb_friction.force1": 0.003, "coulomb_friction.force2": 0.003}
+
+
+@pytest.fixture(scope="module")
+def tried():
+    model = with_effect(STICKS, ("coulomb_friction",), seconds=5.0)
+    base = base_of(model)
+    return model, base, explained(model, base, Chosen("coulomb_friction"))
+
+
+def test_what_wrong_values_make_up_for_excuses_nothing(tried):
+    model, base, found = tried
+    search = replace(search_of(model, base, found), first=1e3)
+    assert search.rounds.floor(found) == pytest.approx(max(FLOOR, 0.005 * rms(base.misfit)))
+
+
+@pytest.mark.parametrize(("left", "again"), [(0.2, False), (0.8, True)])
+def test_sliding_that_leaves_something_gives_another_a_chance(monkeypatch, tried, left, again):
+    model, base, found = tried
+    whole = replace(found.whole, cost=found.whole.count * (1 + left**2))
+    slides = replace(found, chosen=(Chosen("lateral_slip"),), whole=whole)
+    for name in ("_forward", "_backward"):
+        monkeypatch.setattr(Search, name, lambda _, best: best)
+    search = search_of(model, base, found, slides)
+    assert (search._otherwise(slides) is found) == again
