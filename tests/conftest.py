@@ -1,5 +1,6 @@
 """A runner of the command line, and processes that end with their test."""
 
+import signal
 import subprocess
 import sys
 
@@ -7,6 +8,10 @@ import pytest
 from typer.testing import CliRunner
 
 from rr_opt.cli.main import app
+
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    # So a shell starts what it puts in the background, and the processes of tests inherit it.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture

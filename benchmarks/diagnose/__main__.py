@@ -28,8 +28,8 @@ USUAL, NOW, NEVER = "compiled before", "compiled now", "no compiler"
 WAYS = {NOW: 1, USUAL: 3, NEVER: 1}
 """How often each is timed, in this order: what is compiled now is there for the next."""
 
-PATIENCE = 120.0
-"""s; without a compiler it is not waited for longer."""
+PATIENCE = 60.0
+"""s, the goal; without a compiler it is not waited for longer."""
 
 SHOWN = 0.05
 """s; a stage that takes less in every case has no line."""
