@@ -48,7 +48,7 @@ def answer(it: Found, *, systematic: bool = False) -> Diagnosis:
     channel = model.catalogue[best.names[0]].channel if findings and best.names else "none"
     return Diagnosis(
         verdict=verdict,
-        summary=summary_of(verdict, findings, level0, level2, together, apart=unseen(it)),
+        summary=summary_of(verdict, findings, level0, level2, together, apart=held_out_alone(it)),
         mismatch=Mismatch(rms(search.base.misfit), chance(search.base.whole)),
         channel=channel,
         where="",
@@ -107,7 +107,7 @@ def _tried(one: Explanation, accepted: Explanation | None) -> Tried:
     )
 
 
-def unseen(it: Found) -> tuple[str, ...]:
+def held_out_alone(it: Found) -> tuple[str, ...]:
     """The held-out recordings in which alone something shows: those fitted are explained as they
     are, so that nothing was looked for."""
     base = it.search.base

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from rr_opt.diagnose.diagnose import answer, summary_of, unseen
+from rr_opt.diagnose.diagnose import answer, held_out_alone, summary_of
 from rr_opt.diagnose.diagnosis import Diagnosis
 from rr_opt.diagnose.found import Found, Steps, found
 from rr_opt.diagnose.indistinguishable import groups
@@ -64,7 +64,7 @@ def _nameless(racer: RollerRacer, it: Found, said: Diagnosis) -> Diagnosis:
         after=best.unseen(),
         values=values,
         parameters={q.name: intervals[q.name] for q in best.fit.quantities},
-        summary=summary_of(said.verdict, (), it.levels[0], best, apart=unseen(it)),
+        summary=summary_of(said.verdict, (), it.levels[0], best, apart=held_out_alone(it)),
     )
 
 
