@@ -24,6 +24,6 @@ def test_the_search_begins_again_where_recordings_speak_against_one_another(
         for name in ("floor_patch", "coulomb_friction")
     )
     monkeypatch.setattr(search, "left_out", lambda _: across)
-    monkeypatch.setattr(search.Search, "_forward", lambda _, best: best)
+    monkeypatch.setattr(search.Search, "_forward", lambda _, best, **__: best)
     found = search_of(model, alone, patch, friction)._otherwise(patch)
     assert found.names == (begins,)

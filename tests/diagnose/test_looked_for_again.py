@@ -6,6 +6,8 @@ import pytest
 
 from rr_opt.diagnose.explain import Chosen
 from rr_opt.diagnose.explanation import FLOOR, rms
+from rr_opt.diagnose.rounds import Rounds
+from rr_opt.diagnose.screen import Look
 from rr_opt.diagnose.search import Search
 from tests.diagnose.made_up import base_of, explained, search_of, with_effect
 
@@ -31,6 +33,35 @@ def test_sliding_that_leaves_something_gives_another_a_chance(monkeypatch, tried
     whole = replace(found.whole, cost=found.whole.count * (1 + left**2))
     slides = replace(found, chosen=(Chosen("lateral_slip"),), whole=whole)
     for name in ("_forward", "_backward"):
-        monkeypatch.setattr(Search, name, lambda _, best: best)
+        monkeypatch.setattr(Search, name, lambda _, best, **__: best)
     search = search_of(model, base, found, slides)
     assert (search._otherwise(slides) is found) == again
+
+
+def test_what_is_doubtful_is_not_looked_for_again(monkeypatch, tried):
+    model, base, found = tried
+    whole = replace(found.whole, cost=2 * found.whole.count)
+    slides = replace(found, chosen=(Chosen("lateral_slip"),), whole=whole)
+    looked = []
+    monkeypatch.setattr(Look, "__call__", lambda look: looked.append(look.name) or [])
+    monkeypatch.setattr(Rounds, "_over_whole_runs", lambda *_: [])
+    search = search_of(model, base, found, slides)
+    monkeypatch.setattr(Search, "_backward", lambda _, best: best)
+    monkeypatch.setattr(Search, "large", 0.0)
+    loud = replace(found, whole=replace(found.whole, cost=1.2 * found.whole.count))
+    search.tried[:] = [base, loud, slides]
+    search._otherwise(slides)
+    assert "floor_patch" in looked
+    assert "lateral_slip" not in looked
+
+
+@pytest.mark.parametrize("better", [False, True])
+def test_a_patch_beside_what_a_term_does_better_is_not_looked_for_again(monkeypatch, tried, better):
+    model, base, found = tried
+    chosen = (Chosen("coulomb_friction"), Chosen("floor_patch"))
+    both = replace(found, chosen=chosen, whole=replace(found.whole, cost=2 * found.whole.count))
+    looked = []
+    monkeypatch.setattr(Rounds, "looked_for", lambda *_: looked.append(1) or [])
+    monkeypatch.setattr(Search, "_nameless_does_better", lambda *_: better)
+    assert search_of(model, base, found)._looked_for_again(both) is both
+    assert bool(looked) != better

@@ -19,7 +19,7 @@ def test_no_third_effect_for_what_one_term_does(monkeypatch, has_a_term):
     base = base_of(model)
     two = explained(model, base, Chosen("coulomb_friction"), Chosen("com_offset"))
     looked = []
-    monkeypatch.setattr(Rounds, "next_to", lambda _, best: looked.append(best) or [])
+    monkeypatch.setattr(Rounds, "next_to", lambda _, best, without: looked.append(best) or [])
     if not has_a_term:
         monkeypatch.setattr(RollerRacer, "nameless", lambda *_: None)
     search = search_of(model, base, two)

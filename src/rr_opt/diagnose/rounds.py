@@ -58,8 +58,13 @@ class Rounds:
         """Whether an effect of `best` is one of which there are as many models as machines."""
         return any(q.name in self.model.rough for q in best.whole.quantities)
 
-    def next_to(self, best: Explanation) -> list[Explanation]:
-        """The explanations with one effect more that promise most."""
+    def next_to(
+        self, best: Explanation, without: frozenset[str] = frozenset()
+    ) -> list[Explanation]:
+        """The explanations with one effect more that promise most.
+
+        without  dear ones that are not looked for
+        """
         fit = _sight(best)
         promised = screen(self.model, fit, best.chosen)
         promised += _more_than_luck(self._looks(best, dear=False))
@@ -70,7 +75,7 @@ class Rounds:
         # for nothing.
         if worth:
             self._say_fitting(worth[:_IN_WINDOWS])
-        looking = self._looks(best, dear=True)
+        looking = [one for one in self._looks(best, dear=True) if one.name not in without]
         tried = [self._in_windows(best, one) for one in worth[:_IN_WINDOWS]]
         done = list(self.each(carried_out, [*looking, *tried]))
         found = self._over_whole_runs(best, done[len(looking) :])

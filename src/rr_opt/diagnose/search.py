@@ -47,7 +47,7 @@ class Search:
     """A search under way, and all that it tried.
 
     first  misfit of the model as believed, RMS in sigma
-    been   the rounds it has been through: next to what, and what was found
+    been   the rounds it has been through: next to what, without what, and what was found
     again  what was fitted once more from where a larger one ended: the two, and what came of it
     """
 
@@ -58,7 +58,7 @@ class Search:
     say: Say = lambda _: None
     each: Callable[..., Iterable] = map
     tried: list[Explanation] = field(default_factory=list)
-    been: list[tuple[Explanation, list[Explanation]]] = field(default_factory=list)
+    been: list[tuple[Explanation, frozenset[str], list[Explanation]]] = field(default_factory=list)
     again: list[tuple[Explanation, Explanation, Explanation]] = field(default_factory=list)
 
     @cached_property
@@ -128,7 +128,8 @@ class Search:
 
         With its free place a patch follows a few recordings whatever they lack, but each of them is
         then predicted badly from the others. And wheels that slide do much of what others do, but
-        leave something that nothing beside them accounts for.
+        leave something that nothing beside them accounts for. They are not looked for again, as
+        that is the dearest part of a round.
         """
         across = rms(left_out(best.whole))
         doubtful = self.model.placed & set(best.names)
@@ -143,18 +144,19 @@ class Search:
         ]
         if not others:
             return best
-        return self._backward(self._forward(min(others, key=lambda one: one.score)))
+        first = min(others, key=lambda one: one.score)
+        return self._backward(self._forward(first, without=doubtful))
 
-    def _forward(self, best: Explanation) -> Explanation:
+    def _forward(self, best: Explanation, without: frozenset[str] = frozenset()) -> Explanation:
         gained = True
         for _ in range(len(best.chosen), MOST):
             explained = rms(best.misfit) <= max(FLOOR, EXACT * self.large)
             if (explained and (best.chosen or not self._doubtful(best))) or not gained:
                 break
-            # Three that do what one term does would only take its shape.
-            if len(best.chosen) == MOST - 1 and self.nameless_does:
+            # Three that do what one term does better than two would only take its shape.
+            if len(best.chosen) == MOST - 1 and self._nameless_does_better(best):
                 break
-            found = self._next_to(best)
+            found = self._next_to(best, without)
             if not found:
                 break
             better = min(found, key=lambda one: one.score)
@@ -174,13 +176,17 @@ class Search:
             self.base
         )
 
-    def _next_to(self, best: Explanation) -> list[Explanation]:
+    def _nameless_does_better(self, best: Explanation) -> bool:
+        """Whether a term without a name leaves less by itself."""
+        return self.nameless is not None and misfit(self.nameless) < best.misfit
+
+    def _next_to(self, best: Explanation, without: frozenset[str]) -> list[Explanation]:
         """The explanations with one effect more that promise most, looked for once."""
-        for been, found in self.been:
-            if been is best:
-                return found
-        found = self.rounds.next_to(best)
-        self.been.append((best, found))
+        for been, spared, found in self.been:
+            if been is best and spared <= without:
+                return [one for one in found if not without & set(one.names)]
+        found = self.rounds.next_to(best, without)
+        self.been.append((best, without, found))
         self.tried += found
         return found
 
@@ -255,12 +261,18 @@ class Search:
         """One that leaves something, with what is at a place looked for again beside the others.
 
         It was found where it made up best for what they had not yet accounted for; what was found
-        beside them is where it is.
+        beside them is where it is. Where a term without a name leaves less than they do together,
+        they are not what it lies beside.
         """
         if len(best.chosen) < 2 or rms(best.misfit) <= self.rounds.floor(best):
             return best
+        if self._nameless_does_better(best):
+            return best
         for one in best.chosen:
-            known = any(been.chosen == _rest(best, one) for been, _ in self.been)
+            known = any(
+                been.chosen == _rest(best, one) and one.name not in spared
+                for been, spared, _ in self.been
+            )
             if one.name in self.model.placed and not known:
                 without = self._with(_rest(best, one), best)
                 places = self.rounds.looked_for(without, one.name)
