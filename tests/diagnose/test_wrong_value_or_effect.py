@@ -19,7 +19,7 @@ def test_a_plain_misfit_is_looked_into(shorter, monkeypatch):
     looked = search_of(*shorter)
     asked = []
     monkeypatch.setattr(
-        search.Rounds, "next_to", lambda rounds, best: asked.append(best.names) or []
+        search.Rounds, "next_to", lambda _, best, __: asked.append(best.names) or []
     )
     looked._forward(shorter[1])
     assert asked == [()]
