@@ -7,16 +7,19 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from rr_opt.diagnose.gram import Recorded
+from rr_opt.diagnose.linear import DriveSlopes
 from rr_opt.diagnose.model import Array, Piece
 from rr_opt.diagnose.shoot import DrivePath, Path, System, predict_all
 from rr_opt.physics.drive import Drive
 
 
 class Kept:
-    """The last drive and the last prediction of each piece, and what was recorded of it."""
+    """The last drive of each piece, how it changes, and the last prediction; and what was recorded
+    of it."""
 
     def __init__(self) -> None:
         self._paths: dict[Piece, tuple[Drive, float, tuple[str, ...], DrivePath]] = {}
+        self._slopes: dict[Piece, tuple[DrivePath, tuple[str, ...], DriveSlopes | None]] = {}
         self._made: dict[Piece, tuple[System, DrivePath, Array, Array, Path]] = {}
         self._recorded: dict[Piece, Recorded] = {}
 
@@ -37,6 +40,19 @@ class Kept:
         if kept is None or kept[0] is not drive or kept[1:3] != (late, effects):
             kept = self._paths[piece] = drive, late, effects, make()
         return kept[3]
+
+    def slopes(
+        self,
+        piece: Piece,
+        path: DrivePath,
+        wanted: tuple[str, ...],
+        make: Callable[[], DriveSlopes | None],
+    ) -> DriveSlopes | None:
+        """How the drive over a piece changes with what is wanted, anew if either is another."""
+        kept = self._slopes.get(piece)
+        if kept is None or kept[0] is not path or kept[1] != wanted:
+            kept = self._slopes[piece] = path, wanted, make()
+        return kept[2]
 
     def predicted(
         self, system: System, asked: Sequence[tuple[Piece, DrivePath, Array, Array]]

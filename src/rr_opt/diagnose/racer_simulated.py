@@ -77,7 +77,10 @@ class Simulated:
     ) -> DriveSlopes | None:
         """How the drive changes with what is wanted; None if it does not."""
         t = self._data[piece.run].t[piece.span]
-        return drive_slopes(self._drives, piece.run, t, given, effects, wanted)
+        return self._kept.slopes(
+            *(piece, self.drive_path(piece, given, effects), wanted),
+            lambda: drive_slopes(self._drives, piece.run, t, given, effects, wanted),
+        )
 
     def respond(
         self,

@@ -30,7 +30,7 @@ def shape(says: str, variable: str, unit: str, at: Array, mean: Array, error: Ar
     if signs == {-1.0}:
         does, mean, level = _OPPOSITES[says], -mean, -level
     elif signs == {-1.0, 1.0}:
-        does = f"{says} or the other way, as the {variable} is"
+        does = f"{says} at some values of the {variable} and {_OPPOSITES[says]} at others"
     return f"{does}{_trend(variable, unit, at, mean, error, level)}"
 
 

@@ -14,7 +14,7 @@ stepped over many periods, the last of which repeats.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 
 from rr_opt.physics.drive import Array, Drive, FreeJoint
 from rr_opt.physics.effects.effect import Effect, Parameter, Port
+from rr_opt.physics.often_used import OftenUsed
 
 _STEPS = 240
 """A period."""
@@ -31,6 +32,8 @@ _PERIODS, _FROM_REST = 3, 30
 """Stepped in a row: by a robot that was driven for ever, and by one that starts from rest."""
 _ROUNDS = 3
 """So often the periodic z is extrapolated to; it settles like a power of one period's decay."""
+_FEW, _PAYS = 5, 50_000
+"""Calls that take as long as to look for what was compiled before; steps, as long as to compile."""
 _MISSED = 2.0
 """As the part of a step after which a stop is hit: it is not."""
 
@@ -125,7 +128,7 @@ def _stepped(
     swing, p = (joint.swing, joint.p) if joint else (_coasting(), ())
     n = periods * _STEPS
     given = np.vstack([servo[:, :-1], servo[:, 1:], np.full((2, n), [[half], [dt]])])
-    rolled = np.asarray(_roller(swing, n)(np.append(before, _MISSED), given, p))
+    rolled = _roller(swing, n)(np.append(before, _MISSED), given, p)
     ahead = np.column_stack([before[:2] - servo[:, 0], rolled[:2] - servo[:, 1:]])
     return _Play(dt, ahead[0], ahead[1], rolled[3]), rolled[:3, _STEPS - 1 :: _STEPS]
 
@@ -138,7 +141,7 @@ def _coasting() -> ca.Function:
 
 
 @lru_cache
-def _roller(swing: ca.Function, steps: int) -> Callable[..., ca.DM]:
+def _roller(swing: ca.Function, steps: int) -> OftenUsed:
     """The joint (phi, dphi, z) from step to step, and the part of the step after which it hits a
     stop, from the servo's angle and rate at both ends, half the play, and the step."""
     joint, given = ca.SX.sym("joint", 4), ca.SX.sym("given", 6)
@@ -165,7 +168,8 @@ def _roller(swing: ca.Function, steps: int) -> Callable[..., ca.DM]:
     new = ca.logic_and(held, ca.logic_not(was_held))
     hit = ca.if_else(new, ca.fmin(part, 1.0), _MISSED)
     end = ca.vertcat(ca.if_else(held, stop + side, phi), ca.if_else(held, rate, dphi), z, hit)
-    return ca.Function("step", [joint, given, p], [ca.cse(end)]).mapaccum(steps)
+    step = ca.Function("play_step", [joint, given, p], [ca.cse(end)])
+    return OftenUsed(step.mapaccum(steps), _FEW, max(_PAYS // steps, _FEW + 1))
 
 
 EFFECT = Effect(
