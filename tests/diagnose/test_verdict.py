@@ -5,7 +5,8 @@ from dataclasses import replace
 import pytest
 
 from rr_opt.diagnose.explain import Chosen
-from rr_opt.diagnose.verdict import verdict_of
+from rr_opt.diagnose.explanation import FLOOR
+from rr_opt.diagnose.verdict import confidence, verdict_of
 from tests.diagnose.made_up import base_of, with_effect
 
 
@@ -15,17 +16,19 @@ def base():
 
 
 @pytest.mark.parametrize(
-    ("held", "inexact", "verdict"),
+    ("nominal", "held", "inexact", "verdict"),
     [
-        (0.0, 0.0, "consistent"),
-        (0.5, 0.0, "unexplained"),
-        (0.5, 0.6, "consistent"),
-        (0.7, 0.6, "unexplained"),
+        (0.0, 0.0, 0.0, "consistent"),
+        (0.5, 0.5, 0.0, "unexplained"),
+        (0.5, 0.5, 0.6, "consistent"),
+        (0.7, 0.7, 0.6, "unexplained"),
+        # Bent parameters predict worse than those that were believed.
+        (0.2, 1.3, 0.0, "consistent"),
     ],
 )
-def test_without_effects(base, held, inexact, verdict):
+def test_without_effects(base, nominal, held, inexact, verdict):
     flags = {"moved": False, "rough": False, "systematic": False}
-    assert verdict_of(base, base, 0.0, (held, held), inexact, **flags) == verdict
+    assert verdict_of(base, base, nominal, (held, held), inexact, **flags) == verdict
 
 
 @pytest.mark.parametrize(
@@ -41,3 +44,11 @@ def test_with_effects(base, held, inexact, verdict):
     best = replace(base, chosen=(Chosen("floor_tilt"),))
     flags = {"moved": False, "rough": False, "systematic": False}
     assert verdict_of(best, base, 5.0, (4.0, held), inexact, **flags) == verdict
+
+
+@pytest.mark.parametrize(
+    ("without", "sure"), [(10 * FLOOR, 0.99), (2 * FLOOR, 0.75), (FLOOR / 2, 1.0)]
+)
+def test_a_name_is_no_surer_than_what_it_was_seen_to_explain(base, without, sure):
+    best = replace(base, chosen=(Chosen("floor_tilt"),))
+    assert confidence(best, [], without) == pytest.approx(sure)

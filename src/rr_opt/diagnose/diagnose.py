@@ -83,7 +83,7 @@ def _findings(
 ) -> tuple[Finding, ...]:
     before = max(levels[0].held() ** 2 - 1, 1e-12)
     after = max(levels[1].held() ** 2 - 1, 0.0)
-    sure = confidence(best, rivals)
+    sure = confidence(best, rivals, max(rms(search.base.misfit), rms(before)))
     out = []
     for name in best.names:
         rest = set(best.names) - {name}

@@ -13,8 +13,9 @@ from typing import TypeVar
 
 from rr_opt.diagnose.explain import Chosen, explain, joined
 from rr_opt.diagnose.explanation import FLOOR, Explanation, rms
-from rr_opt.diagnose.fit import Fit
+from rr_opt.diagnose.fit import Fit, solve
 from rr_opt.diagnose.model import Model
+from rr_opt.diagnose.problem import Problem
 from rr_opt.diagnose.screen import Look, Promise, looks, screen
 
 EXACT, ROUGH = 0.005, 0.03
@@ -122,9 +123,7 @@ class Rounds:
         hopeful = [pair for pair in in_windows[:_WHOLE] if not _hopeless(pair[1], least)]
         self.say(f"over whole runs: {', '.join(one.name for one, _ in hopeful)}")
         return list(
-            self.each(
-                carried_out, [_Whole(self.model, best.chosen, one, fit) for one, fit in hopeful]
-            )
+            self.each(carried_out, [_Whole(self.model, best, one, fit) for one, fit in hopeful])
         )
 
 
@@ -156,13 +155,23 @@ class _InWindows:
 @dataclass(frozen=True)
 class _Whole:
     model: Model
-    have: tuple[Chosen, ...]
+    less: Explanation
     one: Chosen
     fit: Fit
 
     def __call__(self) -> Explanation:
-        """The fit over whole runs, from that over windows."""
-        return Explanation((*self.have, self.one), self.fit, joined(self.model, self.fit))
+        """The fit over whole runs, from that over windows.
+
+        One that ends higher than the fit without the effect went astray, and is made again from
+        there.
+        """
+        whole, less = joined(self.model, self.fit), self.less.whole
+        if whole.cost > less.cost + 1.0:
+            values = {**self.fit.values, **less.values}
+            problem = Problem(self.model, tuple(less.starts), whole.effects, whole.quantities)
+            again = solve(problem, values, less.starts, steps=40)
+            whole = min(whole, again, key=lambda fit: fit.cost)
+        return Explanation((*self.less.chosen, self.one), self.fit, whole)
 
 
 def _sight(best: Explanation) -> Fit:

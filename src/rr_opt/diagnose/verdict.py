@@ -41,7 +41,8 @@ def verdict_of(
 ) -> Verdict:
     """The verdict.
 
-    nominal  misfit of the model as believed, RMS in sigma beyond the noise
+    nominal  misfit of the model as believed, RMS in sigma beyond the noise, in fitted or held-out
+             recordings, where it is more
     held     the same of the held-out recordings, with the parameters alone and with everything
     inexact  misfit of the model as believed that says nothing about its values, and of held-out
              recordings that says nothing about what is missing
@@ -51,8 +52,12 @@ def verdict_of(
     """
     if not best.chosen:
         left = certain(base.misfit, base.whole.count, _LIKELY)
-        if left > FLOOR or held[0] > max(LEFT, inexact):
+        if left > FLOOR:
             return "unexplained"
+        if held[0] > max(LEFT, inexact):
+            # Parameters may be bent to what no machine has of its model exactly, and then predict
+            # worse than those that were believed.
+            return "consistent" if nominal <= max(LEFT, inexact) else "unexplained"
         return "parameters" if moved and nominal > max(FLOOR, inexact) else "consistent"
     excused = min(inexact, max(NEAR, _ALIKE * rms(best.misfit)))
     apart = held[1] if held[1] > excused else 0.0
@@ -64,13 +69,18 @@ def verdict_of(
     return "missing_physics" if explained and not systematic else "unexplained"
 
 
-def confidence(best: Explanation, rivals: Sequence[Explanation]) -> float:
-    """How sure the names are, against all rivals, in the light of what model error is left."""
+def confidence(best: Explanation, rivals: Sequence[Explanation], without: float) -> float:
+    """How sure the names are, against all rivals, in the light of what model error is left.
+
+    without  misfit without any effect, RMS in sigma: as `FLOOR` counts as none, so much of it is
+             not shown to be an effect's, and something outside the catalogue may imitate the rest
+    """
     wider = doubt(best.whole.cost, best.whole.count)
     against = sum(
         math.exp(-min(max(rival.score - best.score, 0.0) / (2 * wider), 700.0)) for rival in rivals
     )
-    return 1.0 / (1.0 + against)
+    shown = 1.0 - (FLOOR / without) ** 2 if without > FLOOR else 1.0
+    return shown / (1.0 + against)
 
 
 def finding(name: str, sure: float, intervals: Mapping[str, Estimate], removes: float) -> Finding:
