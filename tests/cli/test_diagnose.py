@@ -15,7 +15,7 @@ from tests.robots import BENCHMARK
 
 GAITS = ((0.5, 1.0, 0.0), (0.7, 1.2, 0.1), (0.4, 0.8, -0.1))
 KEYS = {"verdict", "summary", "location", "effects", "candidates", "indistinguishable",
-        "next_experiment", "fit", "version", "input_sha256"}  # fmt: skip
+        "next_experiment", "fit", "doubts", "left_out", "version", "input_sha256"}  # fmt: skip
 
 
 def entry(number, use="fit"):

@@ -78,7 +78,7 @@ def test_json_stands_alone(run):
         (("--gait", "30 deg"), "Expected amplitude, period"),
         (("--gait", "30 deg, 1.2 kg"), "--period"),
         (("--effect", "gremlins"), "cannot hide"),
-        (("--effect", "servo_lag"), "lacks its parameter tau"),
+        (("--effect", "floor_patch:multiplier=2"), "lacks its parameter"),
         (("--effect", "servo_lag:tau=3 kg"), "--effect servo_lag, tau"),
         (("--effect", "servo_lag:width=3"), "Expected tau"),
         (("--noise", "1 mm"), "--noise"),
@@ -94,3 +94,39 @@ def test_wrong_input(run, arguments, expected):
     assert told.exit_code == 2
     assert expected in told.stderr
     assert "Traceback" not in told.stderr
+
+
+def test_what_record_did_not_write_is_kept(run, recorded, tmp_path):
+    file = tmp_path / "rec" / "experiment.yaml"
+    again = ("record", *RUNS, "--seconds", "2", "--noise", "1 mm, 3 mrad", "--out", "rec")
+    assert run(*again).exit_code == 0
+    mine = file.read_text().split("\n", 1)[1]
+    file.write_text(mine)
+    told = run(*again)
+    assert told.exit_code == 2
+    assert "was not written by `rr-opt record`" in told.stderr
+    assert file.read_text() == mine
+
+
+@pytest.mark.parametrize(
+    ("use", "said"),
+    [
+        ("coulomb_friction", "without one it does nothing"),
+        ("coulomb_friction:force1=-2 mN", "at least 0"),
+        ("servo_lag:tau=-20 ms", "at least 0"),
+    ],
+)
+def test_an_effect_that_is_none(run, tmp_path, use, said):
+    told = run("record", *RUNS, "--seconds", "2", "--effect", use, "--out", "rec")
+    assert told.exit_code == 2
+    assert said in told.stderr
+    assert not (tmp_path / "rec").exists()
+
+
+def test_degrees_for_radians(run):
+    told = run("record", "--gait", "30, 1.2", "--seconds", "1", "--engine", "planar")
+    assert told.exit_code == 0
+    assert "run01.csv goes to" in told.stderr
+    assert "write `30 deg`" in told.stderr
+    right = run("record", "--gait", "30 deg, 1.2", "--seconds", "1", "--engine", "planar")
+    assert "warning" not in right.stderr

@@ -9,7 +9,7 @@ from rr_opt.files import lint_file, read_robot
 DOUBTS = {
     ("a: 0.020", "a: 0.300"): ("platform1.a", "puts the centre of mass beyond the joint"),
     ("I: 0.00386", "I: 3.86"): ("platform1.I", "more than three times the platform's largest"),
-    ("c: 0.206", "c: 206"): ("platform1.c", "Plain numbers are metres: write `186 mm`"),
+    ("c: 0.206", "c: 206"): ("platform1.c", "Plain numbers are metres: write `206 mm`"),
 }
 
 

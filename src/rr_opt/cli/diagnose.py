@@ -51,7 +51,7 @@ def diagnose(
 
         told = Diagnosed(name, sha256, experiment, found, left_out)
         written = write_diagnosis(told, folder, page=page, progress=steps)
-    for sentence in left_out:
+    for sentence in (*left_out, *told.doubts):
         typer.echo(sentence, err=True)
     if json:
         typer.echo(strict_json(record(told)), nl=False)

@@ -44,12 +44,19 @@ def lint(
 
 
 def _issues(file: Path) -> list[Issue]:
-    """All of them; of an experiment also those of its recordings."""
+    """All of them; of an experiment also those of its recordings, and which tell nothing."""
     from rr_opt.files.lint import experiment_file, lint_file  # noqa: PLC0415
 
     experiment = experiment_file(file)
     if experiment is None:
         return lint_file(file)
+    from rr_opt.cli.diagnose_input import checked  # noqa: PLC0415
+    from rr_opt.files.issue import Issue  # noqa: PLC0415
     from rr_opt.recordings.experiment import experiment_of  # noqa: PLC0415
 
-    return experiment_of(experiment)[1]
+    read, issues = experiment_of(experiment)
+    if read is not None:
+        found, place = checked(read), str(experiment)
+        issues += [Issue("error", "", text, file=place) for text in found.wrong]
+        issues += [Issue("warning", "", text, file=place) for text in found.left_out]
+    return issues

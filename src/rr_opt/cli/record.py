@@ -90,8 +90,13 @@ def record(
     with Steps() as steps:
         steps("reading")
         from rr_opt.cli.motion_input import read_options  # noqa: PLC0415
-        from rr_opt.cli.record_files import require_apart, write_case  # noqa: PLC0415
-        from rr_opt.cli.record_options import read_effects, read_noise, read_runs  # noqa: PLC0415
+        from rr_opt.cli.record_files import require_apart, require_own, write_case  # noqa: PLC0415
+        from rr_opt.cli.record_options import (  # noqa: PLC0415
+            beyond_reach,
+            read_effects,
+            read_noise,
+            read_runs,
+        )
         from rr_opt.lab.case_of import case_of  # noqa: PLC0415
         from rr_opt.lab.delivery import Delivery  # noqa: PLC0415
         from rr_opt.lab.servo_log import drawn_clock  # noqa: PLC0415
@@ -110,6 +115,7 @@ def record(
             )
         folder = folder_for_results(out or Path("out/recorded"))
         require_apart(folder, seal)
+        require_own(folder)
         long = read_options(seconds=seconds)["seconds"]
         steps("drawing the case")
         case = case_of(
@@ -125,6 +131,8 @@ def record(
         )
         delivery = Delivery(form, servo_log, drawn_clock(stream(case.seed, "servo")), torque=torque)
         written = write_case(case, folder, seal, delivery, steps)
+    for warning in beyond_reach(case.nominal, case.plans):
+        typer.echo(warning, err=True)
     typer.echo(strict_json(written.record) if json else written.summary, nl=False)
 
 

@@ -10,7 +10,8 @@ from typing import Any
 from rr_opt.lab.answer import seal_of, sealed_text
 from rr_opt.lab.case import Case
 from rr_opt.lab.delivery import Delivery
-from rr_opt.lab.folder import folder_of
+from rr_opt.lab.experiment_text import WRITTEN
+from rr_opt.lab.folder import FILE_NAME, folder_of
 from rr_opt.outcome import InputError
 from rr_opt.report.archive import file_for_result, write_bytes, write_text
 
@@ -49,6 +50,16 @@ def require_apart(folder: Path, seal: Path | None) -> None:
         raise InputError(
             f"The seal {seal} lies in the folder of the recordings. Expected it apart from them. "
             "Give another place with --seal."
+        )
+
+
+def require_own(folder: Path) -> None:
+    """Raise InputError if an experiment is there that `record` did not write."""
+    file = folder / FILE_NAME
+    if file.is_file() and not file.read_bytes().startswith(WRITTEN.encode()):
+        raise InputError(
+            f"{file} was not written by `rr-opt record`, which would write over it. Give another "
+            "place with --out."
         )
 
 

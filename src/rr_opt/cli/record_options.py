@@ -10,7 +10,7 @@ from rr_opt.outcome import InputError
 if TYPE_CHECKING:
     from rr_opt.experiment.experiment import Noise
     from rr_opt.lab.case import Plan
-    from rr_opt.robot.parameters import EffectUse
+    from rr_opt.robot.parameters import EffectUse, Robot
 
 STARTS, USES = ("rest", "running"), ("fit", "holdout")
 
@@ -52,6 +52,20 @@ def read_runs(texts: Iterable[str], seconds: float) -> tuple[Plan, ...]:
     return tuple(plans)
 
 
+def beyond_reach(robot: Robot, plans: Iterable[Plan]) -> list[str]:
+    """A warning for each run that turns the joint further than its servo can."""
+    from rr_opt.report.quantities import QUANTITIES  # noqa: PLC0415
+
+    angle, limit = QUANTITIES["angle"], robot.servo.angle_limit
+    return [
+        f"warning: {plan.name} goes to {angle.both(plan.gait.peak_angle)}, and the servo's limit "
+        f"is {angle.both(limit)}. It is recorded as if the servo could. Plain numbers are radians: "
+        "write `30 deg` for degrees."
+        for plan in plans
+        if plan.gait.peak_angle > limit
+    ]
+
+
 def read_effects(texts: Iterable[str]) -> tuple[EffectUse, ...]:
     """`coulomb_friction:force1=0.02,force2=20 mN` each. Raises InputError with all mistakes."""
     from rr_opt.files.quantity import Quantity  # noqa: PLC0415
@@ -73,10 +87,20 @@ def read_effects(texts: Iterable[str]) -> tuple[EffectUse, ...]:
                 )
                 continue
             unit = "" if units[key].unit == "1" else units[key].unit
+            one = units[key]
+            example = f"{one.typical:g} {unit}".strip()
+            least = None if one.signed or one.neutral is None else 0.0
             try:
-                values[key] = Quantity(unit, f"{units[key].typical:g} {unit}".strip()).read(value)
+                values[key] = Quantity(unit, example, at_least=least).read(value)
             except InputError as error:
                 wrong.append(f"--effect {name}, {key}: {error}")
+        if not rest.strip():
+            first = effect.parameters[0]
+            example = f"{first.typical:g} {first.unit}".removesuffix(" 1")
+            wrong.append(
+                f"--effect {name}: Read no value, and without one it does nothing. Write for "
+                f"example `{effect.name}:{first.name}={example}`."
+            )
         uses.append(EffectUse(effect.name, values))
     if wrong:
         raise InputError("\n".join(wrong))

@@ -54,7 +54,9 @@ def singular_posture(robot: Robot) -> str | None:
 
 
 def _platform_doubts(platform: Platform) -> Iterator[tuple[str, str]]:
-    longest = max(platform.c, abs(platform.a), platform.b)
+    lengths = {"c": platform.c, "a": abs(platform.a), "b": platform.b}
+    key = max(lengths, key=lambda name: lengths[name])
+    longest = lengths[key]
     gyration = math.sqrt(platform.I / platform.m)
     if platform.a > platform.c:
         yield (
@@ -67,10 +69,10 @@ def _platform_doubts(platform: Platform) -> Iterator[tuple[str, str]]:
         )
     if longest > _LARGEST_LENGTH:
         yield (
-            "c",
+            key,
             (
-                f"The platform is {longest:.4g} m long. Plain numbers are metres: write `186 mm` "
-                "for millimetres."
+                f"The platform is {longest:.4g} m long. Plain numbers are metres: write "
+                f"`{longest:g} mm` for millimetres."
             ),
         )
     if gyration > 3 * longest:

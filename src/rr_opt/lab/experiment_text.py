@@ -12,6 +12,9 @@ from rr_opt.lab.delivery import Delivery
 from rr_opt.lab.markers import places
 from rr_opt.robot.parameters import Platform, Robot
 
+WRITTEN = "# Written by `rr-opt record`, which may write over it."
+"""The first line of the file."""
+
 
 def experiment_text(case: Case, delivery: Delivery) -> str:
     """experiment.yaml. Its values are written as JSON, which YAML reads."""
@@ -22,7 +25,7 @@ def experiment_text(case: Case, delivery: Delivery) -> str:
     if delivery.form != "csv":
         first, second = places(case.nominal)
         sections["markers"] = {"platform1": first, "platform2": second}
-    lines = ["robot:"]
+    lines = [WRITTEN, "robot:"]
     lines += [f"  {key}: {json.dumps(value)}" for key, value in _robot(case.nominal).items()]
     lines += [f"{key}: {json.dumps(value)}" for key, value in sections.items()]
     lines.append("recordings:")

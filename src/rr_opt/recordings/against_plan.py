@@ -29,11 +29,16 @@ _ALIKE = 0.5
 """Of phi's variance that is the gait's where that was driven."""
 _OTHER = 0.8
 """The same of a sine of another period, where that was driven."""
-_LATE = 0.3
-"""Of a period; a servo that lags stays below a quarter."""
+_LATE, _HALF = 0.3, 0.45
+"""Of a period; a servo that lags stays below a quarter, and the other sign is half of one."""
+HALF_A_PERIOD = "half a period"
+"""The kind of doubt about phi that may have the other sign: of one recording, or of all."""
 _FAR = 1.3
 """Times as far as commanded, or as little, phi moves with a grave fault, or another command."""
 _SHIFTS = 64
+_TOO_FAR, _MILLI, _NOT_FAR = 10.0, 300.0, 0.05
+"""Times as far sideways as a turn takes the joint, in another unit only: from the first on in cm,
+from the second on in mm, below the third in one that is too large. Wheels that slide leave 0.7."""
 _WITH, _STRIDE = 0.7, 5
 """Correlation of the angles' steps, over so many samples, from which on they turn together."""
 
@@ -48,21 +53,44 @@ def plan_doubts(run: Run, robot: Robot) -> tuple[Doubt, ...]:
     sizes = {name: _swing(t, run.recording.data(name), period) for name in CHANNELS}
     psi, phi = run.recording.data("psi"), run.recording.data("phi")
     length = robot.platform1.c + robot.platform2.c
-    return (*_command(t, phi, run.gait), *_units(sizes, length), *_signs(psi, phi))
+    x, y = run.recording.data("x"), run.recording.data("y")
+    return (
+        *_command(t, phi, run.gait),
+        *(_units(sizes, length) or _sideways(x, y, psi, robot.platform1.c)),
+        *_signs(psi, phi),
+    )
 
 
-def _units(sizes: dict[str, float], length: float) -> Iterator[Doubt]:
+def _units(sizes: dict[str, float], length: float) -> tuple[Doubt, ...]:
+    doubts = []
     if (driven := max(sizes["x"], sizes["y"])) > _LENGTHS * length:
-        yield Doubt(
-            "units",
+        doubts.append(
             f"The joint moves {driven:.4g} in a period, and the robot is {length:.3g} m long. "
-            "Expected metres: are these millimetres or centimetres?",
+            "Expected metres: are these millimetres or centimetres?"
         )
     if sizes["psi"] > _HEADING * sizes["phi"] > 0:
+        doubts.append(
+            f"The heading turns by {sizes['psi']:.4g} in a period, and phi by {sizes['phi']:.3g}. "
+            "Expected radians for both: is psi in degrees?"
+        )
+    return tuple(Doubt("units", text) for text in doubts)
+
+
+def _sideways(x: Array, y: Array, psi: Array, c: float) -> Iterator[Doubt]:
+    """A turn of platform 1 about its axle takes the joint c sideways; wheels that slip, less."""
+    dx, dy, turned = (values[_STRIDE:] - values[:-_STRIDE] for values in (x, y, psi))
+    heading = (psi[_STRIDE:] + psi[:-_STRIDE]) / 2
+    side = np.cos(heading) * dy - np.sin(heading) * dx
+    known = np.isfinite(side) & np.isfinite(turned)
+    turned, side = turned[known], side[known]
+    swings = float(turned @ turned)
+    ratio = abs(float(side @ turned)) / (c * swings) if swings > 0 and c > 0 else 0.0
+    if ratio > _TOO_FAR or 0 < ratio < _NOT_FAR:
+        unit = "millimetres" if ratio > _MILLI else "centimetres" if ratio > 1 else "another unit"
         yield Doubt(
             "units",
-            f"The heading turns by {sizes['psi']:.4g} in a period, and phi by {sizes['phi']:.3g}. "
-            "Expected radians for both: is psi in degrees?",
+            f"The joint moves sideways {ratio:.3g} times as far as the turns of platform 1 take "
+            f"it. Expected metres: are these {unit}?",
         )
 
 
@@ -106,7 +134,7 @@ def _command(t: Array, phi: Array, gait: Gait) -> Iterator[Doubt]:
         return
     if abs(shifts[best]) > _LATE * gait.period:
         yield Doubt(
-            "doubtful",
+            HALF_A_PERIOD if abs(shifts[best]) > _HALF * gait.period else "doubtful",
             f"phi is {abs(shifts[best]):.2g} s off its command, of a period of "
             f"{gait.period:.3g} s. Is t = 0 where the command begins, and phi positive to the "
             "left?",

@@ -17,6 +17,8 @@ _NO_ROOM = 1e5
 _TURN = 2 * np.pi
 _SLOWEST = 0.5
 """Capture systems sample more often than every so many seconds."""
+_LATEST = 1e6
+"""Nor do they begin so many seconds, eleven days, after the command did."""
 
 
 def unit_doubts(recording: Recording) -> tuple[Doubt, ...]:
@@ -25,6 +27,13 @@ def unit_doubts(recording: Recording) -> tuple[Doubt, ...]:
 
 
 def _of_time(recording: Recording) -> Iterator[Doubt]:
+    if len(recording) and abs(recording.t[0]) > _LATEST:
+        yield Doubt(
+            "units",
+            f"The times begin at {recording.t[0]:.10g}, as those of a calendar do. Expected "
+            "seconds since the command began; subtract the time at which it did.",
+        )
+        return
     step = time_step(recording.t)
     if step < _SLOWEST or len(recording) < 3:
         return
@@ -49,8 +58,8 @@ def _of_place(recording: Recording) -> Iterator[Doubt]:
     elif widest > _ROOM:
         yield Doubt(
             "units",
-            f"The positions look like millimetres: ranges of {_sizes(ranges)}. Expected metres; "
-            "divide by 1000.",
+            f"The positions look like millimetres or centimetres: ranges of {_sizes(ranges)}. "
+            "Expected metres; divide by 1000, or by 100.",
         )
 
 

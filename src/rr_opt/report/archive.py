@@ -40,10 +40,14 @@ def _writable(asked: Path, folder: Path) -> Path:
         raise InputError(
             f"{asked} cannot be made: {there} is not a folder. Give another place with --out."
         )
-    if not os.access(there, os.W_OK | os.X_OK):
+    try:
+        # Permissions alone do not tell of a mount that cannot be written to.
+        with tempfile.TemporaryFile(dir=there):
+            pass
+    except OSError:
         raise InputError(
             f"{asked} cannot be written: {there} does not let you. Give another place with --out."
-        )
+        ) from None
     return asked
 
 

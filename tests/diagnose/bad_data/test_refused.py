@@ -8,6 +8,7 @@ import pytest
 from rr_opt.cli.diagnose_input import read, usable
 from rr_opt.diagnose.model import Piece
 from rr_opt.diagnose.racer import RollerRacer
+from rr_opt.files.issue import has_errors
 from rr_opt.outcome import InputError
 from rr_opt.physics.effects import CATALOGUE
 from rr_opt.robot.gait import SineGait
@@ -27,12 +28,15 @@ def refusal(folder):
     ("factors", "said"),
     [
         ((1, 1000, 1, 1, 1), "millimetres"),
-        ((1, 20, 20, 1, 1), "millimetres or centimetres?"),
+        ((1, 20, 20, 1, 1), "centimetres?"),
         ((1, 100, 100, 1, 1), "Expected metres"),
+        ((1, 15, 15, 1, 1), "centimetres?"),
+        ((1, 0.02, 0.02, 1, 1), "are these another unit?"),
         ((1, 1, 1, DEGREES, 1), "is psi in degrees?"),
         ((1, 1, 1, 1, DEGREES), "degrees"),
         ((1, 1, 1, -1, 1), "The heading swings with phi"),
         ((1, 1, 1, 1, -1), "The heading swings with phi"),
+        ((1, 1, -1, -1, -1), "phi is half a period off its command in every recording"),
     ],
 )
 def test_another_unit_or_sign(tmp_path, factors, said):
@@ -57,6 +61,26 @@ def test_another_period(tmp_path, factor):
     assert "run0.csv: phi repeats every 1" in told
     assert f"the gait every {factor * period:.3g} s" in told
     assert "run1" not in told
+
+
+def test_times_of_a_calendar(tmp_path):
+    told = refusal(written(tmp_path, lambda table: np.add(table, [1.7e9, 0, 0, 0, 0])))
+    assert "The times begin at 1700000000" in told
+
+
+def test_noise_that_drowns_the_motion(tmp_path):
+    folder = written(tmp_path)
+    file = folder / "experiment.yaml"
+    assert "angle: 0.003" in file.read_text()
+    file.write_text(file.read_text().replace("angle: 0.003", "angle: 0.2"))
+    assert "Correct `noise.angle`" in refusal(folder)
+
+
+def test_what_is_refused_is_no_clean_bill_of_lint(tmp_path):
+    from rr_opt.cli.lint import _issues  # noqa: PLC0415
+
+    assert not has_errors(_issues(written(tmp_path / "right")))
+    assert has_errors(_issues(written(tmp_path / "mm", lambda table: table * [1, 1e3, 1e3, 1, 1])))
 
 
 def test_too_short_or_too_still(tmp_path):

@@ -34,6 +34,7 @@ _DEFAULTS: dict[str, Any] = {
     "kappa": "unknown",
 }
 _ZEROS = ("psi_zero", "phi_zero")
+_EXAMPLES = {"kg": "5 g", "kg m^2": "1e-4", "m": "2 mm", "N m s": "1e-6"}
 
 
 def _fields() -> Iterator[tuple[str, Any]]:
@@ -42,12 +43,11 @@ def _fields() -> Iterator[tuple[str, Any]]:
         standard = f" Default: {_DEFAULTS[name]}." if name in _DEFAULTS else ""
         return kind, Field(default=None, description=f"One sigma of {description}.{standard}")
 
-    example = {"kg": "5 g", "kg m^2": "1e-4", "m": "2 mm", "N m s": "1e-6"}
     for key, unit in _UNITS.items():
-        yield key, optional(key, unit, example[unit], f"the {_MEANINGS[key]}, {unit}", False)
+        yield key, optional(key, unit, _EXAMPLES[unit], f"the {_MEANINGS[key]}, {unit}", False)
         for number in "12":
             told = f"platform {number}'s {key}, {unit}"
-            yield f"{key}{number}", optional(f"{key}{number}", unit, example[unit], told, False)
+            yield f"{key}{number}", optional(f"{key}{number}", unit, _EXAMPLES[unit], told, False)
     yield "h", optional("h", "m", "0.5 mm", "the wheel radius, m", False)
     for key in _ZEROS:
         yield key, optional(key, "rad", "5 mrad", f"the zero of {key[:3]}, rad; else exact", True)
@@ -99,5 +99,6 @@ def shares_of_nothing(model: Any, robot: Robot) -> Iterator[tuple[str, str]]:
             yield (
                 key,
                 f"The nominal {' and '.join(zeros)} is 0, and any share or multiple of it is 0: "
-                "it would be taken as exact. Write an absolute value, such as `2 mm`.",
+                "it would be taken as exact. Write an absolute value, such as "
+                f"`{_EXAMPLES[_UNITS[name]]}`.",
             )

@@ -53,6 +53,13 @@ class Diagnosed:
         return loss(self.experiment, self.corrected)
 
     @property
+    def doubts(self) -> tuple[str, ...]:
+        """Sentences on the recordings that were used, each with its recording's name."""
+        return tuple(
+            f"{run.name}: {doubt}" for run in self.experiment.runs for doubt in run.recording.doubts
+        )
+
+    @property
     def guilty(self) -> tuple[Stage, ...]:
         """The stages in which a fault sits."""
         return tuple(stage for stage in self.found.stages if stage.guilty)

@@ -124,10 +124,7 @@ def _with_note(body: str, note: str) -> str:
 
 
 def _doubts(one: Diagnosed) -> str:
-    told = list(one.left_out)
-    told += [
-        f"{run.name}: {doubt}" for run in one.experiment.runs for doubt in run.recording.doubts
-    ]
+    told = (*one.left_out, *one.doubts)
     items = "".join(f'<li class="bad">{escape(text)}</li>' for text in told)
     return f'<ul class="checks">{items}</ul>' if items else ""
 

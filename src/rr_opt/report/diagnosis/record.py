@@ -38,6 +38,7 @@ def record(one: Diagnosed) -> dict[str, Any]:
         "parameters": {name: _estimate(each) for name, each in found.parameters.items()},
         "values": {name: number_of(value) for name, value in found.values.items()},
         "left_out": list(one.left_out),
+        "doubts": list(one.doubts),
         "seconds": {step: number_of(time) for step, time in found.seconds.items()},
         "version": __version__,
         "input_sha256": one.sha256,
