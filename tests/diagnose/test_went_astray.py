@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import pytest
 
+from rr_opt.diagnose import explain as module
 from rr_opt.diagnose import rounds
 from rr_opt.diagnose.explain import Chosen, explain
 from rr_opt.diagnose.rounds import _Whole
@@ -35,3 +36,21 @@ def test_a_fit_that_went_astray_is_made_again(monkeypatch, astray):
     assert ways == (["whole", "again"] if astray else ["whole"])
     assert found.whole.cost < 1.05 * found.whole.count
     assert found.chosen == (one,)
+
+
+def test_windows_that_went_astray_are_fitted_again(monkeypatch):
+    values = {"coulomb_friction.force1": 0.003, "coulomb_friction.force2": 0.003}
+    model = with_effect(values, ("coulomb_friction",), seconds=5.0)
+    base, dry = base_of(model), Chosen("coulomb_friction")
+    less = explain(model, [dry], base.windows, base.windows)
+    way, first = module._from_best, []
+
+    def astray(model, chosen, start, *rest):
+        fit = way(model, chosen, start, *rest)
+        first.append(start)
+        return replace(fit, cost=10 * less.cost) if len(first) == 1 else fit
+
+    monkeypatch.setattr(module, "_from_best", astray)
+    both = explain(model, [dry, Chosen("floor_tilt")], base.windows, less)
+    assert first[-1] is less
+    assert both.cost <= less.cost

@@ -77,25 +77,50 @@ def explain(
     Effects that `start` has begin as they are in it, a new one at the best of `begins`, or where
     its form says. Parameters and the runs' starts begin where they are believed to be, in the
     `nominal` fit: bent to imitate what was missing, they lie at the end of a valley along which a
-    fit comes back only slowly.
+    fit comes back only slowly. Where that leads astray, and what ends is worse than `start`, they
+    begin where they are in it.
     """
-    forms = [one.of(model) for one in chosen]
-    names = tuple(one.name for one in chosen)
-    quantities = (*model.parameters, *(q for form in forms for q in form.quantities))
-    problem = Problem(model, tuple(nominal.starts), names, quantities)
-    values = {q.name: q.value for q in quantities} | {
-        q.name: start.values[q.name] for q in quantities if q.name in start.values and not q.known
-    }
-    fresh = [f for one, f in zip(chosen, forms, strict=True) if one.name not in start.effects]
-    places = [begins] if begins else [form.starts for form in fresh]
-    each = [
-        values | {name: value for part in found for name, value in part.items()}
-        for found in itertools.product(*places)
+    quantities = (*model.parameters, *(q for one in chosen for q in one.of(model).quantities))
+    kept = {q.name: start.values[q.name] for q in quantities if q.name in start.values}
+    loose = {q.name: kept[q.name] for q in quantities if q.name in kept and not q.known}
+    fit = _from_best(model, chosen, nominal, loose, _begins(model, chosen, start, begins))
+    if start.starts.keys() == nominal.starts.keys() and fit.cost > start.cost + 1.0:
+        other = _from_best(model, chosen, start, kept, _begins(model, chosen, start, begins))
+        fit = min(fit, other, key=lambda one: one.cost)
+    return fit
+
+
+def _begins(
+    model: Model,
+    chosen: Sequence[Chosen],
+    start: Fit,
+    begins: Sequence[Mapping[str, float]] | None,
+) -> list[dict[str, float]]:
+    """The values to begin from of what `start` has not."""
+    fresh = [one.of(model).starts for one in chosen if one.name not in start.effects]
+    return [
+        {name: value for part in found for name, value in part.items()}
+        for found in itertools.product(*([begins] if begins else fresh))
     ]
+
+
+def _from_best(
+    model: Model,
+    chosen: Sequence[Chosen],
+    first: Fit,
+    values: Mapping[str, float],
+    begins: Sequence[Mapping[str, float]],
+) -> Fit:
+    """The fit with these effects, from the starts of another and the best of the values to begin
+    from; what has no value begins where it is believed to be."""
+    names = tuple(one.name for one in chosen)
+    quantities = (*model.parameters, *(q for one in chosen for q in one.of(model).quantities))
+    problem = Problem(model, tuple(first.starts), names, quantities)
+    each = [{q.name: q.value for q in quantities} | dict(values) | dict(more) for more in begins]
     if len(each) == 1:
-        return solve(problem, each[0], _starts(problem, each[0], nominal), done=_NEAR)
+        return solve(problem, each[0], _starts(problem, each[0], first), done=_NEAR)
     best = min(
-        (solve(problem, v, _starts(problem, v, nominal), steps=_LOOK, done=_NEAR) for v in each),
+        (solve(problem, v, _starts(problem, v, first), steps=_LOOK, done=_NEAR) for v in each),
         key=lambda f: f.cost,
     )
     return best if best.converged else solve(problem, best.values, best.starts, done=_NEAR)

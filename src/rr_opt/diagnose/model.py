@@ -60,7 +60,7 @@ class Candidate:
     """An effect that may be missing from the nominal model.
 
     channel   where it would show, in the words of the verdict
-    imitates  candidates with fewer quantities that a form of this one comes close to
+    imitates  candidates with no more quantities that a form of this one comes close to
     """
 
     name: str

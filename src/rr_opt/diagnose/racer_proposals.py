@@ -64,7 +64,10 @@ def of_servo(model: Racer, name: str, form: Form, fit: Fit) -> Sequence[Proposal
 def of_patch(model: Racer, fit: Fit) -> tuple[Sequence[Proposal], Sequence[Proposal]]:
     """Circles and edges that would gain most; see `floor_map`."""
     plain = _unbent(model, fit)
-    floor, unsure = floor_map(model, plain), doubt(plain.cost, plain.count)
+    floor = floor_map(model, plain)
+    # The map fits the parameters too: what they leave is what a gain is weighed against.
+    fitted = plain.starts.keys() == fit.starts.keys()
+    unsure = doubt(min(plain.cost, fit.cost) if fitted else plain.cost, plain.count)
     round_ones, straight = (_named(likely(floor, shape), unsure) for shape in (ROUND, STRAIGHT))
     return round_ones, straight
 

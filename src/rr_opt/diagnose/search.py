@@ -117,8 +117,8 @@ class Search:
         for one in best.chosen:
             for name in self.model.catalogue[one.name].imitates:
                 other = Chosen(name)
-                fewer = len(other.of(self.model).quantities) < len(one.of(self.model).quantities)
-                if name not in best.names and fewer:
+                more = len(other.of(self.model).quantities) > len(one.of(self.model).quantities)
+                if name not in best.names and not more:
                     chosen = tuple(other if each is one else each for each in best.chosen)
                     best = min(best, self._with(chosen, best), key=lambda each: each.score)
         return best

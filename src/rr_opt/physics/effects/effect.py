@@ -106,7 +106,7 @@ class Effect:
     nameless no candidate of a diagnosis: a curve that imitates what has no name, or what an
              experiment says of itself
     forms    which parameters are looked for together; one form of them all, if none is given
-    imitates effects with fewer parameters that a form of this one comes close to
+    imitates effects with no more parameters that a form of this one comes close to
 
     `symbols` and `values` map each parameter's name to its symbol or its value, SI.
     """
