@@ -10,9 +10,10 @@ from rr_opt.diagnose import racer_proposals
 from rr_opt.diagnose.explain import nominal, parameters, windows
 from rr_opt.diagnose.floor_map import floor_map
 from rr_opt.diagnose.floor_shapes import ROUND, STRAIGHT, likely
+from rr_opt.diagnose.problem import doubt
 from rr_opt.diagnose.racer_proposals import of_patch
 from rr_opt.robot.gait import SineGait
-from tests.diagnose.made_up import with_effect
+from tests.diagnose.made_up import base_of, with_effect
 
 ROUND_ONE = {
     "floor_patch.multiplier": 8.0,
@@ -139,3 +140,13 @@ def test_where_few_runs_are_bent_by_a_patch_the_robot_is_as_believed(monkeypatch
     close = {**whole.values, **fit.values}
     of_patch(model, replace(whole, quantities=fit.quantities, values=close))
     assert seen[1].values == close
+
+
+def test_a_gain_is_weighed_against_what_parameters_leave(monkeypatch):
+    model = with_effect({}, (), seconds=5.0)
+    fit = base_of(model).windows
+    believed = replace(fit, cost=50 * fit.cost)
+    monkeypatch.setattr(racer_proposals, "_unbent", lambda *_: believed)
+    proposals = [one for shape in of_patch(model, fit) for one in shape]
+    assert proposals
+    assert all(one.doubt == doubt(fit.cost, fit.count) for one in proposals)
