@@ -78,7 +78,7 @@ def test_json_stands_alone(run):
         (("--gait", "30 deg"), "Expected amplitude, period"),
         (("--gait", "30 deg, 1.2 kg"), "--period"),
         (("--effect", "gremlins"), "cannot hide"),
-        (("--effect", "floor_patch:multiplier=2"), "lacks its parameter"),
+        (("--effect", "floor_patch:multiplier=2"), "lacks its parameter edge_x"),
         (("--effect", "servo_lag:tau=3 kg"), "--effect servo_lag, tau"),
         (("--effect", "servo_lag:width=3"), "Expected tau"),
         (("--noise", "1 mm"), "--noise"),

@@ -45,8 +45,8 @@ def test_windows_that_went_astray_are_fitted_again(monkeypatch):
     less = explain(model, [dry], base.windows, base.windows)
     way, first = module._from_best, []
 
-    def astray(model, chosen, start, *rest):
-        fit = way(model, chosen, start, *rest)
+    def astray(problem, start, *rest):
+        fit = way(problem, start, *rest)
         first.append(start)
         return replace(fit, cost=10 * less.cost) if len(first) == 1 else fit
 

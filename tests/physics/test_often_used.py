@@ -4,7 +4,7 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from rr_opt.physics import often_used
+from rr_opt.physics import externals, often_used
 from rr_opt.physics.often_used import OftenUsed
 
 
@@ -24,7 +24,7 @@ def test_the_numbers_stay_the_same(function):
 
 def test_it_looks_once_and_compiles_once(function, monkeypatch):
     asked = []
-    monkeypatch.setattr(often_used, "library", lambda *_, make: asked.append(make))
+    monkeypatch.setattr(externals, "library", lambda *_, make: asked.append(make))
     often = OftenUsed(function, 1, 3)
     for _ in range(6):
         often([0.3, 0.7])
@@ -33,9 +33,9 @@ def test_it_looks_once_and_compiles_once(function, monkeypatch):
 
 def test_what_was_compiled_is_used_at_once(function, monkeypatch):
     asked = []
-    compiled = often_used._compiled
+    compiled = often_used.externals
     monkeypatch.setattr(
-        often_used, "_compiled", lambda *a, make: asked.append(make) or compiled(*a, make=True)
+        often_used, "externals", lambda *a, make: asked.append(make) or compiled(*a, make=True)
     )
     often = OftenUsed(function, 1, 3)
     for _ in range(6):

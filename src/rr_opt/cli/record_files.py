@@ -7,11 +7,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from rr_opt.files.experiment.file import FILE_NAME
 from rr_opt.lab.answer import seal_of, sealed_text
 from rr_opt.lab.case import Case
 from rr_opt.lab.delivery import Delivery
 from rr_opt.lab.experiment_text import WRITTEN
-from rr_opt.lab.folder import FILE_NAME, folder_of
+from rr_opt.lab.folder import folder_of
 from rr_opt.outcome import InputError
 from rr_opt.report.archive import file_for_result, write_bytes, write_text
 

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import casadi as ca
 
-from rr_opt.physics.machine_code import library
+from rr_opt.physics.externals import externals
 
 _FLAGS = ("-O0", "-fPIC", "-shared")
 _FEW, _PAYS = 500, 13_000
@@ -43,14 +43,6 @@ class Code:
         """Count so many more evaluations of the functions."""
         before, self._asked = self._asked, self._asked + evaluations
         if self._compiled is None and any(before < some <= self._asked for some in (_FEW, _PAYS)):
-            self._compiled = _compiled(self.functions, make=self._asked >= _PAYS)
-
-
-def _compiled(functions: Functions, *, make: bool) -> Functions | None:
-    generator = ca.CodeGenerator("interval", {"with_header": False})
-    for function in functions:
-        generator.add(function)
-    made = library(generator.dump(), _FLAGS, make=make)
-    if made is None:
-        return None
-    return Functions(*(ca.external(function.name(), made._name) for function in functions))
+            make = self._asked >= _PAYS
+            compiled = externals("interval", self.functions, _FLAGS, make=make)
+            self._compiled = Functions(*compiled) if compiled else None

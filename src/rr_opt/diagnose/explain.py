@@ -83,40 +83,30 @@ def explain(
     quantities = (*model.parameters, *(q for one in chosen for q in one.of(model).quantities))
     kept = {q.name: start.values[q.name] for q in quantities if q.name in start.values}
     loose = {q.name: kept[q.name] for q in quantities if q.name in kept and not q.known}
-    fit = _from_best(model, chosen, nominal, loose, _begins(model, chosen, start, begins))
+    fresh = [one.of(model).starts for one in chosen if one.name not in start.effects]
+    places = [
+        {name: value for part in found for name, value in part.items()}
+        for found in itertools.product(*([begins] if begins else fresh))
+    ]
+    names = tuple(one.name for one in chosen)
+    problem = Problem(model, tuple(nominal.starts), names, quantities)
+    fit = _from_best(problem, nominal, loose, places)
     if start.starts.keys() == nominal.starts.keys() and fit.cost > start.cost + 1.0:
-        other = _from_best(model, chosen, start, kept, _begins(model, chosen, start, begins))
+        other = _from_best(problem, start, kept, places)
         fit = min(fit, other, key=lambda one: one.cost)
     return fit
 
 
-def _begins(
-    model: Model,
-    chosen: Sequence[Chosen],
-    start: Fit,
-    begins: Sequence[Mapping[str, float]] | None,
-) -> list[dict[str, float]]:
-    """The values to begin from of what `start` has not."""
-    fresh = [one.of(model).starts for one in chosen if one.name not in start.effects]
-    return [
-        {name: value for part in found for name, value in part.items()}
-        for found in itertools.product(*([begins] if begins else fresh))
-    ]
-
-
 def _from_best(
-    model: Model,
-    chosen: Sequence[Chosen],
+    problem: Problem,
     first: Fit,
     values: Mapping[str, float],
-    begins: Sequence[Mapping[str, float]],
+    places: Sequence[Mapping[str, float]],
 ) -> Fit:
-    """The fit with these effects, from the starts of another and the best of the values to begin
-    from; what has no value begins where it is believed to be."""
-    names = tuple(one.name for one in chosen)
-    quantities = (*model.parameters, *(q for one in chosen for q in one.of(model).quantities))
-    problem = Problem(model, tuple(first.starts), names, quantities)
-    each = [{q.name: q.value for q in quantities} | dict(values) | dict(more) for more in begins]
+    """The fit from the starts of another and from the best of some places; what has no value begins
+    where it is believed to be."""
+    believed = {q.name: q.value for q in problem.quantities}
+    each = [believed | dict(values) | dict(place) for place in places]
     if len(each) == 1:
         return solve(problem, each[0], _starts(problem, each[0], first), done=_NEAR)
     best = min(

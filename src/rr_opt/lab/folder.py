@@ -20,8 +20,6 @@ from rr_opt.lab.vicon_csv import vicon_text
 
 PLAIN = Delivery()
 
-FILE_NAME = "experiment.yaml"
-
 
 def folder_of(
     case: Case, delivery: Delivery = PLAIN, progress: Callable[[str], None] = lambda _: None
@@ -39,7 +37,7 @@ def folder_of(
             log = log_text(rig, plan.gait, plan.outing, delivery.clock)
             yield delivery.log(plan), log.encode()
     # Last, so that a folder with this file has all that it names.
-    yield FILE_NAME, experiment_text(case, delivery).encode()
+    yield "experiment.yaml", experiment_text(case, delivery).encode()
 
 
 def _recorded(case: Case, plan: Plan, n: int, delivery: Delivery) -> bytes:

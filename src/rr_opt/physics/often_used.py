@@ -6,7 +6,7 @@ import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rr_opt.physics.machine_code import library
+from rr_opt.physics.externals import externals
 
 _FLAGS = ("-O1", "-ffp-contract=off", "-fPIC", "-shared")
 """No operation is done otherwise than by CasADi's virtual machine: the numbers are the same."""
@@ -26,15 +26,9 @@ class OftenUsed:
         """Evaluate it, a function of one output."""
         make = self._left.pop(self._calls, None)
         if make is not None:
-            compiled = _compiled(self._function, make=make)
+            name = self._function.name()
+            compiled = externals(name, (self._function,), _FLAGS, make=make)
             if compiled:
-                self._function, self._left = compiled, {}
+                self._function, self._left = compiled[0], {}
         self._calls += 1
         return np.asarray(self._function(*args))
-
-
-def _compiled(function: ca.Function, *, make: bool) -> ca.Function | None:
-    generator = ca.CodeGenerator(function.name(), {"with_header": False})
-    generator.add(function)
-    made = library(generator.dump(), _FLAGS, make=make)
-    return None if made is None else ca.external(function.name(), made._name)

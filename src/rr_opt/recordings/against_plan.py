@@ -36,9 +36,9 @@ HALF_A_PERIOD = "half a period"
 _FAR = 1.3
 """Times as far as commanded, or as little, phi moves with a grave fault, or another command."""
 _SHIFTS = 64
-_TOO_FAR, _MILLI, _NOT_FAR = 10.0, 300.0, 0.05
-"""Times as far sideways as a turn takes the joint, in another unit only: from the first on in cm,
-from the second on in mm, below the third in one that is too large. Wheels that slide leave 0.7."""
+_TOO_FAR, _NOT_FAR = 10.0, 0.05
+"""Times as far sideways as a turn takes the joint, or as little, in another unit only. Wheels that
+slide leave 0.7."""
 _WITH, _STRIDE = 0.7, 5
 """Correlation of the angles' steps, over so many samples, from which on they turn together."""
 
@@ -46,8 +46,9 @@ _WITH, _STRIDE = 0.7, 5
 def plan_doubts(run: Run, robot: Robot) -> tuple[Doubt, ...]:
     """Why a recording that moves is not of this robot and this gait, in these units.
 
-    Doubts of the kinds `units` and `command` leave nothing to fit. Those of the kind `doubtful` may
-    be a fault of the robot after all.
+    Doubts of the kinds `units` and `command` leave nothing to fit; nor do those of the kind
+    HALF_A_PERIOD if all recordings have them. Those of the kind `doubtful` may be a fault of the
+    robot after all.
     """
     t, period = run.recording.t, run.gait.period
     sizes = {name: _swing(t, run.recording.data(name), period) for name in CHANNELS}
@@ -86,7 +87,7 @@ def _sideways(x: Array, y: Array, psi: Array, c: float) -> Iterator[Doubt]:
     swings = float(turned @ turned)
     ratio = abs(float(side @ turned)) / (c * swings) if swings > 0 and c > 0 else 0.0
     if ratio > _TOO_FAR or 0 < ratio < _NOT_FAR:
-        unit = "millimetres" if ratio > _MILLI else "centimetres" if ratio > 1 else "another unit"
+        unit = "millimetres or centimetres" if ratio > 1 else "another unit"
         yield Doubt(
             "units",
             f"The joint moves sideways {ratio:.3g} times as far as the turns of platform 1 take "

@@ -21,7 +21,7 @@ from rr_opt.recordings.jumps import Jump, jumps
 from rr_opt.recordings.motion_doubts import motion_doubts
 from rr_opt.recordings.noise import NoiseEstimate
 from rr_opt.recordings.outliers import outliers
-from rr_opt.recordings.smooth import time_step
+from rr_opt.recordings.time_step import time_step
 from rr_opt.recordings.units_guess import unit_doubts
 from rr_opt.recordings.usual_noise import step_of, usual_noise
 from rr_opt.recordings.wrapping import turns_taken, unwrapped

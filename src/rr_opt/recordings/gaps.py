@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rr_opt.experiment.recording import Flag, Recording
-from rr_opt.recordings.smooth import time_step
+from rr_opt.recordings.time_step import time_step
 
 Array = NDArray[np.float64]
 

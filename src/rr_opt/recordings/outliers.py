@@ -17,8 +17,9 @@ from scipy.special import ndtri
 
 from rr_opt.recordings.noise import NoiseEstimate, noise_of
 from rr_opt.recordings.one_sided import misses
-from rr_opt.recordings.smooth import Smooth, smoothed, time_step
+from rr_opt.recordings.smooth import Smooth, smoothed
 from rr_opt.recordings.strength import strength
+from rr_opt.recordings.time_step import time_step
 
 Array = NDArray[np.float64]
 

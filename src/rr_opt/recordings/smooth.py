@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rr_opt.recordings.smoother import covariance, mean, precision
+from rr_opt.recordings.time_step import time_step
 
 Array = NDArray[np.float64]
 
@@ -31,13 +32,6 @@ class Smooth:
     first_sigma: Array
     second_sigma: Array
     leverage: Array
-
-
-def time_step(t: Array) -> float:
-    """The usual time between samples, s; 1 where there are too few to tell."""
-    step = np.diff(t)
-    step = step[step > 0]
-    return float(np.median(step)) if len(step) else 1.0
 
 
 def smoothed(t: Array, y: Array, sigma: Array | float, ratio: float) -> Smooth:

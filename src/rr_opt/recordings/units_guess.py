@@ -8,7 +8,7 @@ import numpy as np
 
 from rr_opt.experiment.recording import Recording
 from rr_opt.recordings.doubts import Doubt
-from rr_opt.recordings.smooth import time_step
+from rr_opt.recordings.time_step import time_step
 
 _ROOM = 50.0
 """No floor on which a small robot is recorded is this long, m."""

@@ -15,8 +15,8 @@ from rr_opt.recordings.clock_fit import ClockFit
 from rr_opt.recordings.from_markers import MarkerFit
 from rr_opt.recordings.inspection import Inspection
 from rr_opt.recordings.noise import NoiseEstimate
-from rr_opt.recordings.smooth import time_step
 from rr_opt.recordings.synchrony import Synchrony
+from rr_opt.recordings.time_step import time_step
 
 
 def record(name: str, sha256: str, found: Sequence[Inspection]) -> dict[str, Any]:

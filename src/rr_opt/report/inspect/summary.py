@@ -11,7 +11,7 @@ import numpy as np
 from rr_opt.experiment.recording import Flag
 from rr_opt.recordings.inspection import Inspection
 from rr_opt.recordings.sizes import size_text
-from rr_opt.recordings.smooth import time_step
+from rr_opt.recordings.time_step import time_step
 from rr_opt.report.inspect.record import path_record
 from rr_opt.report.quantities import number, with_unit
 from rr_opt.report.text import columns
