@@ -34,6 +34,9 @@ _PLAIN = 0.05
 _AS_MUCH = 0.5
 """Of what the others gain, a dear effect has to promise that share to be looked at beside them."""
 
+_MUCH_WORSE = 3.0
+"""A dear effect that in windows plainly leaves so many times what another does is not tried on."""
+
 Say = Callable[[str], None]
 T = TypeVar("T")
 
@@ -86,7 +89,7 @@ class Rounds:
         if min((rms(one.misfit) for one in found), default=math.inf) <= self.floor(best):
             least = _AS_MUCH * max(fit.cost - _same(one, best, fit).cost for one in found)
             dear = [one for one in dear if one.gain > least]
-        return found + self.fitted(best, dear)
+        return found + self.fitted(best, dear, found)
 
     def looked_for(self, best: Explanation, name: str) -> list[Promise]:
         """What one dear effect promises beside an explanation, if it is more than luck."""
@@ -95,14 +98,21 @@ class Rounds:
     def _looks(self, best: Explanation, *, dear: bool) -> list[Look]:
         return looks(self.model, _sight(best), best.chosen, dear=dear)
 
-    def fitted(self, best: Explanation, promised: Sequence[Promise]) -> list[Explanation]:
-        """The explanation with each of these beside it, the best of them over whole runs."""
+    def fitted(
+        self, best: Explanation, promised: Sequence[Promise], found: Sequence[Explanation] = ()
+    ) -> list[Explanation]:
+        """The explanation with each of these beside it, the best of them over whole runs.
+
+        found  with others beside it: what is plainly worse than those is not fitted over whole runs
+        """
         if not promised:
             return []
         self._say_fitting(promised)
-        return self._over_whole_runs(
-            best, list(self.each(carried_out, [self._in_windows(best, one) for one in promised]))
-        )
+        done = list(self.each(carried_out, [self._in_windows(best, one) for one in promised]))
+        if found and _sight(best) is best.windows:
+            least = _MUCH_WORSE * _left(min((one.windows for one in found), key=_left))
+            done = [pair for pair in done if _left(pair[1]) <= max(_PLAIN, least)]
+        return self._over_whole_runs(best, done)
 
     def _say_fitting(self, promised: Sequence[Promise]) -> None:
         self.say(f"fitting {', '.join(one.chosen.name for one in promised)}")
@@ -180,8 +190,7 @@ def _sight(best: Explanation) -> Fit:
     What is plain in windows is nearly linear there. What is not adds up over whole runs, and is
     small enough to be linear over them.
     """
-    seen = best.windows.cost / best.windows.count - 1.0
-    return best.windows if seen > _PLAIN else best.whole
+    return best.windows if _left(best.windows) > _PLAIN else best.whole
 
 
 def _same(one: Explanation, best: Explanation, sight: Fit) -> Fit:
@@ -191,5 +200,9 @@ def _same(one: Explanation, best: Explanation, sight: Fit) -> Fit:
 
 def _hopeless(fit: Fit, best: Fit) -> bool:
     """Whether even in windows far more is left than with another effect."""
-    left = fit.cost / fit.count - 1.0
-    return left > 0.1 and left > 20 * (best.cost / best.count - 1.0)
+    return _left(fit) > 0.1 and _left(fit) > 20 * _left(best)
+
+
+def _left(fit: Fit) -> float:
+    """What a fit leaves, in sigma squared per value."""
+    return fit.cost / fit.count - 1.0
