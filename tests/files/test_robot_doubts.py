@@ -10,6 +10,8 @@ DOUBTS = {
     ("a: 0.020", "a: 0.300"): ("platform1.a", "puts the centre of mass beyond the joint"),
     ("I: 0.00386", "I: 3.86"): ("platform1.I", "more than three times the platform's largest"),
     ("c: 0.206", "c: 206"): ("platform1.c", "Plain numbers are metres: write `206 mm`"),
+    ("h: 0.020", "h: 20"): ("h", "The wheel radius is 20 m, more than any length of the platforms"),
+    ("m: 0.469", "m: 469"): ("platform1.m", "Plain numbers are kilograms: write `469 g`"),
 }
 
 

@@ -15,6 +15,7 @@ from rr_opt.outcome import InputError
 from rr_opt.recordings.against_plan import HALF_A_PERIOD, plan_doubts
 from rr_opt.recordings.doubts import Doubt, texts
 from rr_opt.recordings.experiment import read_experiment
+from rr_opt.recordings.noise_stated import noise_stated_doubts
 from rr_opt.recordings.units_guess import unit_doubts
 from rr_opt.robot.parameters import Robot
 
@@ -60,6 +61,11 @@ class Checked:
     def left_out(self) -> tuple[str, ...]:
         """A sentence on each recording that tells nothing."""
         return tuple(f"{name}: {text} It is left out." for name, text in self.why.items() if text)
+
+    @property
+    def said(self) -> tuple[str, ...]:
+        """A sentence on each doubt."""
+        return tuple(f"{name}: {text}" for name, own in self.doubts.items() for text in texts(own))
 
 
 def checked(experiment: Experiment) -> Checked:
@@ -114,7 +120,10 @@ def _with_doubts(run: Run, doubts: tuple[Doubt, ...]) -> Run:
 
 def _doubts(run: Run, robot: Robot, why_not: str) -> tuple[Doubt, ...]:
     """Whether a recording, if it tells something, is what the experiment file says."""
-    return unit_doubts(run.recording) or (() if why_not else plan_doubts(run, robot))
+    wrong = unit_doubts(run.recording)
+    if wrong or why_not:
+        return wrong
+    return plan_doubts(run, robot) + noise_stated_doubts(run.recording)
 
 
 def _why_not(run: Run) -> str:

@@ -58,5 +58,6 @@ def _issues(file: Path) -> list[Issue]:
     if read is not None:
         found, place = checked(read), str(experiment)
         issues += [Issue("error", "", text, file=place) for text in found.wrong]
-        issues += [Issue("warning", "", text, file=place) for text in found.left_out]
+        said = found.left_out if found.wrong else (*found.left_out, *found.said)
+        issues += [Issue("warning", "", text, file=place) for text in said]
     return issues

@@ -11,6 +11,9 @@ from rr_opt.robot.parameters import Platform, Robot
 _LARGEST_LENGTH = 5.0
 """Longer platforms are taken for millimetres written as metres, m."""
 
+_DENSITY = 8000.0
+"""Of steel, kg/m3."""
+
 _LARGEST_FRICTION = 1000.0
 """A robot of a kilogram then stops within a fraction of a millisecond, N s/m per wheel."""
 
@@ -20,6 +23,13 @@ def doubts(robot: Robot) -> Iterator[tuple[tuple[str, ...], str]]:
     for key, platform in (("platform1", robot.platform1), ("platform2", robot.platform2)):
         for name, message in _platform_doubts(platform):
             yield (key, name), message
+    longest = max(_longest(robot.platform1)[1], _longest(robot.platform2)[1])
+    if robot.h > longest:
+        yield (
+            ("h",),
+            f"The wheel radius is {robot.h:.4g} m, more than any length of the platforms. Plain "
+            f"numbers are metres: write `{robot.h:g} mm` for millimetres.",
+        )
     ratio = inertia_ratio(robot, "joint")
     if not 0.01 <= ratio <= 100:
         yield (
@@ -54,9 +64,7 @@ def singular_posture(robot: Robot) -> str | None:
 
 
 def _platform_doubts(platform: Platform) -> Iterator[tuple[str, str]]:
-    lengths = {"c": platform.c, "a": abs(platform.a), "b": platform.b}
-    key = max(lengths, key=lambda name: lengths[name])
-    longest = lengths[key]
+    key, longest = _longest(platform)
     gyration = math.sqrt(platform.I / platform.m)
     if platform.a > platform.c:
         yield (
@@ -75,6 +83,15 @@ def _platform_doubts(platform: Platform) -> Iterator[tuple[str, str]]:
                 f"`{longest:g} mm` for millimetres."
             ),
         )
+    if platform.m > _DENSITY * longest**3:
+        yield (
+            "m",
+            (
+                f"The platform weighs {platform.m:.4g} kg, more than a cube of steel of its "
+                f"largest length, {longest:.3g} m. Plain numbers are kilograms: write "
+                f"`{platform.m:g} g` for grams."
+            ),
+        )
     if gyration > 3 * longest:
         yield (
             "I",
@@ -84,3 +101,10 @@ def _platform_doubts(platform: Platform) -> Iterator[tuple[str, str]]:
                 "units of I (kg m2), m, c and b."
             ),
         )
+
+
+def _longest(platform: Platform) -> tuple[str, float]:
+    """The largest of its lengths, and its key."""
+    lengths = {"c": platform.c, "a": abs(platform.a), "b": platform.b}
+    key = max(lengths, key=lambda name: lengths[name])
+    return key, lengths[key]

@@ -1,11 +1,14 @@
 """What is not as the experiment file says is refused with a reason; a faulty robot is not."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
-from rr_opt.cli.diagnose_input import read, usable
+from rr_opt.cli.diagnose_input import checked, read, usable
+from rr_opt.cli.main import app
 from rr_opt.diagnose.model import Piece
 from rr_opt.diagnose.racer import RollerRacer
 from rr_opt.files.issue import has_errors
@@ -135,3 +138,25 @@ def test_no_fault_of_the_robot_is_refused(effect, values):
     made = replace(recorded(given, predict, 1).experiment, name=effect)
     trial, _ = usable(made)
     assert [run.name for run in trial.runs] == [run.name for run in made.runs]
+
+
+@pytest.mark.parametrize(
+    ("stated", "key", "said"),
+    [
+        ("position: 1", "noise.position", "What is smaller than that is not found."),
+        ("position: 1.0e-6", "noise.position", "counts as a mismatch."),
+        ("angle: 0.05", "noise.angle", "What is smaller than that is not found."),
+    ],
+)
+def test_noise_that_is_not_what_the_recordings_have(tmp_path, stated, key, said):
+    folder = written(tmp_path)
+    assert not any(checked(read(folder)[2]).said)
+    path = folder / "experiment.yaml"
+    name = stated.split(":")[0]
+    path.write_text(re.sub(rf"{name}: [^,}}]+", stated, path.read_text()))
+    every = checked(read(folder)[2])
+    assert len(every.said) == len(every.doubts)
+    assert all(said in one and f"Correct `{key}`" in one for one in every.said)
+    told = CliRunner().invoke(app, ["lint", str(folder)])
+    assert told.exit_code == 0
+    assert told.stdout.count("warning: run0.csv: The noise of ") == 1
