@@ -15,6 +15,7 @@ import numpy as np
 
 from benchmarks.fit.case import RATE, TRUE, Array, Case, commanded
 from benchmarks.fit.equations import rates
+from benchmarks.fit.patience import PATIENCE
 
 _SMOOTH = 10
 """Samples to either side of which the first guess of v is a slope."""
@@ -69,7 +70,9 @@ def _solver(case: Case) -> ca.Function:
         jit,
     )
     quiet = {"ipopt.print_level": 0, "ipopt.sb": "yes", "print_time": False}
-    return ca.nlpsol("solver", "ipopt", nlp, {"hess_lag": hessian, **jit, **quiet})
+    # One far start in ten wanders for a quarter of an hour, and ends nowhere.
+    most = {"ipopt.max_cpu_time": PATIENCE}
+    return ca.nlpsol("solver", "ipopt", nlp, {"hess_lag": hessian, **jit, **quiet, **most})
 
 
 def _drive(case: Case, run: int) -> Array:

@@ -9,6 +9,7 @@ import numpy as np
 
 from benchmarks.fit.case import BOX, WITHIN
 from benchmarks.fit.equations import PARAMETERS
+from benchmarks.fit.patience import PATIENCE
 from benchmarks.fit.referee import Minimum
 from benchmarks.fit.tried import Tried
 from benchmarks.fit.ways import EXAMPLE, OURS, WAYS
@@ -32,7 +33,8 @@ def text(
         "imported, built and compiled. `cold`: a process of its own, imports and compiling "
         "included. `far`: of starts within a factor of "
         f"{WITHIN:g} of the truth, how many led to the minimum, and the CPU seconds of each; no "
-        f"way that takes bounds looks beyond a factor of {BOX:g}. The minimum is the same if its "
+        f"way that takes bounds looks beyond a factor of {BOX:g}, and CasADi's may take "
+        f"{PATIENCE:g} s. The minimum is the same if its "
         "chi-square, by an integrator that no way uses, is within 1e-6 of the least.",
         "",
         "| way | warm | times ours | cold | far | CPU, far | cost above the least |",
