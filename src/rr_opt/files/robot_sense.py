@@ -83,7 +83,7 @@ def _platform_doubts(platform: Platform) -> Iterator[tuple[str, str]]:
                 f"`{longest:g} mm` for millimetres."
             ),
         )
-    if platform.m > _DENSITY * longest**3:
+    if platform.m / longest / longest / longest > _DENSITY:
         yield (
             "m",
             (
