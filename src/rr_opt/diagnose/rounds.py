@@ -110,7 +110,7 @@ class Rounds:
         self._say_fitting(promised)
         done = list(self.each(carried_out, [self._in_windows(best, one) for one in promised]))
         if found and _sight(best) is best.windows:
-            least = _MUCH_WORSE * _left(min((one.windows for one in found), key=_left))
+            least = _MUCH_WORSE * min(_left(one.windows) for one in found)
             done = [pair for pair in done if _left(pair[1]) <= max(_PLAIN, least)]
         return self._over_whole_runs(best, done)
 

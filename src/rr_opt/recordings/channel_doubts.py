@@ -18,8 +18,7 @@ from rr_opt.recordings.sizes import size_text
 Array = NDArray[np.float64]
 
 _MANY, _FEW = 1.25, 0.8
-"""Times the stated noise from which on the estimate contradicts it, if it does so surely."""
-_SURE = 4.0
+"""Times the stated noise from which on the estimate contradicts it."""
 _COLOURED, _ALTERNATING, _CHANCE = 1.2, 0.85, 1e-4
 _LONG = 0.1
 """Gaps longer than this are told one by one, s."""
@@ -77,17 +76,16 @@ def _of_noise(
         yield Doubt("noise", f"{channel} has no noise at all: is it computed, or constant?")
         return
     said = float(np.median(stated))
-    ratio = noise.sigma / said if said > 0 else np.nan
-    sure = abs(noise.sigma - said) > _SURE * noise.error
+    times = noise.times(said)
     whose = "the markers' residuals lead to" if by_fit else "are stated"
     coloured = noise.p_white < _CHANCE and noise.colour > _COLOURED
-    if sure and ratio > _MANY:
+    if times > _MANY:
         yield Doubt(
             "noise",
             f"The noise of {channel} is {size_text(channel, noise.sigma)}, and "
             f"{size_text(channel, said)} {whose}.",
         )
-    if sure and ratio < _FEW:
+    if times < _FEW:
         better = "Markers that slip or bend?" if by_fit else "A better capture than stated?"
         why = "A filter upstream?" if coloured else better
         yield Doubt(

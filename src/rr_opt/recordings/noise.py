@@ -28,6 +28,8 @@ _KEPT /= erf(_CUT / math.sqrt(2))
 _OVERLAP = math.comb(4 * _ORDER, 2 * _ORDER) / math.comb(2 * _ORDER, _ORDER) ** 2
 """How many differences are worth one independent one."""
 _PIECES, _SHORTEST = 20, 60
+_SURE = 4.0
+"""Standard deviations of the estimate from which on it is surely another noise."""
 
 
 @dataclass(frozen=True)
@@ -49,6 +51,12 @@ class NoiseEstimate:
     def colour(self) -> float:
         """slower over sigma; 1 for white noise."""
         return self.slower / self.sigma if self.sigma > 0 else math.nan
+
+    def times(self, stated: float) -> float:
+        """How many times the stated noise it is; 1 where it may well be that one."""
+        if not abs(self.sigma - stated) > _SURE * self.error:
+            return 1.0
+        return self.sigma / stated if stated > 0 else math.nan
 
 
 def noise_of(y: Array) -> NoiseEstimate:

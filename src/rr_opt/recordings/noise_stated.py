@@ -13,8 +13,8 @@ from rr_opt.recordings.sizes import size_text
 
 _KEYS = {"noise.position": ("x", "y"), "noise.angle": ("psi", "phi")}
 
-_FAR, _SURE = 5.0, 4.0
-"""Times the scatter, or the other way round, that are far, and standard deviations that are sure.
+_FAR = 5.0
+"""Times the scatter, or the other way round, that are far.
 
 A capture that was smoothed scatters a few times less at the highest frequencies than it errs.
 """
@@ -34,12 +34,11 @@ def noise_stated_doubts(recording: Recording) -> tuple[Doubt, ...]:
 def _of(recording: Recording, key: str, names: tuple[str, ...]) -> Iterator[Doubt]:
     for name in names:
         seen = noise_of(recording.data(name))
-        said = float(np.nanmedian(recording.sigma[name])) if name in recording.sigma else np.nan
-        if not (seen.sigma > 0 and said > 0 and abs(said - seen.sigma) > _SURE * seen.error):
-            continue
-        if said > _FAR * seen.sigma:
+        said = float(np.nanmedian(recording.sigma[name]))
+        times = seen.times(said)
+        if times < 1 / _FAR:
             more = "What is smaller than that is not found."
-        elif seen.sigma > _FAR * said:
+        elif times > _FAR:
             more = "Every difference larger than that counts as a mismatch."
         else:
             continue
