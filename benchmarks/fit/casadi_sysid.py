@@ -70,7 +70,7 @@ def _solver(case: Case) -> ca.Function:
         jit,
     )
     quiet = {"ipopt.print_level": 0, "ipopt.sb": "yes", "print_time": False}
-    # One far start in ten wanders for a quarter of an hour, and ends nowhere.
+    # One far start was seen to take a quarter of an hour.
     most = {"ipopt.max_cpu_time": PATIENCE}
     return ca.nlpsol("solver", "ipopt", nlp, {"hess_lag": hessian, **jit, **quiet, **most})
 
