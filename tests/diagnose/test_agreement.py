@@ -1,10 +1,14 @@
 """Held-out recordings that tell what the others left open are no contradiction; others are."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
-from rr_opt.diagnose.agreement import together
+import pytest
+
+from rr_opt.diagnose import found
+from rr_opt.diagnose.agreement import other_forms, together
 from rr_opt.diagnose.explain import Chosen, nominal, windows
-from rr_opt.diagnose.explanation import misfit
+from rr_opt.diagnose.explanation import Explanation, misfit
 from rr_opt.diagnose.level import level_of
 from rr_opt.diagnose.racer import RollerRacer
 from tests.diagnose.made_up import base_of, explained, with_effect
@@ -38,3 +42,56 @@ def test_a_contradiction():
     fit, level = told(runs[:2], tilted[2:])
     assert level.held() ** 2 - 1 > 1.0
     assert fit is None
+
+
+def in_forms(monkeypatch, lead, held):
+    """The form of a patch that is told, and of how many it was looked what they leave.
+
+    lead  of the first form in score;  held  misfit each leaves of what was held out, RMS in sigma
+    """
+    few = with_effect({}, (), seconds=2.0)
+    runs = few.experiment.runs
+    model = RollerRacer(replace(few.experiment, runs=(*runs[:3], replace(runs[3], use="holdout"))))
+    base = base_of(few)
+    disc, edge = (replace(base, chosen=(Chosen("floor_patch", form),)) for form in (0, 1))
+    scores = {0: 0.0, 1: lead}
+    monkeypatch.setattr(Explanation, "score", property(lambda one: scores[one.chosen[0].form]))
+    monkeypatch.setattr(found, "settled", lambda _, one: one)
+    monkeypatch.setattr(found, "_plainest", lambda _, one: one)
+    made = []
+
+    def level(*_):
+        leaves = (1 + held[len(made)] ** 2) ** 0.5
+        made.append(SimpleNamespace(held=lambda: leaves))
+        return made[-1]
+
+    monkeypatch.setattr(found, "level_of", level)
+    best, left = found._that_predicts(model, disc, [base, disc, edge], base.whole)
+    assert left is made[best.chosen[0].form]
+    return best.chosen[0].form, len(made)
+
+
+@pytest.mark.parametrize(
+    ("lead", "held", "told"),
+    [
+        # What predicts well is kept, and nothing else is looked at.
+        (1.0, (0.1, 0.0), (0, 1)),
+        # What the fitted recordings do not tell, those held out do.
+        (1.0, (0.9, 0.1), (1, 2)),
+        (1.0, (0.9, 1.2), (0, 2)),
+        # What they do tell stands.
+        (100.0, (0.9, 0.1), (0, 1)),
+    ],
+)
+def test_what_form_it_has(monkeypatch, lead, held, told):
+    assert in_forms(monkeypatch, lead, held) == told
+
+
+def test_other_forms_are_of_the_same_effects(monkeypatch):
+    model = with_effect({}, (), seconds=2.0)
+    base = base_of(model)
+    patch, drag = (
+        replace(base, chosen=(Chosen(name),)) for name in ("floor_patch", "left_right_drag")
+    )
+    edge = replace(base, chosen=(Chosen("floor_patch", 1),))
+    assert other_forms(patch, [base, patch, drag, edge]) == [edge]

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
-from rr_opt.diagnose.agreement import together
+from rr_opt.diagnose.agreement import other_forms, together
 from rr_opt.diagnose.explain import joined, nominal, parameters, windows
 from rr_opt.diagnose.explanation import Explanation, misfit, rms
 from rr_opt.diagnose.fit import Fit, solve
@@ -83,10 +83,28 @@ def found(model: Model, steps: Steps) -> Found:
     level1 = steps.timed("held-out recordings", lambda: level_of(model, base.whole, level0.fit))
     search = Search(model, first, base, believed, steps.say, steps.each)
     best = steps.timed("what is missing", search.run)
-    best = steps.timed("which values are wrong", lambda: settled(model, _plainest(model, best)))
-    level2 = level_of(model, best.whole, level0.fit)
+    best, level2 = steps.timed(
+        "which values are wrong", lambda: _that_predicts(model, best, search.tried, level0.fit)
+    )
     every = steps.timed("all recordings", lambda: _together(model, best, (level1, level2)))
     return Found(model, search, best, (level0, level1, level2), steps, every)
+
+
+def _that_predicts(
+    model: Model, best: Explanation, tried: Sequence[Explanation], start: Fit
+) -> tuple[Explanation, Level]:
+    """The explanation and what it leaves; where that predicts badly, in the form of those that the
+    fitted recordings do not tell apart that predicts best."""
+
+    def told(one: Explanation) -> tuple[Explanation, Level]:
+        one = settled(model, _plainest(model, one))
+        return one, level_of(model, one.whole, start)
+
+    first = told(best)
+    if not any(run.held_out for run in model.runs) or rms(first[1].held() ** 2 - 1) <= LEFT:
+        return first
+    others = [told(one) for one in other_forms(best, tried)]
+    return min([first, *others], key=lambda pair: pair[1].held())
 
 
 def _plainest(model: Model, best: Explanation) -> Explanation:

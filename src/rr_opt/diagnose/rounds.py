@@ -28,7 +28,7 @@ _IN_WINDOWS, _DEAR, _WHOLE = 5, 4, 3
 _WORTH = 0.05
 """Of what the best promises, any but the first few have to promise that share."""
 
-_PLAIN = 0.05
+PLAIN = 0.05
 """Misfit in windows, in sigma squared, that is plain to see."""
 
 _AS_MUCH = 0.5
@@ -111,7 +111,7 @@ class Rounds:
         done = list(self.each(carried_out, [self._in_windows(best, one) for one in promised]))
         if found and _sight(best) is best.windows:
             least = _MUCH_WORSE * min(_left(one.windows) for one in found)
-            done = [pair for pair in done if _left(pair[1]) <= max(_PLAIN, least)]
+            done = [pair for pair in done if _left(pair[1]) <= max(PLAIN, least)]
         return self._over_whole_runs(best, done)
 
     def _say_fitting(self, promised: Sequence[Promise]) -> None:
@@ -190,7 +190,7 @@ def _sight(best: Explanation) -> Fit:
     What is plain in windows is nearly linear there. What is not adds up over whole runs, and is
     small enough to be linear over them.
     """
-    return best.windows if _left(best.windows) > _PLAIN else best.whole
+    return best.windows if _left(best.windows) > PLAIN else best.whole
 
 
 def _same(one: Explanation, best: Explanation, sight: Fit) -> Fit:

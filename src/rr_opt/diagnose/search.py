@@ -16,7 +16,7 @@ from rr_opt.diagnose.fit import Fit, solve
 from rr_opt.diagnose.left_out import left_out
 from rr_opt.diagnose.model import Model
 from rr_opt.diagnose.problem import Problem, doubt
-from rr_opt.diagnose.rounds import EXACT, Rounds, Say, carried_out
+from rr_opt.diagnose.rounds import EXACT, PLAIN, Rounds, Say, carried_out
 from rr_opt.diagnose.values import settled, wrong
 from rr_opt.diagnose.verdict import LEFT
 
@@ -28,6 +28,9 @@ MOST = 3
 
 _GAINED = 0.5
 """A third effect is looked for where the second has left no more than that share of the misfit."""
+
+_LITTLE = 0.1
+"""In windows, an effect that leaves no more than that share of the misfit is there."""
 
 _NEARLY_ALL = 0.9
 """What removes that share of a misfit is not only another way to make a rough model's error."""
@@ -148,7 +151,7 @@ class Search:
         return self._backward(self._forward(first, without=doubtful))
 
     def _forward(self, best: Explanation, without: frozenset[str] = frozenset()) -> Explanation:
-        gained = True
+        gained, sure = True, best
         for _ in range(len(best.chosen), MOST):
             explained = rms(best.misfit) <= max(FLOOR, EXACT * self.large)
             if (explained and (best.chosen or not self._doubtful(best))) or not gained:
@@ -161,13 +164,19 @@ class Search:
                 break
             better = min(found, key=lambda one: one.score)
             if not _outright(better, best):
-                best = self._again(best, better)
-            if not self._gains(better, best):
-                break
-            # What is not there is imitated by one effect after the other, each gaining little.
-            gained = not best.chosen or better.misfit < _GAINED * best.misfit
-            best = better
-        return best
+                again = self._again(best, better)
+                best, sure = again, again if sure is best else sure
+            if self._gains(better, best):
+                # What is not there is imitated by one effect after the other, each gaining little.
+                gained = not best.chosen or better.misfit < _GAINED * best.misfit
+                best = sure = better
+            else:
+                # While another is missing, a fit over whole runs may not keep what windows show.
+                plain = [one for one in found if _plain(one, best)]
+                if not plain:
+                    break
+                best = min(plain, key=lambda one: one.windows.cost)
+        return sure
 
     @property
     def nameless_does(self) -> bool:
@@ -308,6 +317,12 @@ class _Fitted:
         """These effects, from where another fit has them."""
         fit = explain(self.model, self.chosen, self.nominal, self.windows)
         return Explanation(self.chosen, fit, joined(self.model, fit))
+
+
+def _plain(more: Explanation, less: Explanation) -> bool:
+    """Whether windows show plainly that `more` leaves little of what `less` does."""
+    before, after = misfit(less.windows), misfit(more.windows)
+    return before > PLAIN and after < _LITTLE * before
 
 
 def _rest(best: Explanation, one: Chosen) -> tuple[Chosen, ...]:
