@@ -87,7 +87,7 @@ def test_what_form_it_has(monkeypatch, lead, held, told):
     assert in_forms(monkeypatch, lead, held) == told
 
 
-def test_other_forms_are_of_the_same_effects(monkeypatch):
+def test_other_forms_are_of_the_same_effects():
     model = with_effect({}, (), seconds=2.0)
     base = base_of(model)
     patch, drag = (

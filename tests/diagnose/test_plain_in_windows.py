@@ -45,3 +45,14 @@ def test_forward_from_what_windows_show(monkeypatch, tried, in_windows, beside, 
     monkeypatch.setattr(type(search), "_again", lambda _, less, __: less)
     found = search._forward(base)
     assert found is {"base": base, "two": two}[ends]
+
+
+def test_what_was_fitted_again_stays(monkeypatch, tried):
+    model, base, one, _ = tried
+    base = replace(base, whole=leaving(base.whole, 20.0))
+    one = replace(one, whole=leaving(one.whole, 20.0))
+    again = replace(base, whole=leaving(base.whole, 19.0))
+    monkeypatch.setattr(Rounds, "next_to", lambda _, best, __: [one] if not best.chosen else [])
+    search = search_of(model, base)
+    monkeypatch.setattr(type(search), "_again", lambda *_: again)
+    assert search._forward(base) is again
