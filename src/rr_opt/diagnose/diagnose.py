@@ -144,7 +144,9 @@ def summary_of(
     )
     names = " and ".join(one.name.replace("_", " ") for one in findings)
     opening = {
-        "consistent": "The model explains the recordings as it is.",
+        "consistent": "The model explains the recordings as it is."
+        if before.unseen() ** 2 - after.unseen() ** 2 < FLOOR**2
+        else "The model explains the recordings, with values within their stated uncertainty.",
         "parameters": f"The model is right, but these values are not: {names}.",
         "missing_physics": f"The model leaves out {names}.",
         "unexplained": "Something is left out, and no effect of the catalogue accounts for it.",

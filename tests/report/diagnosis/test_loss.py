@@ -11,6 +11,7 @@ from rr_opt.motion.rollout import rollout
 from rr_opt.problem import GaitBounds, Limits, Problem
 from rr_opt.report.diagnosis.corrected import corrected_robot
 from rr_opt.report.diagnosis.loss import Loss, NotTold, loss
+from rr_opt.report.diagnosis.loss_words import loss_sentences, share_lost
 from rr_opt.report.diagnosis.record import record
 from rr_opt.report.diagnosis.servo_made import servo_made
 from rr_opt.robot.gait import SineGait
@@ -92,3 +93,14 @@ def test_the_record_has_it(missing, consistent, unexplained):
     assert told["share_lost"] == pytest.approx(1 - told["speed_reached"] / told["speed_as_found"])
     assert record(consistent)["loss"] is None
     assert "no name" in record(unexplained)["loss"]["not_told"]
+
+
+def test_a_gait_that_drives_the_robot_the_other_way_loses_more_than_all():
+    gait = SineGait(1.0, 1.5)
+    turned = Loss(gait, promised=0.3, reached=-0.4, best=gait, speed=0.25, unseen=False)
+    assert turned.share == pytest.approx(2.6)
+    assert share_lost(turned) == "more than all"
+    assert "more than all, as it drives the robot the other way." in loss_sentences(turned)
+    less = replace(turned, reached=0.2)
+    assert share_lost(less) == "20 %"
+    assert "Lost by the wrong model: 20 %." in loss_sentences(less)

@@ -13,7 +13,10 @@ _NONE = 5e-4
 
 
 def share_lost(one: Loss) -> str:
-    """`12 %`; `nothing` where it is less than a tenth of a per cent."""
+    """`12 %`; `nothing` where it is less than a tenth of a per cent; `more than all` where the
+    robot goes the other way."""
+    if one.share > 1:
+        return "more than all"
     return "nothing" if one.share < _NONE else f"{number(100 * one.share, 2)} %"
 
 
@@ -32,7 +35,8 @@ def loss_sentences(one: Loss | NotTold | None) -> str:
         f"The best gait for the robot as believed ({gait_words(one.believed)}) promises "
         f"{pace(one.promised)}; the robot as found makes {pace(one.reached)} of it. Its own best "
         f"gait ({gait_words(one.best)}) makes {pace(one.speed)}. "
-        f"Lost by the wrong model: {share_lost(one)}."
+        f"Lost by the wrong model: {share_lost(one)}"
+        f"{', as it drives the robot the other way' if one.share > 1 else ''}."
     )
     if one.unseen:
         said += " These gaits ask for more than was recorded: this is foretold, and not seen."
