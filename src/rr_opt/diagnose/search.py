@@ -1,11 +1,7 @@
-"""Search for what is missing: alone, in pairs, in threes; forward by promise, then backward.
-
-An effect joins only if the misfit falls by more than `RELEVANT`.
-"""
+"""Search for what is missing: alone, in pairs, in threes; forward by promise, then backward."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -13,15 +9,12 @@ from functools import cached_property
 from rr_opt.diagnose.explain import Chosen, explain, joined
 from rr_opt.diagnose.explanation import FLOOR, Explanation, misfit, rms
 from rr_opt.diagnose.fit import Fit, solve
+from rr_opt.diagnose.judge import Judge, outright, plain
 from rr_opt.diagnose.left_out import left_out
 from rr_opt.diagnose.model import Model
-from rr_opt.diagnose.problem import Problem, doubt
-from rr_opt.diagnose.rounds import EXACT, PLAIN, Rounds, Say, carried_out
-from rr_opt.diagnose.values import settled, wrong
+from rr_opt.diagnose.problem import Problem
+from rr_opt.diagnose.rounds import EXACT, Rounds, Say, carried_out
 from rr_opt.diagnose.verdict import LEFT
-
-RELEVANT = 0.01
-"""By so much, in sigma squared per value, an effect has to lower the misfit to be one."""
 
 MOST = 3
 """So many effects together, at most."""
@@ -29,20 +22,8 @@ MOST = 3
 _GAINED = 0.5
 """A third effect is looked for where the second has left no more than that share of the misfit."""
 
-_LITTLE = 0.1
-"""In windows, an effect that leaves no more than that share of the misfit is there."""
-
-_NEARLY_ALL = 0.9
-"""What removes that share of a misfit is not only another way to make a rough model's error."""
-
-_IMITATED = 0.05
-"""Values that nobody would believe imitate an effect if they leave less of it, squared."""
-
 _ACROSS = 5.0
 """A recording predicted from the others may leave so many times what is left of all, RMS."""
-
-_BETTER = 2.0
-"""So much, in chi-square, an effect has to be better than wrong values."""
 
 
 @dataclass
@@ -80,6 +61,11 @@ class Search:
     def rounds(self) -> Rounds:
         """Its rounds."""
         return Rounds(self.model, self.nominal, self.large, self.say, self.each)
+
+    @property
+    def judge(self) -> Judge:
+        """What tells whether an effect joins."""
+        return Judge(self.rounds, self.first)
 
     def run(self) -> Explanation:
         """The best explanation, the base itself where nothing relevant is missing."""
@@ -154,7 +140,7 @@ class Search:
         gained, sure = True, best
         for _ in range(len(best.chosen), MOST):
             explained = rms(best.misfit) <= max(FLOOR, EXACT * self.large)
-            if (explained and (best.chosen or not self._doubtful(best))) or not gained:
+            if (explained and (best.chosen or not self.judge.doubtful(best))) or not gained:
                 break
             # Three that do what one term does better than two would only take its shape.
             if len(best.chosen) == MOST - 1 and self._nameless_does_better(best):
@@ -163,19 +149,19 @@ class Search:
             if not found:
                 break
             better = min(found, key=lambda one: one.score)
-            if not _outright(better, best):
+            if not outright(better, best):
                 again = self._again(best, better)
                 best, sure = again, again if sure is best else sure
-            if self._gains(better, best):
+            if self.judge.gains(better, best):
                 # What is not there is imitated by one effect after the other, each gaining little.
                 gained = not best.chosen or better.misfit < _GAINED * best.misfit
                 best = sure = better
             else:
                 # While another is missing, a fit over whole runs may not keep what windows show.
-                plain = [one for one in found if _plain(one, best)]
-                if not plain:
+                shown = [one for one in found if plain(one, best)]
+                if not shown:
                     break
-                best = min(plain, key=lambda one: one.windows.cost)
+                best = min(shown, key=lambda one: one.windows.cost)
         return sure
 
     @property
@@ -218,51 +204,15 @@ class Search:
         self.tried[:] = [came if one is less else one for one in self.tried]
         return came
 
-    def _gains(self, more: Explanation, less: Explanation) -> bool:
-        """Whether what `more` adds to `less` is relevant, and certain in spite of model error."""
-        relevant = max(RELEVANT, self.rounds.floor(less) ** 2 - FLOOR**2)
-        sure = less.score - more.score > 20 * doubt(more.whole.cost, more.whole.count)
-        if sure and rms(less.misfit) > FLOOR:
-            gain = less.misfit - more.misfit
-            if gain > relevant or gain > max(RELEVANT, _NEARLY_ALL * less.misfit):
-                return True
-        return self._believable(more, less)
-
-    def _believable(self, more: Explanation, less: Explanation) -> bool:
-        """Whether parameters explain the data, but with values that nobody would believe.
-
-        An effect stands for that if with it they are likelier than with the wrong ones let go, and
-        if what it does is what values do.
-        """
-        if (
-            rms(less.misfit) > 2 * FLOOR
-            or more.misfit > less.misfit + 1e-3
-            or not self._doubtful(less)
-        ):
-            return False
-        if more.apart() > _IMITATED:
-            return False
-        released = settled(self.model, less)
-        let_go = _free(released) - _free(less)
-        added = len(more.whole.quantities) - len(less.whole.quantities)
-        price = (added - let_go) * math.log(less.whole.count)
-        return more.strain + price < released.strain - _BETTER
-
-    def _doubtful(self, best: Explanation) -> bool:
-        """Whether it takes a value that is not what it was believed to be, to make up for more than
-        what every machine of the kind does otherwise than its model."""
-        told = self.first > max(FLOOR, self.model.inexact)
-        return told and any(not q.free for q in wrong(best.whole))
-
     def _backward(self, best: Explanation) -> Explanation:
         if len(best.chosen) < 2:
             return best
         self._try([_rest(best, one) for one in best.chosen], best)
         for one in best.chosen:
             without = self._with(_rest(best, one), best)
-            if not _outright(best, without):
+            if not outright(best, without):
                 without = self._again(without, best)
-            if not self._gains(best, without):
+            if not self.judge.gains(best, without):
                 return self._backward(without)
         return best
 
@@ -319,21 +269,5 @@ class _Fitted:
         return Explanation(self.chosen, fit, joined(self.model, fit))
 
 
-def _plain(more: Explanation, less: Explanation) -> bool:
-    """Whether windows show plainly that `more` leaves little of what `less` does."""
-    before, after = misfit(less.windows), misfit(more.windows)
-    return before > PLAIN and after < _LITTLE * before
-
-
 def _rest(best: Explanation, one: Chosen) -> tuple[Chosen, ...]:
     return tuple(other for other in best.chosen if other.name != one.name)
-
-
-def _free(one: Explanation) -> int:
-    return sum(q.free for q in one.whole.quantities)
-
-
-def _outright(more: Explanation, less: Explanation) -> bool:
-    """Whether `more` wins in windows already, which have no valleys to go down."""
-    wins = less.windows.cost - more.windows.cost
-    return wins > 0.3 * (less.whole.cost - more.whole.cost) and more.misfit < FLOOR
