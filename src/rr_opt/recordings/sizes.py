@@ -12,6 +12,6 @@ _UNITS = {
 
 
 def size_text(channel: str, size: float) -> str:
-    """A size of a channel, from SI: `1.2 mm`."""
+    """A size of a channel, from SI, to three digits: `1.2 mm`, `1230 mm`."""
     factor, unit = _UNITS.get(channel, (1.0, ""))
-    return f"{factor * size:.3g} {unit}".strip()
+    return f"{float(f'{factor * size:.3g}'):g} {unit}".strip()
