@@ -48,3 +48,15 @@ def test_wider_by_the_root_of_what_is_left_of_held_out_recordings(fitted):
 def test_where_nothing_was_fitted_there_is_no_interval(fitted):
     model, _ = fitted
     assert estimates(model, nominal(model, whole(model, [0]))) == {}
+
+
+def test_wider_by_what_models_of_an_effect_do_not_agree_on(fitted, monkeypatch):
+    usual = widths(fitted)
+    name, share = next(iter(usual)), 0.3
+    monkeypatch.setattr(racer.RollerRacer, "vague", {name: share})
+    model, fit = fitted
+    wider = estimates(model, fit)[name]
+    assert (wider.high - wider.low) / 2 == pytest.approx(
+        np.hypot(usual[name] / 2, 1.96 * share * fit.values[name]), rel=1e-3
+    )
+    assert widths(fitted) | {name: usual[name]} == usual

@@ -127,6 +127,7 @@ EFFECT = Effect(
             neutral=100.0,
             natural=lambda setting: setting.rate,
             trials=(0.9, 0.6),
+            vague=1e-4,
         ),
     ),
     sentence="The servo cannot turn faster than a limit, and falls behind its command.",
