@@ -23,7 +23,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from benchmarks.results import machine, spread, write
-from benchmarks.startup.commands import FLOORS, LIGHT, program, verbs
+from benchmarks.startup.commands import FLOORS, LIGHT, LONG, program, verbs
 from benchmarks.startup.loaded import package
 
 ROOT = Path(__file__).parents[2]
@@ -50,12 +50,15 @@ def main() -> None:
         every = {name: [program(), *given] for name, given in verbs(Path(place)).items()}
         floors = {name: [sys.executable, "-c", code] for name, code in FLOORS.items()}
         light = {**floors, **{name: every[name] for name in LIGHT}}
+        long = {name: every[name] for name in LONG}
+        short = {name: every[name] for name in every if name not in LONG}
         times = {name: Times() for name in (*floors, *every)}
-        for commands, rounds in ((light, asked.rounds), ({**floors, **every}, 3)):
+        for commands, rounds in ((light, asked.rounds), ({**floors, **short}, 3), (long, 1)):
             for _ in range(rounds):
                 for name, command in commands.items():
                     _run(command, times[name])
-        needless = {name: _needless(command[1:], Path(place)) for name, command in every.items()}
+        needless = {name: None if name in LONG else _needless(command[1:], Path(place))
+                    for name, command in every.items()}  # fmt: skip
     casadi, numpy = (statistics.median(times[f"python -c 'import {one}'"].cpu)
                      for one in ("casadi", "numpy"))  # fmt: skip
     ratios = {
