@@ -11,10 +11,9 @@ import sys
 import time
 from pathlib import Path
 
-from rr_opt.lab.answer import answer
-from rr_opt.lab.engines import ENGINES
-from rr_opt.lab.folder import folder_of
-from rr_opt.lab.random_case import NAMED, random_case
+from rr_lab.engines import ENGINES
+from rr_lab.files import answer, folder_of
+from rr_lab.random_case import NAMED, random_case
 from rr_opt.report.archive import write_bytes, write_json
 
 

@@ -14,16 +14,14 @@ from pathlib import Path
 import numpy as np
 from scipy.optimize import least_squares
 
-from rr_opt.experiment.recording import Recording
-from rr_opt.lab.draw.plans import draw_gait
-from rr_opt.lab.draw.robot import draw_robot
-from rr_opt.lab.engines import ENGINES, Engine
-from rr_opt.lab.record import record
-from rr_opt.lab.streams import stream
-from rr_opt.motion.integrator import cvodes
+from rr_lab.case import stream
+from rr_lab.draw import draw_gait, draw_robot
+from rr_lab.engines import ENGINES, Engine, record
+from rr_opt.model.experiment import Recording
+from rr_opt.model.gait import SineGait
+from rr_opt.model.robot import Robot
+from rr_opt.motion.integrators import cvodes
 from rr_opt.report.archive import write_text
-from rr_opt.robot.gait import SineGait
-from rr_opt.robot.parameters import Robot
 
 STEPS = (1e-3, 5e-4, 2.5e-4, 1.25e-4)
 RUNS = 12

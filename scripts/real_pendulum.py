@@ -19,20 +19,17 @@ import numpy as np
 from scipy.linalg import block_diag
 from scipy.signal import butter, sosfiltfilt
 
-from rr_opt.diagnose.diagnose import diagnose
-from rr_opt.diagnose.diagnosis import Misfit
-from rr_opt.diagnose.explain import whole
-from rr_opt.diagnose.fit import Fit, solve
-from rr_opt.diagnose.intervals import estimates
-from rr_opt.diagnose.model import Piece
-from rr_opt.diagnose.pendulum import Pendulum, Swing
-from rr_opt.diagnose.problem import Problem
-from rr_opt.experiment.experiment import Uncertainty
+from rr_opt.machines.pendulum.pendulum import Pendulum, Swing
+from rr_opt.model.experiment import Uncertainty
 from rr_opt.outcome import InputError
 from rr_opt.report.archive import write_json, write_text
-from rr_opt.report.pendulum.figure import drawn
-from rr_opt.report.pendulum.page import page
-from rr_opt.report.pendulum.told import Cut, Told, record, rms_of
+from rr_opt.report.pendulum import Cut, Told, drawn, page, record, rms_of
+from rr_opt.sysid.candidate import whole
+from rr_opt.sysid.diagnose import diagnose
+from rr_opt.sysid.diagnosis import Misfit
+from rr_opt.sysid.least_squares import Fit, Problem, solve
+from rr_opt.sysid.model import Piece
+from rr_opt.sysid.values import estimates
 
 PUBLISHED = {"J": 6.259e-2, "ml": 1.022e-1, "b": 4.707e-2}
 """kg m2, kg m, N m s: what came with the recording, from derivatives of it and least squares."""

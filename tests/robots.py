@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from rr_opt.robot.parameters import EffectUse, Platform, Robot
+from rr_opt.model.robot import EffectUse, Platform, Robot
 
 BENCHMARK = Robot(
     Platform(m=0.469, I=0.00386, c=0.236, a=0.05, b=0.05, kappa=0.05 * 0.02**2),

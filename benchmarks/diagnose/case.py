@@ -7,12 +7,11 @@ from pathlib import Path
 import numpy as np
 import yaml
 
-from rr_opt.diagnose.model import Piece
-from rr_opt.diagnose.racer import RollerRacer
-from rr_opt.experiment.experiment import Experiment, Noise, Run
-from rr_opt.experiment.recording import CHANNELS, Recording
-from rr_opt.robot.gait import SineGait
-from rr_opt.robot.parameters import Platform, Robot, Servo
+from rr_opt.machines.racer.racer import RollerRacer
+from rr_opt.model.experiment import CHANNELS, Experiment, Noise, Recording, Run
+from rr_opt.model.gait import SineGait
+from rr_opt.model.robot import Platform, Robot, Servo
+from rr_opt.sysid.model import Piece
 
 PLATFORMS = ((0.5, 0.004, 0.15, 0.03, 0.05, 1.2e-5), (0.3, 0.003, 0.08, 0.03, 0.05, 1.2e-5))
 ROBOT = Robot(Platform(*PLATFORMS[0]), Platform(*PLATFORMS[1]), 0.02, Servo(2.6, 6.28, 1.5))
@@ -63,11 +62,7 @@ def record(folder: Path, effect: str, values: dict[str, float]) -> None:
                 "file": f"run{k}.csv",
                 "use": "holdout" if k > 5 else "fit",
                 "start": "running",
-                "gait": {
-                    "amplitude": gait.amplitude,
-                    "period": gait.period,
-                    "offset": gait.offset,
-                },
+                "gait": {"amplitude": gait.amplitude, "period": gait.period, "offset": gait.offset},
             }
         )
     names = ("m", "I", "c", "a", "b", "kappa")

@@ -13,12 +13,15 @@ from unittest.mock import patch
 import numpy as np
 
 from rr_opt.cli.diagnose_input import read, usable
-from rr_opt.diagnose import gram, problem, pushed, shoot
-from rr_opt.diagnose.found import Steps
-from rr_opt.diagnose.racer import RollerRacer
-from rr_opt.diagnose.racer_diagnosis import diagnose_racer
-from rr_opt.diagnose.shoot import System
-from rr_opt.diagnose.stages import gram as stages_gram
+from rr_opt.machines.racer import unknown_input as pushed
+from rr_opt.machines.racer.diagnose import diagnose_racer
+from rr_opt.machines.racer.racer import RollerRacer
+from rr_opt.machines.racer.stages import gram as stages_gram
+from rr_opt.sysid import least_squares as problem
+from rr_opt.sysid import sensitivities as gram
+from rr_opt.sysid import shooting as shoot
+from rr_opt.sysid.diagnose import Steps
+from rr_opt.sysid.shooting import System
 
 WATCHED = {
     "derivatives, summed up": (gram, "grams"),
@@ -60,12 +63,13 @@ def lines(folder: Path) -> list[str]:
 
 def _users(attribute: str, inner: Callable) -> list[Any]:
     """The modules that call a function by that name."""
-    import sys  # noqa: PLC0415
+    import sys
 
     return [
         module
         for name, module in list(sys.modules.items())
-        if name.startswith("rr_opt.diagnose") and getattr(module, attribute, None) is inner
+        if name.startswith(("rr_opt.sysid", "rr_opt.machines"))
+        and getattr(module, attribute, None) is inner
     ]
 
 
@@ -104,7 +108,7 @@ def _operations(system: System, name: str) -> int:
         if name == "predictions":
             _counts[key] = shoot._step(system).n_instructions()
         else:
-            import casadi as ca  # noqa: PLC0415
+            import casadi as ca
 
             inputs = system.rates.sx_in()
             value = system.rates(*inputs)

@@ -33,10 +33,10 @@ def fit(case: Case, start: Array) -> Array:
 
 @lru_cache(maxsize=1)
 def _compiled(case: Case):
-    import diffrax as dfx  # pyright: ignore[reportMissingImports]  # noqa: PLC0415
-    import equinox as eqx  # pyright: ignore[reportMissingImports]  # noqa: PLC0415
-    import jax  # pyright: ignore[reportMissingImports]  # noqa: PLC0415
-    import jax.numpy as jnp  # pyright: ignore[reportMissingImports]  # noqa: PLC0415
+    import diffrax as dfx  # pyright: ignore[reportMissingImports]
+    import equinox as eqx  # pyright: ignore[reportMissingImports]
+    import jax  # pyright: ignore[reportMissingImports]
+    import jax.numpy as jnp  # pyright: ignore[reportMissingImports]
 
     jax.config.update("jax_enable_x64", True)
     gaits, seen = jnp.asarray(case.gaits), jnp.asarray(case.values[:, :, :3])

@@ -13,7 +13,7 @@ _STATE = ("x", "y", "psi", "v")
 
 def fit(case: Case, start: Array) -> Array:
     """The six parameters, from a start."""
-    import lmfit  # pyright: ignore[reportMissingImports]  # noqa: PLC0415
+    import lmfit  # pyright: ignore[reportMissingImports]
 
     params = lmfit.Parameters()
     for name, value in zip(PARAMETERS, start / TRUE, strict=True):

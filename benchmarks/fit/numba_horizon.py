@@ -87,7 +87,7 @@ def _drives(case: Case) -> tuple[Array, ...]:
 
 @lru_cache(maxsize=1)
 def _compiled():
-    import numba  # pyright: ignore[reportMissingImports]  # noqa: PLC0415
+    import numba  # pyright: ignore[reportMissingImports]
 
     slope = numba.njit(rates)
 

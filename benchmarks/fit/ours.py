@@ -6,15 +6,13 @@ import numpy as np
 
 from benchmarks.fit.case import BOX, TRUE, Array, Case
 from benchmarks.fit.equations import B1, B2, C1, C2, M1, M2, PARAMETERS, H
-from rr_opt.diagnose.explain import joined, nominal, windows
-from rr_opt.diagnose.fit import solve
-from rr_opt.diagnose.model import Quantity
-from rr_opt.diagnose.problem import Problem
-from rr_opt.diagnose.racer import RollerRacer
-from rr_opt.experiment.experiment import Experiment, Noise, Run
-from rr_opt.experiment.recording import CHANNELS, Recording
-from rr_opt.robot.gait import SineGait
-from rr_opt.robot.parameters import Platform, Robot
+from rr_opt.machines.racer.racer import RollerRacer
+from rr_opt.model.experiment import CHANNELS, Experiment, Noise, Recording, Run
+from rr_opt.model.gait import SineGait
+from rr_opt.model.robot import Platform, Robot
+from rr_opt.sysid.candidate import joined, nominal, windows
+from rr_opt.sysid.least_squares import Problem, solve
+from rr_opt.sysid.model import Quantity
 
 
 def fit(case: Case, start: Array) -> Array:

@@ -88,5 +88,5 @@ def _said(tried: Mapping[str, Tried]) -> list[str]:
     return [
         f"The goal was {_GOAL:g} times as fast as CasADi's example: "
         f"{'reached' if ratio >= _GOAL else 'missed'}, with {ratio:.1f}. And 38 of 40 far starts: "
-        f"{'reached' if share >= _SHARE else 'missed'}, with {own.reached} of {len(own.far)}.",
+        f"{'reached' if share >= _SHARE else 'missed'}, with {own.reached} of {len(own.far)}."
     ]

@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rr_opt.problem import RatioChoice
-from rr_opt.robot.parameters import Platform, Robot
+from rr_opt.model.problem import RatioChoice
+from rr_opt.model.robot import Platform, Robot
 
 
 class Body(NamedTuple):

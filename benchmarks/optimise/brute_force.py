@@ -26,8 +26,8 @@ from benchmarks.optimise.fourier_numpy import Array, peaks
 from benchmarks.optimise.polish import polish
 from benchmarks.optimise.problems import PROBLEMS
 from benchmarks.optimise.space import Box, Gait
-from rr_opt.problem import Problem
-from rr_opt.robot.ballast import with_inertia_ratio
+from rr_opt.model.ballast import with_inertia_ratio
+from rr_opt.model.problem import Problem
 
 STORE = Path(__file__).with_name("best_known.json")
 POINTS, CHUNK = 2**18, 2**12

@@ -16,7 +16,7 @@ from scipy.integrate import solve_ivp
 
 from benchmarks.optimise.bodies import body
 from benchmarks.optimise.fourier_numpy import evaluate, steady_cycle
-from rr_opt.robot.parameters import Platform, Robot
+from rr_opt.model.robot import Platform, Robot
 
 
 def unit(angle: float) -> tuple[np.ndarray, np.ndarray]:

@@ -22,7 +22,7 @@ from benchmarks.optimise.fourier_numpy import Array
 from benchmarks.optimise.polish import polish
 from benchmarks.optimise.problems import PROBLEMS
 from benchmarks.optimise.space import Box, Gait
-from rr_opt.problem import Problem
+from rr_opt.model.problem import Problem
 
 PENALTY = 10.0  # m/s for each time the torque exceeds its limit
 RESOLVED = 1e-6  # of the speed

@@ -22,8 +22,8 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.fft import irfft, rfft
 
 from benchmarks.optimise.bodies import Body, body, loaded_body
-from rr_opt.problem import RatioChoice
-from rr_opt.robot.parameters import Robot
+from rr_opt.model.problem import RatioChoice
+from rr_opt.model.robot import Robot
 
 Array = NDArray[np.float64]
 

@@ -10,9 +10,9 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from rr_opt.problem import GaitBounds, Interval, Limits, Problem, RatioChoice
-from rr_opt.robot.ballast import Loads
-from rr_opt.robot.parameters import Platform, Robot
+from rr_opt.model.ballast import Loads
+from rr_opt.model.problem import GaitBounds, Interval, Limits, Problem, RatioChoice
+from rr_opt.model.robot import Platform, Robot
 
 H = 0.02  # wheel radius, m
 RPM30 = math.pi  # rad/s

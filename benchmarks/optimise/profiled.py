@@ -9,13 +9,15 @@ from contextlib import contextmanager
 from typing import Any
 
 from benchmarks.optimise.problems import PROBLEMS
-from rr_opt.design import climb, refine, sines, solve
+from rr_opt.design import climb, solve
+from rr_opt.design import search as refine
+from rr_opt.design import search as sines
 from rr_opt.design.interval import interval_of
 from rr_opt.design.landscape import Landscape
 from rr_opt.design.maximize_speed import maximize_speed
-from rr_opt.design.shapes import SineShape
-from rr_opt.motion.tableau import BUTCHER6
-from rr_opt.physics.dynamics import derive
+from rr_opt.design.shapes.sine import SineShape
+from rr_opt.mechanics.runge_kutta import BUTCHER6
+from rr_opt.motion.dynamics import derive
 
 _PARTS = {
     "scan and climbs, their cycles": [(sines, "find_seeds")],

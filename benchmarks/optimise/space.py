@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from benchmarks.optimise.fourier_numpy import Array, Performance, evaluate
-from rr_opt.problem import Interval, Problem
+from rr_opt.model.problem import Interval, Problem
 
 INFEASIBLE = 1e3  # m/s, the cost of a point where no amplitude is allowed
 

@@ -17,9 +17,9 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.results import machine, write, yardstick
-from rr_opt.files import read_problem
+from rr_opt.files.problem_file import read_problem
+from rr_opt.model.gait import SineGait
 from rr_opt.motion.rollout import rollout
-from rr_opt.robot.gait import SineGait
 
 PLACES = {
     "L1": (1, 0.05, 0.03),

@@ -11,7 +11,7 @@ import yaml
 
 from benchmarks.fit.case import GAITS, SIGMA, TRUE, case
 from benchmarks.fit.equations import B1, B2, C1, C2, M1, M2, H
-from rr_opt.experiment.recording import CHANNELS
+from rr_opt.model.experiment import CHANNELS
 
 FLOORS: Mapping[str, str] = {
     "python -c pass": "pass",

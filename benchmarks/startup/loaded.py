@@ -56,7 +56,7 @@ def main() -> None:
     use = Use()
     sys.setprofile(use)
     try:
-        from rr_opt.cli.entry import main as run  # noqa: PLC0415
+        from rr_opt.cli.entry import main as run
 
         run()
     except SystemExit:

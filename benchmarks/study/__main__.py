@@ -20,11 +20,10 @@ from benchmarks.results import machine, write, yardstick
 from rr_opt.batch.journal import Journal
 from rr_opt.batch.local import LocalPool
 from rr_opt.batch.run import run
-from rr_opt.design.study.case import Task, solve_case
+from rr_opt.design.study.case import Task, solve_case, solve_study
 from rr_opt.design.study.plan import plan
 from rr_opt.design.study.row import Row, row_record
-from rr_opt.design.study.solve_study import solve_study
-from rr_opt.files.study.file import Study, read_study
+from rr_opt.files.study_file import Study, read_study
 from rr_opt.outcome import Status
 
 STUDY = """

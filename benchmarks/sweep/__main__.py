@@ -15,11 +15,11 @@ for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
 
 
 def main(quick: bool) -> None:
-    from benchmarks.results import machine, write  # noqa: PLC0415
-    from benchmarks.sweep import both_cores, cold, page, profiled  # noqa: PLC0415
-    from benchmarks.sweep.case import plane, space  # noqa: PLC0415
-    from benchmarks.sweep.measure import measured  # noqa: PLC0415
-    from benchmarks.sweep.ways import WAYS  # noqa: PLC0415
+    from benchmarks.results import machine, write
+    from benchmarks.sweep import both_cores, cold, page, profiled
+    from benchmarks.sweep.case import plane, space
+    from benchmarks.sweep.measure import measured
+    from benchmarks.sweep.ways import WAYS
 
     os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
     cases = {

@@ -8,9 +8,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from rr_opt.problem import Limits, Problem
-from rr_opt.robot.ballast import inertia_ratio, with_inertia_ratio
-from rr_opt.robot.parameters import EffectUse, Platform, Robot
+from rr_opt.model.ballast import inertia_ratio, with_inertia_ratio
+from rr_opt.model.problem import Limits, Problem
+from rr_opt.model.robot import EffectUse, Platform, Robot
 
 Array = NDArray[np.float64]
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from benchmarks.sweep.case import Work
 from benchmarks.sweep.ways.ours import run_plain
-from rr_opt.physics.dynamics import dynamics_of
+from rr_opt.motion.dynamics import dynamics_of
 from rr_opt.verify import steady_fourier
 from rr_opt.verify.speeds import model_of
 

@@ -22,7 +22,7 @@ from benchmarks.optimise.fourier_numpy import Array
 from benchmarks.optimise.polish import Local
 from benchmarks.optimise.space import Box
 from benchmarks.turn.problems import PROBLEMS
-from rr_opt.problem import Problem
+from rr_opt.model.problem import Problem
 
 STORE = Path(__file__).with_name("best_known.json")
 POINTS, CHUNK = 2**17, 2**12

@@ -6,7 +6,7 @@ import math
 from dataclasses import replace
 
 from benchmarks.optimise.problems import CENTRE, PAPER, WIDE, gait, limits, prototype, ratio, robot
-from rr_opt.problem import Interval, Problem, Turn
+from rr_opt.model.problem import Interval, Problem, Turn
 
 OPEN = Interval(-2.6, 2.6)
 

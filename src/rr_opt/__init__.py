@@ -4,4 +4,6 @@ The paper behind the names: A. Kilin, Yu. Karavaev and K. Yefremov, "Experimenta
 investigations of the controlled motion of the Roller Racer robot".
 """
 
+from __future__ import annotations
+
 __version__ = "0.1.0"

@@ -18,32 +18,36 @@ CONTRACTS = {
 }
 
 PLANTED = [
-    ("layers", "robot/planted.py", "import rr_opt.physics.dynamics"),
-    ("layers", "physics/planted.py", "import rr_opt.motion.cycle"),
-    ("layers", "files/planted.py", "import rr_opt.motion.cycle"),
-    ("layers", "motion/planted.py", "import rr_opt.files.units"),
-    ("layers", "design/planted.py", "import rr_opt.cli.main"),
-    ("check-apart-from-design", "verify/planted.py", "import rr_opt.design.solve"),
-    ("check-apart-from-design", "design/planted.py", "import rr_opt.verify.replay"),
-    ("sweep-apart-from-motion", "verify/sweep.py", "import rr_opt.motion.cycle"),
-    ("figures-in-report", "verify/planted.py", "import matplotlib.pyplot"),
-    ("formats-in-files", "cli/planted.py", "import yaml"),
-    ("formats-in-files", "robot/planted.py", "from pint import UnitRegistry"),
-    ("formats-in-files", "report/planted.py", "import pydantic"),
-    ("terminal-in-cli", "design/planted.py", "import typer"),
-    ("terminal-in-cli", "report/planted.py", "def table():\n    from rich.table import Table"),
-    ("layers", "design/planted.py", "import rr_opt.batch.run"),
-    ("processes-in-batch", "design/planted.py", "import joblib"),
-    ("processes-in-batch", "cli/planted.py", "from distributed import Client"),
-    ("plain-robot", "robot/planted.py", "import casadi as ca"),
-    ("plain-robot", "problem.py", "import casadi as ca"),
-    ("proof-apart", "proof/planted.py", "import rr_opt.diagnose.verdict"),
-    ("lab-apart", "lab/planted.py", "import rr_opt.motion.cycle"),
-    ("lab-apart", "lab/planted.py", "import rr_opt.files.units"),
-    ("engines-apart", "lab/planar/planted.py", "import rr_opt.lab.plant"),
-    ("engines-apart", "lab/planar/planted.py", "import rr_opt.lab.drive"),
-    ("lab-unknown", "diagnose/planted.py", "import rr_opt.lab.rig"),
+    ("layers", "rr_opt/model/planted.py", "import rr_opt.motion.dynamics"),
+    ("layers", "rr_opt/mechanics/planted.py", "import rr_opt.motion.steady_cycle"),
+    ("layers", "rr_opt/effects/planted.py", "import rr_opt.motion.dynamics"),
+    ("layers", "rr_opt/files/planted.py", "import rr_opt.motion.steady_cycle"),
+    ("layers", "rr_opt/motion/planted.py", "import rr_opt.files.units"),
+    ("layers", "rr_opt/design/planted.py", "import rr_opt.cli.main"),
+    ("layers", "rr_opt/design/planted.py", "import rr_opt.batch.run"),
+    ("layers", "rr_opt/sysid/planted.py", "import rr_opt.machines.racer.racer"),
+    ("packages", "rr_opt/report/planted.py", "import rr_lab.rig"),
+    ("packages", "rr_opt/report/planted.py", "import rr_paper.printed"),
+    ("lab-layers", "rr_lab/rig.py", "import rr_lab.case"),
+    ("check-apart-from-design", "rr_opt/verify/planted.py", "import rr_opt.design.solve"),
+    ("check-apart-from-design", "rr_opt/design/planted.py", "import rr_opt.verify.replay"),
+    ("sweep-apart-from-motion", "rr_opt/verify/sweep.py", "import rr_opt.motion.steady_cycle"),
+    ("machine-free", "rr_opt/sysid/planted.py", "import rr_opt.effects"),
+    ("figures-in-report", "rr_opt/verify/planted.py", "import matplotlib.pyplot"),
+    ("formats-in-files", "rr_opt/cli/planted.py", "import yaml"),
+    ("formats-in-files", "rr_opt/model/planted.py", "from pint import UnitRegistry"),
+    ("formats-in-files", "rr_opt/report/planted.py", "import pydantic"),
+    ("terminal-in-cli", "rr_opt/design/planted.py", "import typer"),
+    ("terminal-in-cli", "rr_lab/report/planted.py", "def f():\n    from rich.table import Table"),
+    ("processes-in-batch", "rr_opt/design/planted.py", "import joblib"),
+    ("processes-in-batch", "rr_opt/cli/planted.py", "from distributed import Client"),
+    ("plain-model", "rr_opt/model/robot.py", "import casadi as ca"),
+    ("trial-apart", "rr_lab/trial/planted.py", "import rr_opt.sysid.verdict"),
+    ("lab-apart", "rr_lab/rig.py", "import rr_opt.motion.steady_cycle"),
+    ("lab-apart", "rr_lab/draw.py", "import rr_opt.files.units"),
+    ("engines-apart", "rr_lab/planar/planted.py", "import rr_lab.mujoco.plant"),
 ]
+PACKAGES = ("rr_opt", "rr_lab", "rr_paper")
 
 
 def lint_imports(root):
@@ -63,11 +67,12 @@ def lint_imports(root):
 @pytest.fixture
 def tree(tmp_path):
     """A copy of the package and its contracts, free to be spoiled."""
-    shutil.copytree(
-        ROOT / "src" / "rr_opt",
-        tmp_path / "src" / "rr_opt",
-        ignore=shutil.ignore_patterns("__pycache__"),
-    )
+    for package in PACKAGES:
+        shutil.copytree(
+            ROOT / "src" / package,
+            tmp_path / "src" / package,
+            ignore=shutil.ignore_patterns("__pycache__"),
+        )
     shutil.copy(ROOT / "pyproject.toml", tmp_path)
     return tmp_path
 
@@ -80,7 +85,7 @@ def test_the_package_keeps_them(tree):
 
 @pytest.mark.parametrize(("contract", "file", "line"), PLANTED)
 def test_a_planted_import_breaks(tree, contract, file, line):
-    path = tree / "src" / "rr_opt" / file
+    path = tree / "src" / file
     old = path.read_text(encoding="utf-8") if path.exists() else '"""Planted."""\n'
     path.write_text(f"{old}\n{line}\n", encoding="utf-8")
     code, text = lint_imports(tree)
@@ -102,5 +107,5 @@ def test_no_contract_is_left_out():
 
 def test_every_folder_of_code_is_seen():
     """A folder without __init__.py would be passed over by the linter and by the installer."""
-    folders = {path.parent for path in (ROOT / "src" / "rr_opt").rglob("*.py")}
+    folders = {path.parent for path in (ROOT / "src").rglob("*.py")}
     assert [str(folder) for folder in folders if not (folder / "__init__.py").exists()] == []

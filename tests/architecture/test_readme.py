@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from rr_opt.files import lint_file
+from rr_opt.files.lint import lint_file
 from scripts.readme_commands import Commands, File, blocks, missing, steps
 
 ROOT = Path(__file__).parents[2]

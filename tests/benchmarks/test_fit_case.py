@@ -7,10 +7,10 @@ from benchmarks.fit import ours
 from benchmarks.fit.case import BEGINS, GAITS, SIGMA, TRUE, Case, case, clean
 from benchmarks.fit.equations import PARAMETERS
 from benchmarks.fit.referee import predicted
-from rr_opt.diagnose.model import Piece
-from rr_opt.diagnose.racer import RollerRacer
-from rr_opt.diagnose.racer_quantities import values_of
-from rr_opt.physics.floor_motion import floor_motion
+from rr_opt.machines.racer.parameters import values_of
+from rr_opt.machines.racer.racer import RollerRacer
+from rr_opt.motion.floor_motion import floor_motion
+from rr_opt.sysid.model import Piece
 
 
 def of_model(run, p):

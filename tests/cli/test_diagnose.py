@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from rr_opt.cli.shared_work import SharedWork
+from rr_opt.model.gait import SineGait
 from rr_opt.motion.rollout import rollout
-from rr_opt.robot.gait import SineGait
 from tests.cli.test_interrupt import PROGRAM, interrupted
-from tests.diagnose.bad_data.folder import HEAD
 from tests.robots import BENCHMARK
+from tests.sysid.bad_data.folder import HEAD
 
 GAITS = ((0.5, 1.0, 0.0), (0.7, 1.2, 0.1), (0.4, 0.8, -0.1))
 KEYS = {"verdict", "summary", "location", "effects", "candidates", "indistinguishable",
@@ -82,8 +82,8 @@ def test_json_alone_and_no_page(run, folder, tmp_path):
 
 
 def test_fits_that_end_nowhere(run, folder, monkeypatch, tmp_path):
-    from rr_opt.diagnose import racer_diagnosis as module  # noqa: PLC0415
-    from tests.report.diagnosis.conftest import _experiment, _found  # noqa: PLC0415
+    from rr_opt.machines.racer import diagnose as module
+    from tests.report.diagnosis.conftest import _experiment, _found
 
     found = replace(_found(_experiment()), after=float("nan"))
     monkeypatch.setattr(module, "diagnose_racer", lambda *_: found)
@@ -117,7 +117,7 @@ def test_recordings_that_cannot_tell_are_refused(run, tables, tmp_path, change, 
 
 
 def test_one_recording_that_cannot_tell_is_left_out(tables, tmp_path):
-    from rr_opt.cli.diagnose_input import read, usable  # noqa: PLC0415
+    from rr_opt.cli.diagnose_input import read, usable
 
     write(tmp_path / "trial", [tables[0], tables[1][:60], tables[2]], ("fit",) * 3)
     experiment, told = usable(read(tmp_path / "trial")[2])

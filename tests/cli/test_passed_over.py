@@ -4,8 +4,8 @@ import json
 
 import pytest
 
-from rr_opt.physics.effects import OF_ROBOTS
-from rr_opt.physics.steady_effects import steady_effects
+from rr_opt.effects import OF_ROBOTS
+from rr_opt.motion.dynamics import steady_effects
 
 ROBOT = """
 platform1: {m: 0.469, I: 0.00386, c: 206 mm, a: 20 mm, b: 50 mm, kappa: 2.0e-5}

@@ -8,12 +8,10 @@ from dataclasses import replace
 import pytest
 
 from benchmarks.optimise.problems import PROBLEMS
-from rr_opt.design.basin import leads_to
-from rr_opt.design.decisions import decisions
-from rr_opt.design.refine import refine, solve_from
+from rr_opt.design.decisions import decisions, settings_of
+from rr_opt.design.search import leads_to, refine, solve_from
 from rr_opt.design.seeds import find_seeds
-from rr_opt.design.setting import settings_of
-from rr_opt.robot.gait import SineGait
+from rr_opt.model.gait import SineGait
 
 SIGNS = {"forward": (1,), "backward": (-1,), "either": (1, -1)}
 

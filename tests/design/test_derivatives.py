@@ -4,9 +4,11 @@ import numpy as np
 import pytest
 
 from rr_opt.design.multiple_shooting import shooting
-from rr_opt.design.shapes import FourierShape, FreeShape, SineShape
+from rr_opt.design.shapes.fourier import FourierShape
+from rr_opt.design.shapes.free import FreeShape
+from rr_opt.design.shapes.sine import SineShape
 from rr_opt.design.solve import all_checks
-from rr_opt.physics.dynamics import derive
+from rr_opt.motion.dynamics import derive
 from tests.robots import BENCHMARK, DRY
 
 N = 8

@@ -7,8 +7,8 @@ import pytest
 
 from benchmarks.optimise.problems import PROBLEMS
 from rr_opt.design.maximize_speed import maximize_speed
+from rr_opt.model.problem import Interval
 from rr_opt.outcome import Status
-from rr_opt.problem import Interval
 
 STRAIGHT = PROBLEMS["straight"]
 

@@ -7,11 +7,9 @@ import numpy as np
 import pytest
 
 from benchmarks.optimise.problems import PROBLEMS
-from rr_opt.design import landscape_code
-from rr_opt.design.decisions import decisions
-from rr_opt.design.landscape import Cycles
-from rr_opt.design.landscape_code import LandscapeCode
-from rr_opt.design.setting import settings_of
+from rr_opt.design import landscape as landscape_code
+from rr_opt.design.decisions import decisions, settings_of
+from rr_opt.design.landscape import Cycles, LandscapeCode
 
 pytestmark = pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
 

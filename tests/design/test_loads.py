@@ -6,7 +6,7 @@ import pytest
 
 from benchmarks.optimise.problems import PROBLEMS
 from rr_opt.design.maximize_speed import maximize_speed
-from rr_opt.robot.ballast import inertia_ratio, load_count
+from rr_opt.model.ballast import inertia_ratio, load_count
 
 PROBLEM = PROBLEMS["paper_loads"]
 

@@ -5,10 +5,10 @@ import shutil
 import numpy as np
 import pytest
 
-from rr_opt.design import machine
+from rr_opt.design import interval as machine
 from rr_opt.design.interval import IntervalTerms
-from rr_opt.design.shapes import SineShape
-from rr_opt.motion.tableau import BUTCHER6
+from rr_opt.design.shapes.sine import SineShape
+from rr_opt.mechanics.runge_kutta import BUTCHER6
 
 
 @pytest.fixture

@@ -6,8 +6,8 @@ import pytest
 
 from benchmarks.optimise.problems import PROBLEMS
 from rr_opt.design.maximize_speed import maximize_speed
+from rr_opt.model.robot import EffectUse
 from rr_opt.outcome import InputError, Status
-from rr_opt.robot.parameters import EffectUse
 from tests.robots import with_friction
 
 

@@ -1,8 +1,8 @@
 """Candidates are ranked by feasibility, then success, then speed."""
 
-from rr_opt.design.mesh import regular
 from rr_opt.design.solve import Candidate
-from rr_opt.robot.gait import SineGait
+from rr_opt.design.transcription import regular
+from rr_opt.model.gait import SineGait
 
 
 def candidate(feasible, success, speed):

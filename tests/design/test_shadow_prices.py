@@ -6,7 +6,7 @@ import pytest
 
 from benchmarks.optimise.problems import PROBLEMS
 from rr_opt.design.maximize_speed import maximize_speed
-from rr_opt.problem import Interval
+from rr_opt.model.problem import Interval
 
 
 def slope(problem, name, step):

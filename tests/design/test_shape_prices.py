@@ -7,11 +7,10 @@ from dataclasses import replace
 import pytest
 
 from benchmarks.optimise.problems import PROBLEMS
-from rr_opt.design.decisions import decisions
-from rr_opt.design.refine import refine, solve_from
-from rr_opt.design.setting import settings_of
-from rr_opt.problem import GaitBounds, Problem
-from rr_opt.robot.gait import Gait, SineGait
+from rr_opt.design.decisions import decisions, settings_of
+from rr_opt.design.search import refine, solve_from
+from rr_opt.model.gait import Gait, SineGait
+from rr_opt.model.problem import GaitBounds, Problem
 
 
 def climbed(problem: Problem, sign: int, gait: Gait):

@@ -8,8 +8,8 @@ import pytest
 from benchmarks.optimise.problems import PROBLEMS
 from rr_opt.design.maximize_speed import Optimum, compare_shapes
 from rr_opt.outcome import Status
-from rr_opt.verify.given import speed_of
 from rr_opt.verify.replay import replay
+from rr_opt.verify.speeds import speed_of
 
 
 @pytest.fixture(scope="module", params=["paper_forward", "paper_torque"])

@@ -4,7 +4,7 @@ import math
 
 from benchmarks.optimise.problems import CENTRE, PROBLEMS, WIDE, gait, limits, robot
 from rr_opt.design.maximize_speed import maximize_speed
-from rr_opt.problem import Problem
+from rr_opt.model.problem import Problem
 
 
 def test_told():

@@ -6,7 +6,7 @@ import pytest
 
 from benchmarks.turn.problems import SHORT, round_, turning
 from rr_opt.design.maximize_speed import maximize_speed
-from rr_opt.problem import Interval
+from rr_opt.model.problem import Interval
 
 
 def test_mirror():

@@ -4,7 +4,7 @@ import pytest
 
 from benchmarks.turn.problems import SHORT, turning
 from rr_opt.design.maximize_speed import maximize_speed
-from rr_opt.problem import Interval, Turn
+from rr_opt.model.problem import Interval, Turn
 
 STEP = 1e-3
 

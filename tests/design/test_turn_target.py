@@ -7,8 +7,8 @@ import pytest
 
 from benchmarks.turn.problems import SHORT
 from rr_opt.design.turn.target import Target, checked, posed
+from rr_opt.model.problem import Interval
 from rr_opt.outcome import InputError
-from rr_opt.problem import Interval
 
 
 @pytest.mark.parametrize(

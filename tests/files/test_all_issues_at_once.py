@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from rr_opt.files import InvalidFileError, lint_file, read_problem
+from rr_opt.files.issue import InvalidFileError
+from rr_opt.files.lint import lint_file
+from rr_opt.files.problem_file import read_problem
 from rr_opt.outcome import EXIT_WRONG_INPUT, InputError
 
 WRONG = """\

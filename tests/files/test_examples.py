@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from rr_opt.files import lint_file, read_problem
+from rr_opt.files.lint import lint_file
+from rr_opt.files.problem_file import read_problem
 from rr_opt.files.source import SHIPPED
 
 PROBLEMS = Path(__file__).parents[2] / "problems"

@@ -6,10 +6,11 @@ import math
 
 import pytest
 
-from rr_opt.files import InvalidFileError, lint_file, read_problem
-from rr_opt.files.experiment.file import named_files, read_plan
-from rr_opt.robot.fourier_gait import FourierGait
-from rr_opt.robot.gait import SineGait
+from rr_opt.files.experiment_file import named_files, read_plan
+from rr_opt.files.issue import InvalidFileError
+from rr_opt.files.lint import lint_file
+from rr_opt.files.problem_file import read_problem
+from rr_opt.model.gait import FourierGait, SineGait
 
 HEAD = """\
 robot:

@@ -8,17 +8,18 @@ import yaml
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from rr_opt.files import InvalidFileError, lint_file
-from rr_opt.files.experiment.file import named_files, read_plan
-from rr_opt.files.experiment.model import (
+from rr_opt.files.experiment_file import named_files, read_plan
+from rr_opt.files.experiment_model import (
     CountScaleModel,
     ExperimentModel,
     MarkersModel,
     NoiseModel,
     RecordingModel,
+    UncertaintyModel,
 )
-from rr_opt.files.experiment.uncertainty import UncertaintyModel
-from rr_opt.files.gait_model import FourierRecord, SineRecord
+from rr_opt.files.gait_record import FourierRecord, SineRecord
+from rr_opt.files.issue import InvalidFileError
+from rr_opt.files.lint import lint_file
 
 MODELS = (
     *(ExperimentModel, NoiseModel, MarkersModel, CountScaleModel, RecordingModel),

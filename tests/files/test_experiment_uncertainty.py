@@ -6,9 +6,9 @@ import math
 
 import pytest
 
-from rr_opt.experiment.experiment import Uncertainty
-from rr_opt.files import InvalidFileError
-from rr_opt.files.experiment.file import read_plan
+from rr_opt.files.experiment_file import read_plan
+from rr_opt.files.issue import InvalidFileError
+from rr_opt.model.experiment import Uncertainty
 
 TEXT = """\
 robot:

@@ -10,10 +10,11 @@ import yaml
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
-from rr_opt.files import InvalidFileError, lint_file, read_problem, read_robot
-from rr_opt.files.gait_bounds_model import GaitModel
-from rr_opt.files.problem_model import InertiaRatioModel, LimitsModel, ProblemModel
-from rr_opt.files.robot_model import PlatformModel, RobotModel, ServoModel
+from rr_opt.files.issue import InvalidFileError
+from rr_opt.files.lint import lint_file
+from rr_opt.files.problem_file import read_problem
+from rr_opt.files.problem_model import GaitModel, InertiaRatioModel, LimitsModel, ProblemModel
+from rr_opt.files.robot_file import PlatformModel, RobotModel, ServoModel, read_robot
 from rr_opt.files.source import SHIPPED
 
 MODELS = (

@@ -2,7 +2,8 @@
 
 import pytest
 
-from rr_opt.files import lint_file, read_problem
+from rr_opt.files.lint import lint_file
+from rr_opt.files.problem_file import read_problem
 
 
 @pytest.mark.parametrize(

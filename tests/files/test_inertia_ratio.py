@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from rr_opt.files import InvalidFileError, lint_file, read_problem
-from rr_opt.problem import Interval, RatioChoice
-from rr_opt.robot.ballast import Loads, inertia_ratio, with_inertia_ratio
+from rr_opt.files.issue import InvalidFileError
+from rr_opt.files.lint import lint_file
+from rr_opt.files.problem_file import read_problem
+from rr_opt.model.ballast import Loads, inertia_ratio, with_inertia_ratio
+from rr_opt.model.problem import Interval, RatioChoice
 
 
 def ratio(write, text: str) -> RatioChoice | None:
@@ -20,8 +22,7 @@ def test_a_number_fixes_it(write, text: str):
 
 def test_loads(write):
     choice = ratio(
-        write,
-        "{bounds: [0.5, 0.6], about: centre, by: loads, loads: {mass: 100 g, whole: true}}",
+        write, "{bounds: [0.5, 0.6], about: centre, by: loads, loads: {mass: 100 g, whole: true}}"
     )
     loads = Loads(mass=pytest.approx(0.1), whole=True)
     assert choice == RatioChoice(Interval(0.5, 0.6), "centre", "loads", loads)

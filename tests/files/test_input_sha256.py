@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from rr_opt.files import InvalidFileError, input_sha256
+from rr_opt.files.issue import InvalidFileError
+from rr_opt.files.problem_file import input_sha256
 from rr_opt.files.source import SHIPPED
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from rr_opt.files import lint_file
+from rr_opt.files.lint import lint_file
 
 MESSAGES = {
     "gait: {amplitud: 1}": (

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from rr_opt.files import lint_file, read_robot
-from rr_opt.physics.effects import OF_ROBOTS
-from rr_opt.robot.parameters import EffectUse
+from rr_opt.effects import OF_ROBOTS
+from rr_opt.files.lint import lint_file
+from rr_opt.files.robot_file import read_robot
+from rr_opt.model.robot import EffectUse
 
 
 def with_physics(robot_text: str, physics: str) -> str:

@@ -6,9 +6,10 @@ import math
 
 import pytest
 
-from rr_opt.files import lint_file, read_problem
-from rr_opt.problem import GaitBounds, Interval, Limits
-from rr_opt.robot.parameters import Servo
+from rr_opt.files.lint import lint_file
+from rr_opt.files.problem_file import read_problem
+from rr_opt.model.problem import GaitBounds, Interval, Limits
+from rr_opt.model.robot import Servo
 
 
 def test_defaults(write):

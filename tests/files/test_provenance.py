@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from rr_opt.files import lint_file, read_robot
+from rr_opt.files.lint import lint_file
+from rr_opt.files.robot_file import read_robot
 
 
 def with_provenance(robot_text: str, provenance: str) -> str:

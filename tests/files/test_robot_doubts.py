@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from rr_opt.files import lint_file, read_robot
+from rr_opt.files.lint import lint_file
+from rr_opt.files.robot_file import read_robot
 
 DOUBTS = {
     ("a: 0.020", "a: 0.300"): ("platform1.a", "puts the centre of mass beyond the joint"),

@@ -6,8 +6,9 @@ import math
 
 import pytest
 
-from rr_opt.files import lint_file, read_robot
-from rr_opt.robot.parameters import Platform, Robot, Servo
+from rr_opt.files.lint import lint_file
+from rr_opt.files.robot_file import read_robot
+from rr_opt.model.robot import Platform, Robot, Servo
 
 
 def test_plain_numbers(write, robot_text):

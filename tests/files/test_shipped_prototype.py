@@ -7,9 +7,9 @@ from dataclasses import fields
 
 import pytest
 
-from rr_opt.files import read_problem
-from rr_opt.problem import Interval, Limits, RatioChoice
-from rr_opt.robot.parameters import Platform, Servo
+from rr_opt.files.problem_file import read_problem
+from rr_opt.model.problem import Interval, Limits, RatioChoice
+from rr_opt.model.robot import Platform, Servo
 
 
 def test_the_robot_has_table_1():

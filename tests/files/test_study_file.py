@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from rr_opt.files import read_problem
 from rr_opt.files.issue import InvalidFileError
+from rr_opt.files.problem_file import read_problem
 from rr_opt.files.schemas import schema
-from rr_opt.files.study.file import read_study
+from rr_opt.files.study_file import read_study
 
 
 @pytest.fixture

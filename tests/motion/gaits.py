@@ -2,9 +2,7 @@
 
 import numpy as np
 
-from rr_opt.robot.fourier_gait import FourierGait
-from rr_opt.robot.free_gait import FreeGait
-from rr_opt.robot.gait import SineGait
+from rr_opt.model.gait import FourierGait, FreeGait, SineGait
 
 
 def free_gait(period, angle0, accelerations):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rr_opt.motion.cycle import cycle_of
+from rr_opt.motion.steady_cycle import cycle_of
 
 
 @pytest.mark.parametrize("dpsi", [1e-12, -1e-6, 0.3, -0.3, 2.0, -4.0])

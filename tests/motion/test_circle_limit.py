@@ -5,11 +5,11 @@ import cmath
 
 import pytest
 
+from rr_opt.model.gait import SineGait
 from rr_opt.motion.circle import circle_of
-from rr_opt.motion.integrator import cvodes
+from rr_opt.motion.integrators import cvodes
 from rr_opt.motion.steady_cycle import steady_cycle
 from rr_opt.outcome import InputError
-from rr_opt.robot.gait import SineGait
 from tests.robots import BENCHMARK
 
 

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from rr_opt.motion.integrator import cvodes, fixed_steps, whole_steps
+from rr_opt.mechanics.runge_kutta import BUTCHER6, RK4
+from rr_opt.model.gait import FourierGait
+from rr_opt.motion.integrators import cvodes, fixed_steps, whole_steps
 from rr_opt.motion.rollout import repeated, rollout
 from rr_opt.motion.steady_cycle import reference_cycle, steady_cycle
-from rr_opt.motion.tableau import BUTCHER6, RK4
-from rr_opt.robot.fourier_gait import FourierGait
 from tests.motion.gaits import EVERY, FREE, SINE, free_sine
 from tests.robots import BENCHMARK, DRY
 

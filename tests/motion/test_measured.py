@@ -5,12 +5,11 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from rr_opt.motion.measured import measured
-from rr_opt.motion.rollout import rollout
+from rr_opt.model.gait import SineGait
+from rr_opt.motion.rollout import measured, rollout
 from rr_opt.motion.steady_cycle import steady_cycle
-from rr_opt.robot.gait import SineGait
+from tests.mechanics import multipliers
 from tests.motion.gaits import EVERY, SINE, free_gait
-from tests.physics import multipliers
 from tests.robots import BENCHMARK, with_friction
 
 PARTS, EACH = 16, 50

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from rr_opt.motion.integrator import cvodes, fixed_steps
-from rr_opt.motion.tableau import BUTCHER6, RK4
-from rr_opt.robot.gait import SineGait
+from rr_opt.mechanics.runge_kutta import BUTCHER6, RK4
+from rr_opt.model.gait import SineGait
+from rr_opt.motion.integrators import cvodes, fixed_steps
 from tests.robots import BENCHMARK
 
 GAIT = SineGait(0.7, 1.4, 0.2)

@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from rr_opt.motion.cycle import cycle_of
-from rr_opt.motion.steady_cycle import reference_cycle, steady_cycle
-from rr_opt.robot.gait import SineGait
+from rr_opt.model.gait import SineGait
+from rr_opt.motion.steady_cycle import cycle_of, reference_cycle, steady_cycle
 from tests.robots import BENCHMARK
 
 GAIT = SineGait(1.2, 2.4, 0.4)

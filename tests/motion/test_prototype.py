@@ -6,10 +6,10 @@ Its speeds are taken as magnitudes, as the paper's tables do not say which platf
 
 import pytest
 
-from rr_opt.files import read_problem
+from rr_opt.files.problem_file import read_problem
+from rr_opt.model.ballast import with_inertia_ratio
+from rr_opt.model.gait import SineGait
 from rr_opt.motion.steady_cycle import steady_cycle
-from rr_opt.robot.ballast import with_inertia_ratio
-from rr_opt.robot.gait import SineGait
 from tests.reference import paper
 
 

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from rr_opt.files import read_problem
+from rr_opt.files.problem_file import read_problem
+from rr_opt.model.gait import SineGait
 from rr_opt.motion.rollout import repeated, rollout
 from rr_opt.motion.steady_cycle import steady_cycle
 from rr_opt.outcome import InputError
-from rr_opt.robot.gait import SineGait
 
 
 @pytest.fixture(scope="module")
@@ -34,11 +34,7 @@ def test_rest_settles_to_the_steady_state(robot):
 
 @pytest.mark.parametrize(
     ("amplitude", "seconds", "rate", "word"),
-    [
-        (1.9, 1.0, 100.0, "singular"),
-        (0.5, 0.0, 100.0, "samples"),
-        (0.5, 1e9, 1e9, "samples"),
-    ],
+    [(1.9, 1.0, 100.0, "singular"), (0.5, 0.0, 100.0, "samples"), (0.5, 1e9, 1e9, "samples")],
 )
 def test_what_cannot_be_driven_is_told(robot, amplitude, seconds, rate, word):
     with pytest.raises(InputError, match=word):

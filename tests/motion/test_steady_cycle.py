@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from rr_opt.motion.integrator import cvodes
+from rr_opt.model.gait import SineGait
+from rr_opt.motion.integrators import cvodes
 from rr_opt.motion.steady_cycle import reference_cycle, steady_cycle
 from rr_opt.outcome import NotConvergedError
-from rr_opt.robot.gait import SineGait
 from tests.robots import BENCHMARK, DRY, with_friction
 
 GAITS = [SineGait(0.7, 1.4), SineGait(1.2, 2.4, 0.5), SineGait(0.4, 0.8, -0.3)]

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from rr_opt.motion.integrator import cvodes
+from rr_opt.model.gait import SineGait
+from rr_opt.motion.circle import transient
+from rr_opt.motion.dynamics import dynamics_of
+from rr_opt.motion.integrators import cvodes
 from rr_opt.motion.steady_cycle import steady_cycle
-from rr_opt.motion.transient import transient
-from rr_opt.physics.dynamics import dynamics_of
-from rr_opt.robot.gait import SineGait
 from tests.robots import BENCHMARK, DRY
 
 

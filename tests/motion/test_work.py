@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from rr_opt.motion.dynamics import dynamics_of
 from rr_opt.motion.steady_cycle import reference_cycle
-from rr_opt.physics.dynamics import dynamics_of
 from tests.motion.gaits import EVERY
 from tests.robots import BENCHMARK, DRY
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from rr_opt.recordings.sizes import size_text
+from rr_opt.recordings.warnings import size_text
 
 
 @pytest.mark.parametrize(

@@ -3,8 +3,8 @@
 import pytest
 
 from rr_opt.design.maximize_speed import maximize_speed
-from rr_opt.files import read_problem
-from rr_opt.problem import GaitBounds, Interval, Problem
+from rr_opt.files.problem_file import read_problem
+from rr_opt.model.problem import GaitBounds, Interval, Problem
 from rr_opt.report.answer import Answer
 from rr_opt.verify.replay import replay
 from rr_opt.verify.sweep import SweepCheck

@@ -5,13 +5,12 @@ import pytest
 from matplotlib.figure import Figure
 
 from rr_opt.motion.rollout import repeated
+from rr_opt.report.answer import bound_rows, limit_rows
+from rr_opt.report.figures.answer import draw
 from rr_opt.report.figures.cycle import cycle
-from rr_opt.report.figures.map_data import MapData
-from rr_opt.report.figures.of_answer import draw
 from rr_opt.report.figures.path import along_travel, instants, path
 from rr_opt.report.figures.prices import gains, prices
-from rr_opt.report.figures.speed_map import allowed, speed_map
-from rr_opt.report.rows import bound_rows, limit_rows
+from rr_opt.report.figures.speed_map import MapData, allowed, speed_map
 
 
 @pytest.fixture
@@ -72,7 +71,7 @@ def test_prices_put_the_dearest_first_and_idle_limits_last(answer):
 
 
 def test_drawing_twice_gives_the_same_files(answer, monkeypatch):
-    monkeypatch.setattr("rr_opt.verify.speed_map._SIDE", {True: 16, False: 16})
+    monkeypatch.setattr("rr_opt.verify.sweep._SIDE", {True: 16, False: 16})
     first, second = draw(answer), draw(answer)
     assert first.keys() == {"speed-map", "path", "cycle", "prices"}
     assert first == second

@@ -2,8 +2,8 @@
 
 import pytest
 
+from rr_opt.model.gait import FourierGait
 from rr_opt.report.text import gait_lines
-from rr_opt.robot.fourier_gait import FourierGait
 
 
 @pytest.mark.parametrize("scale", [1.0, -1e-3])

@@ -5,13 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from rr_opt.motion.cycle import cycle_of
-from rr_opt.motion.steady_cycle import steady_cycle
+from rr_opt.model.gait import SineGait
+from rr_opt.motion.dynamics import dynamics_of
+from rr_opt.motion.setpoints import BLEND, Cost, cost, held, set_points
+from rr_opt.motion.steady_cycle import cycle_of, steady_cycle
 from rr_opt.outcome import InputError
-from rr_opt.physics.dynamics import dynamics_of
-from rr_opt.report.setpoints.cost import Cost, cost
-from rr_opt.report.setpoints.setpoints import BLEND, held, set_points
-from rr_opt.robot.gait import SineGait
 from tests.motion.gaits import EVERY
 from tests.robots import BENCHMARK, with_friction
 

@@ -7,9 +7,9 @@ import subprocess
 import numpy as np
 import pytest
 
-from rr_opt.report.setpoints.file import text_of
-from rr_opt.report.setpoints.setpoints import set_points
-from rr_opt.robot.gait import SineGait
+from rr_opt.model.gait import SineGait
+from rr_opt.motion.setpoints import set_points
+from rr_opt.report.setpoints import text_of
 from tests.motion.gaits import EVERY
 
 SHAPES = pytest.mark.parametrize("gait", EVERY.values(), ids=EVERY)

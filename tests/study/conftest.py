@@ -4,10 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from rr_opt.design.study.case import solve_case
+from rr_opt.design.study.case import solve_case, solve_study
 from rr_opt.design.study.plan import plan
-from rr_opt.design.study.solve_study import solve_study
-from rr_opt.files.study.file import read_study
+from rr_opt.files.study_file import read_study
 
 
 def serial(tasks):

@@ -3,8 +3,8 @@
 import pytest
 
 from rr_opt.design.study.case import Task, solve_case
-from rr_opt.design.study.neighbours import Foothold
-from rr_opt.robot.gait import SineGait
+from rr_opt.design.study.plan import Foothold
+from rr_opt.model.gait import SineGait
 
 # Just past the jump: forward gaits are there still, and slower than the backward ones.
 PAST = "vary: {inertia_ratio: [0.1]}\n"

@@ -8,12 +8,9 @@ from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure
 
 from rr_opt.outcome import Status
-from rr_opt.report.figures.study.axis import shown
-from rr_opt.report.figures.study.grid import grid_of
-from rr_opt.report.figures.study.held import areas
-from rr_opt.report.figures.study.map import study_map
-from rr_opt.report.figures.study.speed import speed
-from rr_opt.report.study.result import studied
+from rr_opt.report.figures.active_limits import areas
+from rr_opt.report.figures.study import grid_of, shown, speed, study_map
+from rr_opt.report.study.table import studied
 
 ENDLESS = "problem: {gait: {period: 1 s, amplitude: [0.1, 1]}}\nvary:\n"
 

@@ -3,11 +3,10 @@
 import numpy as np
 import pytest
 
-from rr_opt.design.study.energy import GRAVITY, energy
+from rr_opt.design.study.measure import GRAVITY, energy
+from rr_opt.model.gait import FreeGait, SineGait
+from rr_opt.motion.dynamics import dynamics_of
 from rr_opt.motion.steady_cycle import reference_cycle, steady_cycle
-from rr_opt.physics.dynamics import dynamics_of
-from rr_opt.robot.free_gait import FreeGait
-from rr_opt.robot.gait import SineGait
 from tests.robots import BENCHMARK, DRY
 
 GAITS = {

@@ -4,15 +4,13 @@ from dataclasses import replace
 
 import pytest
 
-from rr_opt.design.decisions import decisions
-from rr_opt.design.refine import solve_from
-from rr_opt.design.setting import robot_of, settings_of
-from rr_opt.design.study.held import held
-from rr_opt.design.study.reached import reached
-from rr_opt.files import read_problem
+from rr_opt.design.decisions import decisions, robot_of, settings_of
+from rr_opt.design.search import solve_from
+from rr_opt.design.study.measure import held, reached
+from rr_opt.files.problem_file import read_problem
+from rr_opt.model.gait import SineGait
+from rr_opt.model.problem import GaitBounds, Interval, Limits, Problem, RatioChoice
 from rr_opt.motion.steady_cycle import steady_cycle
-from rr_opt.problem import GaitBounds, Interval, Limits, Problem, RatioChoice
-from rr_opt.robot.gait import SineGait
 
 STEP = 1e-3
 ANGLE, RATE, TORQUE = 0.9, 6.28, 1.37

@@ -2,8 +2,7 @@
 
 import pytest
 
-from rr_opt.design.study.branches import branches
-from rr_opt.design.study.plan import plan
+from rr_opt.design.study.plan import branches, plan
 
 JUMP = """
 vary:

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import casadi as ca
 import numpy as np
 
-from rr_opt.physics.dynamics import derive
+from rr_opt.motion.dynamics import derive
 
 SAMPLES = 2000
 

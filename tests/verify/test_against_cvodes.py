@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from rr_opt.model.gait import SineGait
+from rr_opt.model.problem import Limits, Problem
 from rr_opt.motion.steady_cycle import reference_cycle
-from rr_opt.problem import Limits, Problem
-from rr_opt.robot.gait import SineGait
-from rr_opt.verify.sweep import speeds
+from rr_opt.verify.speeds import speeds
 from tests.robots import BENCHMARK, DRY
 
 LIMITS = Limits(angle=2.6, rate=4.0, torque=1.5)

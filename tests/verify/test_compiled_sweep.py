@@ -5,10 +5,10 @@ import shutil
 import numpy as np
 import pytest
 
-from rr_opt.physics.dynamics import dynamics_of
-from rr_opt.robot.ballast import with_inertia_ratio
-from rr_opt.robot.parameters import EffectUse, Platform, Robot
-from rr_opt.verify.resolve import resolved
+from rr_opt.model.ballast import with_inertia_ratio
+from rr_opt.model.robot import EffectUse, Platform, Robot
+from rr_opt.motion.dynamics import dynamics_of
+from rr_opt.verify.speeds import resolved
 from rr_opt.verify.steady_fourier import SteadyFourier
 from tests.robots import BENCHMARK, with_friction
 from tests.verify.cvodes import reference

@@ -6,12 +6,11 @@ from unittest.mock import patch
 import numpy as np
 import pytest
 
-from rr_opt.problem import Limits, Problem
-from rr_opt.robot.parameters import EffectUse
-from rr_opt.verify.doublings import Doublings
+from rr_opt.model.problem import Limits, Problem
+from rr_opt.model.robot import EffectUse
+from rr_opt.verify.compiled_cycles import Steady
 from rr_opt.verify.speeds import speeds
-from rr_opt.verify.steady import Steady
-from rr_opt.verify.steady_fourier import SteadyFourier
+from rr_opt.verify.steady_fourier import Doublings, SteadyFourier
 from tests.robots import BENCHMARK
 
 LIMITS = Limits(angle=2.6, rate=99.0, torque=99.0)

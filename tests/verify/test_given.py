@@ -5,11 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from rr_opt.model.gait import FourierGait, FreeGait, Gait
 from rr_opt.motion.steady_cycle import reference_cycle
-from rr_opt.robot.fourier_gait import FourierGait
-from rr_opt.robot.free_gait import FreeGait
-from rr_opt.robot.gait import Gait
-from rr_opt.verify.given import speed_of
+from rr_opt.verify.speeds import speed_of
 from tests.robots import BENCHMARK, DRY
 
 FOURIER = FourierGait(1.3, 0.1, (0.6, 0.1, -0.05), (0.0, 0.05, 0.02))

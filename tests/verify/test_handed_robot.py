@@ -9,10 +9,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from rr_opt.model.gait import SineGait
+from rr_opt.model.problem import GaitBounds, Interval, Limits, Problem
+from rr_opt.model.robot import EffectUse, Robot
 from rr_opt.motion.steady_cycle import reference_cycle
-from rr_opt.problem import GaitBounds, Interval, Limits, Problem
-from rr_opt.robot.gait import SineGait
-from rr_opt.robot.parameters import EffectUse, Robot
 from rr_opt.verify.grid import boxes
 from rr_opt.verify.speeds import speeds
 from tests.robots import BENCHMARK

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from rr_opt.motion.integrator import cvodes
-from rr_opt.physics.dynamics import dynamics_of
-from rr_opt.problem import Limits
+from rr_opt.model.problem import Limits
+from rr_opt.motion.dynamics import dynamics_of
+from rr_opt.motion.integrators import cvodes
 from rr_opt.verify.replay import replay
 from tests.motion.gaits import free_gait
 from tests.robots import BENCHMARK

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from benchmarks.optimise.problems import PROBLEMS
-from rr_opt.robot.gait import SineGait
+from rr_opt.model.gait import SineGait
 from rr_opt.verify.speeds import speeds
 from rr_opt.verify.sweep import check_optimum
 

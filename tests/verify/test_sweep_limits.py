@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rr_opt.problem import GaitBounds, Interval, Limits, Problem, RatioChoice
-from rr_opt.robot.ballast import Loads, load_count
+from rr_opt.model.ballast import Loads, load_count
+from rr_opt.model.problem import GaitBounds, Interval, Limits, Problem, RatioChoice
 from rr_opt.verify.grid import grid_of, points, reach
 from rr_opt.verify.sweep import sweep
 from tests.robots import BENCHMARK

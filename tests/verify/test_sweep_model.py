@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from rr_opt.problem import Limits, Problem
-from rr_opt.robot.parameters import EffectUse, Platform, Robot
+from rr_opt.model.problem import Limits, Problem
+from rr_opt.model.robot import EffectUse, Platform, Robot
 from rr_opt.verify.speeds import speeds
 from tests.verify.cvodes import reference
 

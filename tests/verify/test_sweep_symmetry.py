@@ -4,9 +4,9 @@ where the half-period method for straight gaits takes over from that for all gai
 import numpy as np
 import pytest
 
-from rr_opt.physics.dynamics import dynamics_of
-from rr_opt.problem import Limits, Problem
-from rr_opt.robot.parameters import Robot
+from rr_opt.model.problem import Limits, Problem
+from rr_opt.model.robot import Robot
+from rr_opt.motion.dynamics import dynamics_of
 from rr_opt.verify.speeds import speeds
 from rr_opt.verify.steady_fourier import SteadyFourier
 from tests.robots import BENCHMARK, DRY

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from rr_opt.physics.dynamics import dynamics_of
-from rr_opt.verify.spectral import peak
+from rr_opt.motion.dynamics import dynamics_of
+from rr_opt.verify.fourier import peak
 from rr_opt.verify.steady_fourier import SteadyFourier
 from tests.robots import BENCHMARK
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from rr_opt.problem import GaitBounds, Interval, Limits, Problem
-from rr_opt.robot.parameters import EffectUse, Robot
+from rr_opt.model.problem import GaitBounds, Interval, Limits, Problem
+from rr_opt.model.robot import EffectUse, Robot
 from rr_opt.verify.speeds import speeds
 from rr_opt.verify.sweep import sweep
 from tests.robots import BENCHMARK, with_friction

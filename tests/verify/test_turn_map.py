@@ -8,14 +8,13 @@ import numpy as np
 import pytest
 
 from benchmarks.turn.problems import PROTOTYPE, SHORT, robot
+from rr_opt.model.gait import SineGait
+from rr_opt.model.problem import GaitBounds, Interval
 from rr_opt.motion.circle import circle_of
 from rr_opt.motion.steady_cycle import steady_cycle
-from rr_opt.problem import GaitBounds, Interval
-from rr_opt.robot.gait import SineGait
 from rr_opt.verify.speeds import speeds
-from rr_opt.verify.turn.map import turn_map
+from rr_opt.verify.turn.chart import tightest, turn_map
 from rr_opt.verify.turn.offset_claim import radius_claim, sign_claim
-from rr_opt.verify.turn.tightest import tightest
 
 
 def test_circles_are_those_of_the_simulation():

@@ -4,8 +4,8 @@ import pytest
 
 from benchmarks.turn.problems import PROBLEMS
 from rr_opt.design.maximize_speed import maximize_speed
+from rr_opt.model.gait import SineGait
 from rr_opt.motion.steady_cycle import steady_cycle
-from rr_opt.robot.gait import SineGait
 from rr_opt.verify.turn.sweep import check_turn
 
 

@@ -24,7 +24,7 @@ _STATES = ("v", "chi", "x", "y")
 
 
 def _ode(posed: Posed):
-    import openmdao.api as om  # type: ignore # noqa: PLC0415
+    import openmdao.api as om  # type: ignore
 
     class Racer(om.ExplicitComponent):
         """The motion at every node; time is the phase of the cycle."""
@@ -65,8 +65,8 @@ def _ode(posed: Posed):
 
 def _model(posed: Posed):
     """The OpenMDAO problem, set up."""
-    import dymos as dm  # type: ignore # noqa: PLC0415
-    import openmdao.api as om  # type: ignore # noqa: PLC0415
+    import dymos as dm  # type: ignore
+    import openmdao.api as om  # type: ignore
 
     problem = om.Problem(model=om.Group(), reports=None)
     trajectory = dm.Trajectory()
@@ -79,11 +79,7 @@ def _model(posed: Posed):
         fix_initial=True, fix_duration=True, initial_val=0.0, duration_val=1.0, targets=["theta"]
     )
     for name in _STATES:
-        phase.add_state(
-            name,
-            rate_source=f"{name}_rate",
-            fix_initial=name != "v",
-        )
+        phase.add_state(name, rate_source=f"{name}_rate", fix_initial=name != "v")
     for name, low, high in zip(NAMES, posed.least, posed.most, strict=True):
         free = low < high
         bounds = {"lower": low, "upper": high, "ref0": low, "ref": high} if free else {}

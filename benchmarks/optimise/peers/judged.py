@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from benchmarks.optimise.peers.posed import Claim, Posed
+from rr_opt.model.gait import SineGait
 from rr_opt.outcome import NotConvergedError
-from rr_opt.robot.gait import SineGait
 from rr_opt.verify.replay import replay
 
 REACHED = 1e-4

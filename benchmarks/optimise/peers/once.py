@@ -26,8 +26,8 @@ def cold(alternative: str, problem: str) -> tuple[float, float] | None:
 
 
 def main(alternative: str, problem: str) -> None:
-    from benchmarks.optimise.peers.posed import posed  # noqa: PLC0415
-    from benchmarks.optimise.problems import PROBLEMS  # noqa: PLC0415
+    from benchmarks.optimise.peers.posed import posed
+    from benchmarks.optimise.problems import PROBLEMS
 
     stated = posed(PROBLEMS[problem])
     claim = import_module(f"{FOLDER}.{alternative}").prepare(stated)(stated.starts(1, 0)[0])

@@ -11,7 +11,7 @@ NAME = "rr_opt"
 
 def prepare(posed: Posed) -> Callable[[Array], Claim]:
     """The solver of a problem."""
-    from rr_opt.design.maximize_speed import maximize_speed  # noqa: PLC0415
+    from rr_opt.design.maximize_speed import maximize_speed
 
     def solve(start: Array) -> Claim:  # noqa: ARG001
         found = maximize_speed(posed.problem)

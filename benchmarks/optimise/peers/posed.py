@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 
 from benchmarks.optimise.problems import PROBLEMS
 from benchmarks.optimise.space import Box, largest_posture
-from rr_opt.problem import Problem
-from rr_opt.robot.parameters import Robot
+from rr_opt.model.problem import Problem
+from rr_opt.model.robot import Robot
 
 Array = NDArray[np.float64]
 Function = Callable[[Any], Any]

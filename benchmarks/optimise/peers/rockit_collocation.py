@@ -16,7 +16,7 @@ _N = 40
 
 def prepare(posed: Posed) -> Callable[[Array], Claim]:
     """The solver of a problem, built once and then started anew."""
-    from rockit import DirectCollocation, Ocp  # type: ignore # noqa: PLC0415
+    from rockit import DirectCollocation, Ocp  # type: ignore
 
     ocp = Ocp(t0=0, T=1)  # time is the phase of the cycle
     decided = [

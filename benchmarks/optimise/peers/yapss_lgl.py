@@ -15,8 +15,8 @@ _SEGMENTS, _POINTS = 12, 8
 
 def prepare(posed: Posed) -> Callable[[Array], Claim]:
     """The solver of a problem, built once and then started anew."""
-    from yapss import Problem  # type: ignore # noqa: PLC0415
-    from yapss.math import cos, sin, sqrt  # type: ignore # noqa: PLC0415
+    from yapss import Problem  # type: ignore
+    from yapss.math import cos, sin, sqrt  # type: ignore
 
     ocp = Problem(name="gait", nx=[2], nq=[2], nh=[1], ns=5, nd=5)
 

@@ -16,7 +16,7 @@ NAME = "CasADi RK4, mapaccum and map"
 @lru_cache
 def _integrator(friction: str, steps: int, count: int):
     """(start (4, K), drift, alpha, T, phi0 (1, K), p (15, K)) -> the state (4, K) a period on."""
-    import casadi as ca  # noqa: PLC0415
+    import casadi as ca
 
     motion = rates(ca.sin, ca.cos, ca.tanh, ca.sqrt, friction)
     state, step = ca.SX.sym("state", 4), ca.SX.sym("step")

@@ -15,9 +15,9 @@ TOLERANCE = 1e-9
 
 @lru_cache
 def _compiled(friction: str):
-    import diffrax  # noqa: PLC0415
-    import jax  # noqa: PLC0415
-    import jax.numpy as jnp  # noqa: PLC0415
+    import diffrax
+    import jax
+    import jax.numpy as jnp
 
     jax.config.update("jax_enable_x64", True)
     motion = rates(jnp.sin, jnp.cos, jnp.tanh, jnp.sqrt, friction)

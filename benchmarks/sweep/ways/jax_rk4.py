@@ -14,8 +14,8 @@ NAME = "JAX RK4 (jit, vmap, lax.scan)"
 
 @lru_cache
 def _compiled(friction: str):
-    import jax  # noqa: PLC0415
-    import jax.numpy as jnp  # noqa: PLC0415
+    import jax
+    import jax.numpy as jnp
 
     jax.config.update("jax_enable_x64", True)
     motion = rates(jnp.sin, jnp.cos, jnp.tanh, jnp.sqrt, friction)

@@ -14,7 +14,7 @@ NAME = "Numba RK4 (njit, one thread)"
 
 @lru_cache
 def _compiled(friction: str):  # noqa: PLR0915 - one after the other, as numba's users do
-    import numba  # noqa: PLC0415
+    import numba
 
     motion = numba.njit(rates(np.sin, np.cos, np.tanh, np.sqrt, friction, numba.njit))
     affine = friction == "viscous"

@@ -6,7 +6,7 @@ import numpy as np
 
 from benchmarks.optimise.fourier_numpy import evaluate
 from benchmarks.sweep.case import ROBOT, Array, Work
-from rr_opt.problem import Interval, RatioChoice
+from rr_opt.model.problem import Interval, RatioChoice
 
 NAME = "NumPy Fourier series, by hand"
 ROWS = 2048

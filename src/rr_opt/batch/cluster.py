@@ -53,7 +53,7 @@ class ClusterPool:
 
     def is_lost(self, error: BaseException) -> bool:
         """Whether the scheduler gave up a case because its workers died."""
-        from distributed import KilledWorker  # noqa: PLC0415
+        from distributed import KilledWorker
 
         return isinstance(error, KilledWorker)
 
@@ -108,7 +108,7 @@ def _first_line(error: BaseException) -> str:
 def _client() -> Any:
     """The class dask.distributed.Client. Raises InputError if it is not installed."""
     try:
-        from distributed import Client  # noqa: PLC0415
+        from distributed import Client
     except ImportError:
         raise InputError(
             "A cluster needs dask.distributed, which is not installed. "

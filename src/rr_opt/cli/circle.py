@@ -33,17 +33,12 @@ def circle(
     With it how a start from rest comes to that circle. Left is positive, seen from above.
     """
     with Steps() as steps:
-        from rr_opt.cli.motion_input import (  # noqa: PLC0415
-            read_options,
-            read_source,
-        )
-        from rr_opt.motion.circle import circle_of  # noqa: PLC0415
-        from rr_opt.motion.regular import require_regular  # noqa: PLC0415
-        from rr_opt.motion.steady_cycle import steady_cycle  # noqa: PLC0415
-        from rr_opt.motion.transient import transient  # noqa: PLC0415
-        from rr_opt.physics.dynamics import require_friction  # noqa: PLC0415
-        from rr_opt.report.archive import strict_json  # noqa: PLC0415
-        from rr_opt.report.turn.circle_summary import circle_record, circle_summary  # noqa: PLC0415
+        from rr_opt.cli.motion_input import read_options, read_source
+        from rr_opt.motion.circle import circle_of, transient
+        from rr_opt.motion.dynamics import require_friction
+        from rr_opt.motion.steady_cycle import require_regular, steady_cycle
+        from rr_opt.report.archive import strict_json
+        from rr_opt.report.turn.circle import circle_record, circle_summary
 
         options = read_options(amplitude=amplitude, period=period, offset=offset)
         given = read_source(source, options)

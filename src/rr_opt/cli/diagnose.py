@@ -13,8 +13,8 @@ from rr_opt.cli.steps import Steps
 from rr_opt.outcome import NotConvergedError
 
 if TYPE_CHECKING:
-    from rr_opt.diagnose.diagnosis import Diagnosis
-    from rr_opt.experiment.experiment import Experiment
+    from rr_opt.model.experiment import Experiment
+    from rr_opt.sysid.diagnosis import Diagnosis
 
 
 def diagnose(
@@ -37,17 +37,15 @@ def diagnose(
     """
     with Steps() as steps:
         steps("reading")
-        from rr_opt.cli.diagnose_input import read, usable  # noqa: PLC0415
-        from rr_opt.report.archive import folder_for_results, strict_json  # noqa: PLC0415
+        from rr_opt.cli.diagnose_input import read, usable
+        from rr_opt.report.archive import folder_for_results, strict_json
 
         name, sha256, read_runs = read(source)
         folder = folder_for_results(out or Path("out") / f"{name}-diagnosis")
         experiment, left_out = usable(read_runs)
         found = _diagnosed(experiment, steps, workers)
-        from rr_opt.report.diagnosis.diagnosed import Diagnosed  # noqa: PLC0415
-        from rr_opt.report.diagnosis.files import write_diagnosis  # noqa: PLC0415
-        from rr_opt.report.diagnosis.record import record  # noqa: PLC0415
-        from rr_opt.report.diagnosis.summary import summary  # noqa: PLC0415
+        from rr_opt.report.diagnosis.files import summary, write_diagnosis
+        from rr_opt.report.diagnosis.record import Diagnosed, record
 
         told = Diagnosed(name, sha256, experiment, found, left_out)
         written = write_diagnosis(told, folder, page=page, progress=steps)
@@ -61,12 +59,12 @@ def diagnose(
 
 def _diagnosed(experiment: Experiment, steps: Steps, workers: int | None) -> Diagnosis:
     """The diagnosis, worked out in so many processes. Raises NotConvergedError."""
-    from rr_opt.cli.shared_work import SharedWork  # noqa: PLC0415
+    from rr_opt.cli.shared_work import SharedWork
 
     with closing(SharedWork(workers)) as work:
-        from rr_opt.diagnose.found import Steps as Told  # noqa: PLC0415
-        from rr_opt.diagnose.racer import RollerRacer  # noqa: PLC0415
-        from rr_opt.diagnose.racer_diagnosis import diagnose_racer  # noqa: PLC0415
+        from rr_opt.machines.racer.diagnose import diagnose_racer
+        from rr_opt.machines.racer.racer import RollerRacer
+        from rr_opt.sysid.diagnose import Steps as Told
 
         racer = RollerRacer(experiment)
         found = diagnose_racer(racer, Told(say=steps, each=work))

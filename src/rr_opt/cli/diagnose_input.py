@@ -8,16 +8,15 @@ from pathlib import Path
 
 import numpy as np
 
-from rr_opt.experiment.experiment import Experiment, Run
-from rr_opt.experiment.recording import CHANNELS
-from rr_opt.files.experiment.file import FILE_NAME, experiment_path, read_plan
+from rr_opt.files.experiment_file import FILE_NAME, experiment_path, read_plan
+from rr_opt.model.experiment import CHANNELS, Experiment, Run
+from rr_opt.model.robot import Robot
 from rr_opt.outcome import InputError
 from rr_opt.recordings.against_plan import HALF_A_PERIOD, plan_doubts
-from rr_opt.recordings.doubts import Doubt, texts
+from rr_opt.recordings.channel_warnings import unit_doubts
 from rr_opt.recordings.experiment import read_experiment
-from rr_opt.recordings.noise_stated import noise_stated_doubts
-from rr_opt.recordings.units_guess import unit_doubts
-from rr_opt.robot.parameters import Robot
+from rr_opt.recordings.noise import noise_stated_doubts
+from rr_opt.recordings.warnings import Doubt, texts
 
 _FEWEST = 50
 """Samples of a channel below which nothing is told."""

@@ -1,10 +1,10 @@
-"""Where `rr-opt` begins: Ctrl-C is watched for before anything that takes time is loaded."""
+"""Where `rr-opt` begins, and how Ctrl-C ends it."""
 
 from __future__ import annotations
 
 import os
 
-from rr_opt.batch.threads import ONE_THREAD
+from rr_opt.batch.processes import ONE_THREAD
 from rr_opt.cli import interrupt
 from rr_opt.outcome import EXIT_INTERRUPTED
 
@@ -18,7 +18,7 @@ def main() -> None:
         interrupt.watch()
         for name, count in ONE_THREAD.items():
             os.environ.setdefault(name, count)
-        from rr_opt.cli.main import app  # noqa: PLC0415
+        from rr_opt.cli.main import app
 
         app()
     except SystemExit as end:
@@ -34,7 +34,7 @@ def main() -> None:
 
 def _end(*, told: bool) -> None:
     """End here and now: libraries that are half loaded complain when they are tidied up."""
-    import sys  # noqa: PLC0415
+    import sys
 
     interrupt.ignore()
     if not told:

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from rr_opt.cli.place import place
+from rr_opt.cli.problem_input import place
 from rr_opt.cli.steps import Steps
 
 
@@ -63,23 +63,15 @@ def export(
     rounding to the servo's counts cost in speed is told each by itself.
     """
     with Steps() as steps:
-        from rr_opt.cli.motion_input import (  # noqa: PLC0415
-            read_options,
-            read_source,
-            result_name,
-        )
-        from rr_opt.report.archive import (  # noqa: PLC0415
-            file_for_result,
-            strict_json,
-            write_text,
-        )
-        from rr_opt.report.setpoints.cost import cost  # noqa: PLC0415
-        from rr_opt.report.setpoints.file import ENDINGS, text_of  # noqa: PLC0415
-        from rr_opt.report.setpoints.setpoints import set_points  # noqa: PLC0415
-        from rr_opt.report.setpoints.summary import (  # noqa: PLC0415
+        from rr_opt.cli.motion_input import read_options, read_source, result_name
+        from rr_opt.motion.setpoints import cost, set_points
+        from rr_opt.report.archive import file_for_result, strict_json, write_text
+        from rr_opt.report.setpoints import (
+            ENDINGS,
             beyond_rate,
             setpoints_record,
             setpoints_summary,
+            text_of,
         )
 
         options = read_options(amplitude=amplitude, period=period, offset=offset, rate=rate)

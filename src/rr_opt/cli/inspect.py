@@ -13,7 +13,7 @@ from rr_opt.cli.steps import Steps
 from rr_opt.outcome import InputError
 
 if TYPE_CHECKING:
-    from rr_opt.robot.gait import Gait
+    from rr_opt.model.gait import Gait
 
 
 class Start(StrEnum):
@@ -36,8 +36,7 @@ def inspect(
     layout: Annotated[
         Path | None,
         typer.Option(
-            metavar="YAML",
-            help="Where each marker sits; estimated from the recording if left out.",
+            metavar="YAML", help="Where each marker sits; estimated from the recording if left out."
         ),
     ] = None,
     servo_log: Annotated[
@@ -66,19 +65,10 @@ def inspect(
     """
     with Steps() as steps:
         steps("reading")
-        from rr_opt.recordings.inspect_files import (  # noqa: PLC0415
-            inspect_experiment,
-            inspect_file,
-            is_experiment,
-        )
-        from rr_opt.report.archive import (  # noqa: PLC0415
-            file_for_result,
-            folder_for_results,
-            strict_json,
-        )
-        from rr_opt.report.inspect.files import write_inspection, write_recording  # noqa: PLC0415
-        from rr_opt.report.inspect.record import record  # noqa: PLC0415
-        from rr_opt.report.inspect.summary import summary  # noqa: PLC0415
+        from rr_opt.recordings.inspection import inspect_experiment, inspect_file, is_experiment
+        from rr_opt.report.archive import file_for_result, folder_for_results, strict_json
+        from rr_opt.report.inspect.page import summary, write_inspection, write_recording
+        from rr_opt.report.inspect.record import record
 
         name = _name_of(source)
         folder = folder_for_results(out or Path("out") / f"{name}-inspect")
@@ -108,8 +98,8 @@ def _gait(amplitude: str | None, period: str | None, offset: str | None) -> Gait
     """The gait of the options; None if there is none."""
     if amplitude is None and period is None and offset is None:
         return None
-    from rr_opt.cli.motion_input import read_options  # noqa: PLC0415
-    from rr_opt.robot.gait import SineGait  # noqa: PLC0415
+    from rr_opt.cli.motion_input import read_options
+    from rr_opt.model.gait import SineGait
 
     read = read_options(amplitude=amplitude, period=period, offset=offset)
     if "amplitude" not in read or "period" not in read:
@@ -141,11 +131,11 @@ def _name_of(source: Path) -> str:
 
 
 def _sha256(source: Path) -> str:
-    from rr_opt.files.experiment.file import read_plan  # noqa: PLC0415
-    from rr_opt.recordings.inspect_files import is_experiment  # noqa: PLC0415
+    from rr_opt.files.experiment_file import read_plan
+    from rr_opt.recordings.inspection import is_experiment
 
     if is_experiment(source):
         return read_plan(source)[0].sha256
-    import hashlib  # noqa: PLC0415 - loads OpenSSL, which help can do without
+    import hashlib  # loads OpenSSL, which help can do without
 
     return hashlib.sha256(source.read_bytes()).hexdigest()

@@ -26,7 +26,7 @@ def lint(
     json: Annotated[bool, typer.Option("--json", help="Print JSON on stdout.")] = False,
 ) -> None:
     """Check input files and print every problem of all of them. Exits 2 if one is an error."""
-    from rr_opt.files.issue import has_errors  # noqa: PLC0415
+    from rr_opt.files.issue import has_errors
 
     checked = {str(file): _issues(file) for file in files}
     wrong = any(has_errors(issues) for issues in checked.values())
@@ -45,14 +45,14 @@ def lint(
 
 def _issues(file: Path) -> list[Issue]:
     """All of them; of an experiment also those of its recordings, and which tell nothing."""
-    from rr_opt.files.lint import experiment_file, lint_file  # noqa: PLC0415
+    from rr_opt.files.lint import experiment_file, lint_file
 
     experiment = experiment_file(file)
     if experiment is None:
         return lint_file(file)
-    from rr_opt.cli.diagnose_input import checked  # noqa: PLC0415
-    from rr_opt.files.issue import Issue  # noqa: PLC0415
-    from rr_opt.recordings.experiment import experiment_of  # noqa: PLC0415
+    from rr_opt.cli.diagnose_input import checked
+    from rr_opt.files.issue import Issue
+    from rr_opt.recordings.experiment import experiment_of
 
     read, issues = experiment_of(experiment)
     if read is not None:

@@ -1,40 +1,50 @@
 """The command `rr-opt`: its verbs, and how each of them may end.
 
-Whatever a user can put right ends as a message on stderr and an exit code, never as a
-traceback. Heavy libraries are loaded by the verb that needs them, so that help comes at once.
+Whatever a user can put right ends as a message on stderr and an exit code, never as a traceback.
+A verb is loaded when it is asked for, and heavy libraries by the verb that needs them, so that help
+comes at once. Other packages add verbs by the entry points `rr_opt.verbs`.
 """
 
 from __future__ import annotations
 
+from importlib import import_module
 from typing import Annotated, Any
 
 import typer
-from typer.core import TyperGroup
+from typer.core import TyperCommand, TyperGroup
+from typer.main import get_command_from_info
+from typer.models import CommandInfo
 
 from rr_opt import __version__
 from rr_opt.cli import interrupt
-from rr_opt.cli.calibrate import calibrate
-from rr_opt.cli.circle import circle
-from rr_opt.cli.diagnose import diagnose
-from rr_opt.cli.export import export
-from rr_opt.cli.inspect import inspect
-from rr_opt.cli.lint import lint
-from rr_opt.cli.maximize_speed import maximize_speed
-from rr_opt.cli.prove import prove
-from rr_opt.cli.record import record
-from rr_opt.cli.reproduce import reproduce
-from rr_opt.cli.schema import schema
-from rr_opt.cli.shapes import shapes
-from rr_opt.cli.simulate import simulate
-from rr_opt.cli.study import study
-from rr_opt.cli.sweep import sweep
-from rr_opt.cli.turn import turn
-from rr_opt.cli.turn_chart import turn_chart
 from rr_opt.outcome import EXIT_INTERRUPTED, EXIT_WRONG_INPUT, RollerRacerError
+
+VERBS = (
+    *("maximize-speed", "shapes", "sweep", "turn", "turn-chart", "circle", "simulate", "export"),
+    *("study", "inspect", "diagnose", "lint", "schema"),
+)
+"""Each is the function of its name in the module of its name."""
 
 
 class Verbs(TyperGroup):
     """The group of verbs; turns the errors a user can act on into messages and exit codes."""
+
+    def list_commands(self, ctx: Any) -> list[str]:  # noqa: ARG002
+        """Every verb, those of other packages last."""
+        return [*VERBS, *sorted(_others())]
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:  # noqa: ARG002
+        """A verb, loaded now; None if there is none of that name."""
+        if cmd_name in VERBS:
+            name = cmd_name.replace("-", "_")
+            verb = getattr(import_module(f"rr_opt.cli.{name}"), name)
+        else:
+            other = _others().get(cmd_name)
+            if other is None:
+                return None
+            verb = other.load()
+        info = CommandInfo(name=cmd_name, callback=verb, cls=TyperCommand)
+        return get_command_from_info(info, pretty_exceptions_short=False, rich_markup_mode=None)
 
     def invoke(self, ctx: Any) -> Any:
         """Run a verb."""
@@ -61,6 +71,13 @@ class Verbs(TyperGroup):
             raise
 
 
+def _others() -> dict[str, Any]:
+    """The verbs of other packages."""
+    from importlib.metadata import entry_points
+
+    return {found.name: found for found in entry_points(group="rr_opt.verbs")}
+
+
 def _interrupted() -> Any:
     typer.echo(interrupt.MESSAGE, err=True)
     raise typer.Exit(EXIT_INTERRUPTED) from None
@@ -77,23 +94,6 @@ app = typer.Typer(
     epilog="Exit codes: 0 done, 2 the input is wrong, 3 no feasible gait, "
     "4 the solver did not converge, 130 interrupted.",
 )
-app.command("maximize-speed")(maximize_speed)
-app.command("shapes")(shapes)
-app.command("sweep")(sweep)
-app.command("turn")(turn)
-app.command("turn-chart")(turn_chart)
-app.command("circle")(circle)
-app.command("simulate")(simulate)
-app.command("export")(export)
-app.command("study")(study)
-app.command("reproduce")(reproduce)
-app.command("calibrate")(calibrate)
-app.command("inspect")(inspect)
-app.command("record")(record)
-app.command("diagnose")(diagnose)
-app.command("prove")(prove)
-app.command("lint")(lint)
-app.command("schema")(schema)
 
 
 def _print_version(wanted: bool) -> None:

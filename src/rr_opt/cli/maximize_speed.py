@@ -7,9 +7,8 @@ from typing import Annotated
 
 import typer
 
-from rr_opt.cli.checked import checked
 from rr_opt.cli.options import Figures, ProblemFile, json_option, out_option
-from rr_opt.cli.problem_input import name_of, read
+from rr_opt.cli.problem_input import checked, name_of, read
 from rr_opt.cli.steps import Steps
 from rr_opt.outcome import Status
 
@@ -27,15 +26,15 @@ def maximize_speed(
     with Steps() as steps:
         steps("reading")
         posed, sha256 = read(problem)
-        from rr_opt.design.maximize_speed import maximize_speed as solve  # noqa: PLC0415
-        from rr_opt.report.archive import folder_for_results, strict_json  # noqa: PLC0415
+        from rr_opt.design.maximize_speed import maximize_speed as solve
+        from rr_opt.report.archive import folder_for_results, strict_json
 
         name = name_of(problem)
         folder = folder_for_results(out or Path("out") / name)
         answer = checked(name, sha256, solve(posed, steps), steps)
-        from rr_opt.report.files import write_results  # noqa: PLC0415
-        from rr_opt.report.result import result  # noqa: PLC0415
-        from rr_opt.report.summary import summary  # noqa: PLC0415
+        from rr_opt.report.files import write_results
+        from rr_opt.report.result import result
+        from rr_opt.report.summary import summary
 
         written = write_results(answer, folder, figures=figures, progress=steps)
     if json:

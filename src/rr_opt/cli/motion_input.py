@@ -2,18 +2,105 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+import math
+import shlex
+from collections.abc import Container
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import typer
 
-from rr_opt.cli.passed_over import tell_passed_over
-from rr_opt.cli.source import Source, source_of_result
+from rr_opt.cli.problem_input import tell_passed_over
 from rr_opt.outcome import InputError
 
 if TYPE_CHECKING:
-    from rr_opt.robot.gait import Gait
+    from rr_opt.files.yaml_text import Document
+    from rr_opt.model.gait import Gait
+    from rr_opt.model.problem import GaitBounds
+    from rr_opt.model.robot import Robot
+
+
+@dataclass(frozen=True)
+class Source:
+    """What a file gives to drive.
+
+    status   of a result; None of a robot or a problem
+    doubts   what a user may take this gait for that it is not
+    """
+
+    robot: Robot
+    gait: Gait
+    status: str | None = None
+    doubts: tuple[str, ...] = ()
+
+
+def source_of_result(document: Document) -> Source:
+    """What a result gives. Raises InputError if it holds no gait, or a wrong one."""
+    from rr_opt.files.gait_record import gait_from
+    from rr_opt.files.issue import InvalidFileError, shown
+    from rr_opt.files.robot_file import robot_from
+
+    robot: Any = document.data.get("robot")
+    if not isinstance(document.data.get("gait"), dict) or not isinstance(robot, dict):
+        raise InputError(
+            f"{document.file}: The result holds no gait: its status is "
+            f"`{document.data['status']}`. Give the result of a problem that was solved."
+        )
+    servo = robot.get("servo")
+    if isinstance(servo, dict):
+        # null in a result is a limit that does not exist.
+        robot["servo"] = {key: math.inf if v is None else v for key, v in servo.items()}
+    read, issues = robot_from(document.section("robot"))
+    gait, found = gait_from(document.section("gait"))
+    if read is None or gait is None:
+        raise InvalidFileError([*issues, *found])
+    status, message = (document.data.get(key) for key in ("status", "message"))
+    if status == "optimal":
+        return Source(read, gait, "optimal")
+    why = f" {message}" if isinstance(message, str) else ""
+    doubt = (
+        f"{document.file}: The status of this result is {shown(status)} and not 'optimal'.{why} "
+        "Its gait is driven all the same."
+    )
+    return Source(read, gait, status if isinstance(status, str) else shown(status), (doubt,))
+
+
+def doubts(
+    path: Path | None, gait: Gait, bounds: GaitBounds | None, options: Container[str]
+) -> tuple[str, ...]:
+    """What a user may take for the optimum of a file (None: the prototype), in whole sentences.
+
+    bounds   of the problem; None of a robot file
+    options  those that were given: with amplitude and period the user has chosen the gait
+    """
+    from rr_opt.cli.problem_input import name_of
+    from rr_opt.report.quantities import with_unit
+
+    of = "the prototype" if path is None else str(path)
+    units = {"amplitude": "rad", "period": "s"}
+    defaults = [
+        name
+        for name in units
+        if name not in options and not (bounds and getattr(bounds, name).fixed)
+    ]
+    shape = bounds.shape if bounds else "sine"
+    told = []
+    if defaults:
+        values = [f"{name} {with_unit(getattr(gait, name), units[name])}" for name in defaults]
+        told.append(
+            f"No {' and '.join(defaults)} given. The default is driven, {' and '.join(values)} "
+            f"after the paper's run, and not the optimum of {of}."
+        )
+    if shape != "sine":
+        told.append(f"The problem asks for a `{shape}` gait, and a sine is driven.")
+    if not told:
+        return ()
+    command = shlex.join(["rr-opt", "maximize-speed", *([] if path is None else [str(path)])])
+    result = Path("out") / name_of(path) / "result.json"
+    choice = ", or --amplitude and --period" if defaults else ""
+    return (" ".join([*told, f"Run `{command}` first and give {result}{choice}."]),)
+
 
 AMPLITUDE, PERIOD, OFFSET = 0.785, 1.0, 0.0
 """The gait where none is given: the paper's run with T = 1 s."""
@@ -37,7 +124,7 @@ def read_options(**given: str | float | None) -> dict[str, float]:
 
     Raises InputError with everything that is wrong with all of them.
     """
-    from rr_opt.files.quantity import Quantity  # noqa: PLC0415
+    from rr_opt.files.fields import Quantity
 
     kinds = {
         "amplitude": Quantity("rad", "30 deg", at_least=0),
@@ -67,7 +154,7 @@ def with_options(gait: Gait, options: dict[str, float]) -> Gait:
 
 def result_name(path: Path | None) -> str:
     """What a result is called: the folder it lies in; anything else as the other verbs call it."""
-    from rr_opt.cli.problem_input import name_of  # noqa: PLC0415
+    from rr_opt.cli.problem_input import name_of
 
     if path is not None and path.name == "result.json":
         return path.resolve().parent.name
@@ -75,17 +162,16 @@ def result_name(path: Path | None) -> str:
 
 
 def _source(path: Path | None, options: dict[str, float]) -> Source:
-    from rr_opt.cli.default_gait import doubts  # noqa: PLC0415
-    from rr_opt.files import read_document, read_problem  # noqa: PLC0415
-    from rr_opt.files.kind import kind_of  # noqa: PLC0415
-    from rr_opt.robot.gait import SineGait  # noqa: PLC0415
+    from rr_opt.files.problem_file import kind_of, read_problem
+    from rr_opt.files.source import read_document
+    from rr_opt.model.gait import SineGait
 
     if path is not None and path.is_file():
         document = read_document(path)
         if kind_of(document) == "result":
             return source_of_result(document)
         if "platform1" in document.data:
-            from rr_opt.files import read_robot  # noqa: PLC0415
+            from rr_opt.files.robot_file import read_robot
 
             gait = SineGait(AMPLITUDE, PERIOD, OFFSET)
             return Source(read_robot(path), gait, doubts=doubts(path, gait, None, options))

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
-from rr_opt.cli.place import place
+from rr_opt.cli.problem_input import place
 
 ProblemFile = Annotated[
     Path | None,

@@ -1,4 +1,4 @@
-"""Reading the input of a verb: its name, and its warnings on stderr."""
+"""What verbs read, warn of, and say about progress and results."""
 
 from __future__ import annotations
 
@@ -7,15 +7,53 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from rr_opt.cli.passed_over import tell_passed_over
+from rr_opt.outcome import InputError
 
 if TYPE_CHECKING:
-    from rr_opt.problem import Problem
+    from rr_opt.cli.steps import Steps
+    from rr_opt.design.maximize_speed import Optimum
+    from rr_opt.model.problem import Problem
+    from rr_opt.model.robot import Robot
+    from rr_opt.report.answer import Answer
+    from rr_opt.verify.sweep import SweepResult
+
+
+def place(text: str) -> Path:
+    """A path that the user named. Raises InputError for no name at all.
+
+    Without this an empty one, as an unset variable of a script leaves it, is the current folder.
+    """
+    if not text.strip():
+        raise InputError(
+            "--out: Read an empty name. Expected the name of a folder or a file. "
+            "Name one, `.` for the current folder, or leave --out away."
+        )
+    return Path(text)
+
+
+def tell_passed_over(robot: Robot) -> None:
+    """One line on stderr, if the robot has such effects."""
+    if not robot.physics:
+        return
+    from rr_opt.effects.effect import Port
+    from rr_opt.motion.dynamics import passed_over
+
+    names, of_servo = passed_over(robot), passed_over(robot, Port.ACTUATION)
+    if not names:
+        return
+    told = (
+        f"warning: {', '.join(names)}: passed over here. The motion is that of a level, even floor "
+        "without side slip, driven by the angle that the servo makes."
+    )
+    if of_servo:
+        told += f" Command the servo so that it makes this angle in spite of {', '.join(of_servo)}."
+    typer.echo(told, err=True)
 
 
 def read(path: Path | None) -> tuple[Problem, str]:
     """The problem of a file (None: the shipped one), and its fingerprint."""
-    from rr_opt.files import input_sha256, lint_file, read_problem  # noqa: PLC0415
+    from rr_opt.files.lint import lint_file
+    from rr_opt.files.problem_file import input_sha256, read_problem
 
     problem = read_problem(path)
     if path is not None:
@@ -31,3 +69,21 @@ def name_of(path: Path | None) -> str:
         return "prototype"
     full = path.resolve()
     return full.parent.name if full.name == "problem.yaml" else full.stem
+
+
+def checked(
+    name: str, sha256: str, optimum: Optimum, steps: Steps, swept: SweepResult | None = None
+) -> Answer:
+    """The optimum with the evidence for it; swept: of the problem, where that is done."""
+    from rr_opt.report.answer import Answer
+    from rr_opt.verify.replay import replay
+    from rr_opt.verify.sweep import check_optimum
+
+    best, robot, ratio = optimum.best, optimum.robot, optimum.ratio
+    if best is None or robot is None or ratio is None:
+        return Answer(name, sha256, optimum)
+    steps("replay by CVODES")
+    replayed = replay(robot, best.gait, optimum.problem.limits, best.speed)
+    steps("check against a sweep")
+    check = check_optimum(optimum.problem, best.gait, ratio, best.speed, everywhere=swept)
+    return Answer(name, sha256, optimum, replayed, check)

@@ -14,7 +14,7 @@ def schema(
     kind: Annotated[str, typer.Argument(help="Which file: robot, problem, study or experiment.")],
 ) -> None:
     """Print the JSON Schema of a kind of input file, with which editors complete and check it."""
-    from rr_opt.files.schemas import schema as json_schema  # noqa: PLC0415
+    from rr_opt.files.schemas import schema as json_schema
 
     try:
         found = json_schema(kind)

@@ -7,9 +7,8 @@ from typing import Annotated
 
 import typer
 
-from rr_opt.cli.checked import checked
 from rr_opt.cli.options import Figures, ProblemFile, json_option, out_option
-from rr_opt.cli.problem_input import name_of, read
+from rr_opt.cli.problem_input import checked, name_of, read
 from rr_opt.cli.steps import Steps
 from rr_opt.outcome import Status
 
@@ -27,14 +26,13 @@ def shapes(
     with Steps() as steps:
         steps("reading")
         posed, sha256 = read(problem)
-        from rr_opt.report.archive import folder_for_results, strict_json  # noqa: PLC0415
+        from rr_opt.report.archive import folder_for_results, strict_json
 
         name = name_of(problem)
         folder = folder_for_results(out or Path("out") / f"{name}-shapes")
-        from rr_opt.design.maximize_speed import compare_shapes  # noqa: PLC0415
-        from rr_opt.report.shapes.compared import Compared, family_name, record, summary  # noqa: PLC0415
-        from rr_opt.report.shapes.files import write_shapes  # noqa: PLC0415
-        from rr_opt.verify.sweep import sweep  # noqa: PLC0415
+        from rr_opt.design.maximize_speed import compare_shapes
+        from rr_opt.report.shapes import Compared, family_name, record, summary, write_shapes
+        from rr_opt.verify.sweep import sweep
 
         optima = compare_shapes(posed, steps)
         answers, swept = [], None

@@ -51,4 +51,3 @@ def _here(function: Callable[[Any], Any], item: Any) -> Any:
 
 def _load(_: None) -> None:
     """Load what a fit needs."""
-    from rr_opt.diagnose import explain, racer  # noqa: F401, PLC0415

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from rr_opt.cli.place import place
+from rr_opt.cli.problem_input import place
 from rr_opt.cli.steps import Steps
 
 
@@ -72,21 +72,17 @@ def simulate(
     Writes the trajectory, a figure and, if asked for, a film.
     """
     with Steps() as steps:
-        from rr_opt.cli.motion_input import (  # noqa: PLC0415
-            read_options,
-            read_source,
-            result_name,
-        )
-        from rr_opt.motion.measured import measured  # noqa: PLC0415
-        from rr_opt.motion.rollout import rollout  # noqa: PLC0415
-        from rr_opt.report.archive import folder_for_results, strict_json  # noqa: PLC0415
-        from rr_opt.report.motion_summary import (  # noqa: PLC0415
+        from rr_opt.cli.motion_input import read_options, read_source, result_name
+        from rr_opt.motion.rollout import measured, rollout
+        from rr_opt.report.archive import folder_for_results, strict_json
+        from rr_opt.report.motion import (
             Motion,
             beyond_servo,
+            check_wishes,
             motion_record,
             motion_summary,
+            write_motion,
         )
-        from rr_opt.report.simulated import check_wishes, write_motion  # noqa: PLC0415
 
         options = read_options(
             amplitude=amplitude, period=period, offset=offset, seconds=seconds, rate=rate

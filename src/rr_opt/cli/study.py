@@ -1,25 +1,84 @@
-"""`rr-opt study STUDY`: one problem with many values of its keys, a row a case."""
+"""Progress of a study on stderr: how many cases are done, and how long the others will take."""
 
 from __future__ import annotations
 
+import sys
 from contextlib import closing
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from types import TracebackType
+from typing import TYPE_CHECKING, Annotated, Any, Self
 
 import typer
 
 from rr_opt import __version__
-from rr_opt.cli.passed_over import tell_passed_over
-from rr_opt.cli.place import place
-from rr_opt.cli.study_progress import CaseProgress
+from rr_opt.cli import interrupt
+from rr_opt.cli.problem_input import place, tell_passed_over
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from rr_opt.batch.pool import Pool
+    from rr_opt.batch.run import Pool
     from rr_opt.design.study.row import Row
-    from rr_opt.files.study.file import Study
+    from rr_opt.files.study_file import Study
+
+
+class CaseProgress:
+    """A context whose calls count finished cases; a bar with the time left, on a terminal only.
+
+    A call also ends the work if the user has asked for it.
+    """
+
+    def __init__(self, done: int, total: int):
+        self._done, self._total = done, total
+        self._bar: Any = None
+        self._task: Any = None
+
+    def __enter__(self) -> Self:
+        if sys.stderr.isatty():
+            self._bar = _bar()
+            self._task = self._bar.add_task("cases", total=self._total, completed=self._done)
+            self._bar.start()
+        return self
+
+    def __call__(self) -> None:
+        """One more case is finished."""
+        interrupt.check()
+        if self._bar is not None:
+            self._bar.advance(self._task)
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        if self._bar is not None:
+            self._bar.stop()
+
+
+def _bar() -> Any:
+    from rich.console import Console
+    from rich.progress import (
+        BarColumn,
+        MofNCompleteColumn,
+        Progress,
+        TextColumn,
+        TimeElapsedColumn,
+        TimeRemainingColumn,
+    )
+
+    return Progress(
+        TextColumn("{task.description}"),
+        BarColumn(bar_width=24),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+        TextColumn("left"),
+        TimeRemainingColumn(),
+        console=Console(stderr=True),
+        transient=True,
+        speed_estimate_period=60,
+    )
 
 
 def study(
@@ -52,20 +111,20 @@ def study(
 
     A run that was stopped goes on where it was when the same command is given again.
     """
-    from rr_opt.files.study.file import read_study  # noqa: PLC0415
+    from rr_opt.files.study_file import read_study
 
     asked, warnings = read_study(study)
     for warning in warnings:
         typer.echo(str(warning), err=True)
     tell_passed_over(asked.problems[0].robot)
-    from rr_opt.report.archive import folder_for_results, strict_json  # noqa: PLC0415
-    from rr_opt.report.study.files import check_wishes, write_study  # noqa: PLC0415
+    from rr_opt.report.archive import folder_for_results, strict_json
+    from rr_opt.report.study.page import check_wishes, write_study
 
     check_wishes(netcdf=netcdf)
     folder = folder_for_results(out or Path("out") / asked.name)
     rows = _rows(asked, folder, partial(_pool, workers, scheduler), cold=cold, restart=restart)
-    from rr_opt.report.study.result import studied  # noqa: PLC0415
-    from rr_opt.report.study.summary import record, summary  # noqa: PLC0415
+    from rr_opt.report.study.page import record, summary
+    from rr_opt.report.study.table import studied
 
     result = studied(asked, rows)
     written = write_study(result, folder, netcdf=netcdf, figures=figures)
@@ -83,12 +142,11 @@ def _rows(
     asked: Study, folder: Path, pool_of: Callable[[], Pool], *, cold: bool, restart: bool
 ) -> dict[int, Row]:
     """Every case's row: those that the folder's journal has, and the others solved now."""
-    from rr_opt.batch.journal import Journal  # noqa: PLC0415
-    from rr_opt.batch.run import run  # noqa: PLC0415
-    from rr_opt.design.study.case import solve_case  # noqa: PLC0415
-    from rr_opt.design.study.plan import plan  # noqa: PLC0415
-    from rr_opt.design.study.row import row_from, row_record  # noqa: PLC0415
-    from rr_opt.design.study.solve_study import solve_study  # noqa: PLC0415
+    from rr_opt.batch.journal import Journal
+    from rr_opt.batch.run import run
+    from rr_opt.design.study.case import solve_case, solve_study
+    from rr_opt.design.study.plan import plan
+    from rr_opt.design.study.row import row_from, row_record
 
     total = len(asked.problems)
     identity = {"input_sha256": asked.sha256, "version": __version__, "cold": cold}
@@ -117,9 +175,9 @@ def _rows(
 
 def _pool(workers: int | None, scheduler: str | None) -> Pool:
     if scheduler:
-        from rr_opt.batch.cluster import ClusterPool  # noqa: PLC0415
+        from rr_opt.batch.cluster import ClusterPool
 
         return ClusterPool(scheduler)
-    from rr_opt.batch.local import LocalPool  # noqa: PLC0415
+    from rr_opt.batch.local import LocalPool
 
     return LocalPool(workers)

@@ -33,16 +33,10 @@ def sweep(
     with Steps() as steps:
         steps("reading")
         posed, sha256 = read(problem)
-        from rr_opt.physics.dynamics import require_friction  # noqa: PLC0415
-        from rr_opt.report.archive import folder_for_results, strict_json  # noqa: PLC0415
-        from rr_opt.report.swept import (  # noqa: PLC0415
-            Swept,
-            record,
-            summary,
-            values_per_decision,
-            write_sweep,
-        )
-        from rr_opt.verify.sweep import sweep as try_all  # noqa: PLC0415
+        from rr_opt.motion.dynamics import require_friction
+        from rr_opt.report.archive import folder_for_results, strict_json
+        from rr_opt.report.swept import Swept, record, summary, values_per_decision, write_sweep
+        from rr_opt.verify.sweep import sweep as try_all
 
         require_friction(posed.robot)
         name = name_of(problem)

@@ -15,7 +15,7 @@ from rr_opt.outcome import InputError, Status
 
 if TYPE_CHECKING:
     from rr_opt.design.turn.target import Target
-    from rr_opt.problem import Problem
+    from rr_opt.model.problem import Problem
     from rr_opt.report.turn.answer import TurnAnswer
 
 
@@ -61,13 +61,12 @@ def turn(
         steps("reading")
         target = _target(radius, heading, within, length, cycles)
         posed, sha256 = read(problem)
-        from rr_opt.report.archive import folder_for_results, strict_json  # noqa: PLC0415
+        from rr_opt.report.archive import folder_for_results, strict_json
 
         name = name_of(problem)
         folder = folder_for_results(out or Path("out") / f"{name}-turn")
         answer = _answer(posed, target, name, sha256, steps)
-        from rr_opt.report.turn.files import write_turn  # noqa: PLC0415
-        from rr_opt.report.turn.summary import turn_result, turn_summary  # noqa: PLC0415
+        from rr_opt.report.turn.answer import turn_result, turn_summary, write_turn
 
         written = write_turn(answer, folder, figures=figures, progress=steps)
     if json:
@@ -83,8 +82,8 @@ def _target(
     radius: str | None, heading: str | None, within: str | None, length: str | None, cycles: Cycles
 ) -> Target:
     """What is asked. Raises InputError with everything that is wrong with the values."""
-    from rr_opt.design.turn.target import Target, checked  # noqa: PLC0415
-    from rr_opt.files.quantity import Quantity  # noqa: PLC0415
+    from rr_opt.design.turn.target import Target, checked
+    from rr_opt.files.fields import Quantity
 
     values: dict[str, float] = {}
     wrong = []
@@ -106,11 +105,11 @@ def _target(
 
 def _answer(problem: Problem, target: Target, name: str, sha256: str, steps: Steps) -> TurnAnswer:
     """Find the turn, then check it: by simulation, against a sweep, and on its circle."""
-    from rr_opt.design.turn.fastest_turn import fastest_turn  # noqa: PLC0415
-    from rr_opt.report.turn.answer import TurnAnswer  # noqa: PLC0415
-    from rr_opt.verify.replay import replay  # noqa: PLC0415
-    from rr_opt.verify.turn.circle import check_circle  # noqa: PLC0415
-    from rr_opt.verify.turn.sweep import check_turn  # noqa: PLC0415
+    from rr_opt.design.turn.fastest_turn import fastest_turn
+    from rr_opt.report.turn.answer import TurnAnswer
+    from rr_opt.verify.replay import replay
+    from rr_opt.verify.turn.circle import check_circle
+    from rr_opt.verify.turn.sweep import check_turn
 
     turned = fastest_turn(problem, target, steps)
     optimum, arc = turned.optimum, turned.arc

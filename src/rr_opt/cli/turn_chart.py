@@ -31,17 +31,11 @@ def turn_chart(
     with Steps() as steps:
         steps("reading")
         posed, sha256 = read(problem)
-        from rr_opt.physics.dynamics import require_friction  # noqa: PLC0415
-        from rr_opt.report.archive import folder_for_results, strict_json  # noqa: PLC0415
-        from rr_opt.report.turn.chart import (  # noqa: PLC0415
-            TurnChart,
-            chart_record,
-            chart_summary,
-            write_chart,
-        )
-        from rr_opt.verify.turn.map import turn_map  # noqa: PLC0415
-        from rr_opt.verify.turn.offset_claim import radius_claim, sign_claim  # noqa: PLC0415
-        from rr_opt.verify.turn.tightest import tightest  # noqa: PLC0415
+        from rr_opt.motion.dynamics import require_friction
+        from rr_opt.report.archive import folder_for_results, strict_json
+        from rr_opt.report.turn.chart import TurnChart, chart_record, chart_summary, write_chart
+        from rr_opt.verify.turn.chart import tightest, turn_map
+        from rr_opt.verify.turn.offset_claim import radius_claim, sign_claim
 
         require_friction(posed.robot)
         name = name_of(problem)

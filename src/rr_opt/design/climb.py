@@ -5,21 +5,25 @@ fits one quadratic to the speed and one to each row: the torque, and the turn if
 What is maximised is the speed less a penalty for rows outside their intervals: that has a kink
 where an interval ends, often right where the optimum is, so it is formed from the quadratics and
 not fitted itself.
+
+From a point of the unit box to the best near it, one by one, where a climb stops short.
+
+The simplex method needs no slopes: it follows ridges and the kinks where limits begin, and takes
+some hundred times as long as a climb's share of a batch.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import combinations
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
-from rr_opt.problem import Interval
-
-Array = NDArray[np.float64]
+from rr_opt.array import Array
+from rr_opt.model.problem import Interval
 
 _LARGEST, _SMALLEST = 0.2, 2e-3
 _NEXT_TO = 0.06
@@ -65,12 +69,7 @@ class Merit:
 
 
 def climb(
-    x: Array,
-    sign: Array,
-    free: list[int],
-    terrain: Terrain,
-    merit: Merit,
-    effort: Effort,
+    x: Array, sign: Array, free: list[int], terrain: Terrain, merit: Merit, effort: Effort
 ) -> tuple[Array, Array, Array]:
     """Climb from x (K, 4) along the free coordinates; the tops, their directions and their merit,
     best first.
@@ -178,3 +177,36 @@ def _apart(x: Array, values: Array, sign: Array) -> list[int]:
         if all(sign[i] != sign[j] or np.abs(x[i] - x[j]).max() > _NEXT_TO for j in kept):
             kept.append(int(i))
     return kept
+
+
+_FIRST, _RESTARTS, _GAIN = 0.05, 6, 1e-5
+_WORST = 1e9
+
+
+def polished(value: Callable[[Array], float], point: Array, free: list[int]) -> tuple[Array, float]:
+    """The point (4,) that the simplex method leads to along the free coordinates, begun anew
+    until it gains nothing, and its value."""
+    from scipy.optimize import minimize  # compiled code does without
+
+    best, top = point.copy(), value(point)
+
+    def cost(x: Array) -> float:
+        there = best.copy()
+        there[free] = x
+        # A number, or the simplex cannot be ordered.
+        return min(-value(there), _WORST)
+
+    for _ in range(_RESTARTS if free else 0):
+        corner = best[free]
+        simplex = corner + np.vstack([np.zeros(len(free)), _FIRST * np.eye(len(free))])
+        simplex = np.where(simplex > 1, 2 * corner - simplex, simplex)
+        how = {"initial_simplex": simplex, "xatol": 1e-6, "fatol": 1e-8, "maxfev": 300}
+        bounds = [(0.0, 1.0)] * len(free)
+        found = minimize(cost, corner, method="Nelder-Mead", bounds=bounds, options=how)
+        gain = -float(found.fun) - top
+        if gain > 0:
+            top += gain
+            best[free] = found.x
+        if gain <= _GAIN * max(abs(top), 1e-3):
+            break
+    return best, top

@@ -1,4 +1,14 @@
-"""The free decisions of a gait problem on a unit box, and what limits do to their bounds.
+"""The free decisions of a gait problem on a unit box, and the robots that they make.
+
+The turn that a problem asks for, as rows that a search can penalise.
+
+The curvature grows without bound where the speed passes through zero, and its sign jumps there.
+The angle atan(curvature * length) does not: it is the direction of the pair (speed, yaw rate *
+length), whose plane the gaits fill smoothly. `length` is the radius that is asked for, so that
+the angle changes fastest where it matters; but at most some lengths of the robot, or it would be
+a step where left turns into right.
+
+The free decisions of a gait problem on a unit box, and what limits do to their bounds.
 
 For a sine, three of the limits bound the amplitude alone once period and offset are chosen:
 
@@ -12,18 +22,63 @@ share of what is left. Every point of the box then keeps these limits; only the 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from rr_opt.design.turn.rows import TurnRows, turn_rows
-from rr_opt.physics.dynamics import dynamics_of
-from rr_opt.problem import Interval, Problem, RatioChoice
-from rr_opt.robot.ballast import load_count
-from rr_opt.robot.parameters import Robot
+from rr_opt.array import Array
+from rr_opt.design.landscape import Landscape
+from rr_opt.model.ballast import Loads, load_count, with_load_count
+from rr_opt.model.problem import ANY, Interval, Problem, RatioChoice, Turn
+from rr_opt.model.robot import Robot
+from rr_opt.motion.dynamics import Dynamics, dynamics_of
 
-Array = NDArray[np.float64]
+_LENGTHS = 5.0
+
+
+@dataclass(frozen=True)
+class TurnRows:
+    """Rows of a Turn: those of its quantities that are asked for, scaled."""
+
+    turn: Turn
+    length: float
+
+    @property
+    def intervals(self) -> tuple[Interval, ...]:
+        """The interval of each row."""
+        rows = []
+        if self.turn.curvature != ANY:
+            ends = (self.turn.curvature.low, self.turn.curvature.high)
+            rows.append(Interval(*(math.atan(end * self.length) for end in ends)))
+        for asked in (self.turn.yaw_rate, self.turn.heading):
+            if asked != ANY:
+                rows.append(Interval(asked.low / _size(asked), asked.high / _size(asked)))
+        return tuple(rows)
+
+    def values(self, speed: Array, turn: Array, period: Array) -> list[Array]:
+        """The rows of gaits with this speed (m/s), heading per period (rad) and period (s)."""
+        rows = []
+        if self.turn.curvature != ANY:
+            rows.append(np.arctan2(turn / period * self.length, np.abs(speed)))
+        if self.turn.yaw_rate != ANY:
+            rows.append(turn / period / _size(self.turn.yaw_rate))
+        if self.turn.heading != ANY:
+            rows.append(turn / _size(self.turn.heading))
+        return rows
+
+
+def turn_rows(turn: Turn, robot: Robot) -> TurnRows:
+    """The rows of a turn that this robot is to make."""
+    longest = _LENGTHS * (robot.platform1.c + robot.platform2.c)
+    asked = turn.curvature != ANY and 1 / _size(turn.curvature)
+    return TurnRows(turn, min(asked or longest, longest))
+
+
+def _size(asked: Interval) -> float:
+    """The size of what is asked; 1 if that is nothing but straight."""
+    ends = [abs(end) for end in (asked.low, asked.high) if math.isfinite(end)]
+    return max(ends) or 1.0
+
 
 SQUARE = math.pi / 4
 """Peak of a square wave over that of its first harmonic: no shape has a first harmonic that is
@@ -163,3 +218,50 @@ def ballast_interval(robot: Robot, choice: RatioChoice | None) -> Interval:
         offset, scale = 0.0, robot.platform1.I
     low, high = (r * scale - offset for r in ends)
     return Interval(max(low, 1e-6 * scale), high)
+
+
+@dataclass(frozen=True)
+class Setting:
+    """A problem, ready to be solved from any start.
+
+    ballast      range of I2 (kg m2) or of the number of loads
+    fixed_share  where in it the ballast is fixed to a whole number of loads
+    """
+
+    problem: Problem
+    dynamics: Dynamics
+    landscape: Landscape
+    ballast: Interval
+    fixed_share: float | None = None
+
+
+def settings_of(problem: Problem, box: Decisions) -> list[Setting]:
+    """One setting, or one for each whole number of loads."""
+    choice = problem.inertia_ratio
+    by, loads = (choice.by, choice.loads) if choice else ("inertia", Loads())
+    dynamics = dynamics_of(problem.robot)
+    low, high = box.ballast.low, box.ballast.high
+    landscape = Landscape(dynamics, problem.robot, by, loads, box.ballast)
+    setting = Setting(problem, dynamics, landscape, box.ballast)
+    if not (by == "loads" and loads.whole):
+        return [setting]
+    counts = range(math.ceil(low - 1e-9), math.floor(high + 1e-9) + 1)
+    width = (high - low) or 1.0
+    return [replace(setting, fixed_share=(count - low) / width) for count in counts]
+
+
+def scanned(setting: Setting, box: Decisions) -> Decisions:
+    """The box to scan: with a whole number of loads the ballast is not free."""
+    if setting.fixed_share is None:
+        return box
+    count = box.ballast.low + setting.fixed_share * (box.ballast.high - box.ballast.low)
+    return replace(box, ballast=Interval(count, count))
+
+
+def robot_of(setting: Setting, share: float) -> Robot:
+    """The problem's robot with the ballast at this share of its range."""
+    robot, choice, ballast = setting.problem.robot, setting.problem.inertia_ratio, setting.ballast
+    amount = ballast.low + share * (ballast.high - ballast.low)
+    if choice and choice.by == "loads":
+        return replace(robot, platform2=with_load_count(robot.platform2, choice.loads, amount))
+    return replace(robot, platform2=replace(robot.platform2, I=amount))

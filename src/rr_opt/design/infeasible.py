@@ -13,8 +13,8 @@ from collections.abc import Callable
 from rr_opt.design.decisions import Decisions, reach_before_singularity
 from rr_opt.design.landscape import Landscape
 from rr_opt.design.seeds import least_torque
-from rr_opt.design.turn.clash import turn_clashes
-from rr_opt.problem import Problem
+from rr_opt.design.turn.infeasible import turn_clashes
+from rr_opt.model.problem import Problem
 
 _ROUNDING = 1 + 1e-9
 

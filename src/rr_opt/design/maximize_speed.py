@@ -10,18 +10,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from rr_opt.design.families import find_families
-from rr_opt.design.finds import Finds
-from rr_opt.design.ranking import distinct
-from rr_opt.design.refine import refine
-from rr_opt.design.setting import robot_of
-from rr_opt.design.sines import Progress, find_sines
+from rr_opt.design.decisions import robot_of
+from rr_opt.design.search import Finds, Progress, distinct, find_families, find_sines, refine
 from rr_opt.design.solve import Candidate
+from rr_opt.model.ballast import inertia_ratio
+from rr_opt.model.problem import Problem
+from rr_opt.model.robot import Robot
+from rr_opt.motion.dynamics import require_friction
 from rr_opt.outcome import Status
-from rr_opt.physics.dynamics import require_friction
-from rr_opt.problem import Problem
-from rr_opt.robot.ballast import inertia_ratio
-from rr_opt.robot.parameters import Robot
 
 SAME_SPEED = 1e-5
 """Optima whose speeds differ by less, relative, are a tie."""

@@ -32,12 +32,11 @@ from functools import cached_property, lru_cache
 
 import casadi as ca
 
-from rr_opt.design.interval import IntervalTerms, interval_of
-from rr_opt.design.layout import Layout
-from rr_opt.design.machine import Functions
-from rr_opt.design.shapes import Shape
-from rr_opt.motion.tableau import BUTCHER6, Tableau
-from rr_opt.robot.ballast import By
+from rr_opt.design.interval import Functions, IntervalTerms, interval_of
+from rr_opt.design.shapes.shape import Shape
+from rr_opt.design.transcription import Layout
+from rr_opt.mechanics.runge_kutta import BUTCHER6, Tableau
+from rr_opt.model.ballast import By
 
 _IPOPT = {
     "print_time": False,
@@ -205,9 +204,7 @@ class _Program:
             lam_g, [0, tied, tied + nm, limits, lam_g.numel()]
         )
         weights = ca.vertcat(
-            ca.reshape(on_states, n, -1).T,
-            ca.repmat(on_sums, 1, n),
-            ca.reshape(on_path, n, -1).T,
+            ca.reshape(on_states, n, -1).T, ca.repmat(on_sums, 1, n), ca.reshape(on_path, n, -1).T
         )
         curves = self.functions.hessian.map(n)(*self.per_node, self.z, self.fixed, weights)
         summed = [ca.sum2(curves[nl:, j::wrt]) for j in range(nl, wrt)]

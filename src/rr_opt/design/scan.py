@@ -6,14 +6,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from rr_opt.design.climb import Effort, Merit, climb, spread
+from rr_opt.array import Array
+from rr_opt.design.climb import Effort, Merit, climb, polished, spread
 from rr_opt.design.decisions import Decisions
 from rr_opt.design.landscape import Cycles, Landscape
-from rr_opt.design.simplex import polished
-
-Array = NDArray[np.float64]
 
 # Phases of the scan and its climb, then of the climb that goes on from their tops: near the
 # singular posture the coarse landscape has ripples that hold climbers back.

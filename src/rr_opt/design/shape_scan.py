@@ -6,13 +6,10 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from rr_opt.design.decisions import decisions
-from rr_opt.design.setting import Setting
-from rr_opt.robot.fourier_gait import FourierGait
-
-Array = NDArray[np.float64]
+from rr_opt.array import Array
+from rr_opt.design.decisions import Setting, decisions
+from rr_opt.model.gait import FourierGait
 
 _SHAPES, _TRIANGLES, _NODES = 1500, 100, 48
 _SCANNED = 5

@@ -5,16 +5,13 @@ from __future__ import annotations
 from contextlib import suppress
 from pathlib import Path
 
-from rr_opt.files.document import Document
-from rr_opt.files.experiment.file import experiment_path, plan_from
+from rr_opt.files.experiment_file import experiment_path, plan_from
 from rr_opt.files.issue import InvalidFileError, Issue
-from rr_opt.files.kind import kind_of
-from rr_opt.files.problem_file import problem_from
-from rr_opt.files.problem_sources import problem_sources
-from rr_opt.files.robot_file import robot_from
-from rr_opt.files.robot_sense import singular_posture
+from rr_opt.files.problem_file import kind_of, problem_from, problem_sources
+from rr_opt.files.robot_file import robot_from, singular_posture
 from rr_opt.files.source import problem_path, read_document
-from rr_opt.files.study.file import study_from
+from rr_opt.files.study_file import study_from
+from rr_opt.files.yaml_text import Document
 
 
 def lint_file(path: str | Path) -> list[Issue]:

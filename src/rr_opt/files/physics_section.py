@@ -5,12 +5,13 @@ from __future__ import annotations
 from types import MappingProxyType
 from typing import Any
 
-from rr_opt.files.document import Document
+from rr_opt.effects import OF_ROBOTS
+from rr_opt.effects.effect import Effect, Parameter
+from rr_opt.files.fields import Quantity
 from rr_opt.files.issue import Issue, shown, unknown_word
-from rr_opt.files.quantity import Quantity
+from rr_opt.files.yaml_text import Document
+from rr_opt.model.robot import EffectUse
 from rr_opt.outcome import InputError
-from rr_opt.physics.effects import OF_ROBOTS, Effect, Parameter
-from rr_opt.robot.parameters import EffectUse
 
 
 def read_effects(document: Document) -> tuple[tuple[EffectUse, ...], list[Issue]]:

@@ -4,21 +4,223 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Literal
 
-from rr_opt.files.document import Document
-from rr_opt.files.gait_bounds_model import OWN_SHAPE, GaitModel
-from rr_opt.files.gait_sense import gait_findings
-from rr_opt.files.issue import InvalidFileError, Issue, has_errors, shown
-from rr_opt.files.model_issues import validate
-from rr_opt.files.problem_model import LimitsModel, ProblemModel
-from rr_opt.files.problem_sources import Sources, problem_sources
-from rr_opt.files.ratio_sense import ratio_findings, reachable
-from rr_opt.files.robot_file import robot_from
-from rr_opt.files.source import read_content
-from rr_opt.problem import GaitBounds, Limits, Problem, RatioChoice
-from rr_opt.robot.ballast import Loads
-from rr_opt.robot.parameters import Robot, Servo
+from rr_opt.files.fields import validate
+from rr_opt.files.issue import InvalidFileError, Issue, Level, has_errors, nearest, shown
+from rr_opt.files.problem_model import OWN_SHAPE, GaitModel, LimitsModel, ProblemModel
+from rr_opt.files.robot_file import RobotModel, robot_from
+from rr_opt.files.source import SHIPPED, is_result, problem_path, read_content, read_document
+from rr_opt.files.yaml_text import Document
+from rr_opt.model.ballast import Loads, inertia_ratio, with_inertia_ratio
+from rr_opt.model.problem import GaitBounds, Interval, Limits, Problem, RatioChoice
+from rr_opt.model.robot import Robot, Servo
+from rr_opt.outcome import InputError
+
+Kind = Literal["robot", "problem", "study", "experiment", "result"]
+
+_EXPERIMENT = ("recordings", "noise", "uncertainty")
+_STUDY = ("vary", "together", "problem")
+
+
+def kind_of(document: Document) -> Kind:
+    """The kind whose keys the file has most of; misspelt keys count too, and a tie is a problem."""
+    if is_result(document.data):
+        return "result"
+    if any(key in document.data for key in _EXPERIMENT):
+        return "experiment"
+    if any(key in document.data for key in _STUDY):
+        return "study"
+    robot, problem = list(RobotModel.model_fields), list(ProblemModel.model_fields)
+    meant = [nearest(key, [*robot, *problem]) for key in document.data]
+    of_robot = sum(key in robot for key in meant)
+    return "robot" if of_robot > sum(key in problem for key in meant) else "problem"
+
+
+Finding = tuple[Level, str, str]
+"""Level, key under `inertia_ratio`, message."""
+
+_ROUNDING = 1e-9
+
+
+def reachable(choice: RatioChoice, robot: Robot) -> RatioChoice:
+    """The choice without the ratios below the robot's own, if loads realise it: they only add."""
+    own = inertia_ratio(robot, choice.about)
+    low, high = choice.bounds.low, choice.bounds.high
+    if choice.by == "inertia" or low >= own or high < own * (1 - _ROUNDING):
+        return choice
+    return replace(choice, bounds=Interval(own, max(own, high)))
+
+
+def ratio_findings(choice: RatioChoice, robot: Robot) -> Iterator[Finding]:
+    """What is wrong with a choice of ratios for this robot; the messages name a remedy."""
+    loads = choice.loads
+    if choice.by == "loads" and loads.distance == loads.spread == 0:
+        yield (
+            "error",
+            "loads",
+            "Read loads at the joint itself, which do not change the inertia about it. "
+            "Give `distance` or `spread` a value above 0.",
+        )
+        return
+    bounds = reachable(choice, robot).bounds
+    for ratio in sorted({bounds.low, bounds.high}):
+        try:
+            with_inertia_ratio(robot, ratio, choice.about, choice.by, loads)
+        except InputError as error:
+            yield "error", "bounds", str(error)
+            return
+    if bounds.low > choice.bounds.low * (1 + _ROUNDING):
+        yield (
+            "warning",
+            "bounds",
+            f"The robot without loads has {bounds.low:.4g} already, and loads only add to it. "
+            f"The ratios from {choice.bounds.low:.4g} up to there are left out.",
+        )
+
+
+LONGEST_PERIOD = 60.0
+"""Longer ones are taken for a slip of the unit, s."""
+
+
+def gait_findings(gait: GaitModel, document: Document) -> Iterator[Issue]:
+    """Gaits that say nothing, or whose steady cycle nobody could compute or wait for."""
+    for key, shape in OWN_SHAPE.items():
+        if getattr(gait, key) is not None and gait.shape != shape:
+            message = (
+                f"Read {key} of a gait with the shape `{gait.shape}`. Only a `{shape}` gait "
+                f"has {key}. Write `shape: {shape}`, or delete this key."
+            )
+            yield document.issue("error", ("gait", key), message)
+    if gait.amplitude.high <= 0:
+        message = (
+            "Read an amplitude of at most 0. Expected an upper bound above 0: a gait that "
+            "does not move the servo does not move the robot."
+        )
+        yield document.issue("error", ("gait", "amplitude"), message)
+    elif gait.amplitude.low == 0 and gait.shape != "sine":
+        message = (
+            f"Read an amplitude from 0 of a `{gait.shape}` gait. Expected a lower bound above 0: "
+            "it bounds the first harmonic, without which a gait repeats within its period, and "
+            "the bounds of the period mean nothing. Write for example `amplitude: "
+            f"[{min(0.05, gait.amplitude.high / 10):.2g}, {gait.amplitude.high:.4g}]`."
+        )
+        yield document.issue("warning", ("gait", "amplitude"), message)
+    if gait.period.high > LONGEST_PERIOD:
+        message = (
+            f"Read a period of up to {gait.period.high:.4g} s. Expected at most "
+            f"{LONGEST_PERIOD:.4g} s. Check the unit."
+        )
+        yield document.issue("error", ("gait", "period"), message)
+
+
+@dataclass(frozen=True)
+class Sources:
+    """A problem as read, nothing of it checked but its YAML.
+
+    paths   the files it is made of
+    robot   None if it could not be read; `issues` say why
+    """
+
+    paths: tuple[Path, ...]
+    problem: Document
+    robot: Document | None
+    issues: tuple[Issue, ...] = ()
+
+
+def problem_sources(path: str | Path | None) -> Sources:
+    """The parts of a problem: a problem file, its folder, a robot file, or None (as shipped).
+
+    A robot file stands for the shipped problem with that robot and its servo's limits.
+    Raises InvalidFileError if the file cannot be read, or is of another kind.
+    """
+    file = problem_path(SHIPPED if path is None else Path(path))
+    document = read_document(file)
+    kind = kind_of(document)
+    if kind == "experiment":
+        raise InvalidFileError([experiment_issue(document)])
+    if kind == "result":
+        raise InvalidFileError([result_issue(document)])
+    if kind == "study":
+        raise InvalidFileError([study_issue(document)])
+    if kind == "robot":
+        return _shipped_problem_with(document, file)
+    if isinstance(document.data.get("robot"), dict):
+        return Sources((file,), document, document.section("robot"))
+    return _with_robot_file(document, file)
+
+
+def experiment_issue(document: Document) -> Issue:
+    """What to say to an experiment file where a robot or a problem is expected."""
+    return document.issue(
+        "error",
+        (),
+        "Read the keys of an experiment. Expected a problem or a robot. "
+        "Experiments are read by `rr-opt diagnose`.",
+    )
+
+
+def study_issue(document: Document) -> Issue:
+    """What to say to a study where a problem is expected."""
+    return document.issue(
+        "error",
+        (),
+        "Read the keys of a study. Expected a problem or a robot. "
+        "Studies are solved by `rr-opt study`.",
+    )
+
+
+def result_issue(document: Document) -> Issue:
+    """What to say to a result where an input file is expected."""
+    return document.issue(
+        "error",
+        (),
+        "Read a result, which rr-opt has written. Expected an input file: a problem or a robot. "
+        "Results are read by `rr-opt simulate` and `rr-opt export`.",
+    )
+
+
+def _shipped_problem_with(robot: Document, file: Path) -> Sources:
+    problem = read_document(SHIPPED / "problem.yaml")
+    limits = problem.section("limits").without("angle", "rate", "torque").data
+    data = {**problem.without("robot").data, "limits": limits}
+    shipped = Document(f"the shipped problem, with {file}", data, problem.lines)
+    return Sources((SHIPPED / "problem.yaml", file), shipped, robot)
+
+
+def _with_robot_file(problem: Document, file: Path) -> Sources:
+    entry = problem.data.get("robot")
+    if "robot" not in problem.data:
+        named = SHIPPED / "robot.yaml"
+    elif isinstance(entry, str) and entry:
+        named = file.parent / entry
+    else:
+        message = (
+            f"Read {shown(entry)}. Expected the name of a robot file, or the robot itself. "
+            "Without this key the robot is the paper's prototype."
+        )
+        return Sources((file,), problem, None, (problem.issue("error", ("robot",), message),))
+    try:
+        robot = read_document(named)
+        if is_result(robot.data):
+            message = (
+                f"Read {shown(entry)}, a result. Expected a robot file. Write what the result "
+                "holds under `robot` to a file, and name that."
+            )
+            return Sources(
+                (file, named), problem, None, (problem.issue("error", ("robot",), message),)
+            )
+        return Sources((file, named), problem, robot)
+    except InvalidFileError as error:
+        issues = tuple(
+            problem.issue("error", ("robot",), f"Read {shown(entry)}. {issue.message}")
+            if issue.line is None
+            else issue
+            for issue in error.issues
+        )
+        return Sources((file, named), problem, None, issues)
 
 
 def read_problem(path: str | Path | None = None) -> Problem:

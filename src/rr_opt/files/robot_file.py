@@ -2,17 +2,260 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any
+from types import MappingProxyType
+from typing import Annotated, Any
 
-from rr_opt.files.document import Document
-from rr_opt.files.issue import InvalidFileError, Issue, has_errors
-from rr_opt.files.model_issues import validate
-from rr_opt.files.provenance_section import read_provenance
-from rr_opt.files.robot_model import DEFAULT_WHEEL_RADIUS, PlatformModel, RobotModel
-from rr_opt.files.robot_sense import doubts, too_much_friction
+from pydantic import BaseModel, ConfigDict, Field, GetJsonSchemaHandler, SkipValidation
+from pydantic_core import CoreSchema
+
+from rr_opt.files.fields import Quantity, validate
+from rr_opt.files.issue import InvalidFileError, Issue, has_errors, shown, unknown_word
 from rr_opt.files.source import read_document
-from rr_opt.robot.parameters import Platform, Robot, Servo
+from rr_opt.files.yaml_text import Document, KeyPath, path_text
+from rr_opt.model.ballast import inertia_ratio
+from rr_opt.model.robot import Platform, Robot, Servo
+
+_LARGEST_LENGTH = 5.0
+"""Longer platforms are taken for millimetres written as metres, m."""
+
+_DENSITY = 8000.0
+"""Of steel, kg/m3."""
+
+_LARGEST_FRICTION = 1000.0
+"""A robot of a kilogram then stops within a fraction of a millisecond, N s/m per wheel."""
+
+
+def doubts(robot: Robot) -> Iterator[tuple[tuple[str, ...], str]]:
+    """Key path and message of every value that looks like a slip of the pen."""
+    for key, platform in (("platform1", robot.platform1), ("platform2", robot.platform2)):
+        for name, message in _platform_doubts(platform):
+            yield (key, name), message
+    longest = max(_longest(robot.platform1)[1], _longest(robot.platform2)[1])
+    if robot.h > longest:
+        yield (
+            ("h",),
+            f"The wheel radius is {robot.h:.4g} m, more than any length of the platforms. Plain "
+            f"numbers are metres: write `{robot.h:g} mm` for millimetres.",
+        )
+    ratio = inertia_ratio(robot, "joint")
+    if not 0.01 <= ratio <= 100:
+        yield (
+            ("platform2", "I"),
+            f"The inertia ratio J20/J10 about the joint is {ratio:.3g}. Expected 0.01 to 100: the "
+            "platforms hardly belong together. Check the units of m, I, c and a of both.",
+        )
+
+
+def too_much_friction(robot: Robot) -> Iterator[tuple[tuple[str, ...], str]]:
+    """Key path and message of friction that would stop any robot at once."""
+    for key, k in (("platform1", robot.k1), ("platform2", robot.k2)):
+        if k > _LARGEST_FRICTION:
+            yield (
+                (key, "kappa"),
+                f"The friction along the floor is k = kappa/h^2 = {k:.3g} N s/m per wheel. "
+                f"Expected at most {_LARGEST_FRICTION:.4g}: nothing would roll. Check the "
+                "units of kappa and h.",
+            )
+
+
+def singular_posture(robot: Robot) -> str | None:
+    """What to say if the servo can reach the posture where S1 = c1 cos phi + c2 vanishes."""
+    limit, singular = robot.servo.angle_limit, robot.singular_angle
+    if singular >= limit:
+        return None
+    return (
+        f"Within {limit:.4g} rad lies the singular posture |phi| = arccos(-c2/c1) = "
+        f"{singular:.4g} rad, where a model without side slip means nothing. A problem keeps "
+        "its distance with `limits.singularity`."
+    )
+
+
+def _platform_doubts(platform: Platform) -> Iterator[tuple[str, str]]:
+    key, longest = _longest(platform)
+    gyration = math.sqrt(platform.I / platform.m)
+    if platform.a > platform.c:
+        yield (
+            "a",
+            (
+                f"a = {platform.a:.4g} m puts the centre of mass beyond the joint (c = "
+                f"{platform.c:.4g} m). a counts from the axle towards the "
+                "joint; check that it is not the distance from the joint."
+            ),
+        )
+    if longest > _LARGEST_LENGTH:
+        yield (
+            key,
+            (
+                f"The platform is {longest:.4g} m long. Plain numbers are metres: write "
+                f"`{longest:g} mm` for millimetres."
+            ),
+        )
+    if platform.m / longest / longest / longest > _DENSITY:
+        yield (
+            "m",
+            (
+                f"The platform weighs {platform.m:.4g} kg, more than a cube of steel of its "
+                f"largest length, {longest:.3g} m. Plain numbers are kilograms: write "
+                f"`{platform.m:g} g` for grams."
+            ),
+        )
+    if gyration > 3 * longest:
+        yield (
+            "I",
+            (
+                f"The radius of gyration sqrt(I/m) is {gyration:.3g} m, more than three times the "
+                f"platform's largest length, {longest:.3g} m. Check the "
+                "units of I (kg m2), m, c and b."
+            ),
+        )
+
+
+def _longest(platform: Platform) -> tuple[str, float]:
+    """The largest of its lengths, and its key."""
+    lengths = {"c": platform.c, "a": abs(platform.a), "b": platform.b}
+    key = max(lengths, key=lambda name: lengths[name])
+    return key, lengths[key]
+
+
+DEFAULT_WHEEL_RADIUS = 0.020
+"""h where a robot file does not need one, m."""
+
+Mass = Annotated[float, Quantity("kg", "469 g", above=0)]
+Inertia = Annotated[float, Quantity("kg m^2", "0.00386", above=0)]
+Length = Annotated[float, Quantity("m", "186 mm", above=0)]
+SignedLength = Annotated[float, Quantity("m", "20 mm")]
+OptionalLength = Annotated[float | None, Quantity("m", "20 mm", above=0)]
+OptionalWheelFriction = Annotated[float | None, Quantity("N m s", "6.2e-5", at_least=0)]
+OptionalFloorFriction = Annotated[float | None, Quantity("N s/m", "0.155", at_least=0)]
+
+ANGLE = Quantity("rad", "2.6", above=0, below=math.pi)
+RATE = Quantity("rad/s", "30 rpm", above=0, endless=True)
+TORQUE = Quantity("N m", "14 kgf*cm", above=0, endless=True)
+Angle = Annotated[float, ANGLE]
+Rate = Annotated[float, RATE]
+Torque = Annotated[float, TORQUE]
+
+
+class FileModel(BaseModel):
+    """Keys of a file: none other than those named, and nothing converted in silence."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+
+
+class PlatformModel(FileModel):
+    """One platform with its wheel pair. Give kappa or k, not both."""
+
+    model_config = ConfigDict(
+        json_schema_extra={"oneOf": [{"required": ["kappa"]}, {"required": ["k"]}]}
+    )
+
+    m: Mass = Field(description="Mass, kg.")
+    I: Inertia = Field(
+        description="Moment of inertia about the vertical through the centre of mass, kg m2."
+    )
+    c: Length = Field(description="Distance from the axle's centre to the joint P, m.")
+    a: SignedLength = Field(
+        description="Distance from the axle's centre to the centre of mass, towards P, m."
+    )
+    b: Length = Field(description="Half track: from the axle's centre to each wheel, m.")
+    kappa: OptionalWheelFriction = Field(
+        default=None, description="Viscous friction of one wheel about its axle, N m s."
+    )
+    k: OptionalFloorFriction = Field(
+        default=None, description="Viscous friction of one wheel along the floor, kappa/h^2, N s/m."
+    )
+
+
+class ServoModel(FileModel):
+    """What the servo can do."""
+
+    angle_limit: Angle = Field(
+        default=Servo.angle_limit, description="Largest |phi|, rad, below pi."
+    )
+    rate_limit: Rate = Field(
+        default=Servo.rate_limit, description="Largest |dphi/dt|, rad/s; .inf: no limit."
+    )
+    torque_limit: Torque = Field(
+        default=Servo.torque_limit, description="Largest |torque|, N m; .inf: no limit."
+    )
+
+
+class _EffectsSchema:
+    """The JSON schema of `physics`, from the catalogue of effects."""
+
+    def __get_pydantic_json_schema__(
+        self, _: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        # Here and not above: the catalogue loads CasADi, and reading most files does not.
+        from rr_opt.files.physics_section import effects_json_schema
+
+        return effects_json_schema()
+
+
+class RobotModel(FileModel):
+    """A Roller Racer. Plain numbers are SI; a text may carry a unit, such as 186 mm."""
+
+    name: str = Field(default="", description="What people call this robot.")
+    platform1: PlatformModel = Field(description="The platform whose heading is psi.")
+    platform2: PlatformModel = Field(description="The platform that the servo turns by phi.")
+    h: OptionalLength = Field(
+        default=None,
+        description="Wheel radius, m. Needed with kappa or physics; else 20 mm, without effect.",
+    )
+    servo: ServoModel = Field(default_factory=ServoModel, description="The servo's limits.")
+    physics: Annotated[list[dict[str, Any]], SkipValidation, _EffectsSchema()] = Field(
+        default_factory=list, description="Effects beyond the paper's model, by catalogue name."
+    )
+    provenance: Annotated[dict[str, Any], SkipValidation] = Field(
+        default_factory=dict,
+        description="Where values come from: the robot's keys again, each with a text that begins "
+        "with measured, fitted or assumed.",
+    )
+
+
+ORIGINS = ("measured", "fitted", "assumed")
+
+_KEYS: dict[str, tuple[str, ...]] = {
+    "": tuple(key for key in RobotModel.model_fields if key not in ("name", "provenance")),
+    "platform1": tuple(PlatformModel.model_fields),
+    "platform2": tuple(PlatformModel.model_fields),
+    "servo": tuple(ServoModel.model_fields),
+}
+
+
+def read_provenance(document: Document) -> tuple[Mapping[str, str], list[Issue]]:
+    """Key path -> the sentence that says where the value comes from.
+
+    A friction given as `k` is told under `kappa`, the name by which the robot keeps it.
+    """
+    found: dict[str, str] = {}
+    issues: list[Issue] = []
+
+    def walk(value: Any, path: KeyPath) -> None:
+        here = ("provenance", *path)
+        if isinstance(value, dict):
+            known = _KEYS.get(path_text(path))
+            for key, inner in value.items():
+                if known is not None and key not in known:
+                    message = unknown_word(key, known, "key")
+                    issues.append(document.issue("error", (*here, key), message))
+                else:
+                    walk(inner, (*path, key))
+        elif not path or not isinstance(value, str) or not value.startswith(ORIGINS):
+            message = (
+                f"Read {shown(value)}. Expected a text that begins with {', '.join(ORIGINS)}. "
+                "Write for example `measured: Table 1`, in quotes."
+            )
+            issues.append(document.issue("error", here, message))
+        else:
+            kept = (*path[:-1], "kappa") if path[-1] == "k" else path
+            found[path_text(kept)] = value
+
+    walk(document.data["provenance"], ())
+    return MappingProxyType(found), issues
 
 
 def read_robot(path: str | Path) -> Robot:
@@ -30,7 +273,7 @@ def robot_from(document: Document) -> tuple[Robot | None, list[Issue]]:
     beyond: dict[str, Any] = {}
     if "physics" in document.data:
         # Here and not above: the catalogue loads CasADi, and reading most files does not.
-        from rr_opt.files.physics_section import read_effects  # noqa: PLC0415
+        from rr_opt.files.physics_section import read_effects
 
         beyond["physics"], found = read_effects(document)
         issues += found

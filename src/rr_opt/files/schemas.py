@@ -6,11 +6,10 @@ from typing import Any, Literal, get_args
 
 from pydantic import BaseModel
 
-from rr_opt.files.experiment.model import ExperimentModel
+from rr_opt.files.experiment_model import ExperimentModel
 from rr_opt.files.issue import unknown_word
-from rr_opt.files.problem_model import ProblemModel
-from rr_opt.files.robot_model import RobotModel
-from rr_opt.files.study.model import StudyModel
+from rr_opt.files.problem_model import ProblemModel, StudyModel
+from rr_opt.files.robot_file import RobotModel
 from rr_opt.outcome import InputError
 
 FileKind = Literal["robot", "problem", "study", "experiment"]

@@ -1,14 +1,36 @@
-"""Where input files come from: the user's disk, or the package with its shipped problem."""
+"""Where input files come from: the user's disk, the package, or a result that rr-opt wrote."""
 
 from __future__ import annotations
 
+import json
 from importlib.resources import files
 from pathlib import Path
 
-from rr_opt.files.document import Document
 from rr_opt.files.issue import InvalidFileError, Issue
-from rr_opt.files.result_text import parse_result
-from rr_opt.files.yaml_text import LARGEST, parse_yaml
+from rr_opt.files.yaml_text import LARGEST, Document, parse_yaml
+
+_MARKS = ("status", "input_sha256")
+"""Keys that every result has and no input."""
+
+
+def parse_result(content: bytes, file: str) -> Document | None:
+    """The data of a result; None if the content is anything else.
+
+    A result may hold more numbers than an input file may, and no line of it is worth naming.
+    """
+    if not content.lstrip().startswith(b"{"):
+        return None
+    try:
+        data = json.loads(content)
+    except (ValueError, RecursionError):
+        return None
+    return Document(file, data, {}) if is_result(data) else None
+
+
+def is_result(data: object) -> bool:
+    """Whether a mapping is a result of rr-opt."""
+    return isinstance(data, dict) and all(key in data for key in _MARKS)
+
 
 SHIPPED = Path(str(files("rr_opt"))) / "data" / "prototype"
 """The folder with the paper's prototype: robot.yaml and problem.yaml."""

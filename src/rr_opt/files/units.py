@@ -14,9 +14,33 @@ import re
 from functools import lru_cache
 from typing import Any
 
-from rr_opt.files.dimensions import kind_of_quantity
 from rr_opt.files.issue import nearest, shown
 from rr_opt.outcome import InputError
+
+_KINDS = {
+    "": "a plain number",
+    "m": "a length",
+    "m²": "an area",
+    "s": "a time",
+    "1/s": "a frequency",
+    "kg": "a mass",
+    "rad": "an angle",
+    "rad/s": "an angular rate",
+    "m/s": "a speed",
+    "m/s²": "an acceleration",
+    "kg·m/s²": "a force",
+    "kg·m²/s²": "a torque",
+    "kg·m²": "a moment of inertia",
+    "kg·m²/s": "a torque per angular rate",
+    "kg/s": "a force per speed",
+}
+"""What base units, as pint writes them, measure."""
+
+
+def kind_of_quantity(base: str) -> str:
+    """The kind of quantity that has these base units: `kg·m²/s²` is a torque."""
+    return _KINDS.get(base, "another kind of quantity")
+
 
 LONGEST = 60
 """Longest text read as a quantity, characters."""
@@ -89,7 +113,7 @@ def _worth(written: str, unit: str, text: str) -> float:
 
 @lru_cache
 def _registry() -> Any:
-    import pint  # noqa: PLC0415 - half a second that files without units can do without
+    import pint  # half a second that files without units can do without
 
     return pint.UnitRegistry()
 

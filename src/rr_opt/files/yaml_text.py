@@ -8,13 +8,65 @@ several documents, deep nesting, other encodings than UTF-8. Plain words follow 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
 from typing import Any, NoReturn
 
 import yaml
 
-from rr_opt.files.document import Document, Path, path_text
-from rr_opt.files.issue import InvalidFileError, Issue, shown
+from rr_opt.files.issue import InvalidFileError, Issue, Level, shown
+
+KeyPath = tuple[str | int, ...]
+"""The keys and list indices that lead to a value."""
+
+_WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_-]{0,59}")
+
+
+def path_text(path: KeyPath) -> str:
+    """A path as messages write it: `physics[0].force1`."""
+    text = ""
+    for part in path:
+        if isinstance(part, int):
+            text += f"[{part}]"
+        else:
+            text += "." * bool(text) + (part if _WORD.fullmatch(part) else shown(part))
+    return text
+
+
+@dataclass(frozen=True)
+class Document:
+    """A mapping of a file: the whole of it, or the section at `prefix`.
+
+    file   the file as the user named it
+    data   the mapping
+    lines  line of each key, by its path in the file
+    """
+
+    file: str
+    data: dict[str, Any]
+    lines: Mapping[KeyPath, int]
+    prefix: KeyPath = ()
+
+    def section(self, key: str) -> Document:
+        """The mapping under a key, which keeps its place in the file."""
+        return replace(self, data=self.data[key], prefix=(*self.prefix, key))
+
+    def without(self, *keys: str) -> Document:
+        """The same without some keys."""
+        return replace(self, data={k: v for k, v in self.data.items() if k not in keys})
+
+    def issue(self, level: Level, path: KeyPath, message: str) -> Issue:
+        """An issue at a path below this mapping, with the line of the nearest key written.
+
+        Where no lines are known it has none.
+        """
+        whole = (*self.prefix, *path)
+        steps = (whole[:n] for n in range(len(whole), 0, -1))
+        line = next(
+            (self.lines[step] for step in steps if step in self.lines), 1 if self.lines else None
+        )
+        return Issue(level, path_text(whole), message, line, self.file)
+
 
 LARGEST = 1_000_000
 """Largest file read, bytes."""
@@ -55,7 +107,7 @@ class _Reading:
     def __init__(self, text: str, file: str):
         self.file = file
         self.events: Iterator[Any] = yaml.parse(text, Loader=yaml.SafeLoader)
-        self.lines: dict[Path, int] = {}
+        self.lines: dict[KeyPath, int] = {}
         self.issues: list[Issue] = []
         self.values = 0
 
@@ -91,14 +143,14 @@ class _Reading:
             self._stop("A second document begins here. Expected one document per file.", line)
         return data, first.start_mark.line + 1
 
-    def _stop(self, message: str, line: int | None = None, path: Path = ()) -> NoReturn:
+    def _stop(self, message: str, line: int | None = None, path: KeyPath = ()) -> NoReturn:
         self._note(message, line, path)
         raise InvalidFileError(self.issues)
 
-    def _note(self, message: str, line: int | None, path: Path) -> None:
+    def _note(self, message: str, line: int | None, path: KeyPath) -> None:
         self.issues.append(Issue("error", path_text(path), message, line, self.file))
 
-    def _value(self, event: Any, path: Path) -> Any:
+    def _value(self, event: Any, path: KeyPath) -> Any:
         line = event.start_mark.line + 1
         self.values += 1
         if self.values > MOST_VALUES or len(path) > DEEPEST:
@@ -117,7 +169,7 @@ class _Reading:
             return self._mapping(path)
         return self._scalar(event, path)
 
-    def _scalar(self, event: Any, path: Path) -> Any:
+    def _scalar(self, event: Any, path: KeyPath) -> Any:
         text: str = event.value
         if any("\ud800" <= letter <= "\udfff" for letter in text):
             self._note("The text holds half a character.", event.start_mark.line + 1, path)
@@ -131,7 +183,7 @@ class _Reading:
             return int(text) if small else float(text)
         return text
 
-    def _sequence(self, path: Path) -> list[Any]:
+    def _sequence(self, path: KeyPath) -> list[Any]:
         items: list[Any] = []
         while not isinstance(event := next(self.events), yaml.SequenceEndEvent):
             here = (*path, len(items))
@@ -139,7 +191,7 @@ class _Reading:
             items.append(self._value(event, here))
         return items
 
-    def _mapping(self, path: Path) -> dict[str, Any]:
+    def _mapping(self, path: KeyPath) -> dict[str, Any]:
         data: dict[str, Any] = {}
         while not isinstance(event := next(self.events), yaml.MappingEndEvent):
             line = event.start_mark.line + 1

@@ -1,1 +1,1 @@
-"""From the equation of motion to motion: integrators, rollouts and the steady cycle."""
+"""Equations of motion with any effects, integrators, rollouts and the steady cycle."""

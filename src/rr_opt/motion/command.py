@@ -12,13 +12,9 @@ from dataclasses import dataclass
 
 import casadi as ca
 import numpy as np
-from numpy.typing import NDArray
 
-from rr_opt.robot.fourier_gait import FourierGait
-from rr_opt.robot.free_gait import FreeGait
-from rr_opt.robot.gait import Gait, SineGait
-
-Array = NDArray[np.float64]
+from rr_opt.array import Array
+from rr_opt.model.gait import FourierGait, FreeGait, Gait, SineGait
 
 
 @dataclass(frozen=True)

@@ -1,5 +1,20 @@
 """The steady cycle: the one speed v(0) that a period carries back to itself.
 
+The rigid motion of one cycle, and the average speed along the circle it makes.
+
+One steady period moves the robot by (dx, dy) and turns it by dpsi, both seen from platform 1 at
+the start; repeated, that is a circle about a fixed centre C. P does not stay at one distance
+from C within the period, so the chord of P depends on where the period is cut. Seen from the
+frame that turns about C at Omega = dpsi/T, P's path is periodic; its mean point is at radius R
+and the speed along the mean circle is R |Omega|, whatever the cut.
+
+C runs off to infinity as the gait straightens. Omega C does not:
+
+    Omega C = (dpsi/2)/sin(dpsi/2) / T * Rot(dpsi/2 + 90 deg) (dx, dy)  up to the sign below
+
+and with it Omega p = Rot(-Omega t) (Omega P - Omega C) is formed directly. A straight gait is
+the limit and no special case: its Omega p is the chord over T, turned by 90 degrees.
+
 The period maps v(0) to v(T); where friction is viscous the map is affine and one Newton step
 from anywhere is exact, otherwise Newton's method goes on inside a bracket until it stands still.
 """
@@ -11,16 +26,100 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike
+from scipy.interpolate import CubicSpline
 
-from rr_opt.motion.cycle import Cycle, cycle_of
-from rr_opt.motion.integrator import cvodes, fixed_steps, whole_steps
-from rr_opt.motion.torque import torque_after, torque_before
-from rr_opt.outcome import NotConvergedError
-from rr_opt.robot.gait import Gait
-from rr_opt.robot.parameters import Robot
+from rr_opt.array import Array
+from rr_opt.model.gait import Gait
+from rr_opt.model.robot import Robot
+from rr_opt.motion.dynamics import dynamics_of
+from rr_opt.motion.integrators import cvodes, fixed_steps, whole_steps
+from rr_opt.outcome import InputError, NotConvergedError
 
-Array = NDArray[np.float64]
+
+@dataclass(frozen=True)
+class Cycle:
+    """What one steady period does.
+
+    dx, dy   displacement of P, m, in platform 1's axes at the start of the period
+    dpsi     heading gained, rad
+    speed    average speed along the mean circle, m/s, positive along platform 1's axis
+    radius   of the mean circle, m; inf for a straight gait
+    """
+
+    period: float
+    dx: float
+    dy: float
+    dpsi: float
+    speed: float
+    radius: float
+
+
+def cycle_of(period: float, x: ArrayLike, y: ArrayLike, psi: ArrayLike) -> Cycle:
+    """The cycle from P's path over one steady period.
+
+    x, y, psi: (N + 1,) at equal steps, both ends included; m, m, rad (unwrapped).
+    """
+    x, y, psi = (np.asarray(values, float) for values in (x, y, psi))
+    start = _rotate(-psi[0], np.array([x - x[0], y - y[0]]))
+    dx, dy = start[:, -1]
+    dpsi = float(psi[-1] - psi[0])
+    omega = dpsi / period
+    # C solves C = (dx, dy) + Rot(dpsi) C.
+    half = dpsi / 2
+    stretch = 1.0 / np.sinc(half / math.pi) / period
+    omega_c = stretch * _quarter_turn(_rotate(-half, np.array([dx, dy])))
+
+    turned = omega * np.arange(len(x) - 1) * period / (len(x) - 1)
+    omega_p = _rotate(-turned, omega * start[:, :-1] - omega_c[:, None]).mean(axis=1)
+    velocity = _quarter_turn(omega_p)
+    seen = psi[:-1] - psi[0] - turned
+    ahead = velocity @ np.array([np.cos(seen).mean(), np.sin(seen).mean()])
+    speed = math.copysign(math.hypot(*omega_p), ahead)
+    radius = abs(speed / omega) if omega else math.inf
+    return Cycle(period, float(dx), float(dy), dpsi, speed, radius)
+
+
+def _rotate(angle: ArrayLike, vector: Array) -> Array:
+    cos, sin = np.cos(angle), np.sin(angle)
+    return np.array([cos * vector[0] - sin * vector[1], sin * vector[0] + cos * vector[1]])
+
+
+def _quarter_turn(vector: Array) -> Array:
+    return np.array([-vector[1], vector[0]])
+
+
+_JUST = 1e-6
+"""How far before a jump its left side is looked at, in lengths of a piece."""
+
+
+def torque_after(robot: Robot, gait: Gait, t: Array, v: Array) -> Array:
+    """Torque on platform 2, N m, at times t (N,) in s with speeds v (N,) in m/s."""
+    return _torque(robot, gait, t, v, gait.acceleration(t))
+
+
+def torque_before(robot: Robot, gait: Gait, t: Array, v: Array) -> Array:
+    """The same with the acceleration just before t, which differs where it jumps at t."""
+    just_before = t - _JUST * gait.period / gait.pieces
+    return _torque(robot, gait, t, v, gait.acceleration(just_before))
+
+
+def _torque(robot: Robot, gait: Gait, t: Array, v: Array, acceleration: Array) -> Array:
+    dynamics = dynamics_of(robot)
+    values = np.tile(dynamics.values(robot)[:, None], len(t))
+    inputs = (v[None], gait.angle(t)[None], gait.rate(t)[None], acceleration[None], values)
+    return np.asarray(dynamics.motion(*inputs)[3]).ravel()
+
+
+def require_regular(robot: Robot, gait: Gait) -> None:
+    """Raise InputError for a gait that reaches the singular posture."""
+    if gait.peak_angle >= robot.singular_angle:
+        raise InputError(
+            f"The gait reaches |phi| = {gait.peak_angle:.4g} rad. The robot is singular at "
+            f"{robot.singular_angle:.4g} rad, where both axles point at one centre and no motion "
+            "without side slip exists. Lower the amplitude or the offset."
+        )
+
 
 _NEWTON_STEPS = 80
 _FIRST_STEP, _ABSURD = 0.1, 1e4  # m/s
@@ -102,3 +201,19 @@ def _cycle(robot: Robot, gait: Gait, path: Array) -> SteadyCycle:
     before = torque_before(robot, gait, t, v) if gait.pieces > 1 else after
     made = cycle_of(gait.period, x, y, psi)
     return SteadyCycle(gait, t, gait.angle(t), v, psi, x, y, after, before, made)
+
+
+BETWEEN = 16
+"""Points among which a peak is looked for, for each sample of the cycle."""
+
+
+def peak_torque(steady: SteadyCycle) -> float:
+    """Largest |torque|, N m: a spline on each piece, from just after a jump to just before the
+    next."""
+    pieces = steady.gait.pieces
+    each = (len(steady.t) - 1) // pieces
+    inside = steady.torque[:-1].reshape(pieces, each)
+    ends = steady.torque_before[each::each, None]
+    at = np.arange(each + 1)
+    spline = CubicSpline(at, np.hstack([inside, ends]), axis=1)
+    return float(np.abs(spline(np.linspace(0, each, BETWEEN * each + 1))).max())

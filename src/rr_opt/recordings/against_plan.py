@@ -9,15 +9,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
-from rr_opt.experiment.experiment import Run
-from rr_opt.experiment.recording import CHANNELS
-from rr_opt.recordings.doubts import Doubt
-from rr_opt.robot.gait import Gait
-from rr_opt.robot.parameters import Robot
-
-Array = NDArray[np.float64]
+from rr_opt.array import Array
+from rr_opt.model.experiment import CHANNELS, Run
+from rr_opt.model.gait import Gait
+from rr_opt.model.robot import Robot
+from rr_opt.recordings.warnings import Doubt
 
 _LENGTHS = 5.0
 """No robot drives so many of its own lengths in a period."""

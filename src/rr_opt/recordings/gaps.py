@@ -1,16 +1,25 @@
-"""Where a recording has no data, and how a short gap is bridged to be drawn, never to be fitted."""
+"""Where a recording has no data, stands still or jumps.
+
+Where a channel jumps: the level before and the level after do not meet.
+
+A parabola through the seven samples before and one through the seven after are compared half way
+between the two. At a kink they meet, at a jump they do not.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import maximum_filter1d
 
-from rr_opt.experiment.recording import Flag, Recording
-from rr_opt.recordings.time_step import time_step
-
-Array = NDArray[np.float64]
+from rr_opt.array import Array
+from rr_opt.model.experiment import CHANNELS, Flag, Recording
+from rr_opt.recordings.time_axis import time_step
+from rr_opt.recordings.warnings import Doubt, size_text
 
 SHORT = 0.1
 """A gap of a drawing that is bridged, s."""
@@ -77,3 +86,124 @@ def bridged(t: Array, y: Array, longest: float = SHORT) -> Array:
         if a > 0 and b < len(t) and t[b] - t[a - 1] <= longest:
             bridge[a:b] = whole[a:b]
     return bridge
+
+
+_FEWEST = 3
+"""Copies in a row, in every channel, that noise does not make."""
+_COMMON = 0.2
+"""A recording of which a larger part repeats has no noise to tell by: it is computed."""
+
+
+def without_copies(recording: Recording) -> tuple[Recording, tuple[Doubt, ...]]:
+    """The recording with samples that repeat the last one in every channel flagged OUTLIER.
+
+    They are no measurements: a capture that hangs writes its last values again.
+    """
+    same = np.ones(max(len(recording) - 1, 0), bool)
+    for channel in CHANNELS:
+        same &= np.diff(recording.data(channel)) == 0
+    copied = np.concatenate([[False], same])
+    stretches = [(a, b) for a, b in runs(copied) if b - a >= _FEWEST]
+    count = sum(b - a for a, b in stretches)
+    if not stretches or count > _COMMON * len(recording):
+        return recording, ()
+    member = _member(len(recording), stretches)
+    flags = {
+        channel: np.where(member, flag | np.uint8(Flag.OUTLIER), flag).astype(np.uint8)
+        for channel, flag in recording.flags.items()
+    }
+    t = recording.t
+    longest = max(stretches, key=lambda one: one[1] - one[0])
+    text = (
+        f"{count} samples repeat the last one in every channel, {len(stretches)} "
+        f"time{'s' if len(stretches) > 1 else ''}, the longest for "
+        f"{t[longest[1] - 1] - t[longest[0] - 1]:.3g} s from t = {t[longest[0] - 1]:.6g} s: a "
+        "stream that stood still? Flagged."
+    )
+    return replace(recording, flags=MappingProxyType(flags)), (Doubt("held", text),)
+
+
+def _member(n: int, stretches: list[tuple[int, int]]) -> NDArray[np.bool_]:
+    member = np.zeros(n, bool)
+    for a, b in stretches:
+        member[a:b] = True
+    return member
+
+
+_SIDE = 7
+_SURE = 8.0
+"""Standard deviations; a kink between two samples can make a few."""
+_KINK = 1.0
+"""Steps of time from half way at which a kink may be."""
+_APART = 15
+
+
+@dataclass(frozen=True)
+class Jump:
+    """A jump between rows `row` and `row + 1`, by `size` in the channel's unit."""
+
+    row: int
+    size: float
+
+
+def jumps(y: Array, sigma: float) -> tuple[Jump, ...]:
+    """The jumps of y (n,), samples at equal steps, NaN where there is none.
+
+    sigma: standard deviation of its noise. A jump next to a missing sample is not seen.
+    """
+    n = len(y)
+    if n < 2 * _SIDE or not sigma > 0:
+        return ()
+    since = -(np.arange(_SIDE) + 0.5)
+    V = np.vander(since, 3, increasing=True)
+    level, slope, _ = np.linalg.pinv(V)
+    count = n - 2 * _SIDE + 1
+    size, bend = np.zeros(count), np.zeros(count)
+    for i in range(_SIDE):
+        before, after = _SIDE - 1 - i, _SIDE + i
+        size += level[i] * (y[after : after + count] - y[before : before + count])
+        # The sides are mirrored, so their slopes have opposite signs.
+        bend += slope[i] * (y[after : after + count] + y[before : before + count])
+    # A kink that is not half way leaves the levels apart by a part of its change of slope.
+    beyond = np.maximum(np.abs(size) - _KINK * np.abs(bend), 0.0)
+    off = np.nan_to_num(beyond / (sigma * np.sqrt(2 * (level**2).sum())))
+    peak = (off > _SURE) & (off >= maximum_filter1d(off, _APART))
+    return tuple(Jump(int(i) + _SIDE - 1, float(size[i])) for i in np.flatnonzero(peak))
+
+
+_TOGETHER = 2
+"""Rows within which jumps are one event."""
+_LISTED = 3
+
+
+def jump_doubts(recording: Recording, found: Mapping[str, Sequence[Jump]]) -> Iterator[Doubt]:
+    """A sentence for each instant at which channels jump, the first ones."""
+    events = _events(found)
+    for row, sizes in events[:_LISTED]:
+        listed = ", ".join(f"{name} by {size_text(name, size)}" for name, size in sizes.items())
+        yield Doubt("jump", f"At t = {recording.t[row]:.6g} s jumps {listed}: {_why(set(sizes))}")
+    if len(events) > _LISTED:
+        yield Doubt("jump", f"There are {len(events) - _LISTED} more jumps.")
+
+
+def _events(found: Mapping[str, Sequence[Jump]]) -> list[tuple[int, dict[str, float]]]:
+    """Rows, and the size by channel of what jumps there."""
+    events: list[tuple[int, dict[str, float]]] = []
+    jumps = sorted((jump.row, channel, jump.size) for channel in found for jump in found[channel])
+    for row, channel, size in jumps:
+        if events and row - events[-1][0] <= _TOGETHER and channel not in events[-1][1]:
+            events[-1][1][channel] = size
+        else:
+            events.append((row, {channel: size}))
+    return events
+
+
+def _why(channels: set[str]) -> str:
+    if "phi" in channels and len(channels) > 1:
+        return "time that is missing, or a blow?"
+    if channels <= {"x", "y", "psi"} and channels & {"x", "y"}:
+        return (
+            "the floor frame was set anew, or a marker has another's name? Recordings share one "
+            "floor frame: cut it there."
+        )
+    return "a marker with another's name, or a blow?"

@@ -1,4 +1,11 @@
-"""Samples that the motion does not explain: found, and never those of a kink.
+"""How far samples may be off the motion where nobody stated the noise, or its steps are coarse.
+
+Whether a sample follows from those before it, or from those after it.
+
+Where the motion has a kink (a start, a servo at its rate limit) a smooth curve through both sides
+misses good samples. But one side alone foretells them: a sample is an outlier only if neither does.
+
+Samples that the motion does not explain: found, and never those of a kink.
 
 A sample is suspected if it is off the smooth curve through all others by more than Gaussian noise
 is once in a million. The worst of its surroundings is taken out, the curve is drawn again, and so
@@ -8,6 +15,7 @@ outlier if the samples before it and those after it, each on their own, do not f
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,13 +23,85 @@ from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter1d
 from scipy.special import ndtri
 
-from rr_opt.recordings.noise import NoiseEstimate, noise_of
-from rr_opt.recordings.one_sided import misses
-from rr_opt.recordings.smooth import Smooth, smoothed
-from rr_opt.recordings.strength import strength
-from rr_opt.recordings.time_step import time_step
+from rr_opt.array import Array
+from rr_opt.recordings.noise import NoiseEstimate, noise_of, spread_at
+from rr_opt.recordings.smoothing import Smooth, smoothed, strength
+from rr_opt.recordings.time_axis import time_step
 
-Array = NDArray[np.float64]
+_CHANCE, _COLOURED = 1e-4, 1.2
+_STRIDES = (2, 4, 8)
+_LEVELS = 4
+"""A channel with fewer levels than this part of its samples comes in steps."""
+
+
+def usual_noise(y: Array) -> Array:
+    """The noise of a channel of which none is stated, (n,); never zero.
+
+    Behind a filter the quickest differences tell too little. The largest over slower ones is then
+    taken; if it holds some of the motion, fewer outliers are found, and no good sample is flagged.
+    """
+    noise = noise_of(y)
+    sigma = noise.sigma
+    if noise.p_white < _CHANCE and noise.colour > _COLOURED:
+        sigma = max(sigma, *np.nan_to_num([spread_at(y, stride) for stride in _STRIDES]))
+    size = float(np.nanmax(np.abs(y))) if np.isfinite(y).any() else 1.0
+    least = max(1e-9 * size, 1e-12)
+    return np.full(len(y), max(sigma, least) if math.isfinite(sigma) else max(size, least))
+
+
+def step_of(y: Array) -> float:
+    """The step in which the values y (n,) come, in their unit; 0 if they are not rounded."""
+    known = y[np.isfinite(y)]
+    levels = np.unique(np.round(known, 12))
+    if len(levels) < 3 or len(levels) * _LEVELS > len(known):
+        return 0.0
+    apart = np.diff(levels)
+    step = float(np.median(apart))
+    off = np.abs(apart / step - np.round(apart / step))
+    return step if off.max() < 1e-3 else 0.0
+
+
+_NEIGHBOURS = 9
+_REACH = 21.0
+"""Steps of time within which they have to be."""
+
+
+def misses(
+    u: Array, y: Array, good: NDArray[np.bool_], rows: NDArray[np.int_], noise: Array
+) -> tuple[Array, Array]:
+    """By how many standard deviations y[rows] is off a parabola through its neighbours.
+
+    u: (n,), times in steps; good: (n,), what may be a neighbour; noise: (n,), standard deviations.
+    Two arrays (m,): from the nine before and the nine after; infinite where they are not there.
+    """
+    at = np.flatnonzero(good)
+    place = np.searchsorted(at, rows)
+    after = place + ((place < len(at)) & (at[np.minimum(place, len(at) - 1)] == rows))
+    left = place[:, None] - _NEIGHBOURS + np.arange(_NEIGHBOURS)
+    right = after[:, None] + np.arange(_NEIGHBOURS)
+    return _off(u, y, at, left, rows, noise), _off(u, y, at, right, rows, noise)
+
+
+def _off(
+    u: Array, y: Array, at: NDArray[np.int_], picked: NDArray[np.int_], rows: NDArray[np.int_],
+    noise: Array,
+) -> Array:  # fmt: skip
+    off = np.full(len(rows), np.inf)
+    whole = (picked >= 0).all(axis=1) & (picked < len(at)).all(axis=1)
+    if not whole.any():
+        return off
+    near, row = at[picked[whole]], rows[whole]
+    since = u[near] - u[row][:, None]
+    scale = np.abs(since).max(axis=1)
+    V = (since / scale[:, None])[..., None] ** np.arange(3)
+    # The constant of the parabola through the neighbours is its value at the sample.
+    G = np.linalg.inv(np.swapaxes(V, 1, 2) @ V + 1e-12 * np.eye(3))
+    weight = np.einsum("nj,nkj->nk", G[:, 0], V)
+    told = (weight * y[near]).sum(axis=1)
+    sigma = np.sqrt(noise[row] ** 2 + (weight**2 * noise[near] ** 2).sum(axis=1))
+    off[whole] = np.where(scale <= _REACH, np.abs(y[row] - told) / sigma, np.inf)
+    return off
+
 
 FALSE_ALARM = 1e-6
 """The share of good samples, with Gaussian noise, that the smooth curve suspects."""
@@ -78,7 +158,7 @@ def _suspects(t: Array, y: Array, sigma: Array, ratio: float) -> NDArray[np.bool
     for _ in range(_ROUNDS):
         rows = np.flatnonzero(look)
         off = np.zeros(len(y))
-        off[rows] = _off(t[rows], y[rows], out[rows], sigma[rows], ratio)
+        off[rows] = _outliers_off(t[rows], y[rows], out[rows], sigma[rows], ratio)
         # Among neighbours that all are off, only the worst is known to be at fault.
         inside = np.where(out, 0.0, off)
         highest = np.asarray(maximum_filter1d(inside, 5), float)
@@ -92,7 +172,7 @@ def _suspects(t: Array, y: Array, sigma: Array, ratio: float) -> NDArray[np.bool
     return out
 
 
-def _off(t: Array, y: Array, out: NDArray[np.bool_], sigma: Array, ratio: float) -> Array:
+def _outliers_off(t: Array, y: Array, out: NDArray[np.bool_], sigma: Array, ratio: float) -> Array:
     """How far each sample is off the curve through the others, in standard deviations."""
     curve: Smooth = smoothed(t, np.where(out, np.nan, y), sigma, ratio)
     # A sample pulls the curve: what it is off the curve through the others is larger by its part.

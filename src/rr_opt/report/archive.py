@@ -1,4 +1,6 @@
-"""Files that are either whole or not there, and JSON that every reader accepts.
+"""Files that are either whole or not there: JSON that every reader accepts, trajectories, pages.
+
+Files that are either whole or not there, and JSON that every reader accepts.
 
 Each file is written beside its place under another name, flushed to the disk and then moved
 over it in one step; a run that is stopped leaves what was there before.

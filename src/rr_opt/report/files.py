@@ -31,8 +31,8 @@ def write_results(
         return written
     progress("figures")
     # Here and not above: without figures matplotlib need not be loaded.
-    from rr_opt.report.figures.of_answer import draw  # noqa: PLC0415
-    from rr_opt.report.page import page  # noqa: PLC0415
+    from rr_opt.report.figures.answer import draw
+    from rr_opt.report.page import page
 
     drawn = draw(answer)
     for name, svg in drawn.items():

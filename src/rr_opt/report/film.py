@@ -13,11 +13,11 @@ from typing import IO, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from rr_opt.model.robot import Robot
 from rr_opt.motion.rollout import Trajectory
 from rr_opt.outcome import InputError, RollerRacerError
 from rr_opt.report.archive import whole
-from rr_opt.report.figures.animation import frames
-from rr_opt.robot.parameters import Robot
+from rr_opt.report.figures.path import frames
 
 Film = Literal["gif", "mp4"]
 
@@ -34,7 +34,7 @@ def check_film(kind: Film) -> None:
         )
     if kind == "gif":
         try:
-            import PIL  # noqa: F401, PLC0415
+            import PIL  # noqa: F401
         except ImportError:
             raise InputError(
                 "GIF films need pillow, which is not installed. "
@@ -71,7 +71,7 @@ def write_film(
 
 def _gif(path: Path, pictures: Iterator[NDArray], rate: int, fullest: NDArray) -> None:
     """One palette, of the fullest picture: colours then stay the same from frame to frame."""
-    from PIL import Image  # noqa: PLC0415
+    from PIL import Image
 
     palette = Image.fromarray(fullest).quantize(128, method=Image.Quantize.MAXCOVERAGE)
     indexed = (

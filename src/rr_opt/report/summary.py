@@ -6,8 +6,7 @@ import math
 from collections.abc import Iterable
 from pathlib import Path
 
-from rr_opt.report.answer import Answer
-from rr_opt.report.candidates import ratio_of
+from rr_opt.report.answer import Answer, bound_rows, limit_rows, ratio_of
 from rr_opt.report.quantities import (
     QUANTITIES,
     direction_text,
@@ -17,7 +16,6 @@ from rr_opt.report.quantities import (
     with_unit,
 )
 from rr_opt.report.result import turns
-from rr_opt.report.rows import bound_rows, limit_rows
 from rr_opt.report.text import columns, gait_formula, gait_lines
 
 _LEADS = {"forward": "platform 1 leads", "backward": "platform 2 leads"}

@@ -12,8 +12,8 @@ import numpy as np
 
 from rr_opt import __version__
 from rr_opt.files.gait_record import gait_record
+from rr_opt.model.problem import Problem
 from rr_opt.outcome import Status
-from rr_opt.problem import Problem
 from rr_opt.report.archive import remove, write_json, write_text
 from rr_opt.report.quantities import direction_text, number, pace_text, speed_text, with_unit
 from rr_opt.report.text import columns, gait_lines
@@ -107,7 +107,7 @@ def summary(swept: Swept, files: list[Path]) -> str:
 
 def write_sweep(swept: Swept, folder: Path) -> list[Path]:
     """Write everything; what an earlier sweep left is removed before."""
-    from rr_opt.report.figures.of_sweep import draw  # noqa: PLC0415
+    from rr_opt.report.figures.speed_map import draw
 
     remove(folder, _NAMES)
     return [

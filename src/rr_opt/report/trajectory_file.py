@@ -37,9 +37,9 @@ def write_csv(path: Path, trajectory: Trajectory) -> Path:
 def netcdf_writer() -> Any:
     """The module xarray. Raises InputError if it, h5netcdf or h5py is not installed."""
     try:
-        import h5netcdf  # noqa: F401, PLC0415
-        import h5py  # noqa: F401, PLC0415  # pyright: ignore[reportMissingImports]
-        import xarray  # noqa: PLC0415
+        import h5netcdf  # noqa: F401
+        import h5py  # noqa: F401  # pyright: ignore[reportMissingImports]
+        import xarray
     except ImportError:
         raise InputError(
             "netCDF files need xarray, h5netcdf and h5py, which are not all installed. "

@@ -8,20 +8,133 @@ data/sweep_newton.c says. Where nothing can be compiled, NumPy does all of it.
 from __future__ import annotations
 
 import ctypes
+import math
+import os
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from functools import lru_cache
+from importlib.resources import files
 from typing import NamedTuple
 
 import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
-from rr_opt.physics.dynamics import Dynamics
-from rr_opt.physics.machine_code import library
-from rr_opt.verify.compiled_source import newton_source, viscous_source
-from rr_opt.verify.compiled_table import sines, table
-from rr_opt.verify.in_pieces import in_pieces
-from rr_opt.verify.steady import Steady
+from rr_opt.array import Array
+from rr_opt.mechanics.code_generation import Stages, in_stages, library
+from rr_opt.motion.dynamics import Dynamics
+from rr_opt.verify.fourier import matrices
 
-Array = NDArray[np.float64]
+
+def in_pieces(work: Callable[[slice], Array], count: int, piece: int) -> Array:
+    """work(points) -> (rows, points) of all `count` >= 1 points, side by side.
+
+    The work has to let other threads run, as what ctypes calls does.
+    """
+    parts = [slice(k, min(k + piece, count)) for k in range(0, count, piece)]
+    workers = min(_processors(), len(parts))
+    if workers < 2:
+        return np.concatenate([work(part) for part in parts], axis=1)
+    with ThreadPoolExecutor(workers) as pool:
+        return np.concatenate(list(pool.map(work, parts)), axis=1)
+
+
+def _processors() -> int:
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+_Where = NDArray[np.int_] | tuple[NDArray[np.int_], NDArray[np.int_]]
+
+
+class Steady(NamedTuple):
+    """Steady cycles of G shapes at B periods; every array (G, B).
+
+    speed        along the mean circle, signed along platform 1's mean heading, m/s
+    turn         heading gained per period, rad
+    peak_torque  largest |torque|, between the samples too, N m
+    error        size of the fastest harmonics of the velocity, relative to the speed; inf where
+                 no steady cycle was found
+    scale        what an error of the speed is relative to, m/s
+    """
+
+    speed: Array
+    turn: Array
+    peak_torque: Array
+    error: Array
+    scale: Array
+
+
+class Speeds(NamedTuple):
+    """Arrays of one shape; NaN where not converged.
+
+    speed        signed, m/s
+    turn         heading gained per period, rad
+    peak_torque  N m
+    converged    a steady cycle was found and is resolved
+    """
+
+    speed: Array
+    turn: Array
+    peak_torque: Array
+    converged: NDArray[np.bool_]
+
+    def keep(self, where: _Where, found: Steady, good: NDArray[np.bool_]) -> None:
+        """Write the good ones of what was found to these places, and NaN to the others."""
+        self.converged[where] = good
+        for own, values in zip(self[:3], found[:3], strict=True):
+            own[where] = np.where(good, values, np.nan)
+
+
+def viscous_source(powers: ca.Function) -> str:
+    """Around (phi, p) -> the powers of `speed_powers`."""
+    return _source(in_stages(powers, "rr", (1, 0)), powers.nnz_in(1), "viscous")
+
+
+def newton_source(dynamics: Dynamics) -> str:
+    """Around a model's motion and its slope over v.
+
+    Raises NotImplementedError for a model with an operation that has no C.
+    """
+    outputs = ["vdot", "jac:vdot:v", "w", "side", "torque"]
+    motion = dynamics.motion.factory("tried", dynamics.motion.name_in(), outputs)
+    return _source(in_stages(motion, "rr", (2, 1, 1, 1, 0)), len(dynamics.parameters), "newton")
+
+
+def _source(stages: Stages, parameters: int, loops: str) -> str:
+    sizes = [f"#define NK{k} {kept}\n" for k, kept in enumerate(stages.kept)]
+    lanes, points, around = (
+        files("rr_opt").joinpath("data", f"{name}.c").read_text(encoding="utf-8")
+        for name in ("lanes", "gait_points", f"sweep_{loops}")
+    )
+    return "".join([f"#define NP {parameters}\n", *sizes, lanes, points, stages.source, around])
+
+
+@lru_cache
+def sines(most: int, straight: bool) -> Array:
+    """Of the phases of `most` samples, and as many more as their cosines need."""
+    extra = most // (2 if straight else 4)
+    return np.sin(np.arange(most + extra) * ((1 if straight else 2) * math.pi / most))
+
+
+@lru_cache
+def table(n: int, straight: bool) -> tuple[Array, tuple[int, int, int]]:
+    """The `Table` of data/sweep_viscous.c, and the rows of its last three matrices."""
+    theta = np.arange(n) * ((1 if straight else 2) * math.pi / n)
+    integral, tail, _ = matrices(n, False)
+    turning, side_tail, dense = matrices(n, straight)
+    phase = 2 * math.pi / n * np.outer(np.arange(n // 2 + 1), np.arange(n))
+    forward = np.concatenate([np.cos(phase), -np.sin(phase[1:-1])])
+    share = np.full(n, 2.0 / n)
+    share[[0, n // 2]] = 1.0 / n
+    parts = (
+        *(np.sin(theta), np.cos(theta), integral, turning, forward, forward.T * share),
+        *(tail, side_tail, dense),
+    )
+    sizes = len(tail), len(side_tail), len(dense)
+    return np.concatenate([part.ravel() for part in parts]), sizes
+
 
 _FLAGS = ("-O3", "-march=native", "-fno-math-errno", "-fno-trapping-math", "-fPIC", "-shared")
 _PIECE = {True: 4096, False: 64}

@@ -12,14 +12,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from rr_opt.physics.dynamics import dynamics_of
-from rr_opt.problem import Interval, Problem, RatioChoice
-from rr_opt.robot.ballast import inertia_ratio, load_count, with_load_count
-from rr_opt.robot.parameters import Robot
-
-Array = NDArray[np.float64]
+from rr_opt.array import Array
+from rr_opt.model.ballast import inertia_ratio, load_count, with_load_count
+from rr_opt.model.problem import Interval, Problem, RatioChoice
+from rr_opt.model.robot import Robot
+from rr_opt.motion.dynamics import dynamics_of
 
 DECISIONS = ("amplitude", "period", "offset", "ratio")
 

@@ -10,11 +10,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rr_opt.motion.peaks import BETWEEN, peak_torque
-from rr_opt.motion.steady_cycle import SteadyCycle, reference_cycle
-from rr_opt.problem import Limits
-from rr_opt.robot.gait import Gait
-from rr_opt.robot.parameters import Robot
+from rr_opt.model.gait import Gait
+from rr_opt.model.problem import Limits
+from rr_opt.model.robot import Robot
+from rr_opt.motion.steady_cycle import BETWEEN, SteadyCycle, peak_torque, reference_cycle
 
 
 @dataclass(frozen=True)

@@ -16,12 +16,11 @@ from typing import NamedTuple
 
 import casadi as ca
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from rr_opt.physics.arrays import over_arrays
-from rr_opt.physics.dynamics import Dynamics
-
-Array = NDArray[np.float64]
+from rr_opt.array import Array
+from rr_opt.mechanics.vectorised import over_arrays
+from rr_opt.motion.dynamics import Dynamics
 
 
 class Powers(NamedTuple):

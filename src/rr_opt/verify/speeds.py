@@ -2,22 +2,158 @@
 
 from __future__ import annotations
 
+import math
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rr_opt.physics.dynamics import derive, dynamics_of
-from rr_opt.problem import Problem
-from rr_opt.robot.ballast import with_inertia_ratio
-from rr_opt.robot.parameters import Robot
-from rr_opt.verify.resolve import least_S1, resolved
-from rr_opt.verify.steady import Speeds
-from rr_opt.verify.steady_fourier import SteadyFourier
+from rr_opt.array import Array
+from rr_opt.model.ballast import with_inertia_ratio
+from rr_opt.model.gait import Gait
+from rr_opt.model.problem import Problem
+from rr_opt.model.robot import Robot
+from rr_opt.motion.dynamics import derive, dynamics_of
+from rr_opt.verify.compiled_cycles import CompiledCycles, Points, Speeds
+from rr_opt.verify.steady_fourier import Doublings, SteadyFourier
 
-__all__ = ["Speeds", "least_S1", "model_of", "robot_with", "speeds"]
+_Places = tuple[NDArray[np.int_], NDArray[np.int_]]
 
-Array = NDArray[np.float64]
+MOST = 16384
+"""Samples of half a period where friction is not viscous."""
+
+SAFETY = 0.25
+"""Where friction turns suddenly, what a doubling of the samples changes depends on where they
+fall: the error may be larger. So much of the tolerance is what it may change."""
+
+
+def by_series(
+    compiled: CompiledCycles,
+    points: Points,
+    p: Array,
+    straight: bool,
+    first: int,
+    fewest: Array,
+    worst: float,
+    at: _Places,
+    into: Speeds,
+) -> int:
+    """Viscous friction: written to the places `at` where the error is no worse than that.
+
+    first: samples to begin with; fewest: without which a point is not resolved (K,). Returns with
+    how many samples NumPy has to go on with the rest.
+    """
+    pending, n = np.arange(len(points.period)), first
+    while len(pending) and n <= compiled.most:
+        now = pending[fewest[pending] <= n]
+        if len(now):
+            found = compiled.viscous(points.only(now), p, n, straight)
+            into.keep((at[0][now], at[1][now]), found, found.error <= worst)
+            pending = pending[~into.converged[at][pending]]
+        n *= 2
+    return n
+
+
+def by_newton(
+    compiled: CompiledCycles,
+    points: Points,
+    p: Array,
+    straight: bool,
+    first: int,
+    tolerance: float,
+    at: _Places,
+    into: Speeds,
+) -> None:
+    """Any friction: written to the places `at` where it is resolved to the tolerance."""
+    pending, n = np.arange(len(points.period)), first
+    while len(pending) and n < MOST * (1 if straight else 2):
+        # The few that need many samples are put together, as the points of a vector register
+        # all take as many as the worst of them.
+        n *= 4
+        found = compiled.newton(points.only(pending), p, first, n, straight, SAFETY * tolerance)
+        into.keep((at[0][pending], at[1][pending]), found, found.error <= SAFETY * tolerance)
+        pending = pending[~into.converged[at][pending]]
+
+
+FEWEST, RESOLVE_MOST = 16, 4096
+"""Samples of half a period of a straight gait; of a whole period twice as many."""
+
+_MARGIN = 10.0
+"""The fastest harmonics of the velocity may be so many times as large as the speed's error, which
+comes from their products where friction is viscous. Where it is not, those of the friction are
+stronger, and what doubling the samples changes is the error."""
+
+_CHUNK = 16384
+"""Samples of shapes in one go, where NumPy does it."""
+
+
+def resolved(
+    model: SteadyFourier,
+    robot: Robot,
+    alpha: Array,
+    phi0: Array,
+    T: Array,
+    which: NDArray[np.int_] | None,
+    p: Array,
+    tolerance: float,
+) -> Speeds:
+    """alpha, phi0 (G,), rad, T (G, B), s, p (len, R) with column which[g] for row g; (G, B)."""
+    speed, turn, torque = (np.full(T.shape, np.nan) for _ in range(3))
+    into = Speeds(speed, turn, torque, np.zeros(T.shape, bool))
+    asked = np.isfinite(T) & (T > 0)
+    period = np.where(asked, T, 1.0)
+    regular = (least_S1(robot, alpha, phi0) > 0) & asked.any(axis=1)
+    needed = _samples(robot, np.abs(alpha) + np.abs(phi0))
+    compiled = model.compiled(T.size)
+    for straight in (True, False):
+        halves = 1 if straight else 2
+        pending = np.flatnonzero(regular & (((phi0 == 0) & model.mirrored) == straight))
+        n = FEWEST * halves if model.viscous else 4 * FEWEST
+        if compiled and len(pending):
+            row, column = np.nonzero(asked[pending])
+            at = pending[row], column
+            robots = np.zeros(len(row), np.int64) if which is None else which[at[0]]
+            points = Points(alpha[at[0]], phi0[at[0]], period[at], robots)
+            if not model.viscous:
+                by_newton(compiled, points, p, straight, n, tolerance, at, into)
+                continue
+            worst, fewest = _MARGIN * tolerance, needed[at[0]] * halves
+            n = by_series(compiled, points, p, straight, n, fewest, worst, at, into)
+            pending = pending[(asked & ~into.converged)[pending].any(axis=1)]
+        doublings = Doublings(T.shape)
+        most = halves * (RESOLVE_MOST if model.viscous else MOST)
+        while len(pending) and n <= most:
+            now = pending[needed[pending] * halves <= n]
+            parts = min(len(now), max(1, len(now) * n // _CHUNK))
+            for block in np.array_split(now, parts) if parts else ():
+                robots = p if which is None else p[:, which[block]]
+                shapes = alpha[block], phi0[block], period[block]
+                found = model.cycles(*shapes, robots, n, straight, tolerance)
+                if model.viscous:
+                    good = found.error <= _MARGIN * tolerance
+                else:
+                    good = doublings.error(block, found) <= SAFETY * tolerance
+                into.keep(block, found, good & asked[block])
+            poor = (asked & ~into.converged)[pending].any(axis=1)
+            pending, n = pending[poor], 2 * n
+    return into
+
+
+def least_S1(robot: Robot, amplitude: ArrayLike, offset: ArrayLike) -> Array:
+    """The least S1 = c1 cos phi + c2 over a gait's cycle, m."""
+    reach = np.abs(np.asarray(amplitude, float)) + np.abs(np.asarray(offset, float))
+    return robot.platform1.c * np.cos(np.minimum(reach, np.pi)) + robot.platform2.c
+
+
+def _samples(robot: Robot, reach: Array) -> Array:
+    """Samples of half a period without which a gait that goes so far is not resolved.
+
+    The motion is analytic in the complex phase up to where alpha sin(theta) reaches the singular
+    posture, y = arccosh(phi*/reach) off the real axis: its harmonics fall as exp(-k y).
+    """
+    ratio = robot.singular_angle / np.maximum(reach, 1e-9)
+    return 6.0 / np.arccosh(np.maximum(ratio, 1 + 1e-9))
 
 
 def robot_with(problem: Problem, ratio: float | None) -> Robot:
@@ -87,3 +223,49 @@ def _parameters(problem: Problem, ratio: Array | None) -> tuple[NDArray[np.int_]
     columns = [dynamics.values(robot_with(problem, value)) for value in values.tolist()]
     p = np.array(columns).T
     return (None, p) if len(values) == 1 else (which, p)
+
+
+_SAMPLES, _MOST = 256, 8192
+_SETTLED = 1e-6
+
+
+class Given(NamedTuple):
+    """speed signed, m/s, and heading gained per period, rad; error: how far the speed is known,
+    relative."""
+
+    speed: float
+    turn: float
+    error: float
+
+
+def speed_of(robot: Robot, gait: Gait) -> Given:
+    """The steady speed of a gait, from more and more samples until more change nothing.
+
+    The acceleration of a free gait jumps; a sample at a jump has the mean of both sides, with
+    which the error falls with the square of the number of samples. What twice the samples will
+    then change is added. NaN where the model finds no steady cycle.
+    """
+    smooth = gait.pieces == 1
+    before, samples = math.nan, _SAMPLES if smooth else 4 * gait.pieces
+    while True:
+        speed, turn = _cycle(robot, gait, samples)
+        rest = 0.0 if smooth else (speed - before) / 3
+        error = abs(speed - before) / abs(speed) if speed else math.inf
+        if error <= _SETTLED or 2 * samples > _MOST:
+            return Given(speed + rest, turn, error if smooth else error / 3)
+        before, samples = speed, 2 * samples
+
+
+def _cycle(robot: Robot, gait: Gait, samples: int) -> tuple[float, float]:
+    t = np.arange(samples) / samples * gait.period
+    bend = gait.acceleration(t)
+    if gait.pieces > 1:
+        bend = (bend + gait.acceleration(t - 0.25 * gait.period / samples)) / 2
+    omega = 2 * math.pi / gait.period
+    angle = gait.angle(t), gait.rate(t) / omega, bend / omega**2
+    phi, rate, bend = (part[:, None] for part in angle)
+    p = dynamics_of(robot).values(robot)[:, None]
+    found = model_of(robot).along((phi, rate, bend), np.array([[gait.period]]), p, False)
+    if not np.isfinite(found.error[0, 0]):
+        return math.nan, math.nan
+    return float(found.speed[0, 0]), float(found.turn[0, 0])

@@ -17,15 +17,41 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rr_opt.physics.arrays import over_arrays
-from rr_opt.physics.dynamics import Dynamics
-from rr_opt.verify.compiled_cycles import CompiledCycles, compiled
-from rr_opt.verify.periodic_linear import solve, solve_stiff
-from rr_opt.verify.spectral import derivative, integral, peak, refined, tail
+from rr_opt.array import Array
+from rr_opt.mechanics.vectorised import over_arrays
+from rr_opt.motion.dynamics import Dynamics
+from rr_opt.verify.compiled_cycles import CompiledCycles, Steady, compiled
+from rr_opt.verify.fourier import derivative, integral, peak, refined, solve, solve_stiff, tail
 from rr_opt.verify.speed_powers import Powers, SpeedPowers
-from rr_opt.verify.steady import Steady
 
-Array = NDArray[np.float64]
+
+class Doublings:
+    """What the last doublings changed of the cycles of G shapes at B periods."""
+
+    def __init__(self, shape: tuple[int, ...]) -> None:
+        self._before = np.full((3, *shape), np.nan)
+        self._change = np.zeros(shape)
+
+    def error(self, rows: NDArray[np.int_], found: Steady) -> Array:
+        """Of speed and turn, and of the peak torque in hundredths, relative; inf until two cycles
+        of a shape were found in a row.
+
+        One small change may be chance, as samples fall beside or into a sudden turn of friction: so
+        the change before it counts too, by the quarter that a doubling leaves at most of it.
+        """
+        now = np.where(np.isfinite(found.error), np.array(found[:3]), np.nan)
+        scales = (
+            found.scale,
+            np.maximum(np.abs(found.turn), 1e-3),
+            100 * found.peak_torque + 1e-10,
+        )
+        away = np.abs(now - self._before[:, rows]) / np.array(scales)
+        change = away.max(axis=0)
+        error = np.maximum(change, self._change[rows] / 4)
+        self._before[:, rows] = now
+        self._change[rows] = np.where(np.isfinite(change), change, 0.0)
+        return np.where(np.isfinite(error), error, np.inf)
+
 
 _COARSE = 64
 """Samples at which Newton's method starts; each doubling goes on from the last."""

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from rr_opt.recordings.clock_doubts import command_doubts, start_doubts
-from rr_opt.recordings.clocks import against_command, against_log
-from rr_opt.recordings.log_doubts import log_doubts
-from rr_opt.recordings.servo_log_file import ServoLog
-from rr_opt.robot.gait import SineGait
+from rr_opt.model.gait import SineGait
+from rr_opt.recordings.clocks.clocks import against_command, against_log
+from rr_opt.recordings.clocks.synchrony import log_doubts
+from rr_opt.recordings.clocks.warnings import command_doubts, start_doubts
+from rr_opt.recordings.readers.servo_log import ServoLog
 
 GAIT = SineGait(0.7, 1.1, 0.1)
 T = np.arange(0, 30, 0.01)

@@ -5,9 +5,9 @@ from types import MappingProxyType
 import numpy as np
 import pytest
 
-from rr_opt.experiment.recording import CHANNELS, Flag, Recording
-from rr_opt.recordings.clean import clean
-from rr_opt.robot.gait import SineGait
+from rr_opt.model.experiment import CHANNELS, Flag, Recording
+from rr_opt.model.gait import SineGait
+from rr_opt.recordings.cleaning import clean
 from tests.recordings.clean.world import kinds, motion
 
 NOISE = {"x": 1e-3, "y": 1e-3, "psi": 3e-3, "phi": 3e-3}
@@ -101,10 +101,7 @@ def test_gaps_are_told_and_not_filled():
         values["y"][500:503] = np.nan
 
     cleaned = clean(recording(change))
-    assert [(gap.channels, gap.samples) for gap in cleaned.gaps] == [
-        (("y",), 3),
-        (CHANNELS, 30),
-    ]
+    assert [(gap.channels, gap.samples) for gap in cleaned.gaps] == [(("y",), 3), (CHANNELS, 30)]
     assert np.isnan(cleaned.recording.data("x")[1000:1030]).all()
     assert "no data for 0.31 s after t = 9.99 s" in texts(cleaned)
     assert "1 short gap" in texts(cleaned)

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from scipy.signal import butter, filtfilt
 
-from rr_opt.experiment.recording import CHANNELS, Recording
+from rr_opt.model.experiment import CHANNELS, Recording
 from rr_opt.outcome import InputError
-from rr_opt.recordings.clean import clean
-from rr_opt.recordings.from_markers import fit_markers
-from rr_opt.recordings.layout import Layout
+from rr_opt.recordings.cleaning import clean
+from rr_opt.recordings.markers.layout import Layout
+from rr_opt.recordings.markers.pose import fit_markers
 from tests.recordings.clean.world import LAYOUT, kinds, markers, motion
 
 SIZES = {"x": 1e-3, "y": 1e-3, "psi": 3e-3, "phi": 3e-3}

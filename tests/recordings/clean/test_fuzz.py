@@ -7,15 +7,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rr_opt.experiment.recording import CHANNELS, Flag, Recording
+from rr_opt.model.experiment import CHANNELS, Flag, Recording
+from rr_opt.model.gait import SineGait
 from rr_opt.outcome import InputError
-from rr_opt.recordings.from_markers import fit_markers
 from rr_opt.recordings.inspection import Told, inspect
-from rr_opt.recordings.markers_file import MarkerData
+from rr_opt.recordings.markers.pose import fit_markers
+from rr_opt.recordings.readers.marker_rows import MarkerData
 from rr_opt.report.archive import strict_json
+from rr_opt.report.inspect.page import summary
 from rr_opt.report.inspect.record import record
-from rr_opt.report.inspect.summary import summary
-from rr_opt.robot.gait import SineGait
 from tests.recordings.clean.world import LAYOUT
 
 SHAPES = ("wiggle", "constant", "zero", "steps", "noise", "nan", "one value", "alternating", "huge")

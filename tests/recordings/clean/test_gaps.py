@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from rr_opt.experiment.recording import CHANNELS, Flag, Recording
+from rr_opt.model.experiment import CHANNELS, Flag, Recording
 from rr_opt.recordings.gaps import bridged, gaps, runs
 
 

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from rr_opt.experiment.recording import Flag
-from rr_opt.recordings.from_markers import fit_markers
+from rr_opt.model.experiment import Flag
+from rr_opt.recordings.markers.pose import fit_markers
 from tests.recordings.clean.world import LAYOUT, kinds, markers, motion
 
 SIGMA = 5e-4

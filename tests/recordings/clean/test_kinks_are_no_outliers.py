@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rr_opt.recordings.jumps import jumps
+from rr_opt.recordings.gaps import jumps
 from rr_opt.recordings.outliers import outliers
 
 SIGMA = 3e-3

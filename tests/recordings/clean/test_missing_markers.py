@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rr_opt.experiment.recording import Flag
+from rr_opt.model.experiment import Flag
 from rr_opt.outcome import InputError
-from rr_opt.recordings.from_markers import recording_from_markers
-from rr_opt.recordings.layout import Layout
+from rr_opt.recordings.markers.layout import Layout
+from rr_opt.recordings.markers.pose import recording_from_markers
 from tests.recordings.clean.world import LAYOUT, markers, motion
 
 SIGMA = 5e-4

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from rr_opt.model.gait import SineGait
 from rr_opt.recordings.outliers import outliers
-from rr_opt.robot.gait import SineGait
 from tests.recordings.clean.world import motion
 
 NOISE = {"x": 1e-3, "y": 1e-3, "psi": 3e-3, "phi": 3e-3}

@@ -3,8 +3,8 @@
 import numpy as np
 from scipy.optimize import least_squares
 
-from rr_opt.recordings.bodies import bodies_of
-from rr_opt.recordings.rigid import fit
+from rr_opt.recordings.markers.layout import bodies_of
+from rr_opt.recordings.markers.rigid import fit
 from tests.recordings.clean.world import LAYOUT, markers, motion
 
 SIGMA = 5e-4

@@ -3,9 +3,7 @@
 import numpy as np
 import pytest
 
-from rr_opt.recordings.derivatives import derivatives
-from rr_opt.recordings.smooth import smoothed
-from rr_opt.recordings.strength import strength
+from rr_opt.recordings.smoothing import derivatives, smoothed, strength
 from tests.recordings.clean.world import GAIT, motion
 
 

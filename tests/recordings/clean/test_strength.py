@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from scipy.linalg import solve_discrete_are
 
-from rr_opt.recordings.strength import strength
-from rr_opt.recordings.wiener import diffusion, innovations, transition
+from rr_opt.recordings.smoothing import diffusion, innovations, strength, transition
 
 
 def drawn(q, n, seed):

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rr_opt.recordings.from_markers import fit_markers
-from rr_opt.recordings.layout import Layout
+from rr_opt.recordings.markers.layout import Layout
+from rr_opt.recordings.markers.pose import fit_markers
 from tests.recordings.clean.world import LAYOUT, kinds, markers, motion
 
 SIGMA = 5e-4

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from rr_opt.experiment.recording import CHANNELS, Recording
-from rr_opt.recordings.servo_log_file import ServoLog
-from rr_opt.recordings.synchrony import synchronised
-from rr_opt.robot.gait import SineGait
+from rr_opt.model.experiment import CHANNELS, Recording
+from rr_opt.model.gait import SineGait
+from rr_opt.recordings.clocks.synchrony import synchronised
+from rr_opt.recordings.readers.servo_log import ServoLog
 
 COUNT = np.radians(300) / 1024
 FINE = np.arange(-40, 60, 1e-3)

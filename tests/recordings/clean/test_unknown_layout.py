@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from rr_opt.model.gait import SineGait
 from rr_opt.outcome import InputError
-from rr_opt.recordings.from_markers import fit_markers, recording_from_markers
-from rr_opt.recordings.layout import Layout
-from rr_opt.recordings.unknown_layout import guessed_layout
-from rr_opt.robot.gait import SineGait
+from rr_opt.recordings.markers.layout import Layout
+from rr_opt.recordings.markers.pose import fit_markers, recording_from_markers
+from rr_opt.recordings.markers.unknown_layout import guessed_layout
 from tests.recordings.clean.world import LAYOUT, markers, motion
 
 SIGMA = 5e-4

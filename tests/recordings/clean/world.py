@@ -8,11 +8,11 @@ from functools import cache
 
 import numpy as np
 
-from rr_opt.files import read_problem
+from rr_opt.files.problem_file import read_problem
+from rr_opt.model.gait import SineGait
 from rr_opt.motion.rollout import Trajectory, rollout
-from rr_opt.recordings.layout import Layout
-from rr_opt.recordings.markers_file import MarkerData
-from rr_opt.robot.gait import SineGait
+from rr_opt.recordings.markers.layout import Layout
+from rr_opt.recordings.readers.marker_rows import MarkerData
 
 LAYOUT = Layout(
     {"L1": (0.05, 0.03), "R1": (0.05, -0.035), "L2": (0.20, 0.06), "R2": (0.21, -0.05)},

@@ -11,11 +11,10 @@ from typer.testing import CliRunner
 
 from rr_opt.cli.main import app
 from rr_opt.files.issue import InvalidFileError
-from rr_opt.recordings.dataset import to_dataset
+from rr_opt.model.gait import SineGait
 from rr_opt.recordings.experiment import experiment_of, read_experiment
-from rr_opt.recordings.netcdf import write_netcdf
-from rr_opt.recordings.readers import read_file
-from rr_opt.robot.gait import SineGait
+from rr_opt.recordings.readers.netcdf import to_dataset, write_netcdf
+from rr_opt.recordings.readers.registry import read_file
 
 HEAD = """\
 robot:
@@ -93,10 +92,7 @@ def test_markers_give_the_motion_that_put_them_there(write, tmp_path, subject, n
     moved = motion()
     write(vicon(moved, subject), "one.csv")
     layout = re.sub(r"\b([A-F]): \[", rf"{named}\1: [", MARKERS)
-    write(
-        f"{HEAD}{layout}recordings:\n- {{file: one.csv, {GAIT}}}\n",
-        "experiment.yaml",
-    )
+    write(f"{HEAD}{layout}recordings:\n- {{file: one.csv, {GAIT}}}\n", "experiment.yaml")
     (run,) = read_experiment(tmp_path).runs
     for name, true in zip(["t", "x", "y", "psi", "phi"], moved, strict=True):
         read = run.recording.t if name == "t" else run.recording.values[name]

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from rr_opt.experiment.recording import Recording
-from rr_opt.recordings.markers_file import MarkerData
-from rr_opt.recordings.netcdf import write_netcdf
-from rr_opt.recordings.readers import read_file
-from rr_opt.recordings.servo_log_file import ServoLog
+from rr_opt.model.experiment import Recording
+from rr_opt.recordings.readers.marker_rows import MarkerData
+from rr_opt.recordings.readers.netcdf import write_netcdf
+from rr_opt.recordings.readers.registry import read_file
+from rr_opt.recordings.readers.servo_log import ServoLog
 
 TEXTS = {
     "plain": ("t,x,y,psi,phi\n0,1,2,3,4\n1,1,2,3,4\n", Recording),

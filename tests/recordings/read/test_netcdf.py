@@ -10,14 +10,11 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from rr_opt.experiment.experiment import Noise
-from rr_opt.experiment.recording import CHANNELS, Recording
+from rr_opt.model.experiment import CHANNELS, Noise, Recording
+from rr_opt.model.gait import FourierGait, SineGait
 from rr_opt.outcome import InputError
-from rr_opt.recordings.dataset import from_dataset, gait_of, to_dataset
-from rr_opt.recordings.netcdf import write_netcdf
-from rr_opt.recordings.readers import read_file
-from rr_opt.robot.fourier_gait import FourierGait
-from rr_opt.robot.gait import SineGait
+from rr_opt.recordings.readers.netcdf import from_dataset, gait_of, to_dataset, write_netcdf
+from rr_opt.recordings.readers.registry import read_file
 
 h5py = pytest.importorskip("h5py")
 xarray = pytest.importorskip("xarray")

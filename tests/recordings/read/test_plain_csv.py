@@ -7,9 +7,8 @@ import codecs
 import numpy as np
 import pytest
 
-from rr_opt.experiment.experiment import Noise
-from rr_opt.experiment.recording import Flag, Recording
-from rr_opt.recordings.readers import read_file
+from rr_opt.model.experiment import Flag, Noise, Recording
+from rr_opt.recordings.readers.registry import read_file
 
 ROWS = """\
 t,x,y,psi,phi

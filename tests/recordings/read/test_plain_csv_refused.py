@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from rr_opt.files.issue import InvalidFileError
-from rr_opt.recordings.readers import read_file
+from rr_opt.recordings.readers.registry import read_file
 
 ROWS = "t,x,y,psi,phi\n0.00,1,2,3,4\n0.01,1,2,3,4\n0.02,1,2,3,4\n"
 

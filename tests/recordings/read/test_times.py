@@ -7,9 +7,9 @@ import itertools
 import numpy as np
 import pytest
 
-from rr_opt.experiment.recording import Flag
-from rr_opt.recordings.readers import read_file
-from rr_opt.recordings.times import in_order
+from rr_opt.model.experiment import Flag
+from rr_opt.recordings.readers.registry import read_file
+from rr_opt.recordings.time_axis import in_order
 
 
 def csv(times, mark=lambda n: n):

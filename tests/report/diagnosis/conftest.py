@@ -6,7 +6,10 @@ from types import MappingProxyType
 import numpy as np
 import pytest
 
-from rr_opt.diagnose.diagnosis import (
+from rr_opt.model.experiment import CHANNELS, Experiment, Noise, Recording, Run, Uncertainty
+from rr_opt.model.gait import SineGait
+from rr_opt.report.diagnosis.record import Diagnosed
+from rr_opt.sysid.diagnosis import (
     Curve,
     Diagnosis,
     Estimate,
@@ -18,10 +21,6 @@ from rr_opt.diagnose.diagnosis import (
     Stage,
     Tried,
 )
-from rr_opt.experiment.experiment import Experiment, Noise, Run, Uncertainty
-from rr_opt.experiment.recording import CHANNELS, Recording
-from rr_opt.report.diagnosis.diagnosed import Diagnosed
-from rr_opt.robot.gait import SineGait
 from tests.robots import BENCHMARK
 
 NOISE = Noise(position=0.001, angle=0.003)

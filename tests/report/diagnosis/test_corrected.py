@@ -5,8 +5,9 @@ from dataclasses import replace
 import pytest
 import yaml
 
-from rr_opt.files import lint_file, read_robot
-from rr_opt.physics.effects import OF_ROBOTS
+from rr_opt.effects import OF_ROBOTS
+from rr_opt.files.lint import lint_file
+from rr_opt.files.robot_file import read_robot
 from rr_opt.report.diagnosis.corrected import corrected_robot, robot_yaml
 
 

@@ -9,16 +9,11 @@ import subprocess
 import pytest
 
 from rr_opt.report.diagnosis.page import page
-from rr_opt.report.figures.diagnosis.of_diagnosis import draw
+from rr_opt.report.figures.diagnosis import draw
 
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))), None)
 DESK, PHONE = 1200, 412
-FIGURES = {
-    "consistent": 3,
-    "parameters": 4,
-    "missing_physics": 5,
-    "unexplained": 5,
-}
+FIGURES = {"consistent": 3, "parameters": 4, "missing_physics": 5, "unexplained": 5}
 
 # The page stands in a frame of the phone's width: no window of Chromium is that narrow.
 HOLDER = """<!DOCTYPE html><html><head><meta charset="utf-8"></head>

@@ -5,9 +5,9 @@ import json
 import numpy as np
 import pytest
 
-from rr_opt.diagnose.diagnosis import CHANNELS
 from rr_opt.report.archive import strict_json
 from rr_opt.report.diagnosis.record import record
+from rr_opt.sysid.diagnosis import CHANNELS
 
 VERDICTS = ("consistent", "parameters", "missing_physics", "unexplained")
 

@@ -4,9 +4,9 @@ import math
 
 import pytest
 
-from rr_opt.diagnose.diagnosis import Estimate
-from rr_opt.report.diagnosis.summary import summary
+from rr_opt.report.diagnosis.files import summary
 from rr_opt.report.diagnosis.words import headline, interval_text, value_text
+from rr_opt.sysid.diagnosis import Estimate
 
 
 @pytest.mark.parametrize(

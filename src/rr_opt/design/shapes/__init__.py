@@ -1,12 +1,12 @@
 """Shapes of gaits: what each adds to the unknowns and rows of multiple shooting."""
 
+from __future__ import annotations
+
 from rr_opt.design.shapes.fourier import FourierShape
 from rr_opt.design.shapes.free import FreeShape
-from rr_opt.design.shapes.shape import Bounds, Shape
+from rr_opt.design.shapes.shape import Shape
 from rr_opt.design.shapes.sine import SineShape
-from rr_opt.problem import GaitBounds
-
-__all__ = ["Bounds", "FourierShape", "FreeShape", "Shape", "SineShape", "shape_of"]
+from rr_opt.model.problem import GaitBounds
 
 
 def shape_of(gait: GaitBounds) -> Shape:

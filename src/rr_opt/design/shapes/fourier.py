@@ -14,12 +14,19 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from rr_opt.array import Array
 from rr_opt.design.decisions import decisions
-from rr_opt.design.shapes.along import PATH, amplitude_price, path_bounds, path_prices
-from rr_opt.design.shapes.shape import Array, Bounds, Symbols, Values
-from rr_opt.problem import Interval, Problem
-from rr_opt.robot.fourier_gait import FourierGait
-from rr_opt.robot.gait import Gait
+from rr_opt.design.shapes.shape import (
+    PATH,
+    Bounds,
+    Symbols,
+    Values,
+    amplitude_price,
+    path_bounds,
+    path_prices,
+)
+from rr_opt.model.gait import FourierGait, Gait
+from rr_opt.model.problem import Interval, Problem
 
 TURN = 2 * math.pi
 GRID = 16

@@ -15,12 +15,20 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from rr_opt.array import Array
 from rr_opt.design.decisions import decisions
-from rr_opt.design.shapes.along import PATH, amplitude_price, path_bounds, path_prices
-from rr_opt.design.shapes.shape import ZERO, Array, Bounds, Symbols, Values
-from rr_opt.problem import Interval, Problem
-from rr_opt.robot.free_gait import FreeGait
-from rr_opt.robot.gait import Gait
+from rr_opt.design.shapes.shape import (
+    PATH,
+    ZERO,
+    Bounds,
+    Symbols,
+    Values,
+    amplitude_price,
+    path_bounds,
+    path_prices,
+)
+from rr_opt.model.gait import FreeGait, Gait
+from rr_opt.model.problem import Interval, Problem
 
 TURN = 2 * math.pi
 

@@ -8,10 +8,11 @@ from typing import Any
 
 import casadi as ca
 
+from rr_opt.array import Array
 from rr_opt.design.decisions import decisions
-from rr_opt.design.shapes.shape import Array, Bounds, Symbols, Values
-from rr_opt.problem import Interval, Problem
-from rr_opt.robot.gait import Gait, SineGait
+from rr_opt.design.shapes.shape import Bounds, Symbols, Values
+from rr_opt.model.gait import Gait, SineGait
+from rr_opt.model.problem import Interval, Problem
 
 TURN = 2 * math.pi
 

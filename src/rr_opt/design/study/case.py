@@ -1,24 +1,22 @@
-"""One case of a study, solved from its neighbours' optima, from cold starts, or from both."""
+"""A study: one problem solved with many values of its keys, neighbours from neighbours' optima."""
 
 from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from rr_opt.design.decisions import decisions
+from rr_opt.design.decisions import Setting, decisions, robot_of, settings_of
 from rr_opt.design.maximize_speed import maximize_speed
-from rr_opt.design.ranking import distinct
-from rr_opt.design.refine import refine, solve_from
-from rr_opt.design.setting import Setting, robot_of, settings_of
+from rr_opt.design.search import distinct, refine, solve_from
 from rr_opt.design.solve import Candidate
 from rr_opt.design.study.measure import measured
-from rr_opt.design.study.neighbours import Foothold
+from rr_opt.design.study.plan import Foothold, Plan, expected_speed, footholds
 from rr_opt.design.study.row import Row
+from rr_opt.model.ballast import inertia_ratio
+from rr_opt.model.problem import Problem
 from rr_opt.outcome import NotConvergedError, RollerRacerError, Status
-from rr_opt.problem import Problem
-from rr_opt.robot.ballast import inertia_ratio
 
 _SURPRISE = 0.01
 """A speed beyond the expected ones by more, relative, is checked from cold starts."""
@@ -150,3 +148,53 @@ def _warm(setting: Setting, best: Candidate) -> Row:
     robot, choice = robot_of(setting, best.share), setting.problem.inertia_ratio
     ratio = inertia_ratio(robot, choice.about if choice else "joint")
     return replace(measured(setting.problem, best, robot, ratio), started="warm")
+
+
+Solve = Callable[[Mapping[int, Task]], Iterator[tuple[int, Row | str]]]
+"""Solves tasks in any order, on one process or many, and yields each case's row as it is found,
+or a sentence where the process was lost that solved it."""
+
+
+def solve_study(
+    problems: Sequence[Problem],
+    planned: Plan,
+    known: Mapping[int, Row],
+    solve: Solve,
+    *,
+    cold: bool = False,
+) -> Iterator[tuple[int, Row]]:
+    """The rows of all cases but those that are known, as they are found.
+
+    cold: no case is continued from another. Rows do not depend on the order of work.
+    """
+    rows = dict(known)
+
+    def found(tasks: Mapping[int, Task]) -> Iterator[tuple[int, Row]]:
+        for case, outcome in solve(tasks):
+            lost = isinstance(outcome, str)
+            rows[case] = Row(Status.NOT_CONVERGED, outcome) if lost else outcome
+            yield case, rows[case]
+
+    first = range(len(problems)) if cold else planned.anchors
+    yield from found(
+        {case: _solve_study_cold(problems[case]) for case in first if case not in rows}
+    )
+    if cold:
+        return
+    left = {case: donors for case, donors in planned.donors.items() if case not in rows}
+    yield from found(
+        {
+            case: replace(
+                _solve_study_cold(problems[case]),
+                footholds=tuple(footholds(donors, rows)),
+                expected=expected_speed(problems[case], donors, rows, problems),
+            )
+            for case, donors in left.items()
+        }
+    )
+
+
+def _solve_study_cold(problem: Problem) -> Task:
+    """A task that can be sent to another process, without what it does not need there."""
+    physics = tuple(replace(use, values=dict(use.values)) for use in problem.robot.physics)
+    return Task(replace(problem, robot=replace(problem.robot, provenance={}, physics=physics)))

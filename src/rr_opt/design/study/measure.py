@@ -1,16 +1,177 @@
-"""An optimum, measured on its steady cycle: what a row of a study tells of it."""
+"""An optimum, measured: how far it goes, what holds it, what it costs.
+
+What a steady cycle costs: energy per metre of path, and the cost of transport.
+
+The servo's power is torque * dphi/dt. Over a period the kinetic energy returns to what it was, so
+the net work of a period is what friction takes. A servo that brakes does not give energy back,
+though: what its supply has to provide is the positive part of the power alone, the gross work,
+which is never less than the net. The cost of transport is the gross work per metre over the
+robot's weight. Losses within the servo are in neither.
+"""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rr_opt.design.decisions import ballast_interval
 from rr_opt.design.solve import Candidate
-from rr_opt.design.study.energy import energy
-from rr_opt.design.study.held import held
-from rr_opt.design.study.reached import UNITS, reached
 from rr_opt.design.study.row import Optimum, Row, gait_record
-from rr_opt.motion.steady_cycle import steady_cycle
+from rr_opt.model.problem import LARGEST_EXCESS, Interval, Problem, RatioChoice
+from rr_opt.model.robot import Robot
+from rr_opt.motion.steady_cycle import SteadyCycle, peak_torque, steady_cycle
 from rr_opt.outcome import Status
-from rr_opt.problem import LARGEST_EXCESS, Problem
-from rr_opt.robot.parameters import Robot
+
+UNITS = {"angle": "rad", "rate": "rad/s", "torque": "N m", "singularity": "m"}
+"""Of each limit, by its name in the problem."""
+
+
+def reached(robot: Robot, steady: SteadyCycle) -> dict[str, float]:
+    """The extreme of what each limit bounds, SI: largest |phi|, |dphi/dt|, |torque|, least S1."""
+    gait = steady.gait
+    return {
+        "angle": gait.peak_angle,
+        "rate": gait.peak_rate,
+        "torque": peak_torque(steady),
+        "singularity": robot.platform1.c * math.cos(gait.peak_angle) + robot.platform2.c,
+    }
+
+
+_ON = 1e-4
+"""A limit holds a sine that comes this near to it, relative to the limit."""
+_PRICED = 1e-4
+"""A limit holds a gait of another shape if raising it by all of itself would, at its price, gain
+more than this, relative to the speed."""
+
+
+@dataclass(frozen=True)
+class Held:
+    """Names of what holds an optimum, and |speed| gained per unit by which each is raised."""
+
+    names: tuple[str, ...]
+    prices: Mapping[str, float]
+    bound_prices: Mapping[str, float]
+
+
+def held(problem: Problem, best: Candidate, reached: Mapping[str, float], ratio: float) -> Held:
+    """What holds a candidate; reached: the extremes of angle, rate, torque, singularity."""
+    prices = {
+        name: best.prices[name]
+        for name, value in reached.items()
+        if _on_limit(problem, best, name, value)
+    }
+    prices |= {
+        name: price
+        for name, price in best.prices.items()
+        if name in ("curvature", "yaw_rate", "heading") and abs(price) > 1e-9
+    }
+    names, bound_prices = list(prices), {}
+    for name, side, price in _bounds(problem, best, ratio):
+        names.append(f"{side} {name}")
+        if price is not None:
+            bound_prices[name] = price
+    return Held(tuple(names), prices, bound_prices)
+
+
+def _on_limit(problem: Problem, best: Candidate, name: str, value: float) -> bool:
+    """A sine that is held by a limit comes to it. Of another shape the angle stays a little short
+    of its limit, and so may the torque: there the price says it."""
+    limit = getattr(problem.limits, name)
+    if not math.isfinite(limit):
+        return False
+    if problem.gait.shape != "sine":
+        return _matters(best, best.prices[name], limit)
+    slack = value - limit if name == "singularity" else limit - value
+    return slack <= _ON * abs(limit)
+
+
+def _matters(best: Candidate, price: float, size: float) -> bool:
+    """Whether a limit or bound of this size has a price that is no zero left by the solver."""
+    return abs(price) * abs(size) > _PRICED * abs(best.speed)
+
+
+def _bounds(
+    problem: Problem, best: Candidate, ratio: float
+) -> Iterator[tuple[str, str, float | None]]:
+    gait = problem.gait
+    ranges = {"amplitude": gait.amplitude, "period": gait.period, "offset": gait.offset}
+    for name, box in ranges.items():
+        price = best.bound_prices.get(name)
+        side = _side(problem, best, getattr(best.gait, name), box, price)
+        if side:
+            yield name, side, price
+    choice = problem.inertia_ratio
+    if choice is None or choice.bounds.fixed:
+        return
+    whole = choice.by == "loads" and choice.loads.whole
+    price = None if whole else best.bound_prices["ballast"] * _share_per_ratio(problem, choice)
+    side = _side(problem, best, ratio, choice.bounds, price)
+    if side:
+        yield "inertia_ratio", side, price
+
+
+def _side(
+    problem: Problem, best: Candidate, value: float, box: Interval, price: float | None
+) -> str | None:
+    """`least` or `largest` if a range that leaves a choice holds the value at that end."""
+    size = max(abs(box.low), abs(box.high))
+    if box.fixed:
+        return None
+    if problem.gait.shape != "sine" and price is not None:
+        at_end = "largest" if price > 0 else "least"
+        return at_end if _matters(best, price, size) else None
+    near = _ON * min(box.high - box.low, size)
+    return "least" if value - box.low <= near else "largest" if box.high - value <= near else None
+
+
+def _share_per_ratio(problem: Problem, choice: RatioChoice) -> float:
+    """How far the ballast's share of its range moves per unit of J20/J10, at the upper bound."""
+
+    def amount(ratio: float) -> float:
+        fixed = replace(choice, bounds=Interval(ratio, ratio))
+        return ballast_interval(problem.robot, fixed).high
+
+    span, high = ballast_interval(problem.robot, choice), choice.bounds.high
+    step = 1e-6 * high
+    return (amount(high) - amount(high - step)) / step / (span.high - span.low)
+
+
+GRAVITY = 9.80665
+"""Standard acceleration of gravity, m/s2."""
+
+
+@dataclass(frozen=True)
+class Energy:
+    """Per metre of the mean circle's path: gross and net work of the servo, J/m, and the cost of
+    transport, dimensionless."""
+
+    gross: float
+    net: float
+    cost_of_transport: float
+
+
+def energy(robot: Robot, steady: SteadyCycle) -> Energy:
+    """The energy of a steady cycle."""
+    rate = steady.gait.rate(steady.t)
+    after, before = steady.torque * rate, steady.torque_before * rate
+    net = float(np.sum(after[:-1] + before[1:])) / 2
+    gross = float(np.sum(_positive(after[:-1], before[1:])))
+    path = abs(steady.speed) * steady.gait.period
+    step = float(steady.t[1] - steady.t[0]) / path
+    weight = (robot.platform1.m + robot.platform2.m) * GRAVITY
+    return Energy(gross * step, net * step, gross * step / weight)
+
+
+def _positive(start: np.ndarray, end: np.ndarray) -> np.ndarray:
+    """Mean of the positive part of lines from start to end, exactly where one crosses zero."""
+    high, low = np.maximum(start, end), np.minimum(start, end)
+    crosses = (high > 0) & (low < 0)
+    above = np.where(crosses, high**2 / np.where(crosses, 2 * (high - low), 1.0), 0.0)
+    return np.where(crosses, above, np.maximum((start + end) / 2, 0.0))
+
 
 _CLAIM = 1e-6
 """Largest difference of a claimed speed from that of the steady cycle, relative."""

@@ -6,10 +6,8 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields
 from typing import Any, Literal
 
+from rr_opt.model.gait import FourierGait, FreeGait, Gait, SineGait
 from rr_opt.outcome import Status
-from rr_opt.robot.fourier_gait import FourierGait
-from rr_opt.robot.free_gait import FreeGait
-from rr_opt.robot.gait import Gait, SineGait
 
 Started = Literal["cold", "warm", "warm and cold"]
 

@@ -1,4 +1,4 @@
-"""The robot with what a diagnosis found in it, and its file, which every other verb reads."""
+"""The robot with what a diagnosis found in it, its file, and the gait that its servo makes."""
 
 from __future__ import annotations
 
@@ -9,11 +9,45 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import Any
 
-from rr_opt.diagnose.diagnosis import Diagnosis
-from rr_opt.experiment.experiment import Experiment
-from rr_opt.physics.effects import OF_ROBOTS
-from rr_opt.report.robot_record import robot_record
-from rr_opt.robot.parameters import EffectUse, Platform, Robot, Servo
+import numpy as np
+
+from rr_opt.effects import CATALOGUE, OF_ROBOTS
+from rr_opt.mechanics.drive import told
+from rr_opt.model.experiment import Experiment
+from rr_opt.model.gait import FourierGait, Gait
+from rr_opt.model.robot import EffectUse, Platform, Robot, Servo
+from rr_opt.motion.floor_motion import free_joint
+from rr_opt.report.result import robot_record
+from rr_opt.sysid.diagnosis import Diagnosis
+
+_HARMONICS = 24
+"""The n-th of an angle whose rate jumps falls as 1/n^2: what is left out moves the speed by less
+than a thousandth."""
+_SAMPLES = 2048
+_SETTLED = 20
+"""Periods after which what the servo makes repeats."""
+
+
+def servo_made(robot: Robot, gait: Gait) -> Gait:
+    """The angle made, once it repeats, as a sum of harmonics; the gait itself of a servo without
+    effects."""
+    uses = [use for use in robot.physics if CATALOGUE[use.name].actuate]
+    if not uses:
+        return gait
+    drive, joint = told(gait, rest=False), free_joint(robot)
+    for use in uses:
+        actuate = CATALOGUE[use.name].actuate
+        drive = actuate(drive, use.values, joint) if actuate else drive
+    t = gait.period * (_SETTLED + np.arange(_SAMPLES) / _SAMPLES)
+    part = np.fft.rfft(drive.at(t)[0]) / _SAMPLES
+    sizes = part[1 : _HARMONICS + 1]
+    return FourierGait(
+        gait.period,
+        float(part[0].real),
+        tuple((-2 * sizes.imag).tolist()),
+        tuple((2 * sizes.real).tolist()),
+    )
+
 
 _PARTS = ("m", "I", "c", "a", "b", "kappa")
 _DIGITS = 7

@@ -2,14 +2,158 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
+import numpy as np
+
 from rr_opt import __version__
-from rr_opt.diagnose.diagnosis import Curve, Estimate, Finding, Residue, Stage, Tried
-from rr_opt.report.diagnosis.diagnosed import Diagnosed
-from rr_opt.report.diagnosis.fit_record import fit_record, number_of
-from rr_opt.report.diagnosis.loss_words import loss_record
+from rr_opt.effects import CATALOGUE
+from rr_opt.model.experiment import Experiment
+from rr_opt.model.robot import Robot
+from rr_opt.report.diagnosis.corrected import corrected_robot
+from rr_opt.report.diagnosis.loss import Loss, NotTold, loss, loss_record
+from rr_opt.sysid.diagnosis import (
+    Curve,
+    Diagnosis,
+    Estimate,
+    Finding,
+    Misfit,
+    Residue,
+    Stage,
+    Tried,
+)
+
+_PREDICTS = 1.2
+"""A term without a name accounts for what is missing if it leaves no more than this, in sigma."""
+
+
+@dataclass(frozen=True)
+class Diagnosed:
+    """What there is to tell.
+
+    name, sha256  of the input
+    left_out      sentences on the recordings that could not be used
+    """
+
+    name: str
+    sha256: str
+    experiment: Experiment
+    found: Diagnosis
+    left_out: tuple[str, ...] = ()
+
+    @cached_property
+    def corrected(self) -> Robot:
+        """The robot with what was found in it."""
+        return corrected_robot(self.experiment, self.found)
+
+    @cached_property
+    def loss(self) -> Loss | NotTold | None:
+        """What the best gait of the robot as believed loses; None where that robot is right."""
+        if self.found.verdict == "consistent":
+            return None
+        curved = any(CATALOGUE[use.name].nameless for use in self.corrected.physics)
+        predicts = curved and self.found.after < _PREDICTS
+        if self.found.verdict == "unexplained" and not predicts:
+            return NotTold(
+                "What the best gait of the robot as believed would lose is not told: the robot as "
+                "found lacks what has no name."
+            )
+        return loss(self.experiment, self.corrected)
+
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """Sentences on the recordings that were used, each with its recording's name."""
+        return tuple(
+            f"{run.name}: {doubt}" for run in self.experiment.runs for doubt in run.recording.doubts
+        )
+
+    @property
+    def guilty(self) -> tuple[Stage, ...]:
+        """The stages in which a fault sits."""
+        return tuple(stage for stage in self.found.stages if stage.guilty)
+
+    @property
+    def where(self) -> str:
+        """Where the fault shows, in words; empty if nothing says."""
+        return self.found.where or "; ".join(one.where for one in self.guilty if one.where)
+
+    @property
+    def marked(self) -> bool:
+        """Whether the experiment keeps a recording apart from the fit."""
+        return any(one.held_out for one in self.found.final)
+
+    @property
+    def proven_on(self) -> str:
+        """What the misfits before and after are of, in words."""
+        if self.marked:
+            return "held-out recordings"
+        several = len(self.found.final) > 1
+        return "each recording, from the others" if several else "the one recording, fitted"
+
+    @property
+    def proof(self) -> tuple[int, ...]:
+        """Places of the recordings that prove the fit: the held-out ones; all, if there are none.
+
+        The worst explained by the nominal model come first.
+        """
+        nominal = self.found.nominal
+        rows = [k for k, one in enumerate(nominal) if one.held_out] or range(len(nominal))
+        return tuple(sorted(rows, key=lambda k: -nominal[k].rms))
+
+
+def rms(misfits: Iterable[Misfit]) -> float:
+    """Root mean square over all their values, in sigma; NaN of none."""
+    squares: Sequence[np.ndarray] = [one.residuals.ravel() ** 2 for one in misfits]
+    if not squares:
+        return float("nan")
+    return float(np.sqrt(np.nanmean(np.concatenate(squares))))
+
+
+def fit_record(one: Diagnosed) -> dict[str, Any]:
+    """Everything in sigma; 1 is the noise.
+
+    Where none is held out, `heldout_rms_before` and `_after` are of the fitted recordings, each
+    predicted from the others, and `heldout_rms_parameters` is of the fitted ones as they are.
+    `heldout_rms_fitted_too` is null but where the values given fit the held-out ones too.
+    """
+    found = one.found
+    levels = {"before": found.nominal, "parameters": found.refitted, "after": found.final}
+    fitted = {name: [m for m in level if not m.held_out] for name, level in levels.items()}
+    held = {name: [m for m in level if m.held_out] for name, level in levels.items()}
+    return {
+        "heldout_rms_before": number_of(found.before),
+        "heldout_rms_parameters": number_of(rms(held["parameters"] or fitted["parameters"])),
+        "heldout_rms_after": number_of(found.after),
+        "heldout_rms_fitted_too": number_of(found.together),
+        "heldout_recordings": [m.recording for m in held["after"]],
+        **{f"fitted_rms_{name}": number_of(rms(level)) for name, level in fitted.items()},
+        "recordings": [
+            _recording(dict(zip(levels, each, strict=True)))
+            for each in zip(*levels.values(), strict=True)
+        ],
+    }
+
+
+def _recording(levels: Mapping[str, Misfit]) -> dict[str, Any]:
+    after = levels["after"]
+    return {
+        "file": after.recording,
+        "use": "holdout" if after.held_out else "fit",
+        **{name: number_of(one.rms) for name, one in levels.items()},
+        "channels": {
+            channel: {name: number_of(one.channels.get(channel)) for name, one in levels.items()}
+            for channel in after.channels
+        },
+    }
+
+
+def number_of(value: float | None) -> float | None:
+    """The value; None for what is not finite, or not there."""
+    return float(value) if value is not None and math.isfinite(value) else None
 
 
 def record(one: Diagnosed) -> dict[str, Any]:
@@ -107,11 +251,7 @@ def _next(one: Diagnosed) -> dict[str, Any] | None:
     if asked is None:
         return None
     return {
-        "gait": {
-            "amplitude": asked.amplitude,
-            "period": asked.period,
-            "offset": asked.offset,
-        },
+        "gait": {"amplitude": asked.amplitude, "period": asked.period, "offset": asked.offset},
         "start": asked.start,
         "heading": number_of(asked.heading),
         "seconds": number_of(asked.seconds),

@@ -1,20 +1,100 @@
-"""The path of P over some cycles, with the robot drawn at a few instants."""
+"""The path of P, with the robot drawn at a few instants, and as a film."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
-from numpy.typing import NDArray
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.patches import Circle, Polygon
+from numpy.typing import ArrayLike, NDArray
 
-from rr_opt.motion.cycle import Cycle
+from rr_opt.array import Array
+from rr_opt.model.robot import Platform, Robot
 from rr_opt.motion.rollout import Trajectory
-from rr_opt.report.figures.robot_drawing import draw_robot, robot_length
-from rr_opt.report.figures.style import colour_of
-from rr_opt.robot.parameters import Robot
+from rr_opt.motion.steady_cycle import Cycle
+from rr_opt.report.figures.style import (
+    GREY,
+    INK,
+    PAPER,
+    PLATFORM1,
+    PLATFORM2,
+    WHEEL,
+    colour_of,
+    figure,
+    styled,
+)
 
-Array = NDArray[np.float64]
+
+def robot_length(robot: Robot) -> float:
+    """From the wheels of platform 1 to those of platform 2 when stretched, m."""
+    return robot.platform1.c + robot.platform2.c + 2 * robot.h
+
+
+def draw_robot(ax: Axes, robot: Robot, motion: Trajectory, i: int, *, alpha: float = 1.0) -> list:
+    """Draw the robot at instant i of a motion, less opaque with a smaller alpha.
+
+    Returns the artists, in order, so that an animation can take them away again.
+    """
+    x, y, psi, phi = (float(part[i]) for part in (motion.x, motion.y, motion.psi, motion.phi))
+    joint = np.array([x, y])
+    artists = []
+    for platform, angle, way, colour in (
+        (robot.platform1, psi, 1.0, PLATFORM1),
+        (robot.platform2, psi + phi, -1.0, PLATFORM2),
+    ):
+        artists += _platform(
+            ax, platform, robot.h, _Axis(joint, angle, way), colour=colour, alpha=alpha
+        )
+    size = 0.16 * min(robot.platform1.b, robot.platform2.b) + 0.003
+    dot = Circle((x, y), size, facecolor=PAPER, edgecolor=INK, linewidth=1.1, alpha=alpha, zorder=6)
+    return [*artists, ax.add_patch(dot)]
+
+
+@dataclass(frozen=True)
+class _Axis:
+    """A platform's axis: it starts at the joint (m), at an angle (rad); `way` is +1 if the axle
+    lies ahead of P on it, -1 if behind."""
+
+    joint: Array
+    angle: float
+    way: float
+
+    def place(self, along: ArrayLike, across: ArrayLike) -> Array:
+        """Points (..., 2) at distances along the axis and to its left, m."""
+        e = np.array([np.cos(self.angle), np.sin(self.angle)])
+        n = np.array([-e[1], e[0]])
+        return self.joint + np.multiply.outer(along, e) + np.multiply.outer(across, n)
+
+
+def _platform(
+    ax: Axes, platform: Platform, h: float, axis: _Axis, *, colour: str, alpha: float
+) -> list:
+    b, c, way, place = platform.b, platform.c, axis.way, axis.place
+    end = way * (c + 0.35 * h)
+    start = -way * 0.25 * b
+    body = place([start, end, end, start], 0.72 * b * np.array([0.55, 1, -1, -0.55]))
+    artists: list = [
+        ax.add_patch(
+            Polygon(body, facecolor=colour, edgecolor=colour, alpha=0.55 * alpha, zorder=4)
+        ),
+        ax.add_patch(
+            Polygon(body, fill=False, edgecolor=colour, linewidth=1.2, alpha=alpha, zorder=5)
+        ),
+    ]
+    axle = place([way * c, way * c], [-b, b])
+    artists += ax.plot(axle[:, 0], axle[:, 1], color=WHEEL, lw=1.2, alpha=alpha, zorder=5)
+    half = 0.16 * b + 0.001
+    for side in (-b, b):
+        along = way * c + h * np.array([-1, 1, 1, -1])
+        wheel = place(along, side + half * np.array([-1, -1, 1, 1]))
+        artists.append(
+            ax.add_patch(Polygon(wheel, facecolor=WHEEL, edgecolor="none", alpha=alpha, zorder=5))
+        )
+    return artists
 
 
 def cycles_to_show(robot: Robot, cycle: Cycle) -> int:
@@ -87,3 +167,50 @@ def _arrow(ax: Axes, robot: Robot, motion: Trajectory, speed: float, period: flo
     style = {"arrowstyle": "-|>", "color": colour_of(speed), "lw": 2.0, "mutation_scale": 14}
     ax.annotate("", tuple(end), tuple(start), arrowprops=style)
     ax.update_datalim([tuple(end)])
+
+
+_WIDTH, _DPI = 7.2, 100
+
+
+def frames(robot: Robot, trajectory: Trajectory, chosen: NDArray[np.int_]) -> Iterator[NDArray]:
+    """A picture (height, width, 3) of 8-bit colours for each of the chosen instants.
+
+    Axes and grid are drawn once; only what moves is drawn again.
+    """
+    with styled():
+        drawn = figure(_WIDTH, _height(robot, trajectory))
+        drawn.set_dpi(_DPI)
+        canvas = FigureCanvasAgg(drawn)
+        ax = drawn.add_subplot()
+        _view(ax, robot, trajectory)
+        canvas.draw()
+        drawn.set_layout_engine("none")
+        still = canvas.copy_from_bbox(drawn.bbox)
+        (trail,) = ax.plot([], [], color=colour_of(float(trajectory.v.mean())), lw=1.6)
+        clock = ax.text(0.01, 0.97, "", transform=ax.transAxes, va="top", color=GREY)
+        for i in chosen:
+            trail.set_data(trajectory.x[: i + 1], trajectory.y[: i + 1])
+            clock.set_text(f"t = {trajectory.t[i]:.2f} s   v = {trajectory.v[i]:+.3f} m/s")
+            parts = draw_robot(ax, robot, trajectory, i)
+            canvas.restore_region(still)
+            for artist in (trail, *parts, clock):
+                ax.draw_artist(artist)
+            yield np.asarray(canvas.buffer_rgba())[..., :3].copy()
+            for part in parts:
+                part.remove()
+
+
+def _view(ax: Axes, robot: Robot, trajectory: Trajectory) -> None:
+    margin = 0.75 * robot_length(robot)
+    ax.set_xlim(trajectory.x.min() - margin, trajectory.x.max() + margin)
+    ax.set_ylim(trajectory.y.min() - margin, trajectory.y.max() + margin)
+    ax.set_aspect("equal")
+    ax.set_xlabel("x, m")
+    ax.set_ylabel("y, m")
+
+
+def _height(robot: Robot, trajectory: Trajectory) -> float:
+    """Inches that suit the path's shape; an even number of pixels, as video needs."""
+    margin = 1.5 * robot_length(robot)
+    wide, high = np.ptp(trajectory.x) + margin, np.ptp(trajectory.y) + margin
+    return round(_DPI / 2 * min(max((_WIDTH - 0.8) * high / wide + 0.9, 2.6), 8.0)) / (_DPI / 2)

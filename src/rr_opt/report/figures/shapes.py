@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.axes import Axes
 
+from rr_opt.model.gait import Gait
 from rr_opt.report.figures.style import BACKWARD, FORWARD, GREY, INK, LIMIT
-from rr_opt.robot.gait import Gait
 
 _SAMPLES = 1500
 _SHADES = (0.35, 0.55, 0.75, 1.0)

@@ -4,19 +4,130 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import TwoSlopeNorm
+from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
-from rr_opt.problem import Problem
-from rr_opt.report.figures.limit_lines import limit_lines, reach
-from rr_opt.report.figures.map_data import MapData
-from rr_opt.report.figures.style import INK, OPTIMUM, SIGNED
-from rr_opt.robot.gait import SineGait
-from rr_opt.robot.parameters import Robot
+from rr_opt.array import Array
+from rr_opt.model.gait import SineGait
+from rr_opt.model.problem import GaitBounds, Interval, Problem
+from rr_opt.model.robot import Robot
+from rr_opt.report.figures.style import (
+    GREY,
+    INK,
+    LIMIT,
+    OPTIMUM,
+    PAPER,
+    SIGNED,
+    figure,
+    styled,
+    svg,
+)
+from rr_opt.report.quantities import number
+from rr_opt.verify.evaluate import Evaluated, Found
+from rr_opt.verify.sweep import speed_map as speed_map_speed_map
+
+
+@dataclass(frozen=True)
+class MapData:
+    """What the map shows, at one offset and inertia ratio.
+
+    period (T,) s; amplitude (A,) rad; speed (A, T) m/s signed; torque (A, T) N m, the peak.
+    Where the robot would pass its singular posture both are nan.
+    """
+
+    period: Array
+    amplitude: Array
+    speed: Array
+    torque: Array
+
+
+def map_data(problem: Problem, robot: Robot, best: SineGait) -> MapData:
+    """Speed and peak torque around the optimum, over the problem's bounds.
+
+    A quantity that the problem fixes is shown from half to one and a half times its value.
+    """
+    shown = replace(
+        problem,
+        gait=GaitBounds(
+            _opened(problem.gait.amplitude), _opened(problem.gait.period), problem.gait.offset
+        ),
+    )
+    found = speed_map_speed_map(shown, robot, best.offset)
+    return MapData(found.periods, found.amplitudes, found.speed.T, found.peak_torque.T)
+
+
+def _opened(box: Interval) -> Interval:
+    return Interval(0.5 * box.low, 1.5 * box.high) if box.fixed else box
+
+
+def reach(problem: Problem, robot: Robot, offset: float) -> dict[str, float]:
+    """The amplitude (rad) at which each limit on the angle is met, for gaits at an offset."""
+    one, two = robot.platform1, robot.platform2
+    cosine = (problem.limits.singularity - two.c) / one.c
+    edge = math.acos(min(max(cosine, -1.0), 1.0)) if cosine > -1 else math.inf
+    return {"singularity": edge - abs(offset), "angle": problem.limits.angle - abs(offset)}
+
+
+def limit_lines(ax: Axes, data: MapData, problem: Problem, robot: Robot, offset: float) -> None:
+    """The edges of what is allowed, each with its name."""
+    period, limits = data.period, problem.limits
+    bottom, top = data.amplitude[0], data.amplitude[-1]
+    if math.isfinite(limits.rate):
+        _rate_line(ax, data, limits.rate)
+    lines = reach(problem, robot, offset)
+    for name, line in lines.items():
+        if line < top:
+            ax.axhline(line, color=LIMIT, lw=1.4, zorder=3)
+            text = (
+                f"S1 = {number(1e3 * limits.singularity, 3)} mm: singular posture near"
+                if name == "singularity"
+                else f"|φ| = {number(limits.angle, 3)} rad"
+            )
+            place = period[0] + 0.97 * (period[-1] - period[0])
+            _name(ax, place, line + 0.015 * (top - bottom), text, ha="right", va="bottom")
+    _torque_line(ax, data, limits.torque, min(lines.values()))
+
+
+def _rate_line(ax: Axes, data: MapData, limit: float) -> None:
+    """alpha = rate T/(2 pi), named on the side where there is room."""
+    (left, right), (bottom, top) = data.period[[0, -1]], data.amplitude[[0, -1]]
+    slope = limit / (2 * math.pi)
+    first, last = max(left, bottom / slope), min(right, top / slope)
+    if first >= last:
+        return
+    ax.plot([first, last], [slope * first, slope * last], color=LIMIT, lw=1.4, zorder=3)
+    at = first + 0.6 * (last - first)
+    side = "right" if at - left > 0.3 * (right - left) else "left"
+    _name(ax, at, slope * at, f" rate {number(limit * 30 / math.pi, 3)} rpm", ha=side)
+
+
+def _torque_line(ax: Axes, data: MapData, limit: float, most: float) -> None:
+    """Where the peak torque meets its limit, among gaits short of the limits on the angle."""
+    rows = data.amplitude <= most
+    torque = data.torque[rows]
+    known = np.isfinite(torque)
+    if not known.any() or not torque[known].min() < limit < torque[known].max():
+        return
+    drawn = ax.contour(
+        data.period, data.amplitude[rows], torque, levels=[limit], colors=[LIMIT],
+        linewidths=1.4, linestyles=[(0, (4, 2))], zorder=3,
+    )  # fmt: skip
+    line = max(
+        (np.asarray(one) for one in drawn.get_paths()[0].to_polygons(closed_only=False)), key=len
+    )
+    x, y = line[len(line) // 2]
+    _name(ax, float(x), float(y), f" torque {number(limit, 3)} N m", ha="left")
+
+
+def _name(ax: Axes, x: float, y: float, text: str, *, ha: str, va: str = "center") -> None:
+    halo = [withStroke(linewidth=3, foreground=PAPER, alpha=0.85)]
+    ax.text(x, y, text + " ", color=LIMIT, fontsize=9, ha=ha, va=va, zorder=5, path_effects=halo)
 
 
 def allowed(data: MapData, problem: Problem, robot: Robot, offset: float) -> NDArray[np.bool_]:
@@ -94,3 +205,53 @@ def _cover(ax: Axes, data: MapData, problem: Problem, robot: Robot, offset: floa
         data.period, data.amplitude, excess, levels=[0.0, 2 * span], colors=["#eceff2"],
         hatches=["////"], zorder=2,
     )  # fmt: skip
+
+
+def sweep(ax: Axes, found: Evaluated, best: Found | None) -> Axes:
+    """A dot a gait that keeps every limit, the fastest on top; a faint cross any other.
+
+    Gaits of several offsets and inertia ratios share a place: what is seen is the fastest.
+    """
+    amplitude, period = found.decisions[:2]
+    speed, kept = 1e3 * found.speed, found.feasible
+    ax.plot(period[~kept], amplitude[~kept], "x", color=GREY, ms=2.5, mew=0.5, alpha=0.3)
+    order = np.flatnonzero(kept)
+    order = order[np.argsort(np.abs(speed[order]))]
+    top = float(np.abs(speed[order[-1]])) if len(order) else 1.0
+    dots = ax.scatter(
+        period[order],
+        amplitude[order],
+        c=speed[order],
+        cmap=SIGNED,
+        norm=TwoSlopeNorm(0.0, -top, top),
+        s=26,
+        edgecolors=GREY,
+        linewidths=0.25,
+        zorder=3,
+    )
+    bar = ax.figure.colorbar(dots, ax=ax, pad=0.02, aspect=26, ticks=MaxNLocator(7))
+    bar.set_label("mean speed, mm/s  (+ forward, − backward)")
+    seen = speed[order]
+    bar.ax.set_ylim(min(seen.min(initial=0.0), -1e-9), max(seen.max(initial=0.0), 1e-9))
+    bar.outline.set_visible(False)  # type: ignore[operator]
+    if best:
+        star = {"ms": 19, "mfc": OPTIMUM, "mec": INK, "mew": 1.2}
+        ax.plot(best.gait.period, best.gait.amplitude, "*", zorder=5, clip_on=False, **star)
+    ax.set_title(f"{len(speed)} gaits: dots keep every limit, crosses do not", weight="normal")
+    ax.set_xlabel("period T, s")
+    ax.set_ylabel("amplitude α, rad")
+    return ax
+
+
+_MANY = 2000
+
+
+def draw(found: Evaluated, best: Found | None) -> str:
+    """Draw the sweep. Many dots become one picture inside the SVG, to keep it small."""
+    with styled():
+        drawn = figure(6.8, 4.8)
+        drawn.set_dpi(160)
+        ax = sweep(drawn.add_subplot(), found, best)
+        for part in (*ax.collections, *ax.lines[:1]):
+            part.set_rasterized(len(found.speed) > _MANY)
+        return svg(drawn)

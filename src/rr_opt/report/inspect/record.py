@@ -9,14 +9,14 @@ from typing import Any
 import numpy as np
 
 from rr_opt import __version__
-from rr_opt.experiment.recording import Flag, Recording
 from rr_opt.files.gait_record import gait_record
-from rr_opt.recordings.clock_fit import ClockFit
-from rr_opt.recordings.from_markers import MarkerFit
+from rr_opt.model.experiment import Flag, Recording
+from rr_opt.recordings.clocks.clock_fit import ClockFit
+from rr_opt.recordings.clocks.synchrony import Synchrony
 from rr_opt.recordings.inspection import Inspection
+from rr_opt.recordings.markers.pose import MarkerFit
 from rr_opt.recordings.noise import NoiseEstimate
-from rr_opt.recordings.synchrony import Synchrony
-from rr_opt.recordings.time_step import time_step
+from rr_opt.recordings.time_axis import time_step
 
 
 def record(name: str, sha256: str, found: Sequence[Inspection]) -> dict[str, Any]:

@@ -12,15 +12,14 @@ import numpy as np
 
 from rr_opt import __version__
 from rr_opt.files.gait_record import gait_record
+from rr_opt.model.gait import SineGait
 from rr_opt.outcome import Status
 from rr_opt.report.archive import remove, write_json, write_text
 from rr_opt.report.quantities import direction_text, number, speed_text, with_unit
-from rr_opt.report.robot_record import finite
+from rr_opt.report.result import finite
 from rr_opt.report.text import columns
-from rr_opt.robot.gait import SineGait
-from rr_opt.verify.turn.map import TurnMap
+from rr_opt.verify.turn.chart import Tightest, TurnMap
 from rr_opt.verify.turn.offset_claim import RadiusClaim, SignClaim
-from rr_opt.verify.turn.tightest import Tightest
 
 _NAMES = ("turn-chart.json", "turn-chart.csv", "turn-chart.svg")
 _COLUMNS = (
@@ -166,7 +165,7 @@ def chart_record(chart: TurnChart) -> dict[str, Any]:
 
 def write_chart(chart: TurnChart, folder: Path) -> list[Path]:
     """Write everything; what an earlier run left is removed before."""
-    from rr_opt.report.figures.turn_chart import draw  # noqa: PLC0415
+    from rr_opt.report.figures.turn_chart import draw
 
     remove(folder, _NAMES)
     return [

@@ -10,17 +10,13 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from rr_opt.motion.circle import circle_of
-from rr_opt.motion.cycle import Cycle, cycle_of
-from rr_opt.motion.integrator import cvodes
-from rr_opt.motion.steady_cycle import steady_cycle
-from rr_opt.motion.transient import Transient, transient
-from rr_opt.robot.gait import Gait
-from rr_opt.robot.parameters import Robot
-
-Array = NDArray[np.float64]
+from rr_opt.array import Array
+from rr_opt.model.gait import Gait
+from rr_opt.model.robot import Robot
+from rr_opt.motion.circle import Transient, circle_of, transient
+from rr_opt.motion.integrators import cvodes
+from rr_opt.motion.steady_cycle import Cycle, cycle_of, steady_cycle
 
 PERIODS = 50
 LARGEST = 1e-4

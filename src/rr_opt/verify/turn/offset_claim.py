@@ -10,10 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rr_opt.robot.gait import SineGait
-from rr_opt.verify.turn.map import TurnMap
-
-Array = NDArray[np.float64]
+from rr_opt.model.gait import SineGait
+from rr_opt.verify.turn.chart import TurnMap
 
 _LEVEL = 1e-5
 """A radius has to grow by this much, relative, to count as growing."""

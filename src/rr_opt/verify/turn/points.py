@@ -14,11 +14,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rr_opt.problem import Interval, Problem
+from rr_opt.array import Array
+from rr_opt.model.problem import Interval, Problem
+from rr_opt.verify.compiled_cycles import Speeds
 from rr_opt.verify.grid import reach
-from rr_opt.verify.speeds import Speeds, speeds
-
-Array = NDArray[np.float64]
+from rr_opt.verify.speeds import speeds
 
 ROWS = ("curvature", "yaw_rate", "heading")
 OFFSET, SHARE = 1, 2

@@ -13,18 +13,15 @@ from math import isclose
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from rr_opt.problem import Interval, Problem
-from rr_opt.robot.gait import Gait, SineGait
+from rr_opt.array import Array
+from rr_opt.model.gait import Gait, SineGait
+from rr_opt.model.problem import Interval, Problem
 from rr_opt.verify.evaluate import Found
-from rr_opt.verify.given import speed_of
 from rr_opt.verify.grid import boxes, whole_loads
-from rr_opt.verify.speeds import least_S1, model_of, robot_with, speeds
+from rr_opt.verify.speeds import least_S1, model_of, robot_with, speed_of, speeds
 from rr_opt.verify.sweep import SweepCheck, held_against
 from rr_opt.verify.turn.points import Care, Points, Turning
-
-Array = NDArray[np.float64]
 
 _SLACK = 1e-6
 

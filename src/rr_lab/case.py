@@ -1,0 +1,125 @@
+"""A case: a robot, what is hidden in it, its runs, and how they are handed over."""
+
+from __future__ import annotations
+
+import zlib
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import PurePath
+from types import MappingProxyType
+from typing import Literal
+
+import numpy as np
+
+from rr_lab.effects import rig_with
+from rr_lab.engines import Engine, driven
+from rr_lab.formats import ServoClock
+from rr_lab.run import Motion, Outing, captured
+from rr_opt.model.experiment import Experiment, Noise, Run, Start, Uncertainty, Use
+from rr_opt.model.gait import SineGait
+from rr_opt.model.robot import EffectUse, Robot
+
+
+def stream(seed: int, *purpose: object) -> np.random.Generator:
+    """The generator of a seed for a purpose; the same words give the same numbers."""
+    words = [zlib.crc32(str(word).encode()) for word in purpose]
+    return np.random.default_rng([seed, *words])
+
+
+Verdict = Literal["consistent", "parameters", "missing_physics", "unexplained"]
+
+
+@dataclass(frozen=True)
+class Plan:
+    """One run of a case: see `Outing`."""
+
+    name: str
+    gait: SineGait
+    seconds: float = 30.0
+    start: Start = "running"
+    use: Use = "fit"
+    pose: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    periods: int = 3
+
+    @property
+    def outing(self) -> Outing:
+        """How the robot is let go, at 100 samples a second."""
+        return Outing(self.seconds, self.start, self.pose, periods=self.periods)
+
+
+@dataclass(frozen=True)
+class Case:
+    """What a diagnosis is tried on.
+
+    nominal   the robot as the experimenter believes it to be; robot, as it is
+    effects   what is hidden in it; verdict, what a right diagnosis says of it
+    changed   names of the parameters in which robot and nominal differ, for `parameters`
+    missing   fraction of the samples that the capture system loses
+    engine    what drives it
+    """
+
+    name: str
+    nominal: Robot
+    robot: Robot
+    effects: tuple[EffectUse, ...]
+    plans: tuple[Plan, ...]
+    noise: Noise
+    uncertainty: Mapping[str, Uncertainty]
+    verdict: Verdict
+    seed: int
+    changed: tuple[str, ...] = ()
+    missing: float = 0.0
+    engine: Engine = "mujoco"
+    notes: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
+
+
+def motion_of(case: Case, plan: Plan, step: float | None = None, *, torque: bool = False) -> Motion:
+    """What truly happens in a run; step: s, of the integration, the engine's own if left out."""
+    outing = replace(plan.outing, torque=torque)
+    return driven(case.engine, rig_with(case.robot, case.effects), plan.gait, outing, step)
+
+
+def play(
+    case: Case, progress: Callable[[str], None] = lambda _: None, step: float | None = None
+) -> Experiment:
+    """Make all recordings of a case; `progress` is told of each before it is made."""
+    tracked = rig_with(case.robot, case.effects).tracked
+    runs = []
+    for n, plan in enumerate(case.plans):
+        progress(f"recording {n + 1} of {len(case.plans)}")
+        recording = captured(
+            motion_of(case, plan, step),
+            plan.name,
+            case.noise,
+            stream(case.seed, "noise", n),
+            tracked=tracked,
+            missing=case.missing,
+        )
+        runs.append(Run(recording, plan.gait, plan.use, plan.start))
+    return Experiment(case.nominal, case.noise, case.uncertainty, tuple(runs), case.name)
+
+
+Form = Literal["csv", "vicon", "c3d"]
+
+
+@dataclass(frozen=True)
+class Delivery:
+    """The files of a run.
+
+    form       `csv` has the joint and the angles; `vicon` and `c3d` have the markers
+    servo_log  whether each run comes with the servo's log; clock, that log's own
+    torque     whether the servo's torque is in the CSV
+    """
+
+    form: Form = "csv"
+    servo_log: bool = False
+    clock: ServoClock = field(default_factory=ServoClock)
+    torque: bool = False
+
+    def file(self, plan: Plan) -> str:
+        """The name of a run's recording."""
+        return PurePath(plan.name).stem + (".c3d" if self.form == "c3d" else ".csv")
+
+    def log(self, plan: Plan) -> str:
+        """The name of a run's servo log."""
+        return f"{PurePath(plan.name).stem}-servo.csv"

@@ -1,0 +1,170 @@
+"""`rr-opt prove`: sealed cases by lot, diagnosed blind, opened and scored."""
+
+from __future__ import annotations
+
+from contextlib import closing
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal
+
+import typer
+
+from rr_opt.cli.options import out_option
+from rr_opt.cli.study import CaseProgress
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rr_lab.trial.trial import Drawn
+    from rr_opt.batch.run import Pool
+
+
+def prove(
+    *,
+    cases: Annotated[int, typer.Option(help="How many.", min=1, max=999)] = 100,
+    seed: Annotated[
+        str | None,
+        typer.Option(
+            metavar="HEX",
+            help="Of all lots; left out, the hash of the commit.",
+            show_default="commit",
+        ),
+    ] = None,
+    kinds: Annotated[
+        str | None,
+        typer.Option(
+            help="Only these: null, single, pair, parameters, outside.", show_default="all"
+        ),
+    ] = None,
+    engine: Annotated[
+        Literal["mujoco", "planar", "both"] | None,
+        typer.Option(
+            help="What drives the cases: one of the two, or each half of each kind.",
+            show_default="both",
+        ),
+    ] = None,
+    out: Annotated[Path | None, out_option("out/proof")] = None,
+    workers: Annotated[
+        int | None, typer.Option(help="Processes here.", min=1, show_default="one a core")
+    ] = None,
+    scheduler: Annotated[
+        str | None, typer.Option(help="Work on a dask cluster: tcp://HOST:PORT of its scheduler.")
+    ] = None,
+    case: Annotated[
+        int | None,
+        typer.Option(
+            metavar="ID",
+            help="Make and diagnose this case alone, of the trial in --out if there is one, and "
+            "tell both.",
+            min=1,
+        ),
+    ] = None,
+    restart: Annotated[
+        bool, typer.Option("--restart", help="Forget the cases of an earlier run.")
+    ] = False,
+    json: Annotated[bool, typer.Option("--json", help="Print proof.json alone on stdout.")] = False,
+) -> None:
+    """Try `diagnose` on cases of the laboratory whose answers are sealed, and count.
+
+    A run that was stopped goes on where it was when the same command is given again.
+    """
+    from rr_lab.mujoco.plant import engine as mujoco
+    from rr_lab.trial.trial import drawn_of, tidy, whole_trial
+    from rr_opt.batch.run import run
+    from rr_opt.report.archive import folder_for_results, strict_json
+    from rr_opt.report.archive import write_bytes as keep
+
+    folder = folder_for_results(out or Path("out/proof"))
+    begun = drawn_of(folder) if case is not None else None
+    drawn = _drawn(begun, seed, kinds, engine, folder)
+    # A laboratory without its engine is told before any case is, and not for each.
+    if "mujoco" in drawn.engines:
+        mujoco()
+    if case is not None:
+        typer.echo(_one(folder, drawn, case, json=json), nl=False)
+        return
+    with closing(_pool(workers, scheduler)) as pool:
+        opened = whole_trial(
+            folder,
+            drawn.seed,
+            range(1, cases + 1),
+            drawn.kinds,
+            drawn.engines,
+            keep=keep,
+            run=partial(run, pool),
+            count=partial(_count, total=cases),
+            restart=restart,
+        )
+    from rr_lab.report.files import write_proof
+    from rr_lab.report.summary import record, summary
+
+    written = write_proof(opened, folder)
+    tidy(folder, [case.id for case in opened.cases if not case.missed])
+    typer.echo(strict_json(record(opened)) if json else summary(opened), nl=False)
+    if not json:
+        typer.echo("\n" + "".join(f"{path}\n" for path in written), nl=False)
+
+
+def _count(words: str, steps: Iterator[int], done: int, total: int) -> None:
+    """Carry the steps out and show how many are done."""
+    if done:
+        typer.echo(f"{done} of {total} cases are {words} from an earlier run.", err=True)
+    try:
+        with CaseProgress(done, total) as progress:
+            for _ in steps:
+                done += 1
+                progress()
+    except KeyboardInterrupt:
+        kept = f"{done} of {total} cases are {words}"
+        typer.echo(f"{kept} and kept. The same command goes on with the others.", err=True)
+        raise
+
+
+def _one(folder: Path, drawn: Drawn, number: int, *, json: bool) -> str:
+    """Make one case again, diagnose it, and tell what was hidden and what was said."""
+    from rr_lab.report.files import told
+    from rr_lab.report.summary import case_record
+    from rr_lab.trial.child import one_case
+    from rr_lab.trial.lots import draw_lot
+    from rr_opt.cli.steps import Steps
+    from rr_opt.report.archive import strict_json, write_bytes
+
+    lot = draw_lot(drawn.seed, number, drawn.kinds, drawn.engines)
+    place = folder / "again" / lot.id
+    with Steps() as steps:
+        found = one_case(lot, place, write_bytes, steps)
+    return strict_json(case_record(found)) if json else told(found, place)
+
+
+def _drawn(
+    begun: Drawn | None, seed: str | None, kinds: str | None, engine: str | None, folder: Path
+) -> Drawn:
+    """What the options say; what they leave out is as in the trial that was begun."""
+    from rr_lab.engines import ENGINES
+    from rr_lab.random_case import KINDS
+    from rr_lab.trial.lots import read_kinds
+    from rr_lab.trial.trial import Drawn
+
+    chosen = read_kinds(kinds) if kinds is not None else None
+    word = begun.seed if begun and seed is None else _seed(seed, folder)
+    # With another seed it is another trial.
+    base = begun if begun and begun.seed == word else Drawn(word, KINDS, ENGINES)
+    engines = {"both": ENGINES, "mujoco": ("mujoco",), "planar": ("planar",), None: base.engines}
+    return Drawn(word, chosen or base.kinds, engines[engine])
+
+
+def _seed(text: str | None, folder: Path) -> str:
+    from rr_lab.trial.lots import read_seed, seed_of_commit
+    from rr_lab.trial.trial import PACKAGE
+
+    return seed_of_commit(PACKAGE, folder) if text in (None, "commit") else read_seed(text)
+
+
+def _pool(workers: int | None, scheduler: str | None) -> Pool:
+    if scheduler:
+        from rr_opt.batch.cluster import ClusterPool
+
+        return ClusterPool(scheduler)
+    from rr_opt.batch.local import LocalPool
+
+    return LocalPool(workers)

@@ -1,0 +1,246 @@
+"""Cases drawn by lot: effects, plans of runs, robots, and what their builder believes wrongly."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rr_lab.case import Case, Plan, motion_of
+from rr_lab.effects import effect_named
+from rr_lab.visibility import COARSE
+from rr_opt.model.experiment import Noise, Uncertainty
+from rr_opt.model.gait import SineGait
+from rr_opt.model.robot import EffectUse, Platform, Robot, Servo
+
+
+def draw_effect(rng: np.random.Generator, name: str, case: Case) -> EffectUse:
+    """An effect of about its typical size for a case that does not have it yet.
+
+    Its strength is made right later, by `at_visibility`.
+    """
+    effect = effect_named(name)
+    values = {}
+    for parameter in effect.parameters:
+        size = parameter.typical * math.exp(rng.uniform(-0.7, 0.7))
+        sign = rng.choice([-1, 1]) if parameter.signed else 1
+        values[parameter.name] = float(sign * size)
+    draw = _OWN_WAY.get(name)
+    return EffectUse(name, draw(_Lot(rng, values, case)) if draw else values)
+
+
+@dataclass(frozen=True)
+class _Lot:
+    """What an effect is drawn from: chance, typical values, and the runs that will be made."""
+
+    rng: np.random.Generator
+    values: dict[str, float]
+    case: Case
+
+    def place_passed(self) -> tuple[float, float]:
+        """Where a run is at some time in its middle."""
+        plan = self.case.plans[int(self.rng.integers(len(self.case.plans)))]
+        path = motion_of(self.case, plan, COARSE).one
+        at = int(self.rng.uniform(0.3, 0.7) * len(path))
+        return float(path[at, 0]), float(path[at, 1])
+
+
+def _slip(lot: _Lot) -> dict[str, float]:
+    """Creep, or a grip that lets go; not both, as either hides the other."""
+    name = "mu" if lot.rng.random() < 0.5 else "creep_compliance"
+    return {name: lot.values[name]}
+
+
+def _tilt(lot: _Lot) -> dict[str, float]:
+    """One slope, in any direction."""
+    slope, way = 1.4e-3, lot.rng.uniform(-math.pi, math.pi)
+    return {"tilt_x": slope * math.cos(way), "tilt_y": slope * math.sin(way)}
+
+
+def _patch(lot: _Lot) -> dict[str, float]:
+    """A circle round a place where a run passes, or an edge through it."""
+    x, y = lot.place_passed()
+    drag = {"multiplier": 1 + lot.values["multiplier"] / 2}
+    if lot.rng.random() < 0.5:
+        return {**drag, "x": x, "y": y, "radius": float(lot.rng.uniform(0.15, 0.4))}
+    normal = float(lot.rng.uniform(-math.pi, math.pi))
+    return {**drag, "normal": normal, "edge_x": x, "edge_y": y}
+
+
+def _tether(lot: _Lot) -> dict[str, float]:
+    """Tied to a place somewhat off a run, and taut for a part of it."""
+    x, y = lot.place_passed()
+    dx, dy = lot.rng.uniform(-0.3, 0.3, 2)
+    return {**lot.values, "x": float(x + dx), "y": float(y + dy)}
+
+
+def _limit(lot: _Lot) -> dict[str, float]:
+    """Just below the fastest rate that is asked for."""
+    fastest = max(plan.gait.peak_rate for plan in lot.case.plans)
+    return {"rate_limit": float(fastest * lot.rng.uniform(0.8, 0.95))}
+
+
+_OWN_WAY = {
+    "lateral_slip": _slip,
+    "floor_tilt": _tilt,
+    "floor_patch": _patch,
+    "tether": _tether,
+    "servo_rate_limit": _limit,
+}
+
+
+GENTLEST, FIERCEST = 3.0, 30.0
+"""rad/s2, peak of phi's acceleration; below, the robot hardly moves, above, real wheels let go."""
+
+CLEARANCE = 0.25
+"""The least S1 = c1 cos phi + c2 over c1 + c2: a distance from the singular posture."""
+
+
+def draw_plans(rng: np.random.Generator, robot: Robot, seconds: float = 30.0) -> tuple[Plan, ...]:
+    """Seven or eight runs; about half with an offset, two or three from rest, two held out."""
+    count = int(rng.integers(7, 9))
+    turning = rng.permutation(count) < count // 2
+    resting = rng.permutation(count) < int(rng.integers(2, 4))
+    held = rng.permutation(count) < 2
+    return tuple(
+        Plan(
+            f"run{n + 1:02d}.csv",
+            draw_gait(rng, robot, bool(turning[n])),
+            seconds,
+            "rest" if resting[n] else "running",
+            "holdout" if held[n] else "fit",
+            _pose(rng),
+            int(rng.integers(1, 6)),
+        )
+        for n in range(count)
+    )
+
+
+def draw_gait(rng: np.random.Generator, robot: Robot, turning: bool) -> SineGait:
+    """Amplitude 0.3 to 1 rad, period 0.8 to 2 s, offset up to 0.35 rad either way or none."""
+    while True:
+        amplitude = round(float(rng.uniform(0.3, 1.0)), 3)
+        period = round(float(rng.uniform(0.8, 2.0)), 1)
+        offset = round(float(rng.uniform(0.08, 0.35) * rng.choice([-1, 1])), 3) if turning else 0.0
+        gait = SineGait(amplitude, period, offset)
+        fierce = amplitude * gait.angular_frequency**2
+        c1, c2 = robot.platform1.c, robot.platform2.c
+        S1 = c1 * math.cos(gait.peak_angle) + c2
+        if GENTLEST < fierce < FIERCEST and CLEARANCE * (c1 + c2) < S1:
+            return gait
+
+
+def _pose(rng: np.random.Generator) -> tuple[float, float, float]:
+    x, y = rng.uniform(-0.3, 0.3, 2)
+    return float(x), float(y), float(rng.uniform(-math.pi, math.pi))
+
+
+RELATIVE = {"m": 0.01, "I": 0.05}
+ABSOLUTE = {"c": 2e-3, "a": 2e-3, "b": 2e-3}
+WHEEL_RADIUS = 5e-4
+FRICTION_FACTOR = 5.0
+
+
+def draw_robot(rng: np.random.Generator) -> Robot:
+    """A Roller Racer with its longer platform first, rounded as a builder would write it."""
+    h = round(rng.uniform(0.015, 0.03), 4)
+    c1, c2 = rng.uniform(0.13, 0.24), rng.uniform(0.05, 0.12)
+    # Both platforms of a robot have like wheels; k, N s/m, spreads over a decade between robots.
+    k = np.exp(rng.uniform(np.log(0.012), np.log(0.085)))
+    return Robot(
+        _platform(rng, c1, k * rng.uniform(0.85, 1.15), h),
+        _platform(rng, c2, k * rng.uniform(0.85, 1.15), h),
+        h,
+        Servo(2.6, 6.28, 1.5),
+    )
+
+
+def _platform(rng: np.random.Generator, c: float, k: float, h: float) -> Platform:
+    """The radius of gyration of the real platforms is 65 to 100 mm, whatever their c."""
+    m, gyration = rng.uniform(0.3, 0.7), rng.uniform(0.065, 0.1)
+    return Platform(
+        m=round(m, 3),
+        I=float(f"{m * gyration**2:.3g}"),
+        c=round(c, 4),
+        a=round(rng.uniform(0.0, 0.03), 4),
+        b=round(rng.uniform(0.04, 0.07), 4),
+        kappa=float(f"{k * h**2:.3g}"),
+    )
+
+
+def draw_noise(rng: np.random.Generator) -> Noise:
+    """That of a capture system: 0.5 to 1.5 mm, 3 to 4 mrad."""
+    return Noise(float(rng.choice([0.5e-3, 1e-3, 1.5e-3])), float(rng.choice([3e-3, 4e-3])))
+
+
+def usual_uncertainty(robot: Robot) -> dict[str, Uncertainty]:
+    """1 sigma each: masses 1 %, inertias 5 %, lengths 2 mm, h 0.5 mm; kappa unknown."""
+    known = {"h": Uncertainty(WHEEL_RADIUS)}
+    for number, platform in ((1, robot.platform1), (2, robot.platform2)):
+        for name, part in RELATIVE.items():
+            known[f"{name}{number}"] = Uncertainty(part * getattr(platform, name))
+        for name, size in ABSOLUTE.items():
+            known[f"{name}{number}"] = Uncertainty(size)
+        known[f"kappa{number}"] = Uncertainty(factor=FRICTION_FACTOR)
+    return known
+
+
+CANDIDATES = ("m1", "m2", "I1", "I2", "c1", "c2", "a1", "a2", "kappa1", "kappa2")
+
+SIGMAS = 4.0, 8.0
+"""By how many standard deviations a known value is wrong: more than chance would make it."""
+
+FACTORS = 1.5, 3.0
+"""By what factor a friction is, up or down."""
+
+
+def draw_wrong(
+    rng: np.random.Generator, nominal: Robot, uncertainty: dict[str, Uncertainty]
+) -> tuple[Robot, tuple[str, ...]]:
+    """The robot with one or two values changed, and their names."""
+    count = 1 if rng.random() < 0.6 else 2
+    names = tuple(sorted(str(name) for name in rng.choice(CANDIDATES, count, replace=False)))
+    robot = nominal
+    for name in names:
+        value = parameter(robot, name)
+        known = uncertainty[name]
+        if known.factor is not None:
+            value *= rng.uniform(*FACTORS) ** rng.choice([-1, 1])
+        else:
+            value += known.sigma * rng.uniform(*SIGMAS) * rng.choice([-1, 1])
+        robot = with_parameter(robot, name, float(value))
+    return robot, names
+
+
+def draw_near(
+    rng: np.random.Generator, nominal: Robot, uncertainty: dict[str, Uncertainty], spread: float
+) -> Robot:
+    """The robot with every value off by chance, `spread` times what its uncertainty says."""
+    robot = nominal
+    for name in sorted(uncertainty):
+        value, known = parameter(nominal, name), uncertainty[name]
+        off = spread * float(np.clip(rng.standard_normal(), -2.5, 2.5))
+        robot = with_parameter(robot, name, value + known.sigma * off)
+    return robot
+
+
+def parameter(robot: Robot, name: str) -> float:
+    """m1, I1, ... kappa2, or h, of a robot."""
+    if name == "h":
+        return robot.h
+    return getattr(robot.platform1 if name[-1] == "1" else robot.platform2, name[:-1])
+
+
+def with_parameter(robot: Robot, name: str, value: float) -> Robot:
+    """The robot with one of them changed."""
+    if name == "h":
+        return replace(robot, h=value)
+    which = "platform1" if name[-1] == "1" else "platform2"
+    return replace(robot, **{which: replace(getattr(robot, which), **{name[:-1]: value})})
+
+
+def changed_values(robot: Robot, names: Sequence[str]) -> dict[str, float]:
+    """The true values of the named parameters."""
+    return {name: parameter(robot, name) for name in names}

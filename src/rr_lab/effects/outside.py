@@ -1,0 +1,100 @@
+"""Effects that the catalogue does not have, so that no diagnosis can name them."""
+
+from __future__ import annotations
+
+from rr_lab.effects.hidden import HiddenEffect, Parameter, Values
+from rr_lab.rig import Drift, Falling, Rig, Rub, Tether
+
+
+def _tether(rig: Rig, values: Values) -> None:
+    rig.tether = Tether(values["x"], values["y"], values["slack"], values["stiffness"])
+
+
+def _stribeck(rig: Rig, values: Values) -> None:
+    """Dry friction that falls from `force` to `force/3` as the rim's speed grows past `speed`."""
+    h = rig.robot.h
+    rig.laws.append(Falling(values["force"] * h, values["speed"] / h))
+
+
+def _drift(rig: Rig, values: Values) -> None:
+    rig.laws.append(Drift(values["change"], values["time"]))
+
+
+def _sprung(rig: Rig, values: Values) -> None:
+    """`give` is 1/stiffness."""
+    rig.spring = 1 / values["give"]
+
+
+def _fault(rig: Rig, values: Values) -> None:
+    rig.laws.append(Rub(values["force"] * rig.robot.h))
+
+
+def _pin(rig: Rig, values: Values) -> None:
+    """The platforms can shift against each other by the clearance, up to hard stops."""
+    rig.pin = values["clearance"]
+
+
+def _load(rig: Rig, values: Values) -> None:
+    rig.load = (values["mass"], values["stiffness"])
+
+
+def _place(name: str, typical: float, unit: str = "m") -> Parameter:
+    return Parameter(name, unit, typical, neutral=None)
+
+
+OUTSIDE = (
+    HiddenEffect(
+        "tether",
+        "a cord to a post pulls when it is taut",
+        (
+            Parameter("stiffness", "N/m", 0.02, most=2.0),
+            _place("slack", 0.1),
+            _place("x", 0.3),
+            _place("y", 0.3),
+        ),
+        _tether,
+        named=False,
+    ),
+    HiddenEffect(
+        "stribeck_friction",
+        "dry friction of the wheels that falls as they turn faster",
+        (Parameter("force", "N", 4e-3, most=0.1), _place("speed", 0.05, "m/s")),
+        _stribeck,
+        named=False,
+    ),
+    HiddenEffect(
+        "drifting_friction",
+        "viscous friction that changes while the robot runs",
+        (Parameter("change", "1", 0.8, most=4.0), _place("time", 10.0, "s")),
+        _drift,
+        named=False,
+    ),
+    HiddenEffect(
+        "compliant_platform",
+        "the platforms bend sideways",
+        (Parameter("give", "rad/(N m)", 0.3, most=5.0),),
+        _sprung,
+        named=False,
+    ),
+    HiddenEffect(
+        "wheel_fault",
+        "one wheel rubs over a part of each turn",
+        (Parameter("force", "N", 0.02, most=0.3),),
+        _fault,
+        named=False,
+    ),
+    HiddenEffect(
+        "loose_pin",
+        "the joint's pin has clearance",
+        (Parameter("clearance", "m", 3e-3, most=0.01),),
+        _pin,
+        named=False,
+    ),
+    HiddenEffect(
+        "shifting_load",
+        "a load on platform 1 shifts sideways on a spring",
+        (Parameter("mass", "kg", 0.08, most=0.2), _place("stiffness", 5.0, "N/m")),
+        _load,
+        named=False,
+    ),
+)

@@ -1,0 +1,88 @@
+"""The engines that drive a rig, by name, and a recording made by one of them.
+
+The engines that drive a rig, by name.
+
+They share what is hidden, the command as the servo's faults shape it, and the capture system; no
+equation of motion and no contact.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Literal, get_args
+
+import numpy as np
+
+from rr_lab.effects import rig_with
+from rr_lab.mujoco.drive import STEP, drive
+from rr_lab.rig import Rig
+from rr_lab.run import Motion, Outing, captured
+from rr_opt.model.experiment import Noise, Recording
+from rr_opt.model.gait import Gait
+from rr_opt.model.robot import EffectUse, Robot
+
+Engine = Literal["mujoco", "planar"]
+"""A robot in three dimensions in MuJoCo, or two bodies in the plane, stepped here."""
+
+ENGINES: tuple[Engine, ...] = get_args(Engine)
+
+
+def driven(
+    engine: Engine, rig: Rig, gait: Gait, outing: Outing, step: float | None = None
+) -> Motion:
+    """Drive a gait with steps of `step` s, or of the engine's own.
+
+    Raises InputError if MuJoCo is asked for and not installed, NotConvergedError if the motion is
+    lost.
+    """
+    if engine == "mujoco":
+        return drive(rig, gait, outing, STEP if step is None else step)
+    from rr_lab.planar import drive as planar
+
+    return planar.drive(rig, gait, outing, planar.STEP if step is None else step)
+
+
+def fine_enough(engine: Engine, rig: Rig, step: float) -> float:
+    """The step that an engine drives a rig with where `step` is asked for, s."""
+    if engine == "mujoco":
+        return step
+    from rr_lab.planar import drive as planar
+
+    return planar.fine_enough(rig, step)
+
+
+EXACT = Noise(0.0, 0.0, 0.0)
+"""A capture system without noise."""
+
+
+def record(
+    robot: Robot,
+    gait: Gait,
+    seconds: float = 30.0,
+    start: Literal["rest", "running"] = "rest",
+    effects: Iterable[EffectUse] = (),
+    noise: Noise = EXACT,
+    seed: int = 0,
+    *,
+    name: str = "run01.csv",
+    pose: tuple[float, float, float] = (0.0, 0.0, 0.0),
+    rate: float = 100.0,
+    periods: int = 3,
+    missing: float = 0.0,
+    torque: bool = False,
+    step: float | None = None,
+    engine: Engine = "mujoco",
+) -> Recording:
+    """Drive a gait on the virtual robot and record it `rate` times a second.
+
+    start    `rest`: the command begins at t = 0; `running`: `periods` whole periods earlier
+    pose     x (m), y (m) and heading (rad) where the robot is put down
+    missing  fraction of the samples that are lost
+    step     of the integration, s; the engine's own if left out
+    Raises InputError for an unknown effect, or if MuJoCo is asked for and not installed.
+    """
+    rig = rig_with(robot, effects)
+    outing = Outing(seconds, start, pose, rate, periods, torque=torque)
+    motion = driven(engine, rig, gait, outing, step)
+    rng = np.random.default_rng(seed)
+    return captured(motion, name, noise, rng, tracked=rig.tracked, missing=missing)

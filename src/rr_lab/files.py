@@ -1,0 +1,170 @@
+"""A case as the files of its folder: experiment.yaml, recordings, logs; its sealed answer."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import secrets
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
+
+import numpy as np
+
+from rr_lab.case import Case, Delivery, Plan, motion_of, stream
+from rr_lab.draw import changed_values
+from rr_lab.effects import effect_named, rig_with
+from rr_lab.formats import c3d_bytes, log_text, vicon_text
+from rr_lab.markers import places, seen
+from rr_lab.run import captured
+from rr_opt.model.experiment import Recording, Uncertainty
+from rr_opt.model.robot import Platform, Robot
+
+WRITTEN = "# Written by `rr-opt record`, which may write over it."
+"""The first line of the file."""
+
+
+def experiment_text(case: Case, delivery: Delivery) -> str:
+    """experiment.yaml. Its values are written as JSON, which YAML reads."""
+    noise = {"position": case.noise.position, "angle": case.noise.angle}
+    if delivery.torque:
+        noise["torque"] = case.noise.torque
+    sections: dict[str, Any] = {"noise": noise, "uncertainty": _uncertainty(case.uncertainty)}
+    if delivery.form != "csv":
+        first, second = places(case.nominal)
+        sections["markers"] = {"platform1": first, "platform2": second}
+    lines = [WRITTEN, "robot:"]
+    lines += [f"  {key}: {json.dumps(value)}" for key, value in _robot(case.nominal).items()]
+    lines += [f"{key}: {json.dumps(value)}" for key, value in sections.items()]
+    lines.append("recordings:")
+    lines += [f"  - {json.dumps(_recording(plan, delivery))}" for plan in case.plans]
+    return "\n".join(lines) + "\n"
+
+
+def _robot(robot: Robot) -> dict[str, Any]:
+    servo = robot.servo
+    limits = ("angle_limit", "rate_limit", "torque_limit")
+    record: dict[str, Any] = {
+        "platform1": _platform(robot.platform1),
+        "platform2": _platform(robot.platform2),
+        "h": robot.h,
+        "servo": {name: getattr(servo, name) for name in limits},
+    }
+    if robot.physics:
+        record["physics"] = [{"name": use.name, **use.values} for use in robot.physics]
+    return record
+
+
+def _platform(part: Platform) -> dict[str, float]:
+    return {name: getattr(part, name) for name in ("m", "I", "c", "a", "b", "kappa")}
+
+
+def _uncertainty(known: Mapping[str, Uncertainty]) -> dict[str, float | str]:
+    """1 sigma of each value, SI, or `unknown`."""
+    return {
+        name: "unknown" if each.factor is not None else float(f"{each.sigma:.6g}")
+        for name, each in known.items()
+    }
+
+
+def _recording(plan: Plan, delivery: Delivery) -> dict[str, Any]:
+    gait = plan.gait
+    sine = {"amplitude": gait.amplitude, "period": gait.period, "offset": gait.offset}
+    entry = {"file": delivery.file(plan), "gait": sine, "use": plan.use, "start": plan.start}
+    return {**entry, "servo_log": delivery.log(plan)} if delivery.servo_log else entry
+
+
+PLAIN = Delivery()
+
+
+def folder_of(
+    case: Case, delivery: Delivery = PLAIN, progress: Callable[[str], None] = lambda _: None
+) -> Iterator[tuple[str, bytes]]:
+    """Names and contents of the files of a case, each made when it is asked for.
+
+    `progress` is told of each recording before it is made. Raises InputError if a package that the
+    form needs is missing.
+    """
+    for n, plan in enumerate(case.plans):
+        progress(f"recording {n + 1} of {len(case.plans)}")
+        yield delivery.file(plan), _recorded(case, plan, n, delivery)
+        if delivery.servo_log:
+            rig = rig_with(case.robot, case.effects)
+            log = log_text(rig, plan.gait, plan.outing, delivery.clock)
+            yield delivery.log(plan), log.encode()
+    # Last, so that a folder with this file has all that it names.
+    yield "experiment.yaml", experiment_text(case, delivery).encode()
+
+
+def _recorded(case: Case, plan: Plan, n: int, delivery: Delivery) -> bytes:
+    motion, rng = motion_of(case, plan, torque=delivery.torque), stream(case.seed, "noise", n)
+    tracked = rig_with(case.robot, case.effects).tracked
+    if delivery.form == "csv":
+        recording = captured(
+            motion, plan.name, case.noise, rng, tracked=tracked, missing=case.missing
+        )
+        return csv_text(recording).encode()
+    sigma = case.noise.position
+    markers = seen(motion, case.nominal, sigma, rng, tracked=tracked, missing=case.missing)
+    return vicon_text(markers).encode() if delivery.form == "vicon" else c3d_bytes(markers)
+
+
+def csv_text(recording: Recording) -> str:
+    """t and the channels, SI; a value that is missing is left empty."""
+    lines = [",".join(("t", *recording.channels))]
+    columns = [recording.data(channel) for channel in recording.channels]
+    for t, *row in zip(recording.t, *columns, strict=True):
+        values = ("" if np.isnan(value) else f"{value:.6f}" for value in row)
+        lines.append(",".join((f"{t:.3f}", *values)))
+    return "\n".join(lines) + "\n"
+
+
+UNITS = {"m": "kg", "I": "kg m2", "c": "m", "a": "m", "b": "m", "h": "m", "kappa": "N m s"}
+
+
+def answer(case: Case) -> dict[str, Any]:
+    """Verdict and effects with the values of their parameters, as plain data."""
+    return {
+        "verdict": case.verdict,
+        "effects": _effects(case),
+        "case": case.name,
+        "engine": case.engine,
+        "seed": case.seed,
+        "rms_deviation_from_nominal_in_sigma": dict(case.notes),
+    }
+
+
+def _effects(case: Case) -> list[dict[str, Any]]:
+    if case.verdict == "parameters":
+        true = changed_values(case.robot, case.changed)
+        return [
+            {"name": name, "parameters": {name: _valued(value, UNITS[name.rstrip("12")])}}
+            for name, value in true.items()
+        ]
+    found = []
+    for use in case.effects:
+        effect = effect_named(use.name)
+        found.append(
+            {
+                "name": use.name if effect.named else "unknown",
+                "what": effect.what if effect.named else f"{use.name}: {effect.what}",
+                "parameters": {
+                    name: _valued(value, effect.parameter(name).unit)
+                    for name, value in use.values.items()
+                },
+            }
+        )
+    return found
+
+
+def _valued(value: float, unit: str) -> dict[str, Any]:
+    return {"value": float(f"{value:.9g}"), "unit": unit}
+
+
+def sealed_text(case: Case) -> str:
+    """The answer as JSON text, with a random word in it, so that its hash gives nothing away."""
+    return json.dumps({**answer(case), "salt": secrets.token_hex(16)}, indent=2) + "\n"
+
+
+def seal_of(text: str) -> str:
+    """SHA-256 of a sealed answer's text, as hexadecimal digits."""
+    return hashlib.sha256(text.encode()).hexdigest()

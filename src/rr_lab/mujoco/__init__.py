@@ -1,0 +1,1 @@
+"""The first engine: a three-dimensional robot in MuJoCo."""

@@ -1,0 +1,72 @@
+"""A gait driven on a rig: MuJoCo steps it, and its motion is written down."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rr_lab.mujoco.plant import Course, Plant, stepped
+from rr_lab.rig import Rig
+from rr_lab.run import Motion, Outing, asked_angle
+from rr_opt.array import Array
+from rr_opt.model.gait import Gait
+
+SETTLE = 0.05
+"""s, in which the robot comes to rest on its wheels before anything else, on a level floor."""
+
+STEP = 2.5e-4
+"""s. results/lab/README.md shows what it is worth."""
+
+
+def drive(rig: Rig, gait: Gait, outing: Outing, step: float = STEP) -> Motion:
+    """Drive a gait and write down the motion. Raises NotConvergedError if it is lost."""
+    plant = Plant.of(rig, step)
+    every = max(1, round(1 / (outing.rate * step)))
+    dt = 1 / (outing.rate * every)
+    plant.model.opt.timestep = dt
+    begin = outing.begin(gait)
+    before = math.ceil((SETTLE + max(0.0, rig.clock - begin)) / dt)
+    count = before + round(outing.seconds * outing.rate) * every + 1
+    t = rig.clock + (np.arange(count + 1) - before) * dt
+    angle = asked_angle(rig, gait, begin, t)
+    let_go = int(np.searchsorted(t, begin - 1e-12))
+    return _run(plant, outing, angle, t - begin, Course(let_go, before, every, count))
+
+
+def servo_angles(rig: Rig, gait: Gait, outing: Outing, when: Array) -> tuple[Array, Array]:
+    """The command and the angle of the servo's shaft, rad, at command times `when`, s."""
+    begin = outing.begin(gait)
+    t = np.arange(min(begin, when.min()) - SETTLE, when.max() + 2 * STEP, STEP)
+    return gait.angle(np.maximum(when, begin)), np.interp(when, t, asked_angle(rig, gait, begin, t))
+
+
+def _run(plant: Plant, outing: Outing, angle: Array, t: NDArray[Any], course: Course) -> Motion:
+    """Step the flywheel through `angle`, rad, at the times t, s since the robot was let go."""
+    model, dt = plant.model, plant.model.opt.timestep
+    plant.put_down(outing.pose, angle[0])
+    model.opt.gravity[:] = 0.0, 0.0, plant.rig.gravity[2]
+    # The acceleration that takes the flywheel, whose steps are q' = q + dt w', through `angle`.
+    push = np.diff(np.concatenate([angle[:1], angle]), 2) / dt**2
+    seen, torques = [], []
+    for start, stop in course.parts(pushed=outing.nudge != 0, torque=outing.torque):
+        if start == course.let_go:
+            model.opt.gravity[:] = plant.rig.gravity
+        if outing.nudge:
+            plant.push(outing.nudge / dt if start == course.first else 0.0)
+        rows = stepped(plant, push[start:stop], t[start:stop])
+        if start >= course.first:
+            seen.append(rows[course.samples(start)])
+        if outing.torque and start in course.recorded:
+            torques.append(plant.torque())
+    one, two = np.hsplit(np.concatenate(seen), 2)
+    when = np.arange(len(one)) / outing.rate
+    return Motion(when, _placed(one), _placed(two), np.array(torques) if outing.torque else None)
+
+
+def _placed(seen: Array) -> Array:
+    """x, y, heading (n, 3) of what the sensors tell of a platform: its place and what is ahead."""
+    heading = list(map(math.atan2, seen[:, 4].tolist(), seen[:, 3].tolist()))
+    return np.column_stack([seen[:, :2], np.unwrap(heading)])

@@ -1,0 +1,286 @@
+"""What acts on a rig in the plane: bearings, loads, the motor, stops, and what bends or pushes.
+
+An instant of a step: what is guessed of its end, and what acts by the guess.
+
+A step ends where its forces say, and they depend on where it ends. So its end is guessed, forces
+are written as straight lines through the guess, and the end that these give is the next guess.
+
+What each wheel carries.
+
+The robot stands on four wheels, on a joint that turns about the vertical alone: a stiff body, whose
+weight and whose two moments on the floor give three conditions for four loads. Of all loads that
+keep them, those are taken whose squares are least: the loads of four equal springs. Without a mass
+beside the axis the wheels of an axle share alike, and of platform 1's axle
+
+    N1 = g (m1 (c1 + c2 - a1) + m2 a2) / (c1 + c2)
+
+Assumed: the posture is straight (at 0.9 rad the axles carry another half a per cent), the floor is
+nearly level, and the masses are low, so that braking and turning move no load.
+
+The servo: a motor that turns platform 2 against platform 1 after its command.
+
+Its torque is stiffness * (asked - made) + damping * (the same of the rates), on platform 2 and with
+the other sign on platform 1; nothing limits it. Nothing but this makes the angle.
+
+What has play: platform 2 on the motor's shaft, and the joint's pin in its hole.
+
+A stop is a stiff spring with a damper that fades in over the first depth, so that its force neither
+jumps at a touch nor ever pulls.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from rr_lab.planar.layout import Layout, axis
+from rr_lab.rig import WHEELS, Drift, Falling, Patch, Rig, Rub
+from rr_opt.array import Array
+from rr_opt.model.robot import Robot
+from rr_opt.outcome import InputError
+
+
+@dataclass(frozen=True)
+class Moment:
+    """The end of a step as it is guessed.
+
+    layout   with its coordinates q; w (n), their guessed rates; spins (4), rad/s, and turns (4),
+             rad, of the wheels
+    ahead    s, by which a change of w changes q
+    asked    rad, the angle that the motor is to make; rate, rad/s, its own
+    t        s since the robot was let go; free, 1 from then on and 0 before
+    """
+
+    layout: Layout
+    w: ca.SX
+    spins: ca.SX
+    turns: ca.SX
+    ahead: float
+    asked: ca.SX
+    rate: ca.SX
+    t: ca.SX
+    free: ca.SX
+
+    def way(self, length: ca.SX) -> ca.SX:
+        """How each coordinate lengthens a length or an angle (1, n)."""
+        return ca.jacobian(length, self.layout.q)
+
+
+@dataclass(frozen=True)
+class Pull:
+    """A force, or a torque, along a way (1, n): it is push - hold * (its speed at the step's end).
+
+    hold is never negative: it is what keeps the step from running away.
+    """
+
+    way: ca.SX
+    hold: ca.SX | float
+    push: ca.SX | float
+
+
+def spring(
+    moment: Moment,
+    length: ca.SX,
+    stiffness: ca.SX | float,
+    damping: ca.SX | float,
+    rest: ca.SX | float = 0.0,
+) -> Pull:
+    """What a spring with a damper pulls; length and rest in m or rad. Exact where the length is
+    straight in the coordinates."""
+    way = moment.way(length)
+    before = length - moment.ahead * (way @ moment.w)
+    return Pull(way, damping + stiffness * moment.ahead, -stiffness * (before - rest))
+
+
+DRY_ONSET = 2e-3
+"""m/s at the rim, over which dry friction sets in if the rig does not say, as
+u/(u^4 + onset^4)^(1/4): at three times that speed it is within a third of a per cent of its
+force."""
+
+EDGE = 1e-3
+"""m, half the width of a patch's edge: about the length over which a tyre touches the floor."""
+
+_SOFT = 0.02
+"""Of the cosine of a wheel's angle, over which a fault begins and ends: some degrees."""
+
+
+def bearings(moment: Moment, rig: Rig) -> list[ca.SX]:
+    """D of each wheel, N m s: it resists with D times its spin."""
+    viscous: list[Any] = [ca.SX(kappa) for kappa in rig.kappa]
+    dry: list[Any] = [ca.SX(torque) for torque in rig.dry]
+    for law in rig.laws:
+        for n in range(len(WHEELS)):
+            viscous[n], dry[n] = _changed(law, moment, n, viscous[n], dry[n])
+    onset = (rig.onset or DRY_ONSET) / rig.robot.h
+    found = []
+    for n, quadratic in enumerate(rig.quadratic):
+        spin = moment.spins[n]
+        rubs = dry[n] / (spin**4 + onset**4) ** 0.25
+        found.append(viscous[n] + quadratic * ca.fabs(spin) + rubs)
+    return found
+
+
+def _changed(law: Any, moment: Moment, n: int, viscous: ca.SX, dry: ca.SX) -> tuple[ca.SX, ca.SX]:
+    """Viscous (N m s) and dry (N m) friction of a wheel by one more law."""
+    match law:
+        case Patch():
+            place = moment.layout.wheels[n].place
+            inside = (1 + ca.tanh(law.within.depth(place[0], place[1]) / EDGE)) / 2
+            factor = 1 + (law.times - 1) * inside
+            return viscous * factor, dry * factor
+        case Falling():
+            fall = ca.exp(-((moment.spins[n] / law.rate) ** 2))
+            return viscous, dry + law.torque * (1 + 2 * fall) / 3
+        case Drift():
+            came = 1 - ca.exp(-ca.fmax(moment.t, 0) / law.time)
+            return viscous * (1 + law.change * came), dry
+        case Rub():
+            return viscous, dry + (law.torque * _first_fifth(moment.turns[0]) if n == 0 else 0.0)
+    raise InputError(
+        f"The planar engine does not know {type(law).__name__}. Expected a law of the catalogue. "
+        "Take the engine mujoco."
+    )
+
+
+def _first_fifth(turned: ca.SX) -> ca.SX:
+    """1 over the first fifth of each turn, 0 over the rest."""
+    middle = 0.2 * math.pi
+    return (1 + ca.tanh((ca.cos(turned - middle) - math.cos(middle)) / _SOFT)) / 2
+
+
+def loads(rig: Rig) -> Array:
+    """With which each wheel presses on the floor, N (4,), in the order of WHEELS."""
+    one, two = rig.robot.platform1, rig.robot.platform2
+    stands = [(x, side * part.b) for x, part in ((one.c, one), (-two.c, two)) for side in (1, -1)]
+    masses = [(one.m, one.joint_to_centre, rig.left[0]), (two.m, -two.joint_to_centre, rig.left[1])]
+    if rig.load is not None:
+        masses.append((rig.load[0], one.joint_to_centre, 0.0))
+    balance = np.array([(1.0, x, y) for x, y in stands]).T
+    weight = -rig.gravity[2] * np.array([(m, m * x, m * y) for m, x, y in masses]).sum(0)
+    return np.linalg.lstsq(balance, weight)[0]
+
+
+QUICK = 1000.0
+"""1/s, how fast the motor settles. A robot that is asked for an acceleration of 30 rad/s2 is then
+30/QUICK^2 = 0.03 mrad behind, or up to three times that where its wheels stand in the way."""
+
+
+@dataclass(frozen=True)
+class Motor:
+    """stiffness, N m/rad; damping, N m s/rad."""
+
+    stiffness: float
+    damping: float
+
+
+def motor(robot: Robot) -> Motor:
+    """Critically damped for the platforms as they turn against each other about a joint at rest."""
+    one, two = robot.platform1.joint_inertia, robot.platform2.joint_inertia
+    inertia = one * two / (one + two)
+    return Motor(inertia * QUICK**2, 2 * inertia * QUICK)
+
+
+def turned_by(built: Layout) -> str:
+    """The coordinate that the motor turns: behind play a shaft, which has no inertia of its own."""
+    return "shaft" if "shaft" in built.names else "phi"
+
+
+def turning(moment: Moment, robot: Robot) -> Pull:
+    """The motor's torque."""
+    made, drive = moment.layout.of(turned_by(moment.layout)), motor(robot)
+    pull = spring(moment, made, drive.stiffness, drive.damping, moment.asked)
+    return replace(pull, push=pull.push + drive.damping * moment.rate)
+
+
+def pushed(moment: Moment, rig: Rig, nudge: ca.SX) -> ca.SX:
+    """The generalised forces (n). nudge: m/s2, what a push on platform 1 along its axis gives all
+    mass. Slope and cord act once the robot is let go."""
+    total = ca.SX(moment.layout.q.numel(), 1)
+    down = ca.vertcat(*map(float, rig.gravity[:2]))
+    for body in moment.layout.bodies:
+        total += moment.free * (moment.way(body.place).T @ (body.m * down))
+    first = moment.layout.bodies[0]
+    mass = sum(body.m for body in moment.layout.bodies[:2])
+    total += moment.way(first.place).T @ (nudge * mass * axis(first.heading))
+    if rig.tether is not None:
+        post = ca.vertcat(rig.tether.x, rig.tether.y)
+        # The cord is tied over the mass's place on the axis.
+        tied = moment.layout.ends[0][:2] + rig.robot.platform1.joint_to_centre * axis(first.heading)
+        length = ca.norm_2(tied - post)
+        taut = rig.tether.stiffness * ca.fmax(length - rig.tether.slack, 0)
+        total -= moment.free * taut * moment.way(length).T
+    return total
+
+
+SLACKENS = 2e-3
+"""s, in which a bent platform straightens: its axle has no mass of its own, so a damper alone says
+how fast."""
+
+RINGS = 0.1
+"""A shifting load's damper over its spring and mass, c/sqrt(k m): it swings some ten times."""
+
+
+def bent(moment: Moment, rig: Rig) -> list[Pull]:
+    """All that the rig has."""
+    pulls = []
+    if rig.spring is not None:
+        for name in ("bend1", "bend2"):
+            angle = moment.layout.of(name)
+            pulls.append(spring(moment, angle, rig.spring, SLACKENS * rig.spring))
+    if rig.load is not None:
+        mass, stiffness = rig.load
+        damping = RINGS * (mass * stiffness) ** 0.5
+        pulls.append(spring(moment, moment.layout.of("shift"), stiffness, damping))
+    return pulls
+
+
+STOPS_QUICK = 1000.0
+"""1/s, how fast what hits a stop comes to rest in it: within some milliseconds."""
+
+FIRST_ANGLE, FIRST_LENGTH = 1e-5, 1e-6
+"""rad and m, the depth over which a stop's damper fades in; a hundredth of what noise lets see."""
+
+
+def stops(moment: Moment, rig: Rig) -> list[Pull]:
+    """All that the rig has."""
+    return [*_play(moment, rig), *_pin(moment, rig)]
+
+
+def _play(moment: Moment, rig: Rig) -> list[Pull]:
+    """The platform runs freely on the shaft, half the play to either side."""
+    if not rig.play:
+        return []
+    ahead = moment.layout.of("phi") - moment.layout.of("shaft")
+    # As stiff as the motor, against which it is pressed.
+    drive = motor(rig.robot)
+    return [_stop(moment, ahead, rig.play / 2, drive.stiffness, drive.damping, FIRST_ANGLE)]
+
+
+def _pin(moment: Moment, rig: Rig) -> list[Pull]:
+    """A round pin in a round hole: free within, pushed back to the middle at the rim."""
+    if not rig.pin:
+        return []
+    across = [moment.layout.of(name) for name in ("pin_ahead", "pin_left")]
+    # The root has no slope in the middle, where nothing is pushed anyway.
+    off = ca.sqrt(across[0] ** 2 + across[1] ** 2 + FIRST_LENGTH**2)
+    one, two = rig.robot.platform1.m, rig.robot.platform2.m
+    mass = one * two / (one + two)
+    return [
+        _stop(moment, off, rig.pin, mass * STOPS_QUICK**2, 2 * mass * STOPS_QUICK, FIRST_LENGTH)
+    ]
+
+
+def _stop(
+    moment: Moment, off: ca.SX, reach: float, stiffness: float, damping: float, first: float
+) -> Pull:
+    """Stops at `reach` to both sides of 0."""
+    side = ca.sign(off)
+    deep = ca.fmax(ca.fabs(off) - reach, 0)
+    deepens = side * (moment.way(off) @ moment.w)
+    damper = damping * deep / (deep + first)
+    touches = ca.logic_and(deep > 0, stiffness * deep + damper * deepens > 0)
+    return spring(moment, off, touches * stiffness, touches * damper, side * reach)

@@ -1,0 +1,80 @@
+"""What was said of what was hidden: right is blue and on the diagonal, wrong is orange."""
+
+from __future__ import annotations
+
+from matplotlib.axes import Axes
+from matplotlib.patches import Rectangle
+
+from rr_lab.trial.confusion import Confusion, confusion
+from rr_lab.trial.trial import Opened
+from rr_opt.report.figures.style import (
+    BACKWARD,
+    FAINT,
+    FORWARD,
+    GREY,
+    INK,
+    PAPER,
+    figure,
+    styled,
+    svg,
+)
+
+_CELL = 0.42
+"""Inches."""
+
+
+def draw(opened: Opened) -> str:
+    """The figure as SVG."""
+    counted = confusion(opened.cases)
+    with styled():
+        drawn = figure(3.2 + _CELL * len(counted.columns), 2.6 + _CELL * len(counted.rows))
+        matrix(drawn.subplots(), counted)
+        return svg(drawn)
+
+
+def matrix(ax: Axes, counted: Confusion) -> None:
+    """A square a count; where it is right its shade is the share of its row."""
+    totals = {
+        row: sum(counted.counts.get((row, col), 0) for col in counted.columns)
+        for row in counted.rows
+    }
+    for y, row in enumerate(counted.rows):
+        for x, column in enumerate(counted.columns):
+            _cell(ax, x, y, counted.counts.get((row, column), 0), totals[row], right=row == column)
+    right = sum(counted.counts.get((row, row), 0) for row in counted.rows)
+    ax.set_title(f"{right} of {sum(totals.values())} said what was hidden", pad=14)
+    ax.set_xlim(0, max(1, len(counted.columns)))
+    ax.set_ylim(max(1, len(counted.rows)), 0)
+    ax.set_aspect("equal")
+    ax.grid(visible=False)
+    ax.tick_params(length=0)
+    ax.spines[:].set_visible(False)
+    ax.set_xticks([x + 0.5 for x in range(len(counted.columns))], map(_words, counted.columns))
+    ax.tick_params(axis="x", labelrotation=55)
+    for label in ax.get_xticklabels():
+        label.set(ha="right", rotation_mode="anchor")
+    ax.set_yticks([y + 0.5 for y in range(len(counted.rows))], map(_words, counted.rows))
+    ax.set_xlabel("said")
+    ax.set_ylabel("hidden")
+
+
+def _cell(ax: Axes, x: int, y: int, count: int, total: int, *, right: bool) -> None:
+    share = count / total if total else 0.0
+    colour = FORWARD if right else BACKWARD
+    ax.add_patch(
+        Rectangle((x + 0.04, y + 0.04), 0.92, 0.92, facecolor=PAPER, edgecolor=FAINT, lw=0.6)
+    )
+    if count:
+        # A miss is seen at once, however rare it is.
+        shade = 0.25 + 0.75 * share if right else 1.0
+        ax.add_patch(
+            Rectangle((x + 0.04, y + 0.04), 0.92, 0.92, facecolor=colour, alpha=shade, lw=0)
+        )
+        ink = PAPER if shade > 0.6 else INK
+        ax.text(x + 0.5, y + 0.52, str(count), ha="center", va="center", color=ink, weight="bold")
+    elif right:
+        ax.text(x + 0.5, y + 0.5, "0", ha="center", va="center", color=GREY)
+
+
+def _words(name: str) -> str:
+    return name.replace("_", " ")

@@ -1,0 +1,207 @@
+"""What a wheel's friction depends on beside its speed: its place, its turns, the time.
+
+The robot on the laboratory's bench: what it is made of, before an engine is told.
+
+A hidden effect changes a rig. A rig that no effect has touched is the nominal robot.
+
+Plain data that every engine reads. An engine that goes through a motion step by step calls a law
+with the wheels as they are; another one may make expressions of the same data.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from rr_opt.array import Array
+from rr_opt.model.robot import Robot
+
+WHEELS = ("1L", "1R", "2L", "2R")
+"""Platform and side, in the order of every list of four."""
+
+GRAVITY = 9.81
+
+GRIPS = 50.0
+"""The grip of wheels that never slide."""
+
+Shaper = Callable[[Array, Array], Array]
+"""(times, angles the servo was to make) -> angles it makes; rad at equal steps, s."""
+
+
+@dataclass
+class Turning:
+    """The wheels at an instant, and what brakes them, which a law may change.
+
+    t        since the robot was let go, s; negative while it settles
+    rate     of turning of each wheel, rad/s (4,)
+    angle    each has turned by, rad (4,)
+    places   of the wheels' centres on the floor, m (4, 2)
+    damping  N m s (4,), dry N m (4,): as the rig has them, to be changed in place
+    """
+
+    t: float
+    rate: Array
+    angle: Array
+    places: Array
+    damping: Array
+    dry: Array
+
+
+Law = Callable[[Turning], None]
+
+
+@dataclass(frozen=True)
+class Tether:
+    """A cord from a post at (x, y) to platform 1's centre of mass: it pulls when longer than
+    `slack` (m), with `stiffness` (N/m)."""
+
+    x: float
+    y: float
+    slack: float
+    stiffness: float
+
+
+@dataclass
+class Rig:
+    """A robot and what is hidden in it. Lists of four are by WHEELS, of two by platform.
+
+    robot      its true values
+    kappa      viscous friction, N m s; the robot's by default
+    quadratic  friction, N m s2
+    dry        friction, N m
+    J          kg m2, hidden spin inertia
+    onset      m/s at the rim, over which dry friction sets in; None: an engine's own. MuJoCo has
+               its own always
+    toe        rad, the axle turned counter-clockwise about its centre
+    left       m, the centre of mass to the left of the axis
+    mu         grip of the wheels; large by default, so that none slides
+    creep      m/(N s), side speed per side force of a wheel
+    tilt       downhill components, rad
+    play       rad, between servo and platform 2
+    pin        m, the joint pin's clearance
+    spring     N m/rad, with which each platform bends half way between joint and axle; None: it is
+               rigid
+    load       mass (kg) and stiffness (N/m) of what shifts on platform 1; None: nothing does
+    tether     the cord that holds platform 1; None: nothing does
+    offset     rad, is added to the command before it is shaped
+    shapers    of the command, in order
+    laws       of the wheels' friction, in order: each changes what the ones before it left
+    tracked    m, where the point that is taken for P lies in platform 1's frame
+    clock      s, recording time t is command time t + clock
+    """
+
+    robot: Robot
+    kappa: list[float] = field(default_factory=list)
+    quadratic: list[float] = field(default_factory=lambda: [0.0] * 4)
+    dry: list[float] = field(default_factory=lambda: [0.0] * 4)
+    J: list[float] = field(default_factory=lambda: [0.0] * 4)
+    onset: float | None = None
+    toe: list[float] = field(default_factory=lambda: [0.0, 0.0])
+    left: list[float] = field(default_factory=lambda: [0.0, 0.0])
+    mu: float = GRIPS
+    creep: float = 0.0
+    tilt: tuple[float, float] = (0.0, 0.0)
+    play: float = 0.0
+    pin: float = 0.0
+    spring: float | None = None
+    load: tuple[float, float] | None = None
+    tether: Tether | None = None
+    offset: float = 0.0
+    shapers: list[Shaper] = field(default_factory=list)
+    laws: list[Law] = field(default_factory=list)
+    tracked: tuple[float, float] = (0.0, 0.0)
+    clock: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not self.kappa:
+            one, two = self.robot.platform1.kappa, self.robot.platform2.kappa
+            self.kappa = [one, one, two, two]
+
+    @property
+    def gravity(self) -> Any:
+        """On the floor's own axes, m/s2 (3,)."""
+        x, y = np.sin(self.tilt)
+        return GRAVITY * np.array([x, y, -np.sqrt(1 - x * x - y * y)])
+
+
+@dataclass(frozen=True)
+class Circle:
+    """A round place, m."""
+
+    x: float
+    y: float
+    radius: float
+
+    def depth(self, x: Any, y: Any) -> Any:
+        """How far inside a point is, m; negative outside. Of numbers or expressions."""
+        return self.radius - ((x - self.x) ** 2 + (y - self.y) ** 2) ** 0.5
+
+
+@dataclass(frozen=True)
+class Edge:
+    """All that lies beyond a straight edge through (x, y), m; normal, rad, points into it."""
+
+    x: float
+    y: float
+    normal: float
+
+    def depth(self, x: Any, y: Any) -> Any:
+        """How far beyond a point is, m; negative before it. Of numbers or expressions."""
+        return (x - self.x) * math.cos(self.normal) + (y - self.y) * math.sin(self.normal)
+
+
+@dataclass(frozen=True)
+class Patch:
+    """Friction `times` as large for each wheel that is within."""
+
+    times: float
+    within: Circle | Edge
+
+    def __call__(self, wheels: Turning) -> None:
+        """The friction of this instant."""
+        # Plain numbers: a law is asked at every step, and tables of four cost more than they do.
+        for wheel, place in enumerate(wheels.places.tolist()):
+            if self.within.depth(*place) > 0:
+                wheels.damping[wheel] *= self.times
+                wheels.dry[wheel] *= self.times
+
+
+@dataclass(frozen=True)
+class Falling:
+    """Dry friction of all wheels that falls from `torque` (N m) to a third of it as they turn
+    faster than `rate` (rad/s)."""
+
+    torque: float
+    rate: float
+
+    def __call__(self, wheels: Turning) -> None:
+        """The friction of this instant."""
+        wheels.dry += self.torque * (1 + 2 * np.exp(-((wheels.rate / self.rate) ** 2))) / 3
+
+
+@dataclass(frozen=True)
+class Drift:
+    """Viscous friction that changes by the fraction `change` with the time constant `time` (s)."""
+
+    change: float
+    time: float
+
+    def __call__(self, wheels: Turning) -> None:
+        """The friction of this instant."""
+        wheels.damping *= 1 + self.change * (1 - np.exp(-max(wheels.t, 0.0) / self.time))
+
+
+@dataclass(frozen=True)
+class Rub:
+    """The left wheel of platform 1 rubs with `torque` (N m) over the first fifth of each turn."""
+
+    torque: float
+
+    def __call__(self, wheels: Turning) -> None:
+        """The friction of this instant."""
+        if wheels.angle[0] % (2 * np.pi) < 0.4 * np.pi:
+            wheels.dry[0] += self.torque

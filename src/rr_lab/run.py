@@ -1,0 +1,103 @@
+"""A run: the robot let go with a gait, what a capture system makes of it, and a recording of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rr_lab.rig import Rig
+from rr_opt.array import Array
+from rr_opt.model.experiment import Flag, Noise, Recording
+from rr_opt.model.gait import Gait
+
+
+@dataclass(frozen=True)
+class Outing:
+    """How a robot is let go.
+
+    seconds, rate   how long is recorded, s, and how often, 1/s
+    start           `rest`: the command begins at its time 0; `running`: `periods` whole periods
+                    before, from rest
+    nudge           m/s, a push at the recording's t = 0, by which the whole mass would be faster
+    torque          whether the servo's is written down too
+    pose            x (m), y (m) of P and heading (rad) of platform 1 where it is put down
+    """
+
+    seconds: float
+    start: Literal["rest", "running"] = "rest"
+    pose: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    rate: float = 100.0
+    periods: int = 3
+    nudge: float = 0.0
+    torque: bool = False
+
+    def begin(self, gait: Gait) -> float:
+        """When the command begins, s on its own clock."""
+        return 0.0 if self.start == "rest" else -self.periods * gait.period
+
+
+@dataclass(frozen=True)
+class Motion:
+    """What truly happened, at the recording's times t (n,), s.
+
+    one, two  x (m), y (m) and heading (rad, unwrapped) of the platforms' joint ends, (n, 3). A
+              loose pin sets them apart
+    torque    of the servo on platform 2, N m (n,), if it was asked for
+    """
+
+    t: Array
+    one: Array
+    two: Array
+    torque: Array | None = None
+
+
+def asked_angle(rig: Rig, gait: Gait, begin: float, t: NDArray[Any]) -> Array:
+    """The angle that the servo is to make, rad, at the times t: the command, shaped by its faults.
+
+    begin  when the command begins, s; before it the servo holds its first angle
+    """
+    angle = gait.angle(np.maximum(t, begin)) + rig.offset
+    for shaper in rig.shapers:
+        angle = shaper(t, angle)
+    return angle
+
+
+def captured(
+    motion: Motion,
+    name: str,
+    noise: Noise,
+    rng: np.random.Generator,
+    *,
+    tracked: tuple[float, float] = (0.0, 0.0),
+    missing: float = 0.0,
+) -> Recording:
+    """A motion as it is recorded, with white noise; with the torque if it was written down.
+
+    tracked  the point that is taken for the joint, m, in platform 1's frame
+    missing  fraction of the samples that are lost, all channels at once
+    """
+    x, y, psi = motion.one.T
+    phi = motion.two[:, 2] - psi
+    dx, dy = tracked
+    true = {
+        "x": x + dx * np.cos(psi) - dy * np.sin(psi),
+        "y": y + dx * np.sin(psi) + dy * np.cos(psi),
+        "psi": psi,
+        # The two headings are unwrapped apart, and may differ by whole turns.
+        "phi": phi - 2 * np.pi * np.round(phi[0] / (2 * np.pi)),
+    }
+    if motion.torque is not None:
+        true["torque"] = motion.torque
+    n = len(motion.t)
+    lost = rng.random(n) < missing
+    values, sigma, flags = {}, {}, {}
+    for channel, exact in true.items():
+        size = noise.of(channel)
+        values[channel] = np.where(lost, np.nan, exact + size * rng.standard_normal(n))
+        sigma[channel] = np.full(n, size)
+        flags[channel] = np.where(lost, np.uint8(Flag.MISSING), np.uint8(0))
+    source = {"laboratory": "virtual", "rate": f"{1 / (motion.t[1] - motion.t[0]):g} Hz"}
+    return Recording(name, motion.t, values, sigma, flags, source)

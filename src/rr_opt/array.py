@@ -1,0 +1,9 @@
+"""The array type of the package."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+"""Floats, in any shape; docstrings give the shape."""

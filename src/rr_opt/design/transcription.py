@@ -1,0 +1,263 @@
+"""The program of multiple shooting: its mesh, its unknowns and rows, names in, names out.
+
+The mesh of a program: its nodes, and where between them limits are held.
+
+A limit that holds at every node can be broken between two, and where a shape has many
+coefficients the solver sees to it that its peaks lie there. So phases at which an answer breaks a
+limit are added to those at which it is held, and it is solved again, until its peaks have nowhere
+to go. Only a sine's peaks are as good as known: a node moved onto one is enough.
+
+The order of unknowns and rows in the program: names in, names out.
+
+Unknowns are the decisions, the means over the period, and then, node by node for each name, the
+local ones. Rows are the continuity of each state, the means, the rows of the period and, node by
+node for each name, those along the path.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from rr_opt.array import Array
+from rr_opt.design.shapes.shape import Shape
+from rr_opt.model.problem import Interval
+
+LADDER = (16, 20, 24, 30, 36, 48, 72, 96, 144, 192, 288, 384, 768)
+"""Numbers of intervals to choose from, so that few programs are ever built."""
+
+LOOKS = np.array([2, 1, 3]) / 4
+"""Places of an interval at which the torque is held; the first one always."""
+_REGULAR = 1
+_ORDER = 6
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """Where a program looks at the gait.
+
+    phases    nodes, (N,), increasing over less than 1 from about 0
+    substeps  steps of the integrator in each interval
+    looks     (N, M) fractions of the intervals at which the torque is held beside the nodes: LOOKS
+              of them, or none
+    checks    (K,) phases at which angle and rate are, beside the shape's regular grid
+    margin    kept from the torque's limit everywhere, relative
+    """
+
+    phases: Array
+    substeps: int
+    looks: Array
+    checks: Array
+    margin: float = 0.0
+
+    @property
+    def intervals(self) -> int:
+        """N."""
+        return len(self.phases)
+
+    def with_nodes_at(self, peaks: Array) -> Mesh:
+        """With equal intervals but for the nodes that are nearest to these phases of [0, 1), which
+        are moved there. The first may come to lie just before 0."""
+        phases = np.arange(self.intervals) / self.intervals
+        for peak in peaks:
+            nearest = round(peak * self.intervals)
+            phases[nearest % self.intervals] = peak - nearest // self.intervals
+        return replace(self, phases=phases)
+
+    def with_torque_at(self, peaks: Array) -> Mesh:
+        """With the torque held at these phases of [0, 1) too.
+
+        In each interval the look that is farthest from the peak gives way, of those that are not
+        regular: what is near keeps the peak from moving aside.
+        """
+        if not len(peaks):
+            return self
+        looks = self.looks.copy()
+        if not looks.shape[1]:
+            looks = np.tile(LOOKS, (self.intervals, 1))
+        ends = np.append(self.phases, self.phases[0] + 1)
+        for peak in ends[0] + (peaks - ends[0]) % 1:
+            k = int(np.searchsorted(ends, peak, side="right")) - 1
+            fraction = (peak - ends[k]) / (ends[k + 1] - ends[k])
+            looks[k, _REGULAR + np.abs(looks[k, _REGULAR:] - fraction).argmax()] = fraction
+        return replace(self, looks=looks)
+
+    def with_checks_at(self, phases: Array) -> Mesh:
+        """With angle and rate held at these phases too."""
+        return replace(self, checks=np.append(self.checks, phases))
+
+
+def regular(intervals: int) -> Mesh:
+    """Equal intervals, the torque held at nodes alone."""
+    phases = np.arange(intervals) / intervals
+    return Mesh(phases, 1, np.zeros((intervals, 0)), np.zeros(0))
+
+
+def intervals_for(intervals: int, error: float, wanted: float) -> int:
+    """How many intervals make the wanted error, if so many make this one."""
+    needed = intervals * (error / wanted) ** (1 / _ORDER)
+    return at_least(needed)
+
+
+def at_least(intervals: float) -> int:
+    """The next number of the ladder."""
+    return next((n for n in LADDER if n >= intervals), LADDER[-1])
+
+
+COMMON = ("period", "ballast", "turn")
+"""T (s), I2 (kg m2) or number of loads on a scale from 0 at its lower bound to 1 at its upper,
+heading per period (rad)."""
+MEANS = ("Vx", "Vy", "Ex", "Ey")
+"""Mean velocity (m/s) and mean heading vector, in the frame that turns with the gait."""
+DYNAMIC = ("v", "chi")
+"""Speed of axle 1 (m/s), heading seen from that frame (rad)."""
+TURN = ("curvature", "yaw_rate", "heading")
+ROWS = ("direction", *TURN)
+"""Rows that hold once a period whatever the shape."""
+
+FREE = Interval(-np.inf, np.inf)
+ZERO = Interval(0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Unknowns and rows of the program of a shape with `intervals` intervals, in each of which
+    the torque is held at `looks` places beside the node."""
+
+    shape: Shape
+    intervals: int
+    looks: int
+
+    @property
+    def decisions(self) -> tuple[str, ...]:
+        """Unknowns of the whole period."""
+        return COMMON + self.shape.decisions
+
+    @property
+    def means(self) -> tuple[str, ...]:
+        """Means over the period."""
+        return MEANS + self.shape.integrals
+
+    @property
+    def states(self) -> tuple[str, ...]:
+        """Local unknowns that an interval carries on."""
+        return DYNAMIC + self.shape.states
+
+    @property
+    def local(self) -> tuple[str, ...]:
+        """Unknowns of every node."""
+        return self.states + self.shape.controls
+
+    @property
+    def limits(self) -> tuple[str, ...]:
+        """Rows that hold once a period."""
+        return self.shape.limits + ROWS
+
+    @property
+    def path(self) -> tuple[str, ...]:
+        """Rows of every node."""
+        return self.shape.path + self.torque
+
+    @property
+    def torque(self) -> tuple[str, ...]:
+        """The torque at the node, at the looks and, where it jumps at nodes, at the end."""
+        looks = tuple(f"torque{k}" for k in range(self.looks))
+        return ("torque", *looks, "torque_end") if self.shape.controls else ("torque", *looks)
+
+    def first(self, name: str) -> int:
+        """Where among the unknowns the first of a local one is."""
+        once = len(self.decisions) + len(self.means)
+        return once + self.local.index(name) * self.intervals
+
+    def unknowns(self, x: Array) -> dict[str, Any]:
+        """Numbers by name, (N,) of a local one."""
+        return self._named(x, self.decisions + self.means, self.local)
+
+    def rows(self, g: Array) -> dict[str, Any]:
+        """Rows by name but for those that tie nodes and means together."""
+        tied = self.intervals * len(self.states) + len(self.means)
+        return self._named(g[tied:], self.limits, self.path)
+
+    def stacked(self, values: Mapping[str, Any]) -> Array:
+        """The vector of unknowns."""
+        return np.concatenate(
+            [
+                [values[name] for name in self.decisions + self.means],
+                *(values[name] for name in self.local),
+            ]
+        )
+
+    def bounds(self, unknowns: Mapping[str, Interval]) -> tuple[Array, Array]:
+        """Lower and upper bounds of the unknowns; what has no name is free."""
+        return self._bounds(unknowns, self.decisions + self.means, self.local, 0)
+
+    def row_bounds(self, rows: Mapping[str, Interval]) -> tuple[Array, Array]:
+        """Lower and upper bounds of all rows; what ties nodes and means together is 0."""
+        tied = self.intervals * len(self.states) + len(self.means)
+        return self._bounds(rows, self.limits, self.path, tied)
+
+    def _named(self, values: Array, once: tuple[str, ...], along: tuple[str, ...]) -> dict:
+        parts = values[len(once) :].reshape(len(along), self.intervals)
+        return dict(zip(once, values, strict=False)) | dict(zip(along, parts, strict=True))
+
+    def _bounds(
+        self,
+        given: Mapping[str, Interval],
+        once: tuple[str, ...],
+        along: tuple[str, ...],
+        tied: int,
+    ) -> tuple[Array, Array]:
+        intervals = [given.get(name, FREE) for name in once]
+        for name in along:
+            intervals += [given.get(name, FREE)] * self.intervals
+        intervals = [ZERO] * tied + intervals
+        return (
+            np.array([interval.low for interval in intervals]),
+            np.array([interval.high for interval in intervals]),
+        )
+
+
+class PeriodTerms:
+    """The limits of a shape and the rows of ROWS.
+
+    values  (z, mean, fixed, checks, sign) -> rows
+    slopes  -> their Jacobians in z and mean
+    curves  (.., multipliers) -> blocks z-z, z-mean and mean-mean of the Hessian
+    """
+
+    def __init__(self, shape: Shape, z: ca.SX, fixed: ca.SX, c1: ca.SX, c2: ca.SX):
+        mean_names = MEANS + shape.integrals
+        mean, sign = ca.SX.sym("mean", len(mean_names)), ca.SX.sym("sign")
+        checks = ca.SX.sym("checks", shape.checks)
+        decided = named(COMMON + shape.decisions, z)
+        own = shape.limit_rows(
+            decided, named(mean_names, mean), tuple(ca.vertsplit(checks)), c1, c2
+        )
+        V, E = mean[:2], mean[2:4]
+        rate = decided["turn"] / decided["period"]
+        rows = ca.vertcat(*own, sign * ca.dot(V, E), rate / ca.norm_2(V), rate, decided["turn"])
+        lam = ca.SX.sym("lam", len(shape.limits) + len(ROWS))
+        weighted = ca.dot(lam, rows)
+        inputs = [z, mean, fixed, checks, sign]
+        self.values = ca.Function("limits", inputs, [rows])
+        self.slopes = ca.Function(
+            "limit_slopes", inputs, [ca.jacobian(rows, z), ca.jacobian(rows, mean)]
+        )
+        self.curves = ca.Function(
+            "limit_curves",
+            [*inputs, lam],
+            [
+                ca.hessian(weighted, z)[0],
+                ca.jacobian(ca.gradient(weighted, z), mean),
+                ca.hessian(weighted, mean)[0],
+            ],
+        )
+
+
+def named(names: tuple[str, ...], stacked: ca.SX) -> dict[str, ca.SX]:
+    """The entries of a vector by name."""
+    return dict(zip(names, ca.vertsplit(stacked), strict=True))

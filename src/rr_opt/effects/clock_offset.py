@@ -1,0 +1,14 @@
+"""A recording's clock that is not the command's: time t of the recording is t + offset of it."""
+
+from __future__ import annotations
+
+from rr_opt.effects.effect import Effect, Parameter, Port
+
+EFFECT = Effect(
+    name="clock_offset",
+    family="measurement",
+    port=Port.MEASUREMENT,
+    parameters=(Parameter("offset", "s", (-0.5, 0.5), 0.01),),
+    sentence="The recording's clock and the command's clock differ, by the same in all runs.",
+    delay="offset",
+)

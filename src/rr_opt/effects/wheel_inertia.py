@@ -1,0 +1,35 @@
+"""The wheels' own moment of inertia about their axles, which spins up as they roll."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import casadi as ca
+
+from rr_opt.effects.effect import Effect, Parameter, Port, Setting
+from rr_opt.mechanics.kinematics import Mechanism, Rotor
+
+
+def _enter(mechanism: Mechanism, values: Mapping[str, ca.SX]) -> Mechanism:
+    h = mechanism.parameters["h"]
+    wheels = tuple(
+        Rotor(values["J"], mechanism.rolling_speed(wheel) / h) for wheel in mechanism.wheels
+    )
+    return replace(mechanism, rotors=mechanism.rotors + wheels)
+
+
+def _of_mass(setting: Setting) -> float:
+    """So much that four of them weigh as a tenth of the robot: J/h^2 each."""
+    robot = setting.robot
+    return 0.1 * (robot.platform1.m + robot.platform2.m) * robot.h**2 / 4
+
+
+EFFECT = Effect(
+    name="wheel_inertia",
+    family="rolling",
+    port=Port.MASS,
+    parameters=(Parameter("J", "kg m^2", (0.0, 1e-2), 1e-6, natural=_of_mass),),
+    sentence="Turning the wheels about their axles takes energy of its own.",
+    enter=_enter,
+)

@@ -1,1 +1,0 @@
-"""What was done with a robot and what was seen of it, as frozen data."""

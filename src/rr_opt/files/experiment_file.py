@@ -1,0 +1,270 @@
+"""An experiment file to a checked plan of what was done."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from rr_opt.files.experiment_model import (
+    ExperimentModel,
+    RecordingModel,
+    shares_of_nothing,
+    uncertainty_of,
+)
+from rr_opt.files.experiment_plan import ExperimentPlan, PlannedRun, places_from
+from rr_opt.files.fields import validate
+from rr_opt.files.gait_record import gait_from
+from rr_opt.files.issue import InvalidFileError, Issue, has_errors, shown
+from rr_opt.files.problem_file import kind_of
+from rr_opt.files.robot_file import robot_from
+from rr_opt.files.source import is_result, read_document
+from rr_opt.files.yaml_text import Document
+from rr_opt.model.experiment import CountScale, Noise
+from rr_opt.model.gait import Gait
+from rr_opt.model.robot import Robot
+
+
+def robot_of(document: Document, file: Path) -> tuple[Robot | None, list[Path], list[Issue]]:
+    """The robot (None if it cannot be read), the files it is in beside this one, and all issues."""
+    if "robot" not in document.data:
+        return None, [], []  # told with the other keys that are missing
+    given = document.data["robot"]
+    if isinstance(given, dict):
+        return _with_paths(robot_from(document.section("robot")), [])
+    if not isinstance(given, str) or not given:
+        message = f"Read {shown(given)}. Expected the name of a robot file, or the robot itself."
+        return None, [], [document.issue("error", ("robot",), message)]
+    named = file.parent / given
+    try:
+        return _with_paths(robot_from(read_document(named)), [named])
+    except InvalidFileError as error:
+        issues = [
+            document.issue("error", ("robot",), f"Read {shown(given)}. {one.message}")
+            if one.line is None
+            else one
+            for one in error.issues
+        ]
+        return None, [], issues
+
+
+def _with_paths(
+    read: tuple[Robot | None, list[Issue]], paths: list[Path]
+) -> tuple[Robot | None, list[Path], list[Issue]]:
+    robot, issues = read
+    return robot, paths, issues
+
+
+def runs_from(document: Document, file: Path) -> tuple[tuple[PlannedRun, ...], list[Issue]]:
+    """The runs that could be read, and all issues; files are named relative to `file`."""
+    entries = document.data.get("recordings")
+    if not isinstance(entries, list) or not entries:
+        message = (
+            f"Read {shown(entries)}. Expected a list of recordings. Write for example "
+            "`- {file: run01.csv, gait: {amplitude: 0.5, period: 1 s, offset: 0}}`."
+        )
+        return (), [document.issue("error", ("recordings",), message)]
+    runs: list[PlannedRun] = []
+    issues: list[Issue] = []
+    for index, entry in enumerate(entries):
+        if not isinstance(entry, dict):
+            message = f"Read {shown(entry)}. Expected {{file: ..., gait: ...}}. Write it so."
+            issues.append(document.issue("error", ("recordings", index), message))
+            continue
+        prefix = (*document.prefix, "recordings", index)
+        run, found = _run(replace(document, data=entry, prefix=prefix), file)
+        issues += found
+        if run is not None:
+            runs.append(run)
+    issues += _twice(document, entries)
+    return tuple(runs), issues or _uses(document, runs)
+
+
+def _run(document: Document, file: Path) -> tuple[PlannedRun | None, list[Issue]]:
+    model, issues = validate(RecordingModel, document)
+    gait, found = _gait(document, file) if "gait" in document.data else (None, [])
+    issues += found
+    for key in ("file", "servo_log"):
+        name = document.data.get(key)
+        why = _unusable(file.parent / name) if isinstance(name, str) else ""
+        if why:
+            issues.append(document.issue("error", (key,), f"Read {shown(name)}. {why}"))
+    if model is None or gait is None or issues:
+        return None, issues
+    log = None if model.servo_log is None else file.parent / model.servo_log
+    return PlannedRun(file.parent / model.file, gait, model.use, model.start, log), issues
+
+
+def usable(file: Path, name: str) -> bool:
+    """Whether a name, relative to an experiment file, is that of a file."""
+    return not _unusable(file.parent / name)
+
+
+def _unusable(path: Path) -> str:
+    try:
+        if path.is_file():
+            return ""
+        return "This is a folder. Expected a file." if path.is_dir() else _MISSING
+    except (OSError, ValueError):
+        return _MISSING
+
+
+_MISSING = "There is no such file. Check its name and folder."
+
+
+def _gait(document: Document, file: Path) -> tuple[Gait | None, list[Issue]]:
+    """The gait written in the entry, or that of the result that it names."""
+    given = document.data["gait"]
+    if isinstance(given, dict):
+        return gait_from(document.section("gait"))
+    if not isinstance(given, str):
+        message = (
+            f"Read {shown(given)}. Expected the gait, or the name of a result that holds it. "
+            "Write for example `{amplitude: 0.5, period: 1 s, offset: 0}`."
+        )
+        return None, [document.issue("error", ("gait",), message)]
+    try:
+        result = read_document(file.parent / given)
+    except InvalidFileError as error:
+        why = error.issues[0].message
+        return None, [document.issue("error", ("gait",), f"Read {shown(given)}. {why}")]
+    if not is_result(result.data) or not isinstance(result.data.get("gait"), dict):
+        message = f"Read {shown(given)}, which holds no gait. Expected a result of rr-opt."
+        return None, [document.issue("error", ("gait",), message)]
+    return gait_from(result.section("gait"))
+
+
+def _twice(document: Document, entries: list[object]) -> list[Issue]:
+    """A recording that is there twice would be fitted and held out, or count double."""
+    issues: list[Issue] = []
+    seen: dict[str, int] = {}
+    for index, entry in enumerate(entries):
+        name = entry.get("file") if isinstance(entry, dict) else None
+        if not isinstance(name, str):
+            continue
+        first = seen.setdefault(str(Path(name)), index)
+        if first != index:
+            message = f"Read {shown(name)}, which is recordings[{first}] too. Keep one of them."
+            issues.append(document.issue("error", ("recordings", index, "file"), message))
+    return issues
+
+
+def _uses(document: Document, runs: list[PlannedRun]) -> list[Issue]:
+    """What cannot be done with the recordings there are."""
+    uses = [run.use for run in runs]
+    if "fit" not in uses:
+        message = "No recording is to be fitted. Give at least one `use: fit`."
+    elif "holdout" not in uses:
+        message = "No recording is kept back to check a fit on. Give one of them `use: holdout`."
+    else:
+        return []
+    return [document.issue("warning", ("recordings",), message)]
+
+
+FILE_NAME = "experiment.yaml"
+
+
+def experiment_path(path: Path) -> Path:
+    """The experiment file of a folder; any other path as it is."""
+    try:
+        return path / FILE_NAME if path.is_dir() else path
+    except (OSError, ValueError):
+        return path
+
+
+def read_plan(path: str | Path) -> tuple[ExperimentPlan, list[Issue]]:
+    """The plan of an experiment file, or of its folder, and warnings.
+
+    Raises InvalidFileError with all that is wrong; recordings are not read.
+    """
+    file = experiment_path(Path(path))
+    document = read_document(file)
+    if kind_of(document) != "experiment":
+        message = (
+            "Read a file that names no recordings. Expected an experiment, with `robot`, `noise` "
+            "and `recordings`. `rr-opt schema experiment` tells its keys."
+        )
+        raise InvalidFileError([document.issue("error", (), message)])
+    plan, issues = plan_from(document, file)
+    if plan is None:
+        raise InvalidFileError(issues)
+    return plan, issues
+
+
+def named_files(path: Path) -> list[Path]:
+    """The recordings that an experiment file names and that are there, whatever is wrong in it."""
+    file = experiment_path(path)
+    try:
+        entries: Any = read_document(file).data.get("recordings")
+    except InvalidFileError:
+        return []
+    names = [
+        entry.get("file")
+        for entry in (entries if isinstance(entries, list) else [])
+        if isinstance(entry, dict)
+    ]
+    return [file.parent / name for name in names if isinstance(name, str) and usable(file, name)]
+
+
+def plan_from(document: Document, file: Path) -> tuple[ExperimentPlan | None, list[Issue]]:
+    """The plan (None if an issue is an error), and all issues of the file and its robot."""
+    model, issues = validate(ExperimentModel, document)
+    robot, paths, found = robot_of(document, file)
+    issues += found
+    runs: Any = ()
+    if "recordings" in document.data:
+        runs, found = runs_from(document, file)
+        issues += found
+    markers = None
+    if "markers" in document.data:
+        markers, found = _markers(document)
+        issues += found
+    if model is not None and model.servo_counts.range == 0:
+        message = "Read 0. Expected the angle that all counts cover. Write for example `300 deg`."
+        issues.append(document.issue("error", ("servo_counts", "range"), message))
+    if model is None or robot is None or has_errors(issues):
+        return None, issues
+    for key, message in shares_of_nothing(model.uncertainty, robot):
+        issues.append(document.issue("warning", ("uncertainty", key), message))
+    issues += _beyond_the_model(document, robot, [run.gait.peak_angle for run in runs])
+    plan = ExperimentPlan(
+        name=file.absolute().parent.name,
+        document=document,
+        robot=robot,
+        noise=Noise(**model.noise.model_dump()),
+        uncertainty=uncertainty_of(model.uncertainty, robot),
+        runs=runs,
+        markers=markers,
+        counts=CountScale(**model.servo_counts.model_dump()),
+        paths=(
+            file,
+            *paths,
+            *(run.file for run in runs),
+            *(run.servo_log for run in runs if run.servo_log is not None),
+        ),
+    )
+    return plan, issues
+
+
+def _markers(document: Document) -> tuple[Any, list[Issue]]:
+    given = document.data["markers"]
+    if isinstance(given, dict):
+        return places_from(document.section("markers"))
+    message = f"Read {shown(given)}. Expected `platform1` and `platform2`, each with its markers."
+    return None, [document.issue("error", ("markers",), message)]
+
+
+def _beyond_the_model(document: Document, robot: Robot, peaks: list[float]) -> list[Issue]:
+    """Recordings that reach the posture where a model without side slip means nothing."""
+    message = (
+        "The gait reaches |phi| = {peak:.4g} rad, and beyond {limit:.4g} rad lies the singular "
+        "posture, where a model without side slip means nothing."
+    )
+    limit = robot.singular_angle
+    return [
+        document.issue(
+            "warning", ("recordings", at, "gait"), message.format(peak=peak, limit=limit)
+        )
+        for at, peak in enumerate(peaks)
+        if peak >= limit
+    ]

@@ -1,1 +1,0 @@
-"""Cases drawn by lot."""

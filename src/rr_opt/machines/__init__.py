@@ -1,0 +1,1 @@
+"""The machines that can be diagnosed, a folder each."""

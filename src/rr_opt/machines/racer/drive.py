@@ -1,0 +1,196 @@
+"""The joint's angle in a run, its steps, and how it changes with what the servo does wrong."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from rr_opt.array import Array
+from rr_opt.effects import CATALOGUE
+from rr_opt.machines.racer.parameters import values_of
+from rr_opt.mechanics.drive import Drive, FreeJoint, told
+from rr_opt.model.experiment import Run
+from rr_opt.motion.floor_motion import free_joint_of
+from rr_opt.sysid.sensitivities import DriveSlopes
+from rr_opt.sysid.shooting import DrivePath
+
+_LONGEST, _FINE = 0.012, 0.003
+"""A step is no longer, s; than the second where the wheels slip or friction is dry."""
+_APART = 1e-6
+"""A jump of dphi so near to an end of a step, s, is at it."""
+_MOST = 3
+"""Between two samples; more of them are in a gap of the recording."""
+
+
+@dataclass(frozen=True)
+class Steps:
+    """The steps of a prediction, `each` of them between two samples, with their `edges`, s, on the
+    recording's clock; `stiff` if some states settle at once."""
+
+    edges: Array
+    each: int
+    stiff: bool
+
+
+def steps_of(
+    drive: Drive, t: Array, late: float, *, stiff: bool = False, sharp: bool = False
+) -> Steps:
+    """Steps between the samples t; where dphi jumps, one ends and the next begins.
+
+    Not where states settle at once: what a jump does to those is spread over its step.
+    """
+    longest = _FINE if stiff or sharp else _LONGEST
+    jumps = drive.jumps_within(t[0] + late, t[-1] + late) - late if not stiff else np.zeros(0)
+    k = np.searchsorted(t, jumps, side="right") - 1
+    inside = (jumps - t[k] > _APART) & (t[k + 1] - jumps > _APART)
+    inside[1:] &= np.diff(jumps) > _APART
+    jumps, k = jumps[inside], k[inside]
+    few = np.arange(k.size) - np.searchsorted(k, k) < _MOST
+    jumps, k = jumps[few], k[few]
+    # The jumps of a sample's interval in order, and how many of them are still to come.
+    order = np.arange(k.size) - np.searchsorted(k, k)
+    to_come = np.searchsorted(k, k, side="right") - 1 - np.arange(k.size)
+    most = int((order + to_come).max(initial=-1)) + 1
+    fewest = max(float(np.median(np.diff(t))) / longest, most + 1.0)
+    each = 2 ** max(math.ceil(math.log2(fewest)), 0)
+    edges = t[:-1, None] + np.diff(t)[:, None] * np.arange(each) / each
+    at = np.rint(each * (jumps - t[k]) / (t[k + 1] - t[k])).astype(int)
+    for n in range(most):
+        # Each jump takes the nearest edge that leaves the others theirs.
+        this = order == n
+        if n:
+            before = np.flatnonzero(this) - 1
+            at[this] = np.maximum(at[this], at[before] + 1)
+        at[this] = np.clip(at[this], n + 1, each - 1 - to_come[this])
+    edges[k, at] = jumps
+    return Steps(np.append(edges.ravel(), t[-1]), each, stiff)
+
+
+def drive_path(drive: Drive, steps: Steps, late: float, *, mean: bool = False) -> DrivePath:
+    """The drive over the steps; `mean` takes one dphi for all of a step."""
+    edges = steps.edges + late
+    h = np.diff(edges)
+    at_edges, middle = drive.at(edges)[:2], drive.at(edges[:-1] + h / 2)[:2]
+    nodes = np.stack([at_edges[:, :-1], middle, at_edges[:, 1:]], axis=1)
+    if mean or (steps.stiff and not drive.smooth):
+        nodes[1] = np.diff(at_edges[0]) / h
+    elif not drive.smooth:
+        # Inside of the step, as dphi may jump at its ends.
+        nodes[1, 0] = drive.at(edges[:-1] + _APART / 10)[1]
+        nodes[1, 2] = drive.at(edges[1:] - _APART / 10)[1]
+    at = at_edges[:, :: steps.each]
+    if steps.stiff:
+        acceleration = np.diff(at_edges[1]) / h
+        nodes = np.concatenate([nodes, np.tile(acceleration, (1, 3, 1))])
+        at = np.vstack([at, np.append(acceleration, acceleration[-1])[:: steps.each]])
+    return DrivePath(h, nodes, at, steps.each)
+
+
+class Drives:
+    """The drives of runs, each kept until others were asked for."""
+
+    def __init__(self, runs: Sequence[Run]) -> None:
+        self._runs = runs
+        self._of = lru_cache(maxsize=64)(self._made)
+
+    def __reduce__(self) -> tuple:
+        """For another process: what is kept stays here."""
+        return Drives, (self._runs,)
+
+    def of(self, run: int, given: Mapping[str, float], effects: tuple[str, ...]) -> Drive:
+        """What the servo makes of the gait that it is told in a run."""
+        own = tuple(
+            (name, tuple((q.name, given[f"{name}.{q.name}"]) for q in CATALOGUE[name].parameters))
+            for name in effects
+            if CATALOGUE[name].actuate
+        )
+        loose = any(CATALOGUE[name].loose for name, _ in own)
+        return self._of(run, own, joint_of(given) if loose else None)
+
+    def _made(
+        self,
+        run: int,
+        own: tuple[tuple[str, tuple[tuple[str, float], ...]], ...],
+        joint: FreeJoint | None,
+    ) -> Drive:
+        drive = told(self._runs[run].gait, self._runs[run].start == "rest")
+        for name, values in own:
+            actuate = CATALOGUE[name].actuate
+            if actuate:
+                drive = actuate(drive, dict(values), joint)
+        return drive
+
+
+def drive_slopes(
+    drives: Drives,
+    run: int,
+    t: Array,
+    given: Mapping[str, float],
+    effects: tuple[str, ...],
+    wanted: tuple[str, ...],
+) -> DriveSlopes | None:
+    """How the drive changes with what is wanted; None if it does not."""
+    moving = [
+        (k, name)
+        for k, name in enumerate(wanted)
+        if "." in name and name.split(".")[0] in effects and _of_drive(name)
+    ]
+    if not moving:
+        return None
+    here = drives.of(run, given, effects)
+    steps = steps_of(here, t, lateness(given, effects), **grain(effects))
+
+    def path_at(values: Mapping[str, float]) -> DrivePath:
+        # The very steps that predict are moved, each at one rate where dphi jumps, so that a jump
+        # counts wherever in it it is.
+        drive, late = drives.of(run, values, effects), lateness(values, effects)
+        return drive_path(drive, steps, late, mean=not here.smooth)
+
+    path = path_at(given)
+    at = np.zeros((*path.at.shape, len(wanted)))
+    nodes = np.zeros((*path.nodes.shape, len(wanted)))
+    for k, name in moving:
+        least, size = _extent(name)
+        step = 1e-3 * size
+        low, high = max(given[name] - step, least), given[name] + step
+        ends = [path_at({**given, name: value}) for value in (low, high)]
+        at[:, :, k] = (ends[1].at - ends[0].at) / (high - low)
+        nodes[:, :, :, k] = (ends[1].nodes - ends[0].nodes) / (high - low)
+    if here.smooth and here.rest:
+        # How dphi sets in may change at once, and more than a step shows: what the first step
+        # integrates to is the change of phi.
+        rise = (nodes[0, 2, 0] - nodes[0, 0, 0]) / path.h[0]
+        at[1, 0] = nodes[1, :2, 0] = (6 * rise - nodes[1, 2, 0]) / 5
+    return DriveSlopes(at, nodes)
+
+
+def lateness(given: Mapping[str, float], effects: tuple[str, ...]) -> float:
+    """By how much the recording's clock is behind the command's, s."""
+    return sum(given[f"{n}.{CATALOGUE[n].delay}"] for n in effects if CATALOGUE[n].delay)
+
+
+def joint_of(given: Mapping[str, float]) -> FreeJoint:
+    """The joint of a robot with these values, free of its servo."""
+    return free_joint_of(lambda parameters: values_of(given, parameters))
+
+
+def grain(effects: Sequence[str]) -> dict[str, bool]:
+    """Whether some states settle at once, and whether some forces jump with the speed."""
+    every = [CATALOGUE[name] for name in effects]
+    return {"stiff": any(one.stiff for one in every), "sharp": any(one.sharp for one in every)}
+
+
+def _of_drive(name: str) -> bool:
+    effect, parameter = name.split(".")
+    return CATALOGUE[effect].actuate is not None or CATALOGUE[effect].delay == parameter
+
+
+def _extent(name: str) -> tuple[float, float]:
+    """The least value of a quantity of an effect, and its usual size."""
+    effect, parameter = name.split(".")
+    q = next(q for q in CATALOGUE[effect].parameters if q.name == parameter)
+    return q.bounds[0], q.typical

@@ -1,0 +1,276 @@
+"""What a patch of other floor would gain, wherever it lies, without a fit.
+
+Every piece of a recording is cut into moments. The drag of one wheel in one moment is a push of its
+own, and one linearised pass says what each changes of the motion. A patch brakes some wheels in
+some moments, so what it would gain, parameters and starts fitted with it, is a matter of adding up.
+
+Places and speeds are those recorded: with them a drag is right however strong it is, where
+predicted ones would have the robot drive on.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import minimize
+
+from rr_opt.array import Array
+from rr_opt.effects.floor_patch import BORDER
+from rr_opt.machines.racer.observed import Along, observed
+from rr_opt.machines.racer.simulation import Racer
+from rr_opt.machines.racer.unknown_input import PUSHES, Linearised, Point, linearised
+from rr_opt.sysid.least_squares import Fit, Normal, total
+
+_MOMENTS = 50
+"""In each piece, at most."""
+
+_SAMPLES = 5
+"""In each moment, at least."""
+
+_LEAST, _MOST = 0.02, 100.0
+"""Multipliers that a patch may have."""
+
+_AT_ONCE = 64
+"""Patches, lest memory run out."""
+
+Depth = Callable[[Array, Array], Array]
+"""How deep inside a patch the places x, y are, m."""
+
+
+@dataclass(frozen=True)
+class FloorMap:
+    """The pushes of all wheels in all moments, a moment's four wheels side by side, and their cost.
+
+    places   of the wheels (2, 4, n), m;  begins  the sample in which each moment begins (moments,)
+    slope    (4 moments,), by shares of drag, everything else fitted
+    bends    second derivatives of each piece, to be weakened by `onto` (nq, 4 moments) as the
+             parameters are fitted again: weakened = onto' inverse onto
+    """
+
+    places: Array
+    begins: NDArray[np.int_]
+    slope: Array
+    bends: Sequence[Array]
+    onto: Array
+    inverse: Array
+
+    def at(self, depth: Depth) -> Array:
+        """How much of each moment each wheel is on a patch (4 moments,)."""
+        inside = _inside(depth(*self.places))
+        whole = np.add.reduceat(inside, self.begins, axis=1)
+        lengths = np.diff(np.append(self.begins, inside.shape[1]))
+        return (whole / lengths).T.ravel()
+
+    def roughly(self, depth: Depth) -> Array:
+        """The same, from where the wheels are in the middle of the moments."""
+        ends = np.append(self.begins[1:], self.places.shape[2])
+        return _inside(depth(*self.places[:, :, (self.begins + ends) // 2])).T.ravel()
+
+    def gains(self, shares: Array) -> tuple[Array, Array]:
+        """What patches gain in chi-square, each at its best multiplier, and that; (patches,).
+
+        shares  of the moments on each patch (patches, 4 moments)
+        """
+        parts = [
+            self._gains(shares[k : k + _AT_ONCE]) for k in range(0, max(len(shares), 1), _AT_ONCE)
+        ]
+        gain, multiplier = np.hstack(parts)
+        return gain, multiplier
+
+    def _gains(self, shares: Array) -> Array:
+        bend, at = np.zeros(len(shares)), 0
+        for H in self.bends:
+            own = shares[:, at : at + len(H)]
+            bend += np.einsum("ij,ij->i", own @ H, own)
+            at += len(H)
+        onto = shares @ self.onto.T
+        bend -= np.einsum("ij,jk,ik->i", onto, self.inverse, onto)
+        slope = shares @ self.slope
+        more = np.where(bend > 0, -slope / np.where(bend > 0, bend, 1.0), 0.0)
+        more = np.clip(more, _LEAST - 1.0, _MOST - 1.0) * (bend > 0)
+        return np.array([-more * (2 * slope + bend * more), 1.0 + more])
+
+
+def floor_map(model: Racer, fit: Fit) -> FloorMap:
+    """The map beside a fit, over the pieces it was fitted over."""
+    along = {
+        piece: observed(model, piece, fit.values, fit.effects, start)
+        for piece, start in fit.starts.items()
+    }
+    given = {**model.nominal, **fit.values}
+    k = np.repeat([given["kappa1"], given["kappa2"]], 2) / given["h"] ** 2
+    shortest = min(one.t.size for one in along.values())
+    count = max(min(shortest // _SAMPLES, _MOMENTS), 1)
+    pushes = {piece: _pushes(one, k, count) for piece, one in along.items()}
+    none = np.zeros((4 * count, 4 * count))
+    problem = linearised(
+        model, fit, Point(fit.values, fit.starts, np.zeros(4 * count)), pushes, [none]
+    )
+    sizes = [one.t.size for one in along.values()]
+    places = np.concatenate([one.places.transpose(1, 0, 2) for one in along.values()], axis=2)
+    firsts = np.cumsum([0, *sizes[:-1]])
+    begins = [first + _edges(n, count)[:-1] for first, n in zip(firsts, sizes, strict=True)]
+    return _reduced(problem, list(problem.normals.values()), places, np.concatenate(begins))
+
+
+def _reduced(
+    problem: Linearised, parts: Sequence[Normal], places: Array, begins: NDArray[np.int_]
+) -> FloorMap:
+    """The pushes are each piece's own; the parameters, which all pieces share, are fitted."""
+    n = problem.fitted
+    shared = total(parts, problem.prior, problem.u)
+    inverse = np.zeros((n, n))
+    if n:
+        inverse[:] = np.linalg.pinv(shared.H[:n, :n], hermitian=True)
+    onto = np.hstack([one.H[:n, n:] for one in parts])
+    slope = np.concatenate([one.g[n:] for one in parts])
+    return FloorMap(
+        places,
+        begins,
+        slope - onto.T @ (inverse @ shared.g[:n]),
+        [one.H[n:, n:] for one in parts],
+        onto,
+        inverse,
+    )
+
+
+def _pushes(along: Along, k: Array, count: int) -> Array:
+    """(4 count, 7, n): each wheel's drag, N, in each moment, as much as all the floor has."""
+    edges = _edges(along.t.size, count)
+    out = np.zeros((count, 4, len(PUSHES), along.t.size))
+    for moment in range(count):
+        during = slice(edges[moment], edges[moment + 1])
+        for wheel in range(4):
+            out[moment, wheel, wheel, during] = -k[wheel] * along.u[wheel, during]
+    return out.reshape(4 * count, len(PUSHES), along.t.size)
+
+
+def _edges(samples: int, count: int) -> NDArray[np.int_]:
+    return np.linspace(0, samples, count + 1).astype(int)
+
+
+def _inside(depth: Array) -> Array:
+    return (1 + np.tanh(depth / BORDER)) / 2
+
+
+_PLACES = 12
+"""Across the floor where wheels were, on which circles are tried."""
+
+_RADII = (0.06, 0.1, 0.15, 0.22, 0.32, 0.45)
+"""Of that floor's longer side."""
+
+_DIRECTIONS, _BORDERS = 36, 36
+
+_SEEDS, _BEST = 5, 2
+"""So many unlike ones are moved to where they gain most, and so many of those are proposed."""
+
+_ALIKE = 0.9
+"""The cosine between two that cover about the same."""
+
+_MOVES = 80
+
+
+@dataclass(frozen=True)
+class Shape:
+    """A kind of patch, of which each one is a few numbers.
+
+    depth   how deep inside one places are, m
+    grid    those to try for wheels that were at (2, n), (shapes, numbers)
+    values  one's values as a robot file has them, m and rad, around the middle (2,) of the floor
+    """
+
+    depth: Callable[[Array], Depth]
+    grid: Callable[[Array], Array]
+    values: Callable[[Array, Array], Mapping[str, float]]
+
+
+def likely(floor: FloorMap, shape: Shape) -> list[tuple[float, Mapping[str, float]]]:
+    """The gains of those of a shape that gain most, unlike one another, and their values."""
+    places = floor.places.reshape(2, -1)
+    grid = shape.grid(places)
+    if not len(grid):
+        return []
+    shares = np.array([floor.roughly(shape.depth(one)) for one in grid])
+    best = np.argsort(-floor.gains(shares)[0])
+    size = float(np.ptp(places, axis=1).max()) / _PLACES
+    moved = [_moved(floor, shape, grid[k], size) for k in _unlike(shares, best, _SEEDS)]
+    shares = np.array([floor.at(shape.depth(one)) for one in moved])
+    gains, multipliers = floor.gains(shares)
+    middle = places.mean(axis=1)
+    return [
+        (float(gains[k]), {"multiplier": float(multipliers[k]), **shape.values(moved[k], middle)})
+        for k in _unlike(shares, np.argsort(-gains), _BEST)
+    ]
+
+
+def _unlike(shares: Array, order: NDArray[np.intp], most: int) -> list[int]:
+    """The first few in order, none much like one before it."""
+    found: list[int] = []
+    length = np.linalg.norm(shares, axis=1)
+    for k in order:
+        alike = (shares[found] @ shares[k]) > _ALIKE * length[found] * length[k]
+        if length[k] > 0 and not alike.any():
+            found.append(int(k))
+        if len(found) == most:
+            break
+    return found
+
+
+def _moved(floor: FloorMap, shape: Shape, one: Array, size: float) -> Array:
+    """Where one gains most near by."""
+    around = np.vstack([one, one + size / 2 * np.eye(one.size)])
+    best = minimize(
+        lambda at: -float(floor.gains(floor.at(shape.depth(at))[None])[0][0]),
+        one,
+        method="Nelder-Mead",
+        options={"maxfev": _MOVES, "initial_simplex": around},
+    )
+    return np.asarray(best.x)
+
+
+def _circles(places: Array) -> Array:
+    low, high = places.min(axis=1), places.max(axis=1)
+    size = float((high - low).max())
+    step = size / _PLACES
+    if step == 0:
+        return np.zeros((0, 3))
+    x, y = (np.arange(a - step, b + 2 * step, step) for a, b in zip(low, high, strict=True))
+    return np.array([(*at, size * r) for *at, r in itertools.product(x, y, _RADII)])
+
+
+def _floor_shapes_edges(places: Array) -> Array:
+    out = []
+    for normal in 2 * math.pi * np.arange(_DIRECTIONS) / _DIRECTIONS - math.pi:
+        along = np.array([math.cos(normal), math.sin(normal)]) @ places
+        borders = np.linspace(along.min(), along.max(), _BORDERS + 2)[1:-1]
+        out += [(normal, border) for border in borders]
+    return np.array(out)
+
+
+def _edge_values(of: Array, middle: Array) -> Mapping[str, float]:
+    """Through the point of the edge that is nearest to the middle."""
+    normal = np.array([math.cos(of[0]), math.sin(of[0])])
+    x, y = middle + (of[1] - middle @ normal) * normal
+    return {
+        "normal": float(math.remainder(of[0], 2 * math.pi)),
+        "edge_x": float(x),
+        "edge_y": float(y),
+    }
+
+
+ROUND = Shape(
+    depth=lambda of: lambda x, y: of[2] - np.hypot(x - of[0], y - of[1]),
+    grid=_circles,
+    values=lambda of, _: {"x": float(of[0]), "y": float(of[1]), "radius": float(of[2])},
+)
+
+STRAIGHT = Shape(
+    depth=lambda of: lambda x, y: x * math.cos(of[0]) + y * math.sin(of[0]) - of[1],
+    grid=_floor_shapes_edges,
+    values=_edge_values,
+)

@@ -1,0 +1,116 @@
+"""The motion that was recorded of a Roller Racer: where its wheels went, and how fast."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+
+import casadi as ca
+import numpy as np
+from scipy.signal import savgol_filter
+
+from rr_opt.array import Array
+from rr_opt.machines.racer.parameters import values_of
+from rr_opt.machines.racer.simulation import Racer, driven, state_of
+from rr_opt.motion.dynamics import assembled
+from rr_opt.sysid.model import Piece
+from rr_opt.sysid.shooting import predict
+
+_WINDOW = 0.5
+"""What the prediction is off changes little over so long a time, s."""
+
+
+@dataclass(frozen=True)
+class Along:
+    """What a push may depend on, along a predicted run of n samples.
+
+    t (n,) s;  x, y (n,) m of the joint and psi (n,) rad;  phi, dphi, ddphi (n,) rad, rad/s, rad/s2
+    u       rolling speed of the wheels (4, n), in the order of PUSHES, m/s
+    w       yaw rate of platform 1 and 2 (2, n), rad/s
+    rolled  how far the wheels rolled since the recording began (4, n), m
+    places  of the wheels on the floor (4, 2, n), m
+    """
+
+    t: Array
+    x: Array
+    y: Array
+    psi: Array
+    phi: Array
+    dphi: Array
+    ddphi: Array
+    u: Array
+    w: Array
+    rolled: Array
+    places: Array
+
+    @property
+    def axles(self) -> Array:
+        """The rolling speed of axle 1 and 2 (2, n), m/s."""
+        return (self.u[::2] + self.u[1::2]) / 2
+
+
+def observed(
+    model: Racer, piece: Piece, values: Mapping[str, float], effects: tuple[str, ...], start: Array
+) -> Along:
+    """The motion that was recorded: the prediction, and the smooth part of what it is off."""
+    mechanical = model.simulated.every(effects)
+    system, motion = driven(mechanical)
+    given = {**model.nominal, **values}
+    p = values_of(given, motion.parameters)
+    data = model.runs[piece.run]
+    t = data.t[piece.span]
+    path = model.simulated.drive_path(piece, given, mechanical)
+    made = predict(system, path, state_of(mechanical, path, start, p), p)
+    pose, rate = _smooth(t, made.seen[:, :3], data.values[piece.span, :3])
+    states = made.states[:, :: path.each]
+    _, s1, s2, w = np.array(motion.speeds.map(t.size)(states, path.at, p))
+    phi, dphi = path.at[:2]
+    v = rate[0] * np.cos(pose[2]) + rate[1] * np.sin(pose[2])
+    u = np.array(_rolling(mechanical).map(t.size)(np.array([v, s1, s2, dphi]), phi, p))
+    places = np.array(_places(mechanical).map(t.size)(pose, phi, p)).reshape(4, 2, t.size)
+    steps = np.diff(t) * (u[:, 1:] + u[:, :-1]) / 2
+    return Along(
+        t=t,
+        x=pose[0],
+        y=pose[1],
+        psi=pose[2],
+        phi=phi,
+        dphi=dphi,
+        ddphi=np.gradient(dphi, t),
+        u=u,
+        w=np.array([w, w + dphi]),
+        rolled=np.concatenate([np.zeros((4, 1)), np.cumsum(steps, axis=1)], axis=1),
+        places=places,
+    )
+
+
+def _smooth(t: Array, predicted: Array, seen: Array) -> tuple[Array, Array]:
+    """What was seen (n, k), without its noise, and its rate of change, both (k, n)."""
+    step = float(np.median(np.diff(t)))
+    window = max(2 * round(_WINDOW / step / 2) + 1, 5)
+    off = seen - predicted
+    for column in off.T:
+        good = np.isfinite(column)
+        column[~good] = np.interp(t[~good], t[good], column[good])
+    about = {"window_length": window, "polyorder": 2, "axis": 0, "delta": step}
+    rate = np.gradient(predicted, t, axis=0) + np.asarray(savgol_filter(off, deriv=1, **about))
+    return (predicted + np.asarray(savgol_filter(off, **about))).T, rate.T
+
+
+@lru_cache
+def _rolling(effects: tuple[str, ...]) -> ca.Function:
+    """(speeds, phi, p) -> the rolling speeds of the wheels (4,), m/s."""
+    assembly = assembled(effects, sharp=True)
+    robot = assembly.mechanism
+    rolling = ca.vertcat(*(robot.rolling_speed(wheel) for wheel in robot.wheels))
+    return ca.Function("rolling", [robot.speeds, robot.phi, assembly.p], [rolling])
+
+
+@lru_cache
+def _places(effects: tuple[str, ...]) -> ca.Function:
+    """(pose, phi, p) -> x, y of the wheels on the floor, one wheel after the other (8,), m."""
+    assembly = assembled(effects, sharp=True)
+    robot = assembly.mechanism
+    places = ca.vertcat(*(robot.on_floor(wheel.platform, wheel.point) for wheel in robot.wheels))
+    return ca.Function("places", [robot.pose, robot.phi, assembly.p], [places])

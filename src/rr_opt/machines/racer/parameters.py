@@ -1,0 +1,149 @@
+"""What may be fitted of a Roller Racer: its own values, and those of the effects."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator, Mapping, Sequence
+
+import numpy as np
+
+from rr_opt.array import Array
+from rr_opt.effects import CATALOGUE
+from rr_opt.effects.effect import Effect, Parameter, Setting
+from rr_opt.model.experiment import Experiment, Uncertainty
+from rr_opt.model.robot import EffectUse
+from rr_opt.sysid.model import Candidate, Form, Quantity
+
+_CHANNELS = {
+    "actuation": "actuation",
+    "rolling": "rolling",
+    "contact": "constraint_axle1",
+    "floor": "floor",
+    "mass": "mass",
+    "measurement": "measurement",
+}
+"""The channel in which a family of effects shows."""
+
+_PARTS = {"m": "kg", "I": "kg m^2", "c": "m", "a": "m", "b": "m", "kappa": "N m s"}
+_EVERYTHING = (*(f"{part}{i}" for i in (1, 2) for part in _PARTS), "h")
+
+ZERO_OFFSET = "zero_offset"
+ZEROS = {f"{ZERO_OFFSET}.{name}": f"{name}_zero" for name in ("psi", "phi")}
+"""The parameters of the capture system's zeros, and what an experiment calls them."""
+
+
+def nominal(experiment: Experiment) -> dict[str, float]:
+    """Every value of the robot and of all effects, SI; an effect that it has not is neutral."""
+    robot = experiment.robot
+    platforms = ((1, robot.platform1), (2, robot.platform2))
+    out = {f"{part}{i}": getattr(platform, part) for i, platform in platforms for part in _PARTS}
+    neutral = {
+        f"{effect.name}.{q.name}": q.neutral
+        for effect in CATALOGUE.values()
+        for q in effect.parameters
+    }
+    given = {f"{use.name}.{name}": v for use in robot.physics for name, v in use.values.items()}
+    return {**out, "h": robot.h, **neutral, **given, **dict.fromkeys(ZEROS.values(), 0.0)}
+
+
+def uncertain(experiment: Experiment, setting: Setting) -> tuple[Quantity, ...]:
+    """The robot's own values that are not known exactly, those of the effects that it has, and the
+    capture system's zeros."""
+    values = nominal(experiment)
+    free = experiment.uncertainty
+    own = [_parameter(name, values[name], free[name]) for name in _EVERYTHING if name in free]
+    own += [_zero(name, free[name].sigma) for name in ZEROS.values() if name in free]
+    return (*own, *(q for use in experiment.robot.physics for q in _present(use, setting)))
+
+
+def candidate(effect: Effect, setting: Setting) -> Candidate:
+    """An effect that may be missing."""
+    forms = effect.forms or (tuple(q.name for q in effect.parameters),)
+    own = {q.name: q for q in effect.parameters}
+    return Candidate(
+        effect.name,
+        effect.family,
+        _CHANNELS[effect.family],
+        effect.sentence,
+        tuple(_form(effect.name, [own[name] for name in form], setting) for form in forms),
+        effect.imitates,
+    )
+
+
+def values_of(given: Mapping[str, float], parameters: tuple[str, ...]) -> Array:
+    """The parameters p of a motion, with k = kappa/h^2."""
+    friction = {f"k{i}": given[f"kappa{i}"] / given["h"] ** 2 for i in (1, 2)}
+    names = [ZEROS.get(name, name) for name in parameters]
+    return np.array([friction.get(name, given.get(name, math.nan)) for name in names])
+
+
+def values_by(
+    given: dict[str, float], parameters: tuple[str, ...], wanted: tuple[str, ...]
+) -> Array:
+    """How p changes with each quantity that is wanted, (np, nw)."""
+    own_names = [ZEROS.get(own, own) for own in parameters]
+    out = np.array([[float(own == name) for name in wanted] for own in own_names])
+    out = out.reshape(len(parameters), len(wanted))
+    for i in (1, 2):
+        own = parameters.index(f"k{i}")
+        for column, name in enumerate(wanted):
+            if name == f"kappa{i}":
+                out[own, column] = 1 / given["h"] ** 2
+            if name == "h":
+                out[own, column] = -2 * given[f"kappa{i}"] / given["h"] ** 3
+    return out
+
+
+def _present(use: EffectUse, setting: Setting) -> Iterator[Quantity]:
+    """The values of an effect that the nominal robot has: how strong it is, is not known."""
+    for q in CATALOGUE[use.name].parameters:
+        value = use.values.get(q.name, q.neutral)
+        if value != q.neutral and not q.placed:
+            size = max(abs(value), 0.1 * q.size(setting))
+            yield Quantity(
+                f"{use.name}.{q.name}", q.unit, value, size, True, *q.bounds, value, free=True
+            )
+
+
+def _parameter(name: str, value: float, known: Uncertainty) -> Quantity:
+    unit = _PARTS.get(name.rstrip("12"), "m")
+    if known.factor:
+        # Counted as it is and not in its logarithm: the motion is nearly linear in kappa, and what
+        # is seen best is the sum of both.
+        low, high = value / known.factor, value * known.factor
+        return Quantity(name, unit, value, value, True, low, high, value, free=True)
+    low = 0.0 if name.startswith("a") else value / 3
+    return Quantity(name, unit, value, known.sigma, True, low, 3 * value, value)
+
+
+def _zero(name: str, sigma: float) -> Quantity:
+    return Quantity(name, "rad", 0.0, sigma, True, -1.0, 1.0, 0.0)
+
+
+def _highest(q: Parameter, setting: Setting) -> float:
+    return min(q.bounds[1], q.most(setting)) if q.most else q.bounds[1]
+
+
+def _form(effect: str, parameters: Sequence[Parameter], setting: Setting) -> Form:
+    sizes = [q.size(setting) for q in parameters]
+    quantities = tuple(
+        Quantity(
+            *(f"{effect}.{q.name}", q.unit, q.neutral, size, False),
+            *(max(q.bounds[0], q.least), _highest(q, setting), q.neutral),
+        )
+        for q, size in zip(parameters, sizes, strict=True)
+    )
+    choices = [
+        [size * trial for trial in q.trials] if q.neutral or q.bounds[0] == 0 else [0.0]
+        for q, size in zip(parameters, sizes, strict=True)
+    ]
+    starts = (
+        ()
+        if any(q.placed for q in parameters)
+        else tuple(
+            {q.name: value for q, value in zip(quantities, chosen, strict=True)}
+            for chosen in itertools.product(*choices)
+        )
+    )
+    return Form(quantities, starts)

@@ -1,0 +1,1 @@
+"""What a robot is made of: bodies, kinematics, Kane's equations, its drive; compiled code."""

@@ -1,0 +1,149 @@
+"""An experiment: a robot as its builder believes it to be, and the recordings made of it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import IntFlag
+from types import MappingProxyType
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rr_opt.array import Array
+from rr_opt.model.gait import Gait
+from rr_opt.model.robot import Robot
+
+
+@dataclass(frozen=True)
+class CountScale:
+    """Counts to phi; by default those of the servo CDS5516.
+
+    counts  how many there are over `range`, rad; a negative range: phi falls as they rise
+    zero    the count at which phi = 0
+    """
+
+    counts: int = 1024
+    range: float = math.radians(300)
+    zero: float = 512.0
+
+    @property
+    def each(self) -> float:
+        """By how much phi rises with a count, rad."""
+        return self.range / self.counts
+
+
+CHANNELS = ("x", "y", "psi", "phi")
+"""What every recording has, in this order; `torque` may come beside them."""
+
+
+class Flag(IntFlag):
+    """Why a value is not taken as data; 0 is a good one."""
+
+    MISSING = 1
+    OUTLIER = 2
+    OUT_OF_ORDER = 8
+
+
+@dataclass(frozen=True)
+class Recording:
+    """One run, sampled at the times t (n,) of the command's clock, s.
+
+    values  by channel (n,): x, y the joint P, m; psi the heading of platform 1 and phi the angle of
+            platform 2's axis against platform 1's, unwrapped, rad; torque of the servo, N m, if it
+            was recorded. A value that is flagged stays as it was read; where there was none, NaN
+    sigma   by channel (n,), the noise's standard deviation, same units; may differ by sample; NaN
+            where nobody said
+    flags   by channel (n,), `Flag`
+    source  where it came from: file, format, rate, clock, what was done to it; plain text by name
+    doubts  sentences on what looked wrong in it and what was made of it
+    """
+
+    name: str
+    t: Array
+    values: Mapping[str, Array]
+    sigma: Mapping[str, Array]
+    flags: Mapping[str, NDArray[np.uint8]]
+    source: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
+    doubts: tuple[str, ...] = ()
+
+    def __len__(self) -> int:
+        return len(self.t)
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """The channels that it has."""
+        return tuple(self.values)
+
+    def data(self, channel: str) -> Array:
+        """The values (n,) of a channel that are taken as data; NaN elsewhere."""
+        return np.where(self.flags[channel] == 0, self.values[channel], np.nan)
+
+
+Use = Literal["fit", "holdout"]
+Start = Literal["rest", "running"]
+
+
+@dataclass(frozen=True)
+class Noise:
+    """Standard deviation of the capture system: position (m), angle (rad); torque (N m)."""
+
+    position: float
+    angle: float
+    torque: float = 0.003
+
+    def of(self, channel: str) -> float:
+        """That of x, y, psi, phi or torque."""
+        if channel == "torque":
+            return self.torque
+        return self.position if channel in ("x", "y") else self.angle
+
+
+@dataclass(frozen=True)
+class Uncertainty:
+    """How well a nominal value is known.
+
+    sigma   one standard deviation, SI; with `factor` it is none
+    factor  the value is free between value/factor and value*factor, and no more is known of it
+    """
+
+    sigma: float = 0.0
+    factor: float | None = None
+
+
+@dataclass(frozen=True)
+class Run:
+    """One recording and how it was made.
+
+    gait   what the servo was told, its clock starting at the recording's t = 0
+    start  `rest`: the robot stood still until t = 0 and the command began there; `running`: the
+           command began a whole number of periods earlier
+    use    `fit` or `holdout`
+    """
+
+    recording: Recording
+    gait: Gait
+    use: Use = "fit"
+    start: Start = "running"
+
+    @property
+    def name(self) -> str:
+        """The name of its file."""
+        return self.recording.name
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """The nominal robot, how well it is known, and the runs, all in one floor frame.
+
+    uncertainty  by parameter: m1, I1, c1, a1, b1, kappa1, m2, ..., kappa2, h, psi_zero, phi_zero.
+                 What is not named is exact
+    """
+
+    robot: Robot
+    noise: Noise
+    uncertainty: Mapping[str, Uncertainty]
+    runs: tuple[Run, ...]
+    name: str = ""

@@ -1,1 +1,0 @@
-"""What a diagnosis said, held against what was hidden: pure functions of the two."""

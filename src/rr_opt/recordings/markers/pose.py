@@ -1,0 +1,229 @@
+"""The floor's two axes in the capture system's frame, and what tilts out of the floor."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from types import MappingProxyType
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rr_opt.array import Array
+from rr_opt.model.experiment import CHANNELS, Flag, Recording
+from rr_opt.outcome import InputError
+from rr_opt.recordings.cleaning import unwrapped
+from rr_opt.recordings.markers.layout import Bodies, Layout, bodies_of, check_scale
+from rr_opt.recordings.markers.rigid import Fit, fit, marker_noise, refined
+from rr_opt.recordings.markers.swaps import (
+    Ghosts,
+    Order,
+    Swap,
+    put_right,
+    swapped_throughout,
+    without_ghosts,
+)
+from rr_opt.recordings.markers.unknown_layout import guessed_layout
+from rr_opt.recordings.markers.warnings import marker_doubts
+from rr_opt.recordings.readers.marker_rows import MarkerData
+from rr_opt.recordings.warnings import Doubt, texts
+
+_AXES = {
+    "z": (0, 1, 2, 1.0),
+    "x": (1, 2, 0, 1.0),
+    "y": (2, 0, 1, 1.0),
+    "-z": (1, 0, 2, -1.0),
+    "-x": (2, 1, 0, -1.0),
+    "-y": (0, 2, 1, -1.0),
+}
+"""Columns of x and y as seen from above, of the height, and its sign, by the axis that is up."""
+
+_FEWEST = 3
+"""Markers of a platform that show its tilt."""
+
+
+def seen_from_above(positions: Array, up: str) -> tuple[Array, Array]:
+    """x and y (n, k, 2) and height (n, k) of positions (n, k, 3), m.
+
+    A height that is not known does not make a marker missing. Raises InputError for an unknown
+    `up`.
+    """
+    if up not in _AXES:
+        raise InputError(
+            f"The layout's `up` is {up!r}. Expected one of: {', '.join(_AXES)}. Name the axis of "
+            "the capture's frame that points up from the floor."
+        )
+    first, second, height, sign = _AXES[up]
+    return positions[..., [first, second]], sign * positions[..., height]
+
+
+def tilt(bodies: Bodies, height: Array) -> Array:
+    """How steeply each platform leans against its own mean over the recording (n, 2), rad.
+
+    height: (n, k), m. The largest slope of the plane through a platform's markers; NaN for frames
+    and platforms with fewer than three, or with all in a line.
+    """
+    found = np.full((len(height), 2), np.nan)
+    for one in (0, 1):
+        mine = bodies.of(one)
+        if len(mine) < _FEWEST:
+            continue
+        flat = np.column_stack([np.ones(len(mine)), bodies.places[mine]])
+        whole = np.isfinite(height[:, mine]).all(axis=1)
+        if np.linalg.matrix_rank(flat, tol=5e-3) < _FEWEST or not whole.any():
+            continue
+        own = height[whole][:, mine]
+        slopes = (own - np.median(own, axis=0)) @ np.linalg.pinv(flat).T
+        found[whole, one] = np.hypot(slopes[:, 1], slopes[:, 2])
+    return found
+
+
+_SAMPLE = 6000
+"""Frames that tell the noise, spread over the recording."""
+LEAST_NOISE = 1e-6
+"""Noise that no capture system goes below, m; what noise-free data are given."""
+
+
+def robot_of(
+    bodies: Bodies, seen: Array, noise_sigma: float | None
+) -> tuple[Bodies, Array, Array, list[Swap], Ghosts]:
+    """Shapes first, as they set what fits; then names; and if there were any, both once more.
+
+    The second round has the noise that is left when nothing is swapped any more. Ghosts are last.
+    """
+    swaps: list[Swap] = []
+    while True:
+        new, shift = refined(bodies, seen)
+        found = marker_noise(fit(new, seen[:: max(1, len(seen) // _SAMPLE)]))
+        sigma = max(_or(found, 0.0), noise_sigma or 0.0, LEAST_NOISE)
+        seen, more = put_right(new, seen, sigma)
+        again = bool(more) and not swaps
+        swaps += more
+        if not again:
+            return new, shift, seen, swaps, without_ghosts(new, seen, sigma)
+
+
+def _or(value: float, other: float) -> float:
+    return value if np.isfinite(value) else other
+
+
+_FARTHEST = 1e12
+"""Places beyond this, m, are no places, and would overflow where they are squared."""
+
+
+@dataclass(frozen=True)
+class MarkerFit:
+    """What was made of a marker file.
+
+    recording  the motion of P and both angles
+    bodies     the markers, where the recording has them
+    shift      (k, 2), by how much they are from where the layout has them, m
+    noise      of a marker's coordinate as the residuals have it, m; NaN if they cannot tell
+    residual   (n,), root mean square of a frame's residuals per coordinate, corrected for the
+               unknowns, m
+    whose      (k,), the same of a marker over all frames in which it was used, m
+    tilt       (n, 2), of each platform against its own mean, rad
+    """
+
+    recording: Recording
+    bodies: Bodies
+    shift: Array
+    noise: float
+    residual: Array
+    whose: Array
+    tilt: Array
+    swaps: tuple[Swap, ...]
+    ghosts: Ghosts
+    doubts: tuple[Doubt, ...]
+
+
+def recording_from_markers(
+    data: MarkerData, layout: Layout | None, noise_sigma: float | None = None
+) -> Recording:
+    """The recording that a marker file holds; its doubts tell what was put right or left out.
+
+    layout: None has it estimated from the file itself; psi's and phi's zeros are then unknown.
+    noise_sigma: standard deviation of one coordinate of a marker, m; None takes the residuals'.
+    Raises InputError if the markers cannot be matched with two platforms.
+    """
+    return fit_markers(data, layout, noise_sigma).recording
+
+
+def fit_markers(
+    data: MarkerData, layout: Layout | None, noise_sigma: float | None = None
+) -> MarkerFit:
+    """The same, with all that was found on the way. Raises InputError as above."""
+    guess = None
+    if layout is None:
+        above = seen_from_above(_places(data), "z")[0]
+        guess = guessed_layout(data.labels, above)
+        layout = guess.layout
+    bodies = bodies_of(layout, data.labels)
+    seen, height = seen_from_above(_places(data)[:, bodies.columns], layout.up)
+    always = swapped_throughout(bodies, seen)
+    if always:
+        bodies = _renamed(bodies, always)
+    check_scale(bodies, seen, layout.up)
+    bodies, shift, seen, swaps, ghosts = robot_of(bodies, seen, noise_sigma)
+    fitted = fit(bodies, ghosts.seen)
+    noise = marker_noise(fitted)
+    sigma = max(noise_sigma or (noise if np.isfinite(noise) else LEAST_NOISE), LEAST_NOISE)
+    made = MarkerFit(
+        _recording(data, fitted, sigma, ghosts.lost),
+        bodies, shift, noise,
+        np.sqrt(fitted.squares / np.where(fitted.freedom > 0, fitted.freedom, np.nan)),
+        np.sqrt(_mean(fitted.residual**2)),
+        tilt(bodies, height), tuple(swaps), ghosts, (),
+    )  # fmt: skip
+    doubts = marker_doubts(data, layout, made, guess, always, noise_sigma)
+    return replace(made, doubts=doubts, recording=_told(made.recording, data, doubts))
+
+
+def _places(data: MarkerData) -> Array:
+    """The positions (n, k, 3), without those that are none."""
+    return np.where(np.abs(data.positions) < _FARTHEST, data.positions, np.nan)
+
+
+def _renamed(bodies: Bodies, order: Order) -> Bodies:
+    """The columns keep their names, and get the places of the markers that are in them."""
+    places, platform, heights = (
+        np.empty_like(one) for one in (bodies.places, bodies.platform, bodies.heights)
+    )
+    columns = list(order)
+    places[columns], platform[columns] = bodies.places, bodies.platform
+    heights[columns] = bodies.heights
+    return replace(bodies, places=places, platform=platform, heights=heights)
+
+
+def _mean(squares: Array) -> Array:
+    """Over frames and both axes of (n, k, 2); NaN of a marker that was never used."""
+    count = np.isfinite(squares).sum(axis=(0, 2))
+    return np.nansum(squares, axis=(0, 2)) / np.where(count > 0, count, np.nan)
+
+
+def _recording(data: MarkerData, fitted: Fit, sigma: float, lost: NDArray[np.int_]) -> Recording:
+    turned = fitted.heading[:, 1] - fitted.heading[:, 0]
+    values = {
+        "x": fitted.joint[:, 0],
+        "y": fitted.joint[:, 1],
+        "psi": unwrapped(fitted.heading[:, 0]),
+        "phi": unwrapped((turned + np.pi) % (2 * np.pi) - np.pi),
+    }
+    sigmas, flags = {}, {}
+    for i, channel in enumerate(CHANNELS):
+        missing = ~np.isfinite(values[channel])
+        values[channel] = np.where(missing, np.nan, values[channel])
+        flag = np.where(missing, Flag.MISSING, 0).astype(np.uint8)
+        flag[lost] |= np.uint8(Flag.OUTLIER)
+        spread = sigma * fitted.spread[:, i]
+        known = np.isfinite(spread) & ~missing
+        # What is not there has the typical sigma, so that nobody divides by NaN.
+        usual = float(np.median(spread[known])) if known.any() else sigma
+        sigmas[channel], flags[channel] = np.where(known, spread, usual), flag
+    return Recording(data.name, data.t, values, sigmas, flags)
+
+
+def _told(recording: Recording, data: MarkerData, doubts: tuple[Doubt, ...]) -> Recording:
+    source = {**data.source, "motion": "a rigid fit of both platforms to the markers, by frame"}
+    return replace(
+        recording, source=MappingProxyType(source), doubts=(*data.doubts, *texts(doubts))
+    )

@@ -1,0 +1,1 @@
+"""Readers of recordings, a file each, and the registry of them."""

@@ -1,0 +1,325 @@
+"""The bytes of a recording's file, its lines as text whatever its encoding, and its table."""
+
+from __future__ import annotations
+
+import codecs
+import io
+import stat
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import NoReturn
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rr_opt.array import Array
+from rr_opt.files.issue import InvalidFileError, Issue, nearest, shown
+
+_MOST = 20
+"""A file that is wrong in every row is told from its first ones."""
+
+
+def refuse(file: str, message: str, line: int | None = None) -> NoReturn:
+    """Raise InvalidFileError with one message about a file."""
+    raise InvalidFileError([Issue("error", "", message, line, file)])
+
+
+def refuse_all(file: str, found: Sequence[tuple[int, str]]) -> NoReturn:
+    """Raise InvalidFileError with a line and a message for each mistake, the first of many."""
+    issues = [Issue("error", "", message, line, file) for line, message in found[:_MOST]]
+    if len(found) > _MOST:
+        more = f"There are {len(found) - _MOST} more mistakes of this kind. Correct the first ones."
+        issues.append(Issue("error", "", more, None, file))
+    raise InvalidFileError(issues)
+
+
+_MARKS = (
+    (codecs.BOM_UTF8, "utf-8-sig"),
+    (codecs.BOM_UTF32_LE, "utf-32"),
+    (codecs.BOM_UTF32_BE, "utf-32"),
+    (codecs.BOM_UTF16_LE, "utf-16"),
+    (codecs.BOM_UTF16_BE, "utf-16"),
+)
+"""Byte order marks; that of UTF-32 begins with that of UTF-16, so it is looked for first."""
+
+_BLOCK = 4096
+
+
+@dataclass(frozen=True)
+class Text:
+    """A text file.
+
+    file   as the user named it
+    lines  without their ends; the first has the number 1 in messages
+    ended  whether the last line that holds something has a line end
+    """
+
+    file: str
+    encoding: str
+    lines: list[str]
+    ended: bool
+
+
+def read_bytes(path: Path) -> bytes:
+    """The content of a file. Raises InvalidFileError if there is none that could be read."""
+    try:
+        # A pipe or a device may never end.
+        if not stat.S_ISREG(path.stat().st_mode):
+            what = "a folder" if path.is_dir() else "no regular file"
+            refuse(str(path), f"This is {what}. Expected the file of a recording. Name the file.")
+        content = path.read_bytes()
+    except FileNotFoundError:
+        refuse(str(path), "There is no such file. Check its name and folder.")
+    except (OSError, ValueError) as error:
+        why = getattr(error, "strerror", None) or error
+        refuse(str(path), f"The file cannot be read: {why}. Check its name and permissions.")
+    if not content.strip():
+        refuse(str(path), "The file is empty. Expected a recording. Export it once more.")
+    return content
+
+
+def decode(content: bytes, file: str) -> Text:
+    """The text of a file: UTF-8 or UTF-16 with or without a mark, or Latin-1.
+
+    Raises InvalidFileError for what is no text.
+    """
+    encoding = _encoding(content)
+    try:
+        text = content.decode(encoding)
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        refuse(file, f"The text is not {encoding.upper()}. Save the file as UTF-8.", line)
+    if "\0" in text:
+        line = text.count("\n", 0, text.index("\0")) + 1
+        refuse(
+            file,
+            "Read a byte 0, which no text has. Expected CSV, C3D, TRC or netCDF. The file may be "
+            "damaged, or of another format: export it once more.",
+            line,
+        )
+    if "\r" in text:
+        text = text.replace("\r\n", "\n").replace("\r", "\n")
+    return Text(file, encoding.removesuffix("-sig"), text.split("\n"), text.endswith("\n"))
+
+
+def _encoding(content: bytes) -> str:
+    for mark, encoding in _MARKS:
+        if content.startswith(mark):
+            return encoding
+    head = content[:_BLOCK]
+    # In UTF-16 every second byte of plain English and of numbers is 0.
+    for start, encoding in ((1, "utf-16-le"), (0, "utf-16-be")):
+        half = head[start::2]
+        if len(half) > 4 and half.count(0) > 0.9 * len(half):
+            return encoding
+    try:
+        content.decode("utf-8")
+    except UnicodeDecodeError:
+        return "latin-1"
+    return "utf-8"
+
+
+SEPARATORS = ("\t", ";", ",")
+
+
+@dataclass(frozen=True)
+class Header:
+    """The names of the columns, in small letters, as the line with index `at` has them."""
+
+    at: int
+    separator: str
+    names: tuple[str, ...]
+
+
+def separator_of(line: str) -> str:
+    """What separates the cells of a line: a tab, a semicolon, or else a comma."""
+    return max(SEPARATORS, key=line.count) if any(one in line for one in SEPARATORS) else ","
+
+
+def cells_of(line: str, separator: str) -> list[str]:
+    """The cells of a line without blanks and quotes about them."""
+    return [cell.strip().strip('"').strip() for cell in line.split(separator)]
+
+
+def find_header(text: Text) -> Header | None:
+    """The first line that says something and is no remark; None if the file has none.
+
+    A remark begins with #; a header row may too, if it has a column `t`.
+    """
+    for at, line in enumerate(text.lines):
+        if not line.strip():
+            continue
+        bare = line.strip().lstrip("#").strip()
+        separator = separator_of(bare)
+        names = [cell.casefold() for cell in cells_of(bare, separator)]
+        if line.lstrip().startswith("#") and "t" not in names:
+            continue
+        while names and not names[-1]:
+            names.pop()
+        return Header(at, separator, tuple(names))
+    return None
+
+
+def check_columns(
+    header: Header, needed: Sequence[str], known: Sequence[str], file: str
+) -> dict[str, int]:
+    """Where each known column is. Raises InvalidFileError if one is missing or there twice."""
+    line = header.at + 1
+    if header.names and all(_is_number(name) for name in header.names):
+        refuse(
+            file,
+            f"Read numbers in the first row. Expected a header row, `{','.join(needed)}`. "
+            "Write it above the numbers.",
+            line,
+        )
+    twice = [name for name in known if header.names.count(name) > 1]
+    missing = [name for name in needed if name not in header.names]
+    wrong = []
+    if "t" in missing and "time" in header.names:
+        refuse(file, "Read the column `time`. Expected `t`, in s. Rename it.", line)
+    if twice:
+        wrong.append(f"Read the column `{twice[0]}` twice. Expected it once. Delete one of them.")
+    if missing:
+        others = [name for name in header.names if name not in known]
+        near = {name: nearest(name, missing) for name in others}
+        guesses = [f"`{meant}` for {shown(name)}" for name, meant in near.items() if meant]
+        advice = f"Did you mean {', '.join(guesses)}?" if guesses else "Add what is missing."
+        # A letter alone is like no other: the columns that there are tell more.
+        wrong.append(
+            f"Read the columns {shown(', '.join(header.names))}. Expected also "
+            f"{', '.join(f'`{name}`' for name in missing)}. {advice}"
+        )
+    if wrong:
+        refuse(file, " ".join(wrong), line)
+    return {name: header.names.index(name) for name in known if name in header.names}
+
+
+def _is_number(cell: str) -> bool:
+    try:
+        float(cell.replace(",", "."))
+    except ValueError:
+        return False
+    return True
+
+
+_TABLE_BLOCK = 20_000
+"""Rows converted at once: no more than a few of their copies are in memory together."""
+
+
+@dataclass(frozen=True)
+class Table:
+    """values (n, columns), NaN where a cell is empty; lines (n,), the rows' numbers in the file."""
+
+    values: Array
+    lines: NDArray[np.int64]
+    doubts: tuple[str, ...]
+
+
+@dataclass
+class _Reading:
+    """A table being read: what its rows looked like, and what is wrong with them."""
+
+    separator: str
+    names: Sequence[str]
+    wrong: list[tuple[int, str]] = field(default_factory=list)
+    short: list[int] = field(default_factory=list)
+
+
+def read_table(text: Text, first: int, last: int, separator: str, names: Sequence[str]) -> Table:
+    """The rows in text.lines[first:last], whose columns have these names.
+
+    Cells are empty (missing), or numbers with a decimal point; with another separator than the
+    comma, a decimal comma will do. Rows that hold nothing are passed over. Cells missing at a
+    row's end are empty; what stands beyond the last column has to be. Raises InvalidFileError with
+    line and column of every cell that is not a number.
+    """
+    reading = _Reading(separator, names)
+    blank = separator + " \t"
+    rows = [at for at in range(first, last) if text.lines[at].strip(blank)]
+    cut = bool(rows) and not text.ended and rows[-1] == len(text.lines) - 1
+    cut = cut and text.lines[rows[-1]].count(separator) < len(names) - 1
+    doubts = []
+    if cut:
+        doubts.append(f"The file ends within line {rows.pop() + 1}, which was left out.")
+    blocks = [
+        _block(reading, [text.lines[at] for at in rows[start : start + _TABLE_BLOCK]], rows[start:])
+        for start in range(0, len(rows), _TABLE_BLOCK)
+    ]
+    if reading.wrong:
+        refuse_all(text.file, reading.wrong)
+    values = np.concatenate(blocks) if blocks else np.empty((0, len(names)))
+    lines = np.array(rows, np.int64) + 1
+    if reading.short:
+        doubts.append(
+            f"{_rows_text(reading.short)} fewer cells than the header. What they lack was taken "
+            "as missing."
+        )
+    endless = np.isinf(values)
+    if endless.any():
+        where = lines[endless.any(axis=1)].tolist()
+        doubts.append(f"{_rows_text(where)} an infinite number, which was taken as missing.")
+        values[endless] = np.nan
+    return Table(values, lines, tuple(doubts))
+
+
+def _rows_text(lines: Sequence[int]) -> str:
+    if len(lines) == 1:
+        return f"Line {lines[0]} has"
+    return f"{len(lines)} lines, the first of them {lines[0]}, have"
+
+
+def _block(reading: _Reading, lines: list[str], rows: list[int]) -> Array:
+    """The numbers of some lines, whose indices in the file `rows` begins with."""
+    separator, width = reading.separator, len(reading.names)
+    if separator != ",":
+        lines = [line.replace(",", ".") for line in lines]
+    counts = [line.count(separator) for line in lines]
+    for at, count in enumerate(counts):
+        if count < width - 1:
+            reading.short.append(rows[at] + 1)
+            lines[at] += separator * (width - 1 - count)
+        elif count > width - 1:
+            beyond = lines[at].split(separator)[width:]
+            if any(cell.strip() for cell in beyond):
+                message = (
+                    f"Read {count + 1} cells. Expected {width}, as the header has. Check them."
+                )
+                reading.wrong.append((rows[at] + 1, message))
+            lines[at] = separator.join(lines[at].split(separator)[:width])
+    whole = "\n".join(lines)
+    for empty, filled in (
+        (f"{separator}{separator}", f"{separator}nan{separator}"),
+        (f"{separator}{separator}", f"{separator}nan{separator}"),
+        (f"\n{separator}", f"\nnan{separator}"),
+        (f"{separator}\n", f"{separator}nan\n"),
+    ):
+        whole = whole.replace(empty, filled)
+    whole = f"{'nan' * whole.startswith(separator)}{whole}{'nan' * whole.endswith(separator)}"
+    try:
+        return np.loadtxt(io.StringIO(whole), delimiter=separator, comments=None, ndmin=2)
+    except ValueError:
+        return _one_by_one(reading, lines, rows)
+
+
+def _one_by_one(reading: _Reading, lines: list[str], rows: list[int]) -> Array:
+    """The same cell by cell, noting each that is not a number."""
+    values = np.full((len(lines), len(reading.names)), np.nan)
+    for at, line in enumerate(lines):
+        for column, cell in enumerate(line.split(reading.separator)):
+            number = cell.strip().strip('"').strip()
+            if not number:
+                continue
+            try:
+                if "_" in number or not number.isascii():
+                    raise ValueError
+                values[at, column] = float(number)
+            except ValueError:
+                name = reading.names[column]
+                called = f"column {column + 1}" + (f" ({name})" if name else "")
+                message = (
+                    f"Read {shown(number)} in {called}. Expected a number, or nothing where none "
+                    "was measured. Correct it, or empty the cell."
+                )
+                reading.wrong.append((rows[at] + 1, message))
+    return values

@@ -1,0 +1,281 @@
+"""A channel smoothed: its value and derivatives at every sample, each with its sigma.
+
+A smooth signal of which nothing is known: its third derivative is white noise.
+
+The state is the signal, its first and its second derivative, in steps of time. Smoothing with this
+prior is the quintic smoothing spline; its one number q, the strength of the noise, is the spline's
+smoothing parameter. (G. Wahba, J. R. Stat. Soc. B 40, 1978, pp. 364-372.)
+
+A signal and its derivatives from noisy samples, with what is known of each.
+
+The state at every sample (signal, first and second derivative) is Gaussian with a block-tridiagonal
+precision. Its mean is one banded Cholesky solve. Its covariances come from cyclic reduction: every
+other block is eliminated, all at once, until one is left; then the blocks come back in the
+opposite order with their covariances. Both are exact for any times and gaps, without a loop over
+samples.
+
+Derivatives of a recorded channel, with their uncertainty; for a diagnosis to look at.
+
+The channel is a signal whose third derivative is white noise, plus the sensor's white noise. The
+strength of the first is the likeliest for the data, that of the second is estimated from the data
+or given; there is no window to choose. What comes out are means and standard deviations of the
+signal and its derivatives, given all samples. They are those of this prior: where the motion has a
+kink, as at a start from rest, the true derivative jumps and the error is larger than its sigma.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import get_lapack_funcs, solveh_banded
+from scipy.optimize import minimize_scalar
+from scipy.special import factorial
+
+from rr_opt.array import Array
+from rr_opt.recordings.noise import noise_of
+from rr_opt.recordings.time_axis import time_step
+
+ORDER = 3
+
+
+def transition(step: Array) -> Array:
+    """A (m, 3, 3): how the state moves on by `step` (m,), in units of the time step."""
+    A = np.zeros((len(step), ORDER, ORDER))
+    for i in range(ORDER):
+        for j in range(i, ORDER):
+            A[:, i, j] = step ** (j - i) / factorial(j - i)
+    return A
+
+
+def diffusion(step: Array) -> Array:
+    """Q (m, 3, 3): covariance of what is added within `step` (m,), for q = 1."""
+    Q = np.zeros((len(step), ORDER, ORDER))
+    for i in range(ORDER):
+        for j in range(ORDER):
+            p, r = ORDER - 1 - i, ORDER - 1 - j
+            Q[:, i, j] = step ** (p + r + 1) / ((p + r + 1) * factorial(p) * factorial(r))
+    return Q
+
+
+def innovations(y: Array, ratio: float) -> tuple[Array, float]:
+    """What each sample (n,) adds to what those before it foretell, and its variance.
+
+    ratio: q over the variance of a sample, in steps of time. The variance is in units of that of
+    a sample. From equal steps, with the filter's gain at its limit: the third difference of y has
+    the covariances of a quintic B-spline, times ratio, and of the third difference of white noise;
+    their spectral factor is what whitens it.
+    """
+    covariances = np.zeros(2 * ORDER + 1)
+    covariances[1:-1] = ratio * np.array([1.0, 26.0, 66.0, 26.0, 1.0]) / 120
+    covariances += np.array([-1.0, 6.0, -15.0, 20.0, -15.0, 6.0, -1.0])
+    roots = np.roots(covariances)
+    factor = np.poly(roots[np.argsort(np.abs(roots))[:ORDER]]).real
+    # The outermost covariance, -1, is the variance times the factor's last coefficient.
+    return _whitened(y, np.asarray(factor, float)), float(-1 / factor[-1])
+
+
+def _whitened(y: Array, factor: Array) -> Array:
+    """The third difference of y (n,), from rest, with the filter `factor` (4,) taken off."""
+    third = y.copy()
+    for lag, share in ((1, -3.0), (2, 3.0), (3, -1.0)):
+        third[lag:] += share * y[:-lag]
+    # The filter as a triangular system of four bands: scipy.signal takes half a second to load.
+    bands = np.repeat(factor[:, None], len(y), axis=1)
+    (solve,) = get_lapack_funcs(("tbtrs",), (bands, third))
+    solved, _ = solve(bands, third[:, None], uplo="L")
+    return np.asarray(solved, float)[:, 0]
+
+
+_VAGUE = 1e-9
+"""Precision of the signal and its derivatives before any sample, relative to a sample's."""
+
+
+@dataclass(frozen=True)
+class Precision:
+    """A block-tridiagonal matrix: blocks on the diagonal (n, 3, 3), and above it (n - 1, 3, 3)."""
+
+    diagonal: Array
+    above: Array
+
+
+def precision(step: Array, ratio: float, weight: Array) -> Precision:
+    """That of the states at n samples.
+
+    step: (n - 1,), between samples; ratio: q over a sample's variance; weight: (n,), 1 over the
+    samples' variances relative to that variance, 0 where there is no sample.
+    """
+    A = transition(step)
+    # Q(step) is Q(1) between two diagonal scalings, which are inverted without loss.
+    scale = step[:, None] ** -(ORDER - 0.5 - np.arange(ORDER))
+    W = scale[:, :, None] * np.linalg.inv(diffusion(np.ones(1))[0]) * scale[:, None] / ratio
+    WA = W @ A
+    D = np.zeros((len(weight), ORDER, ORDER))
+    D[:, 0, 0] = weight
+    D += _VAGUE * np.eye(ORDER)
+    D[1:] += W
+    D[:-1] += np.swapaxes(A, 1, 2) @ WA
+    return Precision(D, -np.swapaxes(WA, 1, 2))
+
+
+def mean(P: Precision, pull: Array) -> Array:
+    """The states' means (n, 3); pull: (n,), weight times sample."""
+    n = len(pull)
+    size = ORDER * n
+    band = np.zeros((2 * ORDER, size))
+    for i in range(ORDER):
+        for j in range(ORDER):
+            columns = np.arange(n) * ORDER + j
+            if i <= j:
+                band[2 * ORDER - 1 + i - j, columns] = P.diagonal[:, i, j]
+            band[ORDER - 1 + i - j, columns[1:]] = P.above[:, i, j]
+    right = np.zeros(size)
+    right[::ORDER] = pull
+    return solveh_banded(band, right, overwrite_ab=True, check_finite=False).reshape(n, ORDER)
+
+
+def covariance(P: Precision) -> Array:
+    """The states' covariances (n, 3, 3)."""
+    return _covariance(P.diagonal, P.above)[0]
+
+
+def _covariance(D: Array, B: Array) -> tuple[Array, Array]:
+    """Diagonal blocks of the inverse, and those above them."""
+    n = len(D)
+    if n == 1:
+        return np.asarray(np.linalg.inv(D), float), B
+    odd, even = D[1::2], D[::2]
+    inverse = np.linalg.inv(odd)
+    # Of each odd block: its coupling from the even one before it, and to the one after it.
+    before = np.swapaxes(B[::2], 1, 2)
+    after = B[1::2]
+    G = inverse @ before
+    K = inverse[: len(after)] @ after
+    reduced = even.copy()
+    reduced[: len(odd)] -= np.swapaxes(before, 1, 2) @ G
+    reduced[1 : 1 + len(after)] -= np.swapaxes(after, 1, 2) @ K
+    coupling = -np.swapaxes(before[: len(after)], 1, 2) @ K
+    S, C = _covariance(reduced, coupling)
+    m, r = len(odd), len(after)
+    cross_before = -(G @ S[:m])
+    cross_before[:r] -= K @ np.swapaxes(C[:r], 1, 2)
+    cross_after = -(G[:r] @ C[:r]) - K @ S[1 : 1 + r]
+    own = inverse - cross_before @ np.swapaxes(G, 1, 2)
+    own[:r] -= cross_after @ np.swapaxes(K, 1, 2)
+    whole, above = np.empty_like(D), np.empty_like(B)
+    whole[::2], whole[1::2] = S, own
+    above[::2] = np.swapaxes(cross_before, 1, 2)
+    above[1::2] = cross_after
+    return whole, above
+
+
+RATIOS = (1e-7, 1e2)
+"""Bounds of q over the variance of a sample, in steps of time. Below the first, arithmetic suffers;
+a spline of that strength still takes up 1 Hz at 100 samples a second."""
+
+_FEWEST, _WARM = 90, 300
+"""Samples needed, and those after which the filter's start from rest is forgotten at the first
+bound; of a short recording a quarter is left out."""
+_MOST = 20_000
+_OUTLYING = 9.0
+"""An innovation counts at most as one of three standard deviations."""
+
+
+def strength(y: Array, sigma: float) -> float:
+    """q over sigma^2, in steps of time, by maximum likelihood.
+
+    y: (n,), equal steps, NaN where there is nothing; sigma: its noise's standard deviation. What
+    is missing is bridged by a line. Innovations beyond three standard deviations are cut to that,
+    so that what outliers are left do not count as bends.
+    """
+    known = np.isfinite(y)
+    if known.sum() < _FEWEST or not sigma > 0:
+        return float(np.sqrt(RATIOS[0] * RATIOS[1]))
+    index = np.arange(len(y))
+    z = np.interp(index, index[known], y[known])[:_MOST] / sigma
+    z = z - np.polyval(np.polyfit(index[: len(z)], z, 2), index[: len(z)])
+    use = known[: len(z)].copy()
+    use[: min(_WARM, len(z) // 4)] = False
+
+    def cost(log_ratio: float) -> float:
+        off, variance = innovations(z, float(np.exp(log_ratio)))
+        scaled = np.minimum(off[use] ** 2 / variance, _OUTLYING)
+        return float(np.log(variance) + scaled.mean())
+
+    low, high = np.log(RATIOS)
+    grid = np.linspace(low, high, 16)
+    start = int(np.argmin([cost(one) for one in grid]))
+    bounds = (grid[max(start - 1, 0)], grid[min(start + 1, 15)])
+    best = minimize_scalar(cost, bounds=bounds, method="bounded", options={"xatol": 0.05})
+    return float(np.exp(best.x))
+
+
+_CLOSEST, _FARTHEST = 1e-3, 1e3
+"""Neighbours are taken to be at least and at most so many steps apart. Across more than the latter
+they say nothing of each other, and arithmetic would suffer."""
+_SMOOTH_FEWEST = 4
+
+
+@dataclass(frozen=True)
+class Smooth:
+    """The posterior at every time (n,): units of the signal, per s, per s^2.
+
+    leverage  how much a sample moves its own smoothed value; 0 where there was no sample
+    """
+
+    value: Array
+    first: Array
+    second: Array
+    value_sigma: Array
+    first_sigma: Array
+    second_sigma: Array
+    leverage: Array
+
+
+def smoothed(t: Array, y: Array, sigma: Array | float, ratio: float) -> Smooth:
+    """y (n,) at the increasing times t (n,), s, smoothed; NaN is a time without a sample.
+
+    sigma: the samples' standard deviations, (n,) or one. ratio: q over sigma's median squared, in
+    steps of time (`strength`). All is NaN if there are fewer than four samples.
+    """
+    n = len(y)
+    known = np.isfinite(y)
+    if known.sum() < _SMOOTH_FEWEST:
+        none = np.full(n, np.nan)
+        return Smooth(none, none, none, none, none, none, np.zeros(n))
+    tau = time_step(t)
+    sigma = np.broadcast_to(np.asarray(sigma, float), (n,))
+    usual = float(np.median(sigma[known]))
+    weight = np.where(known, (usual / np.where(sigma > 0, sigma, usual)) ** 2, 0.0)
+    # A parabola off, and the noise as unit: what is left is small, and the arithmetic exact.
+    u = (t - t[known].mean()) / tau
+    trend = np.polynomial.Polynomial.fit(u[known], y[known], 2)
+    left = np.where(known, y - trend(u), 0.0) / usual
+    P = precision(np.clip(np.diff(u), _CLOSEST, _FARTHEST), ratio, weight)
+    state = mean(P, weight * left) * usual
+    spread = covariance(P)
+    sigmas = usual * np.sqrt(np.maximum(spread[:, range(3), range(3)], 0.0))
+    return Smooth(
+        state[:, 0] + trend(u),
+        (state[:, 1] + trend.deriv(1)(u)) / tau,
+        (state[:, 2] + trend.deriv(2)(u)) / tau**2,
+        sigmas[:, 0], sigmas[:, 1] / tau, sigmas[:, 2] / tau**2,
+        weight * spread[:, 0, 0],
+    )  # fmt: skip
+
+
+def derivatives(t: Array, y: Array, sigma: Array | float | None = None) -> Smooth:
+    """The signal behind y (n,) and its first two derivatives at t (n,), s.
+
+    y: NaN where there is no sample. sigma: standard deviation of the samples, (n,) or one; None
+    has it estimated.
+    """
+    if sigma is None:
+        sigma = noise_of(y).sigma
+    usual = float(np.median(sigma))
+    if not usual > 0:
+        # No noise that could be seen: the samples count as they are.
+        size = float(np.nanstd(y)) if np.isfinite(y).any() else 0.0
+        usual = max(1e-9 * size, 1e-300)
+        sigma = usual
+    return smoothed(t, y, sigma, strength(y, usual))

@@ -1,0 +1,199 @@
+"""The times of a recording: in order, at which rate, and what is odd about them."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rr_opt.array import Array
+from rr_opt.recordings.readers.text import refuse
+
+
+def time_step(t: Array) -> float:
+    """The usual time between samples, s; 1 where there are too few to tell."""
+    step = np.diff(t)
+    step = step[step > 0]
+    return float(np.median(step)) if len(step) else 1.0
+
+
+_RESTARTS = 5
+"""A file whose time falls back less often, and by more rows than this at once, was joined."""
+
+
+@dataclass(frozen=True)
+class Order:
+    """Rows in the order of their times.
+
+    rows    (m,) indices of the rows that are kept
+    moved   (m,) of those, which stood in another place
+    unsure  (m,) of those, which share their time with a row that says something else
+    """
+
+    rows: NDArray[np.int64]
+    moved: NDArray[np.bool_]
+    unsure: NDArray[np.bool_]
+    doubts: tuple[str, ...]
+
+
+def in_order(t: Array, values: Array, lines: Sequence[int] | NDArray[np.int64]) -> Order:
+    """The order of rows with the times t (n,) and values (n, ...), which stand at some lines.
+
+    A row without a time has no place. Of rows with one time the first is kept.
+    """
+    doubts: list[str] = []
+    lines = np.asarray(lines)
+    rows = np.flatnonzero(np.isfinite(t))
+    lost = lines[~np.isfinite(t)]
+    if len(lost):
+        doubts.append(f"Without a time, and so left out: {_rows(lost)}.")
+    moved = np.zeros(len(rows), bool)
+    if (np.diff(t[rows]) < 0).any():
+        moved = ~_longest_rising(t[rows])
+        doubts.append(f"Out of order, and put where the time says: {_rows(lines[rows[moved]])}.")
+        back = np.flatnonzero(np.diff(t[rows]) < 0)
+        if len(back) < _RESTARTS and moved.sum() > _RESTARTS * len(back):
+            at = rows[back[0]], rows[back[0] + 1]
+            doubts.append(
+                f"The time falls back from {t[at[0]]:.6g} to {t[at[1]]:.6g} s in line "
+                f"{lines[at[1]]}: two recordings in one file, or a clock that was set? Part them."
+            )
+        order = np.argsort(t[rows], kind="stable")
+        rows, moved = rows[order], moved[order]
+    again = np.diff(t[rows], prepend=np.nan) == 0
+    unsure = np.zeros(len(rows), bool)
+    if again.any():
+        doubts.append(
+            f"With the time of another row, and so left out: {_rows(lines[rows[again]])}."
+        )
+        kept = np.flatnonzero(~again)[np.cumsum(~again) - 1]
+        mine, first = (
+            values[rows[which]].reshape(again.sum(), -1) for which in (again, kept[again])
+        )
+        same = (mine == first) | (np.isnan(mine) & np.isnan(first))
+        unsure[kept[again][~same.all(axis=1)]] = True
+        if unsure.any():
+            doubts.append(
+                f"{unsure.sum()} of the times have rows that say different things; none of them "
+                "was taken as data."
+            )
+    keep = ~again
+    return Order(rows[keep], moved[keep], unsure[keep], tuple(doubts))
+
+
+def _rows(lines: NDArray[np.int64]) -> str:
+    if len(lines) == 1:
+        return f"line {lines[0]}"
+    return f"{len(lines)} rows, the first in line {min(lines)}"
+
+
+def _longest_rising(t: Array) -> NDArray[np.bool_]:
+    """Members of a longest sequence that does not fall: the fewest others came out of order."""
+    tails: list[float] = []
+    ends: list[int] = []
+    before = np.full(len(t), -1)
+    for at, time in enumerate(t.tolist()):
+        place = bisect_right(tails, time)
+        before[at] = ends[place - 1] if place else -1
+        tails[place : place + 1] = [time]
+        ends[place : place + 1] = [at]
+    member = np.zeros(len(t), bool)
+    at = ends[-1]
+    while at >= 0:
+        member[at] = True
+        at = before[at]
+    return member
+
+
+_JUMP = 1.5
+"""Steps longer than this, in usual steps, lack a row."""
+_UNEVEN = 0.2
+"""Steps that differ by more from the usual one, relative to it, are told."""
+_OTHER_RATE = 2e-3
+"""A rate that differs by more from the one stated, relative to it, is told."""
+_LISTED = 3
+SLOWEST, FASTEST = 1e-3, 1e6
+"""Rates beyond these are taken for a slip of the unit, or for damage, Hz."""
+
+
+def rate_of(t: Array, file: str, line: int | None = None) -> float:
+    """Rows per second, Hz, of increasing times: by the steps that lack no row.
+
+    Raises InvalidFileError, naming the file and a line, for fewer than two rows and for a rate that
+    no recording has.
+    """
+    if len(t) < 2:
+        rows = "1 row" if len(t) else "no row"
+        refuse(
+            file,
+            f"Read {rows} with a time. Expected at least 2: a single one shows no motion. "
+            "Export the whole recording.",
+            line,
+        )
+    steps = np.diff(t)
+    # As far below the usual step as above it, so that times that jitter have their mean rate.
+    middle = np.median(steps)
+    usual = steps[np.abs(steps / middle - 1) <= _JUMP - 0.99]
+    usual = usual if len(usual) else steps[steps <= middle]
+    with np.errstate(over="ignore"):
+        rate = float(len(usual) / usual.sum())
+    check_rate(rate, file, line)
+    return rate
+
+
+def check_rate(rate: float, file: str, line: int | None = None) -> None:
+    """Raise InvalidFileError for a rate, Hz, that no recording has."""
+    if not SLOWEST <= rate <= FASTEST:
+        refuse(
+            file,
+            f"Read a rate of {rate:.4g} Hz. Expected {SLOWEST:g} to {FASTEST:g} Hz, with times in "
+            "seconds. Correct the times, or the rate in the header.",
+            line,
+        )
+
+
+def time_doubts(t: Array, rate: float, stated: float | None = None) -> tuple[str, ...]:
+    """What is odd about increasing times (n >= 2) that come at a rate, Hz; stated: by a header."""
+    doubts = []
+    steps = np.diff(t) * rate
+    # Where a row is lacking the steps about it do not make up for it, as they do for a late one.
+    around = np.convolve(np.concatenate([[1.0], steps, [1.0]]), np.ones(3), "valid")
+    jumps = np.flatnonzero((steps > _JUMP) & (around > _JUMP + 2))
+    if len(jumps):
+        listed = ", ".join(
+            f"{steps[at] / rate:.4g} s at t = {t[at]:.6g} s" for at in jumps[:_LISTED]
+        )
+        more = ", ..." if len(jumps) > _LISTED else ""
+        lacking = int(np.round(steps[jumps] - 1).sum())
+        doubts.append(
+            f"The time jumps {_times(len(jumps))} ({listed}{more}): at {rate:.5g} Hz about "
+            f"{lacking} rows are missing."
+        )
+    usual = np.delete(steps, jumps)
+    uneven = np.abs(usual - 1) > _UNEVEN + 1.01 * _printed(t) * rate
+    if uneven.any():
+        doubts.append(
+            f"The rows do not come at a constant rate: {uneven.sum()} of {len(usual)} steps differ "
+            f"by more than {100 * _UNEVEN:.0f} % from {1000 / rate:.4g} ms."
+        )
+    if stated is not None and abs(rate / stated - 1) > _OTHER_RATE:
+        doubts.append(
+            f"The header states {stated:.6g} Hz, and the times come at {rate:.6g} Hz. The times "
+            "were taken."
+        )
+    return tuple(doubts)
+
+
+def _times(count: int) -> str:
+    return "once" if count == 1 else f"{count} times"
+
+
+def _printed(t: Array) -> float:
+    """The last decimal that the times were printed with, s; 0 if they are not rounded."""
+    for digits in range(7):
+        if np.abs(t * 10**digits - np.round(t * 10**digits)).max() < 1e-4:
+            return 10.0**-digits
+    return 0.0

@@ -1,1 +1,0 @@
-"""Figures of `rr-opt calibrate`."""

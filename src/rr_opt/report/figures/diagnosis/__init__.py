@@ -1,1 +1,0 @@
-"""Figures of a diagnosis: evidence, paths, what the simulation leaves, before and after."""

@@ -1,1 +1,0 @@
-"""Figures of a recording: the path, its channels, its command, its noise."""

@@ -1,0 +1,282 @@
+"""Figures of a recording: the path, its channels, its command, its noise."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from numpy.typing import NDArray
+
+from rr_opt.array import Array
+from rr_opt.model.experiment import Flag, Recording
+from rr_opt.model.gait import Gait
+from rr_opt.recordings.clocks.clock_fit import ClockFit
+from rr_opt.recordings.gaps import Gap, bridged
+from rr_opt.recordings.inspection import Inspection
+from rr_opt.recordings.markers.pose import MarkerFit
+from rr_opt.recordings.noise import NoiseEstimate
+from rr_opt.report.figures.style import (
+    BACKWARD,
+    FORWARD,
+    GREY,
+    INK,
+    LIMIT,
+    OPTIMUM,
+    PLATFORM1,
+    PLATFORM2,
+    figure,
+    note,
+    styled,
+    svg,
+)
+
+_MOST = 800
+_DIGITS = re.compile(r"(\.\d\d)\d+")
+_PLACES = re.compile(r'\b(?:d|x|y)="[^"]*"')
+
+
+def thinned(t: Array, y: Array, most: int = _MOST) -> tuple[Array, Array]:
+    """t and y (n,) with at most about `most` points: the least and the largest of every piece.
+
+    A piece that holds NaN gets one too, so that a gap stays one.
+    """
+    n = len(y)
+    if n <= most:
+        return t, y
+    pieces = most // 2
+    size = -(-n // pieces)
+    rows = np.arange(n)
+    padded = np.full(pieces * size, np.nan)
+    padded[:n] = y
+    table = padded.reshape(pieces, size)
+    inside = np.isfinite(table)
+    low = np.where(inside, table, np.inf).argmin(axis=1) + np.arange(pieces) * size
+    high = np.where(inside, table, -np.inf).argmax(axis=1) + np.arange(pieces) * size
+    holes = np.flatnonzero((~inside).any(axis=1)) * size
+    first_hole = holes + (~inside[holes // size]).argmax(axis=1)
+    kept = np.unique(np.concatenate([low, high, first_hole[first_hole < n]]))
+    kept = kept[kept < n]
+    return t[rows[kept]], y[rows[kept]]
+
+
+def small(svg: str) -> str:
+    """The SVG text with places to a hundredth of a point, which no screen shows."""
+    return _PLACES.sub(lambda found: _DIGITS.sub(r"\1", found.group()), svg)
+
+
+_LABELS = {"x": "x, m", "y": "y, m", "psi": "ψ, rad", "phi": "φ, rad", "torque": "τ, N m"}
+_MARKS = ((Flag.OUTLIER, "outlier", "x", BACKWARD), (Flag.OUT_OF_ORDER, "out of order", "+", LIMIT))
+_MOST_GAPS = 200
+
+
+def channels(axes: Sequence[Axes], recording: Recording, holes: Sequence[Gap]) -> None:
+    """One axes a channel; a shaded band is a gap, a cross a flagged sample.
+
+    Short gaps are bridged by thin lines, in the drawing only.
+    """
+    t = recording.t
+    for ax, channel in zip(axes, recording.channels, strict=True):
+        y = recording.data(channel)
+        if not np.isfinite(y).all():
+            ax.plot(*thinned(t, bridged(t, y)), color=PLATFORM2, lw=0.8)
+        ax.plot(*thinned(t, y), color=INK, lw=1.1)
+        _bands(ax, channel, holes)
+        _flags(ax, recording, channel)
+        ax.set_ylabel(_LABELS.get(channel, channel))
+        ax.set_xlim(t[0], t[-1])
+        _limits(ax, y)
+    axes[-1].set_xlabel("time, s")
+
+
+def _bands(ax: Axes, channel: str, holes: Sequence[Gap]) -> None:
+    mine = [gap for gap in holes if channel in gap.channels or not gap.channels]
+    for gap in sorted(mine, key=lambda one: -one.length)[:_MOST_GAPS]:
+        ax.axvspan(gap.start, gap.end, color=PLATFORM2, alpha=0.25, lw=0)
+
+
+def _flags(ax: Axes, recording: Recording, channel: str) -> None:
+    shown = False
+    for flag, words, mark, colour in _MARKS:
+        rows = np.flatnonzero(recording.flags[channel] & flag)[:2000]
+        if len(rows):
+            ax.plot(recording.t[rows], recording.values[channel][rows], mark, color=colour, ms=5,
+                    mew=1.2, label=words)  # fmt: skip
+            shown = True
+    if shown:
+        ax.legend(loc="upper right", ncols=2)
+
+
+def _limits(ax: Axes, y: np.ndarray) -> None:
+    """The data fill the axes; an outlier far away is cut off, not they flattened."""
+    known = y[np.isfinite(y)]
+    if len(known) and np.ptp(known) > 0:
+        room = 0.15 * float(np.ptp(known))
+        ax.set_ylim(float(known.min()) - room, float(known.max()) + room)
+
+
+_POINTS = 1000
+_DOT = 2e-4
+"""Half the length of a dot, in periods."""
+
+
+def folded(
+    ax: Axes, t: NDArray[np.float64], phi: NDArray[np.float64], gait: Gait, fit: ClockFit | None
+) -> Axes:
+    """Every sample of phi, rad, at its phase of the period, over the command as a line."""
+    known = np.flatnonzero(np.isfinite(phi))
+    known = known[:: max(1, len(known) // _POINTS)]
+    # One path of dashes as short as dots: a marker each makes a file several times as large.
+    dash = gait.period * _DOT
+    phase = t[known] % gait.period
+    x = np.stack([phase - dash, phase + dash, np.full(len(known), np.nan)], 1).ravel()
+    ax.plot(x, np.repeat(phi[known], 3), color=GREY, lw=2, solid_capstyle="round", label="seen")
+    phase = np.linspace(0, gait.period, 400)
+    ax.plot(phase, gait.angle(phase), color=FORWARD, lw=1.6, label="command")
+    if fit is not None:
+        text = f"offset {1e3 * fit.offset:+.2f} ± {1.96e3 * fit.sigma[0]:.2g} ms"
+        note(ax, f"{text}, scale {fit.scale:.4f}", x=0.015, y=0.06, ha="left", va="bottom")
+    ax.set_xlim(0, gait.period)
+    ax.set_xlabel("phase of the command, s")
+    ax.set_ylabel("φ, rad")
+    ax.legend(loc="upper right", ncols=2)
+    return ax
+
+
+def difference(ax: Axes, t: NDArray[np.float64], phi: NDArray[np.float64], gait: Gait) -> Axes:
+    """phi less its command, mrad, over time."""
+    ax.plot(*thinned(t, 1e3 * (phi - gait.angle(t))), color=INK, lw=0.7)
+    ax.axhline(0, color=FORWARD, lw=1.2)
+    ax.set_xlim(t[0], t[-1])
+    ax.set_xlabel("time, s")
+    ax.set_ylabel("φ − command, mrad")
+    return ax
+
+
+def noise(ax: Axes, found: Mapping[str, NoiseEstimate], stated: Mapping[str, float]) -> Axes:
+    """The estimate over the stated value, with its 95 % interval; 1 where nothing was stated.
+
+    Beside it the noise at half the frequency, which is the same if the noise is white.
+    """
+    names = [name for name, one in found.items() if one.sigma > 0]
+    for row, name in enumerate(names):
+        one = found[name]
+        said = stated[name] if stated[name] > 0 else one.sigma
+        ax.errorbar(one.sigma / said, row, xerr=1.96 * one.error / said, fmt="o", color=FORWARD,
+                    capsize=3, label="" if row else "highest frequencies")  # fmt: skip
+        ax.plot(one.slower / said, row + 0.22, "D", ms=5, color=BACKWARD,
+                label="" if row else "half of them")  # fmt: skip
+    ax.axvline(1.0, color=INK, lw=1)
+    ax.set_yticks(range(len(names)), names)
+    ax.set_ylim(len(names) - 0.4, -0.6)
+    ax.grid(visible=False, axis="y")
+    low, high = ax.get_xlim()
+    if np.isfinite(high) and high > 20:
+        ax.set_xscale("log")
+    else:
+        ax.set_xlim(min(low, 0.0), max(high, 1.5))
+    ax.set_xlabel("noise, in units of the stated one")
+    if names:
+        ax.legend(loc="lower left", facecolor="white", labelcolor=GREY)
+    return ax
+
+
+_ARROWS = 6
+
+
+def path(ax: Axes, recording: Recording) -> Axes:
+    """P, m, with a dot where it starts, and arrows of platform 1's heading, towards its axle."""
+    x, y, psi = (recording.data(channel) for channel in ("x", "y", "psi"))
+    step = max(1, len(x) // 4000)
+    ax.plot(x[::step], y[::step], color=INK, lw=1.2)
+    known = np.flatnonzero(np.isfinite(x) & np.isfinite(y))
+    headed = known[np.isfinite(psi[known])]
+    if len(known):
+        first = known[0]
+        ax.plot(x[first], y[first], "o", ms=8, color=OPTIMUM, mec=INK, zorder=4, label="start")
+        ax.legend(loc="best")
+    rows = headed[np.linspace(0, len(headed) - 1, min(_ARROWS, len(headed))).astype(int)]
+    ax.quiver(
+        x[rows], y[rows], np.cos(psi[rows]), np.sin(psi[rows]),
+        color=GREY, width=0.004, scale=14, zorder=3,
+    )  # fmt: skip
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.margins(0.1)
+    ax.set_xlabel("x, m")
+    ax.set_ylabel("y, m")
+    return ax
+
+
+_CUT = 8.0
+"""Times the noise at which the axis ends, if something is beyond."""
+
+
+def over_time(ax: Axes, fit: MarkerFit) -> Axes:
+    """Root mean square residual of each frame, mm; put right and left out frames marked below."""
+    t = fit.recording.t
+    ax.plot(*thinned(t, 1e3 * fit.residual), color=INK, lw=0.7)
+    swapped = np.unique(np.concatenate([[], *(swap.frames for swap in fit.swaps)])).astype(int)
+    ghosts = np.flatnonzero(fit.ghosts.out.any(axis=1))
+    marked = (
+        (swapped, "names put right", FORWARD, 0.02),
+        (ghosts, "marker left out", BACKWARD, 0.05),
+        (fit.ghosts.lost, "does not fit", LIMIT, 0.08),
+    )
+    for rows, words, colour, height in marked:
+        if len(rows):
+            ax.plot(t[rows], np.full(len(rows), height), "|", color=colour, ms=6, label=words,
+                    transform=ax.get_xaxis_transform())  # fmt: skip
+    if ax.get_legend_handles_labels()[0]:
+        ax.legend(loc="upper right", ncols=3)
+    if np.isfinite(fit.noise) and fit.noise > 0:
+        largest = float(np.nanmax(fit.residual))
+        ax.set_ylim(0, 1e3 * min(1.1 * largest, _CUT * fit.noise))
+    ax.set_xlim(t[0], t[-1])
+    ax.set_xlabel("time, s")
+    ax.set_ylabel("residual, mm")
+    return ax
+
+
+def by_marker(ax: Axes, fit: MarkerFit) -> Axes:
+    """Root mean square residual of each marker, mm."""
+    colours = [(PLATFORM1, PLATFORM2)[where] for where in fit.bodies.platform]
+    rows = np.arange(len(fit.whose))
+    ax.barh(rows, 1e3 * np.nan_to_num(fit.whose), color=colours, height=0.6)
+    ax.set_yticks(rows, fit.bodies.labels)
+    ax.invert_yaxis()
+    ax.grid(visible=False, axis="y")
+    ax.set_xlabel("residual, mm")
+    return ax
+
+
+def draw(found: Inspection) -> dict[str, str]:
+    """SVG texts by name: `path`, `channels`, `noise`, and `command` and `rigid` where they are."""
+    drawn: dict[str, str] = {}
+    recording = found.recording
+    with styled():
+        one = figure(6.6, 4.8)
+        path(one.subplots(), recording)
+        drawn["path"] = svg(one)
+        one = figure(7.6, 1.55 * len(recording.channels) + 0.5)
+        axes = one.subplots(len(recording.channels), 1, sharex=True)
+        channels(list(np.atleast_1d(axes)), recording, found.cleaned.gaps)
+        one.align_ylabels()
+        drawn["channels"] = svg(one)
+        one = figure(6.6, 3.4)
+        stated = {name: float(np.median(recording.sigma[name])) for name in recording.channels}
+        noise(one.subplots(), found.cleaned.noise, stated)
+        drawn["noise"] = svg(one)
+        if found.gait is not None:
+            one = figure(7.6, 5.2)
+            above, below = one.subplots(2, 1, height_ratios=[1.4, 1])
+            folded(above, recording.t, recording.data("phi"), found.gait, found.command)
+            difference(below, recording.t, recording.data("phi"), found.gait)
+            drawn["command"] = svg(one)
+        if found.markers is not None:
+            one = figure(7.6, 4.8)
+            above, below = one.subplots(2, 1)
+            over_time(above, found.markers)
+            by_marker(below, found.markers)
+            drawn["rigid"] = svg(one)
+    return {name: small(text) for name, text in drawn.items()}

@@ -1,1 +1,0 @@
-"""What the reproduction of the paper tells."""

@@ -1,1 +1,0 @@
-"""What a diagnosis said of a pendulum, as a figure."""

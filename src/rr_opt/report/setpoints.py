@@ -1,0 +1,174 @@
+"""Set points as a file, and in some lines of text."""
+
+from __future__ import annotations
+
+import io
+import math
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+
+from rr_opt import __version__
+from rr_opt.files.gait_record import gait_record
+from rr_opt.model.robot import Robot
+from rr_opt.motion.setpoints import CENTRE, COUNT, Cost, SetPoints, held
+from rr_opt.report.motion import EXCEEDED
+from rr_opt.report.quantities import QUANTITIES, number, speed_text, with_unit
+from rr_opt.report.text import columns, gait_formula, gait_lines
+
+Format = Literal["csv", "c-header", "servo"]
+
+ENDINGS: dict[Format, str] = {"csv": "-angles.csv", "c-header": ".h", "servo": "-counts.csv"}
+"""What the name of a file ends with, unless the user gives another name."""
+
+_PER_LINE = 6
+
+
+def text_of(points: SetPoints, kind: Format) -> str:
+    """The content of the file. Raises InputError for an angle beyond the servo's counts."""
+    return {"csv": _csv, "c-header": _c_header, "servo": _counts}[kind](points)
+
+
+def _csv(points: SetPoints) -> str:
+    """A row a set point: t (s), phi (rad), phi_deg (degrees)."""
+    return _table(points, "t,phi,phi_deg", [points.angles, np.degrees(points.angles)], "%.9g")
+
+
+def _counts(points: SetPoints) -> str:
+    """A row a set point: t (s) and the count, 512 where phi is 0."""
+    return _table(points, "t,count", [points.counts], "%d")
+
+
+def _table(points: SetPoints, header: str, columns: list[np.ndarray], form: str) -> str:
+    t = np.arange(len(points.angles)) / points.rate
+    text = io.StringIO()
+    np.savetxt(
+        text,
+        np.column_stack([t, *columns]),
+        fmt=["%.9g", *[form] * len(columns)],
+        delimiter=",",
+        header=header,
+        comments="",
+    )
+    return text.getvalue()
+
+
+def _c_header(points: SetPoints) -> str:
+    numbers = [_c_float(angle) for angle in points.angles]
+    rows = [numbers[i : i + _PER_LINE] for i in range(0, len(numbers), _PER_LINE)]
+    array = ",\n".join("    " + ", ".join(row) for row in rows)
+    return f"""\
+/* Set points of a Roller Racer gait, written by rr-opt {__version__}.
+ *
+ * Send rr_gait_angle[i % RR_GAIT_POINTS] at t = i/RR_GAIT_RATE. The angle is phi, from platform
+ * 1 to platform 2, in rad. As CDS5516 counts: {CENTRE} + phi * 1024 * 180/(300 * pi).
+ */
+#ifndef RR_GAIT_H
+#define RR_GAIT_H
+
+#define RR_GAIT_POINTS {len(numbers)} /* set points in a period */
+#define RR_GAIT_RATE {_c_float(points.rate)} /* set points a second */
+#define RR_GAIT_PERIOD {_c_float(points.played.period)} /* s */
+
+static const float rr_gait_angle[RR_GAIT_POINTS] = {{
+{array}
+}};
+
+#endif
+"""
+
+
+def _c_float(value: float) -> str:
+    """A float literal of C; rounding to nothing has no sign."""
+    text = f"{0.0 if math.isclose(value, 0.0, abs_tol=1e-12) else value:.9g}"
+    return (text if any(mark in text for mark in ".e") else f"{text}.0") + "f"
+
+
+MODEL = (
+    "Between set points the servo is taken to move at constant speed, and to be at each when the "
+    "next one is sent. Its lag is not counted."
+)
+
+_NOTHING = 1e-6
+"""A change so small, relative, is that of an optimiser's last digits."""
+
+_WORDS = {
+    "period": "by the changed period",
+    "holding": "by moving straight from one set point to the next",
+    "rounding": f"by rounding to counts of {1e3 * COUNT:.2f} mrad",
+}
+
+
+def setpoints_summary(points: SetPoints, cost: Cost, file: Path) -> str:
+    """The gait, its set points, the speed before and after, and the file."""
+    rows = [
+        ("gait", gait_formula(points.gait)),
+        *gait_lines(points.gait),
+        ("set points", f"{len(points.angles)} a period, {_rate_text(points)}"),
+        ("  period", _period_text(points)),
+        ("speed", f"{speed_text(cost.asked)}, of the gait itself"),
+        *((f"  {name}", f"{_change(cost, name)} {_WORDS[name]}") for name in cost.steps),
+        ("  left", f"{speed_text(cost.left)}, {_change(cost)}"),
+        ("file", str(file)),
+    ]
+    return "\n".join([*columns(rows), "", MODEL]) + "\n"
+
+
+def setpoints_record(
+    points: SetPoints, cost: Cost, kind: str, file: Path, status: str | None
+) -> dict[str, Any]:
+    """The same for scripts, SI; `cost` is the speed lost (negative) or gained by each step.
+
+    status  of the result that the gait was taken from; None if it was not taken from one
+    """
+    return {
+        "gait": gait_record(points.gait),
+        "status": status,
+        "format": kind,
+        "rate": points.rate,
+        "points": len(points.angles),
+        "period": points.played.period,
+        "speed": cost.asked,
+        "speed_left": cost.left,
+        "cost": {"period": 0.0, "holding": 0.0, "rounding": None, **cost.steps},
+        "model": MODEL,
+        "file": str(file),
+        "version": __version__,
+    }
+
+
+def beyond_rate(robot: Robot, points: SetPoints, *, rounded: bool) -> list[str]:
+    """A warning if the servo is too slow for the steps from one set point to the next."""
+    angles = points.rounded if rounded else points.angles
+    needed, limit = held(angles, points.rate).peak_rate, robot.servo.rate_limit
+    if needed <= limit * (1 + EXCEEDED):
+        return []
+    both = QUANTITIES["rate"].both
+    return [
+        f"warning: a step between set points needs {both(needed)}, and the servo's rate limit is "
+        f"{both(limit)}. The cost in speed is told as if the servo could."
+    ]
+
+
+def _rate_text(points: SetPoints) -> str:
+    return f"{with_unit(points.rate, '', 6)} a second, one every {number(1e3 / points.rate)} ms"
+
+
+def _period_text(points: SetPoints) -> str:
+    asked, played = points.gait.period, points.played.period
+    if math.isclose(asked, played, rel_tol=_NOTHING):
+        return f"{with_unit(asked, 's')}, as asked"
+    return (
+        f"{with_unit(played, 's', 6)}, changed from {with_unit(asked, 's', 6)} "
+        f"({100 * (played / asked - 1):+.2f} %), a whole number of set points"
+    )
+
+
+def _change(cost: Cost, name: str | None = None) -> str:
+    """`-0.36 mm/s (-0.28 %)`: of one step, or of all together."""
+    change = cost.steps[name] if name else sum(cost.steps.values())
+    if abs(change) <= _NOTHING * abs(cost.asked):
+        return "0 mm/s"
+    share = f" ({100 * change / abs(cost.asked):+.2f} %)" if cost.asked else ""
+    return f"{'+' if change > 0 else ''}{number(1e3 * change, 3)} mm/s{share}"

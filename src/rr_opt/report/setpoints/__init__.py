@@ -1,1 +1,0 @@
-"""A gait as set points."""

@@ -1,1 +1,0 @@
-"""What the robot is and what it is told to do: plain numbers in SI units."""

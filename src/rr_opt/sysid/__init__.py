@@ -1,0 +1,1 @@
+"""System identification of a machine that is known by its protocol alone."""

@@ -1,0 +1,234 @@
+"""Prediction and its derivatives as machine code, where a C compiler is at hand.
+
+CasADi's step, rates and channels become C for several runs at a time, one in each lane of the
+processor's vector registers; the loops over the steps are those of data/diagnose_lanes.c. What was
+compiled is kept in the user's cache folder, by the hash of its source.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import itertools
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from importlib.resources import files
+
+import casadi as ca
+import numpy as np
+from numpy.typing import NDArray
+
+from rr_opt.array import Array
+from rr_opt.mechanics.code_generation import in_stages, library
+
+Indices = NDArray[np.int64]
+
+_FLAGS = (
+    *("-O2", "-march=native", "-fno-math-errno", "-fno-trapping-math"),
+    *("-ffp-contract=fast", "-fPIC", "-shared"),
+)
+
+
+class _Run(ctypes.Structure):
+    """`Run` of the C."""
+
+    _fields_ = (
+        ("steps", ctypes.c_longlong),
+        *(
+            (name, ctypes.c_void_p)
+            for name in (
+                *("inputs", "at", "p", "states", "seen", "value"),
+                *("moved_at", "moved", "data", "weight", "more", "gram"),
+            )
+        ),
+    )
+
+
+@dataclass(frozen=True)
+class Rows:
+    """What derivatives are summed up for, of one run, each array row by row.
+
+    inputs, at, each, p, states  as `Compiled.predict` takes and gives them
+    wanted  (np, nq) dp/dq
+    moved   d(drive)/dq at the samples (drive, samples, nq) and at the nodes (drive, 3, steps, nq)
+    data, weight  (samples, channels) what was recorded, and 1/sigma, 0 where nothing was
+    more    (samples, channels, k) further columns
+    """
+
+    inputs: Array
+    at: Array
+    each: int
+    p: Array
+    states: Array
+    wanted: Array
+    moved: tuple[Array, Array] | None
+    data: Array
+    weight: Array
+    more: Array | None = None
+
+
+class Compiled:
+    """The loops over runs, for one system."""
+
+    def __init__(self, made: ctypes.CDLL, size: int, channels: int) -> None:
+        """size: of the state."""
+        whole, array = ctypes.c_longlong, ctypes.c_void_p
+        made.rr_predict.argtypes = [whole, array, whole]
+        made.rr_predict.restype = None
+        made.rr_grams.argtypes = [whole, array, *[whole] * 5, *[array] * 3]
+        made.rr_grams.restype = ctypes.c_int
+        self._library = made
+        self._size, self._channels = size, channels
+
+    def predict(
+        self, runs: Sequence[tuple[Array, Array, Array, int, Array]]
+    ) -> list[tuple[Array, Array]]:
+        """States (size, steps + 1) and what is seen (samples, channels) of each run.
+
+        runs  (start, inputs (steps, 1 + 3 drive) of each step, at (drive, samples), steps between
+              two samples, p)
+        """
+        held, made = [], []
+        for start, inputs, at, _, p in runs:
+            states = np.empty((len(inputs) + 1, self._size))
+            states[0] = start
+            seen = np.empty((at.shape[1], self._channels))
+            held.append(
+                _Held(steps=len(inputs), inputs=inputs, at=at.T, p=p, states=states, seen=seen)
+            )
+            made.append((states.T, seen))
+        for each, some in _alike(range(len(runs)), lambda k: runs[k][3]):
+            few = _array([held[k] for k in some])
+            self._library.rr_predict(len(some), few, each)
+        return made
+
+    def grams(self, runs: Sequence[Rows]) -> list[Array]:
+        """J'J of each run, (n, n), with J = [d/dstart | d/dq | more | predicted - recorded] in
+        sigmas.
+
+        Raises ValueError if not all have as many q and further columns.
+        """
+        first = runs[0]
+        shapes = {(run.wanted.shape, run.more is None or run.more.shape[2]) for run in runs}
+        if len(shapes) > 1:
+            raise ValueError(f"Read columns of {sorted(map(str, shapes))}. Expected all alike.")
+        touched = np.any([run.wanted != 0 for run in runs], axis=0)
+        row, column = (index.astype(np.int64) for index in np.nonzero(touched))
+        first_of = np.searchsorted(row, np.arange(len(first.wanted) + 1)).astype(np.int64)
+        nq, extras = first.wanted.shape[1], 0 if first.more is None else first.more.shape[2]
+        moving = _moving(runs)
+        n = self._size + nq + extras + 1
+        drive = first.at.shape[0]
+        out = [np.empty((n, n)) for _ in runs]
+        held = []
+        for run, gram in zip(runs, out, strict=True):
+            moved = {}
+            if moving.size:
+                at, nodes = run.moved or (
+                    np.zeros((drive, len(run.data), nq)),
+                    np.zeros((drive, 3, len(run.inputs), nq)),
+                )
+                moved["moved_at"] = at[:, :, moving].transpose(1, 0, 2)
+                moved["moved"] = nodes[:, :, :, moving].transpose(2, 1, 0, 3)
+            if extras:
+                moved["more"] = run.more
+            held.append(
+                _Held(
+                    steps=len(run.inputs),
+                    inputs=run.inputs,
+                    at=run.at.T,
+                    p=run.p,
+                    states=run.states.T,
+                    value=run.wanted[row, column],
+                    data=run.data,
+                    weight=run.weight,
+                    gram=gram,
+                    **moved,
+                )
+            )
+        for each, some in _alike(range(len(runs)), lambda k: runs[k].each):
+            done = self._library.rr_grams(
+                *(len(some), _array([held[k] for k in some]), each),
+                *(nq, len(row), len(moving), extras),
+                *(one.ctypes for one in (first_of, column, moving)),
+            )
+            if not done:
+                raise MemoryError
+        return out
+
+
+def _moving(runs: Sequence[Rows]) -> Indices:
+    """The columns of q that move the drive of any run (k,)."""
+    changes = [run.moved for run in runs if run.moved]
+    if not changes:
+        return np.zeros(0, np.int64)
+    moved = np.any([_columns(part) for both in changes for part in both], axis=0)
+    return np.flatnonzero(moved).astype(np.int64)
+
+
+def _columns(changes: Array) -> NDArray[np.bool_]:
+    return np.any(changes.reshape(-1, changes.shape[-1]) != 0, axis=0)
+
+
+class _Held:
+    """A run as the C takes it, and the arrays that it points to, kept alive."""
+
+    def __init__(self, *, steps: int, **arrays: Array) -> None:
+        if steps < 1:
+            raise ValueError(f"Read a run of {steps} steps. Expected 1 or more.")
+        self.arrays = {name: np.ascontiguousarray(one, float) for name, one in arrays.items()}
+        # What is written to has to be the caller's own.
+        assert all(self.arrays[name] is arrays[name] for name in ("seen", "gram") if name in arrays)
+        self.run = _Run(steps=steps, **{name: one.ctypes.data for name, one in self.arrays.items()})
+
+
+def _array(held: Sequence[_Held]) -> ctypes.Array:
+    return (_Run * len(held))(*(one.run for one in held))
+
+
+def _alike(keys: Sequence[int], each: Callable[[int], int]) -> list[tuple[int, list[int]]]:
+    """The runs with as many steps between two samples, which go side by side."""
+    ordered = sorted(keys, key=each)
+    return [(count, list(some)) for count, some in itertools.groupby(ordered, each)]
+
+
+def found(source: str, size: int, channels: int, *, make: bool) -> Compiled | None:
+    """A system that was compiled before, or is now; None where that cannot be."""
+    made = library(source, _FLAGS, make=make)
+    return None if made is None else Compiled(made, size, channels)
+
+
+def source_of(step: ca.Function, rates: ca.Function, seen: ca.Function, *, stiff: bool) -> str:
+    """A system in C.
+
+    step(state, inputs, p) is the end of a step; rates and seen(state, drive, p)
+    Raises NotImplementedError for an operation that has no C.
+    """
+    state, drive, p = (rates.numel_in(i) for i in range(3))
+    head = {"NX": state, "ND": drive, "NP": p, "NY": seen.numel_out(0)}
+    parts = [in_stages(step, "step", (1, 1, 0), "ALONE")]
+    head["K_STEP"] = parts[0].kept[0]
+    tables = []
+    for name, letter, function in (("rates", "R", rates), ("seen", "S", seen)):
+        inputs = function.sx_in()
+        value = ca.densify(function(*inputs))
+        by = ca.jacobian(value, ca.vertcat(*inputs))
+        rows, columns = (np.array(index, int) for index in by.sparsity().get_triplet())
+        edges = np.searchsorted(columns, [state, state + drive])
+        sizes = np.diff([0, *edges, len(columns)])
+        head |= {f"{letter}{key}": int(n) for key, n in zip("XDP", sizes, strict=True)}
+        tables += [_table(f"{name.upper()}_ROW", rows), _table(f"{name.upper()}_COLUMN", columns)]
+        both = ca.Function(f"{name}_by", inputs, ca.cse([value, by]))
+        parts.append(in_stages(both, name, (1, 1, 0), "ALONE"))
+        head[f"K_{name.upper()}"] = parts[-1].kept[0]
+    defines = [f"#define {name} {number}\n" for name, number in head.items()]
+    lanes, loops = (
+        files("rr_opt").joinpath("data", f"{name}.c").read_text(encoding="utf-8")
+        for name in ("lanes", "diagnose_lanes")
+    )
+    sources = [part.source for part in parts]
+    return "".join([*defines, "#define STIFF\n" * stiff, lanes, *sources, *tables, loops])
+
+
+def _table(name: str, numbers: Array) -> str:
+    listed = ", ".join(str(n) for n in numbers) or "0"
+    return f"static const int {name}[] = {{{listed}}};\n"

@@ -1,0 +1,197 @@
+"""What a diagnosis found, as frozen data; `diagnosis.json` and the page show it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+from rr_opt.array import Array
+
+Verdict = Literal["consistent", "parameters", "missing_physics", "unexplained"]
+
+CHANNELS = (
+    "actuation",
+    "constraint_axle1",
+    "constraint_axle2",
+    "rolling",
+    "yaw",
+    "mass",
+    "floor",
+    "measurement",
+    "none",
+)
+"""Where a fault can sit."""
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A value with its 95 % interval, SI."""
+
+    value: float
+    low: float
+    high: float
+    unit: str
+
+
+@dataclass(frozen=True)
+class Finding:
+    """An accepted effect, or a parameter that is not what it was believed to be.
+
+    confidence  0 to 1, against the best explanation without it
+    removes     share of the held-out mismatch that goes with it, 0 to 1
+    minor       it is real, but removes little
+    """
+
+    name: str
+    confidence: float
+    parameters: Mapping[str, Estimate]
+    removes: float
+    minor: bool = False
+
+
+@dataclass(frozen=True)
+class Tried:
+    """A set of effects that was fitted.
+
+    fit, left_out  misfit beyond the noise, RMS in sigma: of the fitted recordings, and of each of
+                   them predicted from the others
+    score          chi-square of data and knowledge with a price for each quantity; less is better
+    """
+
+    effects: tuple[str, ...]
+    fit: float
+    left_out: float
+    score: float
+    values: Mapping[str, float]
+    accepted: bool
+
+
+@dataclass(frozen=True)
+class Curve:
+    """A residual against what it may depend on: mean and standard error in bins, in sigma."""
+
+    variable: str
+    unit: str
+    at: Array
+    mean: Array
+    error: Array
+
+
+@dataclass(frozen=True)
+class Stage:
+    """One step from the recording to the motion, tested on its own.
+
+    statistic, p_value  of no fault in this stage
+    size                how large the fault would be, RMS in sigma beyond the noise
+    where               in words: phase, speed, heading, place, recordings
+    """
+
+    name: str
+    channel: str
+    statistic: float
+    p_value: float
+    size: float
+    guilty: bool
+    where: str
+    curves: tuple[Curve, ...] = ()
+
+
+@dataclass(frozen=True)
+class Mismatch:
+    """Whether the model with its values re-fitted is off at all, on the recordings it is fitted to.
+
+    rms      in sigma, beyond the noise
+    p_value  chance that noise alone leaves as much, by chi-square: the residuals of a model that
+             is right are as white as the noise
+    """
+
+    rms: float
+    p_value: float
+
+
+@dataclass(frozen=True)
+class Misfit:
+    """How far a recording is from a prediction: RMS in sigma by channel; 1 is the noise.
+
+    residuals  (n, channels) in sigma;  predicted  (n, channels);  t (n,) s
+    """
+
+    recording: str
+    held_out: bool
+    rms: float
+    channels: Mapping[str, float]
+    t: Array
+    predicted: Array
+    residuals: Array
+
+
+@dataclass(frozen=True)
+class NextExperiment:
+    """The recording that would tell best between what is still open.
+
+    separation  RMS difference of the two explanations in it after re-fitting, in sigma
+    """
+
+    amplitude: float
+    period: float
+    offset: float
+    seconds: float
+    start: str
+    heading: float
+    between: tuple[str, str]
+    separation: float
+    sentence: str
+
+
+@dataclass(frozen=True)
+class Residue:
+    """What is left when no name fits: a force that the model lacks, as a function.
+
+    variable  what it depends on most; at, mean, error as in Curve, force in N
+    share     of the remaining mismatch that the function removes
+    """
+
+    kind: str
+    variable: str
+    unit: str
+    at: Array
+    mean: Array
+    error: Array
+    share: float
+    sentence: str
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """The answer and what it rests on.
+
+    nominal, refitted, final   misfit of each recording: as believed, with parameters re-estimated
+                               within what is known, with the accepted effects
+    before, after              RMS over the held-out recordings in sigma, 1 is the noise
+    values                     of all parameters and effects that the corrected robot has, SI
+    together                   RMS over the held-out recordings with values that fit them too, where
+                               the answer gives these, as the others do not tell all
+    """
+
+    verdict: Verdict
+    summary: str
+    mismatch: Mismatch
+    channel: str
+    where: str
+    stages: tuple[Stage, ...]
+    findings: tuple[Finding, ...]
+    parameters: Mapping[str, Estimate]
+    tried: tuple[Tried, ...]
+    indistinguishable: tuple[tuple[str, ...], ...]
+    next_experiment: NextExperiment | None
+    residue: tuple[Residue, ...]
+    nominal: tuple[Misfit, ...]
+    refitted: tuple[Misfit, ...]
+    final: tuple[Misfit, ...]
+    before: float
+    after: float
+    values: Mapping[str, float]
+    seconds: Mapping[str, float]
+    converged: bool = True
+    together: float | None = None

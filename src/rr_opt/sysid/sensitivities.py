@@ -1,0 +1,302 @@
+"""How a predicted run depends on everything: the linearised motion along it.
+
+Its matrices are evaluated for all steps at once over NumPy arrays, which needs no compiler, and
+then multiplied up along the run.
+
+J'J of predicted runs against what was recorded: all that a least-squares step needs of them.
+
+J has the derivatives of what is seen, in sigmas, at every sample and channel with data: by the
+start, by what is asked for, any further columns, and last what the prediction is off.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rr_opt.array import Array
+from rr_opt.mechanics.vectorised import ArrayFunction
+from rr_opt.sysid.compiled import Rows
+from rr_opt.sysid.shooting import DrivePath, Path, System, arrays_of, code_of
+
+Jacobian = tuple[Array, Array, Array]
+
+
+@dataclass(frozen=True)
+class DriveSlopes:
+    """How the drive changes with what is asked for, by index along the last axis.
+
+    at      (size, samples, nw) at the samples
+    nodes   (size, 3, steps, nw) at the beginning, in the middle and at the end of each step
+    """
+
+    at: Array
+    nodes: Array
+
+
+@dataclass(frozen=True)
+class Slopes:
+    """How what is seen changes, (samples, channels, ...), with p, and with the start."""
+
+    by_parameter: Array
+    by_start: Array
+
+
+@dataclass(frozen=True)
+class Hats:
+    """Rows of the drive that are moved at one sample each, falling to 0 at the next to either side.
+
+    passed  (3, steps) how much of the time between two samples has passed at each node
+    """
+
+    rows: NDArray[np.int_]
+    passed: Array
+
+
+@dataclass(frozen=True)
+class Linear:
+    """The linearised motion from sample to sample, and of what is seen.
+
+    A (samples - 1, size, size);  B (samples - 1, size, nw) of what is asked for, and after that of
+    hats: of all at the earlier sample, then of all at the later
+    by_state (samples, channels, size);  by_drive (samples, channels, drive);  by_wanted (.., nw)
+    """
+
+    A: Array
+    B: Array
+    by_state: Array
+    by_drive: Array
+    by_wanted: Array
+
+
+def linear(
+    system: System,
+    path: DrivePath,
+    made: Path,
+    p: Array,
+    wanted: Array,
+    drive_by: DriveSlopes | None,
+    hats: Hats | None = None,
+) -> Linear:
+    """The motion linearised along a predicted path.
+
+    wanted    (np, nw) how p changes with what is asked for
+    drive_by  how the drive does; None if it does not
+    """
+    size, nd = made.states.shape[0], path.at.shape[0]
+    how = _frozen if system.stiff else _stages
+    A, B = how(_Along(system, path, made, p, wanted, drive_by, hats))
+    for _ in range(int(np.log2(path.each))):
+        A, B = A[1::2] @ A[::2], A[1::2] @ B[::2] + B[1::2]
+    samples, channels = path.at.shape[1], made.seen.shape[1]
+    at = made.states[:, :: path.each]
+    by_state, by_drive, by_p = _split(
+        arrays_of(system, "seen_by")(*at, *path.at, *p), channels, nd, p.size, samples, size
+    )
+    by_wanted = by_p @ wanted
+    if drive_by is not None:
+        by_wanted = by_wanted + np.einsum("sid,dsw->siw", by_drive, drive_by.at)
+    return Linear(A, B, by_state, by_drive, by_wanted)
+
+
+def slopes(
+    system: System,
+    path: DrivePath,
+    made: Path,
+    p: Array,
+    wanted: Array,
+    drive_by: DriveSlopes | None,
+) -> Slopes:
+    """How what is seen along a predicted path changes; see `linear`."""
+    by = linear(system, path, made, p, wanted, drive_by)
+    (samples, _, size), nw = by.by_state.shape, wanted.shape[1]
+    carried = np.empty((samples, size, size + nw))
+    carried[0] = np.eye(size, size + nw)
+    for k in range(samples - 1):
+        np.matmul(by.A[k], carried[k], out=carried[k + 1])
+        carried[k + 1, :, size:] += by.B[k]
+    seen = by.by_state @ carried
+    seen[:, :, size:] += by.by_wanted
+    return Slopes(seen[:, :, size:], seen[:, :, :size])
+
+
+@dataclass(frozen=True)
+class _Along:
+    """What is linearised, and by what."""
+
+    system: System
+    path: DrivePath
+    made: Path
+    p: Array
+    wanted: Array
+    drive_by: DriveSlopes | None
+    hats: Hats | None
+
+    def jacobian(self, at: Array, drive: Array) -> Jacobian:
+        """By state, drive and p, (n, size, ...) each, at states and drives (..., n)."""
+        by = arrays_of(self.system, "rates_by")(*at, *drive, *self.p)
+        return _split(by, len(at), len(drive), self.p.size, at.shape[1])
+
+    def both(self, jacobian: Jacobian, node: int) -> Array:
+        """fx and f_w side by side (steps, size, size + nw) at a node of all steps."""
+        fx, fd, fp = jacobian
+        force = fp @ self.wanted
+        if self.drive_by is not None:
+            force = force + np.einsum("sid,dsw->siw", fd, self.drive_by.nodes[:, node])
+        if self.hats is None:
+            return np.concatenate([fx, force], axis=2)
+        hat = fd[:, :, self.hats.rows]
+        later = hat * self.hats.passed[node][:, None, None]
+        return np.concatenate([fx, force, hat - later, later], axis=2)
+
+    @property
+    def rates(self) -> ArrayFunction:
+        """d(state)/dt."""
+        return arrays_of(self.system, "rates")
+
+
+def _stages(along: _Along) -> tuple[Array, Array]:
+    """Transition matrices: the derivatives of the classical Runge-Kutta step itself.
+
+    Where a force sets in within a step, those of the motion between its ends are others.
+    """
+    path, x, h = along.path, along.made.states[:, :-1], along.path.h
+    slopes = [np.zeros_like(x)]
+    for node, reach in ((0, 0.0), (1, 0.5), (1, 0.5)):
+        at = x + reach * h * slopes[-1]
+        slope = along.rates(*at, *path.nodes[:, node], *along.p)
+        slopes.append(np.array(np.broadcast_arrays(*slope)))
+
+    def both(k: int, reach: float) -> Array:
+        node = (k + 1) // 2
+        return along.both(along.jacobian(x + reach * h * slopes[k], path.nodes[:, node]), node)
+
+    return _combined(h, len(x), both)
+
+
+def _combined(h: Array, size: int, both: Callable[[int, float], Array]) -> tuple[Array, Array]:
+    """The four stages of the classical Runge-Kutta method, linearised.
+
+    both  (stage, how much of the step it reaches) -> fx and f_w side by side
+    """
+    h = h[:, None, None]
+    first = both(0, 0.0)
+    eye = np.eye(size, first.shape[2])
+
+    def slope(f: Array, M: Array) -> Array:
+        out = f[:, :, :size] @ M
+        out[:, :, size:] += f[:, :, size:]
+        return out
+
+    k1 = first
+    k2 = slope(both(1, 0.5), eye + h / 2 * k1)
+    k3 = slope(both(2, 0.5), eye + h / 2 * k2)
+    k4 = slope(both(3, 1.0), eye + h * k3)
+    out = eye + h / 6 * (k1 + 2 * (k2 + k3) + k4)
+    return out[:, :, :size], out[:, :, size:]
+
+
+def _frozen(along: _Along) -> tuple[Array, Array]:
+    """Transition matrices of fine steps where some states settle at once.
+
+    The matrix z = h fx of the middle of the step is taken for all of it; exp(z) as its Pade
+    approximant (1 + z/3)/(1 - 2z/3 + z^2/6), which damps what settles at once.
+    """
+    states, h = along.made.states, along.path.h[:, None, None]
+    size = len(states)
+    middle = (states[:, 1:] + states[:, :-1]) / 2
+    both = along.both(along.jacobian(middle, along.path.nodes[:, 1]), 1)
+    eye, z = np.eye(size), both[:, :, :size] * h
+    push = (eye - z / 6) @ (both[:, :, size:] * h)
+    left = eye - 2 / 3 * z + z @ z / 6
+    out = np.linalg.solve(left, np.concatenate([eye + z / 3, push], axis=2)).astype(float)
+    return out[:, :, :size], out[:, :, size:]
+
+
+def _split(parts, rows: int, nd: int, np_: int, count: int, nx: int | None = None) -> Jacobian:
+    """The dense Jacobians (count, rows, ...) by state, drive and p from their entries."""
+    nx = rows if nx is None else nx
+    columns = nx + nd + np_
+    dense = np.empty((count, rows, columns))
+    for k, part in enumerate(parts):
+        dense[:, k % rows, k // rows] = part
+    return dense[:, :, :nx], dense[:, :, nx : nx + nd], dense[:, :, nx + nd :]
+
+
+@dataclass(frozen=True)
+class Recorded:
+    """What was recorded (samples, channels), 0 for no data, and 1/sigma, 0 for no data."""
+
+    values: Array
+    weight: Array
+
+    @classmethod
+    def of(cls, values: Array, sigma: Array) -> Recorded:
+        """From values that are NaN where there are no data."""
+        seen = np.isfinite(values)
+        return cls(np.where(seen, values, 0.0), np.where(seen, 1 / sigma, 0.0))
+
+    def off(self, predicted: Array) -> Array:
+        """(predicted - recorded)/sigma, 0 for no data."""
+        return (predicted - self.values) * self.weight
+
+
+@dataclass(frozen=True)
+class Sought:
+    """A predicted run, and by what it is to be differentiated; see `linear.linear`.
+
+    more  (samples, channels, k) further columns
+    """
+
+    path: DrivePath
+    made: Path
+    p: Array
+    wanted: Array
+    drive_by: DriveSlopes | None
+    recorded: Recorded
+    more: Array | None = None
+
+
+def grams(system: System, asked: Sequence[Sought]) -> list[Array]:
+    """J'J (n, n) of each run, without the samples where a prediction has left the numbers."""
+    if not asked:
+        return []
+    code = code_of(system, 4 * sum(one.path.h.size for one in asked))
+    return code.grams([_rows(one) for one in asked]) if code else [_gram(system, a) for a in asked]
+
+
+def gram_of(*columns: Array) -> Array:
+    """J'J of columns (samples, k) side by side."""
+    J = np.column_stack(columns)
+    return J.T @ J
+
+
+def _rows(one: Sought) -> Rows:
+    by, path = one.drive_by, one.path
+    moved = (by.at, by.nodes) if by else None
+    return Rows(
+        *(path.inputs, path.at, path.each, one.p, one.made.states, one.wanted, moved),
+        *(one.recorded.values, one.recorded.weight, one.more),
+    )
+
+
+def _gram(system: System, one: Sought) -> Array:
+    by = slopes(system, one.path, one.made, one.p, one.wanted, one.drive_by)
+    off = one.made.seen - one.recorded.values
+    weight = np.where(np.isfinite(off), one.recorded.weight, 0.0)
+    parts = [
+        by.by_start,
+        by.by_parameter,
+        *([] if one.more is None else [one.more]),
+        off[..., None],
+    ]
+    known = weight[:, :, None] > 0
+    return gram_of(
+        *(
+            np.where(known, part, 0.0).reshape(weight.size, -1) * weight.reshape(-1, 1)
+            for part in parts
+        )
+    )

@@ -1,0 +1,171 @@
+"""Predict runs from their starts.
+
+The state follows xdot = rates(x, drive, p) between samples, where the drive is known. It is stepped
+by CasADi's virtual machine, one function for all steps. A system that is used a lot is compiled,
+where there is a compiler, and then several runs are stepped at once. For how a prediction depends
+on everything see `linear`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+
+import casadi as ca
+import numpy as np
+
+from rr_opt.array import Array
+from rr_opt.mechanics.code_generation import inverted
+from rr_opt.mechanics.vectorised import ArrayFunction, over_arrays
+from rr_opt.sysid.compiled import Compiled, found, source_of
+
+_FEW, _PAYS = 10_000, 100_000
+"""Steps, with derivatives counted fourfold, that take as long as to look for what was compiled
+before, and as long as to compile."""
+
+Slope = Callable[[int, ca.SX], ca.SX]
+"""d(state)/dt at the beginning (0), in the middle (1) or at the end (2) of a step."""
+
+
+@dataclass(frozen=True, eq=False)
+class System:
+    """rates(state, drive, p) -> d(state)/dt and seen(state, drive, p) -> channels.
+
+    stiff   how many states at the end of it settle at once, and need an implicit step
+    lasts   whether it is the same for other recordings, so that compiling it may be worth it
+    """
+
+    rates: ca.Function
+    seen: ca.Function
+    stiff: int = 0
+    lasts: bool = False
+
+
+@dataclass(frozen=True)
+class DrivePath:
+    """The drive over all steps of a run.
+
+    h      (steps,) s, `each` of them between two samples
+    nodes  (size, 3, steps) at the beginning, in the middle and at the end of each step
+    at     (size, samples) at the samples
+    """
+
+    h: Array
+    nodes: Array
+    at: Array
+    each: int
+
+    @cached_property
+    def inputs(self) -> Array:
+        """(steps, 1 + 3 size): each step's length, and its drive at all three places."""
+        nodes = self.nodes.transpose(2, 1, 0).reshape(self.h.size, -1)
+        return np.column_stack([self.h, nodes])
+
+
+@dataclass(frozen=True)
+class Path:
+    """The states (size, steps + 1) of a run and what is seen of it (samples, channels)."""
+
+    states: Array
+    seen: Array
+
+
+def predict(system: System, path: DrivePath, start: Array, p: Array) -> Path:
+    """Step the system along the drive from `start`."""
+    return predict_all(system, [(path, start, p)])[0]
+
+
+def predict_all(system: System, asked: Sequence[tuple[DrivePath, Array, Array]]) -> Sequence[Path]:
+    """Step the system along each drive from its start, with its p."""
+    code = code_of(system, sum(path.h.size for path, _, _ in asked))
+    if code:
+        every = [(start, path.inputs, path.at, path.each, p) for path, start, p in asked]
+        return [Path(*made) for made in code.predict(every)]
+    return [_predicted(system, path, start, p) for path, start, p in asked]
+
+
+def _predicted(system: System, path: DrivePath, start: Array, p: Array) -> Path:
+    rolled = _roll(system, path.h.size)(start, path.inputs.T, p)
+    states = np.column_stack([start, np.asarray(rolled)])
+    at = states[:, :: path.each]
+    seen = arrays_of(system, "seen")(*at, *path.at, *p)
+    return Path(states, np.array(np.broadcast_arrays(*seen)).T)
+
+
+_used: dict[System, int] = {}
+
+
+def code_of(system: System, steps: int) -> Compiled | None:
+    """The system compiled: if it was before, or with these steps was used so much that it pays."""
+    if not system.lasts:
+        return None
+    used = _used[system] = _used.get(system, 0) + steps
+    return _compiled(system, make=used > _PAYS) if used > _FEW else None
+
+
+@lru_cache(maxsize=64)
+def _compiled(system: System, *, make: bool) -> Compiled | None:
+    source = _source(system)
+    sizes = system.rates.numel_in(0), system.seen.numel_out(0)
+    return found(source, *sizes, make=make) if source else None
+
+
+@lru_cache(maxsize=64)
+def _source(system: System) -> str | None:
+    try:
+        return source_of(_step(system), system.rates, system.seen, stiff=bool(system.stiff))
+    except NotImplementedError:
+        return None
+
+
+@lru_cache(maxsize=256)
+def arrays_of(system: System, which: str) -> ArrayFunction:
+    """`rates`, `seen`, or their derivatives `rates_by`, `seen_by`, over arrays."""
+    function = system.rates if which.startswith("rates") else system.seen
+    if which.endswith("_by"):
+        inputs = function.sx_in()
+        by = ca.densify(ca.jacobian(function(*inputs), ca.vertcat(*inputs)))
+        function = ca.Function(which, inputs, [ca.cse(by)])
+    return over_arrays(function)
+
+
+@lru_cache(maxsize=512)
+def _roll(system: System, steps: int) -> ca.Function:
+    return _step(system).mapaccum(steps)
+
+
+@lru_cache(maxsize=64)
+def _step(system: System) -> ca.Function:
+    x, drive, p = system.rates.sx_in()
+    h, nodes = ca.SX.sym("h"), ca.SX.sym("nodes", 3 * drive.numel())
+    parts = ca.vertsplit(nodes, drive.numel())
+    make = _rosenbrock if system.stiff else _rk4
+    end = make(lambda k, y: system.rates(y, parts[k], p), x, h, system.stiff)
+    return ca.Function("rr_step", [x, ca.vertcat(h, nodes), p], [ca.cse(end)])
+
+
+def _rk4(f: Slope, x: ca.SX, h: ca.SX, _: int) -> ca.SX:
+    k1 = f(0, x)
+    k2 = f(1, x + h / 2 * k1)
+    k3 = f(1, x + h / 2 * k2)
+    k4 = f(2, x + h * k3)
+    return x + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
+
+
+def _rosenbrock(f: Slope, x: ca.SX, h: ca.SX, n: int) -> ca.SX:
+    """ROS2 of Verwer, Spee, Blom and Hundsdorfer (1999): L-stable, and of order 2 with any matrix.
+
+    So the matrix holds the stiff states alone.
+    """
+    gamma = 1 - 1 / np.sqrt(2)
+    y = ca.SX.sym("y", x.numel())
+    by = ca.jacobian(f(0, y)[-n:], y)[:, -n:]
+    inverse = inverted(ca.SX.eye(n) - gamma * h * ca.substitute(by, y, x))
+
+    def solve(b: ca.SX) -> ca.SX:
+        return ca.vertcat(b[:-n], inverse @ b[-n:])
+
+    k1 = solve(f(0, x))
+    k2 = solve(f(2, x + h * k1) - 2 * k1)
+    return x + h * (1.5 * k1 + 0.5 * k2)

@@ -1,0 +1,193 @@
+"""Calculus on samples of periodic functions by Fourier series, and linear equations with them.
+
+Calculus on samples of periodic functions by Fourier series, many functions at once.
+
+Samples x (n, K): n equal steps (n even) along the first axis, over one `span` (K,), s, of K
+functions. A span is what a function repeats after. Over half a period of a straight gait some
+functions repeat and some change sign; the latter are `flipping` and repeat after two spans.
+
+The repeating solution of dv/dt = a v + b, with a and b sampled over a span.
+
+With dA/dt = a less its mean, A periodic, exp(-A) is the integrating factor. Two ways on: one
+exact for every harmonic, one that stays accurate however much A varies.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import lru_cache
+
+import numpy as np
+from numpy.fft import irfft, rfft
+from numpy.typing import NDArray
+
+from rr_opt.array import Array
+
+Spectrum = NDArray[np.complex128]
+_Operation = Callable[[Array, bool], Array]
+
+_DENSE = 64
+"""Up to so many samples one matrix product is faster than the transforms it stands for."""
+
+_SMOOTH = 256
+"""At least so many samples show a peak well enough for a parabola."""
+
+
+def harmonics(x: Array) -> Spectrum:
+    """The spectrum (n/2 + 1, K) of x: its mean times n, then what goes with each frequency."""
+    return np.asarray(rfft(x, axis=0))
+
+
+def samples(spectrum: Spectrum, n: int) -> Array:
+    """The n samples (n, K) that have this spectrum."""
+    return np.asarray(irfft(spectrum, n, axis=0))
+
+
+def frequencies(n: int, span: Array) -> Spectrum:
+    """i omega of the harmonics of n samples, (n/2 + 1, K), rad/s."""
+    return np.arange(n // 2 + 1)[:, None] * (np.complex128(2j * np.pi) / span)
+
+
+def derivative(x: Array, span: Array) -> Array:
+    """dx/dt (n, K) of functions that repeat after the span."""
+    spectrum = harmonics(x) * frequencies(len(x), span)
+    spectrum[-1] = 0.0
+    return samples(spectrum, len(x))
+
+
+def integral(x: Array, span: Array, flipping: bool) -> Array:
+    """The periodic integral (n, K) of x less its mean; its own mean is zero."""
+    return span * _apply(_integral, x, flipping)
+
+
+def refined(x: Array) -> Array:
+    """Functions that repeat after the span at twice as many samples, (2n, K)."""
+    return samples(harmonics(x), 2 * len(x)) * 2
+
+
+def peak(x: Array, flipping: bool) -> Array:
+    """Largest |x| (K,), between the samples too.
+
+    The spectrum padded with zeros gives samples at least four times as dense, a parabola
+    through the largest of them and its neighbours the rest.
+    """
+    size = np.abs(_apply(_resampled, x, flipping))
+    top, column = size.argmax(axis=0), np.arange(size.shape[1])
+    left, middle, right = (size[(top + k) % len(size), column] for k in (-1, 0, 1))
+    bend = left - 2 * middle + right
+    return middle - (right - left) ** 2 / (8 * np.where(bend < 0, bend, -np.inf))
+
+
+def tail(x: Array, flipping: bool) -> Array:
+    """Size of the fastest eighth of the harmonics, (K,), in the unit of x."""
+    return np.abs(_apply(_tail, x, flipping)).max(axis=0)
+
+
+def matrices(n: int, flipping: bool) -> tuple[Array, Array, Array]:
+    """What stands behind `integral` over a span of 1, `tail` and `peak`, as matrices (.., n)."""
+    integral, fastest, dense = (
+        _matrix(operation, n, flipping) for operation in (_integral, _tail, _resampled)
+    )
+    return integral, fastest, dense
+
+
+def _apply(operation: _Operation, x: Array, flipping: bool) -> Array:
+    if len(x) <= _DENSE:
+        return _matrix(operation, len(x), flipping) @ x
+    return operation(x, flipping)
+
+
+@lru_cache
+def _matrix(operation: _Operation, n: int, flipping: bool) -> Array:
+    return operation(np.eye(n), flipping)
+
+
+def _repeating(x: Array, flipping: bool) -> Array:
+    return np.concatenate([x, -x]) if flipping else x
+
+
+def _integral(x: Array, flipping: bool) -> Array:
+    whole = _repeating(x, flipping)
+    spectrum = harmonics(whole)
+    spectrum[0] = 0.0
+    spectrum[1:] /= 2j * np.pi * np.arange(1, len(spectrum))[:, None] * len(x) / len(whole)
+    return samples(spectrum, len(whole))[: len(x)]
+
+
+def _resampled(x: Array, flipping: bool) -> Array:
+    factor = max(4, _SMOOTH // len(x))
+    whole = _repeating(x, flipping)
+    dense = samples(harmonics(whole), factor * len(whole)) * factor
+    return dense[: factor * len(x)]
+
+
+def _tail(x: Array, flipping: bool) -> Array:
+    whole = _repeating(x, flipping)
+    spectrum = harmonics(whole) * (2 / len(whole))
+    top = spectrum[-1 - len(spectrum) // 8 : -1]
+    return np.concatenate([top.real, top.imag])
+
+
+_NEAR = (-2, -1, 0, 1, 2, 3)
+"""Samples, counted from the start of a step, whose polynomial stands for the integrand."""
+
+
+def _weights() -> Array:
+    """Of the samples _NEAR in the integral over a step of length 1: exact for polynomials."""
+    powers = np.arange(len(_NEAR))
+    moments = np.array(_NEAR, float) ** powers[:, None]
+    return np.asarray(np.linalg.solve(moments, 1 / (powers + 1.0)), float)
+
+
+_WEIGHTS = _weights()
+
+
+def solve(a: Array, b: Array, span: Array) -> tuple[Array, Array]:
+    """v (n, K), and the mean of a (K,), harmonic by harmonic.
+
+    y = v exp(-A) obeys dy/dt = mean y + b exp(-A), whose coefficient is constant: every
+    harmonic of y is that of b exp(-A) over (i omega - mean).
+    """
+    omega = frequencies(len(a), span)
+    A, mean = _exponent(a, omega)
+    growth = np.exp(A)
+    forcing = harmonics(b / growth)
+    forcing /= omega - mean
+    return growth * samples(forcing, len(a)), mean
+
+
+def solve_stiff(a: Array, b: Array, span: Array) -> tuple[Array, Array]:
+    """v (n, K), and the mean of a (K,), for an a that dry friction makes large and sudden.
+
+    exp(A) may then span more orders of magnitude than a float has digits, but over one step it
+    does not. So each step from sample to sample becomes a map v -> gain v + shift, with the
+    integral in it of order six; the maps of 1, 2, 4 .. n steps from every sample follow by
+    joining pairs, and the last of them close the cycle. n is a power of two.
+    """
+    n, h = len(a), span / len(a)
+    A, mean = _exponent(a, frequencies(n, span))
+    # Clipped: where a step is stiffer, v is only as good as the samples are dense.
+    gain = np.exp(np.clip(np.roll(A, -1, axis=0) - A + mean * h, -10.0, 1.0))
+    # exp of what a gathers from each near sample to the end of the step, one gain at a time.
+    next1, next2, last1, last2 = (np.roll(gain, k, axis=0) for k in (-1, -2, 1, 2))
+    factors = (gain * last1 * last2, gain * last1, gain, 1.0, 1 / next1, 1 / (next1 * next2))
+    shift = np.zeros_like(a)
+    for k, weight, factor in zip(_NEAR, _WEIGHTS, factors, strict=True):
+        shift += weight * factor * np.roll(b, -k, axis=0)
+    shift *= h
+    steps = 1
+    while steps < n:
+        later = np.roll(gain, -steps, axis=0)
+        shift = later * shift + np.roll(shift, -steps, axis=0)
+        gain = later * gain
+        steps *= 2
+    return shift / (1 - gain), mean
+
+
+def _exponent(a: Array, omega: Spectrum) -> tuple[Array, Array]:
+    """A (n, K) and the mean of a (K,)."""
+    spectrum = harmonics(a)
+    mean = spectrum[0].real / len(a)
+    spectrum[0] = 0.0
+    spectrum[1:] /= omega[1:]
+    return samples(spectrum, len(a)), mean

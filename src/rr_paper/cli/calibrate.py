@@ -1,0 +1,38 @@
+"""`rr-opt calibrate`: what the paper's nine averages say of its prototype, and of the models."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from rr_opt.cli.options import json_option, out_option
+from rr_opt.cli.steps import Steps
+
+
+def calibrate(
+    out: Annotated[Path | None, out_option("out/calibration")] = None,
+    json: Annotated[bool, json_option("calibration.json")] = False,
+) -> None:
+    """Estimate what the paper does not give of its prototype, and compare models.
+
+    From the nine averages of Tables 2 and 3, for both readings of their columns. Tells which
+    unknowns those do not pin down. Takes two to three minutes.
+    """
+    with Steps() as steps:
+        steps("starting")
+        from rr_opt.report.archive import folder_for_results, strict_json
+
+        folder = folder_for_results(out or Path("out") / "calibration")
+        from rr_paper.calibration.calibrate import calibrate as estimate
+        from rr_paper.report.calibration_page import write_calibration
+        from rr_paper.report.calibration_text import record, summary
+
+        found = estimate(steps)
+        steps("files")
+        written = write_calibration(found, folder)
+    if json:
+        typer.echo(strict_json(record(found)), nl=False)
+    else:
+        typer.echo(summary(found, written), nl=False)

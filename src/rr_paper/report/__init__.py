@@ -1,0 +1,1 @@
+"""What the reproduction and the calibration tell."""

@@ -1,0 +1,66 @@
+"""What is hidden does in the planar engine what it does in MuJoCo, and is seen as well."""
+
+from dataclasses import replace
+
+import pytest
+
+from rr_lab.case import Plan
+from rr_lab.effects import EFFECTS
+from rr_lab.engines import ENGINES
+from rr_lab.random_case import bare_case
+from rr_lab.visibility import Gauge
+from rr_opt.model.experiment import Noise
+from rr_opt.model.gait import SineGait
+from rr_opt.model.robot import EffectUse
+from tests.rr_lab.reduced import SHORT
+
+PLAN = Plan("run.csv", SineGait(0.7, 1.2, 0.15), 4.0, "running", "fit", (0.1, 0.0, 0.3))
+CASE = replace(bare_case(1, 4.0, robot=SHORT), plans=(PLAN,), noise=Noise(1e-3, 3e-3), robot=SHORT)
+
+SMOOTH = 0.01
+USES = (
+    ("servo_lag", {"tau": 0.03}, SMOOTH),
+    ("servo_lag", {"tau": 0.03, "beta": 1e-3}, SMOOTH),
+    ("servo_rate_limit", {"rate_limit": 2.5}, SMOOTH),
+    ("servo_backlash", {"width": 0.03}, 0.03),
+    ("servo_offset", {"offset": 0.03}, SMOOTH),
+    ("coulomb_friction", {"force1": 4e-3, "force2": 6e-3}, 0.02),
+    ("quadratic_drag", {"coefficient_total": 0.4}, SMOOTH),
+    ("left_right_drag", {"asymmetry1": 0.4, "asymmetry2": -0.4}, SMOOTH),
+    ("wheel_inertia", {"J": 3e-5}, SMOOTH),
+    ("lateral_slip", {"creep_compliance": 0.03}, 0.1),  # MuJoCo's creeps along its wheels too
+    ("lateral_slip", {"mu": 0.03}, 0.1),
+    ("axle_misalignment", {"toe1": 0.01, "toe2": -0.02}, SMOOTH),
+    ("floor_tilt", {"tilt_x": 1e-3, "tilt_y": -5e-4}, SMOOTH),
+    ("floor_patch", {"multiplier": 3.0, "x": 0.2, "y": 0.0, "radius": 0.3}, SMOOTH),
+    ("floor_patch", {"multiplier": 3.0, "normal": 1.0, "edge_x": 0.2, "edge_y": 0.0}, SMOOTH),
+    ("com_offset", {"d1": 5e-3, "d2": -8e-3}, SMOOTH),
+    ("marker_offset", {"dx": 5e-3, "dy": 3e-3}, SMOOTH),
+    ("clock_offset", {"offset": 0.03}, SMOOTH),
+    ("tether", {"stiffness": 0.05, "slack": 0.1, "x": 0.3, "y": 0.3}, 0.02),
+    ("stribeck_friction", {"force": 6e-3, "speed": 0.05}, 0.03),
+    ("drifting_friction", {"change": 0.8, "time": 5.0}, SMOOTH),
+    ("compliant_platform", {"give": 0.3}, 0.05),  # its dampers are each engine's own
+    ("wheel_fault", {"force": 0.02}, 0.05),
+    ("loose_pin", {"clearance": 3e-3}, 0.5),  # a round hole and a square one; it rattles
+    ("shifting_load", {"mass": 0.08, "stiffness": 5.0}, 0.03),
+)
+
+
+@pytest.fixture(scope="module")
+def gauges():
+    return {engine: Gauge.of(replace(CASE, engine=engine)) for engine in ENGINES}
+
+
+def test_none_is_left_out():
+    assert {name for name, _, _ in USES} == set(EFFECTS)
+
+
+@pytest.mark.parametrize(("name", "values", "within"), USES, ids=lambda each: str(each)[:40])
+def test_seen_as_well(gauges, name, values, within):
+    effects = (EffectUse(name, values),)
+    one, other = (
+        gauges[engine](replace(CASE, effects=effects, engine=engine)) for engine in ENGINES
+    )
+    assert one > 0.2
+    assert other == pytest.approx(one, rel=within)

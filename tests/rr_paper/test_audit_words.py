@@ -1,0 +1,66 @@
+"""What the audit says in fixed words is so; what it says in numbers is all there."""
+
+import math
+
+from rr_paper.equation3 import CORRECTED
+from rr_paper.report.audit_runs import sections
+
+
+def test_signs(found):
+    audit = found.signs
+    for one in audit.off:
+        right = one.signs is CORRECTED
+        assert one.kane < 1e-9 if right else one.median > 0.01
+        assert one.multipliers < 1e-9 if right else one.multipliers > 0.1
+    assert audit.torque < 1e-9
+    to_multipliers, to_corrected, to_printed = audit.driven.apart
+    assert max(to_multipliers, to_corrected) < 1e-6
+    assert to_printed > 0.1
+
+
+def test_readings(found):
+    audit = found.consistency
+    assert all(one.p > 0.05 for one in audit.of("ratio", "mean"))
+    assert audit.of("kappa", "mean")[-1].p < 0.01
+    reached = {one.reading.name: one.reached for one in audit.bare}
+    assert reached["about the centres of mass"] == reached["about the axles' centres"] == ()
+    assert 0.08 not in reached["about P, by platform 2's inertia"]
+    assert 0.14 in reached["about P, by platform 2's inertia"]
+    pairs = zip(audit.of("ratio", "mean"), audit.of("ratio", "other"), strict=True)
+    assert all(mean.fit.chi2 < other.fit.chi2 for mean, other in pairs)
+
+
+def test_columns_and_limits(found):
+    assert all(one.columns_agree for one in (*found.tables.table2, *found.tables.table3))
+    over = {one.where for one in found.asked if one.too_fast}
+    assert {"Table 3, row 2", "Table 3, row 3", "Fig. 6"} <= over
+    assert found.posture.largest < found.posture.servo
+
+
+def test_period(found):
+    law = found.period
+    assert all(one.low <= 4.0 <= one.high for one in law.ratios)
+    assert max(one.largest for one in law.spreads) < sorted(one.other for one in law.ratios)[1]
+
+
+def test_best_amplitude(found):
+    limited, free = found.best.fastest
+    assert limited.confirmed
+    assert free.confirmed
+    assert limited.optimum.best.gait.amplitude <= 0.5 * limited.optimum.best.gait.period * 1.0001
+    assert free.optimum.best.gait.amplitude > 1.19
+
+
+def test_turning(found):
+    assert found.turning.sides_hold
+    assert found.turning.radii_hold
+    assert not found.turning.sign.holds
+    assert not found.turning.radius.holds
+
+
+def test_every_number_is_one(found):
+    for section in sections(found, None):
+        assert "nan" not in " ".join(section.sentences)
+        for row in section.rows:
+            assert len(row) == len(section.head)
+            assert not any(isinstance(cell, float) and math.isnan(cell) for cell in row)

@@ -1,0 +1,162 @@
+"""What is not as the experiment file says is refused with a reason; a faulty robot is not."""
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from rr_opt.cli.diagnose_input import checked, read, usable
+from rr_opt.cli.main import app
+from rr_opt.effects import CATALOGUE
+from rr_opt.files.issue import has_errors
+from rr_opt.machines.racer.racer import RollerRacer
+from rr_opt.model.gait import SineGait
+from rr_opt.outcome import InputError
+from rr_opt.sysid.model import Piece
+from tests.sysid.bad_data.folder import GAITS, written
+from tests.sysid.made_up import experiment, recorded
+
+DEGREES = 180 / np.pi
+
+
+def refusal(folder):
+    with pytest.raises(InputError) as caught:
+        usable(read(folder)[2])
+    return str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("factors", "said"),
+    [
+        ((1, 1000, 1, 1, 1), "millimetres"),
+        ((1, 20, 20, 1, 1), "millimetres or centimetres?"),
+        ((1, 100, 100, 1, 1), "Expected metres"),
+        ((1, 15, 15, 1, 1), "millimetres or centimetres?"),
+        ((1, 0.02, 0.02, 1, 1), "are these another unit?"),
+        ((1, 1, 1, DEGREES, 1), "is psi in degrees?"),
+        ((1, 1, 1, 1, DEGREES), "degrees"),
+        ((1, 1, 1, -1, 1), "The heading swings with phi"),
+        ((1, 1, 1, 1, -1), "The heading swings with phi"),
+        ((1, 1, -1, -1, -1), "phi is half a period off its command in every recording"),
+    ],
+)
+def test_another_unit_or_sign(tmp_path, factors, said):
+    told = refusal(written(tmp_path, lambda table: table * factors)).splitlines()
+    assert told
+    assert all(said in line for line in told)
+
+
+def test_a_small_angle_in_degrees(tmp_path):
+    gaits = [(0.005, 1.0, 0.0)]
+    spoil = lambda table: table * [1, 1, 1, 1, 0.01 * DEGREES]  # noqa: E731
+    assert "is one of them in degrees" in refusal(
+        written(tmp_path, spoil, uses=("fit",), gaits=gaits)
+    )
+
+
+@pytest.mark.parametrize("factor", [0.5, 2.0, 1.2])
+def test_another_period(tmp_path, factor):
+    amplitude, period, offset = GAITS[0]
+    gaits = [(amplitude, factor * period, offset), *GAITS[1:]]
+    told = refusal(written(tmp_path, gaits=gaits))
+    assert "run0.csv: phi repeats every 1" in told
+    assert f"the gait every {factor * period:.3g} s" in told
+    assert "run1" not in told
+
+
+def test_times_of_a_calendar(tmp_path):
+    told = refusal(written(tmp_path, lambda table: np.add(table, [1.7e9, 0, 0, 0, 0])))
+    assert "The times begin at 1700000000" in told
+
+
+def test_noise_that_drowns_the_motion(tmp_path):
+    folder = written(tmp_path)
+    file = folder / "experiment.yaml"
+    assert "angle: 0.003" in file.read_text()
+    file.write_text(file.read_text().replace("angle: 0.003", "angle: 0.2"))
+    assert "Correct `noise.angle`" in refusal(folder)
+
+
+def test_what_is_refused_is_no_clean_bill_of_lint(tmp_path):
+    from rr_opt.cli.lint import _issues
+
+    assert not has_errors(_issues(written(tmp_path / "right")))
+    assert has_errors(_issues(written(tmp_path / "mm", lambda table: table * [1, 1e3, 1e3, 1, 1])))
+
+
+def test_too_short_or_too_still(tmp_path):
+    short = refusal(written(tmp_path / "short", lambda table: table[:150]))
+    assert "too short to tell" in short
+    assert "nothing can be told" in short
+
+    def still(table):
+        table[:, 1:4] = table[0, 1:4] + 0.001 * np.random.default_rng(0).normal(
+            size=(len(table), 3)
+        )
+        return table
+
+    assert "The robot does not move" in refusal(written(tmp_path / "still", still))
+
+
+def test_another_amplitude_is_told_and_not_refused(tmp_path):
+    amplitude, period, offset = GAITS[1]
+    gaits = [GAITS[0], (1.5 * amplitude, period, offset), GAITS[2]]
+    trial, told = usable(read(written(tmp_path, gaits=gaits))[2])
+    assert len(trial.runs) == 3
+    assert told == ()
+    said = [[text for text in run.recording.doubts if "commanded" in text] for run in trial.runs]
+    assert [len(texts) for texts in said] == [0, 1, 0]
+    assert said[1][0].startswith("phi moves 0.66 times as far as commanded.")
+
+
+@pytest.mark.parametrize(
+    ("effect", "values"),
+    [
+        ("servo_lag", {"tau": 0.12}),
+        ("servo_rate_limit", {"rate_limit": 1.6}),
+        ("servo_backlash", {"width": 0.2}),
+        ("servo_offset", {"offset": 0.3}),
+        ("clock_offset", {"offset": 0.2}),
+        ("marker_offset", {"dx": -0.1, "dy": 0.1}),
+        ("lateral_slip", {"creep_compliance": 0.0, "mu": 0.02}),
+        ("coulomb_friction", {"force1": 0.02, "force2": 0.02}),
+    ],
+)
+def test_no_fault_of_the_robot_is_refused(effect, values):
+    gaits = ((SineGait(0.5, 1.0), "running"), (SineGait(0.4, 1.4, 0.2), "rest"))
+    given = experiment(gaits=gaits, seconds=8.0)
+    empty = RollerRacer(given)
+    neutral = {f"{effect}.{q.name}": q.neutral for q in CATALOGUE[effect].parameters}
+    strong = neutral | {f"{effect}.{name}": value for name, value in values.items()}
+
+    def predict(run, start):
+        piece = Piece(run, 0, len(given.runs[run].recording.t))
+        return empty.respond(piece, strong, (effect,), start).predicted
+
+    made = replace(recorded(given, predict, 1).experiment, name=effect)
+    trial, _ = usable(made)
+    assert [run.name for run in trial.runs] == [run.name for run in made.runs]
+
+
+@pytest.mark.parametrize(
+    ("stated", "key", "said"),
+    [
+        ("position: 1", "noise.position", "What is smaller than that is not found."),
+        ("position: 1.0e-6", "noise.position", "counts as a mismatch."),
+        ("angle: 0.05", "noise.angle", "What is smaller than that is not found."),
+    ],
+)
+def test_noise_that_is_not_what_the_recordings_have(tmp_path, stated, key, said):
+    folder = written(tmp_path)
+    assert not any(checked(read(folder)[2]).said)
+    path = folder / "experiment.yaml"
+    name = stated.split(":")[0]
+    path.write_text(re.sub(rf"{name}: [^,}}]+", stated, path.read_text()))
+    every = checked(read(folder)[2])
+    assert len(every.said) == len(every.doubts)
+    assert all(said in one and f"Correct `{key}`" in one for one in every.said)
+    told = CliRunner().invoke(app, ["lint", str(folder)])
+    assert told.exit_code == 0
+    assert told.stdout.count("warning: run0.csv: The noise of ") == 1

@@ -1,0 +1,143 @@
+"""What is compiled computes what the virtual machine and NumPy compute, and is never needed."""
+
+from dataclasses import replace
+from shutil import which
+
+import numpy as np
+import pytest
+
+from rr_opt.motion.dynamics import values_of
+from rr_opt.motion.floor_motion import floor_motion
+from rr_opt.sysid import shooting as shoot
+from rr_opt.sysid.compiled import found
+from rr_opt.sysid.sensitivities import DriveSlopes, Recorded, Sought, grams
+from rr_opt.sysid.shooting import DrivePath, predict_all
+from tests.robots import BENCHMARK
+from tests.sysid.test_slopes import CASES
+
+needs_compiler = pytest.mark.skipif(not which("cc"), reason="there is no C compiler")
+
+
+@pytest.fixture(autouse=True)
+def own_cache(tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.delenv("CC", raising=False)
+    return tmp_path / "rr-opt"
+
+
+def both(system, drives, starts, p):
+    """Predictions, and J'J by p and by what moves the drive: compiled if that pays."""
+    rng = np.random.default_rng(2)
+    made = predict_all(
+        system, [(drive, start, p) for drive, start in zip(drives, starts, strict=True)]
+    )
+    asked, still = [], []
+    for drive, one in zip(drives, made, strict=True):
+        wanted = rng.normal(size=(p.size, 3)) * (np.arange(3) != 1)
+        moved = DriveSlopes(
+            rng.normal(size=(*drive.at.shape, 3)) * (np.arange(3) != 0),
+            rng.normal(size=(*drive.nodes.shape, 3)) * (np.arange(3) != 0),
+        )
+        values = one.seen + rng.normal(size=one.seen.shape)
+        values[rng.uniform(size=values.shape) < 0.2] = np.nan
+        recorded = Recorded.of(values, rng.uniform(0.5, 2.0, values.shape))
+        more = rng.normal(size=(*values.shape, 1))
+        asked.append(Sought(drive, one, p, wanted, moved, recorded, more))
+        still.append(replace(asked[-1], drive_by=None, more=None))
+    return made, grams(system, asked), grams(system, still)
+
+
+def shorter(drive, samples):
+    steps = (samples - 1) * drive.each
+    return DrivePath(drive.h[:steps], drive.nodes[:, :, :steps], drive.at[:, :samples], drive.each)
+
+
+@needs_compiler
+@pytest.mark.parametrize("name", CASES)
+def test_the_same_numbers(name, monkeypatch, own_cache):
+    system, drive, start, p, _ = CASES[name]
+    p = values_of(BENCHMARK, floor_motion().parameters) if p is None else np.array(p)
+    # More runs than there are lanes, of different lengths.
+    drives = [shorter(drive, samples) for samples in (101, 60, 101, 33, 80, 101, 101, 2, 50, 101)]
+    starts = [np.array(start) + 0.01 * k for k in range(len(drives))]
+    plain = both(system, drives, starts, p)
+    monkeypatch.setattr(shoot, "_FEW", 0)
+    monkeypatch.setattr(shoot, "_PAYS", 0)
+    fast = both(replace(system, lasts=True), drives, starts, p)
+    assert list(own_cache.glob("*.so"))
+    for mine, other in zip(fast[0], plain[0], strict=True):
+        np.testing.assert_allclose(mine.states, other.states, rtol=1e-12, atol=1e-14)
+        np.testing.assert_allclose(mine.seen, other.seen, rtol=1e-12, atol=1e-14)
+    for fast_grams, plain_grams in zip(fast[1:], plain[1:], strict=True):
+        for a, b in zip(fast_grams, plain_grams, strict=True):
+            size = np.sqrt(np.diag(b))
+            np.testing.assert_allclose(a, b, atol=1e-11 * np.outer(size, size).max())
+
+
+@needs_compiler
+def test_steps_of_different_length_side_by_side(monkeypatch):
+    system, drive, start, p, _ = CASES["fine"]
+    one, p = CASES["smooth"][1], np.array(p)
+    drives, starts = [drive, one, drive], [np.array(start)] * 3
+    plain = both(system, drives, starts, p)
+    monkeypatch.setattr(shoot, "_FEW", 0)
+    monkeypatch.setattr(shoot, "_PAYS", 0)
+    fast = both(replace(system, lasts=True), drives, starts, p)
+    for a, b in zip(fast[1], plain[1], strict=True):
+        np.testing.assert_allclose(a, b, atol=1e-11 * np.abs(b).max())
+
+
+@needs_compiler
+def test_what_does_not_compile_is_done_without(own_cache):
+    assert found("this is not C", 1, 1, make=True) is None
+    assert not list(own_cache.iterdir())
+
+
+def test_without_a_compiler(monkeypatch):
+    monkeypatch.setenv("CC", "no-such-compiler")
+    assert found("int x;", 1, 1, make=True) is None
+
+
+@needs_compiler
+def test_a_cache_that_cannot_be_written_is_done_without(tmp_path, monkeypatch):
+    (tmp_path / "file").touch()
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
+    assert found("int x;", 1, 1, make=True) is None
+
+
+@needs_compiler
+def test_what_leaves_the_numbers_counts_for_nothing(monkeypatch):
+    system, drive, start, p, _ = CASES["fine"]
+    (made,) = predict_all(system, [(drive, np.array(start), np.array(p))])
+    lost, gap = made.seen.copy(), made.seen.shape[0] // 2
+    lost[gap:] = np.nan
+    recorded = Recorded.of(made.seen + 0.1, np.ones_like(made.seen))
+    first = replace(recorded, weight=np.where(np.isnan(lost), 0.0, recorded.weight))
+    states = made.states.copy()
+    states[:, gap * drive.each :] = np.nan
+    wanted = np.eye(len(p))
+    asked = Sought(
+        drive, replace(made, states=states, seen=lost), np.array(p), wanted, None, recorded
+    )
+    whole = Sought(drive, made, np.array(p), wanted, None, first)
+    for few in (10**9, 0):
+        monkeypatch.setattr(shoot, "_FEW", few)
+        monkeypatch.setattr(shoot, "_PAYS", few)
+        (one,), (other,) = (grams(replace(system, lasts=not few), [a]) for a in (asked, whole))
+        np.testing.assert_allclose(one, other, rtol=1e-9)
+
+
+@needs_compiler
+def test_a_run_whose_drive_stays_beside_one_whose_drive_is_moved(monkeypatch):
+    system, drive, start, p, _ = CASES["fine"]
+    (made,) = predict_all(system, [(drive, np.array(start), np.array(p))])
+    moved = DriveSlopes(np.ones((*drive.at.shape, 1)), np.ones((*drive.nodes.shape, 1)))
+    recorded = Recorded.of(made.seen + 0.1, np.ones_like(made.seen))
+    asked = [
+        Sought(drive, made, np.array(p), np.ones((len(p), 1)), by, recorded) for by in (moved, None)
+    ]
+    plain = grams(system, asked)
+    monkeypatch.setattr(shoot, "_FEW", 0)
+    monkeypatch.setattr(shoot, "_PAYS", 0)
+    for fast, slow in zip(grams(replace(system, lasts=True), asked), plain, strict=True):
+        np.testing.assert_allclose(fast, slow, rtol=1e-9)

@@ -1,0 +1,63 @@
+"""A run is predicted as exactly with the steps it gets as with shorter ones."""
+
+import numpy as np
+import pytest
+
+from rr_opt.effects import CATALOGUE
+from rr_opt.machines.racer import drive as racer_steps
+from rr_opt.machines.racer.drive import steps_of
+from rr_opt.machines.racer.racer import RollerRacer
+from rr_opt.mechanics.drive import told
+from rr_opt.model.gait import SineGait
+from rr_opt.sysid.model import Piece
+from tests.sysid.made_up import experiment
+
+VALUES = {
+    "": {},
+    "servo_rate_limit": {"servo_rate_limit.rate_limit": 2.0},
+    "lateral_slip": {"lateral_slip.creep_compliance": 0.01, "lateral_slip.mu": 10.0},
+}
+
+
+@pytest.mark.parametrize("effect", VALUES)
+@pytest.mark.parametrize("rate", [25.0, 50.0])
+def test_as_at_200_a_second(effect, rate):
+    paths = []
+    for often in (rate, 200.0):
+        model = RollerRacer(experiment(seconds=8.0, rate=often))
+        n = len(model.runs[1].t)
+        effects = (effect,) if effect else ()
+        start = np.array([0.0, 0.0, 0.3, 0.05, 0.0, 0.0])
+        paths.append(model.respond(Piece(1, 0, n), VALUES[effect], effects, start).predicted)
+    fine = paths[1][:: int(200 / rate)]
+    assert paths[0] == pytest.approx(fine, abs=5e-5)
+
+
+@pytest.mark.parametrize("effect", ["servo_rate_limit", "coulomb_friction"])
+def test_as_with_steps_of_half_a_millisecond(effect, monkeypatch):
+    values = VALUES.get(effect) or {f"{effect}.force1": 2e-3, f"{effect}.force2": 1e-3}
+    paths = []
+    for longest in (None, 5e-4):
+        if longest:
+            monkeypatch.setattr(racer_steps, "_LONGEST", longest)
+            monkeypatch.setattr(racer_steps, "_FINE", longest)
+        model = RollerRacer(experiment(seconds=20.0, rate=100.0))
+        piece, start = Piece(1, 0, len(model.runs[1].t)), np.array([0.0, 0.0, 0.3, 0.05, 0.0, 0.0])
+        paths.append(model.respond(piece, values, (effect,), start).predicted)
+    assert paths[0] == pytest.approx(paths[1], abs=1e-4)
+
+
+def test_a_step_ends_where_the_rate_jumps():
+    gait, limit = SineGait(0.6, 1.0, 0.1), 2.5
+    drive = CATALOGUE["servo_rate_limit"].actuate(told(gait, False), {"rate_limit": limit})
+    t, late = np.linspace(0.0, 5.0, 251), 0.0123
+    steps = steps_of(drive, t, late)
+    assert np.all(np.diff(steps.edges) > 0)
+    np.testing.assert_array_equal(steps.edges[:: steps.each], t)
+    jumps = drive.jumps_within(late, 5.0 + late)
+    assert len(jumps) == pytest.approx(4 * 5, abs=2)
+    for jump in jumps:
+        assert np.abs(steps.edges + late - jump).min() < 1e-9
+    # Between the jumps the rate is smooth.
+    inside = steps.edges[:-1] + np.diff(steps.edges) * np.array([[0.01], [0.99]]) + late
+    assert np.abs(np.diff(drive.at(inside.ravel())[1].reshape(2, -1), axis=0)).max() < 0.5
