@@ -36,7 +36,7 @@ import sys, time
 began = time.perf_counter()
 from rr_opt.recordings.from_markers import recording_from_markers
 from rr_opt.recordings.layout import Layout
-from rr_opt.recordings.readers import read_file
+from rr_opt.recordings.readers.registry import read_file
 places = {PLACES!r}
 layout = Layout(*({{n: p[1:] for n, p in places.items() if p[0] == i}} for i in (1, 2)))
 recording = recording_from_markers(read_file(sys.argv[1]), layout)

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
+from rr_opt.answers.speed import bound_rows, limit_rows
 from rr_opt.motion.rollout import repeated
-from rr_opt.report.answer import bound_rows, limit_rows
 from rr_opt.report.figures.answer import draw
 from rr_opt.report.figures.cycle import cycle
 from rr_opt.report.figures.path import along_travel, instants, path

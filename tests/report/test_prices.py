@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import pytest
 
+from rr_opt.answers.speed import bound_rows, limit_rows
 from rr_opt.design.maximize_speed import maximize_speed
 from rr_opt.model.problem import Interval, RatioChoice
-from rr_opt.report.answer import bound_rows, limit_rows
 
 
 def speed(problem):

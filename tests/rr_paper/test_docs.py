@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from rr_opt.report.quantities import number
+from rr_opt.answers.quantities import number
 from rr_paper.equation3 import CORRECTED, PRINTED
 
 TEXT = " ".join(

@@ -7,10 +7,10 @@ import pytest
 from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure
 
+from rr_opt.answers.study import studied
 from rr_opt.outcome import Status
 from rr_opt.report.figures.active_limits import areas
 from rr_opt.report.figures.study import grid_of, shown, speed, study_map
-from rr_opt.report.study.table import studied
 
 ENDLESS = "problem: {gait: {period: 1 s, amplitude: [0.1, 1]}}\nvary:\n"
 

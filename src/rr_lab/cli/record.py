@@ -61,7 +61,7 @@ def read_runs(texts: Iterable[str], seconds: float) -> tuple[Plan, ...]:
 
 def beyond_reach(robot: Robot, plans: Iterable[Plan]) -> list[str]:
     """A warning for each run that turns the joint further than its servo can."""
-    from rr_opt.report.quantities import QUANTITIES
+    from rr_opt.answers.quantities import QUANTITIES
 
     angle, limit = QUANTITIES["angle"], robot.servo.angle_limit
     return [

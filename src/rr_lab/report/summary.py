@@ -13,7 +13,7 @@ from rr_lab.trial.confusion import DEFINITION, confusion
 from rr_lab.trial.measures import by_engine, measures, side_by_side
 from rr_lab.trial.statistics import P_VALUES_DEFINITION, Rate, evenness, rate
 from rr_lab.trial.trial import Opened
-from rr_opt.report.quantities import number
+from rr_opt.answers.quantities import number
 
 
 def hidden_text(case: Case) -> str:

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from rr_opt.cli.options import Figures, ProblemFile, json_option, out_option
-from rr_opt.cli.problem_input import checked, name_of, read
+from rr_opt.cli.problem_input import name_of, read
 from rr_opt.cli.steps import Steps
 from rr_opt.outcome import Status
 
@@ -26,6 +26,7 @@ def maximize_speed(
     with Steps() as steps:
         steps("reading")
         posed, sha256 = read(problem)
+        from rr_opt.answers.speed import checked
         from rr_opt.design.maximize_speed import maximize_speed as solve
         from rr_opt.report.archive import folder_for_results, strict_json
 

@@ -74,8 +74,8 @@ def doubts(
     bounds   of the problem; None of a robot file
     options  those that were given: with amplitude and period the user has chosen the gait
     """
+    from rr_opt.answers.quantities import with_unit
     from rr_opt.cli.problem_input import name_of
-    from rr_opt.report.quantities import with_unit
 
     of = "the prototype" if path is None else str(path)
     units = {"amplitude": "rad", "period": "s"}

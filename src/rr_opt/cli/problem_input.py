@@ -10,12 +10,8 @@ import typer
 from rr_opt.outcome import InputError
 
 if TYPE_CHECKING:
-    from rr_opt.cli.steps import Steps
-    from rr_opt.design.maximize_speed import Optimum
     from rr_opt.model.problem import Problem
     from rr_opt.model.robot import Robot
-    from rr_opt.report.answer import Answer
-    from rr_opt.verify.sweep import SweepResult
 
 
 def place(text: str) -> Path:
@@ -69,21 +65,3 @@ def name_of(path: Path | None) -> str:
         return "prototype"
     full = path.resolve()
     return full.parent.name if full.name == "problem.yaml" else full.stem
-
-
-def checked(
-    name: str, sha256: str, optimum: Optimum, steps: Steps, swept: SweepResult | None = None
-) -> Answer:
-    """The optimum with the evidence for it; swept: of the problem, where that is done."""
-    from rr_opt.report.answer import Answer
-    from rr_opt.verify.replay import replay
-    from rr_opt.verify.sweep import check_optimum
-
-    best, robot, ratio = optimum.best, optimum.robot, optimum.ratio
-    if best is None or robot is None or ratio is None:
-        return Answer(name, sha256, optimum)
-    steps("replay by CVODES")
-    replayed = replay(robot, best.gait, optimum.problem.limits, best.speed)
-    steps("check against a sweep")
-    check = check_optimum(optimum.problem, best.gait, ratio, best.speed, everywhere=swept)
-    return Answer(name, sha256, optimum, replayed, check)

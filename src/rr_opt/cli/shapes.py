@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from rr_opt.cli.options import Figures, ProblemFile, json_option, out_option
-from rr_opt.cli.problem_input import checked, name_of, read
+from rr_opt.cli.problem_input import name_of, read
 from rr_opt.cli.steps import Steps
 from rr_opt.outcome import Status
 
@@ -30,6 +30,7 @@ def shapes(
 
         name = name_of(problem)
         folder = folder_for_results(out or Path("out") / f"{name}-shapes")
+        from rr_opt.answers.speed import checked
         from rr_opt.design.maximize_speed import compare_shapes
         from rr_opt.report.shapes import Compared, family_name, record, summary, write_shapes
         from rr_opt.verify.sweep import sweep

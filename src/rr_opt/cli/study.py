@@ -123,8 +123,8 @@ def study(
     check_wishes(netcdf=netcdf)
     folder = folder_for_results(out or Path("out") / asked.name)
     rows = _rows(asked, folder, partial(_pool, workers, scheduler), cold=cold, restart=restart)
+    from rr_opt.answers.study import studied
     from rr_opt.report.study.page import record, summary
-    from rr_opt.report.study.table import studied
 
     result = studied(asked, rows)
     written = write_study(result, folder, netcdf=netcdf, figures=figures)

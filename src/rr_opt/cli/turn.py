@@ -14,9 +14,9 @@ from rr_opt.cli.steps import Steps
 from rr_opt.outcome import InputError, Status
 
 if TYPE_CHECKING:
+    from rr_opt.answers.turn import TurnAnswer
     from rr_opt.design.turn.target import Target
     from rr_opt.model.problem import Problem
-    from rr_opt.report.turn.answer import TurnAnswer
 
 
 class Cycles(StrEnum):
@@ -66,7 +66,7 @@ def turn(
         name = name_of(problem)
         folder = folder_for_results(out or Path("out") / f"{name}-turn")
         answer = _answer(posed, target, name, sha256, steps)
-        from rr_opt.report.turn.answer import turn_result, turn_summary, write_turn
+        from rr_opt.report.turn.summary import turn_result, turn_summary, write_turn
 
         written = write_turn(answer, folder, figures=figures, progress=steps)
     if json:
@@ -105,8 +105,8 @@ def _target(
 
 def _answer(problem: Problem, target: Target, name: str, sha256: str, steps: Steps) -> TurnAnswer:
     """Find the turn, then check it: by simulation, against a sweep, and on its circle."""
+    from rr_opt.answers.turn import TurnAnswer
     from rr_opt.design.turn.fastest_turn import fastest_turn
-    from rr_opt.report.turn.answer import TurnAnswer
     from rr_opt.verify.replay import replay
     from rr_opt.verify.turn.circle import check_circle
     from rr_opt.verify.turn.sweep import check_turn

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
+from rr_opt.answers.speed import Answer
 from rr_opt.motion.rollout import one_period
-from rr_opt.report.answer import Answer
 from rr_opt.report.archive import remove, write_json, write_text
 from rr_opt.report.result import result
 from rr_opt.report.trajectory_file import write_csv

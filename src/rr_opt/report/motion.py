@@ -8,12 +8,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
+from rr_opt.answers.quantities import QUANTITIES, number, speed_text
 from rr_opt.files.gait_record import gait_record
 from rr_opt.model.gait import Gait
 from rr_opt.model.robot import Robot
 from rr_opt.motion.rollout import Measured, Trajectory
 from rr_opt.report.archive import remove, write_text
-from rr_opt.report.quantities import QUANTITIES, number, speed_text
 from rr_opt.report.text import columns, gait_formula, gait_lines
 from rr_opt.report.trajectory_file import write_csv, write_netcdf
 

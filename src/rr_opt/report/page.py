@@ -8,19 +8,12 @@ from dataclasses import asdict
 from html import escape
 
 from rr_opt import __version__
+from rr_opt.answers.quantities import QUANTITIES, direction_text, number, price_text, with_unit
+from rr_opt.answers.speed import LIMIT_NAMES, Answer, bound_rows, limit_rows, ratio_of
 from rr_opt.model.robot import Robot
 from rr_opt.outcome import Status
-from rr_opt.report.answer import (
-    LIMIT_NAMES,
-    Answer,
-    bound_rows,
-    holding_sentence,
-    limit_rows,
-    ratio_of,
-)
 from rr_opt.report.html import Badge, Cell, card, document, figure, table
-from rr_opt.report.quantities import QUANTITIES, direction_text, number, price_text, with_unit
-from rr_opt.report.summary import cycle_text, ratio_text
+from rr_opt.report.summary import cycle_text, holding_sentence, ratio_text
 
 _PLATFORM = {
     "m": ("mass", 1.0, "kg"),

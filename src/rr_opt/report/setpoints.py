@@ -10,11 +10,11 @@ from typing import Any, Literal
 import numpy as np
 
 from rr_opt import __version__
+from rr_opt.answers.quantities import QUANTITIES, number, speed_text, with_unit
 from rr_opt.files.gait_record import gait_record
 from rr_opt.model.robot import Robot
 from rr_opt.motion.setpoints import CENTRE, COUNT, Cost, SetPoints, held
 from rr_opt.report.motion import EXCEEDED
-from rr_opt.report.quantities import QUANTITIES, number, speed_text, with_unit
 from rr_opt.report.text import columns, gait_formula, gait_lines
 
 Format = Literal["csv", "c-header", "servo"]

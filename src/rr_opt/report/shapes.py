@@ -12,13 +12,13 @@ from pathlib import Path
 from typing import Any
 
 from rr_opt import __version__
+from rr_opt.answers.quantities import direction_text, number, speed_text, with_unit
+from rr_opt.answers.speed import Answer, limit_rows
 from rr_opt.model.problem import GaitBounds
 from rr_opt.outcome import Status
-from rr_opt.report.answer import Answer, limit_rows
 from rr_opt.report.archive import remove, strict_json, write_json, write_text
 from rr_opt.report.html import Badge, Cell, card, document, figure
 from rr_opt.report.html import table as html_table
-from rr_opt.report.quantities import direction_text, number, speed_text, with_unit
 from rr_opt.report.result import result
 from rr_opt.report.text import columns
 

@@ -1,4 +1,4 @@
-"""The answer as text for a terminal."""
+"""What holds an optimum: the active limits and bounds, in a sentence."""
 
 from __future__ import annotations
 
@@ -6,8 +6,7 @@ import math
 from collections.abc import Iterable
 from pathlib import Path
 
-from rr_opt.report.answer import Answer, bound_rows, limit_rows, ratio_of
-from rr_opt.report.quantities import (
+from rr_opt.answers.quantities import (
     QUANTITIES,
     direction_text,
     number,
@@ -15,8 +14,30 @@ from rr_opt.report.quantities import (
     speed_text,
     with_unit,
 )
+from rr_opt.answers.speed import Answer, bound_rows, limit_rows, ratio_of
 from rr_opt.report.result import turns
 from rr_opt.report.text import columns, gait_formula, gait_lines
+
+
+def holding_sentence(answer: Answer) -> str:
+    """`It is held by the rate limit, the shortest period and the largest inertia ratio.`"""
+    if answer.replay is None:
+        return ""
+    held = [
+        "the singularity margin" if row.name == "singularity" else f"the {row.name} limit"
+        for row in limit_rows(answer.optimum, answer.replay)
+        if row.active
+    ]
+    held += [
+        f"the {'least' if row.side == 'low' else 'largest'} {QUANTITIES[row.name].words} allowed"
+        for row in bound_rows(answer.optimum)
+        if row.side in ("low", "high")
+    ]
+    if not held:
+        return "No limit and no bound holds it: it is an optimum inside its ranges."
+    listed = held[0] if len(held) == 1 else ", ".join(held[:-1]) + " and " + held[-1]
+    return f"It is held by {listed}."
+
 
 _LEADS = {"forward": "platform 1 leads", "backward": "platform 2 leads"}
 

@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 
 from rr_opt import __version__
+from rr_opt.answers.quantities import direction_text, number, pace_text, speed_text, with_unit
 from rr_opt.files.gait_record import gait_record
 from rr_opt.model.problem import Problem
 from rr_opt.outcome import Status
 from rr_opt.report.archive import remove, write_json, write_text
-from rr_opt.report.quantities import direction_text, number, pace_text, speed_text, with_unit
 from rr_opt.report.text import columns, gait_lines
 from rr_opt.verify.evaluate import LIMITS, Evaluated, Found
 from rr_opt.verify.grid import DECISIONS, free_decisions

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from rr_opt.answers.quantities import QUANTITIES, with_unit
 from rr_opt.model.gait import FourierGait, FreeGait, Gait
-from rr_opt.report.quantities import QUANTITIES, with_unit
 
 _NOTHING = 1e-4
 """A coefficient so small, relative to the largest, is what an optimiser leaves of 0."""

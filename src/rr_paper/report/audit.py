@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from rr_opt.answers.quantities import number
 from rr_opt.model.ballast import Loads, load_count
-from rr_opt.report.quantities import number
 from rr_paper.consistency import (
     BOX,
     KAPPA,

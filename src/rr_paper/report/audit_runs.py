@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from rr_opt.report.quantities import number
+from rr_opt.answers.quantities import number
 from rr_paper.best_amplitude import Fastest, Peak
 from rr_paper.printed import BEST_AMPLITUDE, FIGURE_4, FIGURE_5, FIGURE_6
 from rr_paper.report.audit import (

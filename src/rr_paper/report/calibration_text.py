@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from rr_opt import __version__
-from rr_opt.report.quantities import number
+from rr_opt.answers.quantities import number
 from rr_opt.report.text import columns
 from rr_paper.calibration.calibrate import JOINT_LEVEL, Calibration, shipped_values
 from rr_paper.calibration.compare import Charge

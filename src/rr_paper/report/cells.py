@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from rr_opt.report.quantities import number
+from rr_opt.answers.quantities import number
 from rr_paper.report.audit import Section, Value
 from rr_paper.reproduction import Reproduction
 from rr_paper.surfaces import RATE_LIMIT, SpeedSurface

@@ -12,6 +12,7 @@ from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
+from rr_opt.answers.quantities import number
 from rr_opt.report.figures.path import along_travel
 from rr_opt.report.figures.style import (
     BACKWARD,
@@ -29,7 +30,6 @@ from rr_opt.report.figures.style import (
     styled,
     svg,
 )
-from rr_opt.report.quantities import number
 from rr_paper.consistency import QUESTIONS, Consistency, Question
 from rr_paper.equation3 import CORRECTED, PRINTED
 from rr_paper.period_law import PeriodLaw

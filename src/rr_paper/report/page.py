@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import Any
 
 from rr_opt import __version__
+from rr_opt.answers.quantities import number
 from rr_opt.report.archive import remove, write_json, write_text
 from rr_opt.report.html import CSS, Badge, Cell, card, figure, table
-from rr_opt.report.quantities import number
 from rr_opt.report.text import columns
 from rr_paper.printed import CITATION
 from rr_paper.report.audit import Section, Value

@@ -6,9 +6,9 @@ from types import MappingProxyType
 import numpy as np
 import pytest
 
+from rr_opt.answers.diagnosis import Diagnosed
 from rr_opt.model.experiment import CHANNELS, Experiment, Noise, Recording, Run, Uncertainty
 from rr_opt.model.gait import SineGait
-from rr_opt.report.diagnosis.record import Diagnosed
 from rr_opt.sysid.diagnosis import (
     Curve,
     Diagnosis,

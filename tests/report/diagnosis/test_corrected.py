@@ -5,10 +5,10 @@ from dataclasses import replace
 import pytest
 import yaml
 
+from rr_opt.answers.corrected_robot import corrected_robot, robot_yaml
 from rr_opt.effects import OF_ROBOTS
 from rr_opt.files.lint import lint_file
 from rr_opt.files.robot_file import read_robot
-from rr_opt.report.diagnosis.corrected import corrected_robot, robot_yaml
 
 
 def written(robot, folder):

@@ -7,12 +7,13 @@ from types import MappingProxyType
 import numpy as np
 import pytest
 
+from rr_opt.answers.corrected_robot import corrected_robot, servo_made
+from rr_opt.answers.diagnosis import Loss, NotTold, loss
 from rr_opt.model.gait import SineGait
 from rr_opt.model.problem import GaitBounds, Limits, Problem
 from rr_opt.model.robot import EffectUse
 from rr_opt.motion.rollout import rollout
-from rr_opt.report.diagnosis.corrected import corrected_robot, servo_made
-from rr_opt.report.diagnosis.loss import Loss, NotTold, loss, loss_sentences, share_lost
+from rr_opt.report.diagnosis.loss import loss_sentences, share_lost
 from rr_opt.report.diagnosis.record import record
 from rr_opt.verify.sweep import sweep
 

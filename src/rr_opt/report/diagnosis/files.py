@@ -7,10 +7,11 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from rr_opt import __version__
+from rr_opt.answers.corrected_robot import robot_yaml
+from rr_opt.answers.diagnosis import Diagnosed
 from rr_opt.report.archive import remove, write_json, write_text
-from rr_opt.report.diagnosis.corrected import robot_yaml
 from rr_opt.report.diagnosis.loss import loss_line
-from rr_opt.report.diagnosis.record import Diagnosed, record
+from rr_opt.report.diagnosis.record import record
 from rr_opt.report.diagnosis.words import (
     candidate_words,
     headline,

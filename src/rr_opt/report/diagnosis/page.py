@@ -9,9 +9,11 @@ from html import escape
 import numpy as np
 
 from rr_opt import __version__
+from rr_opt.answers.corrected_robot import robot_record
+from rr_opt.answers.diagnosis import Diagnosed, Loss, NotTold
+from rr_opt.answers.quantities import number, with_unit
 from rr_opt.model.experiment import Run, Uncertainty
-from rr_opt.report.diagnosis.loss import Loss, NotTold, share_lost
-from rr_opt.report.diagnosis.record import Diagnosed
+from rr_opt.report.diagnosis.loss import share_lost
 from rr_opt.report.diagnosis.words import (
     candidate_words,
     headline,
@@ -24,8 +26,6 @@ from rr_opt.report.diagnosis.words import (
     value_text,
 )
 from rr_opt.report.html import Badge, Cell, card, document, figure, table
-from rr_opt.report.quantities import number, with_unit
-from rr_opt.report.result import robot_record
 from rr_opt.sysid.diagnosis import Estimate, Finding, Misfit, Stage
 
 STYLE = """

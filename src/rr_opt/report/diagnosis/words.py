@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 
+from rr_opt.answers.quantities import number
 from rr_opt.machines.racer.stages.found import FALSE_ALARM, FLOOR
-from rr_opt.report.quantities import number
 from rr_opt.sysid.diagnosis import Diagnosis, Estimate, Finding, Stage
 
 _NAMES = {

@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
 from matplotlib.patches import Patch
 
+from rr_opt.answers.study import Studied
 from rr_opt.report.figures.study import (
     HATCHED,
     Grid,
@@ -21,7 +22,6 @@ from rr_opt.report.figures.study import (
     study_map,
 )
 from rr_opt.report.figures.style import FAINT, INK, figure, styled, svg
-from rr_opt.report.study.table import Studied
 
 _COLOURS = ("#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#f0e442", "#5b2a86")
 _OTHERS = "#9aa5b1"

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 
+from rr_opt.answers.speed import Answer, bound_rows, limit_rows
 from rr_opt.model.gait import SineGait
 from rr_opt.motion.rollout import repeated
-from rr_opt.report.answer import Answer, bound_rows, limit_rows
 from rr_opt.report.figures.cycle import cycle
 from rr_opt.report.figures.path import along_travel, cycles_to_show, path
 from rr_opt.report.figures.prices import gains, prices

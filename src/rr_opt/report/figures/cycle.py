@@ -10,13 +10,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
+from rr_opt.answers.quantities import number
 from rr_opt.model.problem import Limits
 from rr_opt.model.robot import Robot
 from rr_opt.motion.rollout import Trajectory
 from rr_opt.motion.steady_cycle import SteadyCycle
 from rr_opt.report.figures.path import path
 from rr_opt.report.figures.style import FORWARD, GREY, INK, LIMIT, colour_of, figure, note
-from rr_opt.report.quantities import number
 
 
 def cycle(axes: Sequence[Axes], steady: SteadyCycle, limits: Limits) -> Sequence[Axes]:

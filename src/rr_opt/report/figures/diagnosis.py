@@ -11,11 +11,12 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 from numpy.typing import NDArray
 
+from rr_opt.answers.diagnosis import Diagnosed, Loss
+from rr_opt.answers.quantities import number
 from rr_opt.array import Array
 from rr_opt.model.experiment import CHANNELS as SEEN
 from rr_opt.model.experiment import Recording
-from rr_opt.report.diagnosis.loss import Loss, gait_words, loss_sentences, pace
-from rr_opt.report.diagnosis.record import Diagnosed
+from rr_opt.report.diagnosis.loss import gait_words, loss_sentences, pace
 from rr_opt.report.figures.style import (
     BACKWARD,
     FAINT,
@@ -27,7 +28,6 @@ from rr_opt.report.figures.style import (
     styled,
     svg,
 )
-from rr_opt.report.quantities import number
 from rr_opt.sysid.diagnosis import Curve, Misfit, Residue, Stage
 
 NOMINAL, FINAL, RECORDED = BACKWARD, FORWARD, "#b4bdc6"

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 
 from matplotlib.axes import Axes
 
-from rr_opt.report.answer import BoundRow, LimitRow
+from rr_opt.answers.quantities import QUANTITIES, number
+from rr_opt.answers.speed import BoundRow, LimitRow
 from rr_opt.report.figures.style import FORWARD, GREY, INK
-from rr_opt.report.quantities import QUANTITIES, number
 
 
 @dataclass(frozen=True)

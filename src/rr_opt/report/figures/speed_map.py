@@ -13,6 +13,7 @@ from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
+from rr_opt.answers.quantities import number
 from rr_opt.array import Array
 from rr_opt.model.gait import SineGait
 from rr_opt.model.problem import GaitBounds, Interval, Problem
@@ -28,7 +29,6 @@ from rr_opt.report.figures.style import (
     styled,
     svg,
 )
-from rr_opt.report.quantities import number
 from rr_opt.verify.evaluate import Evaluated, Found
 from rr_opt.verify.sweep import speed_map as speed_map_speed_map
 

@@ -13,11 +13,11 @@ from matplotlib.colors import LinearSegmentedColormap, LogNorm, Normalize, TwoSl
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullLocator
 from numpy.typing import NDArray
 
+from rr_opt.answers.quantities import number
+from rr_opt.answers.study import Studied, front, unit_of, value_text
 from rr_opt.array import Array
 from rr_opt.files.study_axes import Axis
 from rr_opt.report.figures.style import BACKWARD, FORWARD, GREY, INK, LIMIT, OPTIMUM, PAPER, SIGNED
-from rr_opt.report.quantities import number
-from rr_opt.report.study.table import Studied, front, unit_of, value_text
 
 _EVEN = 0.05
 _WIDEST = 60

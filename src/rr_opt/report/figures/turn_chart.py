@@ -7,8 +7,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from rr_opt.answers.quantities import with_unit
 from rr_opt.report.figures.style import LIMIT, figure, note, styled, svg
-from rr_opt.report.quantities import with_unit
 from rr_opt.verify.turn.chart import Tightest, TurnMap
 
 _WIDEST = 20.0

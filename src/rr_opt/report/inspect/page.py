@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from rr_opt import __version__
+from rr_opt.answers.quantities import number, with_unit
 from rr_opt.model.experiment import Flag
 from rr_opt.recordings.inspection import Inspection
 from rr_opt.recordings.time_axis import time_step
@@ -18,7 +19,6 @@ from rr_opt.recordings.warnings import size_text
 from rr_opt.report.archive import remove, whole, write_json, write_text
 from rr_opt.report.html import CSS, Badge, Cell, card, figure, table
 from rr_opt.report.inspect.record import path_record, record
-from rr_opt.report.quantities import number, with_unit
 from rr_opt.report.text import columns
 
 

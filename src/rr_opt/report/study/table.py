@@ -1,12 +1,10 @@
-"""A study with all its rows, and the table of it: as CSV, and as netCDF over the axes."""
+"""The table of a study: one row a case, its inputs first; as CSV, and as netCDF over the axes."""
 
 from __future__ import annotations
 
 import csv
 import io
 import math
-from collections import Counter
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -14,132 +12,10 @@ from typing import Any
 import numpy as np
 
 from rr_opt import __version__
-from rr_opt.array import Array
-from rr_opt.design.study.plan import branches, plan
-from rr_opt.design.study.row import Row
-from rr_opt.files.study_file import Study
-from rr_opt.files.study_keys import Key
-from rr_opt.outcome import Status
+from rr_opt.answers.quantities import direction_text
+from rr_opt.answers.study import Studied
 from rr_opt.report.archive import whole
-from rr_opt.report.quantities import QUANTITIES, direction_text, pace_text, with_unit
 from rr_opt.report.trajectory_file import netcdf_writer
-
-_LIKE = {"angle_limit": "angle", "rate_limit": "rate", "torque_limit": "torque"}
-
-
-def unit_of(key: Key) -> tuple[str, float]:
-    """The unit, empty for none, and how many of it are one SI unit."""
-    name = str(key.path[-1] if isinstance(key.path[-1], str) else key.path[-2])
-    kind = QUANTITIES.get(_LIKE.get(name, name))
-    unit, factor = kind.common if kind else (key.unit or "", 1.0)
-    return ("mm", 1e3) if unit == "m" else (unit, factor)
-
-
-def value_text(key: Key, value: Any, digits: int = 4) -> str:
-    """A value of a key for people: a float, SI, in their unit; infinity is `no limit`."""
-    if not isinstance(value, float):
-        return str(value)
-    unit, factor = unit_of(key)
-    return with_unit(factor * value, unit, digits) if math.isfinite(value) else "no limit"
-
-
-_SAME_SPEED = 1e-8
-
-
-@dataclass(frozen=True)
-class Studied:
-    """rows: one a case, in their order; branches: the number of each one's branch, or None."""
-
-    study: Study
-    rows: tuple[Row, ...]
-    branches: tuple[int | None, ...]
-
-    def values(self, name: str) -> Array:
-        """A number of every optimum by its name in `row.Optimum`, nan where there is none."""
-        return np.array(
-            [np.nan if row.optimum is None else getattr(row.optimum, name) for row in self.rows],
-            float,
-        )
-
-    @property
-    def speed(self) -> Array:
-        """|speed| of every case, m/s; nan where there is no optimum."""
-        return np.abs(self.values("speed"))
-
-    @property
-    def fastest(self) -> int | None:
-        """The case with the fastest optimum; of equally fast ones the first."""
-        speed = self.speed
-        if np.isnan(speed).all():
-            return None
-        return int(np.flatnonzero(speed >= np.nanmax(speed) * (1 - _SAME_SPEED))[0])
-
-    @property
-    def counts(self) -> dict[Status, int]:
-        """How many rows ended in each way."""
-        counted = Counter(row.status for row in self.rows)
-        return {status: counted[status] for status in Status}
-
-    def inputs_text(self, case: int) -> str:
-        """`limits.rate = 30 rpm, direction = forward`."""
-        told = []
-        inputs = self.study.inputs(case)
-        for axis in self.study.axes:
-            for line in axis.lines:
-                told.append(f"{line.key.name} = {value_text(line.key, inputs[line.key.name])}")
-        return ", ".join(told)
-
-    @property
-    def message(self) -> str:
-        """The outcome in a sentence."""
-        best = self.fastest
-        if best is None:
-            return f"None of the {len(self.rows)} cases has an optimum."
-        speed = float(self.values("speed")[best])
-        return (
-            f"The fastest of {len(self.rows)} cases drives {direction_text(speed)} at "
-            f"{pace_text(speed)}, with {self.inputs_text(best)}."
-        )
-
-    @property
-    def complaints(self) -> list[str]:
-        """A sentence for each way in which cases ended without an optimum."""
-        words = {
-            Status.INFEASIBLE: "no gait that keeps all limits",
-            Status.NOT_CONVERGED: "no optimum that the solver could confirm",
-        }
-        return [
-            f"{count} of {len(self.rows)} cases: {words[status]}. Their rows say why."
-            for status, count in self.counts.items()
-            if count and status in words
-        ]
-
-    @property
-    def exit_code(self) -> int:
-        """0 if any case has an optimum; else 3 if no case has a feasible gait, or 4."""
-        counts = self.counts
-        if counts[Status.OPTIMAL]:
-            return 0
-        return (
-            Status.NOT_CONVERGED if counts[Status.NOT_CONVERGED] else Status.INFEASIBLE
-        ).exit_code
-
-
-def studied(study: Study, rows: Mapping[int, Row]) -> Studied:
-    """The study with its rows, and their branches."""
-    ordered = tuple(rows[case] for case in range(len(study.problems)))
-    adjacent = plan([axis.numbers for axis in study.axes], study.shape).adjacent
-    return Studied(study, ordered, tuple(branches(ordered, adjacent)))
-
-
-def front(cost: Array, speed: Array) -> list[int]:
-    """The cases that no other one beats in both: less cost and more speed; cheapest first."""
-    best, kept = -np.inf, []
-    for case in np.lexsort((-speed, cost)):
-        if np.isfinite(cost[case]) and speed[case] > best:
-            kept.append(int(case))
-            best = speed[case]
-    return kept
 
 
 @dataclass(frozen=True)

@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 
 from rr_opt import __version__
+from rr_opt.answers.corrected_robot import finite
+from rr_opt.answers.quantities import direction_text, number, speed_text, with_unit
 from rr_opt.files.gait_record import gait_record
 from rr_opt.model.gait import SineGait
 from rr_opt.outcome import Status
 from rr_opt.report.archive import remove, write_json, write_text
-from rr_opt.report.quantities import direction_text, number, speed_text, with_unit
-from rr_opt.report.result import finite
 from rr_opt.report.text import columns
 from rr_opt.verify.turn.chart import Tightest, TurnMap
 from rr_opt.verify.turn.offset_claim import RadiusClaim, SignClaim

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from rr_opt.answers.corrected_robot import finite
+from rr_opt.answers.quantities import direction_text, number, speed_text, with_unit
 from rr_opt.files.gait_record import gait_record
 from rr_opt.model.gait import Gait
 from rr_opt.motion.circle import Circle, Transient
-from rr_opt.report.quantities import direction_text, number, speed_text, with_unit
-from rr_opt.report.result import finite
 from rr_opt.report.text import columns, gait_formula, gait_lines
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import asdict, replace
 from types import MappingProxyType
 from typing import Any
 
@@ -17,8 +17,38 @@ from rr_opt.model.experiment import Experiment
 from rr_opt.model.gait import FourierGait, Gait
 from rr_opt.model.robot import EffectUse, Platform, Robot, Servo
 from rr_opt.motion.floor_motion import free_joint
-from rr_opt.report.result import robot_record
 from rr_opt.sysid.diagnosis import Diagnosis
+
+
+def robot_record(robot: Robot) -> dict[str, Any]:
+    """The robot in SI under the keys of a robot file; an endless limit is null."""
+    return {
+        "name": robot.name,
+        "platform1": asdict(robot.platform1),
+        "platform2": asdict(robot.platform2),
+        "h": robot.h,
+        "servo": {key: finite(value) for key, value in asdict(robot.servo).items()},
+        "physics": [{"name": use.name, **use.values} for use in robot.physics],
+        "provenance": _nested(dict(robot.provenance)),
+    }
+
+
+def finite(value: float) -> float | None:
+    """The value, or None (null in JSON) if it is infinite or not a number."""
+    return float(value) if math.isfinite(value) else None
+
+
+def _nested(flat: dict[str, str]) -> dict[str, Any]:
+    """`{"servo.rate_limit": text}` as mappings in mappings."""
+    nested: dict[str, Any] = {}
+    for path, text in flat.items():
+        *sections, key = path.split(".")
+        place = nested
+        for section in sections:
+            place = place.setdefault(section, {})
+        place[key] = text
+    return nested
+
 
 _HARMONICS = 24
 """The n-th of an angle whose rate jumps falls as 1/n^2: what is left out moves the speed by less

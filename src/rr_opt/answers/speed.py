@@ -1,11 +1,12 @@
-"""The inertia ratio behind a local optimum, which carries it as a share of the ballast's range."""
+"""The fastest gait with the evidence for it: what the replay and the sweep say of it."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
+from rr_opt.answers.quantities import direction_text, pace_text
 from rr_opt.design.decisions import ballast_interval
 from rr_opt.design.maximize_speed import Optimum
 from rr_opt.design.solve import Candidate
@@ -13,9 +14,13 @@ from rr_opt.model.ballast import inertia_ratio, with_load_count
 from rr_opt.model.gait import Gait
 from rr_opt.model.problem import LARGEST_EXCESS, Interval, Problem, RatioChoice
 from rr_opt.outcome import Status
-from rr_opt.report.quantities import QUANTITIES, direction_text, pace_text
 from rr_opt.verify.replay import Replay
 from rr_opt.verify.sweep import TOLERATED, SweepCheck
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rr_opt.verify.sweep import SweepResult
 
 
 def ratio_of(optimum: Optimum, candidate: Candidate) -> float:
@@ -293,21 +298,22 @@ def _sweep_sentence(sweep: SweepCheck, shape: str) -> str:
     )
 
 
-def holding_sentence(answer: Answer) -> str:
-    """`It is held by the rate limit, the shortest period and the largest inertia ratio.`"""
-    if answer.replay is None:
-        return ""
-    held = [
-        "the singularity margin" if row.name == "singularity" else f"the {row.name} limit"
-        for row in limit_rows(answer.optimum, answer.replay)
-        if row.active
-    ]
-    held += [
-        f"the {'least' if row.side == 'low' else 'largest'} {QUANTITIES[row.name].words} allowed"
-        for row in bound_rows(answer.optimum)
-        if row.side in ("low", "high")
-    ]
-    if not held:
-        return "No limit and no bound holds it: it is an optimum inside its ranges."
-    listed = held[0] if len(held) == 1 else ", ".join(held[:-1]) + " and " + held[-1]
-    return f"It is held by {listed}."
+def checked(
+    name: str,
+    sha256: str,
+    optimum: Optimum,
+    steps: Callable[[str], None],
+    swept: SweepResult | None = None,
+) -> Answer:
+    """The optimum with the evidence for it; swept: of the problem, where that is done."""
+    from rr_opt.verify.replay import replay
+    from rr_opt.verify.sweep import check_optimum
+
+    best, robot, ratio = optimum.best, optimum.robot, optimum.ratio
+    if best is None or robot is None or ratio is None:
+        return Answer(name, sha256, optimum)
+    steps("replay by CVODES")
+    replayed = replay(robot, best.gait, optimum.problem.limits, best.speed)
+    steps("check against a sweep")
+    check = check_optimum(optimum.problem, best.gait, ratio, best.speed, everywhere=swept)
+    return Answer(name, sha256, optimum, replayed, check)
