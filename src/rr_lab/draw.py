@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from rr_lab.case import Case, Plan, motion_of
 from rr_lab.effects import effect_named
 from rr_lab.visibility import COARSE
-from rr_opt.model.experiment import Noise, Uncertainty
+from rr_opt.model.experiment import Noise
 from rr_opt.model.gait import SineGait
+from rr_opt.model.parameters import Uncertainty, parameters_of, with_parameters
 from rr_opt.model.robot import EffectUse, Platform, Robot, Servo
 
 
@@ -137,12 +137,6 @@ def _pose(rng: np.random.Generator) -> tuple[float, float, float]:
     return float(x), float(y), float(rng.uniform(-math.pi, math.pi))
 
 
-RELATIVE = {"m": 0.01, "I": 0.05}
-ABSOLUTE = {"c": 2e-3, "a": 2e-3, "b": 2e-3}
-WHEEL_RADIUS = 5e-4
-FRICTION_FACTOR = 5.0
-
-
 def draw_robot(rng: np.random.Generator) -> Robot:
     """A Roller Racer with its longer platform first, rounded as a builder would write it."""
     h = round(rng.uniform(0.015, 0.03), 4)
@@ -175,18 +169,6 @@ def draw_noise(rng: np.random.Generator) -> Noise:
     return Noise(float(rng.choice([0.5e-3, 1e-3, 1.5e-3])), float(rng.choice([3e-3, 4e-3])))
 
 
-def usual_uncertainty(robot: Robot) -> dict[str, Uncertainty]:
-    """1 sigma each: masses 1 %, inertias 5 %, lengths 2 mm, h 0.5 mm; kappa unknown."""
-    known = {"h": Uncertainty(WHEEL_RADIUS)}
-    for number, platform in ((1, robot.platform1), (2, robot.platform2)):
-        for name, part in RELATIVE.items():
-            known[f"{name}{number}"] = Uncertainty(part * getattr(platform, name))
-        for name, size in ABSOLUTE.items():
-            known[f"{name}{number}"] = Uncertainty(size)
-        known[f"kappa{number}"] = Uncertainty(factor=FRICTION_FACTOR)
-    return known
-
-
 CANDIDATES = ("m1", "m2", "I1", "I2", "c1", "c2", "a1", "a2", "kappa1", "kappa2")
 
 SIGMAS = 4.0, 8.0
@@ -202,45 +184,23 @@ def draw_wrong(
     """The robot with one or two values changed, and their names."""
     count = 1 if rng.random() < 0.6 else 2
     names = tuple(sorted(str(name) for name in rng.choice(CANDIDATES, count, replace=False)))
-    robot = nominal
+    changed = {}
     for name in names:
-        value = parameter(robot, name)
-        known = uncertainty[name]
+        value, known = parameters_of(nominal)[name], uncertainty[name]
         if known.factor is not None:
             value *= rng.uniform(*FACTORS) ** rng.choice([-1, 1])
         else:
             value += known.sigma * rng.uniform(*SIGMAS) * rng.choice([-1, 1])
-        robot = with_parameter(robot, name, float(value))
-    return robot, names
+        changed[name] = float(value)
+    return with_parameters(nominal, changed), names
 
 
 def draw_near(
     rng: np.random.Generator, nominal: Robot, uncertainty: dict[str, Uncertainty], spread: float
 ) -> Robot:
     """The robot with every value off by chance, `spread` times what its uncertainty says."""
-    robot = nominal
+    values = parameters_of(nominal)
     for name in sorted(uncertainty):
-        value, known = parameter(nominal, name), uncertainty[name]
         off = spread * float(np.clip(rng.standard_normal(), -2.5, 2.5))
-        robot = with_parameter(robot, name, value + known.sigma * off)
-    return robot
-
-
-def parameter(robot: Robot, name: str) -> float:
-    """m1, I1, ... kappa2, or h, of a robot."""
-    if name == "h":
-        return robot.h
-    return getattr(robot.platform1 if name[-1] == "1" else robot.platform2, name[:-1])
-
-
-def with_parameter(robot: Robot, name: str, value: float) -> Robot:
-    """The robot with one of them changed."""
-    if name == "h":
-        return replace(robot, h=value)
-    which = "platform1" if name[-1] == "1" else "platform2"
-    return replace(robot, **{which: replace(getattr(robot, which), **{name[:-1]: value})})
-
-
-def changed_values(robot: Robot, names: Sequence[str]) -> dict[str, float]:
-    """The true values of the named parameters."""
-    return {name: parameter(robot, name) for name in names}
+        values[name] += uncertainty[name].sigma * off
+    return with_parameters(nominal, values)

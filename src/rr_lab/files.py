@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 
 from rr_lab.case import Case, Delivery, Plan, motion_of, stream
-from rr_lab.draw import changed_values
 from rr_lab.effects import effect_named, rig_with
 from rr_lab.formats import c3d_bytes, log_text, vicon_text
 from rr_lab.markers import places, seen
 from rr_lab.run import captured
-from rr_opt.model.experiment import Recording, Uncertainty
+from rr_opt.model.experiment import Recording
+from rr_opt.model.parameters import PARAMETERS, PLATFORM_SYMBOLS, Uncertainty, parameters_of
 from rr_opt.model.robot import Platform, Robot
 
 WRITTEN = "# Written by `rr-opt record`, which may write over it."
@@ -55,7 +55,7 @@ def _robot(robot: Robot) -> dict[str, Any]:
 
 
 def _platform(part: Platform) -> dict[str, float]:
-    return {name: getattr(part, name) for name in ("m", "I", "c", "a", "b", "kappa")}
+    return {name: getattr(part, name) for name in PLATFORM_SYMBOLS}
 
 
 def _uncertainty(known: Mapping[str, Uncertainty]) -> dict[str, float | str]:
@@ -118,9 +118,6 @@ def csv_text(recording: Recording) -> str:
     return "\n".join(lines) + "\n"
 
 
-UNITS = {"m": "kg", "I": "kg m2", "c": "m", "a": "m", "b": "m", "h": "m", "kappa": "N m s"}
-
-
 def answer(case: Case) -> dict[str, Any]:
     """Verdict and effects with the values of their parameters, as plain data."""
     return {
@@ -135,10 +132,10 @@ def answer(case: Case) -> dict[str, Any]:
 
 def _effects(case: Case) -> list[dict[str, Any]]:
     if case.verdict == "parameters":
-        true = changed_values(case.robot, case.changed)
+        true = parameters_of(case.robot)
         return [
-            {"name": name, "parameters": {name: _valued(value, UNITS[name.rstrip("12")])}}
-            for name, value in true.items()
+            {"name": name, "parameters": {name: _valued(true[name], PARAMETERS[name].unit)}}
+            for name in case.changed
         ]
     found = []
     for use in case.effects:

@@ -9,19 +9,12 @@ from dataclasses import replace
 import numpy as np
 
 from rr_lab.case import Case, Plan, stream
-from rr_lab.draw import (
-    draw_effect,
-    draw_near,
-    draw_noise,
-    draw_plans,
-    draw_robot,
-    draw_wrong,
-    usual_uncertainty,
-)
+from rr_lab.draw import draw_effect, draw_near, draw_noise, draw_plans, draw_robot, draw_wrong
 from rr_lab.effects import EFFECTS, effect_named, rig_with
 from rr_lab.engines import Engine
 from rr_lab.visibility import Gauge, at_visibility
 from rr_opt.model.experiment import Noise
+from rr_opt.model.parameters import default_uncertainty
 from rr_opt.model.robot import EffectUse, Robot
 from rr_opt.outcome import InputError
 
@@ -73,7 +66,7 @@ def bare_case(
 ) -> Case:
     """A case with nothing hidden, of the robot or of one drawn."""
     nominal = robot or draw_robot(stream(seed, "robot"))
-    uncertainty = usual_uncertainty(nominal)
+    uncertainty = default_uncertainty(nominal)
     true = nominal
     if spread:
         true = draw_near(stream(seed, "spread"), nominal, uncertainty, spread)

@@ -6,10 +6,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rr_lab.draw import with_parameter
 from rr_lab.random_case import bare_case
 from rr_lab.trial.refitted import Refit, moved_robot
 from rr_lab.visibility import Gauge
+from rr_opt.model.parameters import with_parameters
 from rr_opt.model.robot import EffectUse
 
 
@@ -35,15 +35,15 @@ def test_nothing_leaves_nothing(case, refit):
 
 
 def test_values_within_what_is_known_leave_nothing(case, refit):
-    rng = np.random.default_rng(0)
-    other = replace(case, robot=moved_robot(case, 0.4 * rng.uniform(-1, 1, len(case.uncertainty))))
+    moved = np.linspace(-0.4, 0.4, len(case.uncertainty))
+    other = replace(case, robot=moved_robot(case, moved))
     seen = Gauge.of(case)(other)
     assert seen > 0.5
     assert refit.left(other) < 0.02 * seen
 
 
 def test_a_value_far_outside_is_not_explained_away(case, refit):
-    other = replace(case, robot=with_parameter(case.robot, "c1", 1.3 * case.robot.platform1.c))
+    other = replace(case, robot=with_parameters(case.robot, {"c1": 1.3 * case.robot.platform1.c}))
     assert refit.left(other) > 1
 
 

@@ -26,12 +26,12 @@ import numpy as np
 from scipy.optimize import lsq_linear
 
 from rr_lab.case import Case, Plan, motion_of, stream
-from rr_lab.draw import parameter, with_parameter
 from rr_lab.effects import rig_with
 from rr_lab.engines import fine_enough
 from rr_lab.run import captured
 from rr_lab.visibility import EXACT, Reference
 from rr_opt.array import Array
+from rr_opt.model.parameters import parameters_of, with_parameters
 from rr_opt.model.robot import Robot
 
 NUDGE = 0.5
@@ -119,12 +119,12 @@ class Refit:
 def moved_robot(case: Case, sigmas: Array) -> Robot:
     """The nominal robot with its parameters moved by so many sigma, in the order of the case's
     uncertainties."""
-    robot = case.nominal
+    values = parameters_of(case.nominal)
     for (name, known), by in zip(case.uncertainty.items(), sigmas, strict=True):
-        value = parameter(robot, name)
+        value = values[name]
         new = value * known.factor**by if known.factor else value + known.sigma * by
-        robot = with_parameter(robot, name, float(new))
-    return robot
+        values[name] = float(new)
+    return with_parameters(case.nominal, values)
 
 
 def _starts(ref: Reference) -> Array:

@@ -15,7 +15,8 @@ from rr_opt.effects import CATALOGUE, OF_ROBOTS
 from rr_opt.mechanics.drive import told
 from rr_opt.model.experiment import Experiment
 from rr_opt.model.gait import FourierGait, Gait
-from rr_opt.model.robot import EffectUse, Platform, Robot, Servo
+from rr_opt.model.parameters import PARAMETERS, with_parameters
+from rr_opt.model.robot import EffectUse, Robot, Servo
 from rr_opt.motion.floor_motion import free_joint
 from rr_opt.sysid.diagnosis import Diagnosis
 
@@ -79,7 +80,6 @@ def servo_made(robot: Robot, gait: Gait) -> Gait:
     )
 
 
-_PARTS = ("m", "I", "c", "a", "b", "kappa")
 _DIGITS = 7
 """Of a fitted value that are written: more than any recording tells."""
 
@@ -89,10 +89,7 @@ def corrected_robot(experiment: Experiment, found: Diagnosis) -> Robot:
     robot = experiment.robot
     fitted = {name: _rounded(value) for name, value in found.values.items()}
     return replace(
-        robot,
-        platform1=_platform(robot.platform1, 1, fitted),
-        platform2=_platform(robot.platform2, 2, fitted),
-        h=fitted.get("h", robot.h),
+        with_parameters(robot, {name: v for name, v in fitted.items() if name in PARAMETERS}),
         servo=_servo(robot.servo, fitted),
         physics=_physics(robot, fitted),
         provenance=MappingProxyType({**robot.provenance, **_provenance(experiment, found)}),
@@ -116,11 +113,6 @@ def robot_yaml(robot: Robot, title: str) -> str:
     if record["provenance"]:
         lines += ["provenance:", *_block(record["provenance"], "  ")]
     return "\n".join(lines) + "\n"
-
-
-def _platform(platform: Platform, number: int, fitted: Mapping[str, float]) -> Platform:
-    own = {part: fitted[f"{part}{number}"] for part in _PARTS if f"{part}{number}" in fitted}
-    return replace(platform, **own)
 
 
 def _servo(servo: Servo, fitted: Mapping[str, float]) -> Servo:
@@ -157,9 +149,9 @@ def _provenance(experiment: Experiment, found: Diagnosis) -> dict[str, str]:
 
 def _key(name: str) -> str:
     """Where a robot file keeps a quantity: `kappa1` under `platform1.kappa`."""
-    if "." in name:
-        return f"physics.{name}"
-    return f"platform{name[-1]}.{name[:-1]}" if name[-1] in "12" else name
+    if name in PARAMETERS:
+        return ".".join(PARAMETERS[name].key)
+    return f"physics.{name}" if "." in name else name
 
 
 def _rounded(value: float) -> float:

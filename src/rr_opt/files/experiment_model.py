@@ -9,50 +9,38 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, GetJsonSchemaHandler, SkipValidation, create_model
 from pydantic_core import CoreSchema
 
-from rr_opt.files.fields import Count, Quantity, Spread, Uncertain
+from rr_opt.files.fields import Count, Quantity, Uncertain
 from rr_opt.files.gait_record import FourierRecord, FreeRecord, SineRecord
 from rr_opt.files.robot_file import FileModel, RobotModel
-from rr_opt.model.experiment import CountScale, Noise, Start, Uncertainty, Use
+from rr_opt.model.experiment import CountScale, Noise, Start, Use
+from rr_opt.model.parameters import (
+    PARAMETERS,
+    PLATFORM_SYMBOLS,
+    SYMBOLS,
+    Spread,
+    Uncertainty,
+    parameters_of,
+)
 from rr_opt.model.robot import Robot
 
-_UNITS = {"m": "kg", "I": "kg m^2", "c": "m", "a": "m", "b": "m", "kappa": "N m s"}
-"""Groups: each stands for the value of both platforms, `m` for `m1` and `m2`."""
-_MEANINGS = {
-    "m": "masses",
-    "I": "moments of inertia",
-    "c": "distances from axle to joint",
-    "a": "distances from axle to centre of mass",
-    "b": "half tracks",
-    "kappa": "viscous wheel frictions",
-    "h": "wheel radius",
-}
-_DEFAULTS: dict[str, Any] = {
-    "m": "1 %",
-    "I": "5 %",
-    "c": "2 mm",
-    "a": "2 mm",
-    "b": "2 mm",
-    "h": "0.5 mm",
-    "kappa": "unknown",
-}
 _ZEROS = ("psi_zero", "phi_zero")
-_EXAMPLES = {"kg": "5 g", "kg m^2": "1e-4", "m": "2 mm", "N m s": "1e-6"}
 
 
 def _fields() -> Iterator[tuple[str, Any]]:
-    def optional(name: str, unit: str, example: str, description: str, absolute: bool) -> Any:
+    def optional(unit: str, example: str, description: str, absolute: bool = False) -> Any:
         kind = Annotated[Spread | None, Uncertain(unit, example, absolute)]
-        standard = f" Default: {_DEFAULTS[name]}." if name in _DEFAULTS else ""
-        return kind, Field(default=None, description=f"One sigma of {description}.{standard}")
+        return kind, Field(default=None, description=f"One sigma of {description}.")
 
-    for key, unit in _UNITS.items():
-        yield key, optional(key, unit, _EXAMPLES[unit], f"the {_MEANINGS[key]}, {unit}", False)
-        for number in "12":
-            told = f"platform {number}'s {key}, {unit}"
-            yield f"{key}{number}", optional(f"{key}{number}", unit, _EXAMPLES[unit], told, False)
-    yield "h", optional("h", "m", "0.5 mm", "the wheel radius, m", False)
+    for symbol, one in SYMBOLS.items():
+        meant = one.plural if symbol in PLATFORM_SYMBOLS else one.words
+        default = f"the {meant}, {one.unit}. Default: {one.uncertainty}"
+        yield symbol, optional(one.unit, one.sigma_example, default)
+    for name, one in PARAMETERS.items():
+        if one.platform:
+            meant = f"platform {one.platform}'s {one.symbol}, {one.unit}"
+            yield name, optional(one.unit, one.sigma_example, meant)
     for key in _ZEROS:
-        yield key, optional(key, "rad", "5 mrad", f"the zero of {key[:3]}, rad; else exact", True)
+        yield key, optional("rad", "5 mrad", f"the zero of {key[:3]}, rad; else exact", True)
 
 
 UncertaintyModel: Any = create_model(
@@ -66,18 +54,11 @@ UncertaintyModel: Any = create_model(
 
 def uncertainty_of(model: Any, robot: Robot) -> Mapping[str, Uncertainty]:
     """By parameter (m1, I1, ..., kappa2, h, psi_zero, phi_zero): as written, else the default."""
-    standard = UncertaintyModel(**_DEFAULTS)
     found: dict[str, Uncertainty] = {}
-    for number, platform in (("1", robot.platform1), ("2", robot.platform2)):
-        for key in _UNITS:
-            options = (
-                getattr(model, f"{key}{number}"),
-                getattr(model, key),
-                getattr(standard, key),
-            )
-            spread = next(one for one in options if one is not None)
-            found[f"{key}{number}"] = spread.of(getattr(platform, key))
-    found["h"] = (model.h or standard.h).of(robot.h)
+    for name, value in parameters_of(robot).items():
+        parameter = PARAMETERS[name]
+        given = getattr(model, name), getattr(model, parameter.symbol), parameter.uncertainty
+        found[name] = next(spread for spread in given if spread is not None).of(value)
     for key in _ZEROS:
         if getattr(model, key) is not None:
             found[key] = getattr(model, key).of(0.0)
@@ -86,23 +67,19 @@ def uncertainty_of(model: Any, robot: Robot) -> Mapping[str, Uncertainty]:
 
 def shares_of_nothing(model: Any, robot: Robot) -> Iterator[tuple[str, str]]:
     """Key and message of every share, or factor, of a value that is 0: it says nothing."""
+    values = parameters_of(robot)
     for key in model.model_fields_set:
         spread = getattr(model, key)
-        name = key.rstrip("12")
-        if name not in _UNITS or spread is None or spread.sigma:
+        if spread is None or not (spread.relative or spread.factor):
             continue
-        numbers = "12" if key == name else key[-1]
-        zeros = [
-            f"{name}{one}"
-            for one in numbers
-            if getattr(robot.platform1 if one == "1" else robot.platform2, name) == 0
-        ]
-        if zeros and (spread.relative or spread.factor):
+        names = [one.name for one in PARAMETERS.values() if key in (one.name, one.symbol)]
+        zeros = [name for name in names if values[name] == 0]
+        if zeros:
             yield (
                 key,
                 f"The nominal {' and '.join(zeros)} is 0, and any share or multiple of it is 0: "
                 "it would be taken as exact. Write an absolute value, such as "
-                f"`{_EXAMPLES[_UNITS[name]]}`.",
+                f"`{PARAMETERS[zeros[0]].sigma_example}`.",
             )
 
 

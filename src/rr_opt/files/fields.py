@@ -12,7 +12,7 @@ from pydantic_core import CoreSchema, core_schema
 from rr_opt.files.issue import Issue, one_of, shown, unknown_word
 from rr_opt.files.units import to_si
 from rr_opt.files.yaml_text import Document
-from rr_opt.model.experiment import Uncertainty
+from rr_opt.model.parameters import UNKNOWN_FACTOR, Spread
 from rr_opt.model.problem import Interval
 from rr_opt.outcome import InputError
 
@@ -182,23 +182,6 @@ class Count:
         return self.json_schema()
 
 
-UNKNOWN = 5.0
-"""What is `unknown` is free within this factor of its nominal value."""
-
-
-@dataclass(frozen=True)
-class Spread:
-    """As written: sigma in SI, or relative to the nominal value, or unknown within a factor."""
-
-    sigma: float = 0.0
-    relative: float = 0.0
-    factor: float | None = None
-
-    def of(self, nominal: float) -> Uncertainty:
-        """That of a value whose nominal is given."""
-        return Uncertainty(self.sigma + self.relative * abs(nominal), self.factor)
-
-
 @dataclass(frozen=True)
 class Uncertain:
     """Annotates a Spread: `2 mm`, `5 %`, `unknown`; a zero is only known absolutely."""
@@ -211,7 +194,7 @@ class Uncertain:
         """The spread. Raises InputError."""
         if not self.absolute and isinstance(value, str):
             if value.strip() == "unknown":
-                return Spread(factor=UNKNOWN)
+                return Spread(factor=UNKNOWN_FACTOR)
             if value.strip().endswith("%"):
                 return Spread(relative=self._share(value))
         try:

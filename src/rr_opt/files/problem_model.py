@@ -16,7 +16,7 @@ from pydantic import (
 from pydantic_core import CoreSchema
 
 from rr_opt.files.fields import Count, FixedOrBounded, Quantity
-from rr_opt.files.robot_file import ANGLE, RATE, TORQUE, FileModel, Length, Mass, RobotModel
+from rr_opt.files.robot_file import ANGLE, RATE, TORQUE, FileModel, RobotModel
 from rr_opt.model.ballast import About, By, Loads
 from rr_opt.model.problem import Direction, GaitBounds, Interval, Limits, Shape
 
@@ -88,7 +88,9 @@ Distance = Annotated[float, Quantity("m", "44.1 mm", at_least=0)]
 class LoadsModel(FileModel):
     """Loads that can be hung on platform 2."""
 
-    mass: Mass = Field(default=Loads.mass, description="Mass of one load, kg.")
+    mass: Annotated[float, Quantity("kg", "66 g", above=0)] = Field(
+        default=Loads.mass, description="Mass of one load, kg."
+    )
     distance: Distance = Field(
         default=Loads.distance, description="From the joint P to the loads, towards the axle, m."
     )
@@ -137,7 +139,7 @@ class LimitsModel(FileModel):
     torque: OptionalTorque = Field(
         default=None, description="Largest |torque|, N m; .inf: no limit."
     )
-    singularity: Length = Field(
+    singularity: Annotated[float, Quantity("m", "20 mm", above=0)] = Field(
         default=Limits.singularity, description="The least S1 = c1 cos phi + c2 allowed, m."
     )
 

@@ -16,6 +16,7 @@ from rr_opt.files.issue import InvalidFileError, Issue, has_errors, shown, unkno
 from rr_opt.files.source import read_document
 from rr_opt.files.yaml_text import Document, KeyPath, path_text
 from rr_opt.model.ballast import inertia_ratio
+from rr_opt.model.parameters import SYMBOLS
 from rr_opt.model.robot import Platform, Robot, Servo
 
 _LARGEST_LENGTH = 5.0
@@ -123,14 +124,6 @@ def _longest(platform: Platform) -> tuple[str, float]:
 DEFAULT_WHEEL_RADIUS = 0.020
 """h where a robot file does not need one, m."""
 
-Mass = Annotated[float, Quantity("kg", "469 g", above=0)]
-Inertia = Annotated[float, Quantity("kg m^2", "0.00386", above=0)]
-Length = Annotated[float, Quantity("m", "186 mm", above=0)]
-SignedLength = Annotated[float, Quantity("m", "20 mm")]
-OptionalLength = Annotated[float | None, Quantity("m", "20 mm", above=0)]
-OptionalWheelFriction = Annotated[float | None, Quantity("N m s", "6.2e-5", at_least=0)]
-OptionalFloorFriction = Annotated[float | None, Quantity("N s/m", "0.155", at_least=0)]
-
 ANGLE = Quantity("rad", "2.6", above=0, below=math.pi)
 RATE = Quantity("rad/s", "30 rpm", above=0, endless=True)
 TORQUE = Quantity("N m", "14 kgf*cm", above=0, endless=True)
@@ -145,6 +138,18 @@ class FileModel(BaseModel):
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
 
 
+def quantity(symbol: str) -> Quantity:
+    """Unit and range of a parameter of the robot."""
+    one = SYMBOLS[symbol]
+    return Quantity(one.unit, one.example, above=one.above, at_least=one.at_least)
+
+
+def described(symbol: str, **default: Any) -> Any:
+    """A field that says what the parameter is."""
+    one = SYMBOLS[symbol]
+    return Field(**default, description=f"{one.definition}, {one.unit.replace('^', '')}.")
+
+
 class PlatformModel(FileModel):
     """One platform with its wheel pair. Give kappa or k, not both."""
 
@@ -152,19 +157,13 @@ class PlatformModel(FileModel):
         json_schema_extra={"oneOf": [{"required": ["kappa"]}, {"required": ["k"]}]}
     )
 
-    m: Mass = Field(description="Mass, kg.")
-    I: Inertia = Field(
-        description="Moment of inertia about the vertical through the centre of mass, kg m2."
-    )
-    c: Length = Field(description="Distance from the axle's centre to the joint P, m.")
-    a: SignedLength = Field(
-        description="Distance from the axle's centre to the centre of mass, towards P, m."
-    )
-    b: Length = Field(description="Half track: from the axle's centre to each wheel, m.")
-    kappa: OptionalWheelFriction = Field(
-        default=None, description="Viscous friction of one wheel about its axle, N m s."
-    )
-    k: OptionalFloorFriction = Field(
+    m: Annotated[float, quantity("m")] = described("m")
+    I: Annotated[float, quantity("I")] = described("I")
+    c: Annotated[float, quantity("c")] = described("c")
+    a: Annotated[float, quantity("a")] = described("a")
+    b: Annotated[float, quantity("b")] = described("b")
+    kappa: Annotated[float | None, quantity("kappa")] = described("kappa", default=None)
+    k: Annotated[float | None, Quantity("N s/m", "0.155", at_least=0)] = Field(
         default=None, description="Viscous friction of one wheel along the floor, kappa/h^2, N s/m."
     )
 
@@ -201,7 +200,7 @@ class RobotModel(FileModel):
     name: str = Field(default="", description="What people call this robot.")
     platform1: PlatformModel = Field(description="The platform whose heading is psi.")
     platform2: PlatformModel = Field(description="The platform that the servo turns by phi.")
-    h: OptionalLength = Field(
+    h: Annotated[float | None, quantity("h")] = Field(
         default=None,
         description="Wheel radius, m. Needed with kappa or physics; else 20 mm, without effect.",
     )

@@ -36,6 +36,7 @@ from types import MappingProxyType
 
 import casadi as ca
 
+from rr_opt.model.parameters import PARAMETERS, parameters_of
 from rr_opt.model.robot import Robot
 
 G = 9.80665
@@ -52,23 +53,15 @@ class Seen:
     phi: ca.SX
 
 
-ROBOT_PARAMETERS = (
-    *("m1", "I1", "c1", "a1", "b1", "k1"),
-    *("m2", "I2", "c2", "a2", "b2", "k2"),
-    "h",
-)
+ROBOT_PARAMETERS = tuple(name.replace("kappa", "k") for name in PARAMETERS)
+"""Those of the equations of motion, where friction enters along the floor, as k = kappa/h^2."""
 
 SPEEDS = ("v", "s1", "s2", "dphi")
 
 
 def robot_values(robot: Robot) -> tuple[float, ...]:
     """The numbers behind ROBOT_PARAMETERS, in their order, SI."""
-    one, two = robot.platform1, robot.platform2
-    return (
-        *(one.m, one.I, one.c, one.a, one.b, robot.k1),
-        *(two.m, two.I, two.c, two.a, two.b, robot.k2),
-        robot.h,
-    )
+    return tuple((parameters_of(robot) | {"kappa1": robot.k1, "kappa2": robot.k2}).values())
 
 
 @dataclass(frozen=True)

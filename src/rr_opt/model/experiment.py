@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from rr_opt.array import Array
 from rr_opt.model.gait import Gait
+from rr_opt.model.parameters import Uncertainty
 from rr_opt.model.robot import Robot
 
 
@@ -102,18 +103,6 @@ class Noise:
 
 
 @dataclass(frozen=True)
-class Uncertainty:
-    """How well a nominal value is known.
-
-    sigma   one standard deviation, SI; with `factor` it is none
-    factor  the value is free between value/factor and value*factor, and no more is known of it
-    """
-
-    sigma: float = 0.0
-    factor: float | None = None
-
-
-@dataclass(frozen=True)
 class Run:
     """One recording and how it was made.
 
@@ -138,8 +127,8 @@ class Run:
 class Experiment:
     """The nominal robot, how well it is known, and the runs, all in one floor frame.
 
-    uncertainty  by parameter: m1, I1, c1, a1, b1, kappa1, m2, ..., kappa2, h, psi_zero, phi_zero.
-                 What is not named is exact
+    uncertainty  by parameter: the names of `PARAMETERS`, psi_zero and phi_zero. What is not named
+                 is exact
     """
 
     robot: Robot

@@ -4,25 +4,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict
 from html import escape
 
 from rr_opt import __version__
 from rr_opt.answers.quantities import QUANTITIES, direction_text, number, price_text, with_unit
 from rr_opt.answers.speed import LIMIT_NAMES, Answer, bound_rows, limit_rows, ratio_of
+from rr_opt.model.parameters import PARAMETERS, parameters_of
 from rr_opt.model.robot import Robot
 from rr_opt.outcome import Status
 from rr_opt.report.html import Badge, Cell, card, document, figure, table
 from rr_opt.report.summary import cycle_text, holding_sentence, ratio_text
 
-_PLATFORM = {
-    "m": ("mass", 1.0, "kg"),
-    "I": ("moment of inertia about the centre of mass", 1.0, "kg m²"),
-    "c": ("axle to joint P", 1e3, "mm"),
-    "a": ("axle to centre of mass, towards P", 1e3, "mm"),
-    "b": ("half track", 1e3, "mm"),
-    "kappa": ("viscous friction of a wheel", 1.0, "N m s"),
-}
+_SHOWN = {"m": ("mm", 1e3), "kg m^2": ("kg m²", 1.0)}
+"""SI unit -> the unit shown, and how many of it are one SI unit."""
 _SERVO = {"angle_limit": "angle", "rate_limit": "rate", "torque_limit": "torque"}
 _ORIGINS = ("measured", "fitted", "assumed")
 
@@ -106,11 +100,10 @@ def robot_table(robot: Robot, changed: str = "") -> str:
 
 
 def _parameters(robot: Robot) -> Iterator[tuple[str, str, str]]:
-    for key, platform in (("platform1", robot.platform1), ("platform2", robot.platform2)):
-        for symbol, value in asdict(platform).items():
-            words, factor, unit = _PLATFORM[symbol]
-            yield f"{key}.{symbol}", words, with_unit(value * factor, unit)
-    yield "h", "wheel radius", with_unit(1e3 * robot.h, "mm")
+    for name, value in parameters_of(robot).items():
+        parameter = PARAMETERS[name]
+        unit, factor = _SHOWN.get(parameter.unit, (parameter.unit, 1.0))
+        yield ".".join(parameter.key), parameter.words, with_unit(value * factor, unit)
     for key, name in _SERVO.items():
         yield (
             f"servo.{key}",

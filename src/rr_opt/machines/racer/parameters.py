@@ -11,7 +11,8 @@ import numpy as np
 from rr_opt.array import Array
 from rr_opt.effects import CATALOGUE
 from rr_opt.effects.effect import Effect, Parameter, Setting
-from rr_opt.model.experiment import Experiment, Uncertainty
+from rr_opt.model.experiment import Experiment
+from rr_opt.model.parameters import PARAMETERS, Uncertainty, parameters_of
 from rr_opt.model.robot import EffectUse
 from rr_opt.sysid.model import Candidate, Form, Quantity
 
@@ -25,9 +26,6 @@ _CHANNELS = {
 }
 """The channel in which a family of effects shows."""
 
-_PARTS = {"m": "kg", "I": "kg m^2", "c": "m", "a": "m", "b": "m", "kappa": "N m s"}
-_EVERYTHING = (*(f"{part}{i}" for i in (1, 2) for part in _PARTS), "h")
-
 ZERO_OFFSET = "zero_offset"
 ZEROS = {f"{ZERO_OFFSET}.{name}": f"{name}_zero" for name in ("psi", "phi")}
 """The parameters of the capture system's zeros, and what an experiment calls them."""
@@ -36,15 +34,13 @@ ZEROS = {f"{ZERO_OFFSET}.{name}": f"{name}_zero" for name in ("psi", "phi")}
 def nominal(experiment: Experiment) -> dict[str, float]:
     """Every value of the robot and of all effects, SI; an effect that it has not is neutral."""
     robot = experiment.robot
-    platforms = ((1, robot.platform1), (2, robot.platform2))
-    out = {f"{part}{i}": getattr(platform, part) for i, platform in platforms for part in _PARTS}
     neutral = {
         f"{effect.name}.{q.name}": q.neutral
         for effect in CATALOGUE.values()
         for q in effect.parameters
     }
     given = {f"{use.name}.{name}": v for use in robot.physics for name, v in use.values.items()}
-    return {**out, "h": robot.h, **neutral, **given, **dict.fromkeys(ZEROS.values(), 0.0)}
+    return parameters_of(robot) | neutral | given | dict.fromkeys(ZEROS.values(), 0.0)
 
 
 def uncertain(experiment: Experiment, setting: Setting) -> tuple[Quantity, ...]:
@@ -52,7 +48,7 @@ def uncertain(experiment: Experiment, setting: Setting) -> tuple[Quantity, ...]:
     capture system's zeros."""
     values = nominal(experiment)
     free = experiment.uncertainty
-    own = [_parameter(name, values[name], free[name]) for name in _EVERYTHING if name in free]
+    own = [_parameter(name, values[name], free[name]) for name in PARAMETERS if name in free]
     own += [_zero(name, free[name].sigma) for name in ZEROS.values() if name in free]
     return (*own, *(q for use in experiment.robot.physics for q in _present(use, setting)))
 
@@ -107,13 +103,13 @@ def _present(use: EffectUse, setting: Setting) -> Iterator[Quantity]:
 
 
 def _parameter(name: str, value: float, known: Uncertainty) -> Quantity:
-    unit = _PARTS.get(name.rstrip("12"), "m")
+    unit = PARAMETERS[name].unit
     if known.factor:
         # Counted as it is and not in its logarithm: the motion is nearly linear in kappa, and what
         # is seen best is the sum of both.
         low, high = value / known.factor, value * known.factor
         return Quantity(name, unit, value, value, True, low, high, value, free=True)
-    low = 0.0 if name.startswith("a") else value / 3
+    low = 0.0 if PARAMETERS[name].symbol == "a" else value / 3
     return Quantity(name, unit, value, known.sigma, True, low, 3 * value, value)
 
 

@@ -9,10 +9,10 @@ from html import escape
 import numpy as np
 
 from rr_opt import __version__
-from rr_opt.answers.corrected_robot import robot_record
 from rr_opt.answers.diagnosis import Diagnosed, Loss, NotTold
 from rr_opt.answers.quantities import number, with_unit
-from rr_opt.model.experiment import Run, Uncertainty
+from rr_opt.model.experiment import Run
+from rr_opt.model.parameters import Uncertainty, parameters_of
 from rr_opt.report.diagnosis.loss import share_lost
 from rr_opt.report.diagnosis.words import (
     candidate_words,
@@ -162,7 +162,7 @@ def candidates_table(one: Diagnosed) -> str:
 
 def parameters_table(one: Diagnosed) -> str:
     """The robot's own parameters: as believed, and as estimated."""
-    nominal = _flat(one)
+    nominal = parameters_of(one.experiment.robot)
     moved = {
         name
         for finding in one.found.findings
@@ -201,13 +201,6 @@ def _believed(value: Estimate, believed: float, known: Uncertainty | None) -> st
 
 def _known(one: Diagnosed, name: str) -> Uncertainty | None:
     return one.experiment.uncertainty.get(name)
-
-
-def _flat(one: Diagnosed) -> Mapping[str, float]:
-    """The nominal robot's parameters by the names of a diagnosis."""
-    robot = robot_record(one.experiment.robot)
-    flat = {f"{part}{i}": value for i in (1, 2) for part, value in robot[f"platform{i}"].items()}
-    return flat | {"h": robot["h"]}
 
 
 def misfit_table(one: Diagnosed) -> str:

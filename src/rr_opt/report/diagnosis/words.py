@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 
 from rr_opt.answers.quantities import number
 from rr_opt.machines.racer.stages.found import FALSE_ALARM, FLOOR
+from rr_opt.model.parameters import PARAMETERS
 from rr_opt.sysid.diagnosis import Diagnosis, Estimate, Finding, Stage
 
 _NAMES = {
@@ -24,15 +25,6 @@ _NAMES = {
     "servo_backlash": "backlash of the servo",
     "servo_offset": "an offset of the servo",
     "wheel_inertia": "the inertia of the wheels",
-}
-
-_PARTS = {
-    "m": "mass",
-    "I": "inertia",
-    "c": "length to the joint",
-    "a": "place of the centre of mass",
-    "b": "half track",
-    "kappa": "wheel friction",
 }
 
 _COMMON = {
@@ -54,11 +46,8 @@ def effect_words(name: str) -> str:
 
 
 def parameter_words(name: str) -> str:
-    """`kappa1` as `wheel friction of platform 1`; anything else as it is."""
-    part, number_ = name[:-1], name[-1:]
-    if number_ in ("1", "2") and part in _PARTS:
-        return f"{_PARTS[part]} of platform {number_}"
-    return "wheel radius" if name == "h" else name.replace("_", " ")
+    """`kappa1` as `viscous wheel friction of platform 1`; anything else as it is."""
+    return PARAMETERS[name].full_words if name in PARAMETERS else name.replace("_", " ")
 
 
 def candidate_words(effects: Sequence[str]) -> str:
