@@ -1,17 +1,18 @@
-"""The paper's equations (3) and (4) as printed and with other signs, and the energy they keep.
-
-The paper's equations (3) and (4) as printed, and with other signs.
+"""The paper's equations (3) and (4) with any signs, and the straight steady cycles they give.
 
     vdot = (A - C) v + s1 B1 + s2 B2 + sD D
 
-Each letter stands for the expression that the paper prints under (3), but that epsilon, inside B2,
-has a sign of its own too. Every function takes floats or arrays that broadcast.
+Each letter stands for the expression printed under (3), except that epsilon, inside B2, has a sign
+of its own. This module is apart from `rr_opt.motion` because it must evaluate the printed
+equation, and because the audits and the calibration need thousands of robots at once: all
+functions broadcast, and a `Robot` may hold arrays (see `stacked`).
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import NamedTuple
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,23 +20,15 @@ from scipy.integrate import solve_ivp
 
 from rr_opt.array import Array
 from rr_opt.model.gait import SineGait
-from rr_opt.model.robot import Robot
-from rr_opt.verify.fourier import solve
-from rr_paper import two_bodies
+from rr_opt.model.robot import Platform, Robot
+from rr_opt.verify.fourier import integral, solve
 
 _TIGHT = {"method": "DOP853", "rtol": 1e-10, "atol": 1e-11}
-_SAMPLES = 512
-"""Of a period; the steady speed is then exact to rounding short of the singular posture."""
 
 
 @dataclass(frozen=True)
 class Signs:
-    """Signs of the terms of equation (3).
-
-    B1, B2   before these terms
-    epsilon  before epsilon c2 S1, inside the bracket of B2
-    D        before D
-    """
+    """Signs of the terms of equation (3); `epsilon` stands inside the bracket of B2."""
 
     name: str
     B1: int
@@ -91,39 +84,80 @@ def equation3(
 def yaw_rate(robot: Robot, v: ArrayLike, phi: ArrayLike, dphi: ArrayLike) -> Array:
     """psi-dot by equation (4), rad/s."""
     c1, c2 = robot.platform1.c, robot.platform2.c
-    above = np.asarray(v) * np.sin(phi) + c2 * np.asarray(dphi)
-    return -above / (c1 * np.cos(phi) + c2)
+    numerator = np.asarray(v) * np.sin(phi) + c2 * np.asarray(dphi)
+    return -numerator / (c1 * np.cos(phi) + c2)
 
 
-class Steady(NamedTuple):
-    """A steady period at equal steps t (s), the last left out: v (m/s), psi (rad); and the mean
-    speed, m/s, signed along platform 1."""
+def stacked(robots: Sequence[Robot]) -> Robot:
+    """G robots as one whose numbers are arrays (G,)."""
 
-    t: Array
-    v: Array
-    psi: Array
-    speed: float
+    def platform(of: Sequence[Platform]) -> Platform:
+        columns: Any = [np.array([getattr(one, f.name) for one in of]) for f in fields(Platform)]
+        return Platform(*columns)
+
+    h: Any = np.array([robot.h for robot in robots])
+    one, two = ([getattr(robot, name) for robot in robots] for name in ("platform1", "platform2"))
+    return Robot(platform(one), platform(two), h)
 
 
-def steady(robot: Robot, gait: SineGait, signs: Signs) -> Steady:
-    """The steady motion of a straight gait, by equations (3) with these signs and (4).
+class Angle(NamedTuple):
+    """phi (rad), its rate (rad/s) and acceleration (rad/s2) over half a period, (n, G) each."""
 
-    The speed is the displacement of P over a period, over T, as in the paper's section 3.1.
+    phi: Array
+    rate: Array
+    acceleration: Array
+
+
+def sine(amplitude: Array, period: Array, n: int, first: float = 0.5) -> Angle:
+    """A sine of amplitude (rad) and period (s), (G,), at n equal steps of half a period.
+
+    first: where in the first step the first sample is taken.
     """
-    t = np.arange(_SAMPLES) * gait.period / _SAMPLES
-    phi, dphi = gait.angle(t), gait.rate(t)
-    slope, drive = equation3(robot, phi, dphi, gait.acceleration(t), signs)
-    v = solve(slope[:, None], drive[:, None], np.array([gait.period]))[0][:, 0]
-    w = yaw_rate(robot, v, phi, dphi)
-    frequency = np.fft.rfftfreq(_SAMPLES, gait.period / _SAMPLES) * 2j * np.pi
-    spectrum = np.fft.rfft(w)
-    spectrum[0], spectrum[1:] = 0.0, spectrum[1:] / frequency[1:]
-    psi = np.fft.irfft(spectrum, _SAMPLES)
-    # P's side velocity -c1 w turns with psi into a whole derivative: over a period it adds nothing.
-    velocity = v * np.array([np.cos(psi), np.sin(psi)])
-    mean = velocity.mean(axis=1)
-    ahead = mean @ np.array([np.cos(psi).mean(), np.sin(psi).mean()])
-    return Steady(t, v, psi, float(np.copysign(np.hypot(*mean), ahead)))
+    theta = (np.arange(n)[:, None] + first) * np.pi / n
+    omega = 2 * np.pi / period
+    phi = amplitude * np.sin(theta)
+    return Angle(phi, amplitude * omega * np.cos(theta), -(omega**2) * phi)
+
+
+class Cycle(NamedTuple):
+    """v (n, G), m/s, over half a period, after which v repeats itself and phi changes sign; and
+    the mean speed (G,), m/s, signed along platform 1. NaN where no motion is steady."""
+
+    v: Array
+    speed: Array
+
+
+def steady_cycle(
+    robots: Robot | Sequence[Robot],
+    amplitude: ArrayLike,
+    period: ArrayLike,
+    signs: Signs = CORRECTED,
+    samples: int = 256,
+) -> Cycle:
+    """The steady cycles of straight sines by equations (3) and (4); all arguments broadcast.
+
+    256 samples resolve v to rounding except next to the singular posture.
+    """
+    robot = robots if isinstance(robots, Robot) else stacked(robots)
+    alpha, T = (np.atleast_1d(np.asarray(part, float)) for part in (amplitude, period))
+    return cycle_along(robot, sine(alpha, T, samples, first=0.0), T, signs)
+
+
+def cycle_along(robot: Robot, angle: Angle, period: Array, signs: Signs = CORRECTED) -> Cycle:
+    """The same for any angle whose second half period mirrors the first."""
+    v, damping = solve(*equation3(robot, *angle, signs), period / 2)
+    return Cycle(v, np.where(damping < 0, mean_speed(robot, v, angle, period), np.nan))
+
+
+def mean_speed(robot: Robot, v: Array, angle: Angle, period: Array) -> Array:
+    """The displacement of P over a period, over the period (section 3.1); (G,), m/s.
+
+    P also moves at -c1 w across platform 1. That adds c1 times the integral of sin(chi) d chi,
+    which is zero, as cos(chi) repeats after half a period.
+    """
+    chi = integral(yaw_rate(robot, v, angle.phi, angle.rate), period / 2, True)
+    ahead = (np.cos(chi) * v).mean(axis=0)
+    return np.copysign(ahead, ahead * np.cos(chi).mean(axis=0))
 
 
 def path(robot: Robot, gait: SineGait, times: Array, signs: Signs) -> Array:
@@ -136,64 +170,7 @@ def path(robot: Robot, gait: SineGait, times: Array, signs: Signs) -> Array:
         along = equation3(robot, phi, dphi, ddphi, signs)
         w = float(yaw_rate(robot, v, phi, dphi))
         cos, sin = np.cos(psi), np.sin(psi)
-        return [
-            float(along.slope * v + along.drive),
-            w,
-            v * cos + c1 * w * sin,
-            v * sin - c1 * w * cos,
-        ]
+        vdot = float(along.slope * v + along.drive)
+        return [vdot, w, v * cos + c1 * w * sin, v * sin - c1 * w * cos]
 
     return solve_ivp(slope, times[[0, -1]], np.zeros(4), t_eval=times, **_TIGHT).y
-
-
-_CYCLE = 128
-"""Instants of a period over which the energy is added up."""
-
-
-@dataclass(frozen=True)
-class Energy:
-    """Mean powers over a steady period, W: what the servo gives, what friction takes, and what
-    comes from nowhere; the largest force from nowhere, N; and the mean speed, m/s.
-
-    Servo and nowhere add up to friction: `gap` is by how much they do not.
-    """
-
-    signs: Signs
-    servo: float
-    friction: float
-    nowhere: float
-    force: float
-    speed: float
-
-    @property
-    def gap(self) -> float:
-        """W."""
-        return self.servo + self.nowhere - self.friction
-
-
-def energy_of(robot: Robot, gait: SineGait, signs: Signs) -> Energy:
-    """The energy of a steady straight gait that moves by these signs.
-
-    A robot that moves so is pushed, along platform 1 at axle 1, by whatever force makes up the
-    difference: the servo does no work on it there, nor does friction change.
-    """
-    cycle = steady(robot, gait, signs)
-    powers = np.zeros((3, _CYCLE))
-    largest = 0.0
-    every = len(cycle.t) // _CYCLE
-    for i, (t, v) in enumerate(zip(cycle.t[::every], cycle.v[::every], strict=True)):
-        phi, dphi, ddphi = (float(f(t)) for f in (gait.angle, gait.rate, gait.acceleration))
-        q, qd = two_bodies.placed(robot, phi, dphi, float(v))
-        slope, drive = equation3(robot, phi, dphi, ddphi, signs)
-        free, pushed = (
-            two_bodies.forward_acceleration(
-                q, qd, two_bodies.accelerate(robot, q, qd, ddphi, push).acceleration
-            )
-            for push in (0.0, 1.0)
-        )
-        force = float(slope * v + drive - free) / (pushed - free)
-        torque = two_bodies.accelerate(robot, q, qd, ddphi, force).torque
-        powers[:, i] = torque * dphi, -two_bodies.friction(robot, q, qd) @ qd, force * v
-        largest = max(largest, abs(force))
-    servo, taken, nowhere = powers.mean(axis=1).tolist()
-    return Energy(signs, servo, taken, nowhere, largest, cycle.speed)

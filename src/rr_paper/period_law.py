@@ -1,8 +1,8 @@
-"""Speed over the period: what viscous friction allows, and what the tables say.
+"""Speed over the period: what viscous friction allows, and what the tables show.
 
-At a fixed amplitude every term of equation (3) is slower by known powers of T: with viscous
-friction alone the speed falls nearly as 1/T^2. The ratio v(T = 1 s)/v(T = 2 s) is then near 4
-whatever the robot, and no unknown of the prototype can move it far.
+At a fixed amplitude every term of equation (3) scales with a known power of T: with viscous
+friction alone the speed falls nearly as 1/T^2. The ratio v(T = 1 s)/v(T = 2 s) is then near 4 for
+any robot, and no unknown of the prototype can move it far.
 """
 
 from __future__ import annotations
@@ -12,22 +12,22 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rr_opt.model.gait import SineGait
 from rr_opt.model.robot import Robot
-from rr_paper.consistency import ABOUT_P, BOX, prototype
-from rr_paper.equation3 import CORRECTED, PRINTED, Signs, steady
-from rr_paper.printed import TABLE_3, Row
+from rr_paper.equation3 import CORRECTED, PRINTED, Signs, steady_cycle
+from rr_paper.prototype import ABOUT_P, random_prototype
+from rr_paper.publication import TABLE_3, Row
 
 _ROBOTS, _SEED = 500, 11
+_RATIO = TABLE_3[0].ratio
 
 
 @dataclass(frozen=True)
-class RatioOfPeriods:
+class PeriodRatio:
     """v(1 s)/v(2 s) at one amplitude (rad).
 
-    model          by the prototype with viscous friction
+    model          of the prototype with viscous friction
     mean, low, high  of the column with intervals, by Fieller's method with t of 2 degrees of
-                   freedom, which errs on the wide side
+                   freedom, which is conservative
     other, other_low, other_high  the same of the column v_exp, as if the intervals were its own
     """
 
@@ -55,18 +55,18 @@ class Spread:
 
 @dataclass(frozen=True)
 class PeriodLaw:
-    """The three ratios, and what robots of all kinds give."""
+    """Table 3's three ratios, and those of random robots with corrected and with printed signs."""
 
-    ratios: tuple[RatioOfPeriods, ...]
-    spreads: tuple[Spread, ...]
+    ratios: tuple[PeriodRatio, ...]
+    spreads: tuple[Spread, Spread]
 
 
 def audit_period(robot: Robot) -> PeriodLaw:
-    """Hold the 1/T^2 law against Table 3."""
+    """Compare the 1/T^2 law with Table 3."""
     fast = [row for row in TABLE_3 if row.period == 1.0]
     slow = [row for row in TABLE_3 if row.period == 2.0]
-    built = ABOUT_P.build(robot, 0.3)
-    ratios = tuple(_ratio(built, one, two) for one, two in zip(fast, slow, strict=True))
+    built = ABOUT_P.build(robot, _RATIO)
+    ratios = tuple(_period_ratio(built, one, two) for one, two in zip(fast, slow, strict=True))
     return PeriodLaw(ratios, (_spread(CORRECTED), _spread(PRINTED)))
 
 
@@ -74,8 +74,8 @@ def fieller(one: tuple[float, float], two: tuple[float, float]) -> tuple[float, 
     """The interval of the ratio of two means, given with their half widths: all rho with
     |m1 - rho m2| within its own half width.
 
-    Without an upper end where the denominator's own interval holds 0; ratios below 0 are left out
-    then, as speeds of one robot have one sign.
+    Without an upper end if the denominator's own interval contains 0; ratios below 0 are excluded
+    then, as the speeds of one robot have one sign.
     """
     (m1, h1), (m2, h2) = one, two
     a, b, c = m2**2 - h2**2, m1 * m2, m1**2 - h1**2
@@ -85,31 +85,26 @@ def fieller(one: tuple[float, float], two: tuple[float, float]) -> tuple[float, 
     return (b - root) / a, (b + root) / a
 
 
-def _ratio(robot: Robot, fast: Row, slow: Row) -> RatioOfPeriods:
+def _period_ratio(robot: Robot, fast: Row, slow: Row) -> PeriodRatio:
     alpha = fast.amplitude or math.nan
-    low, high = fieller((fast.mean, fast.half_width), (slow.mean, slow.half_width))
+    mean = fieller((fast.mean, fast.half_width), (slow.mean, slow.half_width))
     other = fieller((fast.other, fast.half_width), (slow.other, slow.half_width))
-    model = _of_model(robot, alpha, CORRECTED)
-    return RatioOfPeriods(
-        alpha, model, fast.mean / slow.mean, low, high, fast.other / slow.other, *other
-    )
+    model = _model_ratio(robot, alpha, CORRECTED)
+    return PeriodRatio(alpha, model, fast.mean / slow.mean, *mean, fast.other / slow.other, *other)
 
 
-def _of_model(robot: Robot, alpha: float, signs: Signs) -> float:
-    fast, slow = (steady(robot, SineGait(alpha, T), signs).speed for T in (1.0, 2.0))
+def _model_ratio(robot: Robot, alpha: float, signs: Signs) -> float:
+    fast, slow = steady_cycle(robot, alpha, [1.0, 2.0], signs).speed.tolist()
     return fast / slow
 
 
 def _spread(signs: Signs) -> Spread:
-    """Robots of the box, k spread evenly in its logarithm, at amplitudes of Table 3's range."""
+    """Robots of the box at amplitudes of Table 3's range."""
     rng = np.random.default_rng(_SEED)
     amplitudes = [row.amplitude or math.nan for row in TABLE_3]
-    found = []
+    ratios = []
     for _ in range(_ROBOTS):
-        a1, a2, b = (rng.uniform(*BOX[name]) for name in ("a1", "a2", "b"))
-        k = math.exp(rng.uniform(*np.log(BOX["k"])))
-        alpha = rng.uniform(min(amplitudes), max(amplitudes))
-        robot = ABOUT_P.build(prototype(a1, a2, b, k), 0.3)
-        found.append(_of_model(robot, alpha, signs))
-    q05, q50, q95 = np.quantile(found, [0.05, 0.5, 0.95]).tolist()
-    return Spread(signs, _ROBOTS, q05, q50, q95, max(found))
+        robot = ABOUT_P.build(random_prototype(rng), _RATIO)
+        ratios.append(_model_ratio(robot, rng.uniform(min(amplitudes), max(amplitudes)), signs))
+    q05, q50, q95 = np.quantile(ratios, [0.05, 0.5, 0.95]).tolist()
+    return Spread(signs, _ROBOTS, q05, q50, q95, max(ratios))

@@ -1,4 +1,4 @@
-"""Tables 2 and 3 and Fig. 3 again, by the shipped prototype."""
+"""Tables 2 and 3 and Fig. 3 recomputed for the shipped prototype."""
 
 from __future__ import annotations
 
@@ -13,33 +13,33 @@ from rr_opt.model.robot import Robot
 from rr_opt.motion.circle import transient
 from rr_opt.motion.rollout import Trajectory, rollout
 from rr_opt.motion.steady_cycle import steady_cycle
-from rr_paper.consistency import ABOUT_P, predicted
-from rr_paper.printed import TABLE_2, TABLE_3, Row
+from rr_paper.consistency import predicted
+from rr_paper.prototype import ABOUT_P
+from rr_paper.publication import TABLE_2, TABLE_3, Row
 
 AMPLITUDES = np.linspace(0.2, 1.5, 261)
-"""Where Table 2's amplitude is looked for, rad."""
+"""Candidates for Table 2's amplitude, rad."""
+
+_RATE, _SECONDS = 100.0, 20.0
+"""Fig. 3: the capture system's rate, Hz, and a time in which the start is over, s."""
 
 
 @dataclass(frozen=True)
-class Regenerated:
-    """A printed row with the speed that the model gives it.
-
-    amplitude  alpha, rad; of Table 2 the one that was found
-    speed      signed, m/s
-    """
+class RecomputedRow:
+    """A printed row with the model's speed, signed, m/s; amplitude in rad, of Table 2 fitted."""
 
     row: Row
     amplitude: float
     speed: float
 
     @property
-    def near_mean(self) -> bool:
+    def within_mean(self) -> bool:
         """|speed| is within the printed interval."""
         return abs(abs(self.speed) - self.row.mean) <= self.row.half_width
 
     @property
-    def near_other(self) -> bool:
-        """|speed| is within an interval as wide about the other column."""
+    def within_other(self) -> bool:
+        """|speed| is within an interval of the same width about the other column."""
         return abs(abs(self.speed) - self.row.other) <= self.row.half_width
 
     @property
@@ -52,53 +52,53 @@ class Regenerated:
 class Tables:
     """Both tables, and what Table 2's amplitude may be.
 
-    speeds   of Table 2's rows at AMPLITUDES, signed, m/s, (3, n)
-    allowed  the amplitudes at which all three rows are within their intervals, as (low, high)
+    amplitude  the fitted one, rad
+    speeds     of Table 2's rows at AMPLITUDES, signed, m/s, (3, n)
+    allowed    ranges (low, high) of amplitude in which all three rows are within their intervals
     """
 
-    table2: tuple[Regenerated, ...]
-    table3: tuple[Regenerated, ...]
+    table2: tuple[RecomputedRow, ...]
+    table3: tuple[RecomputedRow, ...]
     amplitude: float
     speeds: Array
     allowed: tuple[tuple[float, float], ...]
 
+    @property
+    def rows(self) -> tuple[RecomputedRow, ...]:
+        """All nine."""
+        return *self.table2, *self.table3
 
-def regenerate(robot: Robot) -> Tables:
-    """Both tables by this robot; J20/J10 about P.
 
-    Table 2's amplitude is the one of AMPLITUDES at which the sum of squares of the misses, in
-    half widths, is least: a fit, as the paper does not give it.
+def recompute(robot: Robot) -> Tables:
+    """Both tables for this robot; J20/J10 about P.
+
+    Table 2's amplitude is the one of AMPLITUDES with the least sum of squared misses in half
+    widths.
     """
-    found = np.array([predicted(robot, ABOUT_P, float(one)) for one in AMPLITUDES]).T
-    speeds = found[: len(TABLE_2)]
+    speeds = np.array([predicted(robot, ABOUT_P, one) for one in AMPLITUDES.tolist()]).T
+    second, third = speeds[: len(TABLE_2)], speeds[len(TABLE_2) :]
     mean = np.array([[row.mean] for row in TABLE_2])
     width = np.array([[row.half_width] for row in TABLE_2])
-    off = (np.abs(speeds) - mean) / width
-    best = int(np.nanargmin((off**2).sum(axis=0)))
-    inside = np.asarray((np.abs(off) <= 1).all(axis=0))
+    miss = (np.abs(second) - mean) / width
+    best = int(np.nanargmin((miss**2).sum(axis=0)))
     at = float(AMPLITUDES[best])
-    return Tables(
-        tuple(Regenerated(r, at, float(v)) for r, v in zip(TABLE_2, speeds[:, best], strict=True)),
+    rows = [
         tuple(
-            Regenerated(row, row.amplitude or at, float(v))
-            for row, v in zip(TABLE_3, found[len(TABLE_2) :, best], strict=True)
-        ),
-        at,
-        speeds,
-        _runs(inside),
-    )
+            RecomputedRow(row, row.amplitude or at, float(speed))
+            for row, speed in zip(table, of[:, best], strict=True)
+        )
+        for table, of in ((TABLE_2, second), (TABLE_3, third))
+    ]
+    return Tables(rows[0], rows[1], at, second, _ranges(np.abs(miss).max(axis=0) <= 1))
 
 
-def _runs(inside: NDArray[np.bool_]) -> tuple[tuple[float, float], ...]:
+def _ranges(inside: NDArray[np.bool_]) -> tuple[tuple[float, float], ...]:
     """The ends of each run of amplitudes that are inside."""
     edges = np.flatnonzero(np.diff(np.concatenate([[0], inside.astype(int), [0]])))
     return tuple(
-        (float(AMPLITUDES[start]), float(AMPLITUDES[end - 1]))
-        for start, end in edges.reshape(-1, 2)
+        (float(AMPLITUDES[first]), float(AMPLITUDES[end - 1]))
+        for first, end in edges.reshape(-1, 2)
     )
-
-
-_RATE, _SECONDS = 100.0, 20.0
 
 
 @dataclass(frozen=True)
@@ -106,9 +106,9 @@ class Start:
     """A run from rest.
 
     driven    at the capture system's 100 Hz
-    t, speed  the average speed over the period about t: the displacement of P over T (s, m/s)
+    t, speed  average speed over the period about t: the displacement of P over T (s, m/s)
     steady    that of the steady cycle, signed, m/s
-    constant  time in which what is missing falls to 1/e, s
+    constant  time constant of the approach to the steady cycle, s
     """
 
     row: Row
@@ -120,11 +120,8 @@ class Start:
     constant: float
 
 
-def start_from_rest(robot: Robot, row: Row) -> Start:
-    """The run of a row of Table 3 from rest; Fig. 3 does not say which gait it shows."""
-    if row.amplitude is None:
-        raise ValueError("the row has no amplitude")
-    gait = SineGait(row.amplitude, row.period)
+def start_from_rest(robot: Robot, row: Row, gait: SineGait) -> Start:
+    """The gait of a row of Table 3 from rest; Fig. 3 does not say which gait it shows."""
     driven = rollout(robot, gait, _SECONDS, "rest", _RATE)
     every = round(row.period * _RATE)
     step = np.hypot(driven.x[every:] - driven.x[:-every], driven.y[every:] - driven.y[:-every])
@@ -132,15 +129,3 @@ def start_from_rest(robot: Robot, row: Row) -> Start:
     cycle = steady_cycle(robot, gait)
     constant = transient(robot, cycle).constant
     return Start(row, gait, driven, t, step / row.period, cycle.speed, constant)
-
-
-def last_period(t: Array, x: Array, y: Array, psi: Array, period: float) -> float:
-    """Mean speed over the last period of a straight run, m/s, signed along platform 1.
-
-    t (s), x, y (m), psi (rad): (n,), at equal steps of which a period holds a whole number.
-    """
-    steps = round(period / float(t[1] - t[0]))
-    chord = np.array([x[-1] - x[-1 - steps], y[-1] - y[-1 - steps]])
-    heading = psi[-steps:]
-    ahead = chord @ np.array([np.cos(heading).mean(), np.sin(heading).mean()])
-    return float(np.copysign(np.hypot(*chord), ahead)) / period

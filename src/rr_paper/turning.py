@@ -1,4 +1,4 @@
-"""Fig. 6 again, and "the sign of phi0 defines the direction; a larger phi0 a smaller radius"."""
+"""Fig. 6 recomputed, and its claims: the sign of phi0 sets the side, a larger one the radius."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ from rr_opt.motion.steady_cycle import steady_cycle
 from rr_opt.verify.speeds import speeds
 from rr_opt.verify.turn.chart import turn_map
 from rr_opt.verify.turn.offset_claim import RadiusClaim, SignClaim, radius_claim, sign_claim
-from rr_paper.consistency import ABOUT_P
-from rr_paper.printed import FIGURE_6
+from rr_paper.prototype import ABOUT_P
+from rr_paper.publication import FIGURE_6
 
 _RATE = 50.0
 _MAP = (24, 10, 101)
-"""Amplitudes, periods and offsets against which the claim is held, as `rr-opt turn-chart` does."""
+"""Amplitudes, periods and offsets of the map, as in `rr-opt turn-chart`."""
 _OFFSETS, _NEAREST = 400, 0.97
 
 
 @dataclass(frozen=True)
-class OneCircle:
-    """A gait of Fig. 6: its steady circle, its mirror image's, and once round from rest."""
+class GaitCircle:
+    """A gait of Fig. 6: its steady circle, that of the mirrored gait, and one lap from rest."""
 
     gait: SineGait
     circle: Circle
@@ -42,10 +42,10 @@ class Turning:
     circles     the three of the figure
     offset, curvature  along phi0 > 0 at the figure's amplitude and period, up to the singular
                 posture: rad, 1/m (positive to the left)
-    sign, radius  the claims against all gaits of the shipped problem that keep its limits
+    sign, radius  the claims over all gaits of the shipped problem that keep its limits
     """
 
-    circles: tuple[OneCircle, ...]
+    circles: tuple[GaitCircle, ...]
     offset: Array
     curvature: Array
     sign: SignClaim
@@ -53,7 +53,7 @@ class Turning:
 
     @property
     def sides_hold(self) -> bool:
-        """The three turn to one side, and their mirror images to the other."""
+        """The three turn to one side, and the mirrored gaits to the other."""
         first = np.sign(self.circles[0].circle.heading)
         return all(
             np.sign(one.circle.heading) == first and np.sign(one.mirrored.heading) == -first
@@ -67,7 +67,7 @@ class Turning:
         return radii == sorted(radii, reverse=True)
 
     @property
-    def turns_at(self) -> float | None:
+    def changes_side_at(self) -> float | None:
         """The offset at which the turn first changes sides, rad; None if it never does."""
         changed = np.flatnonzero(np.sign(self.curvature[1:]) != np.sign(self.curvature[0]))
         return float(self.offset[changed[0] + 1]) if len(changed) else None
@@ -81,23 +81,21 @@ class Turning:
 
 
 def audit_turning(problem: Problem) -> Turning:
-    """Drive the circles of Fig. 6 and hold the claim against the shipped problem's gaits."""
+    """Drive the circles of Fig. 6 and test the claims on the shipped problem's gaits."""
     robot = ABOUT_P.build(problem.robot, FIGURE_6.ratio)
     alpha, T = FIGURE_6.amplitude, FIGURE_6.period
     circles = tuple(_circle(robot, SineGait(alpha, T, phi0)) for phi0 in FIGURE_6.offsets)
     end = _NEAREST * robot.singular_angle - alpha
     offset = np.linspace(0.0, end, _OFFSETS + 1)[1:]
-    bare = Problem(robot, problem.limits)
-    seen = speeds(bare, alpha, T, offset)
+    seen = speeds(Problem(robot, problem.limits), alpha, T, offset)
     there = seen.converged
     curvature = seen.turn[there] / (T * np.abs(seen.speed[there]))
     chart = turn_map(problem, _MAP)
     return Turning(circles, offset[there], curvature, sign_claim(chart), radius_claim(chart))
 
 
-def _circle(robot: Robot, gait: SineGait) -> OneCircle:
-    made = circle_of(steady_cycle(robot, gait).cycle)
+def _circle(robot: Robot, gait: SineGait) -> GaitCircle:
     other = SineGait(gait.amplitude, gait.period, -gait.offset)
-    mirrored = circle_of(steady_cycle(robot, other).cycle)
-    seconds = made.time_round + 5 * gait.period
-    return OneCircle(gait, made, mirrored, rollout(robot, gait, seconds, "rest", _RATE))
+    circle, mirrored = (circle_of(steady_cycle(robot, one).cycle) for one in (gait, other))
+    seconds = circle.time_round + 5 * gait.period
+    return GaitCircle(gait, circle, mirrored, rollout(robot, gait, seconds, "rest", _RATE))

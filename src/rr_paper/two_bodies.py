@@ -1,13 +1,14 @@
-"""The robot as two separate bodies, held together by Lagrange multipliers and nothing else.
+"""The robot as two separate bodies, coupled by Lagrange multipliers.
 
-Each body has its own place and heading, q = (x1, y1, th1, x2, y2, th2) of the centres of mass A1
-and A2, so that the mass matrix is diagonal. Five constraints hold them: both bodies share the
-joint P (two rows), no axle slips sideways (one row each), and the servo keeps th2 - th1 = phi(t):
+Each body has its own position and heading, q = (x1, y1, th1, x2, y2, th2) of the centres of mass
+A1 and A2, so the mass matrix is diagonal. There are five constraints: both bodies share the joint
+P (two rows), no axle slips sideways (one row each), and the servo imposes th2 - th1 = phi(t):
 
     A1 - (c1 - a1) e1 = P = A2 + (c2 - a2) e2        n1 . V1 + a1 w1 = 0 = n2 . V2 - a2 w2
 
-They are differentiated until accelerations appear (index 1), which `two_body_path` integrates.
-Only equation (1) of the paper is used, and nothing of `rr_opt.mechanics`.
+They are differentiated down to accelerations (index 1), which `path` integrates. This is an
+independent check of Kane's method and of equation (3): it uses only the paper's equation (1) and
+nothing of `rr_opt.mechanics`.
 """
 
 from __future__ import annotations
@@ -22,43 +23,43 @@ from rr_opt.model.gait import Gait
 from rr_opt.model.robot import Robot
 
 
-class Forces(NamedTuple):
-    """qdd (6,) of the bodies, and the torque of the servo on body 2, N m."""
+class Accelerations(NamedTuple):
+    """qdd (6,) of the bodies, and the servo's torque on body 2, N m."""
 
     acceleration: Array
     torque: float
 
 
-def accelerate(robot: Robot, q: Array, qd: Array, ddphi: float, push: float = 0.0) -> Forces:
+def accelerate(robot: Robot, q: Array, qd: Array, ddphi: float, push: float = 0.0) -> Accelerations:
     """Newton's and Euler's equations of both bodies with the constraints' second derivatives.
 
-    push: a force at axle 1 along platform 1, N, that comes from outside.
+    push: an external force at axle 1 along platform 1, N.
     """
     one, two = robot.platform1, robot.platform2
     e1, e2 = axes(q[2])[0], axes(q[5])[0]
     V1, w1, V2, w2 = qd[:2], qd[2], qd[3:5], qd[5]
     g1, g2 = one.c - one.a, two.c - two.a
 
-    held = constraints(robot, q)
-    # Minus what the second derivatives hold besides the accelerations.
-    gathered = np.concatenate(
+    G = constraints(robot, q)
+    # Minus the terms of the second derivatives that are free of accelerations.
+    rest = np.concatenate(
         [-g1 * w1**2 * e1 - g2 * w2**2 * e2, [w1 * (e1 @ V1), w2 * (e2 @ V2), ddphi]]
     )
     Q = friction(robot, q, qd)
-    Q[:2] += push * e1  # The axle lies on its line of action through the centre of mass.
+    Q[:2] += push * e1  # The line of action passes through the centre of mass.
     M = np.diag([one.m, one.m, one.I, two.m, two.m, two.I])
-    system = np.block([[M, -held.T], [held, np.zeros((5, 5))]])
-    solved = np.linalg.solve(system, np.concatenate([Q, gathered]))
-    return Forces(np.asarray(solved[:6], float), float(solved[10]))
+    system = np.block([[M, -G.T], [G, np.zeros((5, 5))]])
+    solved = np.linalg.solve(system, np.concatenate([Q, rest]))
+    return Accelerations(np.asarray(solved[:6], float), float(solved[10]))
 
 
 def placed(robot: Robot, phi: float, dphi: float, v: float) -> tuple[Array, Array]:
-    """q and qd with P at the origin, psi = 0, axle 1 rolling at v: the constraints solved."""
+    """q and qd that meet the constraints with P at the origin, psi = 0 and axle 1 rolling at v."""
     one, two = robot.platform1, robot.platform2
     e2 = axes(phi)[0]
     q = np.array([one.c - one.a, 0.0, 0.0, *(-(two.c - two.a) * e2), phi])
-    held = np.vstack([constraints(robot, q), [1.0, 0.0, 0.0, 0.0, 0.0, 0.0]])
-    return q, np.linalg.solve(held, np.array([0.0, 0.0, 0.0, 0.0, dphi, v]))
+    rows = np.vstack([constraints(robot, q), [1.0, 0.0, 0.0, 0.0, 0.0, 0.0]])
+    return q, np.linalg.solve(rows, np.array([0.0, 0.0, 0.0, 0.0, dphi, v]))
 
 
 def forward_acceleration(q: Array, qd: Array, acceleration: Array) -> float:
@@ -70,7 +71,7 @@ def forward_acceleration(q: Array, qd: Array, acceleration: Array) -> float:
 def friction(robot: Robot, q: Array, qd: Array) -> Array:
     """Forces (N) and moments (N m) of the wheels' friction on both bodies, (6,).
 
-    Minus its product with qd is what friction takes, the paper's 2R, W.
+    Minus its product with qd is the dissipated power, the paper's 2R, W.
     """
     one, two = robot.platform1, robot.platform2
     return np.concatenate(
@@ -82,7 +83,7 @@ def friction(robot: Robot, q: Array, qd: Array) -> Array:
 
 
 def constraints(robot: Robot, q: Array) -> Array:
-    """The five rows that qd meets: the joint's (2), the axles' (2), the servo's; (5, 6)."""
+    """The constraint rows on qd: the joint's (2), the axles' (2), the servo's; (5, 6)."""
     one, two = robot.platform1, robot.platform2
     n1, n2 = axes(q[2])[1], axes(q[5])[1]
     g1, g2 = one.c - one.a, two.c - two.a
@@ -98,8 +99,8 @@ def constraints(robot: Robot, q: Array) -> Array:
 def _friction(
     b: float, k: float, axle: float, V: Array, w: float, axes: tuple[Array, Array]
 ) -> Array:
-    """Force (2, N) and moment about the centre of mass (N m) of both wheels of a body: each is
-    held back by k times its rolling speed. axle: from the centre of mass to it, along e, m."""
+    """Force (2, N) and moment about the centre of mass (N m) on the two wheels of a body, each
+    braked by k times its rolling speed. axle: its distance from the centre of mass along e, m."""
     e, n = axes
     total = np.zeros(3)
     for place in (b, -b):
@@ -119,8 +120,8 @@ _TIGHT = {"method": "DOP853", "rtol": 1e-10, "atol": 1e-11}
 
 
 class Path(NamedTuple):
-    """A motion at times t (s): x, y of P (m), psi (rad), v (m/s, along platform 1); and what the
-    integration let the constraints drift by: m of the joint, m/s of the axles, rad of the servo."""
+    """A motion at times t (s): x, y of P (m), psi (rad), v (m/s, along platform 1); and the largest
+    drift of the constraints: m (joint), m/s (axles) or rad (servo)."""
 
     t: Array
     x: Array
@@ -130,13 +131,14 @@ class Path(NamedTuple):
     drift: float
 
 
-def path(robot: Robot, gait: Gait, v0: float, times: Array) -> Path:
-    """The motion from v(0) = v0 at the times (s, increasing from 0)."""
-    q, qd = placed(robot, float(gait.angle(0.0)), float(gait.rate(0.0)), v0)
+def path(robot: Robot, gait: Gait, times: Array) -> Path:
+    """The motion from v = 0 at the times (s, increasing from 0)."""
+    q, qd = placed(robot, float(gait.angle(0.0)), float(gait.rate(0.0)), 0.0)
 
     def slope(t: float, state: Array) -> Array:
-        found = accelerate(robot, state[:6], state[6:], float(gait.acceleration(t)))
-        return np.concatenate([state[6:], found.acceleration])
+        ddphi = float(gait.acceleration(t))
+        qdd = accelerate(robot, state[:6], state[6:], ddphi).acceleration
+        return np.concatenate([state[6:], qdd])
 
     start = np.concatenate([q, qd])
     states = solve_ivp(slope, times[[0, -1]], start, t_eval=times, **_TIGHT).y

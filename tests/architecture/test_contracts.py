@@ -27,7 +27,7 @@ PLANTED = [
     ("layers", "rr_opt/design/planted.py", "import rr_opt.batch.run"),
     ("layers", "rr_opt/sysid/planted.py", "import rr_opt.machines.racer.racer"),
     ("packages", "rr_opt/report/planted.py", "import rr_lab.rig"),
-    ("packages", "rr_opt/report/planted.py", "import rr_paper.printed"),
+    ("packages", "rr_opt/report/planted.py", "import rr_paper.publication"),
     ("lab-layers", "rr_lab/rig.py", "import rr_lab.case"),
     ("check-apart-from-design", "rr_opt/verify/planted.py", "import rr_opt.design.solve"),
     ("check-apart-from-design", "rr_opt/design/planted.py", "import rr_opt.verify.replay"),

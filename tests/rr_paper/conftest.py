@@ -1,18 +1,17 @@
-"""What the tests of the paper share: the whole reproduction, with less effort where it repeats."""
+"""The whole reproduction, shared by the tests, with less effort where it repeats itself."""
 
 import pytest
 
 from rr_opt.files.problem_file import read_problem
-from rr_paper import best_amplitude, period_law
-from rr_paper import consistency as fit
+from rr_paper import best_amplitude, consistency, period_law
 from rr_paper.reproduction import Reproduction, reproduce
 
 
 @pytest.fixture(scope="session")
 def found() -> Reproduction:
     with pytest.MonkeyPatch.context() as less:
-        less.setattr(fit, "_SCREENED", 80)
-        less.setattr(fit, "_STARTS", 1)
+        less.setattr(consistency, "_SCREENED", 80)
+        less.setattr(consistency, "_STARTS", 1)
         less.setattr(best_amplitude, "_ROBOTS", 5)
         less.setattr(period_law, "_ROBOTS", 100)
         return reproduce(read_problem(None), lambda _: None)

@@ -7,19 +7,20 @@ import pytest
 
 from rr_opt.answers.quantities import number
 from rr_paper.equation3 import CORRECTED, PRINTED
+from rr_paper.prototype import ABOUT_P
 
 TEXT = " ".join(
     (Path(__file__).parents[2] / "docs" / "paper.md").read_text(encoding="utf-8").split()
 )
 
 
-def told(found):
+def statements(found):
     """What the page says, written with computed numbers."""
-    rows = (*found.tables.table2, *found.tables.table3)
-    yield f"{sum(one.near_mean for one in rows)} of the {len(rows)} averages"
+    rows = found.tables.rows
+    yield f"{sum(one.within_mean for one in rows)} of the {len(rows)} averages"
     yield f"in all {sum(one.columns_agree for one in rows)} rows"
 
-    printed = next(one for one in found.signs.off if one.signs is PRINTED)
+    printed = next(one for one in found.signs.deviations if one.signs is PRINTED)
     energy = {one.signs: one for one in found.signs.energy}
     yield f"is {number(100 * printed.median, 3)} %"
     yield f"at {found.signs.states} states"
@@ -27,13 +28,13 @@ def told(found):
     speeds = (number(1e3 * abs(energy[signs].speed), 3) for signs in (CORRECTED, PRINTED))
     yield f"between {' and '.join(speeds)} mm/s"
 
-    a2 = next(one for one in found.left_out if one.name == "a2")
+    a2 = next(one for one in found.sensitivities if one.name == "a2")
     yield f"from {number(1e3 * a2.least, 3)} to {number(1e3 * a2.largest, 3)} mm/s"
-    bare = {one.reading.name: one.low for one in found.consistency.bare}
+    bare = {one.definition.name: one.low for one in found.consistency.unloaded}
     yield f"the ratio is {number(bare['about the centres of mass'], 3)} about the centres"
-    yield f"it is {number(bare[found.consistency.bare[0].reading.name], 3)}, which leaves out 0.08"
+    yield f"it is {number(bare[ABOUT_P.name], 3)}, which leaves out 0.08"
 
-    asked = {one.where: one for one in found.asked}
+    asked = {one.where: one for one in found.demands}
     yield f"one to {number(asked['Table 3, row 3'].rpm, 3)} rpm"
     yield f"Fig. 6 with {number(asked['Fig. 6'].rpm, 3)} rpm"
     yield f"{100 * found.ratio_surface.too_fast:.0f} % of Fig. 4"
@@ -44,7 +45,7 @@ def told(found):
         one, two, three = (number(getattr(r, column), 3) for r in found.period.ratios)
         yield f"{one}, {two} and {three}"
 
-    for one in found.best.fastest:
+    for one in (found.best.limited, found.best.unlimited):
         best = one.optimum.best
         yield f"{number(best.gait.amplitude, 3)} rad and {number(best.gait.period, 3)} s"
         yield f"{number(1e3 * abs(best.speed), 3)} mm/s"
@@ -60,7 +61,7 @@ def told(found):
 
 
 def test_the_page_has_them(found):
-    assert [words for words in told(found) if words not in TEXT] == []
+    assert [words for words in statements(found) if words not in TEXT] == []
 
 
 @pytest.mark.parametrize("link", re.findall(r"\]\((\S+?)\)", TEXT))

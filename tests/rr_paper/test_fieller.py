@@ -1,4 +1,4 @@
-"""The interval of a ratio holds the true one at least as often as it says."""
+"""The interval of a ratio contains the true one at least as often as its level says."""
 
 import math
 

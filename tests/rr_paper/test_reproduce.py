@@ -2,36 +2,30 @@
 
 import csv
 import json
-import sys
+from dataclasses import replace
 
 import pytest
 from typer.testing import CliRunner
 
 from rr_opt.cli.main import app
 from rr_paper import reproduction
-from rr_paper.printed import TABLE_2, TABLE_3
-from rr_paper.report.page import FIGURES
+from rr_paper.publication import TABLE_2, TABLE_3
+from rr_paper.report.reproduction import FIGURES
 
 
 @pytest.fixture
 def run(found, monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(reproduction, "reproduce", lambda *_: found)
 
-    def command(*arguments):
+    def command(*arguments, mujoco=found.mujoco):
+        monkeypatch.setattr(reproduction, "reproduce", lambda *_: replace(found, mujoco=mujoco))
         return CliRunner().invoke(app, ["reproduce", *arguments])
 
     return command
 
 
-@pytest.fixture
-def without_mujoco(monkeypatch):
-    # As if it were not installed.
-    monkeypatch.setattr("importlib.util.find_spec", lambda _: None)
-
-
-def test_the_folder(run, without_mujoco, tmp_path):
-    done = run("--out", "res", "--json")
+def test_the_folder(run, tmp_path):
+    done = run("--out", "res", "--json", mujoco=None)
     assert done.exit_code == 0, done.stderr
     told = json.loads(done.stdout)
     assert told == json.loads((tmp_path / "res" / "reproduce.json").read_text())
@@ -45,7 +39,7 @@ def test_the_folder(run, without_mujoco, tmp_path):
     assert page.count("data:image/svg+xml") == len(FIGURES)
 
 
-def test_the_tables_are_the_printed_ones(run, without_mujoco, tmp_path):
+def test_the_tables_are_the_printed_ones(run, tmp_path):
     assert run("--no-figures").exit_code == 0
     with (tmp_path / "out" / "paper" / "tables.csv").open() as file:
         rows = list(csv.DictReader(file))
@@ -61,4 +55,8 @@ def test_mujoco_drives_as_the_corrected_equation(run, found):
     told = json.loads(run("--no-figures", "--json").stdout)
     assert told["mujoco_speed"] == pytest.approx(found.start.steady, rel=1e-3)
     assert "MuJoCo" in " ".join(told["sections"]["signs"]["sentences"])
-    assert "mujoco" in sys.modules
+
+
+def test_without_mujoco_there_is_no_speed(found, monkeypatch):
+    monkeypatch.setattr(reproduction, "find_spec", lambda _: None)
+    assert reproduction.mujoco_speed(found.robot, found.start.gait) is None

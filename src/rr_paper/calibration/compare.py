@@ -18,7 +18,7 @@ import numpy as np
 from rr_opt.array import Array
 from rr_paper.calibration.fit import Fit, Library, descend, problems
 from rr_paper.calibration.models import Law, Measured, one_way
-from rr_paper.printed import RUNS
+from rr_paper.publication import RUNS
 
 
 @dataclass(frozen=True)

@@ -45,7 +45,7 @@ from rr_paper.calibration import steady as coefficients
 from rr_paper.calibration import steady as servo
 from rr_paper.calibration.steady import dry_speed, viscous_speed
 from rr_paper.equation3 import PRINTED, equation3
-from rr_paper.printed import RUNS, TABLE_1, TABLE_2, TABLE_3
+from rr_paper.publication import RUNS, TABLE_1, TABLE_2, TABLE_3
 
 
 @dataclass(frozen=True)

@@ -40,7 +40,7 @@ from rr_opt.mechanics.kinematics import ROBOT_PARAMETERS, mechanism
 from rr_opt.mechanics.vectorised import ArrayFunction, over_arrays
 from rr_opt.motion.dynamics import derive
 from rr_opt.verify.fourier import integral, solve
-from rr_paper.printed import TABLE_1
+from rr_paper.publication import TABLE_1
 
 
 class Linear(NamedTuple):

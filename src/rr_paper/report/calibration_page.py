@@ -27,7 +27,7 @@ from rr_paper.calibration.models import (
     measured,
     values,
 )
-from rr_paper.printed import CITATION
+from rr_paper.publication import CITATION
 from rr_paper.report.calibration_text import (
     IF_MEASURED,
     aicc_text,

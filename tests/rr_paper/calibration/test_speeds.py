@@ -21,7 +21,8 @@ from rr_paper.calibration.models import (
     measured,
     values,
 )
-from rr_paper.equation3 import PRINTED, steady
+from rr_paper.equation3 import PRINTED
+from rr_paper.equation3 import steady_cycle as by_equation3
 
 ROWS = (0, 4, 8)
 
@@ -82,5 +83,6 @@ def test_printed():
     speeds = MODELS["printed"](shares, READINGS[0])
     for i, x in enumerate(robots):
         for row in ROWS:
-            told = steady(robot_of(x, row, READINGS[0]), gait_of(x, row), PRINTED)
-            assert speeds[i, row] == pytest.approx(told.speed, rel=1e-5, abs=1e-9)
+            robot, gait = robot_of(x, row, READINGS[0]), gait_of(x, row)
+            cycle = by_equation3(robot, gait.amplitude, gait.period, PRINTED)
+            assert speeds[i, row] == pytest.approx(cycle.speed[0], rel=1e-5, abs=1e-9)

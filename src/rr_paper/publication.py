@@ -1,25 +1,28 @@
-"""What the paper prints, as printed, each number once.
+"""The numbers that the paper prints, as printed, each in one place.
 
 Experimental Investigations of the Controlled Motion of the Roller Racer Robot, in: D. Chugo
 et al. (Eds.), CLAWAR 2021, LNNS 324, pp. 428-437 (2022). Tables 1-3 and Figs. 3-6 are in its
 section 3.
 
-Errata found when these were used:
-- Table 1 gives no unit for kappa, and neither c, a, b nor h apart.
-- Tables 2 and 3 call one column `v_exp`, yet the other, which has a confidence interval, can only
-  be a measured one. Here they are `mean`, the first, and `other`, the second.
-- Table 2 does not give its amplitude.
+Known errata and omissions:
+- Table 1 gives no unit for kappa, no b and no h, and c - a instead of c and a.
+- Tables 2 and 3 head one column `v_exp`, but only the other column has a confidence interval, so
+  that one must have been measured. Here the first is `mean` and the second `other`.
+- Table 2 does not state its amplitude.
 - J20/J10 of Tables 2 and 3 is not I20/I10 of Table 1 (0.453); see `rr_opt.model.ballast`.
 - Section 3.1 sets J20/J10 to 0.08, 0.14, 0.17, 0.19 and 0.2; Table 2 has 0.16, 0.18 and 0.2.
-- The signs of equation (3) do not fit equations (1), (2) and (4); see `rr_paper.equation3`.
+- The signs of equation (3) contradict equations (1), (2) and (4); see `rr_paper.equation3`.
 
-No point of the paper's figures is here: none of them is printed as a number.
+The points of the paper's figures are not printed as numbers, so none of them is here.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Literal, NamedTuple
+
+from scipy.special import stdtrit
 
 CITATION = (
     "Kilin, Karavaev, Yefremov: Experimental Investigations of the Controlled Motion of the "
@@ -48,6 +51,22 @@ TABLE_1 = {
 }
 """Table 1, the parameters of the prototype."""
 
+ANGLE_LIMIT = TABLE_1["greatest angle phi"].value
+"""Table 1's largest servo angle, rad."""
+RPM = 30 / math.pi
+"""1 rad/s in rpm."""
+RATE_LIMIT = TABLE_1["greatest rate dphi/dt"].value * 2 * math.pi / 60
+"""Table 1's largest servo rate, 30 rpm in rad/s."""
+
+RUNS = 3
+"""Runs behind each row of Tables 2 and 3 (section 3.1: "sample size - 3")."""
+T_POINT = float(stdtrit(RUNS - 1, 0.975))
+"""The 97.5 % point of Student's t, 4.303: the printed half widths are t s/sqrt(n)."""
+
+Column = Literal["mean", "other"]
+COLUMNS: tuple[Column, ...] = ("mean", "other")
+"""The two speed columns. Which of them was measured is unclear."""
+
 
 @dataclass(frozen=True)
 class Row:
@@ -55,8 +74,8 @@ class Row:
 
     ratio       J20/J10
     period      T, s
-    amplitude   alpha, rad; None where the paper does not give it
-    mean        the column with the interval, m/s: the mean of n = 3 runs, or so its head says
+    amplitude   alpha, rad; None where the paper does not state it
+    mean        the column with the interval, m/s; by its head the mean of n = 3 runs
     half_width  of the 95 % interval, t s/sqrt(n), m/s
     other       the column headed v_exp, m/s
     """
@@ -68,9 +87,15 @@ class Row:
     half_width: float
     other: float
 
+    @property
+    def standard_error(self) -> float:
+        """Standard error of the mean, m/s, itself estimated from three runs."""
+        return self.half_width / T_POINT
 
-RUNS = 3
-"""Runs behind each row (section 3.1: "sample size - 3")."""
+    def speed(self, column: Column) -> float:
+        """The speed in a column, m/s."""
+        return self.mean if column == "mean" else self.other
+
 
 TABLE_2 = (
     Row(0.16, 1.0, None, 0.1015, 0.056, 0.1057),
@@ -89,10 +114,13 @@ TABLE_3 = (
 )
 """Table 3, the second series. J20/J10 = 0.3 is the text's (section 3.1)."""
 
+ROWS = (*TABLE_2, *TABLE_3)
+"""All nine rows, Table 2 first."""
+
 
 @dataclass(frozen=True)
 class Surface:
-    """What a surface of the paper spans, ends included: amplitude in rad, and ratio or period."""
+    """The ranges of a surface plot, ends included: amplitude (rad), J20/J10 and period (s)."""
 
     amplitude: tuple[float, float]
     ratio: tuple[float, float]
@@ -100,14 +128,14 @@ class Surface:
 
 
 FIGURE_4 = Surface(amplitude=(0.0, 1.4), ratio=(0.08, 0.2), period=(1.0, 1.0))
-"""Fig. 4: average speed over J20/J10 and amplitude at T = 1 s. The text varies the ratio from
-0.08 to 0.2."""
-
+"""Fig. 4: average speed over J20/J10 and amplitude at T = 1 s. The text has 0.08 to 0.2."""
 FIGURE_5 = Surface(amplitude=(0.0, 1.2), ratio=(0.3, 0.3), period=(0.8, 2.0))
 """Fig. 5: average speed over period and amplitude at J20/J10 = 0.3."""
 
 LOADED_RATIOS = (0.08, 0.14, 0.17, 0.19, 0.2)
 """J20/J10 "by attachment of the additional loads" (section 3.1)."""
+RATIOS = tuple(sorted({*LOADED_RATIOS, *(row.ratio for row in ROWS)}))
+"""Every J20/J10 that the paper prints."""
 
 
 @dataclass(frozen=True)

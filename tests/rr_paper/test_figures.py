@@ -1,4 +1,4 @@
-"""What stands beside the paper's figures is what other methods compute."""
+"""The recomputed figures agree with what other methods compute."""
 
 import math
 
@@ -9,7 +9,7 @@ from scipy.optimize import least_squares
 from rr_opt.model.ballast import with_inertia_ratio
 from rr_opt.model.gait import SineGait
 from rr_opt.motion.steady_cycle import steady_cycle
-from rr_paper.tables import last_period
+from rr_paper.reproduction import last_period_speed
 
 
 @pytest.mark.parametrize("name", ["ratio_surface", "period_surface"])
@@ -33,14 +33,14 @@ def test_a_start_comes_to_the_steady_speed(found):
     assert start.speed[0] < 0.5 * abs(start.steady)
     assert start.speed[-1] == pytest.approx(abs(start.steady), rel=1e-5)
     d = start.driven
-    last = last_period(d.t, d.x, d.y, d.psi, start.gait.period)
+    last = last_period_speed(d.t, d.x, d.y, d.psi, start.gait.period)
     assert last == pytest.approx(start.steady, rel=1e-5)
 
 
 def test_the_last_period_of_a_straight_run_backward():
     t = np.arange(0, 8.0, 0.1)
     swing = 0.3 * np.sin(np.pi * t)
-    found = last_period(t, -0.2 * t, 0.05 * np.cos(np.pi * t), swing, 2.0)
+    found = last_period_speed(t, -0.2 * t, 0.05 * np.cos(np.pi * t), swing, 2.0)
     assert found == pytest.approx(-0.2, rel=1e-9)
 
 

@@ -1,0 +1,157 @@
+"""The paper's robot: Table 1, what it leaves out, and the possible definitions of J20/J10.
+
+Table 1 leaves open a1 and a2 (c1 and c2 follow from c1 - a1 and c2 - a2), the half track b and
+the friction k of a wheel, here the same for all wheels. The paper varies J20/J10 by loads on
+platform 2 without saying about which points J20 and J10 are taken; section 2 also defines J1 and
+J2, which involve both platforms and the joint.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from types import MappingProxyType
+
+import numpy as np
+
+from rr_opt.model.ballast import inertia_ratio, with_inertia_ratio
+from rr_opt.model.robot import Platform, Robot
+from rr_opt.outcome import InputError
+from rr_paper.equation3 import steady_cycle
+from rr_paper.publication import TABLE_1, Row
+
+BOX = MappingProxyType(
+    {
+        "a1": (-0.03, 0.03),
+        "a2": (-0.03, 0.03),
+        "b": (0.02, 0.08),
+        "k": (0.01, 1.0),
+        "amplitude": (0.2, 1.5),
+    }
+)
+"""Bounds of the unknowns, Table 2's amplitude among them: m, m, m, N s/m, rad."""
+UNITS = MappingProxyType({"a1": "m", "a2": "m", "b": "m", "k": "N s/m", "amplitude": "rad"})
+
+
+def prototype(a1: float, a2: float, b: float, k: float) -> Robot:
+    """Table 1 with these unknowns. h is arbitrary (20 mm), as only k = kappa/h^2 matters."""
+    h = 0.02
+    known = {name: value for name, (value, _) in TABLE_1.items()}
+    return Robot(
+        Platform(known["m1"], known["I10"], known["c1 - a1"] + a1, a1, b, k * h**2),
+        Platform(known["m2"], known["I20"], known["c2 - a2"] + a2, a2, b, k * h**2),
+        h,
+    )
+
+
+def random_prototype(rng: np.random.Generator) -> Robot:
+    """A prototype drawn from BOX, uniformly except for k, which is log-uniform."""
+    a1, a2, b = (rng.uniform(*BOX[name]) for name in ("a1", "a2", "b"))
+    return prototype(a1, a2, b, math.exp(rng.uniform(*np.log(BOX["k"]))))
+
+
+def box_grid(count: int) -> list[Robot]:
+    """Prototypes over count x count values of a1 and a2."""
+    a1, a2 = (np.linspace(*BOX[name], count).tolist() for name in ("a1", "a2"))
+    return [prototype(one, two, 0.03, 0.1) for one in a1 for two in a2]
+
+
+@dataclass(frozen=True)
+class RatioDefinition:
+    """One definition of J20/J10.
+
+    ratio  of a robot as it is
+    build  (robot, ratio) -> the robot rebuilt to have it; raises InputError if that is impossible
+    """
+
+    name: str
+    ratio: Callable[[Robot], float]
+    build: Callable[[Robot, float], Robot]
+
+
+def _axle_ratio(robot: Robot) -> float:
+    one, two = robot.platform1, robot.platform2
+    return (two.I + two.m * two.a**2) / (one.I + one.m * one.a**2)
+
+
+def _with_axle_ratio(robot: Robot, ratio: float) -> Robot:
+    one, two = robot.platform1, robot.platform2
+    return _with_inertia(robot, ratio * (one.I + one.m * one.a**2) - two.m * two.a**2)
+
+
+def _section2_offsets(robot: Robot) -> tuple[float, float]:
+    """J1 - I20 and J2 - I20 of section 2, kg m2."""
+    one, two = robot.platform1, robot.platform2
+    return (
+        one.I + one.m * one.a**2 + two.m * (two.a**2 + one.c**2 - two.c**2),
+        -two.m * (two.c**2 - two.a**2),
+    )
+
+
+def _section2_ratio(robot: Robot) -> float:
+    J1, J2 = _section2_offsets(robot)
+    return (robot.platform2.I + J2) / (robot.platform2.I + J1)
+
+
+def _with_section2_ratio(robot: Robot, ratio: float) -> Robot:
+    J1, J2 = _section2_offsets(robot)
+    return _with_inertia(robot, (ratio * J1 - J2) / (1 - ratio))
+
+
+def _with_inertia(robot: Robot, inertia: float) -> Robot:
+    if inertia <= 0:
+        raise InputError(
+            f"The ratio needs I2 = {inertia:.3g} kg m2. It must be positive. Ask for a larger one."
+        )
+    return replace(robot, platform2=replace(robot.platform2, I=inertia))
+
+
+ABOUT_P = RatioDefinition(
+    "about P, by platform 2's inertia",
+    lambda robot: inertia_ratio(robot, "joint"),
+    lambda robot, ratio: with_inertia_ratio(robot, ratio, "joint"),
+)
+DEFINITIONS = (
+    ABOUT_P,
+    RatioDefinition(
+        "about P, by loads of 66 g",
+        lambda robot: inertia_ratio(robot, "joint"),
+        lambda robot, ratio: with_inertia_ratio(robot, ratio, "joint", "loads"),
+    ),
+    RatioDefinition(
+        "about the centres of mass",
+        lambda robot: inertia_ratio(robot, "centre"),
+        lambda robot, ratio: with_inertia_ratio(robot, ratio, "centre"),
+    ),
+    RatioDefinition("about the axles' centres", _axle_ratio, _with_axle_ratio),
+    RatioDefinition("J2/J1 of section 2", _section2_ratio, _with_section2_ratio),
+)
+
+
+@dataclass(frozen=True)
+class Sensitivity:
+    """How far the |speed| of a gait moves as one unknown moves over its box, low to high.
+
+    assumed  its value in the shipped robot
+    """
+
+    name: str
+    assumed: float
+    low: float
+    high: float
+    least: float
+    largest: float
+
+
+def sensitivities(robot: Robot, row: Row) -> tuple[Sensitivity, ...]:
+    """Of each unknown of the robot alone, at the gait of a row of Table 3."""
+    one, two = robot.platform1, robot.platform2
+    assumed = {"a1": one.a, "a2": two.a, "b": one.b, "k": robot.k1}
+    found = []
+    for name, value in assumed.items():
+        robots = [prototype(**assumed | {name: x}) for x in np.linspace(*BOX[name], 41).tolist()]
+        loaded = [ABOUT_P.build(robot, row.ratio) for robot in robots]
+        speed = np.abs(steady_cycle(loaded, row.amplitude or math.nan, row.period).speed)
+        found.append(Sensitivity(name, value, *BOX[name], float(speed.min()), float(speed.max())))
+    return tuple(found)
