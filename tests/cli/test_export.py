@@ -83,7 +83,7 @@ def test_keeping_the_period_changes_the_rate(run, result):
 def test_steps_too_fast_for_the_servo_are_told(run, result):
     done = run("export", result(SineGait(0.5, 0.3)))
     assert done.exit_code == 0
-    assert "warning: a step between set points needs" in done.stderr
+    assert "warning: A step between set points needs" in done.stderr
 
 
 @pytest.mark.parametrize(

@@ -42,7 +42,7 @@ def table(folder):
 def test_a_case_without_a_gait_is_a_row_with_a_sentence(study, tmp_path):
     done = study(SMALL)
     assert done.exit_code == 0, done.stderr
-    assert "1 of 4 cases: no gait that keeps all limits" in done.stderr
+    assert "1 of 4 cases: no gait that respects all limits" in done.stderr
     first, *others = table(tmp_path)
     assert first["status"] == "infeasible"
     assert "limit" in first["message"]

@@ -45,7 +45,7 @@ def test_turn_and_back_again(run, plain):
 def test_the_summary_tells_arc_checks_and_page(run, plain, tmp_path):
     done = run("turn", plain, "--radius", "1", "--out", "res")
     assert done.exit_code == 0, done.stderr
-    for text in ("circle", "to the left", "it was opened", "50 periods by CVODES", "From rest"):
+    for text in ("circle", "to the left", "it was freed", "50 periods by CVODES", "From rest"):
         assert text in done.stdout
     assert "Turn</h2>" in (tmp_path / "res" / "report.html").read_text()
 

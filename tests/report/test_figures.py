@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from rr_opt.answers.speed import bound_rows, limit_rows
 from rr_opt.motion.rollout import repeated
 from rr_opt.report.figures.answer import draw
 from rr_opt.report.figures.cycle import cycle
@@ -62,7 +61,7 @@ def test_cycle_shows_the_limit_that_is_near(answer):
 
 
 def test_prices_put_the_dearest_first_and_idle_limits_last(answer):
-    lines = gains(limit_rows(answer.optimum, answer.replay), bound_rows(answer.optimum))
+    lines = gains(answer.limits.values(), answer.bounds.values())
     assert lines[0].gain == max(line.gain for line in lines)
     assert lines[-1].remark.startswith("not active")
     ax = axes()

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from rr_opt.answers.speed import bound_rows, limit_rows
+from rr_opt.answers.speed import SpeedAnswer
 from rr_opt.design.maximize_speed import maximize_speed
 from rr_opt.model.problem import Interval, RatioChoice
 
@@ -17,7 +17,7 @@ def speed(problem):
 
 def test_price_of_the_rate_limit(answer):
     problem = answer.optimum.problem
-    price = next(r.price for r in limit_rows(answer.optimum, answer.replay) if r.name == "rate")
+    price = answer.limits["rate"].shadow_price
     step = 1e-3 * problem.limits.rate
     more = replace(problem, limits=replace(problem.limits, rate=problem.limits.rate + step))
     less = replace(problem, limits=replace(problem.limits, rate=problem.limits.rate - step))
@@ -31,8 +31,8 @@ def test_price_of_the_inertia_ratio_is_per_unit_of_the_ratio(answer, by):
     def with_most(high):
         return replace(problem, inertia_ratio=RatioChoice(Interval(0.13, high), by=by))
 
-    row = next(r for r in bound_rows(maximize_speed(with_most(0.2))) if r.name == "inertia_ratio")
-    assert row.side == "high"
+    row = SpeedAnswer("", "", maximize_speed(with_most(0.2))).bounds["inertia_ratio"]
+    assert row.active == "high"
     step = 2e-4
     slope = (speed(with_most(0.2 + step)) - speed(with_most(0.2 - step))) / (2 * step)
-    assert row.price == pytest.approx(slope, rel=1e-2)
+    assert row.shadow_price == pytest.approx(slope, rel=1e-2)

@@ -7,7 +7,7 @@ import pytest
 from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure
 
-from rr_opt.answers.study import studied
+from rr_opt.answers.study import StudyAnswer
 from rr_opt.outcome import Status
 from rr_opt.report.figures.active_limits import areas
 from rr_opt.report.figures.study import grid_of, shown, speed, study_map
@@ -27,7 +27,7 @@ def result_of(study_of, solved):
             faster = replace(one.optimum, speed=0.01 * (1 + case))
             rows[case] = replace(one, optimum=faster)
         rows[len(rows) - 1] = replace(one, status=Status.INFEASIBLE, optimum=None)
-        return studied(study, rows)
+        return StudyAnswer(study, tuple(rows.values()))
 
     return made
 

@@ -1,10 +1,8 @@
-"""A diagnosis with the experiment that it is of, and what the wrong model would have cost.
+"""A diagnosis with its experiment, and the speed that the nominal model would have cost.
 
-What the wrong model would have cost: its best gait on the robot as it was found to be.
-
-The best gait for the robot as believed is driven, in steady motion, by the robot as found, and
-held against that one's own best gait. Both are sought within the limits of the robot's servo and
-the bounds of the shipped problem, with the robot's inertias as they are.
+The nominal robot's best gait is driven, in steady motion, by the corrected robot and compared with
+that robot's own best gait. Both are optimised within the limits of the robot's servo and the bounds
+of the shipped problem, with the robot's inertias as they are.
 """
 
 from __future__ import annotations
@@ -16,6 +14,7 @@ from functools import cached_property
 
 import numpy as np
 
+from rr_opt.answers.answer import Answer, listed
 from rr_opt.answers.corrected_robot import corrected_robot, servo_made
 from rr_opt.effects import CATALOGUE
 from rr_opt.effects.effect import Port
@@ -27,18 +26,18 @@ from rr_opt.model.robot import Robot
 from rr_opt.motion.dynamics import passed_over
 from rr_opt.motion.steady_cycle import steady_cycle
 from rr_opt.outcome import RollerRacerError
-from rr_opt.sysid.diagnosis import Diagnosis, Misfit, Stage
+from rr_opt.sysid.diagnosis import Diagnosis, Finding, Misfit, Stage
 
 
 @dataclass(frozen=True)
 class Loss:
-    """Speeds in m/s, signed.
+    """What the nominal model costs; speeds in m/s, signed.
 
-    believed, promised  the best gait for the robot as believed, and what it would have made of it
-    reached             what the robot as found makes of that gait
-    best, speed         its own best gait; where its servo has a fault, an angle that the servo has
-                        to be brought to make
-    unseen              whether either gait asks for more than was recorded
+    believed, promised  the best gait of the nominal robot, and the speed that its model predicts
+    reached             the corrected robot's speed with that gait
+    best, speed         the corrected robot's own best gait; where its servo has a fault, the angle
+                        that the servo has to be brought to make
+    unseen              whether either gait demands more than was recorded
     """
 
     believed: Gait
@@ -50,60 +49,55 @@ class Loss:
 
     @property
     def share(self) -> float:
-        """Of the speed of its own best gait, what is lost; more than 1 if the robot goes the other
+        """The fraction lost of the speed of its own best gait; above 1 if it drives the other
         way."""
         return 1.0 - self.reached / math.copysign(self.speed, self.promised)
 
 
 @dataclass(frozen=True)
-class NotTold:
-    """Why there is no loss to tell, in a sentence."""
+class LossUnknown:
+    """Why no loss can be given, in a sentence."""
 
     sentence: str
 
 
-def loss(experiment: Experiment, corrected: Robot) -> Loss | NotTold:
-    """The loss, where the effects of the robot as found have a place in steady motion.
+def loss(experiment: Experiment, corrected: Robot) -> Loss | LossUnknown:
+    """The loss, where the effects of the corrected robot have a place in steady motion.
 
     Takes a second or two.
     """
-    # Only a robot found to be another one needs the optimiser.
+    # Only a robot that differs from its nominal values needs the optimiser.
     from rr_opt.design.maximize_speed import maximize_speed
 
-    gone = [name for name in passed_over(corrected) if name not in _harmless(corrected)]
+    # Servo effects are accounted for here, and the capture system does not change the motion.
+    harmless = (Port.ACTUATION, Port.MEASUREMENT)
+    gone = [n for n in passed_over(corrected) if CATALOGUE[n].port not in harmless]
     if gone:
-        names = " and ".join(name.replace("_", " ") for name in gone)
-        return _not_told(f"{names} has no place in a steady motion.")
-    robots = (experiment.robot, corrected)
+        names = listed([name.replace("_", " ") for name in gone])
+        return _unknown(f"{names} has no place in a steady motion.")
     try:
-        before, after = optima = [maximize_speed(_problem(robot)) for robot in robots]
+        before, after = (maximize_speed(_problem(one)) for one in (experiment.robot, corrected))
         if before.best is None or after.best is None:
-            return _not_told(next(one.message for one in optima if one.best is None))
+            return _unknown(next(one.message for one in (before, after) if one.best is None))
         believed, best = before.best, after.best
         reached = steady_cycle(corrected, servo_made(corrected, believed.gait)).speed
     except RollerRacerError as error:
-        return _not_told(str(error))
-    asked = [run.gait for run in experiment.runs]
+        return _unknown(str(error))
+    recorded = [run.gait for run in experiment.runs]
     unseen = any(
-        one.gait.peak_angle > max(gait.peak_angle for gait in asked)
-        or one.gait.peak_rate > max(gait.peak_rate for gait in asked)
+        one.gait.peak_angle > max(gait.peak_angle for gait in recorded)
+        or one.gait.peak_rate > max(gait.peak_rate for gait in recorded)
         for one in (believed, best)
     )
     return Loss(believed.gait, believed.speed, reached, best.gait, best.speed, unseen)
 
 
-def _harmless(robot: Robot) -> set[str]:
-    """What steady motion passes over and the loss does not: what a servo does to its command is
-    reckoned with, and what the capture system sees of the motion does not change it."""
-    return {*passed_over(robot, Port.ACTUATION), *passed_over(robot, Port.MEASUREMENT)}
-
-
-def _not_told(why: str) -> NotTold:
-    return NotTold(f"What the best gait of the robot as believed would lose is not told: {why}")
+def _unknown(why: str) -> LossUnknown:
+    return LossUnknown(f"The speed that the nominal model's best gait would lose is unknown: {why}")
 
 
 def _problem(robot: Robot) -> Problem:
-    """What `maximize-speed` is asked for a robot file, the inertias left as they are."""
+    """What `maximize-speed` solves for a robot file, with the inertias left as they are."""
     shipped, servo = read_problem(), robot.servo
     limits = Limits(
         servo.angle_limit, servo.rate_limit, servo.torque_limit, shipped.limits.singularity
@@ -112,12 +106,12 @@ def _problem(robot: Robot) -> Problem:
 
 
 _PREDICTS = 1.2
-"""A term without a name accounts for what is missing if it leaves no more than this, in sigma."""
+"""An empirical term accounts for what is missing if it leaves no more than this, in sigma."""
 
 
 @dataclass(frozen=True)
-class Diagnosed:
-    """What there is to tell.
+class DiagnosisAnswer(Answer):
+    """The diagnosis of an experiment.
 
     name, sha256  of the input
     left_out      sentences on the recordings that could not be used
@@ -129,24 +123,40 @@ class Diagnosed:
     found: Diagnosis
     left_out: tuple[str, ...] = ()
 
+    @property
+    def verdict(self) -> str:
+        """`consistent`, `parameters`, `missing_physics` or `unexplained`."""
+        return self.found.verdict
+
+    @property
+    def effects(self) -> tuple[Finding, ...]:
+        """The accepted effects, strongest first; for the verdict `parameters`, the parameters."""
+        return tuple(self.found.findings)
+
+    @property
+    def message(self) -> str:
+        """The diagnosis in a paragraph."""
+        return self.found.summary
+
     @cached_property
-    def corrected(self) -> Robot:
-        """The robot with what was found in it."""
+    def corrected_robot(self) -> Robot:
+        """The nominal robot with the estimated values and the accepted effects."""
         return corrected_robot(self.experiment, self.found)
 
     @cached_property
-    def loss(self) -> Loss | NotTold | None:
-        """What the best gait of the robot as believed loses; None where that robot is right."""
-        if self.found.verdict == "consistent":
+    def loss(self) -> Loss | LossUnknown | None:
+        """What the nominal robot's best gait loses; None where the nominal model is right."""
+        if self.verdict == "consistent":
             return None
-        curved = any(CATALOGUE[use.name].nameless for use in self.corrected.physics)
-        predicts = curved and self.found.after < _PREDICTS
-        if self.found.verdict == "unexplained" and not predicts:
-            return NotTold(
-                "What the best gait of the robot as believed would lose is not told: the robot as "
-                "found lacks what has no name."
-            )
-        return loss(self.experiment, self.corrected)
+        empirical = any(CATALOGUE[use.name].nameless for use in self.corrected_robot.physics)
+        if self.verdict == "unexplained" and not (empirical and self.found.after < _PREDICTS):
+            return _unknown("the corrected robot lacks the physics that has no name.")
+        return loss(self.experiment, self.corrected_robot)
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Sentences on the recordings that could not be used, then on those that were."""
+        return (*self.left_out, *self.doubts)
 
     @property
     def doubts(self) -> tuple[str, ...]:
@@ -157,22 +167,22 @@ class Diagnosed:
 
     @property
     def guilty(self) -> tuple[Stage, ...]:
-        """The stages in which a fault sits."""
+        """The stages that show a fault."""
         return tuple(stage for stage in self.found.stages if stage.guilty)
 
     @property
     def where(self) -> str:
-        """Where the fault shows, in words; empty if nothing says."""
+        """Where the fault shows, in words; empty if unknown."""
         return self.found.where or "; ".join(one.where for one in self.guilty if one.where)
 
     @property
     def marked(self) -> bool:
-        """Whether the experiment keeps a recording apart from the fit."""
+        """Whether the experiment holds out a recording."""
         return any(one.held_out for one in self.found.final)
 
     @property
     def proven_on(self) -> str:
-        """What the misfits before and after are of, in words."""
+        """Which recordings the misfits before and after refer to, in words."""
         if self.marked:
             return "held-out recordings"
         several = len(self.found.final) > 1

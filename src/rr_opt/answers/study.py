@@ -1,15 +1,16 @@
-"""A study with all its rows: what its table, figures and page are made from."""
+"""A study with all its rows: what its table, figures and page are made of."""
 
 from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from rr_opt.answers.answer import Answer, ignored_effects
 from rr_opt.answers.quantities import QUANTITIES, direction_text, pace_text, with_unit
 from rr_opt.array import Array
 from rr_opt.design.study.plan import branches, plan
@@ -19,6 +20,8 @@ from rr_opt.files.study_keys import Key
 from rr_opt.outcome import Status
 
 _LIKE = {"angle_limit": "angle", "rate_limit": "rate", "torque_limit": "torque"}
+_SAME_SPEED = 1e-8
+"""Cases whose speeds differ by less, relative, are equally fast."""
 
 
 def unit_of(key: Key) -> tuple[str, float]:
@@ -37,16 +40,18 @@ def value_text(key: Key, value: Any, digits: int = 4) -> str:
     return with_unit(factor * value, unit, digits) if math.isfinite(value) else "no limit"
 
 
-_SAME_SPEED = 1e-8
-
-
 @dataclass(frozen=True)
-class Studied:
-    """rows: one a case, in their order; branches: the number of each one's branch, or None."""
+class StudyAnswer(Answer):
+    """A study that was solved; rows: one per case, in their order."""
 
     study: Study
     rows: tuple[Row, ...]
-    branches: tuple[int | None, ...]
+
+    @cached_property
+    def branches(self) -> tuple[int | None, ...]:
+        """The number of each case's branch of optima, or None."""
+        adjacent = plan([axis.numbers for axis in self.study.axes], self.study.shape).adjacent
+        return tuple(branches(self.rows, adjacent))
 
     def values(self, name: str) -> Array:
         """A number of every optimum by its name in `row.Optimum`, nan where there is none."""
@@ -76,12 +81,9 @@ class Studied:
 
     def inputs_text(self, case: int) -> str:
         """`limits.rate = 30 rpm, direction = forward`."""
-        told = []
         inputs = self.study.inputs(case)
-        for axis in self.study.axes:
-            for line in axis.lines:
-                told.append(f"{line.key.name} = {value_text(line.key, inputs[line.key.name])}")
-        return ", ".join(told)
+        keys = [line.key for axis in self.study.axes for line in axis.lines]
+        return ", ".join(f"{key.name} = {value_text(key, inputs[key.name])}" for key in keys)
 
     @property
     def message(self) -> str:
@@ -96,34 +98,26 @@ class Studied:
         )
 
     @property
-    def complaints(self) -> list[str]:
-        """A sentence for each way in which cases ended without an optimum."""
+    def warnings(self) -> tuple[str, ...]:
+        """Which effects of the robot the study ignores, and how many cases have no optimum."""
         words = {
-            Status.INFEASIBLE: "no gait that keeps all limits",
+            Status.INFEASIBLE: "no gait that respects all limits",
             Status.NOT_CONVERGED: "no optimum that the solver could confirm",
         }
-        return [
-            f"{count} of {len(self.rows)} cases: {words[status]}. Their rows say why."
-            for status, count in self.counts.items()
-            if count and status in words
-        ]
+        counts = self.counts
+        return ignored_effects(self.study.problems[0].robot) + tuple(
+            f"{counts[status]} of {len(self.rows)} cases: {text}. Their rows say why."
+            for status, text in words.items()
+            if counts[status]
+        )
 
     @property
-    def exit_code(self) -> int:
-        """0 if any case has an optimum; else 3 if no case has a feasible gait, or 4."""
+    def status(self) -> Status:
+        """OPTIMAL if any case has an optimum; else INFEASIBLE if no case has a feasible gait."""
         counts = self.counts
         if counts[Status.OPTIMAL]:
-            return 0
-        return (
-            Status.NOT_CONVERGED if counts[Status.NOT_CONVERGED] else Status.INFEASIBLE
-        ).exit_code
-
-
-def studied(study: Study, rows: Mapping[int, Row]) -> Studied:
-    """The study with its rows, and their branches."""
-    ordered = tuple(rows[case] for case in range(len(study.problems)))
-    adjacent = plan([axis.numbers for axis in study.axes], study.shape).adjacent
-    return Studied(study, ordered, tuple(branches(ordered, adjacent)))
+            return Status.OPTIMAL
+        return Status.NOT_CONVERGED if counts[Status.NOT_CONVERGED] else Status.INFEASIBLE
 
 
 def front(cost: Array, speed: Array) -> list[int]:

@@ -1,24 +1,26 @@
-"""The answer to a turn: an answer as any other, with the arc and the check of the circle."""
+"""The fastest turn: a fastest gait with the arc it drives and the check of its circle."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
 
+from rr_opt.answers.answer import Check
 from rr_opt.answers.quantities import direction_text, number, with_unit
-from rr_opt.answers.speed import Answer, Check
+from rr_opt.answers.speed import SpeedAnswer
 from rr_opt.design.turn.fastest_turn import Arc
 from rr_opt.design.turn.target import Target
+from rr_opt.model.problem import ANY
 from rr_opt.outcome import Status
 from rr_opt.verify.turn.circle import LARGEST, PERIODS, CircleCheck
 
 
 @dataclass(frozen=True)
-class TurnAnswer(Answer):
-    """What `turn` has to tell.
+class TurnAnswer(SpeedAnswer):
+    """The fastest gait that makes a turn.
 
     target   what was asked
-    opened   the problem fixed the offset, and it was opened
+    opened   whether the problem fixed the offset, which a turn needs, and it was freed
     arc      None where there is no gait
     circle   None where there is no gait to check
     """
@@ -29,22 +31,35 @@ class TurnAnswer(Answer):
     circle: CircleCheck | None = None
 
     @property
+    def radius(self) -> float | None:
+        """Of the circle, m, positive, inf for a straight line; None if there is no gait."""
+        if self.arc is None:
+            return None
+        return abs(1 / self.arc.curvature) if self.arc.curvature else math.inf
+
+    @property
+    def turn_prices(self) -> dict[str, float]:
+        """Shadow prices of what was asked of the turn, m/s of |speed| per SI unit."""
+        best, turn = self.optimum.best, self.problem.turn
+        if best is None or turn is None:
+            return {}
+        names = ("curvature", "yaw_rate", "heading")
+        return {name: best.prices[name] for name in names if getattr(turn, name) != ANY}
+
+    @property
     def checks(self) -> list[Check]:
-        """Those of any answer, and the circle's."""
-        checks = super().checks
-        if self.circle:
-            checks += circle_checks(self.circle)
-        return checks
+        """Those of any fastest gait, and the circle's."""
+        return super().checks + (_circle_checks(self.circle) if self.circle else [])
 
     @property
     def headline(self) -> str:
-        """The turn that was found."""
+        """The result in a phrase; empty if nothing was confirmed."""
         arc = self.arc
-        if arc is None or not super().headline:
+        if arc is None or self.radius is None or self.status is not Status.OPTIMAL:
             return ""
         return (
             f"The fastest turn found goes {direction_text(arc.speed)} and to the "
-            f"{side(arc.curvature)} round {with_unit(radius(arc), 'm')} at "
+            f"{side(arc.curvature)} round {with_unit(self.radius, 'm')} at "
             f"{1e3 * abs(arc.speed):.1f} mm/s"
         )
 
@@ -52,36 +67,36 @@ class TurnAnswer(Answer):
     def message(self) -> str:
         """The outcome in a paragraph."""
         text = super().message
-        arc = self.arc
-        if arc is None or self.status is not Status.OPTIMAL:
+        if not self.opened or self.arc is None or self.status is not Status.OPTIMAL:
             return text
-        found = "The fastest gait found drives "
-        turn = (
-            f"The fastest turn found goes {direction_text(arc.speed)} and to the "
-            f"{side(arc.curvature)}, round a circle of radius {with_unit(radius(arc), 'm')}, "
-        )
-        return text.replace(found + direction_text(arc.speed) + " ", turn, 1) + self._opened()
-
-    def _opened(self) -> str:
-        bounds = self.optimum.problem.gait.offset
+        bounds = self.problem.gait.offset
         return (
-            " The problem fixes the offset, and a turn needs one: it was opened to all that the "
-            f"limits allow, {number(bounds.low)} to {number(bounds.high)} rad."
-            if self.opened
-            else ""
+            f"{text} The problem fixes the offset, and a turn needs one: it was freed to all that "
+            f"the limits allow, {number(bounds.low)} to {number(bounds.high)} rad."
+        )
+
+    @property
+    def _subject(self) -> str:
+        arc = self.arc
+        if arc is None or self.radius is None:
+            return super()._subject
+        return (
+            f"The fastest turn found goes {direction_text(arc.speed)} and to the "
+            f"{side(arc.curvature)}, round a circle of radius {with_unit(self.radius, 'm')},"
         )
 
 
-def circle_checks(circle: CircleCheck) -> list[Check]:
-    """The circle's checks, and how a start from rest comes to it."""
+def _circle_checks(circle: CircleCheck) -> list[Check]:
+    """Whether P stays on the circle, and whether a start from rest converges to it."""
     tail = f"(at most {LARGEST:.0e} allowed)."
     start = circle.transient
     ahead = "behind" if start.lost >= 0 else "ahead of"
     return [
         Check(
             max(circle.ends, circle.mean) <= LARGEST,
-            f"{PERIODS} periods by CVODES: P is at most {circle.ends:.1e} of the radius from where "
-            f"the circle has it, and the mean circle's radius differs by {circle.mean:.1e} {tail}",
+            f"{PERIODS} periods by CVODES: P stays within {circle.ends:.1e} of the radius of "
+            f"where the circle has it, and the mean circle's radius differs by {circle.mean:.1e} "
+            f"{tail}",
         ),
         Check(
             circle.rest <= LARGEST,
@@ -96,8 +111,3 @@ def circle_checks(circle: CircleCheck) -> list[Check]:
 def side(value: float) -> str:
     """Which way a positive or negative turn goes."""
     return "left" if value > 0 else "right"
-
-
-def radius(arc: Arc) -> float:
-    """m, positive."""
-    return abs(1 / arc.curvature) if arc.curvature else math.inf

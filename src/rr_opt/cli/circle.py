@@ -33,6 +33,7 @@ def circle(
     With it how a start from rest comes to that circle. Left is positive, seen from above.
     """
     with Steps() as steps:
+        from rr_opt.answers.motion import CircleAnswer
         from rr_opt.cli.motion_input import read_options, read_source
         from rr_opt.motion.circle import circle_of, transient
         from rr_opt.motion.dynamics import require_friction
@@ -48,7 +49,8 @@ def circle(
         steps("steady cycle")
         steady = steady_cycle(robot, gait)
         round_, start = circle_of(steady.cycle), transient(robot, steady)
+        answer = CircleAnswer(robot, gait, given.status, round_, start)
     if json:
-        typer.echo(strict_json(circle_record(gait, round_, start)), nl=False)
+        typer.echo(strict_json(circle_record(answer)), nl=False)
     else:
-        typer.echo(circle_summary(gait, round_, start), nl=False)
+        typer.echo(circle_summary(answer), nl=False)

@@ -44,11 +44,11 @@ def diagnose(
         folder = folder_for_results(out or Path("out") / f"{name}-diagnosis")
         experiment, left_out = usable(read_runs)
         found = _diagnosed(experiment, steps, workers)
-        from rr_opt.answers.diagnosis import Diagnosed
+        from rr_opt.answers.diagnosis import DiagnosisAnswer
         from rr_opt.report.diagnosis.files import summary, write_diagnosis
         from rr_opt.report.diagnosis.record import record
 
-        told = Diagnosed(name, sha256, experiment, found, left_out)
+        told = DiagnosisAnswer(name, sha256, experiment, found, left_out)
         written = write_diagnosis(told, folder, page=page, progress=steps)
     for sentence in (*left_out, *told.doubts):
         typer.echo(sentence, err=True)

@@ -63,16 +63,11 @@ def export(
     rounding to the servo's counts cost in speed is told each by itself.
     """
     with Steps() as steps:
+        from rr_opt.answers.motion import SetPointsAnswer
         from rr_opt.cli.motion_input import read_options, read_source, result_name
         from rr_opt.motion.setpoints import cost, set_points
         from rr_opt.report.archive import file_for_result, strict_json, write_text
-        from rr_opt.report.setpoints import (
-            ENDINGS,
-            beyond_rate,
-            setpoints_record,
-            setpoints_summary,
-            text_of,
-        )
+        from rr_opt.report.setpoints import ENDINGS, setpoints_record, setpoints_summary, text_of
 
         options = read_options(amplitude=amplitude, period=period, offset=offset, rate=rate)
         given = read_source(source, options)
@@ -83,11 +78,11 @@ def export(
         steps("what the set points cost")
         rounded = kind is Format.SERVO
         lost = cost(given.robot, points, rounded=rounded)
+        answer = SetPointsAnswer(given.robot, given.gait, given.status, points, lost, kind.value)
         write_text(file, text)
-    for warning in beyond_rate(given.robot, points, rounded=rounded):
-        typer.echo(warning, err=True)
+    for warning in answer.beyond_servo:
+        typer.echo(f"warning: {warning}", err=True)
     if json:
-        record = setpoints_record(points, lost, kind.value, file, given.status)
-        typer.echo(strict_json(record), nl=False)
+        typer.echo(strict_json(setpoints_record(answer, file)), nl=False)
     else:
-        typer.echo(setpoints_summary(points, lost, file), nl=False)
+        typer.echo(setpoints_summary(answer, file), nl=False)

@@ -26,13 +26,14 @@ def maximize_speed(
     with Steps() as steps:
         steps("reading")
         posed, sha256 = read(problem)
-        from rr_opt.answers.speed import checked
+        from rr_opt.answers.speed import SpeedAnswer, evidence
         from rr_opt.design.maximize_speed import maximize_speed as solve
         from rr_opt.report.archive import folder_for_results, strict_json
 
         name = name_of(problem)
         folder = folder_for_results(out or Path("out") / name)
-        answer = checked(name, sha256, solve(posed, steps), steps)
+        optimum = solve(posed, steps)
+        answer = SpeedAnswer(name, sha256, optimum, *evidence(optimum, steps))
         from rr_opt.report.files import write_results
         from rr_opt.report.result import result
         from rr_opt.report.summary import summary

@@ -30,9 +30,10 @@ def shapes(
 
         name = name_of(problem)
         folder = folder_for_results(out or Path("out") / f"{name}-shapes")
-        from rr_opt.answers.speed import checked
+        from rr_opt.answers.shapes import ShapesAnswer, family_name
+        from rr_opt.answers.speed import SpeedAnswer, evidence
         from rr_opt.design.maximize_speed import compare_shapes
-        from rr_opt.report.shapes import Compared, family_name, record, summary, write_shapes
+        from rr_opt.report.shapes import record, summary, write_shapes
         from rr_opt.verify.sweep import sweep
 
         optima = compare_shapes(posed, steps)
@@ -43,8 +44,9 @@ def shapes(
             swept = sweep(posed)
         for optimum in optima:
             family = family_name(optimum.problem.gait)
-            answers.append(checked(f"{name}, {family}", sha256, optimum, steps, swept))
-        compared = Compared(name, sha256, tuple(answers))
+            seen = evidence(optimum, steps, swept)
+            answers.append(SpeedAnswer(f"{name}, {family}", sha256, optimum, *seen))
+        compared = ShapesAnswer(name, sha256, tuple(answers))
         written = write_shapes(compared, folder, figures=figures, progress=steps)
     if json:
         typer.echo(strict_json(record(compared)), nl=False)

@@ -72,17 +72,11 @@ def simulate(
     Writes the trajectory, a figure and, if asked for, a film.
     """
     with Steps() as steps:
+        from rr_opt.answers.motion import MotionAnswer
         from rr_opt.cli.motion_input import read_options, read_source, result_name
         from rr_opt.motion.rollout import measured, rollout
         from rr_opt.report.archive import folder_for_results, strict_json
-        from rr_opt.report.motion import (
-            Motion,
-            beyond_servo,
-            check_wishes,
-            motion_record,
-            motion_summary,
-            write_motion,
-        )
+        from rr_opt.report.motion import check_wishes, motion_record, motion_summary, write_motion
 
         options = read_options(
             amplitude=amplitude, period=period, offset=offset, seconds=seconds, rate=rate
@@ -95,12 +89,11 @@ def simulate(
         steps("simulate by CVODES")
         driven = rollout(robot, gait, seconds, start.value, rate)
         steps("measure")
-        motion = Motion(gait, start.value, driven, measured(robot, gait, driven), given.status)
-        written = write_motion(
-            robot, gait, driven, folder, kind=kind.value, film=film, progress=steps
-        )
-    for warning in beyond_servo(robot, gait, motion.measured):
-        typer.echo(warning, err=True)
+        reached = measured(robot, gait, driven)
+        motion = MotionAnswer(robot, gait, given.status, start.value, driven, reached)
+        written = write_motion(motion, folder, kind=kind.value, film=film, progress=steps)
+    for warning in motion.beyond_servo:
+        typer.echo(f"warning: {warning}", err=True)
     if json:
         typer.echo(strict_json(motion_record(motion, written)), nl=False)
     else:

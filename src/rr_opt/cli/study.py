@@ -13,7 +13,7 @@ import typer
 
 from rr_opt import __version__
 from rr_opt.cli import interrupt
-from rr_opt.cli.problem_input import place, tell_passed_over
+from rr_opt.cli.problem_input import place
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -116,26 +116,25 @@ def study(
     asked, warnings = read_study(study)
     for warning in warnings:
         typer.echo(str(warning), err=True)
-    tell_passed_over(asked.problems[0].robot)
     from rr_opt.report.archive import folder_for_results, strict_json
     from rr_opt.report.study.page import check_wishes, write_study
 
     check_wishes(netcdf=netcdf)
     folder = folder_for_results(out or Path("out") / asked.name)
     rows = _rows(asked, folder, partial(_pool, workers, scheduler), cold=cold, restart=restart)
-    from rr_opt.answers.study import studied
+    from rr_opt.answers.study import StudyAnswer
     from rr_opt.report.study.page import record, summary
 
-    result = studied(asked, rows)
+    result = StudyAnswer(asked, tuple(rows[case] for case in range(len(asked.problems))))
     written = write_study(result, folder, netcdf=netcdf, figures=figures)
     if json:
         typer.echo(strict_json(record(result)), nl=False)
     else:
         typer.echo(summary(result, written), nl=False)
-    for sentence in result.complaints:
+    for sentence in result.warnings:
         typer.echo(sentence, err=True)
-    if result.exit_code:
-        raise typer.Exit(result.exit_code)
+    if result.status.exit_code:
+        raise typer.Exit(result.status.exit_code)
 
 
 def _rows(

@@ -33,9 +33,10 @@ def sweep(
     with Steps() as steps:
         steps("reading")
         posed, sha256 = read(problem)
+        from rr_opt.answers.sweep import SweepAnswer
         from rr_opt.motion.dynamics import require_friction
         from rr_opt.report.archive import folder_for_results, strict_json
-        from rr_opt.report.swept import Swept, record, summary, values_per_decision, write_sweep
+        from rr_opt.report.swept import record, summary, values_per_decision, write_sweep
         from rr_opt.verify.sweep import sweep as try_all
 
         require_friction(posed.robot)
@@ -43,7 +44,7 @@ def sweep(
         folder = folder_for_results(out or Path("out") / f"{name}-sweep")
         counts = values_per_decision(posed, points)
         tried = try_all(posed, counts, lambda done, of: steps(f"gait {done} of {of}"))
-        swept = Swept(name, sha256, tried)
+        swept = SweepAnswer(name, sha256, posed, tried)
         steps("files")
         written = write_sweep(swept, folder)
     if json:

@@ -31,9 +31,10 @@ def turn_chart(
     with Steps() as steps:
         steps("reading")
         posed, sha256 = read(problem)
+        from rr_opt.answers.turn_chart import TurnChartAnswer
         from rr_opt.motion.dynamics import require_friction
         from rr_opt.report.archive import folder_for_results, strict_json
-        from rr_opt.report.turn.chart import TurnChart, chart_record, chart_summary, write_chart
+        from rr_opt.report.turn.chart import chart_record, chart_summary, write_chart
         from rr_opt.verify.turn.chart import tightest, turn_map
         from rr_opt.verify.turn.offset_claim import radius_claim, sign_claim
 
@@ -46,7 +47,8 @@ def turn_chart(
         fine = turn_map(posed, _HELD)
         steps("tightest circle")
         tight = tightest(posed)
-        chart = TurnChart(name, sha256, seen, tight, sign_claim(fine), radius_claim(fine))
+        claims = sign_claim(fine), radius_claim(fine)
+        chart = TurnChartAnswer(name, sha256, posed, seen, tight, *claims)
         steps("files")
         written = write_chart(chart, folder)
     if not seen.two_sided:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from rr_opt.answers.speed import Answer
+from rr_opt.answers.speed import SpeedAnswer
 from rr_opt.motion.rollout import one_period
 from rr_opt.report.archive import remove, write_json, write_text
 from rr_opt.report.result import result
@@ -16,7 +16,7 @@ FIGURES = ("speed-map", "path", "cycle", "prices")
 
 
 def write_results(
-    answer: Answer, folder: Path, *, figures: bool, progress: Callable[[str], None]
+    answer: SpeedAnswer, folder: Path, *, figures: bool, progress: Callable[[str], None]
 ) -> list[Path]:
     """Write everything, result.json first; returns the files in the order to name them.
 

@@ -8,7 +8,7 @@ from html import escape
 
 from rr_opt import __version__
 from rr_opt.answers.quantities import QUANTITIES, direction_text, number, price_text, with_unit
-from rr_opt.answers.speed import LIMIT_NAMES, Answer, bound_rows, limit_rows, ratio_of
+from rr_opt.answers.speed import LIMIT_NAMES, SpeedAnswer
 from rr_opt.model.parameters import PARAMETERS, parameters_of
 from rr_opt.model.robot import Robot
 from rr_opt.outcome import Status
@@ -21,20 +21,20 @@ _SERVO = {"angle_limit": "angle", "rate_limit": "rate", "torque_limit": "torque"
 _ORIGINS = ("measured", "fitted", "assumed")
 
 
-def limits_table(answer: Answer) -> str:
+def limits_table(answer: SpeedAnswer) -> str:
     """Each limit: what is reached, what is allowed, and what it costs."""
     if answer.replay is None:
         return _limits_asked(answer)
     rows: list[list[Cell]] = []
-    for row in limit_rows(answer.optimum, answer.replay):
+    for row in answer.limits.values():
         kind = QUANTITIES[row.name]
-        price = price_text(row.name, row.price) if row.active else "–"
+        price = price_text(row.name, row.shadow_price) if row.active else "–"
         state = Badge("active", "yes") if row.active else Badge("not active", "no")
         rows.append([kind.words, kind.both(row.value), kind.both(row.limit), state, price])
     return table(["Limit", "Reached", "Allowed", "State", "Speed gained per unit"], rows)
 
 
-def _limits_asked(answer: Answer) -> str:
+def _limits_asked(answer: SpeedAnswer) -> str:
     """The limits alone, where there is no gait to hold against them."""
     limits = answer.optimum.problem.limits
     rows = [
@@ -44,24 +44,30 @@ def _limits_asked(answer: Answer) -> str:
     return table(["Limit", "Allowed"], rows)
 
 
-def bounds_table(answer: Answer) -> str:
+def bounds_table(answer: SpeedAnswer) -> str:
     """Each decision, its range, and what its bound costs."""
     rows: list[list[Cell]] = []
-    for row in bound_rows(answer.optimum):
+    for row in answer.bounds.values():
         kind = QUANTITIES[row.name]
         unit = kind.unit
         span = (
-            "fixed" if row.side == "fixed" else f"{number(row.low)} to {with_unit(row.high, unit)}"
+            "fixed"
+            if row.active == "fixed"
+            else f"{number(row.low)} to {with_unit(row.high, unit)}"
         )
         states = {"low": "at its least", "high": "at its most", "fixed": "fixed", None: "inside"}
-        at_bound = row.side in ("low", "high")
-        state = Badge(states[row.side], "yes" if at_bound else "no")
-        price = price_text(row.name, row.price) if at_bound and row.price is not None else "–"
+        at_bound = row.active in ("low", "high")
+        state = Badge(states[row.active], "yes" if at_bound else "no")
+        price = (
+            price_text(row.name, row.shadow_price)
+            if at_bound and row.shadow_price is not None
+            else "–"
+        )
         rows.append([kind.words, kind.both(row.value), span, state, price])
     return table(["Decision", "Value", "Range", "State", "Speed gained per unit"], rows)
 
 
-def optima_table(answer: Answer) -> str:
+def optima_table(answer: SpeedAnswer) -> str:
     """The other local optima; nothing if there are none."""
     optimum = answer.optimum
     if len(optimum.optima) < 2:
@@ -73,7 +79,7 @@ def optima_table(answer: Answer) -> str:
             with_unit(one.gait.amplitude, "rad"),
             with_unit(one.gait.period, "s"),
             with_unit(one.gait.offset, "rad"),
-            number(ratio_of(optimum, one)),
+            number(answer.ratio_of(one)),
             "the optimum" if one is optimum.best else "a tie" if id(one) in ties else "",
         ]
         for one in optimum.optima
@@ -140,7 +146,7 @@ _CAPTIONS = {
 }
 
 
-def page(answer: Answer, figures: Mapping[str, str], first: str = "") -> str:
+def page(answer: SpeedAnswer, figures: Mapping[str, str], first: str = "") -> str:
     """The whole page; figures are SVG texts by name, `first` a card that leads the others."""
     optimum = answer.optimum
     choice = optimum.problem.inertia_ratio
@@ -170,11 +176,11 @@ def _gallery(figures: Mapping[str, str]) -> str:
     return f'<div class="grid">{inner}</div>' if inner else ""
 
 
-def _verdict(answer: Answer) -> str:
+def _verdict(answer: SpeedAnswer) -> str:
     return answer.headline or _HEADS[answer.status]
 
 
-def _header(answer: Answer) -> str:
+def _header(answer: SpeedAnswer) -> str:
     good = answer.status is Status.OPTIMAL
     lead = answer.message.removeprefix(f"{_verdict(answer)}. ")
     if good:
@@ -186,7 +192,7 @@ def _header(answer: Answer) -> str:
     )
 
 
-def _why(answer: Answer) -> str:
+def _why(answer: SpeedAnswer) -> str:
     """What holds the optimum back, and whether it stands alone."""
     ties = len(answer.optimum.ties)
     tie = f" {ties} other local optimum is as fast." if ties == 1 else ""
@@ -194,7 +200,7 @@ def _why(answer: Answer) -> str:
     return holding_sentence(answer) + tie
 
 
-def _tiles(answer: Answer) -> str:
+def _tiles(answer: SpeedAnswer) -> str:
     best, replay = answer.optimum.best, answer.replay
     if best is None or replay is None:
         return ""
@@ -215,7 +221,7 @@ def _tiles(answer: Answer) -> str:
     return f'<div class="tiles">{inner}</div>'
 
 
-def _checks(answer: Answer) -> str:
+def _checks(answer: SpeedAnswer) -> str:
     items = "".join(
         f'<li class="{"" if check.passed else "bad"}">{escape(check.sentence)}</li>'
         for check in answer.checks
@@ -223,7 +229,7 @@ def _checks(answer: Answer) -> str:
     return f'<ul class="checks">{items}</ul>' if items else ""
 
 
-def _footer(answer: Answer) -> str:
+def _footer(answer: SpeedAnswer) -> str:
     solver = answer.optimum
     return (
         f"<footer>rr-opt {escape(__version__)} · {solver.starts} starts, {solver.iterations} "

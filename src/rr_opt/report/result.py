@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import Any
 
 from rr_opt import __version__
 from rr_opt.answers.corrected_robot import finite, robot_record
-from rr_opt.answers.speed import Answer, bound_rows, limit_rows, ratio_of
+from rr_opt.answers.speed import SpeedAnswer
 from rr_opt.design.solve import Candidate
 from rr_opt.files.gait_record import gait_record
 from rr_opt.model.ballast import load_count
@@ -33,12 +34,13 @@ UNITS = {
 }
 
 
-def result(answer: Answer) -> dict[str, Any]:
+def result(answer: SpeedAnswer) -> dict[str, Any]:
     """The content of result.json; the same keys whatever the outcome."""
     optimum, best = answer.optimum, answer.optimum.best
     record: dict[str, Any] = {
         "status": answer.status.value,
         "message": answer.message,
+        "warnings": list(answer.warnings),
         "problem": answer.name,
         "gait": gait_record(best.gait) if best else None,
         "inertia_ratio": optimum.ratio,
@@ -64,7 +66,7 @@ def result(answer: Answer) -> dict[str, Any]:
     return record
 
 
-def _cycle(answer: Answer) -> dict[str, Any] | None:
+def _cycle(answer: SpeedAnswer) -> dict[str, Any] | None:
     if answer.replay is None:
         return None
     cycle = answer.replay.steady.cycle
@@ -76,47 +78,30 @@ def _cycle(answer: Answer) -> dict[str, Any] | None:
     }
 
 
-def turns(answer: Answer) -> bool:
+def turns(answer: SpeedAnswer) -> bool:
     """Whether the robot goes round a circle: a radius of many kilometres is a straight line."""
     return answer.replay is not None and abs(answer.replay.steady.cycle.dpsi) > 1e-7
 
 
-def _limits(answer: Answer) -> list[dict[str, Any]]:
-    if answer.replay is None:
-        limits = answer.optimum.problem.limits
-        return [
-            {"name": name, "value": None, "limit": finite(getattr(limits, name)), "unit": unit}
-            | {"active": None, "shadow_price": None}
-            for name, unit in list(UNITS.items())[:4]
-        ]
+def _limits(answer: SpeedAnswer) -> list[dict[str, Any]]:
     return [
         {
             "name": row.name,
-            "value": row.value,
+            "value": finite(row.value),
             "limit": finite(row.limit),
             "unit": UNITS[row.name],
-            "active": row.active,
-            "shadow_price": row.price,
+            "active": row.active if answer.replay else None,
+            "shadow_price": finite(row.shadow_price),
         }
-        for row in limit_rows(answer.optimum, answer.replay)
+        for row in answer.limits.values()
     ]
 
 
-def _bounds(answer: Answer) -> list[dict[str, Any]]:
-    return [
-        {
-            "name": row.name,
-            "value": row.value,
-            "low": row.low,
-            "high": row.high,
-            "active": row.side,
-            "shadow_price": row.price,
-        }
-        for row in bound_rows(answer.optimum)
-    ]
+def _bounds(answer: SpeedAnswer) -> list[dict[str, Any]]:
+    return [asdict(row) for row in answer.bounds.values()]
 
 
-def _check(answer: Answer) -> dict[str, Any] | None:
+def _check(answer: SpeedAnswer) -> dict[str, Any] | None:
     replay, sweep = answer.replay, answer.sweep
     if replay is None or sweep is None:
         return None
@@ -132,15 +117,15 @@ def _check(answer: Answer) -> dict[str, Any] | None:
     }
 
 
-def _optimum(answer: Answer, one: Candidate) -> dict[str, Any]:
+def _optimum(answer: SpeedAnswer, one: Candidate) -> dict[str, Any]:
     return {
         "speed": one.speed,
         "gait": gait_record(one.gait),
-        "inertia_ratio": ratio_of(answer.optimum, one),
+        "inertia_ratio": answer.ratio_of(one),
     }
 
 
-def _loads(answer: Answer) -> float | None:
+def _loads(answer: SpeedAnswer) -> float | None:
     """How many loads the robot carries, where loads realise the inertia ratio."""
     optimum, choice = answer.optimum, answer.optimum.problem.inertia_ratio
     if choice is None or choice.by != "loads" or optimum.ratio is None:

@@ -5,19 +5,16 @@ from __future__ import annotations
 import io
 import math
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
 from rr_opt import __version__
-from rr_opt.answers.quantities import QUANTITIES, number, speed_text, with_unit
+from rr_opt.answers.motion import Format, SetPointsAnswer
+from rr_opt.answers.quantities import number, speed_text, with_unit
 from rr_opt.files.gait_record import gait_record
-from rr_opt.model.robot import Robot
-from rr_opt.motion.setpoints import CENTRE, COUNT, Cost, SetPoints, held
-from rr_opt.report.motion import EXCEEDED
+from rr_opt.motion.setpoints import CENTRE, COUNT, Cost, SetPoints
 from rr_opt.report.text import columns, gait_formula, gait_lines
-
-Format = Literal["csv", "c-header", "servo"]
 
 ENDINGS: dict[Format, str] = {"csv": "-angles.csv", "c-header": ".h", "servo": "-counts.csv"}
 """What the name of a file ends with, unless the user gives another name."""
@@ -100,8 +97,9 @@ _WORDS = {
 }
 
 
-def setpoints_summary(points: SetPoints, cost: Cost, file: Path) -> str:
+def setpoints_summary(answer: SetPointsAnswer, file: Path) -> str:
     """The gait, its set points, the speed before and after, and the file."""
+    points, cost = answer.points, answer.cost
     rows = [
         ("gait", gait_formula(points.gait)),
         *gait_lines(points.gait),
@@ -115,17 +113,13 @@ def setpoints_summary(points: SetPoints, cost: Cost, file: Path) -> str:
     return "\n".join([*columns(rows), "", MODEL]) + "\n"
 
 
-def setpoints_record(
-    points: SetPoints, cost: Cost, kind: str, file: Path, status: str | None
-) -> dict[str, Any]:
-    """The same for scripts, SI; `cost` is the speed lost (negative) or gained by each step.
-
-    status  of the result that the gait was taken from; None if it was not taken from one
-    """
+def setpoints_record(answer: SetPointsAnswer, file: Path) -> dict[str, Any]:
+    """The same for scripts, SI; `cost` is the speed lost (negative) or gained by each step."""
+    points, cost = answer.points, answer.cost
     return {
         "gait": gait_record(points.gait),
-        "status": status,
-        "format": kind,
+        "status": answer.source_status,
+        "format": answer.format,
         "rate": points.rate,
         "points": len(points.angles),
         "period": points.played.period,
@@ -136,19 +130,6 @@ def setpoints_record(
         "file": str(file),
         "version": __version__,
     }
-
-
-def beyond_rate(robot: Robot, points: SetPoints, *, rounded: bool) -> list[str]:
-    """A warning if the servo is too slow for the steps from one set point to the next."""
-    angles = points.rounded if rounded else points.angles
-    needed, limit = held(angles, points.rate).peak_rate, robot.servo.rate_limit
-    if needed <= limit * (1 + EXCEEDED):
-        return []
-    both = QUANTITIES["rate"].both
-    return [
-        f"warning: a step between set points needs {both(needed)}, and the servo's rate limit is "
-        f"{both(limit)}. The cost in speed is told as if the servo could."
-    ]
 
 
 def _rate_text(points: SetPoints) -> str:

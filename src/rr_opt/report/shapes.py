@@ -6,15 +6,14 @@ import csv
 import io
 import math
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 from html import escape
 from pathlib import Path
 from typing import Any
 
 from rr_opt import __version__
 from rr_opt.answers.quantities import direction_text, number, speed_text, with_unit
-from rr_opt.answers.speed import Answer, limit_rows
-from rr_opt.model.problem import GaitBounds
+from rr_opt.answers.shapes import ShapesAnswer, family
+from rr_opt.answers.speed import SpeedAnswer
 from rr_opt.outcome import Status
 from rr_opt.report.archive import remove, strict_json, write_json, write_text
 from rr_opt.report.html import Badge, Cell, card, document, figure
@@ -26,86 +25,12 @@ COLUMNS = ("shape", "status", "speed", "gain", "amplitude", "period", "offset", 
            "peak_angle", "peak_rate", "peak_torque", "held_by", "message")  # fmt: skip
 
 
-@dataclass(frozen=True)
-class Compared:
-    """The answers of one problem, the sine's first, each family containing the one before."""
-
-    name: str
-    sha256: str
-    answers: tuple[Answer, ...]
-
-    @property
-    def solved(self) -> list[Answer]:
-        """Those with a confirmed optimum."""
-        return [one for one in self.answers if one.status is Status.OPTIMAL]
-
-    @property
-    def status(self) -> Status:
-        """The worst of them all."""
-        order = [Status.NOT_CONVERGED, Status.INFEASIBLE, Status.OPTIMAL]
-        return min((one.status for one in self.answers), key=order.index)
-
-    @property
-    def message(self) -> str:
-        """What the sine leaves on the table, in a sentence."""
-        failed = [
-            f"{label(one)}: {one.message}"
-            for one in self.answers
-            if one.status is not Status.OPTIMAL
-        ]
-        speeds = [abs(speed_of(one)) for one in self.solved]
-        if failed or len(speeds) < 2:
-            return " ".join(failed)
-        told = [
-            f"{1e3 * speed:.1f} mm/s with {_spoken(one)}"
-            for speed, one in zip(speeds, self.solved, strict=True)
-        ]
-        gain = 100 * (speeds[-1] / speeds[0] - 1)
-        text = f"Under the same limits {', '.join(told)}: {gain:.1f} % more than the best sine."
-        slower = [
-            f"{label(larger)} came out slower than {label(smaller)}, which it contains"
-            for smaller, larger in zip(self.solved, self.solved[1:], strict=False)
-            if abs(speed_of(larger)) < abs(speed_of(smaller)) * (1 - 1e-4)
-        ]
-        return text + "".join(f" But {words}: a better gait was missed." for words in slower)
-
-
-def label(answer: Answer) -> str:
-    """The family's name."""
-    return family_name(answer.optimum.problem.gait)
-
-
-def _spoken(answer: Answer) -> str:
-    gait = answer.optimum.problem.gait
-    if gait.shape == "fourier":
-        return f"{gait.harmonics} harmonics"
-    return "a free gait" if gait.shape == "free" else "a sine"
-
-
-def family_name(gait: GaitBounds) -> str:
-    """`sine`, `3 harmonics` or `free`."""
-    return f"{gait.harmonics} harmonics" if gait.shape == "fourier" else gait.shape
-
-
-def speed_of(answer: Answer) -> float:
-    """Signed speed of the optimum, m/s; 0 if there is none."""
-    return answer.optimum.best.speed if answer.optimum.best else 0.0
-
-
-def gain_of(compared: Compared, answer: Answer) -> float | None:
-    """Speed over the sine's, less 1; None if either is not known."""
-    sine = compared.answers[0]
-    if answer.optimum.best is None or sine.optimum.best is None:
-        return None
-    return abs(speed_of(answer)) / abs(speed_of(sine)) - 1
-
-
-def file_of(answer: Answer) -> str:
+def file_of(answer: SpeedAnswer) -> str:
     """The name of its result file."""
-    return "-".join(reversed(label(answer).replace("harmonics", "fourier").split())) + ".json"
+    return "-".join(reversed(family(answer).replace("harmonics", "fourier").split())) + ".json"
 
 
-def record(compared: Compared) -> dict[str, Any]:
+def record(compared: ShapesAnswer) -> dict[str, Any]:
     """The content of shapes.json."""
     return {
         "status": compared.status.value,
@@ -120,7 +45,7 @@ def record(compared: Compared) -> dict[str, Any]:
     }
 
 
-def table(compared: Compared) -> str:
+def table(compared: ShapesAnswer) -> str:
     """shapes.csv: a row for each family, SI."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
@@ -129,16 +54,16 @@ def table(compared: Compared) -> str:
     return text.getvalue()
 
 
-def _rows(compared: Compared) -> list[dict[str, Any]]:
+def _rows(compared: ShapesAnswer) -> list[dict[str, Any]]:
     rows = []
     for answer in compared.answers:
         row: dict[str, Any] = dict.fromkeys(COLUMNS)
-        row |= {"shape": label(answer), "status": answer.status.value, "message": answer.message}
+        row |= {"shape": family(answer), "status": answer.status.value, "message": answer.message}
         best, replay = answer.optimum.best, answer.replay
         if best and replay:
             row |= {
                 "speed": best.speed,
-                "gain": gain_of(compared, answer),
+                "gain": compared.gain(answer),
                 "amplitude": best.gait.amplitude,
                 "period": best.gait.period,
                 "offset": best.gait.offset,
@@ -152,14 +77,14 @@ def _rows(compared: Compared) -> list[dict[str, Any]]:
     return rows
 
 
-def held_by(answer: Answer) -> str:
+def held_by(answer: SpeedAnswer) -> str:
     """The limits that the optimum stands on."""
     if answer.replay is None:
         return ""
-    return " ".join(row.name for row in limit_rows(answer.optimum, answer.replay) if row.active)
+    return " ".join(row.name for row in answer.limits.values() if row.active)
 
 
-def summary(compared: Compared, files: Iterable[Path]) -> str:
+def summary(compared: ShapesAnswer, files: Iterable[Path]) -> str:
     """The comparison as text for a terminal."""
     rows: list[tuple[str, ...]] = [
         ("shape", "speed", "", "over the sine", "amplitude", "period", "held by")
@@ -167,12 +92,12 @@ def summary(compared: Compared, files: Iterable[Path]) -> str:
     for answer in compared.answers:
         best = answer.optimum.best
         if best is None or answer.status is not Status.OPTIMAL:
-            rows.append((f"  {label(answer)}", answer.status.value.replace("_", " "), *[""] * 5))
+            rows.append((f"  {family(answer)}", answer.status.value.replace("_", " "), *[""] * 5))
             continue
-        gain = gain_of(compared, answer)
+        gain = compared.gain(answer)
         rows.append(
             (
-                f"  {label(answer)}",
+                f"  {family(answer)}",
                 speed_text(best.speed),
                 direction_text(best.speed),
                 "" if answer is compared.answers[0] or gain is None else _percent(1 + gain),
@@ -203,7 +128,7 @@ _CAPTION = (
 )
 
 
-def page(compared: Compared, drawn: str) -> str:
+def page(compared: ShapesAnswer, drawn: str) -> str:
     """The whole page; drawn: the figure as SVG text."""
     good = compared.status is Status.OPTIMAL
     title = _verdict(compared)
@@ -220,27 +145,27 @@ def page(compared: Compared, drawn: str) -> str:
     return document(f"{compared.name}: {title}", body)
 
 
-def _verdict(compared: Compared) -> str:
+def _verdict(compared: ShapesAnswer) -> str:
     solved = compared.solved
     if len(solved) < 2:
         return "Shapes of gait"
-    gain = gain_of(compared, solved[-1]) or 0.0
+    gain = compared.gain(solved[-1]) or 0.0
     return f"A free gait is {100 * gain:.0f} % faster than the best sine"
 
 
-def _families(compared: Compared) -> str:
+def _families(compared: ShapesAnswer) -> str:
     head = ["Shape", "Speed", "Over the sine", "Amplitude", "Period", "J20/J10", "Held by"]
     rows: list[list[Cell]] = []
     for answer in compared.answers:
         best = answer.optimum.best
         if best is None:
             status = Badge(answer.status.value.replace("_", " "), "no")
-            rows.append([label(answer), status, *["–"] * 5])
+            rows.append([family(answer), status, *["–"] * 5])
             continue
-        speed, gain = speed_of(answer), gain_of(compared, answer)
+        speed, gain = answer.speed or 0.0, compared.gain(answer)
         rows.append(
             [
-                label(answer),
+                family(answer),
                 f"{1e3 * abs(speed):.1f} mm/s {direction_text(speed)}",
                 f"{100 * gain:+.1f} %" if gain else "–",
                 with_unit(best.gait.amplitude, "rad"),
@@ -252,10 +177,10 @@ def _families(compared: Compared) -> str:
     return html_table(head, rows)
 
 
-def _checks(compared: Compared) -> str:
+def _checks(compared: ShapesAnswer) -> str:
     items = "".join(
         f'<li class="{"" if check.passed else "bad"}">'
-        f"{escape(label(answer))}: {escape(check.sentence)}</li>"
+        f"{escape(family(answer))}: {escape(check.sentence)}</li>"
         for answer in compared.answers
         for check in answer.checks
     )
@@ -266,7 +191,7 @@ RECORD, TABLE, FIGURE, PAGE = "shapes.json", "shapes.csv", "shapes.svg", "report
 
 
 def write_shapes(
-    compared: Compared, folder: Path, *, figures: bool, progress: Callable[[str], None]
+    compared: ShapesAnswer, folder: Path, *, figures: bool, progress: Callable[[str], None]
 ) -> list[Path]:
     """Write everything; returns the files in the order to name them."""
     names = [file_of(answer) for answer in compared.answers]
@@ -287,13 +212,13 @@ def write_shapes(
     return [write_text(folder / PAGE, page(compared, drawn)), *written]
 
 
-def draw(compared: Compared) -> str:
+def draw(compared: ShapesAnswer) -> str:
     """The figure as SVG text; empty if no family has an optimum."""
     from rr_opt.report.figures.shapes import Line, shapes
     from rr_opt.report.figures.style import figure, styled, svg
 
     lines = [
-        Line(label(one), one.optimum.best.gait, speed_of(one), gain_of(compared, one) or 0.0)
+        Line(family(one), one.optimum.best.gait, one.speed or 0.0, compared.gain(one) or 0.0)
         for one in compared.solved
         if one.optimum.best
     ]

@@ -14,24 +14,24 @@ from rr_opt.answers.quantities import (
     speed_text,
     with_unit,
 )
-from rr_opt.answers.speed import Answer, bound_rows, limit_rows, ratio_of
+from rr_opt.answers.speed import SpeedAnswer
 from rr_opt.report.result import turns
 from rr_opt.report.text import columns, gait_formula, gait_lines
 
 
-def holding_sentence(answer: Answer) -> str:
+def holding_sentence(answer: SpeedAnswer) -> str:
     """`It is held by the rate limit, the shortest period and the largest inertia ratio.`"""
     if answer.replay is None:
         return ""
     held = [
         "the singularity margin" if row.name == "singularity" else f"the {row.name} limit"
-        for row in limit_rows(answer.optimum, answer.replay)
+        for row in answer.limits.values()
         if row.active
     ]
     held += [
-        f"the {'least' if row.side == 'low' else 'largest'} {QUANTITIES[row.name].words} allowed"
-        for row in bound_rows(answer.optimum)
-        if row.side in ("low", "high")
+        f"the {'least' if row.active == 'low' else 'largest'} {QUANTITIES[row.name].words} allowed"
+        for row in answer.bounds.values()
+        if row.active in ("low", "high")
     ]
     if not held:
         return "No limit and no bound holds it: it is an optimum inside its ranges."
@@ -42,7 +42,7 @@ def holding_sentence(answer: Answer) -> str:
 _LEADS = {"forward": "platform 1 leads", "backward": "platform 2 leads"}
 
 
-def summary(answer: Answer, files: Iterable[Path]) -> str:
+def summary(answer: SpeedAnswer, files: Iterable[Path]) -> str:
     """The whole summary, with a newline at its end."""
     best = answer.optimum.best
     # Without a gait the message says all, and it goes to stderr.
@@ -55,7 +55,7 @@ def summary(answer: Answer, files: Iterable[Path]) -> str:
     return "\n\n".join("\n".join(block) for block in blocks if block) + "\n"
 
 
-def ratio_text(answer: Answer) -> str:
+def ratio_text(answer: SpeedAnswer) -> str:
     """J20/J10, about which point, and how it is realised."""
     optimum, choice = answer.optimum, answer.optimum.problem.inertia_ratio
     ratio, robot = optimum.ratio, optimum.robot
@@ -69,7 +69,7 @@ def ratio_text(answer: Answer) -> str:
     return f"{text}, by {means} (I2 = {robot.platform2.I:.4g} kg m2)"
 
 
-def cycle_text(answer: Answer) -> str:
+def cycle_text(answer: SpeedAnswer) -> str:
     """What one period does: a step along a line or round a circle."""
     if answer.replay is None:
         return ""
@@ -83,7 +83,7 @@ def cycle_text(answer: Answer) -> str:
     )
 
 
-def _gait(answer: Answer) -> list[str]:
+def _gait(answer: SpeedAnswer) -> list[str]:
     best = answer.optimum.best
     if best is None:
         return []
@@ -98,41 +98,41 @@ def _gait(answer: Answer) -> list[str]:
     return columns(rows)
 
 
-def _limits(answer: Answer) -> list[str]:
+def _limits(answer: SpeedAnswer) -> list[str]:
     if answer.replay is None:
         return []
     rows = [("limit", "reached", "allowed", "active", "shadow price")]
-    for row in limit_rows(answer.optimum, answer.replay):
+    for row in answer.limits.values():
         kind = QUANTITIES[row.name]
-        price = price_text(row.name, row.price) if row.active else "-"
+        price = price_text(row.name, row.shadow_price) if row.active else "-"
         active = "yes" if row.active else "no"
         rows.append((f"  {row.name}", kind.both(row.value), kind.both(row.limit), active, price))
     return columns(rows)
 
 
-def _bounds(answer: Answer) -> list[str]:
+def _bounds(answer: SpeedAnswer) -> list[str]:
     rows = [("bounds that hold", "at", "", "shadow price")]
-    for row in bound_rows(answer.optimum):
-        if row.side in ("low", "high"):
-            side = "lower bound" if row.side == "low" else "upper bound"
-            price = "-" if row.price is None else price_text(row.name, row.price)
+    for row in answer.bounds.values():
+        if row.active in ("low", "high"):
+            side = "lower bound" if row.active == "low" else "upper bound"
+            price = "-" if row.shadow_price is None else price_text(row.name, row.shadow_price)
             rows.append((f"  {row.name}", QUANTITIES[row.name].both(row.value), side, price))
     return columns(rows) if len(rows) > 1 else []
 
 
-def _checks(answer: Answer) -> list[str]:
+def _checks(answer: SpeedAnswer) -> list[str]:
     rows = [("  ok" if check.passed else "  FAILED", check.sentence) for check in answer.checks]
     return ["checks", *columns(rows)]
 
 
-def _optima(answer: Answer) -> list[str]:
+def _optima(answer: SpeedAnswer) -> list[str]:
     optima = answer.optimum.optima
     if len(optima) < 2:
         return []
     ties = {id(one) for one in answer.optimum.ties}
     rows = [("other optima", "amplitude", "period", "offset", "J20/J10", "")]
     for one in optima[1:]:
-        gait, ratio = one.gait, number(ratio_of(answer.optimum, one))
+        gait, ratio = one.gait, number(answer.ratio_of(one))
         rows.append(
             (
                 f"  {1e3 * one.speed:+.2f} mm/s",
@@ -146,7 +146,7 @@ def _optima(answer: Answer) -> list[str]:
     return columns(rows)
 
 
-def _solver(answer: Answer) -> list[str]:
+def _solver(answer: SpeedAnswer) -> list[str]:
     optimum = answer.optimum
     lines = [
         f"solver  {optimum.starts} starts, {optimum.iterations} iterations, "

@@ -4,54 +4,22 @@ from __future__ import annotations
 
 import io
 import math
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from rr_opt import __version__
-from rr_opt.answers.quantities import direction_text, number, pace_text, speed_text, with_unit
+from rr_opt.answers.quantities import number, speed_text, with_unit
+from rr_opt.answers.sweep import SweepAnswer
 from rr_opt.files.gait_record import gait_record
 from rr_opt.model.problem import Problem
-from rr_opt.outcome import Status
 from rr_opt.report.archive import remove, write_json, write_text
 from rr_opt.report.text import columns, gait_lines
 from rr_opt.verify.evaluate import LIMITS, Evaluated, Found
 from rr_opt.verify.grid import DECISIONS, free_decisions
-from rr_opt.verify.sweep import SweepResult
 
 _NAMES = ("sweep.json", "sweep.csv", "sweep.svg")
-
-
-@dataclass(frozen=True)
-class Swept:
-    """A sweep of a problem, with the name and the fingerprint of its input."""
-
-    name: str
-    sha256: str
-    found: SweepResult
-
-    @property
-    def best(self) -> Found | None:
-        """The fastest gait that keeps every limit, on the grid or close to its best points."""
-        both = [one for one in (self.found.refined, self.found.best) if one is not None]
-        return max(both, key=lambda one: abs(one.speed), default=None)
-
-    @property
-    def status(self) -> Status:
-        """INFEASIBLE if no gait of the sweep keeps every limit."""
-        return Status.OPTIMAL if self.best else Status.INFEASIBLE
-
-    @property
-    def message(self) -> str:
-        """The outcome in a sentence."""
-        if self.best is None:
-            return f"None of the {self.found.points} gaits tried keeps every limit."
-        return (
-            f"The fastest of {self.found.points} gaits drives {direction_text(self.best.speed)} "
-            f"at {pace_text(self.best.speed)}."
-        )
 
 
 def values_per_decision(problem: Problem, points: int) -> int:
@@ -59,7 +27,7 @@ def values_per_decision(problem: Problem, points: int) -> int:
     return max(2, math.ceil(points ** (1 / max(len(free_decisions(problem)), 1))))
 
 
-def record(swept: Swept) -> dict[str, Any]:
+def record(swept: SweepAnswer) -> dict[str, Any]:
     """The content of sweep.json, SI. status: `swept`, as a sweep proves no optimum."""
     found, best = swept.found, swept.best
     return {
@@ -87,7 +55,7 @@ def _found_record(one: Found | None) -> dict[str, Any] | None:
     }
 
 
-def summary(swept: Swept, files: list[Path]) -> str:
+def summary(swept: SweepAnswer, files: list[Path]) -> str:
     """The sweep as text for a terminal."""
     best, grid = swept.best, swept.found.found
     rows: list[tuple[str, ...]] = []
@@ -105,7 +73,7 @@ def summary(swept: Swept, files: list[Path]) -> str:
     return "\n".join([head, "", *columns(rows)]) + "\n"
 
 
-def write_sweep(swept: Swept, folder: Path) -> list[Path]:
+def write_sweep(swept: SweepAnswer, folder: Path) -> list[Path]:
     """Write everything; what an earlier sweep left is removed before."""
     from rr_opt.report.figures.speed_map import draw
 

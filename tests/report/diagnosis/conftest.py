@@ -6,7 +6,7 @@ from types import MappingProxyType
 import numpy as np
 import pytest
 
-from rr_opt.answers.diagnosis import Diagnosed
+from rr_opt.answers.diagnosis import DiagnosisAnswer
 from rr_opt.model.experiment import CHANNELS, Experiment, Noise, Recording, Run, Uncertainty
 from rr_opt.model.gait import SineGait
 from rr_opt.sysid.diagnosis import (
@@ -128,7 +128,9 @@ def _found(experiment):
 def missing():
     """Missing physics, every part of it filled in."""
     experiment = _experiment()
-    return Diagnosed("trial", "ab" * 32, experiment, _found(experiment), ("run09.csv: too short.",))
+    return DiagnosisAnswer(
+        "trial", "ab" * 32, experiment, _found(experiment), ("run09.csv: too short.",)
+    )
 
 
 @pytest.fixture(scope="session")

@@ -24,7 +24,7 @@ def _in_full(use):
 
 @pytest.mark.parametrize("verdict", ["consistent", "parameters", "missing_physics"])
 def test_it_reads_back_as_it_was(every, verdict, tmp_path):
-    robot = every[verdict].corrected
+    robot = every[verdict].corrected_robot
     path = written(robot, tmp_path)
     assert not [one for one in lint_file(path) if one.level == "error"]
     again = read_robot(path)
@@ -51,14 +51,16 @@ def test_every_effect_of_the_catalogue_can_be_written(missing, tmp_path):
 
 
 def test_other_readers_of_yaml_see_numbers_too(missing, tmp_path):
-    robot = replace(missing.corrected, platform2=replace(missing.corrected.platform2, kappa=2e-5))
+    robot = replace(
+        missing.corrected_robot, platform2=replace(missing.corrected_robot.platform2, kappa=2e-5)
+    )
     data = yaml.safe_load(written(robot, tmp_path).read_text())
     assert data["platform2"]["kappa"] == 2e-5
     assert data["physics"] == [{"name": "coulomb_friction", "force1": 0.0152, "force2": 0.0098}]
 
 
 def test_effects_that_the_robot_had_stay(missing):
-    had = replace(missing.experiment, robot=missing.corrected)
+    had = replace(missing.experiment, robot=missing.corrected_robot)
     found = replace(missing.found, values={"m1": 0.5, "servo_offset.offset": 0.02})
     uses = {use.name: dict(use.values) for use in corrected_robot(had, found).physics}
     assert uses["coulomb_friction"]["force1"] == 0.0152

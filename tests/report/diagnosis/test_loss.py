@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from rr_opt.answers.corrected_robot import corrected_robot, servo_made
-from rr_opt.answers.diagnosis import Loss, NotTold, loss
+from rr_opt.answers.diagnosis import Loss, LossUnknown, loss
 from rr_opt.model.gait import SineGait
 from rr_opt.model.problem import GaitBounds, Limits, Problem
 from rr_opt.model.robot import EffectUse
@@ -27,14 +27,14 @@ def test_what_the_gait_makes_is_what_a_long_drive_makes(missing):
     assert isinstance(told, Loss)
     # From rest by CVODES until it has settled; then the distance of one period.
     T = told.believed.period
-    driven = rollout(missing.corrected, told.believed, 60 * T, "rest", 50 / T)
+    driven = rollout(missing.corrected_robot, told.believed, 60 * T, "rest", 50 / T)
     last = np.hypot(driven.x[-1] - driven.x[-51], driven.y[-1] - driven.y[-51])
     assert abs(told.reached) == pytest.approx(last / T, rel=1e-4)
     assert abs(told.promised) > abs(told.reached)
 
 
 def test_no_gait_of_a_sweep_is_faster_than_the_best(missing):
-    robot = missing.corrected
+    robot = missing.corrected_robot
     servo = robot.servo
     limits = Limits(servo.angle_limit, servo.rate_limit, servo.torque_limit)
     tried = sweep(Problem(robot, limits, GaitBounds()), {"amplitude": 12, "period": 12})
@@ -55,7 +55,7 @@ def test_a_right_model_loses_nothing(missing, consistent):
 def test_what_has_no_steady_motion_is_told_in_a_sentence(missing, effect):
     robot = with_effect(missing.experiment.robot, effect)
     told = loss(missing.experiment, robot)
-    assert isinstance(told, NotTold)
+    assert isinstance(told, LossUnknown)
     assert effect.replace("_", " ") in told.sentence
 
 

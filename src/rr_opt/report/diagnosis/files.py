@@ -8,7 +8,7 @@ from pathlib import Path
 
 from rr_opt import __version__
 from rr_opt.answers.corrected_robot import robot_yaml
-from rr_opt.answers.diagnosis import Diagnosed
+from rr_opt.answers.diagnosis import DiagnosisAnswer
 from rr_opt.report.archive import remove, write_json, write_text
 from rr_opt.report.diagnosis.loss import loss_line
 from rr_opt.report.diagnosis.record import record
@@ -26,7 +26,7 @@ from rr_opt.sysid.diagnosis import Finding
 _WIDTH = 100
 
 
-def summary(one: Diagnosed, written: Sequence[Path]) -> str:
+def summary(one: DiagnosisAnswer, written: Sequence[Path]) -> str:
     """The verdict, what was found with its intervals, before and after, and what to do next."""
     found = one.found
     rows: list[tuple[str, ...]] = [("verdict", f"{found.verdict}: {headline(found)}")]
@@ -66,7 +66,7 @@ def _finding(finding: Finding, verdict: str) -> list[tuple[str, ...]]:
     return [(name, head), *values]
 
 
-def _misfit(one: Diagnosed) -> list[tuple[str, ...]]:
+def _misfit(one: DiagnosisAnswer) -> list[tuple[str, ...]]:
     found = one.found
     before, after = f"{found.before:.2f} sigma before", f"{found.after:.2f} after"
     if found.together is not None:
@@ -74,7 +74,7 @@ def _misfit(one: Diagnosed) -> list[tuple[str, ...]]:
     return [("misfit", f"{before}, {after}, 1 is the noise ({_proof(one)})")]
 
 
-def _proof(one: Diagnosed) -> str:
+def _proof(one: DiagnosisAnswer) -> str:
     if not one.marked:
         return one.proven_on
     return f"{len(one.proof)} held out recording{'s' if len(one.proof) != 1 else ''}"
@@ -85,7 +85,7 @@ FIGURES = ("evidence", "paths", "bands", "misfit", "residue", "loss")
 
 
 def write_diagnosis(
-    one: Diagnosed, folder: Path, *, page: bool, progress: Callable[[str], object]
+    one: DiagnosisAnswer, folder: Path, *, page: bool, progress: Callable[[str], object]
 ) -> list[Path]:
     """Write everything; returns the files in the order to name them.
 
@@ -96,7 +96,7 @@ def write_diagnosis(
     title = f"{headline(one.found)}.\nFrom {one.name} by rr-opt {__version__} diagnose."
     written = [
         write_json(folder / RECORD, record(one)),
-        write_text(folder / ROBOT, robot_yaml(one.corrected, title)),
+        write_text(folder / ROBOT, robot_yaml(one.corrected_robot, title)),
     ]
     if not page:
         return written

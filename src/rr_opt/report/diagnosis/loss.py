@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from rr_opt.answers.diagnosis import Loss, NotTold
+from rr_opt.answers.diagnosis import Loss, LossUnknown
 from rr_opt.answers.quantities import number, with_unit
 from rr_opt.model.gait import Gait
 
@@ -25,11 +25,11 @@ def pace(speed: float) -> str:
     return f"{1e3 * abs(speed):.1f} mm/s {'forward' if speed > 0 else 'backward'}"
 
 
-def loss_sentences(one: Loss | NotTold | None) -> str:
+def loss_sentences(one: Loss | LossUnknown | None) -> str:
     """A few sentences; nothing where the robot as believed is right."""
     if one is None:
         return ""
-    if isinstance(one, NotTold):
+    if isinstance(one, LossUnknown):
         return one.sentence
     said = (
         f"The best gait for the robot as believed ({gait_words(one.believed)}) promises "
@@ -43,9 +43,9 @@ def loss_sentences(one: Loss | NotTold | None) -> str:
     return said
 
 
-def loss_line(one: Loss | NotTold) -> str:
+def loss_line(one: Loss | LossUnknown) -> str:
     """The same in a line."""
-    if isinstance(one, NotTold):
+    if isinstance(one, LossUnknown):
         return one.sentence
     return (
         f"{share_lost(one)}: the best gait as believed promises {pace(one.promised)} and makes "
@@ -59,11 +59,11 @@ def gait_words(gait: Gait) -> str:
     return f"{said}, offset {with_unit(gait.offset, 'rad', 3)}" if gait.offset else said
 
 
-def loss_record(one: Loss | NotTold | None) -> dict[str, Any] | None:
+def loss_record(one: Loss | LossUnknown | None) -> dict[str, Any] | None:
     """diagnosis.json's `loss`: null where the robot as believed is right; SI."""
     if one is None:
         return None
-    if isinstance(one, NotTold):
+    if isinstance(one, LossUnknown):
         return {"not_told": one.sentence}
     return {
         "gait_as_believed": _gait(one.believed),

@@ -9,7 +9,7 @@ from html import escape
 import numpy as np
 
 from rr_opt import __version__
-from rr_opt.answers.diagnosis import Diagnosed, Loss, NotTold
+from rr_opt.answers.diagnosis import DiagnosisAnswer, Loss, LossUnknown
 from rr_opt.answers.quantities import number, with_unit
 from rr_opt.model.experiment import Run
 from rr_opt.model.parameters import Uncertainty, parameters_of
@@ -67,7 +67,7 @@ class _Box:
     size: str
 
 
-def strip(one: Diagnosed) -> str:
+def strip(one: DiagnosisAnswer) -> str:
     """The strip as HTML; without tests of the stages it tells where the accepted effect acts."""
     stages = one.found.stages
     boxes = _tested(stages) if stages else _untested(one.found.channel)
@@ -104,7 +104,7 @@ def _untested(channel: str) -> list[_Box]:
     return boxes
 
 
-def _told(one: Diagnosed) -> str:
+def _told(one: DiagnosisAnswer) -> str:
     if not one.found.stages:
         lit = "" if one.found.channel == "none" else " Lit: where the accepted effect acts."
         return f"The stages were not tested one by one.{lit}"
@@ -123,7 +123,7 @@ _MOST = 30
 """Rows of candidates; diagnosis.json has all."""
 
 
-def effects_table(one: Diagnosed) -> str:
+def effects_table(one: DiagnosisAnswer) -> str:
     """What was accepted, with its values; nothing for a verdict without effects."""
     if one.found.verdict == "parameters" or not one.found.findings:
         return ""
@@ -141,7 +141,7 @@ def _effect_cells(finding: Finding) -> list[Cell]:
     return [finding.name.replace("_", " "), f"{finding.confidence:.2f}", removes]
 
 
-def candidates_table(one: Diagnosed) -> str:
+def candidates_table(one: DiagnosisAnswer) -> str:
     """All sets of effects that were fitted, the best first."""
     tried = sorted(one.found.tried, key=lambda each: each.score)
     if not tried:
@@ -160,7 +160,7 @@ def candidates_table(one: Diagnosed) -> str:
     return table(head, rows)
 
 
-def parameters_table(one: Diagnosed) -> str:
+def parameters_table(one: DiagnosisAnswer) -> str:
     """The robot's own parameters: as believed, and as estimated."""
     nominal = parameters_of(one.experiment.robot)
     moved = {
@@ -199,11 +199,11 @@ def _believed(value: Estimate, believed: float, known: Uncertainty | None) -> st
     return f"{text} ± {number_text(value, known.sigma)}"
 
 
-def _known(one: Diagnosed, name: str) -> Uncertainty | None:
+def _known(one: DiagnosisAnswer, name: str) -> Uncertainty | None:
     return one.experiment.uncertainty.get(name)
 
 
-def misfit_table(one: Diagnosed) -> str:
+def misfit_table(one: DiagnosisAnswer) -> str:
     """Misfit of every recording and channel, before and after."""
     rows: list[list[Cell]] = []
     for before, after in zip(one.found.nominal, one.found.final, strict=True):
@@ -219,7 +219,7 @@ def misfit_table(one: Diagnosed) -> str:
     return table(["Recording", "Use", "All, σ", *_channels(one)], rows)
 
 
-def _channels(one: Diagnosed) -> list[str]:
+def _channels(one: DiagnosisAnswer) -> list[str]:
     return list(dict.fromkeys(name for each in one.found.final for name in each.channels))
 
 
@@ -229,7 +229,7 @@ def _channel(before: Misfit, after: Misfit, name: str) -> str:
     return f"{before.channels[name]:.2f} → {after.channels[name]:.2f}"
 
 
-def recordings_table(one: Diagnosed) -> str:
+def recordings_table(one: DiagnosisAnswer) -> str:
     """What was recorded."""
     rows: list[list[Cell]] = [_recorded(run) for run in one.experiment.runs]
     head = ["Recording", "Use", "Start", "Amplitude", "Period", "Offset", "Length", "Data"]
@@ -268,7 +268,7 @@ _CANDIDATES = (
 )
 
 
-def page(one: Diagnosed, figures: Mapping[str, str], captions: Mapping[str, str]) -> str:
+def page(one: DiagnosisAnswer, figures: Mapping[str, str], captions: Mapping[str, str]) -> str:
     """The whole page; figures are SVG texts by name, captions under them."""
     drawn = "".join(
         figure(figures[name], title, captions[name])
@@ -292,7 +292,7 @@ def page(one: Diagnosed, figures: Mapping[str, str], captions: Mapping[str, str]
     return document(f"{one.name}: {headline(one.found)}", body, STYLE)
 
 
-def _header(one: Diagnosed) -> str:
+def _header(one: DiagnosisAnswer) -> str:
     good = one.found.verdict == "consistent"
     return (
         f'<header class="{"" if good else "bad"}"><p class="kind">Roller Racer · '
@@ -301,7 +301,7 @@ def _header(one: Diagnosed) -> str:
     )
 
 
-def _tiles(one: Diagnosed) -> str:
+def _tiles(one: DiagnosisAnswer) -> str:
     found = one.found
     tiles = [
         (f"{found.before:.2f} σ", f"off before, {one.proven_on}"),
@@ -326,7 +326,7 @@ def _tiles(one: Diagnosed) -> str:
     return f'<div class="tiles">{inner}</div>'
 
 
-def _off(one: Diagnosed) -> str:
+def _off(one: DiagnosisAnswer) -> str:
     off = one.found.mismatch
     return (
         "With the robot's values re-fitted within what was stated of them, the fitted recordings "
@@ -335,7 +335,7 @@ def _off(one: Diagnosed) -> str:
     )
 
 
-def _open(one: Diagnosed) -> str:
+def _open(one: DiagnosisAnswer) -> str:
     found = one.found
     said = [
         f"These recordings cannot tell {' from '.join(candidate_words([n]) for n in group)}."
@@ -347,22 +347,22 @@ def _open(one: Diagnosed) -> str:
     return "".join(f"<p>{escape(sentence)}</p>" for sentence in said)
 
 
-def _no_loss(one: Diagnosed) -> str:
+def _no_loss(one: DiagnosisAnswer) -> str:
     """Why no loss is told, where none is."""
-    return f"<p>{escape(one.loss.sentence)}</p>" if isinstance(one.loss, NotTold) else ""
+    return f"<p>{escape(one.loss.sentence)}</p>" if isinstance(one.loss, LossUnknown) else ""
 
 
 def _with_note(body: str, note: str) -> str:
     return f'{body}<p class="told">{escape(note)}</p>' if body else ""
 
 
-def _doubts(one: Diagnosed) -> str:
+def _doubts(one: DiagnosisAnswer) -> str:
     told = (*one.left_out, *one.doubts)
     items = "".join(f'<li class="bad">{escape(text)}</li>' for text in told)
     return f'<ul class="checks">{items}</ul>' if items else ""
 
 
-def _footer(one: Diagnosed) -> str:
+def _footer(one: DiagnosisAnswer) -> str:
     steps = ", ".join(f"{step} {time:.1f} s" for step, time in one.found.seconds.items())
     return (
         f"<footer>rr-opt {escape(__version__)} · input SHA-256 <code>{escape(one.sha256)}</code> · "

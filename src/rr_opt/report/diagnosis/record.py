@@ -7,12 +7,12 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from rr_opt import __version__
-from rr_opt.answers.diagnosis import Diagnosed, rms
+from rr_opt.answers.diagnosis import DiagnosisAnswer, rms
 from rr_opt.report.diagnosis.loss import loss_record
 from rr_opt.sysid.diagnosis import Curve, Estimate, Finding, Misfit, Residue, Stage, Tried
 
 
-def fit_record(one: Diagnosed) -> dict[str, Any]:
+def fit_record(one: DiagnosisAnswer) -> dict[str, Any]:
     """Everything in sigma; 1 is the noise.
 
     Where none is held out, `heldout_rms_before` and `_after` are of the fitted recordings, each
@@ -55,7 +55,7 @@ def number_of(value: float | None) -> float | None:
     return float(value) if value is not None and math.isfinite(value) else None
 
 
-def record(one: Diagnosed) -> dict[str, Any]:
+def record(one: DiagnosisAnswer) -> dict[str, Any]:
     """The whole of `diagnosis.json`; what is not finite is null."""
     found = one.found
     return {
@@ -145,7 +145,7 @@ def _candidates(tried: Sequence[Tried]) -> list[dict[str, Any]]:
     ]
 
 
-def _next(one: Diagnosed) -> dict[str, Any] | None:
+def _next(one: DiagnosisAnswer) -> dict[str, Any] | None:
     asked = one.found.next_experiment
     if asked is None:
         return None

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
 from matplotlib.patches import Patch
 
-from rr_opt.answers.study import Studied
+from rr_opt.answers.study import StudyAnswer
 from rr_opt.report.figures.study import (
     HATCHED,
     Grid,
@@ -32,7 +32,7 @@ def words(held: tuple[str, ...]) -> str:
     return " + ".join(name.replace("inertia_ratio", "J20/J10") for name in held) or "nothing"
 
 
-def lanes(ax: Axes, result: Studied) -> Axes:
+def lanes(ax: Axes, result: StudyAnswer) -> Axes:
     """A lane for each limit and bound, filled where it holds the optimum, over the only axis."""
     axis = shown(result.study.axes[0])
     order = axis.order
@@ -55,7 +55,7 @@ def lanes(ax: Axes, result: Studied) -> Axes:
     return ax
 
 
-def areas(ax: Axes, result: Studied, grid: Grid) -> Axes:
+def areas(ax: Axes, result: StudyAnswer, grid: Grid) -> Axes:
     """Each case in the colour of what holds it; the rarest share a grey. Hatched: no
     optimum."""
     sets = [None if one.optimum is None else words(one.optimum.held) for one in result.rows]
@@ -85,7 +85,7 @@ def areas(ax: Axes, result: Studied, grid: Grid) -> Axes:
 _COSTS = (("peak_torque", "largest servo torque, N m"), ("energy_per_metre", "energy, J/m"))
 
 
-def draw(result: Studied) -> dict[str, str]:
+def draw(result: StudyAnswer) -> dict[str, str]:
     """Draw all figures that the study has something to show in; none without an optimum."""
     if result.fastest is None:
         return {}
@@ -96,7 +96,7 @@ def draw(result: Studied) -> dict[str, str]:
     return drawn
 
 
-def _speed(result: Studied) -> str:
+def _speed(result: StudyAnswer) -> str:
     axes = [at for at, n in enumerate(result.study.shape) if n > 1] or [0]
     ordered = [at for at in axes if shown(result.study.axes[at]).ordered] or axes[:1]
     drawn = figure(6.3, 3.9 * len(ordered))
@@ -105,7 +105,7 @@ def _speed(result: Studied) -> str:
     return svg(drawn)
 
 
-def _map(result: Studied) -> str:
+def _map(result: StudyAnswer) -> str:
     grid = grid_of(result)
     drawn = figure(6.3, 4.6)
     if grid:
@@ -113,7 +113,7 @@ def _map(result: Studied) -> str:
     return svg(drawn)
 
 
-def _held(result: Studied) -> str:
+def _held(result: StudyAnswer) -> str:
     grid = grid_of(result)
     if grid is None:
         lanes_count = len({n for row in result.rows if row.optimum for n in row.optimum.held})
@@ -125,7 +125,7 @@ def _held(result: Studied) -> str:
     return svg(drawn)
 
 
-def _pareto(result: Studied) -> str:
+def _pareto(result: StudyAnswer) -> str:
     drawn = figure(6.3, 6.6)
     for place, (name, label) in enumerate(_COSTS, 1):
         pareto(drawn.add_subplot(2, 1, place), result, name, label)

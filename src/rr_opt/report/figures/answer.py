@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from rr_opt.answers.speed import Answer, bound_rows, limit_rows
+from rr_opt.answers.speed import SpeedAnswer
 from rr_opt.model.gait import SineGait
 from rr_opt.motion.rollout import repeated
 from rr_opt.report.figures.cycle import cycle
@@ -14,7 +14,7 @@ from rr_opt.report.figures.speed_map import map_data, speed_map
 from rr_opt.report.figures.style import figure, styled, svg
 
 
-def draw(answer: Answer) -> dict[str, str]:
+def draw(answer: SpeedAnswer) -> dict[str, str]:
     """Draw all figures; none if there is no optimum to show."""
     if answer.optimum.best is None or answer.replay is None:
         return {}
@@ -26,7 +26,7 @@ def draw(answer: Answer) -> dict[str, str]:
         return drawn
 
 
-def _speed_map(answer: Answer) -> str:
+def _speed_map(answer: SpeedAnswer) -> str:
     optimum, best = answer.optimum, answer.optimum.best
     if best is None or optimum.robot is None or not isinstance(best.gait, SineGait):
         return ""
@@ -43,7 +43,7 @@ def _speed_map(answer: Answer) -> str:
     return svg(drawn)
 
 
-def _path(answer: Answer) -> str:
+def _path(answer: SpeedAnswer) -> str:
     robot, replay = answer.optimum.robot, answer.replay
     if robot is None or replay is None:
         return ""
@@ -57,7 +57,7 @@ def _path(answer: Answer) -> str:
     return svg(drawn)
 
 
-def _cycle(answer: Answer) -> str:
+def _cycle(answer: SpeedAnswer) -> str:
     if answer.replay is None:
         return ""
     drawn = figure(6.3, 6.4)
@@ -66,10 +66,10 @@ def _cycle(answer: Answer) -> str:
     return svg(drawn)
 
 
-def _prices(answer: Answer) -> str:
+def _prices(answer: SpeedAnswer) -> str:
     if answer.replay is None:
         return ""
-    lines = gains(limit_rows(answer.optimum, answer.replay), bound_rows(answer.optimum))
+    lines = gains(answer.limits.values(), answer.bounds.values())
     drawn = figure(6.3, 0.9 + 0.42 * len(lines))
     prices(drawn.add_subplot(), lines)
     return svg(drawn)

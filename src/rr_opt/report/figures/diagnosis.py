@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 from numpy.typing import NDArray
 
-from rr_opt.answers.diagnosis import Diagnosed, Loss
+from rr_opt.answers.diagnosis import DiagnosisAnswer, Loss
 from rr_opt.answers.quantities import number
 from rr_opt.array import Array
 from rr_opt.model.experiment import CHANNELS as SEEN
@@ -226,7 +226,7 @@ NAMES = ("evidence", "paths", "bands", "misfit", "residue", "loss")
 _MOST_PATHS, _MOST_BANDS, _MOST_CURVES = 4, 4, 8
 
 
-def draw(one: Diagnosed) -> tuple[dict[str, str], dict[str, str]]:
+def draw(one: DiagnosisAnswer) -> tuple[dict[str, str], dict[str, str]]:
     """SVG texts by name, and what to write under each; those for which there is something."""
     drawn: dict[str, str] = {}
     told: dict[str, str] = {}
@@ -239,7 +239,7 @@ def draw(one: Diagnosed) -> tuple[dict[str, str], dict[str, str]]:
     return drawn, told
 
 
-def _evidence(one: Diagnosed) -> tuple[Figure, str] | None:
+def _evidence(one: DiagnosisAnswer) -> tuple[Figure, str] | None:
     curves = [
         (stage.name.replace("_", " "), each, _measured(stage))
         for stage in one.guilty
@@ -270,7 +270,7 @@ def _measured(stage: Stage) -> str:
     return "acceleration, σ/s²"
 
 
-def _paths(one: Diagnosed) -> tuple[Figure, str]:
+def _paths(one: DiagnosisAnswer) -> tuple[Figure, str]:
     shown = one.proof[:_MOST_PATHS]
     wide = all(flat(one.experiment.runs[k].recording) for k in shown)
     columns = 1 if wide else min(len(shown), 2)
@@ -291,7 +291,7 @@ def _paths(one: Diagnosed) -> tuple[Figure, str]:
     )
 
 
-def _bands(one: Diagnosed) -> tuple[Figure, str]:
+def _bands(one: DiagnosisAnswer) -> tuple[Figure, str]:
     shown = one.proof[:_MOST_BANDS]
     nominal, final = ([level[k] for k in shown] for level in (one.found.nominal, one.found.final))
     made = figure(WIDTH, 0.7 + 1.35 * len(SEEN))
@@ -308,7 +308,7 @@ def _bands(one: Diagnosed) -> tuple[Figure, str]:
     )
 
 
-def _misfit(one: Diagnosed) -> tuple[Figure, str]:
+def _misfit(one: DiagnosisAnswer) -> tuple[Figure, str]:
     found = one.found
     made = figure(WIDTH, 1.3 + 0.3 * len(found.final))
     misfit(ax := made.subplots(), found.nominal, found.refitted, found.final)
@@ -319,7 +319,7 @@ def _misfit(one: Diagnosed) -> tuple[Figure, str]:
     return made, f"RMS of simulated less recorded over all channels, in σ of the noise. {held}"
 
 
-def _residue(one: Diagnosed) -> tuple[Figure, str] | None:
+def _residue(one: DiagnosisAnswer) -> tuple[Figure, str] | None:
     some = one.found.residue
     if not some:
         return None
@@ -329,7 +329,7 @@ def _residue(one: Diagnosed) -> tuple[Figure, str] | None:
     return made, " ".join(each.sentence for each in some)
 
 
-def _loss(one: Diagnosed) -> tuple[Figure, str] | None:
+def _loss(one: DiagnosisAnswer) -> tuple[Figure, str] | None:
     if not isinstance(one.loss, Loss):
         return None
     made = figure(WIDTH, 3.0)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from matplotlib.axes import Axes
@@ -22,7 +22,7 @@ class Gain:
     remark: str
 
 
-def gains(limits: Sequence[LimitRow], bounds: Sequence[BoundRow]) -> list[Gain]:
+def gains(limits: Iterable[LimitRow], bounds: Iterable[BoundRow]) -> list[Gain]:
     """The lines, the largest gain first; inactive limits follow with how much of them is used."""
     active: list[Gain] = []
     idle: list[Gain] = []
@@ -31,15 +31,15 @@ def gains(limits: Sequence[LimitRow], bounds: Sequence[BoundRow]) -> list[Gain]:
             continue
         if row.active:
             way = -1 if row.name == "singularity" else 1
-            gain = 10 * way * row.price * row.limit
+            gain = 10 * way * row.shadow_price * row.limit
             active.append(Gain(f"limit: {row.name}", gain, ""))
         else:
             idle.append(Gain(f"limit: {row.name}", 0.0, _use(row)))
     for row in bounds:
-        if row.side in ("low", "high") and row.price is not None:
-            edge = row.low if row.side == "low" else row.high
-            gain = 10 * row.price * abs(edge) * (-1 if row.side == "low" else 1)
-            word = "least" if row.side == "low" else "largest"
+        if row.active in ("low", "high") and row.shadow_price is not None:
+            edge = row.low if row.active == "low" else row.high
+            gain = 10 * row.shadow_price * abs(edge) * (-1 if row.active == "low" else 1)
+            word = "least" if row.active == "low" else "largest"
             name = QUANTITIES[row.name].words.replace("inertia ratio ", "")
             active.append(Gain(f"{word} {name}", gain, ""))
     return sorted(active, key=lambda one: -one.gain) + idle

@@ -14,7 +14,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullLocato
 from numpy.typing import NDArray
 
 from rr_opt.answers.quantities import number
-from rr_opt.answers.study import Studied, front, unit_of, value_text
+from rr_opt.answers.study import StudyAnswer, front, unit_of, value_text
 from rr_opt.array import Array
 from rr_opt.files.study_axes import Axis
 from rr_opt.report.figures.style import BACKWARD, FORWARD, GREY, INK, LIMIT, OPTIMUM, PAPER, SIGNED
@@ -126,7 +126,7 @@ class Grid:
         ax.grid(visible=False)
 
 
-def grid_of(result: Studied) -> Grid | None:
+def grid_of(result: StudyAnswer) -> Grid | None:
     """The map over the two longest axes; None if the study has only one."""
     shape = result.study.shape
     if len(shape) < 2:
@@ -160,7 +160,7 @@ _LEAST_CELLS = 4
 """Along each axis, for lines of equal speed."""
 
 
-def study_map(ax: Axes, result: Studied, grid: Grid) -> Axes:
+def study_map(ax: Axes, result: StudyAnswer, grid: Grid) -> Axes:
     """A cell a case, the colour its signed speed; lines part branches; the star is the fastest.
     Hatched: no optimum."""
     speed = 1e3 * result.values("speed")[grid.cases]
@@ -194,7 +194,7 @@ def _contours(ax: Axes, speed: np.ndarray, grid: Grid) -> None:
         text.set_bbox({"facecolor": PAPER, "edgecolor": "none", "alpha": 0.6, "pad": 0.8})
 
 
-def _parting(ax: Axes, result: Studied, grid: Grid) -> None:
+def _parting(ax: Axes, result: StudyAnswer, grid: Grid) -> None:
     """Lines between cells of different branches."""
     branch = np.array([one or 0 for one in result.branches])[grid.cases]
     x, y = grid.borders
@@ -204,7 +204,7 @@ def _parting(ax: Axes, result: Studied, grid: Grid) -> None:
         ax.plot(x[column : column + 2], [y[row + 1]] * 2, color=INK, lw=2, zorder=4)
 
 
-def pareto(ax: Axes, result: Studied, name: str, label: str) -> Axes:
+def pareto(ax: Axes, result: StudyAnswer, name: str, label: str) -> Axes:
     """A dot a case, blue forward and orange backward; ringed, on the line: no other case is both
     faster and cheaper. name: the number of the optimum that is the cost."""
     cost, speed = result.values(name), 1e3 * result.speed
@@ -239,7 +239,7 @@ _PRICED = 0.22
 """Half the length of a shadow price's tangent, in gaps between steps."""
 
 
-def speed(ax: Axes, result: Studied, along: int) -> Axes:
+def speed(ax: Axes, result: StudyAnswer, along: int) -> Axes:
     """|speed| over the axis `along`. A line is broken where the branch changes; triangles point
     up for forward, down for backward; a short tangent is the limit's shadow price."""
     axes = [shown(axis) for axis in result.study.axes]
@@ -280,7 +280,7 @@ def speed(ax: Axes, result: Studied, along: int) -> Axes:
 
 
 def _lines(
-    result: Studied, along: int, order: list[int]
+    result: StudyAnswer, along: int, order: list[int]
 ) -> Iterator[tuple[tuple[int, ...], list[int]]]:
     """For each combination of the other axes: its steps there, and its cases in order."""
     grid = np.arange(len(result.rows)).reshape(result.study.shape)
@@ -296,7 +296,7 @@ def _line(ax: Axes, x: np.ndarray, y: np.ndarray, branch: list[int | None], colo
         ax.plot(x[at : at + 2], y[at : at + 2], color=colour, zorder=3, **style)  # type: ignore[arg-type]
 
 
-def _tangents(ax: Axes, result: Studied, cases: list[int], mine: Shown) -> None:
+def _tangents(ax: Axes, result: StudyAnswer, cases: list[int], mine: Shown) -> None:
     """What the shadow price of the varied limit foretells, at each case."""
     (axis,) = result.study.axes
     name = axis.lines[0].key.name.removeprefix("limits.")

@@ -12,7 +12,7 @@ import numpy as np
 
 from rr_opt import __version__
 from rr_opt.answers.quantities import QUANTITIES, direction_text, number, speed_text, with_unit
-from rr_opt.answers.study import Studied, front
+from rr_opt.answers.study import StudyAnswer, front
 from rr_opt.outcome import Status
 from rr_opt.report.archive import remove, write_json, write_text
 from rr_opt.report.html import Badge, Cell, card, document, figure, table
@@ -20,7 +20,7 @@ from rr_opt.report.study.table import columns_of, csv_text, write_netcdf
 from rr_opt.report.text import columns
 
 
-def summary(result: Studied, files: list[Path]) -> str:
+def summary(result: StudyAnswer, files: list[Path]) -> str:
     """The study as text for a terminal."""
     study, rows = result.study, result.rows
     head = f"{study.name}: {result.message}"
@@ -45,7 +45,7 @@ def summary(result: Studied, files: list[Path]) -> str:
     return "\n".join([head, "", *columns(told)]) + "\n"
 
 
-def _outcomes(result: Studied) -> str:
+def _outcomes(result: StudyAnswer) -> str:
     words = {"optimal": "optimal", "infeasible": "infeasible", "not_converged": "not converged"}
     return ", ".join(f"{n} {words[status.value]}" for status, n in result.counts.items() if n)
 
@@ -54,7 +54,7 @@ def _gait_text(optimum: Any) -> str:
     return f"{with_unit(optimum.amplitude, 'rad')}, {with_unit(optimum.period, 's')}"
 
 
-def record(result: Studied) -> dict[str, Any]:
+def record(result: StudyAnswer) -> dict[str, Any]:
     """The content of study.json, SI: the table's columns row by row, and the gaits."""
     table = columns_of(result)
     study, speed = result.study, result.speed
@@ -110,7 +110,7 @@ _CAPTIONS = {
 _MOST_ROWS = 300
 
 
-def page(result: Studied, figures: Mapping[str, str]) -> str:
+def page(result: StudyAnswer, figures: Mapping[str, str]) -> str:
     """The whole page; figures are SVG texts by name."""
     body = [
         _header(result),
@@ -128,16 +128,16 @@ def page(result: Studied, figures: Mapping[str, str]) -> str:
     return document(f"{result.study.name}: {_verdict(result)}", body)
 
 
-def _verdict(result: Studied) -> str:
+def _verdict(result: StudyAnswer) -> str:
     speed = 1e3 * result.speed
     if result.fastest is None:
         return f"None of {len(result.rows)} cases has an optimum"
     return f"{len(result.rows)} cases, from {np.nanmin(speed):.1f} to {np.nanmax(speed):.1f} mm/s"
 
 
-def _header(result: Studied) -> str:
+def _header(result: StudyAnswer) -> str:
     good = result.fastest is not None
-    lead = " ".join([result.message, *result.complaints])
+    lead = " ".join([result.message, *result.warnings])
     return (
         f'<header class="{"" if good else "bad"}"><p class="kind">Roller Racer · '
         f"{escape(result.study.name)} · study</p><h1>{escape(_verdict(result))}</h1>"
@@ -145,7 +145,7 @@ def _header(result: Studied) -> str:
     )
 
 
-def _tiles(result: Studied) -> str:
+def _tiles(result: StudyAnswer) -> str:
     counts = result.counts
     cold = sum(row.started != "warm" for row in result.rows)
     least = result.values("cost_of_transport")
@@ -175,7 +175,7 @@ def _gallery(figures: Mapping[str, str]) -> str:
     return f'<div class="grid">{inner}</div>' if inner else ""
 
 
-def _front_table(result: Studied) -> str:
+def _front_table(result: StudyAnswer) -> str:
     """The cases that are on a front, the fastest first."""
     fronts = {name: front(result.values(name), result.speed)
               for name in ("peak_torque", "energy_per_metre")}  # fmt: skip
@@ -184,7 +184,7 @@ def _front_table(result: Studied) -> str:
     return _cases_table(result, cases[:20])
 
 
-def _failures(result: Studied) -> str:
+def _failures(result: StudyAnswer) -> str:
     rows: list[list[Cell]] = [
         [result.inputs_text(case), Badge(row.status.value.replace("_", " "), "no"), row.message]
         for case, row in enumerate(result.rows)
@@ -193,7 +193,7 @@ def _failures(result: Studied) -> str:
     return table(["Case", "Status", "Why"], rows[:_MOST_ROWS]) if rows else ""
 
 
-def _cases_table(result: Studied, cases: Iterable[int]) -> str:
+def _cases_table(result: StudyAnswer, cases: Iterable[int]) -> str:
     head = ["Case", "Speed", "Amplitude", "Period", "Torque", "Energy", "Held by", "Branch"]
     rows: list[list[Cell]] = []
     for case in cases:
@@ -230,7 +230,7 @@ def check_wishes(*, netcdf: bool) -> None:
         netcdf_writer()
 
 
-def write_study(result: Studied, folder: Path, *, netcdf: bool, figures: bool) -> list[Path]:
+def write_study(result: StudyAnswer, folder: Path, *, netcdf: bool, figures: bool) -> list[Path]:
     """Write everything; returns the files. What an earlier run left is removed before."""
     remove(folder, (TABLE, NETCDF, RECORD, PAGE, *(f"{name}.svg" for name in FIGURES)))
     written = [

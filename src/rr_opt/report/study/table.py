@@ -13,7 +13,7 @@ import numpy as np
 
 from rr_opt import __version__
 from rr_opt.answers.quantities import direction_text
-from rr_opt.answers.study import Studied
+from rr_opt.answers.study import StudyAnswer
 from rr_opt.report.archive import whole
 from rr_opt.report.trajectory_file import netcdf_writer
 
@@ -52,7 +52,7 @@ _LIMITS = (("angle", "rad"), ("rate", "rad/s"), ("torque", "N m"), ("singularity
 _BOUNDS = (("amplitude", "rad"), ("period", "s"), ("offset", "rad"), ("inertia_ratio", ""))
 
 
-def columns_of(result: Studied) -> list[Column]:
+def columns_of(result: StudyAnswer) -> list[Column]:
     """Every column of the table, in order."""
     cases = range(len(result.rows))
     rows = result.rows
@@ -72,7 +72,7 @@ def columns_of(result: Studied) -> list[Column]:
     ]  # fmt: skip
 
 
-def _inputs(result: Studied) -> list[Column]:
+def _inputs(result: StudyAnswer) -> list[Column]:
     inputs = [result.study.inputs(case) for case in range(len(result.rows))]
     return [
         Column(
@@ -86,7 +86,7 @@ def _inputs(result: Studied) -> list[Column]:
     ]
 
 
-def _optimum(result: Studied) -> list[Column]:
+def _optimum(result: StudyAnswer) -> list[Column]:
     found = [row.optimum for row in result.rows]
 
     def column(name: str, unit: str, meaning: str, cell: Any) -> Column:
@@ -125,7 +125,7 @@ def _written(cell: Any) -> Any:
     return f"{cell:.12g}" if isinstance(cell, float) else cell
 
 
-def write_netcdf(path: Path, result: Studied) -> Path:
+def write_netcdf(path: Path, result: StudyAnswer) -> Path:
     """Write every column over the axes of the study, with units and meanings."""
     xarray = netcdf_writer()
     study = result.study

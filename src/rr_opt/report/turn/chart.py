@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import math
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -13,12 +12,12 @@ import numpy as np
 from rr_opt import __version__
 from rr_opt.answers.corrected_robot import finite
 from rr_opt.answers.quantities import direction_text, number, speed_text, with_unit
+from rr_opt.answers.turn_chart import TurnChartAnswer, sine_text
 from rr_opt.files.gait_record import gait_record
-from rr_opt.model.gait import SineGait
 from rr_opt.outcome import Status
 from rr_opt.report.archive import remove, write_json, write_text
 from rr_opt.report.text import columns
-from rr_opt.verify.turn.chart import Tightest, TurnMap
+from rr_opt.verify.turn.chart import TurnMap
 from rr_opt.verify.turn.offset_claim import RadiusClaim, SignClaim
 
 _NAMES = ("turn-chart.json", "turn-chart.csv", "turn-chart.svg")
@@ -28,54 +27,12 @@ _COLUMNS = (
 )  # fmt: skip
 
 
-_SPIN = 1e-4
-"""A smaller radius, m, is that of a robot that turns on the spot."""
-_AGREED = 1e-3
-"""Two searches agree if they differ by no more, relative."""
-
-
-@dataclass(frozen=True)
-class TurnChart:
-    """name and sha256 of the input; the map drawn and written; the tightest circle; the paper's
-    claim, held against a finer map."""
-
-    name: str
-    sha256: str
-    seen: TurnMap
-    tight: Tightest | None
-    sign: SignClaim
-    radius: RadiusClaim
-
-    @property
-    def status(self) -> Status:
-        """INFEASIBLE if no gait keeps every limit."""
-        return Status.OPTIMAL if self.tight else Status.INFEASIBLE
-
-    @property
-    def message(self) -> str:
-        """The outcome in a sentence."""
-        if self.tight is None:
-            return "None of the gaits tried turns and keeps every limit. Widen the bounds."
-        radius, error = self.tight.radius, self.tight.error
-        if radius < _SPIN:
-            return (
-                "The robot can turn on the spot: where its speed passes through 0 the circles "
-                f"become as tight as you like, next to {_told(self.tight.gait)}."
-            )
-        text = (
-            f"The tightest circle found within the limits has a radius of {with_unit(radius, 'm')}"
-        )
-        if error > _AGREED * radius:
-            return f"{text}. Two searches differ by {error:.1e} m: there may be a tighter one."
-        return f"{text}, and two searches agree on it to {max(error, 1e-9):.1e} m."
-
-
-def chart_summary(chart: TurnChart, files: list[Path]) -> str:
+def chart_summary(chart: TurnChartAnswer, files: list[Path]) -> str:
     """The chart as text for a terminal."""
     rows: list[tuple[str, str]] = []
     if chart.tight:
         rows += [
-            ("tightest", f"{with_unit(chart.tight.radius, 'm')} by {_told(chart.tight.gait)}"),
+            ("tightest", f"{with_unit(chart.tight.radius, 'm')} by {sine_text(chart.tight.gait)}"),
             ("  speed", f"{speed_text(chart.tight.speed)}, {direction_text(chart.tight.speed)}"),
         ]
     if chart.status is Status.OPTIMAL:
@@ -98,7 +55,7 @@ def _sign_rows(claim: SignClaim) -> list[tuple[str, str]]:
         ("  backward", f"{claim.backward_left} left, {claim.backward_right} right"),
     ]
     if claim.exception:
-        rows.append(("  first at", _told(claim.exception)))
+        rows.append(("  first at", sine_text(claim.exception)))
     return rows
 
 
@@ -113,19 +70,12 @@ def _radius_rows(claim: RadiusClaim) -> list[tuple[str, str]]:
     return [
         ("  verdict", f"fails on {claim.growing} of {claim.curves} curves of one amplitude and "
             "period"),
-        ("  first at", _told(claim.first)),
-        ("  worst", f"the radius {most}, by {_told(claim.worst)}"),
+        ("  first at", sine_text(claim.first)),
+        ("  worst", f"the radius {most}, by {sine_text(claim.worst)}"),
     ]  # fmt: skip
 
 
-def _told(gait: SineGait) -> str:
-    return (
-        f"amplitude {with_unit(gait.amplitude, 'rad')}, period {with_unit(gait.period, 's')}, "
-        f"offset {with_unit(gait.offset, 'rad')}"
-    )
-
-
-def chart_record(chart: TurnChart) -> dict[str, Any]:
+def chart_record(chart: TurnChartAnswer) -> dict[str, Any]:
     """The content of turn-chart.json, SI."""
     tight, sign, radius = chart.tight, chart.sign, chart.radius
     return {
@@ -163,7 +113,7 @@ def chart_record(chart: TurnChart) -> dict[str, Any]:
     }
 
 
-def write_chart(chart: TurnChart, folder: Path) -> list[Path]:
+def write_chart(chart: TurnChartAnswer, folder: Path) -> list[Path]:
     """Write everything; what an earlier run left is removed before."""
     from rr_opt.report.figures.turn_chart import draw
 

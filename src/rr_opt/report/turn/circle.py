@@ -6,15 +6,16 @@ import math
 from typing import Any
 
 from rr_opt.answers.corrected_robot import finite
+from rr_opt.answers.motion import CircleAnswer
 from rr_opt.answers.quantities import direction_text, number, speed_text, with_unit
 from rr_opt.files.gait_record import gait_record
-from rr_opt.model.gait import Gait
-from rr_opt.motion.circle import Circle, Transient
+from rr_opt.motion.circle import Circle
 from rr_opt.report.text import columns, gait_formula, gait_lines
 
 
-def circle_summary(gait: Gait, circle: Circle, start: Transient) -> str:
+def circle_summary(answer: CircleAnswer) -> str:
     """The gait, its circle, and how a start from rest comes to it."""
+    gait, circle, start = answer.gait, answer.circle, answer.transient
     way = direction_text(circle.speed)
     leads = "platform 1 leads" if circle.speed > 0 else "platform 2 leads"
     ahead = "behind" if start.lost >= 0 else "ahead of"
@@ -47,8 +48,9 @@ def _circle_rows(circle: Circle) -> list[tuple[str, str]]:
     ]  # fmt: skip
 
 
-def circle_record(gait: Gait, circle: Circle, start: Transient) -> dict[str, Any]:
+def circle_record(answer: CircleAnswer) -> dict[str, Any]:
     """The same for scripts, SI; null for what a straight gait does not have."""
+    gait, circle, start = answer.gait, answer.circle, answer.transient
     return {
         "gait": gait_record(gait),
         "speed": circle.speed,

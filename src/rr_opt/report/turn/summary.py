@@ -9,8 +9,7 @@ from typing import Any
 
 from rr_opt.answers.corrected_robot import finite
 from rr_opt.answers.quantities import number, with_unit
-from rr_opt.answers.turn import TurnAnswer, radius, side
-from rr_opt.model.problem import ANY
+from rr_opt.answers.turn import TurnAnswer, side
 from rr_opt.motion.rollout import one_period
 from rr_opt.report.archive import remove, write_json, write_text
 from rr_opt.report.files import FIGURES, PAGE, RESULT, TRAJECTORY
@@ -44,7 +43,7 @@ def turn_result(answer: TurnAnswer) -> dict[str, Any]:
         "asked": _asked(answer),
         "offset_opened": answer.opened,
         "arc": _arc(answer),
-        "prices": _prices(answer),
+        "prices": answer.turn_prices,
         "circle_check": _circle(answer),
     }
     return record | {"units": {**record["units"], **UNITS}}
@@ -59,7 +58,7 @@ def arc_rows(answer: TurnAnswer) -> list[tuple[str, str]]:
     degrees = abs(math.degrees(arc.heading))
     return [
         (name, f"{number(degrees)} deg to the {side(arc.heading)}"),
-        ("  radius", with_unit(radius(arc), "m")),
+        ("  radius", with_unit(answer.radius or math.inf, "m")),
         (
             "  time",
             f"{with_unit(arc.time, 's')}, {number(arc.periods, 6)} periods, in steady motion",
@@ -78,7 +77,7 @@ def _price_rows(answer: TurnAnswer) -> list[tuple[str, str]]:
         "heading": "a heading per period 1 % less",
     }
     rows = []
-    for name, price in _prices(answer).items():
+    for name, price in answer.turn_prices.items():
         value = getattr(answer.arc, name) if name != "heading" else _per_period(answer)
         gain = -0.01 * value * price
         if abs(gain) > 1e-9:
@@ -88,15 +87,6 @@ def _price_rows(answer: TurnAnswer) -> list[tuple[str, str]]:
 
 def _per_period(answer: TurnAnswer) -> float:
     return answer.arc.heading / answer.arc.periods if answer.arc else 0.0
-
-
-def _prices(answer: TurnAnswer) -> dict[str, float]:
-    """Shadow prices of what was asked of the turn."""
-    best, turn = answer.optimum.best, answer.optimum.problem.turn
-    if best is None or turn is None:
-        return {}
-    names = ("curvature", "yaw_rate", "heading")
-    return {name: best.prices[name] for name in names if getattr(turn, name) != ANY}
 
 
 def _asked(answer: TurnAnswer) -> dict[str, Any]:
@@ -116,7 +106,7 @@ def _arc(answer: TurnAnswer) -> dict[str, Any] | None:
         return None
     return {
         "heading": arc.heading,
-        "radius": finite(radius(arc)),
+        "radius": finite(answer.radius or math.inf),
         "curvature": arc.curvature,
         "yaw_rate": arc.yaw_rate,
         "speed": arc.speed,
