@@ -2,13 +2,13 @@
 
 import ctypes
 import shutil
-from importlib.resources import files
 
 import casadi as ca
 import numpy as np
 import pytest
 
-from rr_opt.mechanics.code_generation import in_stages, library
+from rr_opt.mechanics.code_generation import in_stages, source_file
+from rr_opt.mechanics.compile_cache import library
 from rr_opt.motion.dynamics import derive
 
 pytestmark = pytest.mark.skipif(not shutil.which("cc"), reason="there is no C compiler")
@@ -51,8 +51,7 @@ def test_as_casadi(function, flags, tmp_path, monkeypatch):
     later, first, out = function.numel_in(0), function.numel_in(1), function.numel_out(0)
     sizes = {"NP": first, "N0": first, "N1": later, "NY": out, "NK0": stages.kept[0]}
     head = "".join(f"#define {name} {size}\n" for name, size in sizes.items())
-    lanes = files("rr_opt").joinpath("data", "lanes.c").read_text(encoding="utf-8")
-    source = head + lanes + stages.source + LOOP
+    source = head + source_file("rr_opt.mechanics", "lanes.c") + stages.source + LOOP
     made = library(source, (*flags, "-fPIC", "-shared"), make=True)
     assert made
     x = np.random.default_rng(4).uniform(0.3, 1.5, (first + later, 8))

@@ -4,9 +4,8 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from rr_opt.mechanics import code_generation as externals
-from rr_opt.mechanics import code_generation as often_used
-from rr_opt.mechanics.code_generation import OftenUsed
+from rr_opt.mechanics import compile_cache
+from rr_opt.mechanics.compile_cache import OftenUsed
 
 
 @pytest.fixture
@@ -25,7 +24,7 @@ def test_the_numbers_stay_the_same(function):
 
 def test_it_looks_once_and_compiles_once(function, monkeypatch):
     asked = []
-    monkeypatch.setattr(externals, "library", lambda *_, make: asked.append(make))
+    monkeypatch.setattr(compile_cache, "library", lambda *_, make: asked.append(make))
     often = OftenUsed(function, 1, 3)
     for _ in range(6):
         often([0.3, 0.7])
@@ -34,9 +33,9 @@ def test_it_looks_once_and_compiles_once(function, monkeypatch):
 
 def test_what_was_compiled_is_used_at_once(function, monkeypatch):
     asked = []
-    compiled = often_used.externals
+    compiled = compile_cache.externals
     monkeypatch.setattr(
-        often_used, "externals", lambda *a, make: asked.append(make) or compiled(*a, make=True)
+        compile_cache, "externals", lambda *a, make: asked.append(make) or compiled(*a, make=True)
     )
     often = OftenUsed(function, 1, 3)
     for _ in range(6):

@@ -61,9 +61,48 @@ def test_restart_forgets(path, three):
         assert journal.rows == {}
 
 
-def test_a_damaged_one_is_refused(path, three):
-    path.write_bytes(three.replace(b'{"case": 1', b'{"case"; 1'))
-    with pytest.raises(InputError, match="--restart"):
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        (b'{"case"; 1}', "not JSON"),
+        (b'{"case": 1, "speed": 0.3', "not JSON"),
+        (b"\xff", "not UTF-8"),
+        (b"[" * 100_000, "nested too deeply|not JSON"),
+        (b"[1]", "not a JSON object"),
+        (b'"case"', "not a JSON object"),
+        (b'{"speed": 0.3}', "no 'case'"),
+        (b'{"case": -1, "speed": 0.3}', "its case is -1"),
+        (b'{"case": 3, "speed": 0.3}', "its case is 3, of 3"),
+        (b'{"case": 0.7, "speed": 0.3}', "its case is 0.7"),
+        (b'{"case": "1", "speed": 0.3}', "its case is '1'"),
+        (b'{"case": true, "speed": 0.3}', "its case is True"),
+        (b'{"case": 0, "speed": 0.3}', "case 0 has a row already"),
+        (b'{"case": 1, "speed": NaN}', "NaN is not a number"),
+        (b'{"case": 1, "speed": -Infinity}', "-Infinity is not a number"),
+        (b'{"case": 1}', "no 'speed'"),
+        (b'{"case": 1, "speed": "fast"}', "could not convert"),
+    ],
+)
+def test_a_line_that_is_no_row_is_refused_with_its_number(line, words, path, three):
+    lines = three.splitlines()
+    path.write_bytes(b"\n".join([*lines[:2], line, lines[3]]) + b"\n")
+    before = path.read_bytes()
+
+    def read(record):
+        return {"speed": float(record["speed"])}
+
+    with pytest.raises(InputError, match=words) as refused:
+        Journal(path, STUDY, read=read, cases=3)
+    assert f"{path} is damaged in line 3: " in str(refused.value)
+    assert "--restart" in str(refused.value)
+    assert path.read_bytes() == before
+    Journal(path, STUDY, read=read, cases=3, restart=True).__exit__(None, None, None)
+
+
+@pytest.mark.parametrize("heading", [b"[]", b"no", b'"\xff"'])
+def test_a_damaged_heading_is_refused(heading, path, three):
+    path.write_bytes(three.replace(three.splitlines()[0], heading))
+    with pytest.raises(InputError, match="in line 1"):
         Journal(path, STUDY)
 
 

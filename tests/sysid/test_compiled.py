@@ -99,13 +99,6 @@ def test_without_a_compiler(monkeypatch):
 
 
 @needs_compiler
-def test_a_cache_that_cannot_be_written_is_done_without(tmp_path, monkeypatch):
-    (tmp_path / "file").touch()
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
-    assert found("int x;", 1, 1, make=True) is None
-
-
-@needs_compiler
 def test_what_leaves_the_numbers_counts_for_nothing(monkeypatch):
     system, drive, start, p, _ = CASES["fine"]
     (made,) = predict_all(system, [(drive, np.array(start), np.array(p))])

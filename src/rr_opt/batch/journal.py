@@ -1,7 +1,8 @@
-"""The journal of a study: each finished row a line, so that a run that was stopped can go on.
+"""The journal of a batch: one line for each finished row, so that a stopped run can continue.
 
-A line is written, flushed and synced before the next case counts as begun. A run that is killed
-while it writes leaves at most a torn last line, which the next run cuts off.
+A line is written, flushed and synced before the next row is taken. A run that is killed while it
+writes leaves at most a torn last line, which the next run cuts off. Any other line that is not a
+row of the batch is refused, with its number.
 """
 
 from __future__ import annotations
@@ -9,10 +10,10 @@ from __future__ import annotations
 import fcntl
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Self
+from typing import Any, Generic, Self, TypeVar
 
 from rr_opt.outcome import InputError
 
@@ -25,36 +26,49 @@ _CHANGES = {
     "code": "the code of rr-opt",
 }
 
+Row = TypeVar("Row")
 
-class Journal:
-    """The journal of one study, open for more rows; no other run can open it meanwhile.
 
-    rows  finished before, by their case
+class Journal(Generic[Row]):
+    """The journal of one batch, open for more rows; no other run can open it meanwhile.
+
+    rows  finished rows by case
     """
 
-    def __init__(self, path: Path, study: Mapping[str, Any], *, restart: bool = False):
-        """Open or begin the journal of the study that a mapping identifies.
+    def __init__(
+        self,
+        path: Path,
+        identity: Mapping[str, Any],
+        *,
+        read: Callable[[Mapping[str, Any]], Row] = dict,
+        cases: int | None = None,
+        restart: bool = False,
+    ):
+        """Open the journal of the batch that `identity` describes, or begin it.
 
-        restart: what an earlier run left is forgotten. Raises InputError if the journal is of
-        another study, is damaged, or is in use.
+        read     a row from its record; raises KeyError, TypeError or ValueError if it is not one
+        cases    how many there are, if that is known
+        restart  discard the rows of earlier runs
+
+        Raises InputError if the journal is of another batch, is damaged, or is in use.
         """
-        self._path = path
-        self.rows: dict[int, dict[str, Any]] = {}
+        self._path, self._read, self._cases = path, read, cases
+        self.rows: dict[int, Row] = {}
         path.parent.mkdir(parents=True, exist_ok=True)
         self._file = path.open("a+b")
         try:
             self._lock()
             if restart:
                 self._file.truncate(0)
-            self._read(dict(study))
+            self._load(dict(identity))
         except BaseException:
             self._file.close()
             raise
 
-    def append(self, case: int, row: Mapping[str, Any]) -> None:
-        """Keep a finished row: it is on the disk when this returns."""
-        self._write({"case": case, **row})
-        self.rows[case] = dict(row)
+    def append(self, case: int, record: Mapping[str, Any]) -> None:
+        """Keep a finished row: it is on disk when this returns."""
+        self._write({"case": case, **record})
+        self.rows[case] = self._read(record)
 
     def __enter__(self) -> Self:
         return self
@@ -69,38 +83,59 @@ class Journal:
 
     def _lock(self) -> None:
         try:
-            # The system lets go of it when the process ends, however it ends.
+            # The system releases it when the process ends, however it ends.
             fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:
             raise InputError(
-                f"Another run is writing to {self._path}. Expected one run a folder. Wait for it, "
-                "or give another folder with --out."
+                f"Another run is writing to {self._path}. Expected one run per folder. Wait for "
+                "it, or give another folder with --out."
             ) from None
 
-    def _read(self, study: dict[str, Any]) -> None:
+    def _load(self, identity: dict[str, Any]) -> None:
         self._file.seek(0)
         content = self._file.read()
         whole = content[: content.rfind(b"\n") + 1]
         if len(whole) < len(content):
             self._file.truncate(len(whole))
         if not whole:
-            self._write(study)
+            self._write(identity)
             return
+        heading, *lines = whole.splitlines()
         try:
-            head, *rows = [json.loads(line) for line in whole.splitlines()]
-            for row in rows:
-                self.rows.setdefault(int(row.pop("case")), row)
-        except (ValueError, KeyError, AttributeError, TypeError):
+            known = _parsed(heading)
+        except ValueError as error:
+            raise self._damaged(1, str(error)) from None
+        if known != identity:
             raise InputError(
-                f"The journal {self._path} is damaged. Expected a JSON object a line. "
-                "Begin anew with --restart, which forgets the rows in it."
-            ) from None
-        if head != study:
-            raise InputError(
-                f"The rows in {self._path} are of another study: {_difference(head, study)}. "
+                f"The rows in {self._path} are of another study: {_difference(known, identity)}. "
                 "Expected the one they were begun with, to go on with it. Begin anew with "
-                "--restart, which forgets those rows, or give another folder with --out."
+                "--restart, which discards those rows, or give another folder with --out."
             )
+        for number, line in enumerate(lines, 2):
+            try:
+                case, row = self._row(_parsed(line))
+            except KeyError as error:
+                raise self._damaged(number, f"it has no {error}") from None
+            except (TypeError, ValueError) as error:
+                raise self._damaged(number, str(error)) from None
+            self.rows[case] = row
+
+    def _row(self, record: dict[str, Any]) -> tuple[int, Row]:
+        case = record.pop("case")
+        if type(case) is not int or case < 0:
+            raise ValueError(f"its case is {case!r}, not a number from 0 on")
+        if self._cases is not None and case >= self._cases:
+            raise ValueError(f"its case is {case}, of {self._cases} from 0 on")
+        if case in self.rows:
+            raise ValueError(f"case {case} has a row already")
+        return case, self._read(record)
+
+    def _damaged(self, number: int, why: str) -> InputError:
+        return InputError(
+            f"The journal {self._path} is damaged in line {number}: {why}. Expected a JSON object "
+            "for each case, as rr-opt wrote it. Delete the line to have its case solved again, or "
+            "begin anew with --restart, which discards all rows."
+        )
 
     def _write(self, record: Mapping[str, Any]) -> None:
         line = json.dumps(record, allow_nan=False, ensure_ascii=False) + "\n"
@@ -109,9 +144,26 @@ class Journal:
         os.fsync(self._file.fileno())
 
 
-def _difference(head: Any, study: dict[str, Any]) -> str:
-    """In words what changed."""
-    if not isinstance(head, dict):
-        return "they have no heading"
-    changed = [_CHANGES.get(key, key) for key in study if head.get(key) != study[key]]
+def _parsed(line: bytes) -> dict[str, Any]:
+    """The JSON object in a line. Raises ValueError."""
+
+    def refuse(name: str) -> None:
+        raise ValueError(f"{name} is not a number of JSON")
+
+    try:
+        record = json.loads(line, parse_constant=refuse)
+    except json.JSONDecodeError as error:
+        raise ValueError(f"it is not JSON ({error.msg}, column {error.colno})") from None
+    except UnicodeDecodeError:
+        raise ValueError("it is not UTF-8") from None
+    except RecursionError:
+        raise ValueError("it is nested too deeply") from None
+    if not isinstance(record, dict):
+        raise ValueError("it is not a JSON object")
+    return record
+
+
+def _difference(known: dict[str, Any], identity: dict[str, Any]) -> str:
+    """What changed, in words."""
+    changed = [_CHANGES.get(key, key) for key in identity if known.get(key) != identity[key]]
     return f"{' and '.join(changed) or 'something'} changed since they were begun"

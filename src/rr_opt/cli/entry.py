@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 
-from rr_opt.batch.processes import ONE_THREAD
+# An interrupt while these are loaded shows a traceback, so they are few and light.
 from rr_opt.cli import interrupt
 from rr_opt.outcome import EXIT_INTERRUPTED
 
@@ -16,6 +16,8 @@ def main() -> None:
     """
     try:
         interrupt.watch()
+        from rr_opt.batch.processes import ONE_THREAD
+
         for name, count in ONE_THREAD.items():
             os.environ.setdefault(name, count)
         from rr_opt.cli.main import app

@@ -149,8 +149,9 @@ def _rows(
 
     total = len(asked.problems)
     identity = {"input_sha256": asked.sha256, "version": __version__, "cold": cold}
-    with Journal(folder / "journal.jsonl", identity, restart=restart) as journal:
-        rows = {case: row_from(record) for case, record in journal.rows.items()}
+    path = folder / "journal.jsonl"
+    with Journal(path, identity, read=row_from, cases=total, restart=restart) as journal:
+        rows = journal.rows
         if rows:
             typer.echo(f"{len(rows)} of {total} rows are there from an earlier run.", err=True)
         if len(rows) == total:
@@ -161,7 +162,6 @@ def _rows(
                 solve = partial(run, pool, solve_case)
                 for case, row in solve_study(asked.problems, planned, rows, solve, cold=cold):
                     journal.append(case, row_record(row))
-                    rows[case] = row
                     progress()
         except KeyboardInterrupt:
             typer.echo(

@@ -17,7 +17,7 @@ import casadi as ca
 
 from rr_opt.design.shapes.shape import Shape
 from rr_opt.design.transcription import COMMON, DYNAMIC, MEANS, PeriodTerms, named
-from rr_opt.mechanics.code_generation import externals
+from rr_opt.mechanics.compile_cache import externals
 from rr_opt.mechanics.runge_kutta import Tableau
 from rr_opt.model.ballast import By, hang
 from rr_opt.motion.dynamics import Dynamics, derive

@@ -17,13 +17,13 @@ import ctypes
 import math
 from dataclasses import dataclass, fields
 from functools import lru_cache
-from importlib.resources import files
 
 import casadi as ca
 import numpy as np
 
 from rr_opt.array import Array
-from rr_opt.mechanics.code_generation import in_stages, library
+from rr_opt.mechanics.code_generation import in_stages, source_file
+from rr_opt.mechanics.compile_cache import library
 from rr_opt.mechanics.vectorised import ArrayFunction, over_arrays
 from rr_opt.model.ballast import By, Loads, hang
 from rr_opt.model.problem import Interval
@@ -90,10 +90,8 @@ def _library(affine: ca.Function, torque: ca.Function, *, make: bool) -> ctypes.
         )
     except NotImplementedError:
         return None
-    lanes, points, loop = (
-        files("rr_opt").joinpath("data", f"{name}.c").read_text(encoding="utf-8")
-        for name in ("lanes", "gait_points", "landscape")
-    )
+    lanes, points = (source_file("rr_opt.mechanics", name) for name in ("lanes.c", "gait_points.c"))
+    loop = source_file("rr_opt.design", "landscape.c")
     head = f"#define NP {affine.nnz_in(3)}\n"
     head += f"#define NK_AFFINE {lines.kept[0]}\n#define NK_TORQUE {load.kept[0]}\n"
     parts = [head, lanes, points, lines.source, load.source, loop]

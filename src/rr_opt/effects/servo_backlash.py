@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from rr_opt.array import Array
 from rr_opt.effects.effect import Effect, Parameter, Port
-from rr_opt.mechanics.code_generation import OftenUsed
+from rr_opt.mechanics.compile_cache import OftenUsed
 from rr_opt.mechanics.drive import Drive, FreeJoint
 
 _STEPS = 240

@@ -1,51 +1,19 @@
-"""CasADi functions as machine code: C source, the compiler, and the cache of what was compiled.
+"""C source of a CasADi function for several points at once, in stages.
 
-C source of a derived CasADi function for several points at once, in stages.
-
-CasADi's own C computes everything of one point. Here each value is a vector `V` of some points
-(see data/lanes.c), and what depends on the first inputs alone is computed by a function of
-its own: of a sweep on the robot once for a whole gait, and on the posture once for all tries of the
-speed; of a diagnosis on the parameters once for all steps of some runs.
-
-C source made into a library of this machine, where a C compiler is at hand.
-
-What was compiled is kept in the user's cache folder, by the hash of its source.
+CasADi's own C evaluates one point. Here each value is a vector `V` of points, one in each lane of a
+vector register (lanes.c), and what depends on the first inputs alone is computed by a function of
+its own: in a sweep what the robot determines once for a whole gait, and what the posture determines
+once for all iterates of the speed; in a diagnosis what the parameters determine once for all steps.
 """
 
 from __future__ import annotations
 
-import ctypes
-import hashlib
-import os
-import platform
-import shutil
-import subprocess
-import tempfile
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
-from functools import lru_cache
-from pathlib import Path
+from collections.abc import Sequence
+from dataclasses import dataclass
+from importlib.resources import files
+from itertools import accumulate
 
 import casadi as ca
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
-
-
-def inverted(A: ca.SX) -> ca.SX:
-    """A^-1 of a regular matrix (n, n), for n up to 4 or so."""
-    n = A.size1()
-    if n == 1:
-        return 1 / A
-    cofactors = [
-        [
-            (-1) ** (i + j)
-            * ca.det(A[[r for r in range(n) if r != j], [c for c in range(n) if c != i]])
-            for j in range(n)
-        ]
-        for i in range(n)
-    ]
-    return ca.vertcat(*(ca.horzcat(*row) for row in cofactors)) / ca.det(A)
-
 
 _BINARY = {
     ca.OP_ADD: "{} + {}",
@@ -84,14 +52,13 @@ _UNARY = {
 class _Value:
     """One assignment: its right side with a hole for each of the values it needs.
 
-    A constant has stage -1, and stands wherever it is needed.
+    A constant has stage -1 and is written wherever it is needed. `kept`: a later stage needs it.
     """
 
     text: str
     needs: tuple[int, ...]
     stage: int
-    later: bool = field(default=False)
-    """Whether a later stage needs it."""
+    kept: bool = False
 
 
 @dataclass(frozen=True)
@@ -106,61 +73,66 @@ class Stages:
     kept: tuple[int, ...]
 
 
+def source_file(package: str, name: str) -> str:
+    """The text of a C file that is installed with a package."""
+    return files(package).joinpath(name).read_text(encoding="utf-8")
+
+
 def in_stages(
     function: ca.Function, name: str, stages: Sequence[int], how: str = "INLINE"
 ) -> Stages:
-    """An SX function whose i-th input comes in at stage stages[i] (0, 1, ..).
+    """The C of an SX function whose i-th input is known from stage stages[i] (0, 1, ..) on.
 
-    how  INLINE or ALONE, of data/lanes.c: copied to where it is called, or called
-
+    how: INLINE or ALONE, as lanes.c defines them: copied to where it is called, or called.
     Raises NotImplementedError for an operation that has no C here.
     """
     values, outputs = _values(function, stages)
     last = max(stages)
     for value in values:
         for need in value.needs:
-            values[need].later |= 0 <= values[need].stage < value.stage
+            values[need].kept |= 0 <= values[need].stage < value.stage
     for k in outputs:
-        values[k].later |= 0 <= values[k].stage < last
-    place = [
-        {k: at for at, k in enumerate(k for k, v in enumerate(values) if v.stage == s and v.later)}
-        for s in range(last)
-    ]
-    parts = []
+        values[k].kept |= 0 <= values[k].stage < last
+    slots: list[dict[int, int]] = []
+    for stage in range(last):
+        kept = [k for k, value in enumerate(values) if value.stage == stage and value.kept]
+        slots.append({k: slot for slot, k in enumerate(kept)})
+    lines = []
     for stage in range(last + 1):
         earlier = "".join(f", const V* restrict kept_{s}" for s in range(stage))
-        parts.append(f"{how} void {name}_{stage}(const V* restrict x{earlier}, V* restrict out) {{")
-        parts += [f"  (void)kept_{s};" for s in range(stage)]
+        lines.append(f"{how} void {name}_{stage}(const V* restrict x{earlier}, V* restrict out) {{")
+        lines += [f"  (void)kept_{s};" for s in range(stage)]
 
         def named(k: int, stage: int = stage) -> str:
             s = values[k].stage
             if s < 0:
                 return values[k].text
-            return f"a{k}" if s == stage else f"kept_{s}[{place[s][k]}]"
+            return f"a{k}" if s == stage else f"kept_{s}[{slots[s][k]}]"
 
         for k, value in enumerate(values):
             if value.stage == stage:
-                parts.append(f"  const V a{k} = {value.text.format(*map(named, value.needs))};")
+                lines.append(f"  const V a{k} = {value.text.format(*map(named, value.needs))};")
         if stage == last:
-            parts += [f"  out[{at}] = {named(k)};" for at, k in enumerate(outputs)]
+            lines += [f"  out[{i}] = {named(k)};" for i, k in enumerate(outputs)]
         else:
-            parts += [f"  out[{at}] = a{k};" for k, at in place[stage].items()]
-        parts.append("}")
-    return Stages("\n".join(parts) + "\n", tuple(len(kept) for kept in place))
+            lines += [f"  out[{slot}] = a{k};" for k, slot in slots[stage].items()]
+        lines.append("}")
+    return Stages("\n".join(lines) + "\n", tuple(map(len, slots)))
 
 
 def _values(function: ca.Function, stages: Sequence[int]) -> tuple[list[_Value], list[int]]:
     """Every value of the function, assigned once, and which of them are its outputs."""
-    starts: dict[int, int] = {}
+    first_in: dict[int, int] = {}
     sizes = [0] * (max(stages) + 1)
     for i, stage in enumerate(stages):
-        starts[i] = sizes[stage]
+        first_in[i] = sizes[stage]
         sizes[stage] += function.nnz_in(i)
+    first_out = [0, *accumulate(function.nnz_out(i) for i in range(function.n_out()))]
+    outputs = [-1] * first_out[-1]
+    # CasADi reuses its registers: which value is in each of them now.
     register: dict[int, int] = {}
     inverse: dict[int, int] = {}
     values: list[_Value] = []
-    outputs = [-1] * sum(function.nnz_out(i) for i in range(function.n_out()))
-    first_out = [sum(function.nnz_out(j) for j in range(i)) for i in range(function.n_out())]
     for k in range(function.n_instructions()):
         code = function.instruction_id(k)
         out, args = function.instruction_output(k), function.instruction_input(k)
@@ -168,129 +140,23 @@ def _values(function: ca.Function, stages: Sequence[int]) -> tuple[list[_Value],
             outputs[first_out[out[0]] + out[1]] = register[args[0]]
             continue
         if code == ca.OP_INPUT:
-            value = _Value(f"x[{starts[args[0]] + args[1]}]", (), stages[args[0]])
+            value = _Value(f"x[{first_in[args[0]] + args[1]}]", (), stages[args[0]])
         elif code == ca.OP_CONST:
             value = _Value(f"all({function.instruction_constant(k)!r})", (), -1)
         elif code in _BINARY or code in _UNARY:
-            text = _BINARY.get(code) or _UNARY[code]
             needs = tuple(register[a] for a in args[: 2 if code in _BINARY else 1])
             if code == ca.OP_DIV:
-                # Many divide by the same: once inverted, and then multiplied by.
+                # Many values are divided by the same one: inverted once, then multiplied by.
                 divisor = needs[1]
                 if divisor not in inverse:
                     inverse[divisor] = len(values)
                     stage = max(0, values[divisor].stage)
                     values.append(_Value("1.0 / {}", (divisor,), stage))
                 needs = (needs[0], inverse[divisor])
+            text = _BINARY.get(code) or _UNARY[code]
             value = _Value(text, needs, max(0, *(values[need].stage for need in needs)))
         else:
             raise NotImplementedError(f"operation {code} of {function.name()} has no C here")
         register[out[0]] = len(values)
         values.append(value)
     return values, outputs
-
-
-_SECONDS = 60
-"""A compiler that takes longer is not waited for."""
-
-_NATIVE = "-march=native"
-
-
-def library(source: str, flags: tuple[str, ...], *, make: bool) -> ctypes.CDLL | None:
-    """What was compiled before, or is now if `make`; None where that cannot be."""
-    compiler = shutil.which(os.environ.get("CC", "cc"))
-    folder = _cache()
-    if not compiler or not folder:
-        return None
-    # A home may be shared by machines; what one of them calls native another may not have.
-    machine = (_processor(),) if _NATIVE in flags else ()
-    key = hashlib.sha256("\n".join((source, compiler, *flags, *machine)).encode()).hexdigest()[:32]
-    made = folder / f"{key}.so"
-    try:
-        if not made.exists():
-            if not make:
-                return None
-            _compile(compiler, source, flags, made)
-        return ctypes.CDLL(str(made))
-    except (OSError, subprocess.SubprocessError):
-        return None
-
-
-def _compile(compiler: str, source: str, flags: tuple[str, ...], library: Path) -> None:
-    with tempfile.TemporaryDirectory(dir=library.parent) as place:
-        code, made = Path(place) / "system.c", Path(place) / "system.so"
-        code.write_text(source, encoding="utf-8")
-        subprocess.run(
-            [compiler, *flags, "-o", str(made), str(code), "-lm"],
-            check=True,
-            capture_output=True,
-            timeout=_SECONDS,
-        )
-        made.replace(library)
-
-
-@lru_cache
-def _processor() -> str:
-    """What tells one kind of processor from another."""
-    told = {"vendor_id", "model name", "flags", "Features", "CPU part"}
-    try:
-        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
-    except OSError:
-        lines = []
-    own = sorted({line for line in lines if line.split(":")[0].strip() in told})
-    return "\n".join((platform.machine(), platform.processor(), *own))
-
-
-def _cache() -> Path | None:
-    base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
-    folder = Path(base) / "rr-opt"
-    try:
-        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-    except OSError:
-        return None
-    # Code that another user could have put there is not run.
-    mine = not hasattr(os, "getuid") or folder.stat().st_uid == os.getuid()
-    return folder if mine and os.access(folder, os.W_OK) else None
-
-
-def externals(
-    name: str, functions: Iterable[ca.Function], flags: tuple[str, ...], *, make: bool
-) -> tuple[ca.Function, ...] | None:
-    """The same functions, if their code was compiled before, or is now; see `library`.
-
-    name  of the code as a whole
-    """
-    generator = ca.CodeGenerator(name, {"with_header": False})
-    functions = tuple(functions)
-    for function in functions:
-        generator.add(function)
-    made = library(generator.dump(), flags, make=make)
-    if made is None:
-        return None
-    return tuple(ca.external(function.name(), made._name) for function in functions)
-
-
-_FLAGS = ("-O1", "-ffp-contract=off", "-fPIC", "-shared")
-"""No operation is done otherwise than by CasADi's virtual machine: the numbers are the same."""
-
-
-class OftenUsed:
-    """A function as machine code from its `pays`-th call on; if it was before, from its `few`-th.
-
-    few, pays  calls that take as long as to look for what was compiled before, and as to compile
-    """
-
-    def __init__(self, function: ca.Function, few: int, pays: int) -> None:
-        self._function, self._left = function, {few: False, pays: True}
-        self._calls = 0
-
-    def __call__(self, *args: ArrayLike) -> NDArray[np.float64]:
-        """Evaluate it, a function of one output."""
-        make = self._left.pop(self._calls, None)
-        if make is not None:
-            name = self._function.name()
-            compiled = externals(name, (self._function,), _FLAGS, make=make)
-            if compiled:
-                self._function, self._left = compiled[0], {}
-        self._calls += 1
-        return np.asarray(self._function(*args))

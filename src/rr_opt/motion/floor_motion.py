@@ -31,7 +31,6 @@ from functools import lru_cache
 
 import casadi as ca
 
-from rr_opt.mechanics.code_generation import inverted
 from rr_opt.mechanics.drive import FreeJoint
 from rr_opt.mechanics.kane import equations
 from rr_opt.mechanics.kinematics import SPEEDS
@@ -97,7 +96,7 @@ def solved(assembly: Assembly) -> FloorMotion:
     unknown = ca.vertcat(udot, ddphi)
     inertia = ca.jacobian(needed[free], udot)
     resting = ca.substitute(needed[free], unknown, ca.SX.zeros(unknown.numel()))
-    inverse = inverted(inertia)
+    inverse = ca.inv_minor(inertia)
     f = -inverse @ resting
     g = -inverse @ ca.jacobian(needed[free], ddphi)
 

@@ -1,7 +1,7 @@
 """Prediction and its derivatives as machine code, where a C compiler is at hand.
 
 CasADi's step, rates and channels become C for several runs at a time, one in each lane of the
-processor's vector registers; the loops over the steps are those of data/diagnose_lanes.c. What was
+processor's vector registers; the loops over the steps are those of diagnose_lanes.c. What was
 compiled is kept in the user's cache folder, by the hash of its source.
 """
 
@@ -11,14 +11,14 @@ import ctypes
 import itertools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from importlib.resources import files
 
 import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
 from rr_opt.array import Array
-from rr_opt.mechanics.code_generation import in_stages, library
+from rr_opt.mechanics.code_generation import in_stages, source_file
+from rr_opt.mechanics.compile_cache import library
 
 Indices = NDArray[np.int64]
 
@@ -221,10 +221,8 @@ def source_of(step: ca.Function, rates: ca.Function, seen: ca.Function, *, stiff
         parts.append(in_stages(both, name, (1, 1, 0), "ALONE"))
         head[f"K_{name.upper()}"] = parts[-1].kept[0]
     defines = [f"#define {name} {number}\n" for name, number in head.items()]
-    lanes, loops = (
-        files("rr_opt").joinpath("data", f"{name}.c").read_text(encoding="utf-8")
-        for name in ("lanes", "diagnose_lanes")
-    )
+    lanes = source_file("rr_opt.mechanics", "lanes.c")
+    loops = source_file("rr_opt.sysid", "diagnose_lanes.c")
     sources = [part.source for part in parts]
     return "".join([*defines, "#define STIFF\n" * stiff, lanes, *sources, *tables, loops])
 

@@ -16,7 +16,6 @@ import casadi as ca
 import numpy as np
 
 from rr_opt.array import Array
-from rr_opt.mechanics.code_generation import inverted
 from rr_opt.mechanics.vectorised import ArrayFunction, over_arrays
 from rr_opt.sysid.compiled import Compiled, found, source_of
 
@@ -161,7 +160,7 @@ def _rosenbrock(f: Slope, x: ca.SX, h: ca.SX, n: int) -> ca.SX:
     gamma = 1 - 1 / np.sqrt(2)
     y = ca.SX.sym("y", x.numel())
     by = ca.jacobian(f(0, y)[-n:], y)[:, -n:]
-    inverse = inverted(ca.SX.eye(n) - gamma * h * ca.substitute(by, y, x))
+    inverse = ca.inv_minor(ca.SX.eye(n) - gamma * h * ca.substitute(by, y, x))
 
     def solve(b: ca.SX) -> ca.SX:
         return ca.vertcat(b[:-n], inverse @ b[-n:])

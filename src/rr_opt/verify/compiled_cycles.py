@@ -2,7 +2,7 @@
 
 Some points at a time in the processor's vector registers, on all processors that are free. For
 viscous friction the method is that of `steady_fourier`; other friction is solved as
-data/sweep_newton.c says. Where nothing can be compiled, NumPy does all of it.
+newton_cycles.c says. Where nothing can be compiled, NumPy does all of it.
 """
 
 from __future__ import annotations
@@ -13,7 +13,6 @@ import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from functools import lru_cache
-from importlib.resources import files
 from typing import NamedTuple
 
 import casadi as ca
@@ -21,7 +20,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rr_opt.array import Array
-from rr_opt.mechanics.code_generation import Stages, in_stages, library
+from rr_opt.mechanics.code_generation import Stages, in_stages, source_file
+from rr_opt.mechanics.compile_cache import library
 from rr_opt.motion.dynamics import Dynamics
 from rr_opt.verify.fourier import matrices
 
@@ -104,10 +104,8 @@ def newton_source(dynamics: Dynamics) -> str:
 
 def _source(stages: Stages, parameters: int, loops: str) -> str:
     sizes = [f"#define NK{k} {kept}\n" for k, kept in enumerate(stages.kept)]
-    lanes, points, around = (
-        files("rr_opt").joinpath("data", f"{name}.c").read_text(encoding="utf-8")
-        for name in ("lanes", "gait_points", f"sweep_{loops}")
-    )
+    lanes, points = (source_file("rr_opt.mechanics", name) for name in ("lanes.c", "gait_points.c"))
+    around = source_file("rr_opt.verify", f"{loops}_cycles.c")
     return "".join([f"#define NP {parameters}\n", *sizes, lanes, points, stages.source, around])
 
 
@@ -120,7 +118,7 @@ def sines(most: int, straight: bool) -> Array:
 
 @lru_cache
 def table(n: int, straight: bool) -> tuple[Array, tuple[int, int, int]]:
-    """The `Table` of data/sweep_viscous.c, and the rows of its last three matrices."""
+    """The `Table` of viscous_cycles.c, and the rows of its last three matrices."""
     theta = np.arange(n) * ((1 if straight else 2) * math.pi / n)
     integral, tail, _ = matrices(n, False)
     turning, side_tail, dense = matrices(n, straight)

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 from rr_opt.model.gait import FourierGait, FreeGait, Gait, SineGait
 from rr_opt.outcome import Status
@@ -84,13 +85,18 @@ def gait_record(gait: Gait) -> dict[str, Any]:
 
 
 def gait_from(record: Mapping[str, Any]) -> Gait:
-    """The gait of a record."""
+    """The gait of a record. Raises KeyError, TypeError or ValueError if it is not one."""
+    kind = _GAITS.get(record["shape"])
+    if kind is None:
+        raise ValueError(f"its gait has the shape {record['shape']!r}, not one of {list(_GAITS)}")
     values = {
-        name: tuple(value) if isinstance(value, list) else value
-        for name, value in record.items()
-        if name != "shape"
+        one.name: tuple(value) if isinstance(value := record[one.name], list) else value
+        for one in fields(kind)
     }
-    return _GAITS[record["shape"]](**values)
+    for name, value in values.items():
+        for number in value if isinstance(value, tuple) else (value,):
+            _check_number(name, number)
+    return kind(**values)
 
 
 def row_record(row: Row) -> dict[str, Any]:
@@ -99,13 +105,42 @@ def row_record(row: Row) -> dict[str, Any]:
 
 
 def row_from(record: Mapping[str, Any]) -> Row:
-    """The row of a record."""
-    values = {one.name: record[one.name] for one in fields(Row)}
+    """The row of a record. Raises KeyError, TypeError or ValueError if it is not one."""
+    values = dict(record)
     values["status"] = Status(values["status"])
-    if values["expected"] is not None:
-        values["expected"] = tuple(values["expected"])
-    values["tried"], values["continued"] = tuple(values["tried"]), tuple(values["continued"])
+    if values["started"] not in get_args(Started):
+        raise ValueError(f"`started` is {values['started']!r}, not one of {get_args(Started)}")
+    for name in ("tried", "continued", "expected"):
+        if values[name] is not None:
+            values[name] = tuple(values[name])
+            for number in values[name]:
+                _check_number(name, number)
+    if (values["optimum"] is None) == (values["status"] is Status.OPTIMAL):
+        raise ValueError(f"`status` is {values['status'].value!r}, which does not fit `optimum`")
     if values["optimum"] is not None:
-        held = tuple(values["optimum"]["held"])
-        values["optimum"] = Optimum(**{**values["optimum"], "held": held})
+        values["optimum"] = _optimum_from(values["optimum"])
+    _check_numbers(Row, values)
     return Row(**values)
+
+
+def _optimum_from(record: Mapping[str, Any]) -> Optimum:
+    values = {**record, "held": tuple(record["held"])}
+    _check_numbers(Optimum, values)
+    for name in ("prices", "bound_prices"):
+        for key, price in values[name].items():
+            _check_number(f"{name}.{key}", price)
+    gait_from(values["gait"])
+    return Optimum(**values)
+
+
+def _check_numbers(kind: type, values: Mapping[str, Any]) -> None:
+    """Raise KeyError for a field that is missing, ValueError for one that is not a number."""
+    for one in fields(kind):
+        value = values[one.name]
+        if one.type in ("float", "int") or (one.type == "float | None" and value is not None):
+            _check_number(one.name, value)
+
+
+def _check_number(name: str, value: Any) -> None:
+    if isinstance(value, bool) or not isinstance(value, (float, int)) or not math.isfinite(value):
+        raise ValueError(f"`{name}` is {value!r}, not a finite number")
