@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rr_opt.answers.speed import Answer, checked
+from rr_opt.answers.speed import SpeedAnswer, evidence
 from rr_opt.design.maximize_speed import maximize_speed
 from rr_opt.model.problem import GaitBounds, Interval, Problem
 from rr_opt.model.robot import Robot
@@ -63,8 +63,8 @@ class BestAmplitude:
     own: tuple[tuple[float, Peak], ...]
     fitted: tuple[tuple[str, Peak], ...]
     robots: tuple[PeakStatistics, ...]
-    limited: Answer
-    unlimited: Answer
+    limited: SpeedAnswer
+    unlimited: SpeedAnswer
     allowed: float = RATE_LIMIT / (2 * math.pi)
 
 
@@ -85,9 +85,9 @@ def audit_best_amplitude(
     loaded = ABOUT_P.build(robot, FIGURE_5.ratio[0])
     limits = replace(NO_LIMITS, angle=ANGLE_LIMIT, rate=RATE_LIMIT)
     box = GaitBounds(Interval(0.05, FIGURE_5.amplitude[1]), Interval(*FIGURE_5.period))
+    optima = (maximize_speed(Problem(loaded, these, box)) for these in (limits, NO_LIMITS))
     limited, unlimited = (
-        checked("", "", maximize_speed(Problem(loaded, these, box)), lambda _: None)
-        for these in (limits, NO_LIMITS)
+        SpeedAnswer("", "", optimum, *evidence(optimum, lambda _: None)) for optimum in optima
     )
     return BestAmplitude(own, tuple(fitted), robots, limited, unlimited)
 

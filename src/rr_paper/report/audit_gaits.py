@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from rr_opt.answers.quantities import number
-from rr_opt.answers.speed import Answer
+from rr_opt.answers.speed import SpeedAnswer
 from rr_opt.outcome import Status
 from rr_paper.best_amplitude import Peak
 from rr_paper.publication import (
@@ -179,7 +179,7 @@ def _peak_text(peak: Peak) -> str:
     return f"{number(peak.amplitude, 3)} rad{after}"
 
 
-def _gait_text(answer: Answer) -> str:
+def _gait_text(answer: SpeedAnswer) -> str:
     best = answer.optimum.best
     if best is None:
         return "not found"
