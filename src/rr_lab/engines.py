@@ -14,7 +14,7 @@ from typing import Literal, get_args
 import numpy as np
 
 from rr_lab.effects import rig_with
-from rr_lab.mujoco.drive import STEP, drive
+from rr_lab.mujoco import drive as mujoco
 from rr_lab.rig import Rig
 from rr_lab.run import Motion, Outing, captured
 from rr_opt.model.experiment import Noise, Recording
@@ -36,7 +36,7 @@ def driven(
     lost.
     """
     if engine == "mujoco":
-        return drive(rig, gait, outing, STEP if step is None else step)
+        return mujoco.drive(rig, gait, outing, mujoco.STEP if step is None else step)
     from rr_lab.planar import drive as planar
 
     return planar.drive(rig, gait, outing, planar.STEP if step is None else step)
@@ -45,7 +45,7 @@ def driven(
 def fine_enough(engine: Engine, rig: Rig, step: float) -> float:
     """The step that an engine drives a rig with where `step` is asked for, s."""
     if engine == "mujoco":
-        return step
+        return mujoco.fine_enough(rig, step)
     from rr_lab.planar import drive as planar
 
     return planar.fine_enough(rig, step)

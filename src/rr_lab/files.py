@@ -17,7 +17,7 @@ from rr_lab.markers import places, seen
 from rr_lab.run import captured
 from rr_opt.model.experiment import Recording
 from rr_opt.model.parameters import PARAMETERS, PLATFORM_SYMBOLS, Uncertainty, parameters_of
-from rr_opt.model.robot import Platform, Robot
+from rr_opt.model.robot import EffectUse, Platform, Robot
 
 WRITTEN = "# Written by `rr-opt record`, which may write over it."
 """The first line of the file."""
@@ -137,20 +137,25 @@ def _effects(case: Case) -> list[dict[str, Any]]:
             {"name": name, "parameters": {name: _valued(true[name], PARAMETERS[name].unit)}}
             for name in case.changed
         ]
-    found = []
-    for use in case.effects:
-        effect = effect_named(use.name)
-        found.append(
-            {
-                "name": use.name if effect.named else "unknown",
-                "what": effect.what if effect.named else f"{use.name}: {effect.what}",
-                "parameters": {
-                    name: _valued(value, effect.parameter(name).unit)
-                    for name, value in use.values.items()
-                },
-            }
-        )
-    return found
+    return [_effect(case.nominal, use) for use in case.effects]
+
+
+def _effect(robot: Robot, use: EffectUse) -> dict[str, Any]:
+    """One effect: its parameters as the catalogue has them, and apart from them what it has not."""
+    effect = effect_named(use.name)
+    what = effect.what if effect.named else f"{effect.name}: {effect.what}"
+    realisation = effect.realisation if effect.named else effect.name
+    parameters, plant = {}, {}
+    for name, value in use.values.items():
+        each = effect.parameter(name)
+        (plant if each.plant else parameters)[name] = _valued(value, each.unit)
+    known = effect_named(effect.name)
+    for name, value in effect.derived(robot, use.values).items():
+        parameters[name] = _valued(value, known.parameter(name).unit)
+    record = {"name": effect.name if effect.named else "unknown", "what": what}
+    if realisation:
+        record["realisation"] = realisation
+    return {**record, "parameters": parameters, **({"plant": plant} if plant else {})}
 
 
 def _valued(value: float, unit: str) -> dict[str, Any]:

@@ -10,7 +10,8 @@ import numpy as np
 
 from rr_lab.case import Case, Plan, stream
 from rr_lab.draw import draw_effect, draw_near, draw_noise, draw_plans, draw_robot, draw_wrong
-from rr_lab.effects import EFFECTS, effect_named, rig_with
+from rr_lab.effects import NAMED, OUTSIDE_NAMES, REALISATIONS, effect_named, rig_with
+from rr_lab.effects.hidden import HiddenEffect
 from rr_lab.engines import Engine
 from rr_lab.visibility import Gauge, at_visibility
 from rr_opt.model.experiment import Noise
@@ -18,11 +19,12 @@ from rr_opt.model.parameters import default_uncertainty
 from rr_opt.model.robot import EffectUse, Robot
 from rr_opt.outcome import InputError
 
-NAMED = tuple(name for name, effect in EFFECTS.items() if effect.named)
-STRANGE = tuple(name for name, effect in EFFECTS.items() if not effect.named)
 KINDS = ("null", "parameters", "single", "pair", "outside")
 
-SEEN = 3.0, 40.0
+# Wheel inertia is a change of parameters in disguise: it is hidden only if it is asked for.
+SINGLES = tuple(name for name in NAMED if name != "wheel_inertia")
+
+SEEN = 3.0, 60.0
 """Between which the visibility is drawn, sigma, evenly in its logarithm."""
 
 GAUGED = 3
@@ -43,7 +45,8 @@ def random_case(
 ) -> Case:
     """Draw a case; the same seed, kind and engine give the same.
 
-    kind        null, parameters, single, single:EFFECT, pair, outside, outside:EFFECT or random
+    kind        null, parameters, single, pair, outside or random; single:EFFECT, outside:EFFECT and
+                pair:EFFECT+EFFECT name what is hidden, a realisation as EFFECT/REALISATION
     spread      0: but for what is hidden the nominal values are true; 1: they are off by chance, as
                 far as their uncertainties say
     target      visibility of each effect, sigma; drawn if left out
@@ -88,58 +91,68 @@ def hidden_in(
     case: Case, kind: str, *, target: float | None = None, visibility: Visibility | None = None
 ) -> Case:
     """The case with what its seed and the kind hide in it; see `random_case`."""
-    kind, name = _known(kind, case.seed)
-    if kind == "null":
+    head, names = read_kind(kind, case.seed)
+    if head == "null":
         return case
-    if kind == "parameters":
+    if head == "parameters":
         rng = stream(case.seed, "wrong")
         robot, changed = draw_wrong(rng, case.nominal, dict(case.uncertainty))
         return replace(case, robot=robot, changed=changed, verdict="parameters")
     rng = stream(case.seed, "effects")
-    names = (effect_named(name).name,) if name else _names(rng, kind)
+    effects = [_realisation(rng, name) for name in names or _names(rng, head)]
     # Strength is that of the effect alone: what is off by chance is not to hide it.
     alone = replace(case, robot=case.nominal)
     gauge = visibility or Gauge.of(alone, GAUGED)
     uses, notes = [], {}
-    for each in names:
+    for effect in effects:
         wanted = target or float(np.exp(rng.uniform(*np.log(SEEN))))
-        use, reached = _one(rng, each, alone, wanted, gauge)
-        uses.append(use)
-        notes[f"visibility_{each}"] = reached
-    known = all(effect_named(each).named for each in names)
+        if effect.visible:
+            wanted = float(np.clip(wanted, *effect.visible))
+        drawn = replace(alone, effects=(draw_effect(rng, effect, alone),))
+        scaled, reached = at_visibility(drawn, wanted, gauge)
+        uses.append(scaled.effects[0])
+        notes[f"visibility_{effect.name}"] = reached
+    known = all(effect.named for effect in effects)
     verdict = "missing_physics" if known else "unexplained"
     return replace(case, effects=tuple(uses), verdict=verdict, notes=notes)
 
 
-def _known(kind: str, seed: int) -> tuple[str, str]:
-    """The kind and the effect that a text names; raises InputError if there is no such kind."""
-    head, _, name = kind.partition(":")
-    if head == "random" and not name:
+def read_kind(kind: str, seed: int = 0) -> tuple[str, tuple[str, ...]]:
+    """The kind and the effects that a text such as `pair:servo_lag/second_order+clock_offset`
+    names; raises InputError if there is no such kind or effect."""
+    head, _, rest = kind.partition(":")
+    if head == "random" and not rest:
         head = str(stream(seed, "kind").choice(KINDS, p=(0.15, 0.15, 0.4, 0.15, 0.15)))
-    if head not in KINDS or (name and head not in ("single", "outside")):
+    names = tuple(filter(None, (name.strip() for name in rest.split("+"))))
+    count = {"single": 1, "pair": 2, "outside": 1}.get(head, 0)
+    if head not in KINDS or (names and len(names) != count):
         raise InputError(
             f"The laboratory has no kind of case {kind!r}. Expected {', '.join(KINDS)}, random, "
-            "single:EFFECT or outside:EFFECT. Correct it."
+            "single:EFFECT, outside:EFFECT or pair:EFFECT+EFFECT. Correct it."
         )
-    return head, name
+    for name in names:
+        if effect_named(name).named != (head != "outside"):
+            raise InputError(
+                f"The kind of case {kind!r} does not go with its effect. Expected single or pair "
+                f"for an effect of the catalogue ({', '.join(NAMED)}), and outside for another one "
+                f"({', '.join(OUTSIDE_NAMES)}). Correct it."
+            )
+    return head, names
 
 
 def _names(rng: np.random.Generator, kind: str) -> tuple[str, ...]:
     if kind == "outside":
-        return (str(rng.choice(STRANGE)),)
-    # Wheel inertia is a change of parameters in disguise: it is hidden only if it is asked for.
-    names = [name for name in NAMED if name != "wheel_inertia"]
+        return (str(rng.choice(OUTSIDE_NAMES)),)
     count = 2 if kind == "pair" else 1
-    return tuple(str(name) for name in rng.choice(names, count, replace=False))
+    return tuple(str(name) for name in rng.choice(SINGLES, count, replace=False))
 
 
-def _one(
-    rng: np.random.Generator, name: str, case: Case, target: float, gauge: Visibility
-) -> tuple[EffectUse, float]:
-    """An effect by lot that is seen as well as `target` says, and how well it is."""
-    alone = replace(case, effects=(draw_effect(rng, name, case),))
-    found, reached = at_visibility(alone, target, gauge)
-    return found.effects[0], reached
+def _realisation(rng: np.random.Generator, name: str) -> HiddenEffect:
+    """The realisation that a text asks for; any, if it is a bare name."""
+    if "/" in name:
+        return effect_named(name)
+    several = REALISATIONS[name]
+    return several[int(rng.integers(len(several)))]
 
 
 def case_of(

@@ -1,11 +1,8 @@
-"""What a wheel's friction depends on beside its speed: its place, its turns, the time.
+"""The robot on the laboratory's bench: what it is made of, before an engine is chosen.
 
-The robot on the laboratory's bench: what it is made of, before an engine is told.
-
-A hidden effect changes a rig. A rig that no effect has touched is the nominal robot.
-
-Plain data that every engine reads. An engine that goes through a motion step by step calls a law
-with the wheels as they are; another one may make expressions of the same data.
+A rig that no effect has touched is the nominal robot. It is plain data that every engine reads. An
+engine that steps through a motion calls the wheels' laws at each step; another one makes
+expressions of the same data.
 """
 
 from __future__ import annotations
@@ -33,25 +30,31 @@ Shaper = Callable[[Array, Array], Array]
 
 
 @dataclass
-class Turning:
-    """The wheels at an instant, and what brakes them, which a law may change.
+class Wheels:
+    """The wheels at an instant, and what acts on them, which a law may change in place.
 
     t        since the robot was let go, s; negative while it settles
     rate     of turning of each wheel, rad/s (4,)
     angle    each has turned by, rad (4,)
     places   of the wheels' centres on the floor, m (4, 2)
-    damping  N m s (4,), dry N m (4,): as the rig has them, to be changed in place
+    heading  of platform 1, rad
+    loads    with which the wheels press on the floor, N (4,)
+    damping  N m s (4,), dry N m (4,): friction as the rig has it
+    torque   N m (4,), what else turns them
     """
 
     t: float
     rate: Array
     angle: Array
     places: Array
+    heading: float
+    loads: Array
     damping: Array
     dry: Array
+    torque: Array
 
 
-Law = Callable[[Turning], None]
+Law = Callable[[Wheels], None]
 
 
 @dataclass(frozen=True)
@@ -63,6 +66,26 @@ class Tether:
     y: float
     slack: float
     stiffness: float
+
+
+def swing_inertia(robot: Robot) -> float:
+    """Of the platforms as they turn against each other about a joint at rest, kg m2."""
+    one, two = robot.platform1.joint_inertia, robot.platform2.joint_inertia
+    return one * two / (one + two)
+
+
+@dataclass(frozen=True)
+class Motor:
+    """A servo's loop: its torque on platform 2, whose reaction is on platform 1, is
+    stiffness * (asked - made) + damping * (feedforward * rate asked - rate made).
+
+    stiffness, damping  N m/rad and N m s/rad
+    feedforward         1: follows a steady rate without lag; 0: lags it by damping/stiffness
+    """
+
+    stiffness: float
+    damping: float
+    feedforward: float = 1.0
 
 
 @dataclass
@@ -82,10 +105,14 @@ class Rig:
     creep      m/(N s), side speed per side force of a wheel
     tilt       downhill components, rad
     play       rad, between servo and platform 2
+    gear       N m/rad, stiffness of the flanks that bound the play; None: the engine's stiffest
+    hinge_dry  N m, dry friction between the two platforms, in the joint itself
+    motor      the servo's loop; None: one that is stiff enough to follow its command exactly
     pin        m, the joint pin's clearance
     spring     N m/rad, with which each platform bends half way between joint and axle; None: it is
                rigid
     load       mass (kg) and stiffness (N/m) of what shifts on platform 1; None: nothing does
+    density    kg/m3, of a medium that drags at the platforms' bodies; see `box_of`
     tether     the cord that holds platform 1; None: nothing does
     offset     rad, is added to the command before it is shaped
     shapers    of the command, in order
@@ -106,9 +133,13 @@ class Rig:
     creep: float = 0.0
     tilt: tuple[float, float] = (0.0, 0.0)
     play: float = 0.0
+    gear: float | None = None
+    hinge_dry: float = 0.0
+    motor: Motor | None = None
     pin: float = 0.0
     spring: float | None = None
     load: tuple[float, float] | None = None
+    density: float = 0.0
     tether: Tether | None = None
     offset: float = 0.0
     shapers: list[Shaper] = field(default_factory=list)
@@ -126,6 +157,35 @@ class Rig:
         """On the floor's own axes, m/s2 (3,)."""
         x, y = np.sin(self.tilt)
         return GRAVITY * np.array([x, y, -np.sqrt(1 - x * x - y * y)])
+
+
+def box_of(m: float, I: float) -> tuple[float, float]:
+    """Half the length and breadth, and half the height, m, of a box with a platform's mass and
+    moment of inertia (the other two being 0.6 I). A medium drags at its sides."""
+    return math.sqrt(1.5 * I / m), math.sqrt(0.3 * I / m)
+
+
+def wheel_loads(rig: Rig) -> Array:
+    """With which each wheel presses on the floor, N (4,), in the order of WHEELS.
+
+    The robot stands on four wheels, on a joint that turns about the vertical alone: a stiff body,
+    whose weight and whose two moments on the floor give three conditions for four loads. Of all
+    loads that keep them, those are taken whose squares are least: the loads of four equal springs.
+    Without a mass beside the axis the wheels of an axle share alike, and of platform 1's axle
+
+        N1 = g (m1 (c1 + c2 - a1) + m2 a2) / (c1 + c2)
+
+    Assumed: the posture is straight (at 0.9 rad the axles carry another half a per cent), the floor
+    is nearly level, and the masses are low, so that braking and turning move no load.
+    """
+    one, two = rig.robot.platform1, rig.robot.platform2
+    stands = [(x, side * part.b) for x, part in ((one.c, one), (-two.c, two)) for side in (1, -1)]
+    masses = [(one.m, one.joint_to_centre, rig.left[0]), (two.m, -two.joint_to_centre, rig.left[1])]
+    if rig.load is not None:
+        masses.append((rig.load[0], one.joint_to_centre, 0.0))
+    balance = np.array([(1.0, x, y) for x, y in stands]).T
+    weight = -rig.gravity[2] * np.array([(m, m * x, m * y) for m, x, y in masses]).sum(0)
+    return np.linalg.lstsq(balance, weight)[0]
 
 
 @dataclass(frozen=True)
@@ -161,7 +221,7 @@ class Patch:
     times: float
     within: Circle | Edge
 
-    def __call__(self, wheels: Turning) -> None:
+    def __call__(self, wheels: Wheels) -> None:
         """The friction of this instant."""
         # Plain numbers: a law is asked at every step, and tables of four cost more than they do.
         for wheel, place in enumerate(wheels.places.tolist()):
@@ -178,7 +238,7 @@ class Falling:
     torque: float
     rate: float
 
-    def __call__(self, wheels: Turning) -> None:
+    def __call__(self, wheels: Wheels) -> None:
         """The friction of this instant."""
         wheels.dry += self.torque * (1 + 2 * np.exp(-((wheels.rate / self.rate) ** 2))) / 3
 
@@ -190,7 +250,7 @@ class Drift:
     change: float
     time: float
 
-    def __call__(self, wheels: Turning) -> None:
+    def __call__(self, wheels: Wheels) -> None:
         """The friction of this instant."""
         wheels.damping *= 1 + self.change * (1 - np.exp(-max(wheels.t, 0.0) / self.time))
 
@@ -201,7 +261,19 @@ class Rub:
 
     torque: float
 
-    def __call__(self, wheels: Turning) -> None:
+    def __call__(self, wheels: Wheels) -> None:
         """The friction of this instant."""
         if wheels.angle[0] % (2 * np.pi) < 0.4 * np.pi:
             wheels.dry[0] += self.torque
+
+
+@dataclass(frozen=True)
+class RollingResistance:
+    """Dry friction at the rim of each wheel, `mu` of its load."""
+
+    mu: float
+    h: float
+
+    def __call__(self, wheels: Wheels) -> None:
+        """The friction of this instant."""
+        wheels.dry += self.mu * self.h * wheels.loads

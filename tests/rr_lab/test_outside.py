@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rr_lab.effects import EFFECTS
+from rr_lab.effects import OUTSIDE_NAMES, effect_named
 from rr_lab.engines import record
 from rr_lab.visibility import scaled_use
 from rr_opt.model.gait import SineGait
@@ -11,7 +11,6 @@ from rr_opt.model.robot import EffectUse
 from tests.rr_lab.reduced import LONG
 
 GAIT = SineGait(0.8, 1.0, 0.2)
-OUTSIDE = [name for name, effect in EFFECTS.items() if not effect.named]
 FADE = 0.02
 
 
@@ -26,12 +25,12 @@ def path(effects):
 
 
 def test_there_are_at_least_five():
-    assert len(OUTSIDE) >= 5
+    assert len(OUTSIDE_NAMES) >= 5
 
 
-@pytest.mark.parametrize("name", OUTSIDE)
+@pytest.mark.parametrize("name", OUTSIDE_NAMES)
 def test_seen_and_fading(name, nominal):
-    use = EffectUse(name, {each.name: each.typical for each in EFFECTS[name].parameters})
+    use = EffectUse(name, {each.name: each.typical for each in effect_named(name).parameters})
     strong, weak = (np.abs(path([scaled_use(use, k)]) - nominal).max() for k in (1.0, FADE))
     assert strong > 2e-3
     assert weak < 0.2 * strong

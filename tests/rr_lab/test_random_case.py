@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from rr_lab.case import play
-from rr_lab.effects import EFFECTS
+from rr_lab.effects import EVERY, effect_named
 from rr_lab.files import answer, seal_of, sealed_text
-from rr_lab.random_case import NAMED, random_case
+from rr_lab.random_case import random_case
 from rr_opt.outcome import InputError
 
 
@@ -68,15 +68,19 @@ def test_kinds(kind, verdict, count):
     assert case.robot == case.nominal
 
 
-@pytest.mark.parametrize("name", NAMED)
-def test_answer_has_name_and_values(name):
-    told = answer(drawn(4, f"single:{name}"))["effects"][0]
-    assert told["name"] == name
-    units = {each.name: each.unit for each in EFFECTS[name].parameters}
-    assert told["parameters"]
+@pytest.mark.parametrize(
+    "effect", [each for each in EVERY if each.named], ids=lambda each: each.key
+)
+def test_answer_has_name_realisation_and_values(effect):
+    told = answer(drawn(4, f"single:{effect.key}"))["effects"][0]
+    assert told["name"] == effect.name
+    assert told.get("realisation", "") == effect.realisation
+    assert told["parameters"] or effect.realisation == "medium_density"
     for key, given in told["parameters"].items():
-        assert given["unit"] == units[key]
+        assert given["unit"] == effect_named(effect.name).parameter(key).unit
         assert np.isfinite(given["value"])
+    for key, given in told.get("plant", {}).items():
+        assert given["unit"] == effect.parameter(key).unit
 
 
 @pytest.mark.parametrize("seed", range(8))

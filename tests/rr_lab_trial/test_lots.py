@@ -6,8 +6,10 @@ from dataclasses import replace
 
 import pytest
 
+from rr_lab.effects import REALISATIONS, effect_named
 from rr_lab.engines import ENGINES
-from rr_lab.trial.lots import BLOCK, SINGLES, STRENGTHS, case_seed, draw_lot, read_kinds
+from rr_lab.random_case import SINGLES
+from rr_lab.trial.lots import BLOCK, STRENGTHS, case_seed, draw_lot, read_kinds
 from rr_opt.outcome import InputError
 
 SEED = "1df794d0"
@@ -45,7 +47,7 @@ def test_another_seed_has_another_order():
 
 def test_effects_and_strengths_take_turns():
     singles = [lot for lot in HUNDRED if kind(lot) == "single"]
-    counted = Counter(lot.kind.partition(":")[2] for lot in singles)
+    counted = Counter(effect_named(lot.kind.partition(":")[2]).name for lot in singles)
     assert set(counted) == set(SINGLES)
     assert max(counted.values()) - min(counted.values()) <= 1
     for low, high in STRENGTHS.values():
@@ -64,6 +66,28 @@ def test_half_of_each_kind_is_driven_by_each_engine():
         engines = [lot.engine for lot in HUNDRED if kind(lot) == name]
         assert set(engines) == set(ENGINES)
         assert abs(engines.count("planar") - len(engines) / 2) <= 1
+
+
+@pytest.mark.parametrize("seed", ["5eed", "1df794d0", "0", "abc"])
+def test_of_two_cases_of_a_kind_each_engine_drives_one(seed):
+    for name in BLOCK:
+        lots = [draw_lot(seed, number, (name,)) for number in (1, 2)]
+        assert {lot.engine for lot in lots} == set(ENGINES)
+
+
+def test_realisations_take_turns():
+    name = "servo_backlash"
+    singles = [draw_lot(SEED, number, ("single",)) for number in range(1, 14 * 6 + 1)]
+    keys = [lot.kind.partition(":")[2] for lot in singles]
+    counted = Counter(key for key in keys if effect_named(key).name == name)
+    assert set(counted) == {each.key for each in REALISATIONS[name]}
+    assert max(counted.values()) - min(counted.values()) <= 1
+
+
+def test_a_kind_may_name_what_is_hidden():
+    kinds = read_kinds("pair:servo_lag/second_order+clock_offset, single:servo_backlash")
+    lots = [draw_lot(SEED, number, kinds) for number in range(1, 12)]
+    assert {lot.kind for lot in lots} == set(kinds)
 
 
 def test_what_is_hidden_does_not_depend_on_the_engine():
@@ -90,4 +114,12 @@ def test_kinds_are_read_in_one_order():
 @pytest.mark.parametrize("text", ["", "null, strange", ","])
 def test_wrong_kinds(text):
     with pytest.raises(InputError, match=r"--kinds: Read .* Expected .*null.* Correct it"):
+        read_kinds(text)
+
+
+@pytest.mark.parametrize(
+    "text", ["single:gremlins", "single:tether", "outside:servo_lag", "pair:servo_lag", "null:x"]
+)
+def test_wrong_effects(text):
+    with pytest.raises(InputError, match=r"laboratory|does not go with"):
         read_kinds(text)

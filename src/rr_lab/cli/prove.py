@@ -33,7 +33,9 @@ def prove(
     kinds: Annotated[
         str | None,
         typer.Option(
-            help="Only these: null, single, pair, parameters, outside.", show_default="all"
+            help="Only these: null, single, pair, parameters, outside; or single:EFFECT, "
+            "pair:EFFECT+EFFECT, outside:EFFECT.",
+            show_default="all",
         ),
     ] = None,
     engine: Annotated[
@@ -59,6 +61,13 @@ def prove(
             min=1,
         ),
     ] = None,
+    make_only: Annotated[
+        bool,
+        typer.Option(
+            "--make-only",
+            help="Make and seal the cases, and diagnose none: cases/ID and answers/ID.json.",
+        ),
+    ] = False,
     restart: Annotated[
         bool, typer.Option("--restart", help="Forget the cases of an earlier run.")
     ] = False,
@@ -94,7 +103,11 @@ def prove(
             run=partial(run, pool),
             count=partial(_count, total=cases),
             restart=restart,
+            make_only=make_only,
         )
+    if opened is None:
+        typer.echo(f"{cases} cases in {folder / 'cases'}, their answers in {folder / 'answers'}")
+        return
     from rr_lab.report.files import write_proof
     from rr_lab.report.summary import record, summary
 

@@ -83,7 +83,7 @@ def read_effects(texts: Iterable[str]) -> tuple[EffectUse, ...]:
     for text in texts:
         name, _, rest = text.partition(":")
         effect = effect_named(name.strip())
-        units = {each.name: each for each in effect.parameters}
+        units = effect.accepted
         values = {}
         for part in filter(None, (part.strip() for part in rest.split(","))):
             key, _, value = (piece.strip() for piece in part.partition("="))

@@ -1,4 +1,4 @@
-"""The effects that the laboratory can hide, by name."""
+"""The effects that the laboratory can hide, by name and realisation."""
 
 from __future__ import annotations
 
@@ -14,21 +14,33 @@ from rr_lab.rig import Rig
 from rr_opt.model.robot import EffectUse, Robot
 from rr_opt.outcome import InputError
 
-EFFECTS = {
-    effect.name: effect
-    for effect in (*ACTUATION, *ROLLING, *CONTACT, *FLOOR, *MASS, *MEASUREMENT, *OUTSIDE)
+EVERY = (*ACTUATION, *ROLLING, *CONTACT, *FLOOR, *MASS, *MEASUREMENT, *OUTSIDE)
+
+REALISATIONS: dict[str, tuple[HiddenEffect, ...]] = {
+    name: tuple(effect for effect in EVERY if effect.name == name)
+    for name in dict.fromkeys(effect.name for effect in EVERY)
 }
-"""All of them; those outside the catalogue have `named` False."""
+"""By name, the first being the one that a bare name stands for."""
+
+NAMED = tuple(name for name, (first, *_) in REALISATIONS.items() if first.named)
+OUTSIDE_NAMES = tuple(name for name in REALISATIONS if name not in NAMED)
+"""Those that a diagnosis can name, and those outside its catalogue."""
+
+_BY_KEY = {effect.key: effect for effect in EVERY} | {
+    name: first for name, (first, *_) in REALISATIONS.items()
+}
 
 
-def effect_named(name: str) -> HiddenEffect:
-    """By name; raises InputError if there is none."""
-    if name not in EFFECTS:
+def effect_named(key: str) -> HiddenEffect:
+    """By NAME or NAME/REALISATION; raises InputError if there is none."""
+    if key not in _BY_KEY:
+        name = key.partition("/")[0]
+        known = [each.key for each in REALISATIONS.get(name, ())] or list(REALISATIONS)
         raise InputError(
-            f"The laboratory cannot hide {name!r}. Expected one of: {', '.join(EFFECTS)}. "
+            f"The laboratory cannot hide {key!r}. Expected one of: {', '.join(known)}. "
             "Correct the name."
         )
-    return EFFECTS[name]
+    return _BY_KEY[key]
 
 
 def rig_with(robot: Robot, effects: Iterable[EffectUse] = ()) -> Rig:
@@ -39,11 +51,10 @@ def rig_with(robot: Robot, effects: Iterable[EffectUse] = ()) -> Rig:
     rig = Rig(robot)
     for use in (*robot.physics, *effects):
         effect = effect_named(use.name)
-        known = {parameter.name for parameter in effect.parameters}
-        if unknown := sorted(set(use.values) - known - effect.further):
+        if unknown := sorted(set(use.values) - set(effect.accepted)):
             raise InputError(
                 f"The effect {use.name} has no parameter {', '.join(unknown)}. Expected: "
-                f"{', '.join(sorted(known))}. Correct the name."
+                f"{', '.join(sorted(effect.accepted))}. Correct the name."
             )
         try:
             effect.enter(rig, use.values)

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from rr_lab.effects.hidden import HiddenEffect, Parameter, Values
-from rr_lab.rig import Rig
+from rr_lab.effects.hidden import HiddenEffect, Parameter, Setting, Values
+from rr_lab.rig import Motor, Rig, swing_inertia
 from rr_opt.array import Array
 
 
@@ -30,6 +30,24 @@ def _lag(rig: Rig, values: Values) -> None:
     rig.shapers.append(follow)
 
 
+def _second_order(rig: Rig, values: Values) -> None:
+    """The damping ratio zeta stays as the lag tau = 2 zeta/omega grows."""
+    tau = values["tau"]
+    _lag(rig, {"tau": tau, "beta": (tau / (2 * values["zeta"])) ** 2})
+
+
+def _p_loop(rig: Rig, values: Values) -> None:
+    """A motor as soft as its lag says, which the load's torque deflects too."""
+    tau, zeta = values["tau"], values["zeta"]
+    stiffness = swing_inertia(rig.robot) * (2 * zeta / tau) ** 2
+    rig.motor = Motor(stiffness, stiffness * tau, feedforward=0.0)
+
+
+def _damped(setting: Setting, values: Values) -> Values:
+    """A servo that hardly overshoots: damping ratio 0.5 to 1.2."""
+    return {**values, "zeta": float(setting.rng.uniform(0.5, 1.2))}
+
+
 def _rate_limit(rig: Rig, values: Values) -> None:
     limit = values["rate_limit"]
 
@@ -44,33 +62,102 @@ def _rate_limit(rig: Rig, values: Values) -> None:
     rig.shapers.append(follow)
 
 
+def _below_the_fastest(setting: Setting, _: Values) -> Values:
+    """Just below the fastest rate that is asked for."""
+    fastest = max(gait.peak_rate for gait in setting.gaits)
+    return {"rate_limit": float(fastest * setting.rng.uniform(0.8, 0.95))}
+
+
 def _backlash(rig: Rig, values: Values) -> None:
     rig.play += values["width"]
+    rig.hinge_dry += values.get("joint_friction", 0.0)
+    if "gear_stiffness" in values:
+        rig.gear = values["gear_stiffness"]
+
+
+def _frictional(setting: Setting, values: Values) -> Values:
+    """Friction from about the torque of the load's own inertia, where it begins to hold the load in
+    the play, to well above."""
+    largest = max(gait.amplitude * gait.angular_frequency**2 for gait in setting.gaits)
+    inertial = swing_inertia(setting.robot) * largest
+    friction = inertial * math.exp(setting.rng.uniform(math.log(0.5), math.log(4.0)))
+    return {**values, "joint_friction": float(friction)}
+
+
+def _compliant(setting: Setting, values: Values) -> Values:
+    """A gear that the joint's friction twists by 2 to 15 mrad."""
+    drawn = _frictional(setting, values)
+    twist = math.exp(setting.rng.uniform(math.log(2e-3), math.log(15e-3)))
+    return {**drawn, "gear_stiffness": float(drawn["joint_friction"] / twist)}
 
 
 def _offset(rig: Rig, values: Values) -> None:
     rig.offset += values["offset"]
 
 
+_TAU = Parameter("tau", "s", 0.02, most=0.3)
+_ZETA = Parameter("zeta", "1", 0.8, neutral=None, plant=True)
+_WIDTH = Parameter("width", "rad", 0.03, most=0.2)
+_FRICTION = Parameter("joint_friction", "N m", 0.1, neutral=None, plant=True)
+_GEAR = Parameter("gear_stiffness", "N m/rad", 20.0, neutral=None, plant=True)
+
 ACTUATION = (
     HiddenEffect(
         "servo_lag",
         "the servo follows its command late and smaller, by a first-order lag",
-        (Parameter("tau", "s", 0.02, most=0.3),),
+        (_TAU,),
         _lag,
-        further=frozenset({"beta"}),
+        "first_order",
+        also=(Parameter("beta", "s^2", 2e-4, neutral=None),),
+    ),
+    HiddenEffect(
+        "servo_lag",
+        "the servo follows its command late, by a second-order lag",
+        (_TAU, _ZETA),
+        _second_order,
+        "second_order",
+        draw=_damped,
+    ),
+    HiddenEffect(
+        "servo_lag",
+        "the servo's position loop is soft: late, and deflected by the load",
+        (_TAU, _ZETA),
+        _p_loop,
+        "p_loop",
+        draw=_damped,
     ),
     HiddenEffect(
         "servo_rate_limit",
         "the servo turns no faster than a limit",
         (Parameter("rate_limit", "rad/s", 2.5, neutral=math.inf, most=0.1),),
         _rate_limit,
+        draw=_below_the_fastest,
     ),
     HiddenEffect(
         "servo_backlash",
-        "play between the servo and platform 2, with stops at its ends",
-        (Parameter("width", "rad", 0.03, most=0.2),),
+        "play between the servo and platform 2, with stops at its ends; the joint turns freely",
+        (_WIDTH,),
         _backlash,
+        "inertial",
+        also=(_FRICTION, _GEAR),
+    ),
+    HiddenEffect(
+        "servo_backlash",
+        "play between the servo and platform 2, and dry friction in the joint, which holds the "
+        "load until a flank of the gear pushes it on",
+        (_WIDTH, _FRICTION),
+        _backlash,
+        "frictional",
+        draw=_frictional,
+    ),
+    HiddenEffect(
+        "servo_backlash",
+        "play between the servo and platform 2, dry friction in the joint, and a gear that twists "
+        "under it",
+        (_WIDTH, _FRICTION, _GEAR),
+        _backlash,
+        "frictional_compliant",
+        draw=_compliant,
     ),
     HiddenEffect(
         "servo_offset",

@@ -21,15 +21,41 @@ def _toe(rig: Rig, values: Values) -> None:
     ]
 
 
+_CREEP = Parameter("creep_compliance", "m/(N s)", 0.03, most=2.0)
+_MU = Parameter("mu", "1", 0.05, neutral=math.inf, most=2e-3)
+
 CONTACT = (
     HiddenEffect(
         "lateral_slip",
-        "the wheels slip sideways",
-        (
-            Parameter("creep_compliance", "m/(N s)", 0.03, most=2.0),
-            Parameter("mu", "1", 0.05, neutral=math.inf, most=2e-3),
-        ),
+        "the wheels creep sideways in proportion to their side force",
+        (_CREEP,),
         _slip,
+        "creep",
+        also=(_MU,),
+    ),
+    HiddenEffect("lateral_slip", "the wheels slide sideways", (_MU,), _slip, "sliding"),
+    HiddenEffect(
+        "lateral_slip",
+        "the wheels slide sideways at the peaks of a cycle alone",
+        (_MU,),
+        _slip,
+        "grazing",
+        visible=(1.0, 4.0),
+    ),
+    HiddenEffect(
+        "lateral_slip",
+        "the wheels slide sideways through most of a cycle",
+        (_MU,),
+        _slip,
+        "sliding_strongly",
+        visible=(30.0, 120.0),
+    ),
+    HiddenEffect(
+        "lateral_slip",
+        "the wheels creep sideways, up to a limit above which they slide",
+        (_CREEP, _MU),
+        _slip,
+        "saturating_creep",
     ),
     HiddenEffect(
         "axle_misalignment",

@@ -1,4 +1,8 @@
-"""What a hidden effect is: a name, its parameters, and how it gets into a rig."""
+"""What a hidden effect is: a name, its parameters, how they are drawn, and how it enters a rig.
+
+An effect of the catalogue may have several realisations: different physics that a user would call
+by the same name. Each is a `HiddenEffect` of its own.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +10,11 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
+import numpy as np
+
 from rr_lab.rig import Rig
+from rr_opt.model.gait import SineGait
+from rr_opt.model.robot import Robot
 
 Values = Mapping[str, float]
 
@@ -21,6 +29,7 @@ class Parameter:
     most     the largest deviation from neutral that is still believable, or for a limit the least
              value
     signed   whether it may have either sign
+    plant    whether it is the laboratory's own: no parameter of the catalogue, so never scored
     """
 
     name: str
@@ -29,6 +38,7 @@ class Parameter:
     neutral: float | None = 0.0
     most: float = math.inf
     signed: bool = False
+    plant: bool = False
 
     def scaled(self, value: float, factor: float) -> float:
         """The value `factor` times as far from neutral, within what is believable."""
@@ -41,22 +51,74 @@ class Parameter:
 
 
 @dataclass(frozen=True)
+class Setting:
+    """What drawn values may depend on.
+
+    gaits   of the runs that will be recorded
+    passed  a place (m) that one of the runs passes in its middle, drawn anew at each call
+    """
+
+    rng: np.random.Generator
+    robot: Robot
+    gaits: tuple[SineGait, ...]
+    passed: Callable[[], tuple[float, float]]
+
+
+def as_drawn(_: Setting, values: Values) -> Values:
+    """Each parameter of about its typical size."""
+    return values
+
+
+def nothing_more(_robot: Robot, _values: Values) -> dict[str, float]:
+    """The catalogue has no other name for what the parameters say."""
+    return {}
+
+
+@dataclass(frozen=True)
 class HiddenEffect:
     """An effect that the laboratory can hide.
 
-    enter    changes a rig by the values of the parameters; those not given are neutral
-    named    whether it is in the catalogue, so that a diagnosis can name it
-    further  what else a robot file may say of it: it is not drawn by lot
-    what     one sentence for the sealed answer
+    what         one sentence for the sealed answer
+    enter        changes a rig by the values of the parameters; those not given are neutral
+    realisation  which physics of that name; empty where there is only one
+    named        whether it is in the catalogue, so that a diagnosis can name it
+    also         parameters that may be given, and are never drawn
+    draw         (setting, each parameter of about its typical size, either sign where it may) ->
+                 values that belong together
+    derived      (nominal robot, values) -> parameters of the catalogue that follow from them
+    visible      the range of visibilities, sigma, in which it is what it is called; None: any
     """
 
     name: str
     what: str
     parameters: tuple[Parameter, ...]
     enter: Callable[[Rig, Values], None]
+    realisation: str = ""
     named: bool = True
-    further: frozenset[str] = frozenset()
+    also: tuple[Parameter, ...] = ()
+    draw: Callable[[Setting, Values], Values] = as_drawn
+    derived: Callable[[Robot, Values], Mapping[str, float]] = nothing_more
+    visible: tuple[float, float] | None = None
+
+    @property
+    def key(self) -> str:
+        """Of this realisation: `servo_backlash/frictional`, or the name where there is one only."""
+        return f"{self.name}/{self.realisation}" if self.realisation else self.name
+
+    @property
+    def accepted(self) -> dict[str, Parameter]:
+        """By name: every parameter that may be given."""
+        return {each.name: each for each in (*self.parameters, *self.also)}
 
     def parameter(self, name: str) -> Parameter:
         """By name; raises KeyError."""
-        return {each.name: each for each in self.parameters}[name]
+        return self.accepted[name]
+
+    def drawn(self, setting: Setting) -> Values:
+        """Random values of about their typical size."""
+        rng, values = setting.rng, {}
+        for each in self.parameters:
+            size = each.typical * math.exp(rng.uniform(-0.7, 0.7))
+            sign = rng.choice([-1, 1]) if each.signed else 1
+            values[each.name] = float(sign * size)
+        return self.draw(setting, values)

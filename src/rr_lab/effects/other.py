@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from rr_lab.effects.hidden import HiddenEffect, Parameter, Values
+import math
+
+from rr_lab.effects.hidden import HiddenEffect, Parameter, Setting, Values
 from rr_lab.rig import Circle, Edge, Patch, Rig
 
 
@@ -21,6 +23,33 @@ def _patch(rig: Rig, values: Values) -> None:
     rig.laws.append(Patch(values["multiplier"], within))
 
 
+def _any_direction(setting: Setting, _: Values) -> Values:
+    slope, way = 1.4e-3, setting.rng.uniform(-math.pi, math.pi)
+    return {"tilt_x": slope * math.cos(way), "tilt_y": slope * math.sin(way)}
+
+
+def _round_a_path(setting: Setting, values: Values) -> Values:
+    """A circle round a place that a run passes."""
+    x, y = setting.passed()
+    radius = float(setting.rng.uniform(0.15, 0.55))
+    return {"multiplier": 1 + values["multiplier"] / 2, "x": x, "y": y, "radius": radius}
+
+
+def _across_a_path(setting: Setting, values: Values) -> Values:
+    """An edge through a place that a run passes."""
+    x, y = setting.passed()
+    normal = float(setting.rng.uniform(-math.pi, math.pi))
+    return {"multiplier": 1 + values["multiplier"] / 2, "normal": normal, "edge_x": x, "edge_y": y}
+
+
+def _place(name: str, unit: str = "m") -> Parameter:
+    return Parameter(name, unit, 0.0, neutral=None)
+
+
+_MULTIPLIER = Parameter("multiplier", "1", 2.0, neutral=1.0, most=20.0)
+_DISC = tuple(map(_place, ("x", "y", "radius")))
+_EDGE = (_place("normal", "rad"), _place("edge_x"), _place("edge_y"))
+
 FLOOR = (
     HiddenEffect(
         "floor_tilt",
@@ -30,20 +59,24 @@ FLOOR = (
             Parameter("tilt_y", "rad", 1e-3, most=0.02, signed=True),
         ),
         _tilt,
+        draw=_any_direction,
     ),
     HiddenEffect(
         "floor_patch",
-        "a part of the floor brakes more than the rest",
-        (
-            Parameter("multiplier", "1", 2.0, neutral=1.0, most=20.0),
-            Parameter("x", "m", 0.0, neutral=None),
-            Parameter("y", "m", 0.0, neutral=None),
-            Parameter("radius", "m", 0.3, neutral=None),
-            Parameter("normal", "rad", 0.0, neutral=None),
-            Parameter("edge_x", "m", 0.0, neutral=None),
-            Parameter("edge_y", "m", 0.0, neutral=None),
-        ),
+        "a round part of the floor brakes more than the rest",
+        (_MULTIPLIER, *_DISC),
         _patch,
+        "disc",
+        also=_EDGE,
+        draw=_round_a_path,
+    ),
+    HiddenEffect(
+        "floor_patch",
+        "the floor beyond a straight edge brakes more than the rest",
+        (_MULTIPLIER, *_EDGE),
+        _patch,
+        "edge",
+        draw=_across_a_path,
     ),
 )
 

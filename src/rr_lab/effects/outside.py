@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
-from rr_lab.effects.hidden import HiddenEffect, Parameter, Values
+from rr_lab.effects.hidden import HiddenEffect, Parameter, Setting, Values
 from rr_lab.rig import Drift, Falling, Rig, Rub, Tether
 
 
 def _tether(rig: Rig, values: Values) -> None:
     rig.tether = Tether(values["x"], values["y"], values["slack"], values["stiffness"])
+
+
+def _beside_a_path(setting: Setting, values: Values) -> Values:
+    """Tied to a place somewhat off a run, and taut for a part of it."""
+    x, y = setting.passed()
+    dx, dy = setting.rng.uniform(-0.3, 0.3, 2)
+    return {**values, "x": float(x + dx), "y": float(y + dy)}
 
 
 def _stribeck(rig: Rig, values: Values) -> None:
@@ -54,6 +61,7 @@ OUTSIDE = (
         ),
         _tether,
         named=False,
+        draw=_beside_a_path,
     ),
     HiddenEffect(
         "stribeck_friction",

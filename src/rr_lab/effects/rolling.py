@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from rr_lab.effects.hidden import HiddenEffect, Parameter, Values
-from rr_lab.rig import Rig
+from rr_lab.rig import Rig, RollingResistance, wheel_loads
+from rr_opt.model.robot import Robot
 
 
 def _coulomb(rig: Rig, values: Values) -> None:
@@ -13,10 +14,32 @@ def _coulomb(rig: Rig, values: Values) -> None:
     rig.onset = values.get("onset", rig.onset)
 
 
+def _equal(rig: Rig, values: Values) -> None:
+    _coulomb(rig, {"force1": values["force"], "force2": values["force"]})
+
+
+def _equal_forces(_: Robot, values: Values) -> dict[str, float]:
+    return {"force1": values["force"], "force2": values["force"]}
+
+
+def _by_load(rig: Rig, values: Values) -> None:
+    rig.laws.append(RollingResistance(values["mu"], rig.robot.h))
+
+
+def _forces_of_loads(robot: Robot, values: Values) -> dict[str, float]:
+    """With the loads of a robot that stands."""
+    one, _, two, _ = values["mu"] * wheel_loads(Rig(robot))
+    return {"force1": float(one), "force2": float(two)}
+
+
 def _quadratic(rig: Rig, values: Values) -> None:
     """(c/4) v^2 at the rim is (c/4) h^3 omega^2."""
     each = values["coefficient_total"] / 4 * rig.robot.h**3
     rig.quadratic = [coefficient + each for coefficient in rig.quadratic]
+
+
+def _medium(rig: Rig, values: Values) -> None:
+    rig.density += values["density"]
 
 
 def _left_right(rig: Rig, values: Values) -> None:
@@ -30,19 +53,46 @@ def _wheel_inertia(rig: Rig, values: Values) -> None:
     rig.J = [J + values["J"] for J in rig.J]
 
 
+_ONSET = Parameter("onset", "m/s", 2e-3, neutral=None, plant=True)
+
 ROLLING = (
     HiddenEffect(
         "coulomb_friction",
-        "dry friction of the wheels",
+        "dry friction of the wheels, of another size on each axle",
         (Parameter("force1", "N", 2e-3, most=0.1), Parameter("force2", "N", 2e-3, most=0.1)),
         _coulomb,
-        further=frozenset({"onset"}),
+        "per_axle",
+        also=(_ONSET,),
+    ),
+    HiddenEffect(
+        "coulomb_friction",
+        "dry friction of the wheels, alike on all four",
+        (Parameter("force", "N", 2e-3, most=0.1, plant=True),),
+        _equal,
+        "equal",
+        derived=_equal_forces,
+    ),
+    HiddenEffect(
+        "coulomb_friction",
+        "dry friction of the wheels in proportion to the load on each",
+        (Parameter("mu", "1", 1e-3, most=0.05, plant=True),),
+        _by_load,
+        "load_proportional",
+        derived=_forces_of_loads,
     ),
     HiddenEffect(
         "quadratic_drag",
-        "drag that grows with the square of the speed",
+        "drag of the wheels that grows with the square of the speed",
         (Parameter("coefficient_total", "N s2/m2", 0.1, most=20.0),),
         _quadratic,
+        "wheels",
+    ),
+    HiddenEffect(
+        "quadratic_drag",
+        "drag of a medium on the platforms' bodies, along and across, at their centres of mass",
+        (Parameter("density", "kg/m^3", 15.0, most=400.0, plant=True),),
+        _medium,
+        "medium_density",
     ),
     HiddenEffect(
         "left_right_drag",

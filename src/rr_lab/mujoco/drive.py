@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rr_lab.mujoco.model_text import longest_step
 from rr_lab.mujoco.plant import Course, Plant, stepped
 from rr_lab.rig import Rig
 from rr_lab.run import Motion, Outing, asked_angle
@@ -21,8 +22,14 @@ STEP = 2.5e-4
 """s. results/lab/README.md shows what it is worth."""
 
 
+def fine_enough(rig: Rig, step: float) -> float:
+    """The step that a rig is driven with where `step` is asked for, s."""
+    return min(step, longest_step(rig))
+
+
 def drive(rig: Rig, gait: Gait, outing: Outing, step: float = STEP) -> Motion:
     """Drive a gait and write down the motion. Raises NotConvergedError if it is lost."""
+    step = fine_enough(rig, step)
     plant = Plant.of(rig, step)
     every = max(1, round(1 / (outing.rate * step)))
     dt = 1 / (outing.rate * every)

@@ -6,7 +6,9 @@ the floor at one point below its centre whatever way it heads. Each turns on its
 
 from __future__ import annotations
 
-from rr_lab.rig import GRIPS, WHEELS, Rig
+import math
+
+from rr_lab.rig import GRIPS, WHEELS, Motor, Rig, swing_inertia
 from rr_opt.model.robot import Platform
 
 MOTOR_INERTIA = 1e9
@@ -27,7 +29,11 @@ LOAD_INERTIA = 1e-6
 def jointed(rig: Rig, platform2: str, step: float) -> str:
     """Platform 2 on the joint P: a hinge, with play in series and a loose pin if there are any."""
     geared = GEAR_INERTIA if rig.play else 0.0
-    joint = f'<joint name="phi" type="hinge" axis="0 0 1" armature="{geared!r}"/>'
+    drive = loop(rig)
+    damping = (1 - drive.feedforward) * drive.damping if drive is not None else 0.0
+    joint = (
+        f'<joint name="phi" type="hinge" axis="0 0 1" armature="{geared!r}" damping="{damping!r}"/>'
+    )
     if rig.pin:
         slides = (("pinx", "1 0 0"), ("piny", "0 1 0"))
         joint = (
@@ -57,12 +63,68 @@ def motor_body() -> str:
     )
 
 
-def motor(step: float) -> str:
-    """Its drive, whose control is an angular acceleration, and the constraint phi = command."""
+def motor(rig: Rig, step: float) -> str:
+    """Its drive, whose control is an angular acceleration; phi is held at the command by a
+    constraint, or by the spring of a servo that gives way."""
+    drive = f'<actuator><motor joint="command" gear="{MOTOR_INERTIA!r}"/></actuator>'
+    if loop(rig) is None:
+        return (
+            '<equality><joint joint1="phi" joint2="command" '
+            f'solref="{-0.25 / step**2!r} {-1 / step!r}" solimp="0.9999 0.9999 0.001"/></equality>'
+            f"{drive}"
+        )
+    return drive
+
+
+def tendons(rig: Rig, step: float) -> str:
+    """A cord, a servo that gives way, and dry friction of the joint; empty without any."""
+    inner = cord(rig) + _servo_spring(rig) + _hinge_friction(rig, step)
+    return f"<tendon>{inner}</tendon>" if inner else ""
+
+
+def loop(rig: Rig) -> Motor | None:
+    """What holds phi at the command: the servo's loop and the gear, one behind the other; None if
+    neither gives way."""
+    gear = None
+    if rig.gear is not None:
+        gear = Motor(rig.gear, 2 * (rig.gear * GEAR_INERTIA) ** 0.5)
+    if rig.motor is None or gear is None:
+        return rig.motor or gear
+    stiffness = 1 / (1 / rig.motor.stiffness + 1 / gear.stiffness)
+    return Motor(stiffness, rig.motor.damping, rig.motor.feedforward)
+
+
+def longest_step(rig: Rig) -> float:
+    """s, in which a servo that gives way turns by a third of a radian of its own swing: explicit
+    steps, as MuJoCo takes them, lose it at six times that."""
+    drive = loop(rig)
+    if drive is None:
+        return math.inf
+    inertia = GEAR_INERTIA if rig.play else swing_inertia(rig.robot)
+    return 0.3 * min((inertia / drive.stiffness) ** 0.5, inertia / drive.damping)
+
+
+def _servo_spring(rig: Rig) -> str:
+    """Twists by phi - command; a damper that knows the command's rate is in it, one that does not
+    is the hinge's."""
+    drive = loop(rig)
+    if drive is None:
+        return ""
     return (
-        f'<equality><joint joint1="phi" joint2="command" solref="{-0.25 / step**2!r} {-1 / step!r}"'
-        ' solimp="0.9999 0.9999 0.001"/></equality>'
-        f'<actuator><motor joint="command" gear="{MOTOR_INERTIA!r}"/></actuator>'
+        f'<fixed name="servo" stiffness="{drive.stiffness!r}" '
+        f'damping="{drive.feedforward * drive.damping!r}" springlength="0">'
+        '<joint joint="phi" coef="1"/><joint joint="command" coef="-1"/></fixed>'
+    )
+
+
+def _hinge_friction(rig: Rig, step: float) -> str:
+    """Dry friction between the platforms: on phi and the play together."""
+    if not rig.hinge_dry:
+        return ""
+    play = '<joint joint="play" coef="1"/>' if rig.play else ""
+    return (
+        f'<fixed name="hinge" frictionloss="{rig.hinge_dry!r}" solreffriction="{2 * step!r} 1" '
+        f'solimpfriction="0.99 0.99 0.001"><joint joint="phi" coef="1"/>{play}</fixed>'
     )
 
 
@@ -119,9 +181,8 @@ def cord(rig: Rig) -> str:
     if rig.tether is None:
         return ""
     return (
-        f'<tendon><spatial stiffness="{rig.tether.stiffness!r}" '
+        f'<spatial stiffness="{rig.tether.stiffness!r}" '
         f'springlength="0 {rig.tether.slack!r}"><site site="post"/><site site="hook"/></spatial>'
-        "</tendon>"
     )
 
 
@@ -164,23 +225,24 @@ def model_text(rig: Rig, step: float) -> str:
     first = _platform(rig, 0, rig.robot.platform1, 1.0, J)
     second = _platform(rig, 1, rig.robot.platform2, -1.0, J)
     return f"""<mujoco><compiler angle="radian" boundmass="0" boundinertia="0"/>
-<option timestep="{step!r}" cone="elliptic" impratio="10" solver="Newton" iterations="100"
- tolerance="1e-15" integrator="Euler"><flag eulerdamp="{_implicit(rig)}" island="disable"/></option>
+<option timestep="{step!r}" density="{rig.density!r}" cone="elliptic" impratio="10"
+ solver="Newton" iterations="100" tolerance="1e-15" integrator="Euler">
+ <flag eulerdamp="{_implicit(rig)}" island="disable"/></option>
 <worldbody><geom name="floor" type="plane" size="0 0 1" contype="0" conaffinity="0"/>
 {post(rig)}<body name="platform1" pos="0 0 {h!r}"><freejoint name="base"/>
 {first}{hook(rig)}{loose_load(rig)}{jointed(rig, second, step)}</body>
 {motor_body()}</worldbody>
 <contact>{"".join(_pair(wheel, rig.mu, step) for wheel in WHEELS)}</contact>
-{cord(rig)}{motor(step)}{sensors()}</mujoco>"""
+{tendons(rig, step)}{motor(rig, step)}{sensors()}</mujoco>"""
 
 
 def _implicit(rig: Rig) -> str:
     """Whether hinges are damped implicitly.
 
     MuJoCo does so once the constraints are solved, which moves the wheels off them where a damped
-    part is light: nothing to the wheels' own friction, much to a beam's.
+    part is light: nothing to the wheels' own friction, much to a beam's or a servo's.
     """
-    return "enable" if rig.spring is None else "disable"
+    return "enable" if rig.spring is None and loop(rig) is None else "disable"
 
 
 def _platform(rig: Rig, i: int, part: Platform, ahead: float, J: float) -> str:

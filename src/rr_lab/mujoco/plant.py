@@ -19,8 +19,8 @@ from typing import Any
 
 import numpy as np
 
-from rr_lab.mujoco.model_text import model_text
-from rr_lab.rig import WHEELS, Rig, Turning
+from rr_lab.mujoco.model_text import loop, model_text
+from rr_lab.rig import WHEELS, Rig, Wheels, wheel_loads
 from rr_opt.array import Array
 from rr_opt.outcome import InputError, NotConvergedError
 
@@ -60,7 +60,8 @@ def _silent(_: str) -> None:
 
 @dataclass
 class Plant:
-    """The rig, MuJoCo, its model and its data; and where the wheels' hinges are in them."""
+    """The rig, MuJoCo, its model and its data; and where in them the wheels' hinges and bodies are,
+    platform 1, and the first of the tyres."""
 
     rig: Rig
     mujoco: Any
@@ -69,6 +70,8 @@ class Plant:
     rolls: Any
     turned: Any
     wheels: Any
+    platform1: int
+    tyre: int
 
     @classmethod
     def of(cls, rig: Rig, step: float) -> Plant:
@@ -80,7 +83,8 @@ class Plant:
         wheels = np.array([model.body(f"wheel{name}").id for name in WHEELS], np.intp)
         rolls = np.array([joint.dofadr[0] for joint in joints], np.intp)
         turned = np.array([joint.qposadr[0] for joint in joints], np.intp)
-        plant = cls(rig, mujoco, model, data, rolls, turned, wheels)
+        platform1, tyre = model.body("platform1").id, model.geom(f"tyre{WHEELS[0]}").id
+        plant = cls(rig, mujoco, model, data, rolls, turned, wheels, platform1, tyre)
         if rig.creep:
             plant.soften(rig.creep)
         return plant
@@ -96,12 +100,13 @@ class Plant:
 
     def torque(self) -> float:
         """Of the servo on platform 2, N m, in the last step."""
-        data = self.data
-        kind = self.mujoco.mjtConstraint.mjCNSTR_EQUALITY
-        rows = np.flatnonzero(data.efc_type[: data.nefc] == kind)
-        joint = self.model.joint("phi").dofadr[0]
-        gear = self.model.dof_armature[joint] * data.qacc[joint]
-        return float(data.efc_force[rows[0]] - gear)
+        data, joint = self.data, self.model.joint("phi").dofadr[0]
+        if loop(self.rig) is None:
+            kind = self.mujoco.mjtConstraint.mjCNSTR_EQUALITY
+            drive = data.efc_force[np.flatnonzero(data.efc_type[: data.nefc] == kind)[0]]
+        else:
+            drive = data.qfrc_passive[joint]
+        return float(drive - self.model.dof_armature[joint] * data.qacc[joint])
 
     def push(self, acceleration: float) -> None:
         """Push platform 1 along its axis with the force that would give all mass this, m/s2."""
@@ -113,18 +118,36 @@ class Plant:
     def brake(self, t: float) -> None:
         """Set what brakes each wheel by the rig's laws, t s after the robot was let go."""
         rig, data = self.rig, self.data
-        turning = Turning(
+        ahead = data.xmat[self.platform1, [0, 3]]
+        wheels = Wheels(
             t,
             data.qvel[self.rolls],
             data.qpos[self.turned],
             data.xpos.take(self.wheels, axis=0)[:, :2],
+            math.atan2(ahead[1], ahead[0]),
+            self.loads(),
             np.array(rig.kappa),
             np.array(rig.dry),
+            np.zeros(len(WHEELS)),
         )
         for law in rig.laws:
-            law(turning)
-        self.model.dof_damping[self.rolls] = turning.damping
-        self.model.dof_frictionloss[self.rolls] = turning.dry
+            law(wheels)
+        self.model.dof_damping[self.rolls] = wheels.damping
+        self.model.dof_frictionloss[self.rolls] = wheels.dry
+        data.qfrc_applied[self.rolls] = wheels.torque
+
+    def loads(self) -> Array:
+        """With which the wheels pressed on the floor in the last step, N (4,); before the first
+        step what a robot that stands would."""
+        contacts = self.data.contact
+        if not len(contacts):
+            return wheel_loads(self.rig)
+        rows, pressed = contacts.efc_address, np.zeros(len(WHEELS))
+        # A contact that is about to part has no row.
+        pressed[contacts.geom.max(axis=1)[rows >= 0] - self.tyre] = self.data.efc_force[
+            rows[rows >= 0]
+        ]
+        return pressed
 
     def require_sound(self) -> None:
         """Raises NotConvergedError if MuJoCo lost the motion."""

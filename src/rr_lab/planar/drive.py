@@ -112,10 +112,10 @@ def _motion(rig: Rig, outing: Outing, clock: Clock, states: Array, signals: Arra
     states, signals = states[:, clock.before - 1 :], signals[:, clock.samples]
     ends = ca.Function("ends", [built.q], list(built.ends))
     one, two = (np.asarray(end).T for end in ends(states[:n]))
-    made, drive = built.names.index(turned_by(built)), motor(rig.robot)
+    made, drive = built.names.index(turned_by(built)), motor(rig)
     t = np.arange(states.shape[1]) / outing.rate
     if not outing.torque:
         return Motion(t, one, two)
     torque = drive.stiffness * (signals[0] - states[made])
-    torque += drive.damping * (signals[1] - states[n + made])
+    torque += drive.damping * (drive.feedforward * signals[1] - states[n + made])
     return Motion(t, one, two, torque)

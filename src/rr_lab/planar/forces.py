@@ -5,18 +5,6 @@ An instant of a step: what is guessed of its end, and what acts by the guess.
 A step ends where its forces say, and they depend on where it ends. So its end is guessed, forces
 are written as straight lines through the guess, and the end that these give is the next guess.
 
-What each wheel carries.
-
-The robot stands on four wheels, on a joint that turns about the vertical alone: a stiff body, whose
-weight and whose two moments on the floor give three conditions for four loads. Of all loads that
-keep them, those are taken whose squares are least: the loads of four equal springs. Without a mass
-beside the axis the wheels of an axle share alike, and of platform 1's axle
-
-    N1 = g (m1 (c1 + c2 - a1) + m2 a2) / (c1 + c2)
-
-Assumed: the posture is straight (at 0.9 rad the axles carry another half a per cent), the floor is
-nearly level, and the masses are low, so that braking and turning move no load.
-
 The servo: a motor that turns platform 2 against platform 1 after its command.
 
 Its torque is stiffness * (asked - made) + damping * (the same of the rates), on platform 2 and with
@@ -35,12 +23,21 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import casadi as ca
-import numpy as np
 
-from rr_lab.planar.layout import Layout, axis
-from rr_lab.rig import WHEELS, Drift, Falling, Patch, Rig, Rub
-from rr_opt.array import Array
-from rr_opt.model.robot import Robot
+from rr_lab.planar.layout import Layout, axis, left_of
+from rr_lab.rig import (
+    WHEELS,
+    Drift,
+    Falling,
+    Motor,
+    Patch,
+    Rig,
+    RollingResistance,
+    Rub,
+    box_of,
+    swing_inertia,
+    wheel_loads,
+)
 from rr_opt.outcome import InputError
 
 
@@ -112,9 +109,10 @@ def bearings(moment: Moment, rig: Rig) -> list[ca.SX]:
     """D of each wheel, N m s: it resists with D times its spin."""
     viscous: list[Any] = [ca.SX(kappa) for kappa in rig.kappa]
     dry: list[Any] = [ca.SX(torque) for torque in rig.dry]
+    carried = wheel_loads(rig)
     for law in rig.laws:
         for n in range(len(WHEELS)):
-            viscous[n], dry[n] = _changed(law, moment, n, viscous[n], dry[n])
+            viscous[n], dry[n] = _changed(law, moment, n, carried[n], viscous[n], dry[n])
     onset = (rig.onset or DRY_ONSET) / rig.robot.h
     found = []
     for n, quadratic in enumerate(rig.quadratic):
@@ -124,7 +122,9 @@ def bearings(moment: Moment, rig: Rig) -> list[ca.SX]:
     return found
 
 
-def _changed(law: Any, moment: Moment, n: int, viscous: ca.SX, dry: ca.SX) -> tuple[ca.SX, ca.SX]:
+def _changed(
+    law: Any, moment: Moment, n: int, load: float, viscous: ca.SX, dry: ca.SX
+) -> tuple[ca.SX, ca.SX]:
     """Viscous (N m s) and dry (N m) friction of a wheel by one more law."""
     match law:
         case Patch():
@@ -138,6 +138,8 @@ def _changed(law: Any, moment: Moment, n: int, viscous: ca.SX, dry: ca.SX) -> tu
         case Drift():
             came = 1 - ca.exp(-ca.fmax(moment.t, 0) / law.time)
             return viscous * (1 + law.change * came), dry
+        case RollingResistance():
+            return viscous, dry + law.mu * law.h * load
         case Rub():
             return viscous, dry + (law.torque * _first_fifth(moment.turns[0]) if n == 0 else 0.0)
     raise InputError(
@@ -152,35 +154,19 @@ def _first_fifth(turned: ca.SX) -> ca.SX:
     return (1 + ca.tanh((ca.cos(turned - middle) - math.cos(middle)) / _SOFT)) / 2
 
 
-def loads(rig: Rig) -> Array:
-    """With which each wheel presses on the floor, N (4,), in the order of WHEELS."""
-    one, two = rig.robot.platform1, rig.robot.platform2
-    stands = [(x, side * part.b) for x, part in ((one.c, one), (-two.c, two)) for side in (1, -1)]
-    masses = [(one.m, one.joint_to_centre, rig.left[0]), (two.m, -two.joint_to_centre, rig.left[1])]
-    if rig.load is not None:
-        masses.append((rig.load[0], one.joint_to_centre, 0.0))
-    balance = np.array([(1.0, x, y) for x, y in stands]).T
-    weight = -rig.gravity[2] * np.array([(m, m * x, m * y) for m, x, y in masses]).sum(0)
-    return np.linalg.lstsq(balance, weight)[0]
-
-
 QUICK = 1000.0
 """1/s, how fast the motor settles. A robot that is asked for an acceleration of 30 rad/s2 is then
 30/QUICK^2 = 0.03 mrad behind, or up to three times that where its wheels stand in the way."""
 
 
-@dataclass(frozen=True)
-class Motor:
-    """stiffness, N m/rad; damping, N m s/rad."""
-
-    stiffness: float
-    damping: float
+def motor(rig: Rig) -> Motor:
+    """The rig's own, or a stiff one."""
+    return rig.motor or stiff(rig)
 
 
-def motor(robot: Robot) -> Motor:
-    """Critically damped for the platforms as they turn against each other about a joint at rest."""
-    one, two = robot.platform1.joint_inertia, robot.platform2.joint_inertia
-    inertia = one * two / (one + two)
+def stiff(rig: Rig) -> Motor:
+    """A motor that follows its command within a tenth of a milliradian, critically damped."""
+    inertia = swing_inertia(rig.robot)
     return Motor(inertia * QUICK**2, 2 * inertia * QUICK)
 
 
@@ -189,11 +175,43 @@ def turned_by(built: Layout) -> str:
     return "shaft" if "shaft" in built.names else "phi"
 
 
-def turning(moment: Moment, robot: Robot) -> Pull:
+def turning(moment: Moment, rig: Rig) -> Pull:
     """The motor's torque."""
-    made, drive = moment.layout.of(turned_by(moment.layout)), motor(robot)
+    made, drive = moment.layout.of(turned_by(moment.layout)), motor(rig)
     pull = spring(moment, made, drive.stiffness, drive.damping, moment.asked)
-    return replace(pull, push=pull.push + drive.damping * moment.rate)
+    return replace(pull, push=pull.push + drive.feedforward * drive.damping * moment.rate)
+
+
+def medium(moment: Moment, rig: Rig) -> list[Pull]:
+    """What a medium makes of the platforms' motion, if there is one: the drag of a box with a drag
+    coefficient of 1 at each of its faces, and of its turning."""
+    if not rig.density:
+        return []
+    pulls = []
+    for body in moment.layout.bodies[:2]:
+        reach, height = box_of(body.m, body.I)
+        ahead, moves = axis(body.heading), moment.way(body.place)
+        for way in (ahead.T @ moves, left_of(ahead).T @ moves):
+            hold = 2 * rig.density * reach * height * ca.fabs(way @ moment.w)
+            pulls.append(Pull(way, hold, 0.0))
+        turns = moment.way(body.heading)
+        hold = rig.density * height * reach**4 * ca.fabs(turns @ moment.w)
+        pulls.append(Pull(turns, hold, 0.0))
+    return pulls
+
+
+HINGE_ONSET = 1e-3
+"""rad/s, over which dry friction of the joint sets in; a joint that sticks creeps by some tenths of
+it, far less than an angle's noise in half a period."""
+
+
+def hinge(moment: Moment, rig: Rig) -> list[Pull]:
+    """Dry friction between the platforms, if there is any."""
+    if not rig.hinge_dry:
+        return []
+    way = moment.way(moment.layout.of("phi"))
+    rate = way @ moment.w
+    return [Pull(way, rig.hinge_dry / (rate**4 + HINGE_ONSET**4) ** 0.25, 0.0)]
 
 
 def pushed(moment: Moment, rig: Rig, nudge: ca.SX) -> ca.SX:
@@ -241,6 +259,9 @@ def bent(moment: Moment, rig: Rig) -> list[Pull]:
 STOPS_QUICK = 1000.0
 """1/s, how fast what hits a stop comes to rest in it: within some milliseconds."""
 
+GEAR_SETTLES = 5e-3
+"""s, in which a compliant gear that is let go straightens."""
+
 FIRST_ANGLE, FIRST_LENGTH = 1e-5, 1e-6
 """rad and m, the depth over which a stop's damper fades in; a hundredth of what noise lets see."""
 
@@ -255,9 +276,9 @@ def _play(moment: Moment, rig: Rig) -> list[Pull]:
     if not rig.play:
         return []
     ahead = moment.layout.of("phi") - moment.layout.of("shaft")
-    # As stiff as the motor, against which it is pressed.
-    drive = motor(rig.robot)
-    return [_stop(moment, ahead, rig.play / 2, drive.stiffness, drive.damping, FIRST_ANGLE)]
+    # Otherwise as stiff as the motor against which it is pressed.
+    flank = Motor(rig.gear, GEAR_SETTLES * rig.gear) if rig.gear is not None else stiff(rig)
+    return [_stop(moment, ahead, rig.play / 2, flank.stiffness, flank.damping, FIRST_ANGLE)]
 
 
 def _pin(moment: Moment, rig: Rig) -> list[Pull]:

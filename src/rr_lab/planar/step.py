@@ -38,9 +38,9 @@ from dataclasses import dataclass, replace
 
 import casadi as ca
 
-from rr_lab.planar.forces import Moment, Pull, bearings, bent, loads, pushed, stops, turning
+from rr_lab.planar.forces import Moment, Pull, bearings, bent, hinge, medium, pushed, stops, turning
 from rr_lab.planar.layout import Layout, axis, coordinates, layout, left_of
-from rr_lab.rig import WHEELS, Rig
+from rr_lab.rig import WHEELS, Rig, wheel_loads
 
 ONSET = 1e-4
 """m/s, over which a contact begins to slip. With the grip of a rig in which nothing slides it makes
@@ -161,9 +161,12 @@ def _sweep(rig: Rig, dt: float) -> ca.Function:
     moment = Moment(built, guess.w, guess.spins, guess.turns, 1 / rate, asked, asked_rate, t, free)
     wheels = [
         rolling(moment, rig, k, load, bearing, kept.spins[k], rate)
-        for k, (load, bearing) in enumerate(zip(loads(rig), bearings(moment, rig), strict=True))
+        for k, (load, bearing) in enumerate(
+            zip(wheel_loads(rig), bearings(moment, rig), strict=True)
+        )
     ]
-    pulls = [turning(moment, rig.robot), *stops(moment, rig), *bent(moment, rig)]
+    pulls = [turning(moment, rig), *hinge(moment, rig), *stops(moment, rig), *bent(moment, rig)]
+    pulls += medium(moment, rig)
     pulls += [pull for wheel in wheels for pull in wheel.pulls]
     mass, turned = _inertia(built, guess.w)
     left, right = rate * mass, rate * (mass @ kept.w) - turned + pushed(moment, rig, nudge)

@@ -27,7 +27,13 @@ def hidden_text(case: Case) -> str:
         )
     # Of an effect outside the catalogue the answer has the values under `unknown`.
     values = truth.values if truth.names else {truth.hidden[0]: truth.values.get("unknown", {})}
-    return " + ".join(_with_values(name, values.get(name, {})) for name in truth.hidden)
+    return " + ".join(
+        _with_values(
+            f"{name}/{truth.realised[name]}" if truth.names and name in truth.realised else name,
+            values.get(name, {}),
+        )
+        for name in truth.hidden
+    )
 
 
 def visible_text(case: Case) -> str:

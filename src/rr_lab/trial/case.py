@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from rr_lab.trial.lots import STRENGTHS
@@ -23,6 +23,7 @@ class Truth:
     remains    the same after the nominal parameters are re-fitted
     spread     0: the nominal values are true; 1: off by chance
     engine     what drove the robot
+    realised   by effect: which of its realisations, where it has several
     """
 
     kind: str
@@ -32,6 +33,7 @@ class Truth:
     remains: Mapping[str, float]
     spread: float = 0.0
     engine: str = "mujoco"
+    realised: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -67,6 +69,11 @@ def truth_from(answer: Mapping[str, Any]) -> Truth:
         remains={name: answer["stays_visible"][name] for name in hidden},
         spread=answer["spread"],
         engine=answer["engine"],
+        realised={
+            name: one["realisation"]
+            for name, one in zip(hidden, answer["effects"], strict=False)
+            if "realisation" in one
+        },
     )
 
 

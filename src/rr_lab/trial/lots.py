@@ -25,9 +25,10 @@ from typing import Any, TypeVar
 import numpy as np
 
 from rr_lab.case import Case, stream
+from rr_lab.effects import OUTSIDE_NAMES, REALISATIONS, effect_named
 from rr_lab.engines import ENGINES, Engine
 from rr_lab.files import answer, folder_of, seal_of
-from rr_lab.random_case import KINDS, NAMED, STRANGE, random_case
+from rr_lab.random_case import KINDS, SINGLES, random_case, read_kind
 from rr_lab.trial.refitted import Refit
 from rr_opt.outcome import InputError, NotConvergedError
 
@@ -92,21 +93,18 @@ def _git(folder: Path, *words: str) -> str:
 BLOCK = {"null": 5, "single": 9, "pair": 2, "parameters": 2, "outside": 2}
 """How many of each kind there are in a block of twenty."""
 
-STRENGTHS = {"faint": (2.0, 5.0), "medium": (5.0, 15.0), "strong": (15.0, 40.0)}
+STRENGTHS = {"faint": (2.0, 5.0), "medium": (5.0, 15.0), "strong": (15.0, 60.0)}
 """RMS deviation from the nominal robot's run, sigma of the noise; drawn evenly in its logarithm."""
 
-# Wheel inertia is a change of parameters in disguise; the laboratory's own lots leave it out too.
-SINGLES = tuple(name for name in NAMED if name != "wheel_inertia")
-
 _BITS = 48
-_Name = TypeVar("_Name")
+_Any = TypeVar("_Any")
 
 
 @dataclass(frozen=True)
 class Lot:
     """What a case is made from.
 
-    kind    as `random_case` takes it: null, parameters, pair, single:EFFECT, outside:EFFECT
+    kind    as `random_case` takes it: null, parameters, pair, single:EFFECT/REALISATION, ...
     target  visibility of a single effect, sigma; None: drawn by the laboratory
     spread  0: the nominal values are true; 1: they are off by chance, as their uncertainties say
     seed    the case's own
@@ -136,42 +134,61 @@ def draw_lot(
     seed: str, number: int, kinds: tuple[str, ...] = KINDS, engines: tuple[Engine, ...] = ENGINES
 ) -> Lot:
     """The lot of case 1, 2, ..., among the kinds and with the engines given."""
-    entries = [(kind, n) for kind in BLOCK if kind in kinds for n in range(BLOCK[kind])]
+    entries = [kind for kind in _ordered(kinds) for _ in range(BLOCK[kind.partition(":")[0]])]
     block, place = divmod(number - 1, len(entries))
-    kind, n = entries[int(_stream(seed, "order", block).permutation(len(entries))[place])]
-    # Which of its kind the case is in the whole trial: halves, thirds and names take turns by it.
-    turn = block * BLOCK[kind] + n
+    order = [entries[k] for k in _stream(seed, "order", block).permutation(len(entries))]
+    kind = order[place]
+    # How many of its kind came before: engines, strengths and names take turns by it.
+    turn = block * entries.count(kind) + order[:place].count(kind)
     own = case_seed(seed, number)
-    engine: Engine = _in_turn(seed, engines, turn, "engine", kind)
+    engine: Engine = _alternately(seed, engines, turn, "engine", kind)
     target = None
-    if kind == "single":
+    head, _, named = kind.partition(":")
+    if head == "single":
         low, high = list(STRENGTHS.values())[turn % len(STRENGTHS)]
         target = float(np.exp(stream(own, "target").uniform(np.log(low), np.log(high))))
-    names = {"single": SINGLES, "outside": STRANGE}.get(kind)
-    if names:
-        kind = f"{kind}:{_in_turn(seed, names, turn)}"
-    # The laboratory changes values of the nominal robot: the others stay true.
-    spread = 0.0 if kind == "parameters" else float(turn % 2)
+    names = {"single": SINGLES, "outside": OUTSIDE_NAMES}.get(head)
+    if names and not named:
+        again, named = turn // len(names), _in_turn(seed, names, turn)
+        kind = f"{head}:{_alternately(seed, REALISATIONS[named], again, named).key}"
+    # The laboratory changes values of the nominal robot: the others stay true. Two cases in a row
+    # are alike in this, so that both engines have as many of either.
+    spread = 0.0 if head == "parameters" else float(turn // 2 % 2)
     return Lot(number, kind, target, spread, own, engine)
 
 
 def read_kinds(text: str) -> tuple[str, ...]:
-    """`null, single` as names of kinds. Raises InputError for one that there is not."""
+    """`null, single` as names of kinds; `single:EFFECT`, `pair:EFFECT+EFFECT` and `outside:EFFECT`
+    are kinds of their own. Raises InputError for one that there is not."""
     kinds = tuple(part.strip() for part in text.split(",") if part.strip())
-    wrong = [kind for kind in kinds if kind not in BLOCK]
+    wrong = [kind for kind in kinds if kind.partition(":")[0] not in BLOCK]
     if wrong or not kinds:
         raise InputError(
             f"--kinds: Read {text!r}. Expected some of {', '.join(BLOCK)}, with commas between "
             "them. Correct it, or leave --kinds out for all."
         )
-    return tuple(kind for kind in BLOCK if kind in kinds)
+    for kind in kinds:
+        read_kind(kind)
+    return _ordered(kinds)
 
 
-def _in_turn(seed: str, names: tuple[_Name, ...], turn: int, *purpose: object) -> _Name:
-    """Every name once, in an order by lot, before any comes again."""
+def _ordered(kinds: tuple[str, ...]) -> tuple[str, ...]:
+    """Each once, so that the order in which they are given changes nothing."""
+    order = list(BLOCK)
+    return tuple(sorted(set(kinds), key=lambda kind: (order.index(kind.partition(":")[0]), kind)))
+
+
+def _in_turn(seed: str, names: tuple[str, ...], turn: int) -> str:
+    """Every name once, in a random order, before any comes again."""
     again, place = divmod(turn, len(names))
-    order = _stream(seed, "names", *purpose, len(names), again).permutation(len(names))
+    order = _stream(seed, "names", len(names), again).permutation(len(names))
     return names[int(order[place])]
+
+
+def _alternately(seed: str, several: tuple[_Any, ...], turn: int, *purpose: object) -> _Any:
+    """One after the other, from a random one on."""
+    first = int(_stream(seed, *purpose).integers(len(several)))
+    return several[(first + turn) % len(several)]
 
 
 def _stream(seed: str, *purpose: object) -> np.random.Generator:
@@ -217,7 +234,7 @@ def _answer_text(case: Case, lot: Lot) -> str:
     told: dict[str, Any] = {
         "number": lot.number,
         "kind": lot.kind.partition(":")[0],
-        "hidden": [use.name for use in case.effects],
+        "hidden": [effect_named(use.name).name for use in case.effects],
         "spread": lot.spread,
         **answer(case),
         "stays_visible": _stays_visible(case),
@@ -233,6 +250,6 @@ def _stays_visible(case: Case) -> dict[str, float]:
         return {}
     refit, nominal = Refit.of(case), replace(case, robot=case.nominal)
     return {
-        use.name: float(f"{refit.left(replace(nominal, effects=(use,))):.4g}")
+        effect_named(use.name).name: float(f"{refit.left(replace(nominal, effects=(use,))):.4g}")
         for use in case.effects
     }

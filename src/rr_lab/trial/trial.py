@@ -235,11 +235,13 @@ def whole_trial(
     run: Run,
     count: Count,
     restart: bool = False,
-) -> Opened:
+    make_only: bool = False,
+) -> Opened | None:
     """Make every case, then diagnose every case, then open every answer.
 
-    keep: writes a file whole; restart: what an earlier run left is forgotten. Raises InputError if
-    the folder has another trial, or an answer that was changed.
+    keep: writes a file whole; restart: what an earlier run left is forgotten; make_only: nothing is
+    diagnosed and nothing opened. Raises InputError if the folder has another trial, or an answer
+    that was changed.
     """
     code = fingerprint(PACKAGE)
     drawn = {"seed": seed, "kinds": list(kinds), "engines": list(engines)}
@@ -251,6 +253,8 @@ def whole_trial(
         Journal(folder / SAID, identity, restart=restart) as said,
     ):
         count("made and sealed", trial.make(made, run), _done(made, numbers))
+        if make_only:
+            return None
         count("diagnosed", trial.diagnose(made.rows, said, run), _done(said, numbers))
         opened = open_trial(folder, lots, made.rows, said.rows, identity)
     return replace(opened, changed=fingerprint(PACKAGE) != code)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rr_lab.planar.forces import loads
+from rr_lab.rig import wheel_loads
 from rr_opt.model.gait import SineGait
 from tests.rr_lab.planar.driven import driven, rig
 from tests.rr_lab.reduced import LONG
@@ -53,13 +53,13 @@ def test_a_sliding_wheel_shares_its_grip():
 
 def test_wheels_carry_the_weight_without_tipping():
     made = rig(LONG, ("com_offset", {"d1": 0.01, "d2": -0.02}))
-    carried = loads(made)
+    carried = wheel_loads(made)
     one, two = LONG.platform1, LONG.platform2
     places = np.array([(one.c, one.b), (one.c, -one.b), (-two.c, two.b), (-two.c, -two.b)])
     masses = [(one.m, one.joint_to_centre, 0.01), (two.m, -two.joint_to_centre, -0.02)]
     assert carried.sum() == pytest.approx(G * (one.m + two.m))
     moment = sum(m * G * np.array([x, y]) for m, x, y in masses)
     np.testing.assert_allclose(carried @ places, moment)
-    even = loads(rig(LONG))
+    even = wheel_loads(rig(LONG))
     on1 = G * (one.m * (one.c + two.c - one.a) + two.m * two.a) / (one.c + two.c)
     np.testing.assert_allclose(even[:2], on1 / 2)

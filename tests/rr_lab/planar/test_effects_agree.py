@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from rr_lab.case import Plan
-from rr_lab.effects import EFFECTS
+from rr_lab.effects import EVERY, effect_named
 from rr_lab.engines import ENGINES
 from rr_lab.random_case import bare_case
 from rr_lab.visibility import Gauge
@@ -21,19 +21,37 @@ SMOOTH = 0.01
 USES = (
     ("servo_lag", {"tau": 0.03}, SMOOTH),
     ("servo_lag", {"tau": 0.03, "beta": 1e-3}, SMOOTH),
+    ("servo_lag/second_order", {"tau": 0.03, "zeta": 0.7}, SMOOTH),
+    ("servo_lag/p_loop", {"tau": 0.03, "zeta": 0.7}, SMOOTH),
     ("servo_rate_limit", {"rate_limit": 2.5}, SMOOTH),
     ("servo_backlash", {"width": 0.03}, 0.03),
+    ("servo_backlash/frictional", {"width": 0.03, "joint_friction": 0.2}, SMOOTH),
+    ("servo_backlash/frictional", {"width": 0.03, "joint_friction": 0.03}, 0.03),
+    # The gear has a moment of inertia in MuJoCo.
+    (
+        "servo_backlash/frictional_compliant",
+        {"width": 0.03, "joint_friction": 0.2, "gear_stiffness": 20.0},
+        0.05,
+    ),
     ("servo_offset", {"offset": 0.03}, SMOOTH),
     ("coulomb_friction", {"force1": 4e-3, "force2": 6e-3}, 0.02),
+    ("coulomb_friction/equal", {"force": 4e-3}, 0.02),
+    # In MuJoCo turning moves load to the outer wheels.
+    ("coulomb_friction/load_proportional", {"mu": 2e-3}, 0.1),
     ("quadratic_drag", {"coefficient_total": 0.4}, SMOOTH),
+    ("quadratic_drag/medium_density", {"density": 30.0}, 0.2),  # it drags at wheels there too
     ("left_right_drag", {"asymmetry1": 0.4, "asymmetry2": -0.4}, SMOOTH),
     ("wheel_inertia", {"J": 3e-5}, SMOOTH),
     ("lateral_slip", {"creep_compliance": 0.03}, 0.1),  # MuJoCo's creeps along its wheels too
     ("lateral_slip", {"mu": 0.03}, 0.1),
+    ("lateral_slip/sliding", {"mu": 0.025}, 0.05),
+    ("lateral_slip/grazing", {"mu": 0.037}, 0.1),
+    ("lateral_slip/sliding_strongly", {"mu": 0.01}, 0.1),
+    ("lateral_slip/saturating_creep", {"mu": 0.05, "creep_compliance": 0.03}, 0.2),
     ("axle_misalignment", {"toe1": 0.01, "toe2": -0.02}, SMOOTH),
     ("floor_tilt", {"tilt_x": 1e-3, "tilt_y": -5e-4}, SMOOTH),
     ("floor_patch", {"multiplier": 3.0, "x": 0.2, "y": 0.0, "radius": 0.3}, SMOOTH),
-    ("floor_patch", {"multiplier": 3.0, "normal": 1.0, "edge_x": 0.2, "edge_y": 0.0}, SMOOTH),
+    ("floor_patch/edge", {"multiplier": 3.0, "normal": 1.0, "edge_x": 0.2, "edge_y": 0.0}, SMOOTH),
     ("com_offset", {"d1": 5e-3, "d2": -8e-3}, SMOOTH),
     ("marker_offset", {"dx": 5e-3, "dy": 3e-3}, SMOOTH),
     ("clock_offset", {"offset": 0.03}, SMOOTH),
@@ -53,7 +71,7 @@ def gauges():
 
 
 def test_none_is_left_out():
-    assert {name for name, _, _ in USES} == set(EFFECTS)
+    assert {effect_named(name).key for name, _, _ in USES} == {effect.key for effect in EVERY}
 
 
 @pytest.mark.parametrize(("name", "values", "within"), USES, ids=lambda each: str(each)[:40])
