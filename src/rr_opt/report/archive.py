@@ -1,15 +1,15 @@
-"""Files that are either whole or not there: JSON that every reader accepts, trajectories, pages.
-
-Files that are either whole or not there, and JSON that every reader accepts.
+"""Files that are either whole or not there, and JSON that every reader accepts.
 
 Each file is written beside its place under another name, flushed to the disk and then moved
-over it in one step; a run that is stopped leaves what was there before.
+over it in one step; a run that is stopped leaves what was there before. Only regular files are
+replaced: a device, a pipe or a link in the place of a result is refused, and stays.
 """
 
 from __future__ import annotations
 
 import json
 import os
+import stat
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
@@ -22,43 +22,68 @@ from rr_opt.outcome import InputError
 def folder_for_results(folder: Path) -> Path:
     """The folder, which is made when the first file is written to it.
 
-    Raises InputError if it cannot be one to write to.
+    Raises InputError if it cannot be written to.
     """
     return _writable(folder, folder)
 
 
 def file_for_result(file: Path) -> Path:
     """The file, whose folder is made when it is written. Raises InputError if it cannot be."""
-    if file.is_dir():
+    if file.is_dir() and not file.is_symlink():
         raise InputError(f"{file} is a folder. Expected a file. Name one in it with --out.")
+    _require_regular(file)
     _writable(file, file.parent)
     return file
 
 
+def _require_regular(path: Path) -> None:
+    """Raise InputError for what exists and is not a regular file."""
+    try:
+        mode = path.lstat().st_mode
+    except OSError:
+        return
+    if stat.S_ISREG(mode):
+        return
+    kinds = {
+        stat.S_IFLNK: "a symbolic link",
+        stat.S_IFDIR: "a folder",
+        stat.S_IFIFO: "a pipe",
+        stat.S_IFSOCK: "a socket",
+    }
+    kind = kinds.get(stat.S_IFMT(mode), "a device")
+    raise InputError(
+        f"{path} is {kind}. Expected a regular file, which is replaced, or a new name. "
+        "Give another place with --out."
+    )
+
+
 def _writable(asked: Path, folder: Path) -> Path:
     """`asked`, if files can be written to `folder`, or it can be made where it would be."""
-    there = next(place for place in (folder, *folder.absolute().parents) if place.exists())
-    if not there.is_dir():
+    existing = next(place for place in (folder, *folder.absolute().parents) if place.exists())
+    if not existing.is_dir():
         raise InputError(
-            f"{asked} cannot be made: {there} is not a folder. Give another place with --out."
+            f"{asked} cannot be made: {existing} is not a folder. Give another place with --out."
         )
     try:
-        # Permissions alone do not tell of a mount that cannot be written to.
-        with tempfile.TemporaryFile(dir=there):
+        # Permissions alone do not show that a mount is read-only.
+        with tempfile.TemporaryFile(dir=existing):
             pass
     except OSError:
         raise InputError(
-            f"{asked} cannot be written: {there} does not let you. Give another place with --out."
+            f"{asked} cannot be written: no permission to write to {existing}. "
+            "Give another place with --out."
         ) from None
     return asked
 
 
 @contextmanager
 def whole(path: Path) -> Iterator[Path]:
-    """A temporary path of the same ending, in the same folder, that becomes `path` on success.
+    """A temporary path of the same suffix, in the same folder, that becomes `path` on success.
 
-    Folders that are missing are made, and taken away again if nothing comes into them.
+    Missing folders are made, and removed again if nothing is written to them. Raises InputError
+    if `path` is neither a regular file nor a new name.
     """
+    _require_regular(path)
     made = [place for place in (path.parent, *path.parent.parents) if not place.exists()]
     temporary: Path | None = None
     try:
@@ -103,6 +128,12 @@ def write_json(path: Path, data: Mapping[str, Any]) -> Path:
 
 
 def remove(folder: Path, names: Iterable[str]) -> None:
-    """Remove the named files of an earlier run, so that none is taken for one of this run."""
-    for name in names:
-        (folder / name).unlink(missing_ok=True)
+    """Remove the named files of an earlier run, so that none is taken for one of this run.
+
+    Raises InputError, before any is removed, if one is not a regular file.
+    """
+    paths = [folder / name for name in names]
+    for path in paths:
+        _require_regular(path)
+    for path in paths:
+        path.unlink(missing_ok=True)

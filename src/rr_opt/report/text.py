@@ -1,11 +1,26 @@
-"""Text for a terminal: columns, and the lines that tell a gait."""
+"""A document as text: for a terminal, and as Markdown."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import textwrap
+from collections.abc import Iterable, Sequence
+from pathlib import Path
 
 from rr_opt.answers.quantities import QUANTITIES, with_unit
 from rr_opt.model.gait import FourierGait, FreeGait, Gait
+from rr_opt.report.document import (
+    Block,
+    Chain,
+    Checks,
+    Document,
+    Facts,
+    Gallery,
+    Link,
+    Section,
+    Table,
+)
+
+_WIDTH = 100
 
 _NOTHING = 1e-4
 """A coefficient so small, relative to the largest, is what an optimiser leaves of 0."""
@@ -35,10 +50,110 @@ def gait_lines(gait: Gait) -> list[tuple[str, ...]]:
     return rows
 
 
-def columns(rows: Sequence[tuple[str, ...]]) -> list[str]:
+def terminal(document: Document, files: Iterable[Path] = ()) -> str:
+    """The brief sections as text, and the files that were written."""
+    head = f"{document.name}: {document.title}" if document.name else document.title
+    # Why there is no result goes to stderr.
+    lead = f". {document.lead}" if document.lead and document.good else ""
+    parts = [_wrapped(head + lead)] if head else []
+    parts += [_section(section) for section in document.sections if section.brief]
+    parts.append(columns([("files" if not k else "", str(file)) for k, file in enumerate(files)]))
+    return "\n\n".join("\n".join(lines) for lines in parts if lines) + "\n"
+
+
+def _section(section: Section) -> list[str]:
+    lines = [line for block in section.blocks if block for line in _lines(block)]
+    if not lines or not section.title:
+        return lines
+    return [section.title, *(f"  {line}" if line else line for line in lines)]
+
+
+def _lines(block: Block) -> list[str]:
+    match block:
+        case str():
+            return _wrapped(block)
+        case Facts():
+            return _hanging([(fact.label, fact.text) for fact in block.items])
+        case Table():
+            return columns(_cells(block)) + _wrapped(block.note)
+        case Checks():
+            return _hanging(block.items)
+        case Chain():
+            return columns([(step.name, f"{step.mark}  {step.detail}") for step in block.items])
+        case Gallery():
+            return []
+
+
+def _cells(block: Table) -> list[list[str]]:
+    head = [column.heading for column in block.columns]
+    return [
+        head,
+        *(
+            [column.text(cell) for column, cell in zip(block.columns, row, strict=True)]
+            for row in block.rows
+        ),
+    ]
+
+
+def columns(rows: Sequence[Sequence[str]]) -> list[str]:
     """Rows of cells in columns as wide as their widest cell, at least 8."""
     if not rows:
         return []
     count = max(len(row) for row in rows)
     widths = [max([6, *(len(row[i]) for row in rows if i < len(row) - 1)]) for i in range(count)]
     return ["  ".join(map(str.ljust, row, widths)).rstrip() for row in rows]
+
+
+def _hanging(rows: Sequence[tuple[str, str]]) -> list[str]:
+    """Labels and texts beside them; a long text goes on below itself."""
+    width = max([6, *(len(label) for label, _ in rows)]) + 2
+    return [
+        line
+        for label, words in rows
+        for line in _wrapped(words, label.ljust(width), " " * width) or [label]
+    ]
+
+
+def _wrapped(words: str, first: str = "", later: str = "") -> list[str]:
+    wrapper = textwrap.TextWrapper(
+        _WIDTH, first, later, break_long_words=False, break_on_hyphens=False
+    )
+    return wrapper.wrap(words)
+
+
+def markdown(document: Document) -> str:
+    """Every section as Markdown, the figures as links to files beside it."""
+    parts = [f"# {document.title}", document.lead]
+    for section in document.sections:
+        blocks = [_marked(block) for block in section.blocks if block]
+        parts += [f"## {section.title}" if blocks and section.title else "", *blocks]
+    return "\n\n".join(part for part in (*parts, *document.footer) if part) + "\n"
+
+
+def _marked(block: Block) -> str:
+    match block:
+        case str():
+            return block
+        case Facts():
+            return "\n".join(f"- **{fact.label}**: {fact.text}" for fact in block.items)
+        case Table():
+            return "\n\n".join(filter(None, (_marked_table(block), block.note)))
+        case Checks():
+            return "\n".join(f"- {state}: {sentence}" for state, sentence in block.items)
+        case Chain():
+            return "\n".join(f"- {s.name}: {s.mark} {s.detail}".rstrip() for s in block.items)
+        case Gallery():
+            return "\n\n".join(f"![{figure.alt}]({figure.name}.svg)" for figure in block.items)
+
+
+def _marked_table(block: Table) -> str:
+    """Padded, so that it reads well as plain text too."""
+    head, *rows = _cells(block)
+    for cells, row in zip(rows, block.rows, strict=True):
+        for k, cell in enumerate(row):
+            if isinstance(cell, Link):
+                cells[k] = f"[{cell.text}]({cell.target})"
+    widths = [max(3, *(len(row[k]) for row in (head, *rows))) for k in range(len(head))]
+    lines = ["| " + " | ".join(map(str.ljust, row, widths)) + " |" for row in (head, *rows)]
+    lines.insert(1, "|" + "|".join("-" * (width + 2) for width in widths) + "|")
+    return "\n".join(lines)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,6 +12,7 @@ import numpy as np
 from rr_opt import __version__
 from rr_opt.answers.quantities import direction_text
 from rr_opt.answers.study import StudyAnswer
+from rr_opt.report import document
 from rr_opt.report.archive import whole
 from rr_opt.report.trajectory_file import netcdf_writer
 
@@ -113,16 +112,8 @@ def _optimum(result: StudyAnswer) -> list[Column]:
 
 def csv_text(columns: list[Column]) -> str:
     """The table as CSV: numbers with all digits, nothing where there is none."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow([column.name for column in columns])
-    for cells in zip(*(column.cells for column in columns), strict=True):
-        writer.writerow(["" if cell is None else _written(cell) for cell in cells])
-    return text.getvalue()
-
-
-def _written(cell: Any) -> Any:
-    return f"{cell:.12g}" if isinstance(cell, float) else cell
+    rows = zip(*(column.cells for column in columns), strict=True)
+    return document.csv_text([column.name for column in columns], rows, digits=12)
 
 
 def write_netcdf(path: Path, result: StudyAnswer) -> Path:

@@ -1,0 +1,77 @@
+"""A document as one HTML file that opens anywhere, without network."""
+
+from __future__ import annotations
+
+import base64
+import re
+from collections.abc import Sequence
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rr_opt.report.archive import write_text
+from rr_opt.report.document import (
+    Badge,
+    Block,
+    Chain,
+    Checks,
+    Document,
+    Facts,
+    Gallery,
+    Link,
+    Table,
+)
+
+if TYPE_CHECKING:
+    from jinja2 import Template
+    from markupsafe import Markup
+
+PAGE = "report.html"
+
+_KINDS = {Facts: "facts", Table: "table", Checks: "checks", Chain: "chain", Gallery: "gallery"}
+
+
+def page(document: Document) -> str:
+    """The whole page; every text is escaped."""
+    return _template().render(document=document)
+
+
+def write_page(folder: Path, document: Document, written: Sequence[Path] = ()) -> list[Path]:
+    """Write the page and its figures; returns these and what was `written` before, page first."""
+    drawn = [write_text(folder / f"{one.name}.svg", one.svg) for one in document.figures]
+    return [write_text(folder / PAGE, page(document)), *written, *drawn]
+
+
+@cache
+def _template() -> Template:
+    # Here and not above: without a page Jinja2 need not be loaded.
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+
+    environment = Environment(
+        loader=PackageLoader("rr_opt.report"),
+        autoescape=True,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        undefined=StrictUndefined,
+    )
+    environment.filters |= {"code": _code, "data_uri": _data_uri, "kind": _kind}
+    environment.tests |= {
+        "badge": lambda cell: isinstance(cell, Badge),
+        "link": lambda cell: isinstance(cell, Link),
+    }
+    return environment.get_template("document.html")
+
+
+def _code(text: str) -> Markup:
+    """The text escaped, and what stands in backticks as code."""
+    from markupsafe import Markup, escape
+
+    return Markup(re.sub("`([^`]+)`", r"<code>\1</code>", str(escape(text))))
+
+
+def _data_uri(svg: str) -> str:
+    return f"data:image/svg+xml;base64,{base64.b64encode(svg.encode()).decode()}"
+
+
+def _kind(block: Block) -> str:
+    return _KINDS.get(type(block), "text")

@@ -1,0 +1,131 @@
+"""One document is rendered as text, Markdown, an escaped page and CSV, with the same content."""
+
+import csv
+import io
+import math
+import re
+from html.parser import HTMLParser
+
+import pytest
+
+from rr_opt.report.document import (
+    Badge,
+    Chain,
+    Column,
+    Document,
+    Fact,
+    Facts,
+    Figure,
+    Gallery,
+    Link,
+    Section,
+    Step,
+    Table,
+    checks,
+    csv_text,
+    warnings,
+)
+from rr_opt.report.text import markdown, terminal
+from rr_opt.report.webpage import page, write_page
+
+EVIL = '<script>alert("&")</script>'
+SPEED = Column("speed", "m/s", "Speed", ("mm/s", 1e3))
+CASES = Table((SPEED, Column("name", title="Name")), ((0.1234, "a"), (None, Badge("b", "good"))))
+
+
+def document(text="words"):
+    chain = Chain((Step(text, "fault", text, text),))
+    figure = Figure("drawn", text, "<svg xmlns='http://www.w3.org/2000/svg'/>", text, text)
+    rows = ((1.0, text), (2.0, Badge(text)), (3.0, Link(text, "a/b.html")))
+    return Document(
+        text,
+        text,
+        text,
+        text,
+        (
+            Section("", (Facts((Fact(text, text, text),), key=True),)),
+            Section(text, (text, Facts((Fact(text, text, f"({text})"),)), chain)),
+            Section(text, (checks([(True, text), (False, text)]), warnings([text]))),
+            Section("", (Gallery((figure,)),)),
+            Section(text, (Table((SPEED, Column(text)), rows, text),)),
+            Section("nothing here", (Table((SPEED,), ()), Facts(()), "")),
+        ),
+        footer=(text,),
+    )
+
+
+def test_every_text_is_escaped():
+    text = page(document(EVIL))
+    assert EVIL not in text
+    assert "<script" not in text
+    places = page(document()).count("words")
+    assert places > 20
+    assert len(re.findall("&lt;script&gt;", text)) == places
+
+
+def test_every_tag_is_closed_and_nothing_is_fetched():
+    open_tags, sources = [], []
+
+    class Closing(HTMLParser):
+        def handle_starttag(self, tag, attrs):
+            sources.extend(value for name, value in attrs if name in ("src", "href"))
+            if tag not in ("meta", "img"):
+                open_tags.append(tag)
+
+        def handle_endtag(self, tag):
+            assert open_tags.pop() == tag
+
+    text = page(document())
+    Closing().feed(text)
+    assert open_tags == []
+    assert "http" not in text
+    assert [source.split(":")[0] for source in sources] == ["data", "a/b.html"]
+
+
+def test_backticks_are_code_on_the_page():
+    text = page(document("set `use: <holdout>`"))
+    assert "`" not in re.sub(r"<title>.*?</title>|(?:alt|href|data-label)=\".*?\"", "", text)
+    assert "set <code>use: &lt;holdout&gt;</code>" in text
+
+
+def test_a_section_without_content_is_left_out():
+    for text in (page(document()), markdown(document()), terminal(document())):
+        assert "nothing here" not in text
+
+
+def test_numbers_are_in_the_unit_of_the_heading():
+    for render in (page, markdown, terminal):
+        text = render(Document("", "", "", "", (Section("Cases", (CASES,)),)))
+        assert "Speed, mm/s" in text
+        assert "123.4" in text
+        assert "–" in text
+    assert CASES.csv() == "speed,name\n0.1234,a\n,b\n"
+    assert CASES.records[1]["speed"] is None
+    assert CASES.select(["name"], [1]).rows == ((Badge("b", "good"),),)
+
+
+def test_the_terminal_gets_the_brief_sections_and_the_files(tmp_path):
+    parts = Section("Shown", ("long words " * 20,)), Section("Hidden", ("x",), brief=False)
+    text = terminal(Document("name", "kind", "Title", "Lead.", parts), [tmp_path / "a", tmp_path])
+    assert text.startswith("name: Title. Lead.\n\nShown\n  long words")
+    assert "Hidden" not in text
+    assert text.endswith(f"files   {tmp_path / 'a'}\n        {tmp_path}\n")
+    assert max(len(line) for line in text.splitlines() if "long" in line) <= 102
+
+
+def test_the_page_leads_the_files_and_the_figures_end_them(tmp_path):
+    record = tmp_path / "record.json"
+    written = write_page(tmp_path, document(), [record])
+    assert [path.name for path in written] == ["report.html", "record.json", "drawn.svg"]
+
+
+@pytest.mark.parametrize("sign", ["=", "+", "-", "@", "\t", "\r", "＝"])
+def test_a_text_is_no_formula_in_a_spreadsheet(sign):
+    text = csv_text(["a", "b"], [(f'{sign}HYPERLINK("x")', -1.5), ("a=b", -1)])
+    rows = list(csv.reader(io.StringIO(text, newline="")))
+    assert rows == [["a", "b"], [f'\'{sign}HYPERLINK("x")', "-1.5"], ["a=b", "-1"]]
+
+
+def test_csv_leaves_empty_what_is_not_there():
+    text = csv_text(["a"], [(None,), (math.nan,), (math.inf,), (True,), (1 / 3,)], 3)
+    assert text.split("\n") == ["a", '""', '""', "inf", "yes", "0.333", ""]
