@@ -6,4 +6,6 @@ investigations of the controlled motion of the Roller Racer robot".
 
 from __future__ import annotations
 
-__version__ = "0.1.0"
+from rr_opt.version import __version__
+
+__all__ = ["__version__"]

@@ -29,9 +29,9 @@ from rr_lab.trial.child import (
     ended_row,
 )
 from rr_lab.trial.lots import Lot, Made, draw_lot, fingerprint, make
-from rr_opt import __version__
 from rr_opt.batch.journal import Journal
 from rr_opt.outcome import InputError
+from rr_opt.version import __version__
 
 
 class OnDemand(Mapping[int, Any]):

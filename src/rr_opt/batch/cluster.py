@@ -9,8 +9,8 @@ from collections.abc import Callable
 from concurrent.futures import Future
 from typing import Any
 
-from rr_opt import __version__
 from rr_opt.outcome import InputError
+from rr_opt.version import __version__
 
 _PATIENCE = 10  # s
 _ADDRESS = re.compile(

@@ -15,9 +15,9 @@ from typer.core import TyperCommand, TyperGroup
 from typer.main import get_command_from_info
 from typer.models import CommandInfo
 
-from rr_opt import __version__
 from rr_opt.cli import interrupt
 from rr_opt.outcome import EXIT_INTERRUPTED, EXIT_WRONG_INPUT, RollerRacerError
+from rr_opt.version import __version__
 
 VERBS = (
     *("maximize-speed", "shapes", "sweep", "turn", "turn-chart", "circle", "simulate", "export"),

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Annotated, Any, Self
 
 import typer
 
-from rr_opt import __version__
 from rr_opt.cli import interrupt
 from rr_opt.cli.problem_input import place
+from rr_opt.version import __version__
 
 if TYPE_CHECKING:
     from collections.abc import Callable

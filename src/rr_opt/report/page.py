@@ -6,7 +6,6 @@ import math
 from collections.abc import Iterator, Mapping
 from html import escape
 
-from rr_opt import __version__
 from rr_opt.answers.quantities import QUANTITIES, direction_text, number, price_text, with_unit
 from rr_opt.answers.speed import LIMIT_NAMES, SpeedAnswer
 from rr_opt.model.parameters import PARAMETERS, parameters_of
@@ -14,6 +13,7 @@ from rr_opt.model.robot import Robot
 from rr_opt.outcome import Status
 from rr_opt.report.html import Badge, Cell, card, document, figure, table
 from rr_opt.report.summary import cycle_text, holding_sentence, ratio_text
+from rr_opt.version import __version__
 
 _SHOWN = {"m": ("mm", 1e3), "kg m^2": ("kg m²", 1.0)}
 """SI unit -> the unit shown, and how many of it are one SI unit."""

@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import Any
 
-from rr_opt import __version__
 from rr_opt.answers.corrected_robot import finite, robot_record
 from rr_opt.answers.speed import SpeedAnswer
 from rr_opt.design.solve import Candidate
 from rr_opt.files.gait_record import gait_record
 from rr_opt.model.ballast import load_count
+from rr_opt.version import __version__
 
 UNITS = {
     "angle": "rad",

@@ -9,12 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from rr_opt import __version__
 from rr_opt.answers.motion import Format, SetPointsAnswer
 from rr_opt.answers.quantities import number, speed_text, with_unit
 from rr_opt.files.gait_record import gait_record
 from rr_opt.motion.setpoints import CENTRE, COUNT, Cost, SetPoints
 from rr_opt.report.text import columns, gait_formula, gait_lines
+from rr_opt.version import __version__
 
 ENDINGS: dict[Format, str] = {"csv": "-angles.csv", "c-header": ".h", "servo": "-counts.csv"}
 """What the name of a file ends with, unless the user gives another name."""

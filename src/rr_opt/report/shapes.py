@@ -10,7 +10,6 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
-from rr_opt import __version__
 from rr_opt.answers.quantities import direction_text, number, speed_text, with_unit
 from rr_opt.answers.shapes import ShapesAnswer, family
 from rr_opt.answers.speed import SpeedAnswer
@@ -20,6 +19,7 @@ from rr_opt.report.html import Badge, Cell, card, document, figure
 from rr_opt.report.html import table as html_table
 from rr_opt.report.result import result
 from rr_opt.report.text import columns
+from rr_opt.version import __version__
 
 COLUMNS = ("shape", "status", "speed", "gain", "amplitude", "period", "offset", "inertia_ratio",
            "peak_angle", "peak_rate", "peak_torque", "held_by", "message")  # fmt: skip

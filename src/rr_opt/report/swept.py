@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from rr_opt import __version__
 from rr_opt.answers.quantities import number, speed_text, with_unit
 from rr_opt.answers.sweep import SweepAnswer
 from rr_opt.files.gait_record import gait_record
@@ -18,6 +17,7 @@ from rr_opt.report.archive import remove, write_json, write_text
 from rr_opt.report.text import columns, gait_lines
 from rr_opt.verify.evaluate import LIMITS, Evaluated, Found
 from rr_opt.verify.grid import DECISIONS, free_decisions
+from rr_opt.version import __version__
 
 _NAMES = ("sweep.json", "sweep.csv", "sweep.svg")
 

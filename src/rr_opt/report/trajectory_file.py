@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from rr_opt import __version__
 from rr_opt.motion.rollout import Trajectory
 from rr_opt.outcome import InputError
 from rr_opt.report.archive import whole, write_text
+from rr_opt.version import __version__
 
 _COLUMNS = {
     "t": ("s", "time"),

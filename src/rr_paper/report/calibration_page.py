@@ -10,10 +10,10 @@ from pathlib import Path
 
 import numpy as np
 
-from rr_opt import __version__
 from rr_opt.answers.quantities import number
 from rr_opt.report.archive import remove, write_json, write_text
 from rr_opt.report.html import CSS, Badge, Cell, card, figure, table
+from rr_opt.version import __version__
 from rr_paper.calibration.calibrate import Calibration
 from rr_paper.calibration.intervals import intervals
 from rr_paper.calibration.models import (

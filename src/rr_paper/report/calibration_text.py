@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from rr_opt import __version__
 from rr_opt.answers.quantities import number
 from rr_opt.report.text import columns
+from rr_opt.version import __version__
 from rr_paper.calibration.calibrate import JOINT_LEVEL, Calibration, shipped_values
 from rr_paper.calibration.compare import Charge
 from rr_paper.calibration.held import TABLE_3_ALONE, Held

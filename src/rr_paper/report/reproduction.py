@@ -12,11 +12,11 @@ from typing import Any
 
 import numpy as np
 
-from rr_opt import __version__
 from rr_opt.answers.quantities import number
 from rr_opt.report.archive import remove, write_json, write_text
 from rr_opt.report.html import Badge, Cell, card, document, figure, table
 from rr_opt.report.text import columns as in_columns
+from rr_opt.version import __version__
 from rr_paper.publication import CITATION, RATE_LIMIT
 from rr_paper.report.audit import Section, Value
 from rr_paper.report.audit_gaits import sections

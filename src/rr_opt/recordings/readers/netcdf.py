@@ -17,7 +17,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rr_opt import __version__
 from rr_opt.files.gait_record import gait_from, gait_record
 from rr_opt.files.issue import InvalidFileError
 from rr_opt.files.yaml_text import Document
@@ -25,6 +24,7 @@ from rr_opt.model.experiment import CHANNELS, Flag, Noise, Recording
 from rr_opt.model.gait import Gait
 from rr_opt.outcome import InputError
 from rr_opt.recordings.readers.text import refuse
+from rr_opt.version import __version__
 
 if TYPE_CHECKING:
     import xarray

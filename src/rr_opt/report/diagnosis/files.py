@@ -6,7 +6,6 @@ import textwrap
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from rr_opt import __version__
 from rr_opt.answers.corrected_robot import robot_yaml
 from rr_opt.answers.diagnosis import DiagnosisAnswer
 from rr_opt.report.archive import remove, write_json, write_text
@@ -22,6 +21,7 @@ from rr_opt.report.diagnosis.words import (
 )
 from rr_opt.report.text import columns
 from rr_opt.sysid.diagnosis import Finding
+from rr_opt.version import __version__
 
 _WIDTH = 100
 

@@ -8,7 +8,6 @@ from html import escape
 
 import numpy as np
 
-from rr_opt import __version__
 from rr_opt.answers.diagnosis import DiagnosisAnswer, Loss, LossUnknown
 from rr_opt.answers.quantities import number, with_unit
 from rr_opt.model.experiment import Run
@@ -27,6 +26,7 @@ from rr_opt.report.diagnosis.words import (
 )
 from rr_opt.report.html import Badge, Cell, card, document, figure, table
 from rr_opt.sysid.diagnosis import Estimate, Finding, Misfit, Stage
+from rr_opt.version import __version__
 
 STYLE = """
 ol.strip { list-style:none; margin:0; padding:0; display:grid; gap:8px;

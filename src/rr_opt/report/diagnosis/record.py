@@ -6,10 +6,10 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from rr_opt import __version__
 from rr_opt.answers.diagnosis import DiagnosisAnswer, rms
 from rr_opt.report.diagnosis.loss import loss_record
 from rr_opt.sysid.diagnosis import Curve, Estimate, Finding, Misfit, Residue, Stage, Tried
+from rr_opt.version import __version__
 
 
 def fit_record(one: DiagnosisAnswer) -> dict[str, Any]:

@@ -10,7 +10,6 @@ from pathlib import Path
 
 import numpy as np
 
-from rr_opt import __version__
 from rr_opt.answers.quantities import number, with_unit
 from rr_opt.model.experiment import Flag
 from rr_opt.recordings.inspection import Inspection
@@ -20,6 +19,7 @@ from rr_opt.report.archive import remove, whole, write_json, write_text
 from rr_opt.report.html import CSS, Badge, Cell, card, figure, table
 from rr_opt.report.inspect.record import path_record, record
 from rr_opt.report.text import columns
+from rr_opt.version import __version__
 
 
 def summary(found: Sequence[Inspection], written: Sequence[Path]) -> str:

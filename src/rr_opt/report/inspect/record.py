@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from rr_opt import __version__
 from rr_opt.files.gait_record import gait_record
 from rr_opt.model.experiment import Flag, Recording
 from rr_opt.recordings.clocks.clock_fit import ClockFit
@@ -17,6 +16,7 @@ from rr_opt.recordings.inspection import Inspection
 from rr_opt.recordings.markers.pose import MarkerFit
 from rr_opt.recordings.noise import NoiseEstimate
 from rr_opt.recordings.time_axis import time_step
+from rr_opt.version import __version__
 
 
 def record(name: str, sha256: str, found: Sequence[Inspection]) -> dict[str, Any]:

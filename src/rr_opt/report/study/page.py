@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 
-from rr_opt import __version__
 from rr_opt.answers.quantities import QUANTITIES, direction_text, number, speed_text, with_unit
 from rr_opt.answers.study import StudyAnswer, front
 from rr_opt.outcome import Status
@@ -18,6 +17,7 @@ from rr_opt.report.archive import remove, write_json, write_text
 from rr_opt.report.html import Badge, Cell, card, document, figure, table
 from rr_opt.report.study.table import columns_of, csv_text, write_netcdf
 from rr_opt.report.text import columns
+from rr_opt.version import __version__
 
 
 def summary(result: StudyAnswer, files: list[Path]) -> str:

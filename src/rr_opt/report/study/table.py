@@ -9,12 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from rr_opt import __version__
 from rr_opt.answers.quantities import direction_text
 from rr_opt.answers.study import StudyAnswer
 from rr_opt.report import document
 from rr_opt.report.archive import whole
 from rr_opt.report.trajectory_file import netcdf_writer
+from rr_opt.version import __version__
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from rr_opt import __version__
 from rr_opt.answers.corrected_robot import finite
 from rr_opt.answers.quantities import direction_text, number, speed_text, with_unit
 from rr_opt.answers.turn_chart import TurnChartAnswer, sine_text
@@ -19,6 +18,7 @@ from rr_opt.report.archive import remove, write_json, write_text
 from rr_opt.report.text import columns
 from rr_opt.verify.turn.chart import TurnMap
 from rr_opt.verify.turn.offset_claim import RadiusClaim, SignClaim
+from rr_opt.version import __version__
 
 _NAMES = ("turn-chart.json", "turn-chart.csv", "turn-chart.svg")
 _COLUMNS = (
