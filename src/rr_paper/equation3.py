@@ -140,22 +140,20 @@ def steady_cycle(
     """
     robot = robots if isinstance(robots, Robot) else stacked(robots)
     alpha, T = (np.atleast_1d(np.asarray(part, float)) for part in (amplitude, period))
-    return cycle_along(robot, sine(alpha, T, samples, first=0.0), T, signs)
+    angle = sine(alpha, T, samples, first=0.0)
+    v, damping = solve(*equation3(robot, *angle, signs), T / 2)
+    speed = mean_speed(v, yaw_rate(robot, v, angle.phi, angle.rate), T)
+    return Cycle(v, np.where(damping < 0, speed, np.nan))
 
 
-def cycle_along(robot: Robot, angle: Angle, period: Array, signs: Signs = CORRECTED) -> Cycle:
-    """The same for any angle whose second half period mirrors the first."""
-    v, damping = solve(*equation3(robot, *angle, signs), period / 2)
-    return Cycle(v, np.where(damping < 0, mean_speed(robot, v, angle, period), np.nan))
-
-
-def mean_speed(robot: Robot, v: Array, angle: Angle, period: Array) -> Array:
+def mean_speed(v: Array, w: Array, period: Array) -> Array:
     """The displacement of P over a period, over the period (section 3.1); (G,), m/s.
 
-    P also moves at -c1 w across platform 1. That adds c1 times the integral of sin(chi) d chi,
-    which is zero, as cos(chi) repeats after half a period.
+    v (m/s), w = psi-dot (rad/s): (n, G), over half a period (s, (G,)). P also moves at -c1 w
+    across platform 1. That adds c1 times the integral of sin(chi) d chi, which is zero, as
+    cos(chi) repeats after half a period.
     """
-    chi = integral(yaw_rate(robot, v, angle.phi, angle.rate), period / 2, True)
+    chi = integral(w, period / 2, True)
     ahead = (np.cos(chi) * v).mean(axis=0)
     return np.copysign(ahead, ahead * np.cos(chi).mean(axis=0))
 

@@ -1,29 +1,29 @@
-"""The best fit of a model to nine rows, from many starts.
+"""The best fit of a model to the nine rows, from many starting points.
 
-Points spread evenly over the boxes of a model, with the nine speeds of each.
+A library of points is spread evenly over the boxes of a model, with the nine speeds of each. It
+gives the starting points of a search and the weight of every region, and, as data enter only
+afterwards, serves any data.
 
-Where to start a search, the weight of every region, and, as data enter only afterwards, the
-same points serve any data.
-
-Many small fits side by side: Levenberg and Marquardt's method on arrays of problems.
-
-A profile, a bootstrap or a row left out each need hundreds of fits of five or six unknowns to
-nine rows. Their predictions are cheap only in bulk, so all of them step together: one array of
-points and their neighbours is predicted per step. Student's law enters as weights that follow
-the residuals. A coordinate that stands on a side of the box and pulls outward is left there.
+Fits run side by side, by Levenberg and Marquardt's method on arrays of problems: a profile, a
+bootstrap or a cross-validation needs hundreds of fits of five or six unknowns to nine rows, and
+predictions are cheap only in bulk. Student's t enters as weights that follow the residuals. A
+coordinate on a side of the box that is pulled outward stays there.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from scipy.stats import qmc
 
 from rr_opt.array import Array
-from rr_paper.calibration.models import Law, Measured, Model, one_way, row_deviance, weight
+from rr_paper.calibration.likelihood import Data, Distribution, one_way, row_deviance, weight
+
+_BLOCK = 4096
+"""Points between two calls of `tick`, which may be an interrupt."""
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ class Effort:
     slices     of each unknown, from whose best points a fit starts
     values     of a profile, with `starts` starts at each
     steps      of a descent
-    sets       of made data, against which a fit is held
+    sets       of simulated data in a bootstrap
     """
 
     log2_size: int
@@ -43,178 +43,6 @@ class Effort:
     starts: int
     steps: int
     sets: int
-
-
-_CHEAP = Effort(log2_size=15, slices=12, values=25, starts=2, steps=20, sets=200)
-_DEARER = Effort(log2_size=13, slices=8, values=0, starts=0, steps=15, sets=0)
-_DEAR = Effort(log2_size=12, slices=5, values=11, starts=2, steps=9, sets=40)
-
-CHAINS, SWEEPS = 100, 2400
-"""Of the posterior sample of the viscous model."""
-
-COVERAGE_SETS = 100
-"""Of made data whose intervals are held against the truth."""
-
-
-def effort(model: Model) -> Effort:
-    """For a model."""
-    if model.cost > 10:
-        return _DEAR
-    return _DEARER if model.cost > 2 else _CHEAP
-
-
-OTHERS = {"viscous": {"log2_size": 14}, "viscous+dry": {"log2_size": 11, "slices": 3}}
-"""What is done less under the other readings of J20/J10, by model."""
-
-
-_BLOCK = 4096
-"""Points between two looks at whether the user has asked to stop."""
-
-
-@dataclass(frozen=True)
-class Library:
-    """points (N, unknowns), shares of the boxes; speeds (N, 9), m/s, counted `one_way`."""
-
-    points: Array
-    speeds: Array
-
-    def deviance(self, data: Measured, law: Law = "student") -> Array:
-        """Of every point, (N,)."""
-        return row_deviance((self.speeds - data.speed) / data.error, law).sum(axis=1)
-
-    def best(self, data: Measured, law: Law, slices: int, counted: Array | None = None) -> Array:
-        """The best point in each of so many slices of each unknown, (unknowns slices, unknowns).
-
-        Where searches start: the best points of all would lie in one valley. counted: (9,), 1
-        where a row counts and 0 where it is left out.
-        """
-        rows = row_deviance((self.speeds - data.speed) / data.error, law)
-        deviance = rows.sum(axis=1) if counted is None else rows[:, counted > 0].sum(axis=1)
-        of = np.minimum((self.points * slices).astype(int), slices - 1)
-        found = []
-        for unknown in range(self.points.shape[1]):
-            for k in range(slices):
-                inside = np.flatnonzero(of[:, unknown] == k)
-                found.append(inside[np.argmin(deviance[inside])])
-        return self.points[found]
-
-
-def library(
-    predict: Callable[[Array], Array], unknowns: int, log2_size: int, tick: Callable[[], None]
-) -> Library:
-    """2^log2_size points of Sobol's sequence; predict gives signed speeds. tick: called often."""
-    points = qmc.Sobol(unknowns, rng=np.random.default_rng(0)).random_base2(log2_size)
-    found = []
-    for first in range(0, len(points), _BLOCK):
-        tick()
-        found.append(predict(points[first : first + _BLOCK]))
-    speeds = np.concatenate(found)
-    return Library(points, one_way(speeds))
-
-
-_DIFFERENCE = 5e-3
-"""Step of the difference quotients, as a share of the box: long enough that the steps of the
-motion with dry friction, as coarse as the noise allows, do not show in them."""
-_START, _SOFTER, _HARDER, _GIVE_UP = 1e-2, 0.2, 6.0, 1e6
-
-
-@dataclass(frozen=True)
-class Problems:
-    """K problems over unknowns in [0, 1].
-
-    predict  (N, unknowns) -> speeds (N, 9), counted as the printed ones are
-    target, error  (K, 9), m/s
-    counted  (K, 9), 1 where a row counts and 0 where it is left out
-    fixed    (K, unknowns), True where an unknown is held
-    """
-
-    predict: Callable[[Array], Array]
-    target: Array
-    error: Array
-    counted: Array
-    fixed: NDArray[np.bool_]
-    law: Law = "student"
-
-    def deviance(self, speeds: Array, which: NDArray[np.int_]) -> Array:
-        """Of predictions (k, 9) for the problems `which` (k,)."""
-        z = (speeds - self.target[which]) / self.error[which]
-        kept = self.counted[which] > 0
-        return np.where(kept, row_deviance(z, self.law), 0.0).sum(axis=1)
-
-
-def problems(
-    predict: Callable[[Array], Array],
-    start: Array,
-    target: Array,
-    error: Array,
-    *,
-    law: Law = "student",
-    counted: Array | None = None,
-    fixed: NDArray[np.bool_] | None = None,
-) -> Problems:
-    """One problem for each start (K, unknowns); target, error, counted and fixed broadcast."""
-    rows = (len(start), np.shape(target)[-1])
-    counted = np.ones(rows) if counted is None else counted
-    fixed = np.zeros(start.shape, bool) if fixed is None else fixed
-    return Problems(
-        predict=predict,
-        target=np.broadcast_to(target, rows),
-        error=np.broadcast_to(error, rows),
-        counted=np.broadcast_to(counted, rows),
-        fixed=np.broadcast_to(fixed, start.shape),
-        law=law,
-    )
-
-
-def descend(posed: Problems, start: Array, steps: int = 25) -> tuple[Array, Array]:
-    """The points that the starts (K, unknowns) lead to, and their deviances (K,)."""
-    x = start.copy()
-    every = np.arange(len(x))
-    speeds = posed.predict(x)
-    best = posed.deviance(speeds, every)
-    damping, going = np.full(len(x), _START), every[np.isfinite(best)]
-    for _ in range(steps):
-        if not len(going):
-            break
-        tried = _step(posed, x[going], speeds[going], damping[going], going)
-        there = posed.predict(tried)
-        found = posed.deviance(there, going)
-        better = found < best[going]
-        gain = best[going] - found
-        won = going[better]
-        x[won], speeds[won], best[won] = tried[better], there[better], found[better]
-        damping[going] *= np.where(better, _SOFTER, _HARDER)
-        finished = (better & (gain < 1e-5)) | (damping[going] > _GIVE_UP)
-        going = going[~finished]
-    return x, best
-
-
-def _step(
-    posed: Problems, x: Array, speeds: Array, damping: Array, which: NDArray[np.int_]
-) -> Array:
-    """The next points (k, unknowns), inside the box."""
-    J = _slopes(posed.predict, x, speeds) / posed.error[which][:, :, None]
-    z = (speeds - posed.target[which]) / posed.error[which]
-    w = np.sqrt(weight(z, posed.law) * posed.counted[which])
-    J, z = np.nan_to_num(J * w[:, :, None]), z * w
-    downhill = -np.einsum("kri,kr->ki", J, z)
-    outward = ((x <= 0) & (downhill < 0)) | ((x >= 1) & (downhill > 0))
-    free = ~(posed.fixed[which] | outward)
-    J, downhill = J * free[:, None, :], downhill * free
-    normal = np.einsum("kri,krj->kij", J, J)
-    diagonal = np.einsum("kii->ki", normal)
-    ridge = damping[:, None] * (diagonal + 1e-3) + np.where(free, 0.0, 1.0)
-    normal = normal + ridge[:, :, None] * np.eye(x.shape[1])
-    return np.clip(x + np.linalg.solve(normal, downhill[:, :, None])[:, :, 0], 0.0, 1.0)
-
-
-def _slopes(predict: Callable[[Array], Array], x: Array, speeds: Array) -> Array:
-    """d speeds/dx by differences towards the box's middle, (k, 9, unknowns)."""
-    size = x.shape[1]
-    h = np.where(x < 0.5, _DIFFERENCE, -_DIFFERENCE)
-    moved = x[:, None, :] + h[:, None, :] * np.eye(size)
-    beside = predict(moved.reshape(-1, size)).reshape(len(x), size, -1)
-    return np.moveaxis((beside - speeds[:, None, :]) / h[:, :, None], 1, 2)
 
 
 @dataclass(frozen=True)
@@ -226,67 +54,199 @@ class Fit:
     speeds: Array
     deviance: float
 
-    def z(self, data: Measured) -> Array:
+    def z(self, data: Data) -> Array:
         """How far each row is off, in standard errors, (9,)."""
-        return (one_way(self.speeds[None])[0] - data.speed) / data.error
+        return data.z(one_way(self.speeds))
 
 
-def fit(
+@dataclass(frozen=True)
+class Estimator:
+    """A model with its library.
+
+    signed   points (N, unknowns), shares of the boxes -> signed speeds (N, 9), m/s
+    points   (N, unknowns), of the library; speeds (N, 9), counted one way
+    """
+
+    signed: Callable[[Array], Array]
+    effort: Effort
+    points: Array
+    speeds: Array
+
+    def predict(self, points: Array) -> Array:
+        """Speeds counted one way, (N, 9)."""
+        return one_way(self.signed(points))
+
+    def fit(
+        self,
+        data: Data,
+        distribution: Distribution = "student",
+        also: Array | None = None,
+        counted: Array | None = None,
+    ) -> Fit:
+        """The best fit, also from the starts `also` (K, unknowns).
+
+        counted: (9,), 0 where a row is left out.
+        """
+        starts = self._starts(data, distribution, self.effort.slices, counted)
+        if also is not None:
+            starts = np.concatenate([also, starts])
+        steps, options = self.effort.steps, {"distribution": distribution, "counted": counted}
+        x, deviance = descend(self.predict, starts, data, steps, **options)
+        # Most starts end in side valleys: only the most promising go on to the bottom.
+        front = np.argsort(deviance)[: max(1, len(deviance) // 4)]
+        x, deviance = descend(self.predict, x[front], data, 2 * steps, **options)
+        best = int(deviance.argmin())
+        return Fit(x[best], self.signed(x[best : best + 1])[0], float(deviance[best]))
+
+    def leave_one_out(self, data: Data, whole: Fit, distribution: Distribution) -> Array:
+        """z (9,) of each row as predicted by a fit to the other eight."""
+        counted = 1.0 - np.eye(len(data.speed))
+        slices = max(1, self.effort.slices // 4)
+        starts = [
+            np.concatenate([whole.point[None], self._starts(data, distribution, slices, row)])
+            for row in counted
+        ]
+        each = len(starts[0])
+        x, deviance = descend(
+            self.predict, np.concatenate(starts), data, self.effort.steps,
+            distribution=distribution, counted=np.repeat(counted, each, axis=0),
+        )  # fmt: skip
+        best = deviance.reshape(-1, each).argmin(axis=1) + each * np.arange(len(counted))
+        return np.diag(data.z(self.predict(x[best])))
+
+    def refit(
+        self,
+        sets: Data,
+        starts: Sequence[Array],
+        distribution: Distribution,
+        steps: int,
+        fixed: int | None = None,
+    ) -> Array:
+        """The least deviance of each of K data sets, (K,).
+
+        starts: arrays (K, unknowns) or (unknowns,); fixed: an unknown that stays at its value there
+        """
+        count, size = len(sets.speed), self.points.shape[1]
+        begin = np.concatenate([np.broadcast_to(one, (count, size)) for one in starts])
+        tiled = (np.tile(part, (len(starts), 1)) for part in (sets.speed, sets.error))
+        held = None if fixed is None else np.arange(size) == fixed
+        _, deviance = descend(
+            self.predict, begin, Data(*tiled), steps, distribution=distribution, fixed=held
+        )
+        return deviance.reshape(len(starts), count).min(axis=0)
+
+    def nearest(self, sets: Data, distribution: Distribution) -> Array:
+        """The library's best point for each of K data sets, (K, unknowns)."""
+        best = [
+            int(sets.one(i).deviance(self.speeds, distribution).argmin())
+            for i in range(len(sets.speed))
+        ]
+        return self.points[best]
+
+    def _starts(
+        self, data: Data, distribution: Distribution, slices: int, counted: Array | None
+    ) -> Array:
+        """The library's best point in each slice of each unknown, (unknowns slices, unknowns).
+
+        The best points of all would lie in one valley.
+        """
+        rows = row_deviance(data.z(self.speeds), distribution)
+        deviance = rows.sum(axis=1) if counted is None else rows[:, counted > 0].sum(axis=1)
+        slice_of = np.minimum((self.points * slices).astype(int), slices - 1)
+        best = []
+        for unknown in range(self.points.shape[1]):
+            for k in range(slices):
+                inside = np.flatnonzero(slice_of[:, unknown] == k)
+                best.append(inside[np.argmin(deviance[inside])])
+        return self.points[best]
+
+
+def estimator(
+    signed: Callable[[Array], Array], unknowns: int, effort: Effort, tick: Callable[[], None]
+) -> Estimator:
+    """With 2^log2_size points of Sobol's sequence. tick: called often."""
+    sobol = qmc.Sobol(unknowns, rng=np.random.default_rng(0))
+    points, speeds = sobol.random_base2(effort.log2_size), []
+    for first in range(0, len(points), _BLOCK):
+        tick()
+        speeds.append(one_way(signed(points[first : first + _BLOCK])))
+    return Estimator(signed, effort, points, np.concatenate(speeds))
+
+
+_DIFFERENCE = 5e-3
+"""Step of the difference quotients, as a share of the box: large compared with the integration
+errors of the motion with dry friction, which is as coarse as the noise allows."""
+_DAMPING, _SOFTER, _HARDER, _GIVE_UP = 1e-2, 0.2, 6.0, 1e6
+
+
+def descend(
     predict: Callable[[Array], Array],
-    known: Library,
-    data: Measured,
-    *,
-    law: Law,
-    slices: int,
+    starts: Array,
+    data: Data,
     steps: int,
-    also: Array | None = None,
-    counted: Array | None = None,
-) -> Fit:
-    """predict gives signed speeds. Starts are the library's best in each of so many slices of
-    each unknown, and `also` (K, unknowns). counted: (9,), 0 where a row is left out."""
-    begin = known.best(data, law, slices, counted)
-    if also is not None:
-        begin = np.concatenate([also, begin])
-    posed = problems(
-        lambda x: one_way(predict(x)), begin, data.speed, data.error, law=law, counted=counted
-    )
-    x, found = descend(posed, begin, steps)
-    # Most starts end in side valleys: only the most promising go on to the bottom.
-    front = np.argsort(found)[: max(1, len(found) // 4)]
-    posed = problems(
-        lambda x: one_way(predict(x)), x[front], data.speed, data.error, law=law, counted=counted
-    )
-    x, found = descend(posed, x[front], 2 * steps)
-    best = int(found.argmin())
-    return Fit(x[best], predict(x[best : best + 1])[0], float(found[best]))
+    *,
+    distribution: Distribution = "student",
+    counted: ArrayLike | None = None,
+    fixed: ArrayLike | None = None,
+) -> tuple[Array, Array]:
+    """The points that the starts (K, unknowns) lead to, and their deviances (K,).
+
+    predict  points (N, unknowns) -> speeds (N, 9), counted one way
+    data     one set for all starts, or K of them
+    counted  broadcasts to (K, 9): 0 where a row is left out
+    fixed    broadcasts to (K, unknowns): True where an unknown stays at its value
+    """
+    rows = (len(starts), data.speed.shape[-1])
+    data = Data(np.broadcast_to(data.speed, rows), np.broadcast_to(data.error, rows))
+    kept = np.broadcast_to(True if counted is None else np.asarray(counted) > 0, rows)
+    held = np.broadcast_to(False if fixed is None else np.asarray(fixed), starts.shape)
+
+    def deviance(speeds: Array, which: NDArray[np.int_]) -> Array:
+        z = (speeds - data.speed[which]) / data.error[which]
+        return np.where(kept[which], row_deviance(z, distribution), 0.0).sum(axis=1)
+
+    x, every = starts.copy(), np.arange(len(starts))
+    speeds = predict(x)
+    best = deviance(speeds, every)
+    damping, going = np.full(len(x), _DAMPING), every[np.isfinite(best)]
+    for _ in range(steps):
+        if not len(going):
+            break
+        error = data.error[going]
+        z = (speeds[going] - data.speed[going]) / error
+        w = np.sqrt(weight(z, distribution) * kept[going])
+        J = _slopes(predict, x[going], speeds[going]) / error[:, :, None]
+        tried = _step(x[going], J * w[:, :, None], z * w, held[going], damping[going])
+        there = predict(tried)
+        reached = deviance(there, going)
+        gain = best[going] - reached
+        better = reached < best[going]
+        won = going[better]
+        x[won], speeds[won], best[won] = tried[better], there[better], reached[better]
+        damping[going] *= np.where(better, _SOFTER, _HARDER)
+        finished = (better & (gain < 1e-5)) | (damping[going] > _GIVE_UP)
+        going = going[~finished]
+    return x, best
 
 
-def leave_one_out(
-    predict: Callable[[Array], Array],
-    known: Library,
-    data: Measured,
-    whole: Fit,
-    *,
-    law: Law,
-    slices: int,
-    steps: int,
-) -> Array:
-    """z (9,) of each row as predicted by a fit to the other eight."""
-    counted = 1.0 - np.eye(len(data.speed))
-    starts = [
-        np.concatenate([whole.point[None], known.best(data, law, slices, row)]) for row in counted
-    ]
-    each = len(starts[0])
-    begin = np.concatenate(starts)
-    posed = problems(
-        lambda x: one_way(predict(x)),
-        begin,
-        data.speed,
-        data.error,
-        law=law,
-        counted=np.repeat(counted, each, axis=0),
-    )
-    x, found = descend(posed, begin, steps)
-    best = found.reshape(-1, each).argmin(axis=1) + each * np.arange(len(counted))
-    speeds = one_way(predict(x[best]))
-    return (np.diag(speeds) - data.speed) / data.error
+def _step(x: Array, J: Array, z: Array, held: NDArray[np.bool_], damping: Array) -> Array:
+    """The next points (k, unknowns), inside the box, from weighted slopes and residuals."""
+    J = np.nan_to_num(J)
+    downhill = -np.einsum("kri,kr->ki", J, z)
+    outward = ((x <= 0) & (downhill < 0)) | ((x >= 1) & (downhill > 0))
+    free = ~(held | outward)
+    J, downhill = J * free[:, None, :], downhill * free
+    normal = np.einsum("kri,krj->kij", J, J)
+    diagonal = np.einsum("kii->ki", normal)
+    ridge = damping[:, None] * (diagonal + 1e-3) + np.where(free, 0.0, 1.0)
+    normal = normal + ridge[:, :, None] * np.eye(x.shape[1])
+    return np.clip(x + np.linalg.solve(normal, downhill[:, :, None])[:, :, 0], 0.0, 1.0)
+
+
+def _slopes(predict: Callable[[Array], Array], x: Array, speeds: Array) -> Array:
+    """d speeds/dx by differences towards the middle of the box, (k, 9, unknowns)."""
+    size = x.shape[1]
+    h = np.where(x < 0.5, _DIFFERENCE, -_DIFFERENCE)
+    moved = x[:, None, :] + h[:, None, :] * np.eye(size)
+    beside = predict(moved.reshape(-1, size)).reshape(len(x), size, -1)
+    return np.moveaxis((beside - speeds[:, None, :]) / h[:, :, None], 1, 2)

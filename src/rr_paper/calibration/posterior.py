@@ -1,9 +1,9 @@
-"""A sample of what the nine rows leave possible, each unknown flat inside its box beforehand.
+"""A sample of what the nine rows leave possible, with a flat prior inside each box.
 
-The library's points, each with the weight of its likelihood, are drawn from; then the draws move
-by differential evolution: a point steps along the difference of two others, which knows the
-shape of the valley, and Metropolis' rule keeps the distribution. One half of the points moves
-while the other lends the differences, so that each half's moves are reversible.
+Points of the library, weighted by their likelihood, are drawn as a start. Then they move by
+differential evolution: a point steps along the difference of two others, which follows the shape
+of the valley, and Metropolis' rule keeps the distribution. One half of the points moves while the
+other lends the differences, so that each half's moves are reversible.
 
 ter Braak (2006), Statistics and Computing 16, 239-249.
 """
@@ -17,8 +17,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from rr_opt.array import Array
-from rr_paper.calibration.fit import Library
-from rr_paper.calibration.models import Measured, one_way, row_deviance
+from rr_paper.calibration.fit import Estimator
+from rr_paper.calibration.likelihood import Data
 
 _KEEP_EVERY = 5
 _LONG_STEP_EVERY = 5
@@ -27,15 +27,14 @@ _LONG_STEP_EVERY = 5
 
 @dataclass(frozen=True)
 class Posterior:
-    """points (N, unknowns), shares of the boxes; deviance (N,); speeds signed (N, 9), m/s.
+    """points (N, unknowns), shares of the boxes; deviance (N,).
 
     rhat            split R-hat of the worst unknown: near 1 if the chains agree
-    library_weight  effective number of points of the library, which the draws started from
+    library_weight  effective number of points of the library from which the draws started
     """
 
     points: Array
     deviance: Array
-    speeds: Array
     rhat: float
     library_weight: float
 
@@ -44,52 +43,50 @@ class Posterior:
         return np.quantile(self.points, at, axis=0)
 
 
-def weights(deviance: Array) -> Array:
-    """Likelihoods (N,) that sum to 1."""
-    w = np.exp(-(deviance - deviance.min()) / 2)
-    return w / w.sum()
+def library_draws(
+    estimator: Estimator, data: Data, count: int, draw: np.random.Generator
+) -> tuple[Array, float]:
+    """Points of the library drawn by their likelihood, (count, unknowns), and the effective number
+    of points that share it."""
+    deviance = data.deviance(estimator.speeds)
+    likelihood = np.exp(-(deviance - deviance.min()) / 2)
+    likelihood /= likelihood.sum()
+    chosen = draw.choice(len(likelihood), count, p=likelihood)
+    return estimator.points[chosen], float(1 / (likelihood**2).sum())
 
 
 def sample(
-    predict: Callable[[Array], Array],
-    known: Library,
-    data: Measured,
-    *,
-    chains: int,
-    sweeps: int,
-    tick: Callable[[], None],
+    estimator: Estimator, data: Data, *, chains: int, sweeps: int, tick: Callable[[], None]
 ) -> Posterior:
-    """Draws from the posterior by Student's law; predict gives signed speeds. The first half of
-    the sweeps is thrown away. tick: called before each sweep."""
+    """Draws from the posterior by Student's t, of the second half of the sweeps."""
     draw = np.random.default_rng(1)
-    start = weights(known.deviance(data))
-    x = known.points[draw.choice(len(start), chains, p=start)]
-    kept = evolve(predict, x[None], data, sweeps, draw, tick)[:, 0]
+    x, weight = library_draws(estimator, data, chains, draw)
+    kept = evolve(estimator, x[None], data, sweeps, draw, tick)[:, 0]
     points = kept.reshape(-1, x.shape[1])
-    speeds = predict(points)
-    deviance = row_deviance((one_way(speeds) - data.speed) / data.error, "student").sum(axis=1)
-    return Posterior(points, deviance, speeds, _split_rhat(kept), float(1 / (start**2).sum()))
+    deviance = data.deviance(estimator.predict(points))
+    return Posterior(points, deviance, _split_rhat(kept), weight)
 
 
 def evolve(
-    predict: Callable[[Array], Array],
+    estimator: Estimator,
     x: Array,
-    data: Measured,
+    data: Data,
     sweeps: int,
     draw: np.random.Generator,
     tick: Callable[[], None],
 ) -> Array:
     """Sweeps of S data sets side by side, from chains x (S, C, unknowns).
 
-    data: speeds and errors (S, 9), or (9,) for one set. Returns the chains at every fifth sweep
-    of the second half, (kept, S, C, unknowns).
+    Returns the chains at every fifth sweep of the second half, (kept, S, C, unknowns).
+    tick: called before each sweep.
     """
     x, (sets, chains, size) = x.copy(), x.shape
-    speed, error = (np.broadcast_to(part, (sets, 9))[:, None] for part in (data.speed, data.error))
+    rows = (sets, data.speed.shape[-1])
+    data = Data(*(np.broadcast_to(part, rows)[:, None] for part in (data.speed, data.error)))
 
     def deviance(points: Array) -> Array:
-        z = (one_way(predict(points.reshape(-1, size))).reshape(sets, -1, 9) - speed) / error
-        return row_deviance(z, "student").sum(axis=2)
+        speeds = estimator.predict(points.reshape(-1, size))
+        return data.deviance(speeds.reshape(sets, -1, rows[1]))
 
     D, kept = deviance(x), []
     halves = slice(0, chains // 2), slice(chains // 2, chains)
@@ -97,20 +94,20 @@ def evolve(
         tick()
         for moving, lending in (halves, halves[::-1]):
             proposed = _proposals(x[:, moving], x[:, lending], sweep, draw)
-            found = deviance(proposed)
-            taken = np.log(draw.random(found.shape)) < (D[:, moving] - found) / 2
+            there = deviance(proposed)
+            taken = np.log(draw.random(there.shape)) < (D[:, moving] - there) / 2
             x[:, moving] = np.where(taken[..., None], proposed, x[:, moving])
-            D[:, moving] = np.where(taken, found, D[:, moving])
+            D[:, moving] = np.where(taken, there, D[:, moving])
         if sweep >= sweeps // 2 and sweep % _KEEP_EVERY == 0:
             kept.append(x.copy())
     return np.array(kept)
 
 
 def _proposals(x: Array, others: Array, sweep: int, draw: np.random.Generator) -> Array:
-    """Where to go from x (S, k, unknowns); what leaves the box comes in on the other side.
+    """Where to go from x (S, k, unknowns); what leaves the box re-enters on the other side.
 
     So a step and its opposite stay equally likely. Reflected at one side alone a step would turn
-    against the valley, which its opposite does not.
+    across the valley, and its opposite would not.
     """
     sets, count, size = x.shape
     lent = others.shape[1]

@@ -1,27 +1,29 @@
-"""Profile likelihood: for each value of one unknown, how well the others can make up for it.
+"""Profile likelihood: for each value of one unknown, how well the others can compensate.
 
-A value is inside the 95 % interval if the deviance there is within 3.84 of the least. That the
-deviance falls so is a theorem for many data; whether it holds for nine is what
-`coverage` counts.
+A value is inside the 95 % interval if the deviance there is within 3.84 of the least. That holds
+asymptotically, for many data; whether it holds for nine is what `coverage` counts.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.stats import chi2
 
 from rr_opt.array import Array
-from rr_paper.calibration.fit import descend, problems
-from rr_paper.calibration.models import Law, Measured
+from rr_paper.calibration.fit import Estimator, descend
+from rr_paper.calibration.likelihood import Data, Distribution
+from rr_paper.calibration.unknowns import Unknown
 
 LEVEL = float(chi2.ppf(0.95, 1))
 """3.84."""
 
 _ROUNDS = 3
-"""How often what was found is tried as a start at the values beside it."""
+"""How often the results are tried as starts at the neighbouring values."""
+_DISTANCE = 0.03
+"""Distance from a value, as a share of the box, that weighs like a deviance of 1."""
 
 
 @dataclass(frozen=True)
@@ -30,7 +32,7 @@ class Profile:
 
     points     where it is least, (M, unknowns)
     bottom     the least deviance of all
-    low, high  the 95 % interval, shares; open where it reaches a side of the box
+    low, high  the 95 % interval, shares; 0 or 1 where the box and not the data ends it
     """
 
     grid: Array
@@ -45,88 +47,65 @@ class Profile:
         """Deviance above the least, (M,)."""
         return self.deviance - self.bottom
 
-    @property
-    def open_below(self) -> bool:
-        """The box, not the data, ends the interval below."""
-        return self.low <= 0.0
-
-    @property
-    def open_above(self) -> bool:
-        """The box, not the data, ends the interval above."""
-        return self.high >= 1.0
+    def ends(self, unknown: Unknown) -> tuple[float, float]:
+        """The 95 % interval, SI."""
+        low, high = unknown.value([self.low, self.high]).tolist()
+        return low, high
 
 
 def profiles(
-    predict: Callable[[Array], Array],
-    data: Measured,
-    candidates: Array,
-    deviance: Array,
-    *,
+    estimator: Estimator,
+    data: Data,
     unknowns: Sequence[int],
-    law: Law = "student",
-    values: int,
-    starts: int,
-    steps: int,
-) -> list[Profile]:
-    """One for each of the unknowns named by place; predict gives speeds counted one way.
+    distribution: Distribution = "student",
+) -> tuple[Profile, ...]:
+    """One for each of the unknowns, given by index.
 
-    candidates (N, unknowns) with their deviance (N,): the best of them near a value are where
-    the search at that value starts. What it finds is then tried as a start at the values beside
-    it, as one search alone may end in a side valley.
+    The search at a value starts from the best points of the library near it. Its result is then
+    tried as a start at the neighbouring values, as one search alone may end in a side valley.
     """
-    grid = np.linspace(0, 1, values)
-    shape = (len(unknowns), values, -1, candidates.shape[1])
-    begin = np.array(
-        [
-            _starts(candidates, deviance, unknown, value, starts)
-            for unknown in unknowns
-            for value in grid
-        ]
-    ).reshape(shape)
-    best, least = _held(predict, data, law, begin, unknowns, grid, steps)
+    effort = estimator.effort
+    grid = np.linspace(0, 1, effort.values)
+    library = data.deviance(estimator.speeds, distribution)
+
+    def nearby(unknown: int, value: float) -> Array:
+        distance = np.abs(estimator.points[:, unknown] - value)
+        order = np.argsort(library + (distance / _DISTANCE) ** 2)
+        return estimator.points[order[: effort.starts]]
+
+    def search(starts: Array) -> tuple[Array, Array]:
+        """The best points (U, M, unknowns) and deviances (U, M), from starts (U, M, starts,
+        unknowns), with each of U unknowns fixed at each of M values."""
+        starts, size = starts.copy(), starts.shape[-1]
+        fixed = np.zeros(starts.shape, bool)
+        for row, unknown in enumerate(unknowns):
+            starts[row, :, :, unknown] = grid[:, None]
+            fixed[row, :, :, unknown] = True
+        x, deviance = descend(
+            estimator.predict, starts.reshape(-1, size), data, effort.steps,
+            distribution=distribution, fixed=fixed.reshape(-1, size),
+        )  # fmt: skip
+        x, deviance = x.reshape(starts.shape), deviance.reshape(starts.shape[:-1])
+        first = deviance.argmin(axis=2)[:, :, None]
+        best = np.take_along_axis(x, first[..., None], axis=2)[:, :, 0]
+        return best, np.take_along_axis(deviance, first, axis=2)[:, :, 0]
+
+    best, least = search(
+        np.array([[nearby(unknown, value) for value in grid] for unknown in unknowns])
+    )
     for _ in range(_ROUNDS):
-        beside = np.stack([best, np.roll(best, 1, axis=1), np.roll(best, -1, axis=1)], axis=2)
-        best, least = _held(predict, data, law, beside, unknowns, grid, steps)
-    bottom = min(float(least.min()), float(deviance.min()))
-    return [
+        best, least = search(
+            np.stack([best, np.roll(best, 1, axis=1), np.roll(best, -1, axis=1)], axis=2)
+        )
+    bottom = min(float(least.min()), float(library.min()))
+    return tuple(
         Profile(grid, row, points, bottom, *_interval(grid, row - bottom))
         for row, points in zip(least, best, strict=True)
-    ]
-
-
-def _held(
-    predict: Callable[[Array], Array],
-    data: Measured,
-    law: Law,
-    begin: Array,
-    unknowns: Sequence[int],
-    grid: Array,
-    steps: int,
-) -> tuple[Array, Array]:
-    """The best points (U, M, unknowns), from starts (U, M, starts, unknowns), in which each of U
-    unknowns is held at each of M values; and their deviance (U, M)."""
-    begin, size = begin.copy(), begin.shape[-1]
-    for row, unknown in enumerate(unknowns):
-        begin[row, :, :, unknown] = grid[:, None]
-    flat = begin.reshape(-1, size)
-    held = np.repeat(np.eye(size, dtype=bool)[list(unknowns)], len(flat) // len(unknowns), axis=0)
-    posed = problems(predict, flat, data.speed, data.error, law=law, fixed=held)
-    x, found = descend(posed, flat, steps)
-    x, found = x.reshape(begin.shape), found.reshape(begin.shape[:-1])
-    first = found.argmin(axis=2)[:, :, None]
-    best = np.take_along_axis(x, first[..., None], axis=2)[:, :, 0]
-    return best, np.take_along_axis(found, first, axis=2)[:, :, 0]
-
-
-def _starts(candidates: Array, deviance: Array, unknown: int, value: float, count: int) -> Array:
-    """The candidates that are best once the distance to the value is held against them."""
-    distance = np.abs(candidates[:, unknown] - value)
-    order = np.argsort(deviance + (distance / 0.03) ** 2)
-    return candidates[order[:count]]
+    )
 
 
 def _interval(grid: Array, rise: Array) -> tuple[float, float]:
-    """First and last place where the rise is below LEVEL, between the grid's values too."""
+    """First and last place where the rise is below LEVEL, interpolated between the values."""
     inside = np.flatnonzero(rise <= LEVEL)
     if not len(inside):
         at = float(grid[np.argmin(rise)])

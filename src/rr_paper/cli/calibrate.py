@@ -1,4 +1,4 @@
-"""`rr-opt calibrate`: what the paper's nine averages say of its prototype, and of the models."""
+"""`rr-opt calibrate`: what the paper's nine averages say about its prototype, and the models."""
 
 from __future__ import annotations
 
@@ -17,19 +17,18 @@ def calibrate(
 ) -> None:
     """Estimate what the paper does not give of its prototype, and compare models.
 
-    From the nine averages of Tables 2 and 3, for both readings of their columns. Tells which
-    unknowns those do not pin down. Takes two to three minutes.
+    Uses the nine averages of Tables 2 and 3, for both readings of their columns, and shows which
+    unknowns they do not determine. Takes two to three minutes.
     """
     with Steps() as steps:
         steps("starting")
         from rr_opt.report.archive import folder_for_results, strict_json
 
         folder = folder_for_results(out or Path("out") / "calibration")
-        from rr_paper.calibration.calibrate import calibrate as estimate
-        from rr_paper.report.calibration_page import write_calibration
-        from rr_paper.report.calibration_text import record, summary
+        from rr_paper.calibration.calibration import calibrate as compute
+        from rr_paper.report.calibration import record, summary, write_calibration
 
-        found = estimate(steps)
+        found = compute(steps)
         steps("files")
         written = write_calibration(found, folder)
     if json:

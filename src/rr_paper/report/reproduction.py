@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -20,6 +18,7 @@ from rr_opt.version import __version__
 from rr_paper.publication import CITATION, RATE_LIMIT
 from rr_paper.report.audit import Section, Value
 from rr_paper.report.audit_gaits import sections
+from rr_paper.report.csv_text import csv_text
 from rr_paper.reproduction import Reproduction
 from rr_paper.surfaces import SpeedSurface
 
@@ -91,18 +90,6 @@ def _cell(value: Value) -> str:
     if isinstance(value, str):
         return value
     return f"{value:.0e}" if 0 < abs(value) < _TINY else number(value, 4)
-
-
-def csv_text(head: Sequence[str], rows: Iterable[Sequence[Value]]) -> str:
-    """A table as CSV, numbers with nine digits; empty where there is none."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(head)
-    writer.writerows(
-        ["" if cell is None else cell if isinstance(cell, str) else f"{cell:.9g}" for cell in row]
-        for row in rows
-    )
-    return text.getvalue()
 
 
 def curves(found: Reproduction) -> dict[str, str]:

@@ -1,4 +1,4 @@
-"""`rr-opt calibrate` writes every file, tells what they hold, and prints JSON alone if asked."""
+"""`rr-opt calibrate` writes every file, and prints JSON alone if asked."""
 
 from __future__ import annotations
 
@@ -7,8 +7,7 @@ import json
 
 import pytest
 
-from rr_paper.calibration import calibrate as work
-from rr_paper.calibration import models, steady
+from rr_paper.calibration import calibration, cycles, models
 from rr_paper.calibration.fit import Effort
 
 FILES = {
@@ -20,15 +19,15 @@ FILES = {
 
 @pytest.fixture
 def hasty(monkeypatch):
-    """The same work, so little of it that its numbers mean nothing."""
+    """So little work that the numbers are meaningless."""
     little = Effort(log2_size=6, slices=1, values=3, starts=1, steps=2, sets=2)
-    monkeypatch.setattr(work, "effort", lambda model: little)
-    monkeypatch.setattr(work, "OTHERS", {"viscous": {}, "viscous+dry": {}})
+    monkeypatch.setattr(calibration, "effort", lambda model: little)
+    monkeypatch.setattr(calibration, "REDUCED", {"viscous": {}, "viscous+dry": {}})
     for name, count in (("CHAINS", 12), ("SWEEPS", 40), ("COVERAGE_SETS", 3)):
-        monkeypatch.setattr(work, name, count)
+        monkeypatch.setattr(calibration, name, count)
     monkeypatch.setattr(models, "_DRY", 8)
-    monkeypatch.setattr(models, "_CORNERED", 16)
-    monkeypatch.setattr(steady, "_STEPS", 8)
+    monkeypatch.setattr(models, "_CORNERS", 16)
+    monkeypatch.setattr(cycles, "_ITERATIONS", 8)
 
 
 def test_the_files(run, hasty, tmp_path):
@@ -45,7 +44,7 @@ def test_the_files(run, hasty, tmp_path):
     assert "nan" not in page.split("</style>")[1].split("data:image")[0]
 
 
-def test_a_folder_that_cannot_be(run, hasty, tmp_path):
+def test_a_folder_that_cannot_be_made(run, hasty, tmp_path):
     (tmp_path / "file").write_text("")
     ended = run("calibrate", "--out", "file/inside")
     assert ended.exit_code == 2

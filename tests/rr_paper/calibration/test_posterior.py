@@ -1,17 +1,17 @@
-"""The sample has the quantiles that integration on a grid gives, on a problem of two unknowns."""
+"""Quantiles and profiles are those of integration on a grid, on a problem of two unknowns."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
-from rr_paper.calibration.fit import library
-from rr_paper.calibration.models import Measured, row_deviance
+from rr_paper.calibration.fit import Effort, Estimator, estimator
+from rr_paper.calibration.likelihood import Data
 from rr_paper.calibration.posterior import sample
 from rr_paper.calibration.profile import LEVEL, profiles
 
 SPREAD = np.linspace(0.3, 1.3, 9)
-DATA = Measured(0.4 * SPREAD + 0.2, 0.25 * np.ones(9))
+DATA = Data(0.4 * SPREAD + 0.2, 0.25 * np.ones(9))
 
 
 def predict(points: np.ndarray) -> np.ndarray:
@@ -24,14 +24,17 @@ def on_a_grid() -> tuple[np.ndarray, np.ndarray]:
     at = (np.arange(400) + 0.5) / 400
     one, other = np.meshgrid(at, at, indexing="ij")
     speeds = predict(np.column_stack([one.ravel(), other.ravel()]))
-    deviance = row_deviance((speeds - DATA.speed) / DATA.error, "student").sum(axis=1)
-    return at, deviance.reshape(400, 400)
+    return at, DATA.deviance(speeds).reshape(400, 400)
+
+
+def fitter() -> Estimator:
+    work = Effort(log2_size=10, slices=0, values=41, starts=1, steps=20, sets=0)
+    return estimator(predict, 2, work, lambda: None)
 
 
 def test_quantiles():
     at, deviance = on_a_grid()
-    known = library(predict, 2, 10, lambda: None)
-    drawn = sample(predict, known, DATA, chains=60, sweeps=600, tick=lambda: None)
+    drawn = sample(fitter(), DATA, chains=60, sweeps=600, tick=lambda: None)
     for unknown, along in enumerate((1, 0)):
         mass = np.exp(-deviance / 2).sum(axis=along)
         below = np.cumsum(mass) / mass.sum()
@@ -42,9 +45,7 @@ def test_quantiles():
 
 def test_profiles():
     at, deviance = on_a_grid()
-    known = library(predict, 2, 10, lambda: None)
-    found = profiles(predict, DATA, known.points, known.deviance(DATA), unknowns=[0, 1],
-                     values=41, starts=1, steps=20)  # fmt: skip
+    found = profiles(fitter(), DATA, [0, 1])
     for unknown, along in enumerate((1, 0)):
         least = deviance.min(axis=along)
         inside = at[least - deviance.min() <= LEVEL]

@@ -1,4 +1,4 @@
-"""The limited servo keeps its limit, follows what is slow, and makes a triangle of what is fast."""
+"""The limited servo keeps its limit; a slow command is followed, a fast one becomes a triangle."""
 
 from __future__ import annotations
 
@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from rr_paper.calibration.steady import CLOSING, RATE_LIMIT, limited, sine
+from rr_paper.calibration.cycles import TAU, limited
+from rr_paper.equation3 import sine
+from rr_paper.publication import RATE_LIMIT
 
 N = 256
 AMPLITUDES, PERIODS = np.array([0.25, 0.8, 1.4]), np.array([2.0, 1.0, 1.0])
@@ -33,7 +35,7 @@ def test_it_is_the_solution_of_its_equation(amplitude: float, period: float):
     omega = 2 * np.pi / period
 
     def rate(t: float, phi: np.ndarray) -> np.ndarray:
-        return RATE_LIMIT * np.tanh((amplitude * np.sin(omega * t) - phi) / (RATE_LIMIT * CLOSING))
+        return RATE_LIMIT * np.tanh((amplitude * np.sin(omega * t) - phi) / (RATE_LIMIT * TAU))
 
     t = 20 * period + (np.arange(N) + 0.5) * period / 2 / N
     found = solve_ivp(rate, (0, t[-1]), [0.0], t_eval=t, rtol=1e-8, atol=1e-10, method="LSODA")
@@ -42,4 +44,4 @@ def test_it_is_the_solution_of_its_equation(amplitude: float, period: float):
     slope = np.gradient(made.phi[:, 0], period / 2 / N)
     assert made.rate[2:-2, 0] == pytest.approx(slope[2:-2], abs=0.05)
     bend = np.gradient(made.rate[:, 0], period / 2 / N)
-    assert made.bend[2:-2, 0] == pytest.approx(bend[2:-2], abs=0.03 * np.abs(bend).max())
+    assert made.acceleration[2:-2, 0] == pytest.approx(bend[2:-2], abs=0.03 * np.abs(bend).max())

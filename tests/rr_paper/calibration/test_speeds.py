@@ -11,20 +11,14 @@ from rr_opt.model.ballast import Loads, with_inertia_ratio
 from rr_opt.model.gait import SineGait
 from rr_opt.model.robot import EffectUse, Platform, Robot
 from rr_opt.motion.steady_cycle import steady_cycle
-from rr_paper.calibration.models import (
-    AMPLITUDE,
-    MODELS,
-    PERIOD,
-    RATIO,
-    READINGS,
-    Reading,
-    measured,
-    values,
-)
+from rr_paper.calibration.likelihood import measured
+from rr_paper.calibration.models import MODELS, READINGS, Reading
+from rr_paper.calibration.unknowns import values
 from rr_paper.equation3 import PRINTED
 from rr_paper.equation3 import steady_cycle as by_equation3
+from rr_paper.publication import ROWS
 
-ROWS = (0, 4, 8)
+TRIED = (0, 4, 8)
 
 
 def robot_of(x: dict[str, float], row: int, reading: Reading) -> Robot:
@@ -36,7 +30,7 @@ def robot_of(x: dict[str, float], row: int, reading: Reading) -> Robot:
         h,
     )
     loads = Loads(0.066, 0.0441, reading.spread)
-    built = with_inertia_ratio(bare, RATIO[row], reading.about, reading.by, loads)
+    built = with_inertia_ratio(bare, ROWS[row].ratio, reading.about, reading.by, loads)
     if "force" in x:
         dry = EffectUse("coulomb_friction", {"force1": x["force"], "force2": x["force"]})
         built = replace(built, physics=(dry,))
@@ -44,9 +38,9 @@ def robot_of(x: dict[str, float], row: int, reading: Reading) -> Robot:
 
 
 def gait_of(x: dict[str, float], row: int) -> SineGait:
-    amplitude = x["amplitude"] if np.isnan(AMPLITUDE[row]) else AMPLITUDE[row]
-    shrunk = np.hypot(1, x.get("lag", 0.0) * 2 * np.pi / PERIOD[row])
-    return SineGait(float(amplitude / shrunk), float(PERIOD[row]))
+    printed = ROWS[row]
+    shrunk = np.hypot(1, x.get("lag", 0.0) * 2 * np.pi / printed.period)
+    return SineGait(float((printed.amplitude or x["amplitude"]) / shrunk), printed.period)
 
 
 def points(name: str, count: int) -> tuple[np.ndarray, list[dict[str, float]]]:
@@ -62,7 +56,7 @@ def test_viscous(name: str, reading: Reading):
     shares, robots = points(name, 3)
     speeds = MODELS[name](shares, reading)
     for i, x in enumerate(robots):
-        for row in ROWS:
+        for row in TRIED:
             cycle = steady_cycle(robot_of(x, row, reading), gait_of(x, row), steps=256)
             assert speeds[i, row] == pytest.approx(cycle.speed, rel=1e-5, abs=1e-9)
 
@@ -72,7 +66,7 @@ def test_dry():
     shares, robots = points("viscous+dry", 3)
     speeds = MODELS["viscous+dry"](shares, READINGS[0])
     for i, x in enumerate(robots):
-        for row in ROWS:
+        for row in TRIED:
             cycle = steady_cycle(robot_of(x, row, READINGS[0]), gait_of(x, row), steps=2048)
             # Coarse on purpose: within a fifth of the row's standard error.
             assert speeds[i, row] == pytest.approx(cycle.speed, abs=0.2 * error[row])
@@ -82,7 +76,7 @@ def test_printed():
     shares, robots = points("printed", 3)
     speeds = MODELS["printed"](shares, READINGS[0])
     for i, x in enumerate(robots):
-        for row in ROWS:
+        for row in TRIED:
             robot, gait = robot_of(x, row, READINGS[0]), gait_of(x, row)
             cycle = by_equation3(robot, gait.amplitude, gait.period, PRINTED)
             assert speeds[i, row] == pytest.approx(cycle.speed[0], rel=1e-5, abs=1e-9)
