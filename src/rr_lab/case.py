@@ -11,11 +11,12 @@ from typing import Literal
 
 import numpy as np
 
+from rr_lab.disturbances import disturbance_named
 from rr_lab.effects import rig_with
 from rr_lab.engines import Engine, driven
 from rr_lab.formats import ServoClock
 from rr_lab.run import Motion, Outing, captured
-from rr_opt.model.experiment import Experiment, Noise, Run, Start, Uncertainty, Use
+from rr_opt.model.experiment import Experiment, Noise, Recording, Run, Start, Uncertainty, Use
 from rr_opt.model.gait import SineGait
 from rr_opt.model.robot import EffectUse, Robot
 
@@ -56,6 +57,7 @@ class Case:
     changed   names of the parameters in which robot and nominal differ, for `parameters`
     missing   fraction of the samples that the capture system loses
     engine    what drives it
+    disturbance  what goes wrong in the recordings, by name
     """
 
     name: str
@@ -70,32 +72,44 @@ class Case:
     changed: tuple[str, ...] = ()
     missing: float = 0.0
     engine: Engine = "mujoco"
+    disturbance: str = ""
     notes: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
 
 
 def motion_of(case: Case, plan: Plan, step: float | None = None, *, torque: bool = False) -> Motion:
     """What truly happens in a run; step: s, of the integration, the engine's own if left out."""
-    outing = replace(plan.outing, torque=torque)
+    clock = disturbance_named(case.disturbance).clock
+    outing = plan.outing
+    outing = replace(
+        outing, torque=torque, rate=clock * outing.rate, seconds=outing.seconds / clock
+    )
     return driven(case.engine, rig_with(case.robot, case.effects), plan.gait, outing, step)
+
+
+def recorded(
+    case: Case, number: int, step: float | None = None, *, torque: bool = False
+) -> Recording:
+    """The recording of a case's run 0, 1, ..."""
+    plan = case.plans[number]
+    return captured(
+        motion_of(case, plan, step, torque=torque),
+        plan.name,
+        case.noise,
+        stream(case.seed, "noise", number),
+        tracked=rig_with(case.robot, case.effects).tracked,
+        missing=case.missing,
+        disturbance=disturbance_named(case.disturbance),
+    )
 
 
 def play(
     case: Case, progress: Callable[[str], None] = lambda _: None, step: float | None = None
 ) -> Experiment:
     """Make all recordings of a case; `progress` is told of each before it is made."""
-    tracked = rig_with(case.robot, case.effects).tracked
     runs = []
     for n, plan in enumerate(case.plans):
         progress(f"recording {n + 1} of {len(case.plans)}")
-        recording = captured(
-            motion_of(case, plan, step),
-            plan.name,
-            case.noise,
-            stream(case.seed, "noise", n),
-            tracked=tracked,
-            missing=case.missing,
-        )
-        runs.append(Run(recording, plan.gait, plan.use, plan.start))
+        runs.append(Run(recorded(case, n, step), plan.gait, plan.use, plan.start))
     return Experiment(case.nominal, case.noise, case.uncertainty, tuple(runs), case.name)
 
 

@@ -32,26 +32,30 @@ def draw_effect(rng: np.random.Generator, effect: HiddenEffect, case: Case) -> E
     return EffectUse(effect.key, effect.drawn(setting))
 
 
-GENTLEST, FIERCEST = 3.0, 30.0
+GENTLEST, FIERCEST = 3.0, 42.0
 """rad/s2, peak of phi's acceleration; below, the robot hardly moves, above, real wheels let go."""
 
 CLEARANCE = 0.25
 """The least S1 = c1 cos phi + c2 over c1 + c2: a distance from the singular posture."""
 
+SHORTEST = 0.65
+"""Of the longest run's length: people do not record all runs alike."""
+
 
 def draw_plans(rng: np.random.Generator, robot: Robot, seconds: float = 30.0) -> tuple[Plan, ...]:
-    """Seven or eight runs; about half with an offset, two or three from rest, two held out."""
+    """Seven or eight runs of up to `seconds`: from three to all but two with an offset, one to
+    three from rest, two held out."""
     count = int(rng.integers(7, 9))
-    turning = rng.permutation(count) < count // 2
-    resting = rng.permutation(count) < int(rng.integers(2, 4))
-    held = rng.permutation(count) < 2
+    turning = rng.permutation(count) < int(rng.integers(3, count - 1))
+    resting = rng.permutation(count) < int(rng.integers(1, 4))
+    held_out = rng.permutation(count) < 2
     return tuple(
         Plan(
             f"run{n + 1:02d}.csv",
             draw_gait(rng, robot, bool(turning[n])),
-            seconds,
+            round(seconds * float(rng.uniform(SHORTEST, 1.0)), 2),
             "rest" if resting[n] else "running",
-            "holdout" if held[n] else "fit",
+            "holdout" if held_out[n] else "fit",
             _pose(rng),
             int(rng.integers(1, 6)),
         )
@@ -60,11 +64,11 @@ def draw_plans(rng: np.random.Generator, robot: Robot, seconds: float = 30.0) ->
 
 
 def draw_gait(rng: np.random.Generator, robot: Robot, turning: bool) -> SineGait:
-    """Amplitude 0.3 to 1 rad, period 0.8 to 2 s, offset up to 0.35 rad either way or none."""
+    """Amplitude 0.3 to 1.05 rad, period 0.8 to 2 s, offset up to 0.36 rad either way or none."""
     while True:
-        amplitude = round(float(rng.uniform(0.3, 1.0)), 3)
-        period = round(float(rng.uniform(0.8, 2.0)), 1)
-        offset = round(float(rng.uniform(0.08, 0.35) * rng.choice([-1, 1])), 3) if turning else 0.0
+        amplitude = round(float(rng.uniform(0.3, 1.05)), 3)
+        period = round(0.05 * float(rng.integers(16, 41)), 2)
+        offset = round(float(rng.uniform(0.05, 0.36) * rng.choice([-1, 1])), 3) if turning else 0.0
         gait = SineGait(amplitude, period, offset)
         fierce = amplitude * gait.angular_frequency**2
         c1, c2 = robot.platform1.c, robot.platform2.c
@@ -81,26 +85,28 @@ def _pose(rng: np.random.Generator) -> tuple[float, float, float]:
 def draw_robot(rng: np.random.Generator) -> Robot:
     """A Roller Racer with its longer platform first, rounded as a builder would write it."""
     h = round(rng.uniform(0.015, 0.03), 4)
-    c1, c2 = rng.uniform(0.13, 0.24), rng.uniform(0.05, 0.12)
+    c1, c2 = rng.uniform(0.13, 0.24), rng.uniform(0.048, 0.127)
+    m1, m2 = rng.uniform(0.3, 0.7), rng.uniform(0.17, 0.6)
     # Both platforms of a robot have like wheels; k, N s/m, spreads over a decade between robots.
-    k = np.exp(rng.uniform(np.log(0.012), np.log(0.085)))
+    k = np.exp(rng.uniform(np.log(0.0105), np.log(0.085)))
+    rate, torque = rng.choice([math.pi, 4.2, 5.5, 6.28]), rng.choice([1.37, 1.5, 2.0, 3.0])
     return Robot(
-        _platform(rng, c1, k * rng.uniform(0.85, 1.15), h),
-        _platform(rng, c2, k * rng.uniform(0.85, 1.15), h),
+        _platform(rng, m1, c1, k * rng.uniform(0.82, 1.18), h),
+        _platform(rng, m2, c2, k * rng.uniform(0.82, 1.18), h),
         h,
-        Servo(2.6, 6.28, 1.5),
+        Servo(2.6, round(float(rate), 5), float(torque)),
     )
 
 
-def _platform(rng: np.random.Generator, c: float, k: float, h: float) -> Platform:
-    """The radius of gyration of the real platforms is 65 to 100 mm, whatever their c."""
-    m, gyration = rng.uniform(0.3, 0.7), rng.uniform(0.065, 0.1)
+def _platform(rng: np.random.Generator, m: float, c: float, k: float, h: float) -> Platform:
+    """The radius of gyration of the real platforms is 65 to 110 mm, whatever their c."""
+    gyration = rng.uniform(0.065, 0.11)
     return Platform(
         m=round(m, 3),
         I=float(f"{m * gyration**2:.3g}"),
         c=round(c, 4),
-        a=round(rng.uniform(0.0, 0.03), 4),
-        b=round(rng.uniform(0.04, 0.07), 4),
+        a=round(rng.uniform(0.0, 0.04), 4),
+        b=round(rng.uniform(0.038, 0.075), 4),
         kappa=float(f"{k * h**2:.3g}"),
     )
 

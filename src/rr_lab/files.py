@@ -10,11 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from rr_lab.case import Case, Delivery, Plan, motion_of, stream
+from rr_lab.case import Case, Delivery, Plan, motion_of, recorded, stream
 from rr_lab.effects import effect_named, rig_with
 from rr_lab.formats import c3d_bytes, log_text, vicon_text
 from rr_lab.markers import places, seen
-from rr_lab.run import captured
 from rr_opt.model.experiment import Recording
 from rr_opt.model.parameters import PARAMETERS, PLATFORM_SYMBOLS, Uncertainty, parameters_of
 from rr_opt.model.robot import EffectUse, Platform, Robot
@@ -96,15 +95,16 @@ def folder_of(
 
 
 def _recorded(case: Case, plan: Plan, n: int, delivery: Delivery) -> bytes:
-    motion, rng = motion_of(case, plan, torque=delivery.torque), stream(case.seed, "noise", n)
-    tracked = rig_with(case.robot, case.effects).tracked
     if delivery.form == "csv":
-        recording = captured(
-            motion, plan.name, case.noise, rng, tracked=tracked, missing=case.missing
-        )
-        return csv_text(recording).encode()
-    sigma = case.noise.position
-    markers = seen(motion, case.nominal, sigma, rng, tracked=tracked, missing=case.missing)
+        return csv_text(recorded(case, n, torque=delivery.torque)).encode()
+    markers = seen(
+        motion_of(case, plan),
+        case.nominal,
+        case.noise.position,
+        stream(case.seed, "noise", n),
+        tracked=rig_with(case.robot, case.effects).tracked,
+        missing=case.missing,
+    )
     return vicon_text(markers).encode() if delivery.form == "vicon" else c3d_bytes(markers)
 
 
@@ -125,6 +125,7 @@ def answer(case: Case) -> dict[str, Any]:
         "effects": _effects(case),
         "case": case.name,
         "engine": case.engine,
+        **({"disturbance": case.disturbance} if case.disturbance else {}),
         "seed": case.seed,
         "rms_deviation_from_nominal_in_sigma": dict(case.notes),
     }

@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from rr_lab.case import Case, Plan, stream
+from rr_lab.disturbances import disturbance_named
 from rr_lab.draw import draw_effect, draw_near, draw_noise, draw_plans, draw_robot, draw_wrong
 from rr_lab.effects import NAMED, OUTSIDE_NAMES, REALISATIONS, effect_named, rig_with
 from rr_lab.effects.hidden import HiddenEffect
@@ -42,6 +43,7 @@ def random_case(
     target: float | None = None,
     visibility: Visibility | None = None,
     engine: Engine = "mujoco",
+    disturbance: str = "",
 ) -> Case:
     """Draw a case; the same seed, kind and engine give the same.
 
@@ -53,10 +55,13 @@ def random_case(
     visibility  RMS deviation of a case from its nominal, in sigma; by default the laboratory's own
                 `Gauge`
     engine      what drives it; robot, runs and effects are drawn alike for all
-    Raises InputError for an unknown kind.
+    disturbance  of the recordings, by name
+    Raises InputError for an unknown kind or disturbance.
     """
+    disturbance_named(disturbance)
     case = bare_case(seed, seconds, spread=spread, engine=engine)
-    return hidden_in(case, kind, target=target, visibility=visibility)
+    hidden = hidden_in(case, kind, target=target, visibility=visibility)
+    return replace(hidden, disturbance=disturbance)
 
 
 def bare_case(
@@ -166,20 +171,22 @@ def case_of(
     seconds: float = 30.0,
     missing: float = 0.0,
     engine: Engine = "mujoco",
+    disturbance: str = "",
 ) -> Case:
     """A case with the effects given, or with what a kind of case draws, see `random_case`.
 
     robot, plans, noise  drawn if left out
     seed                 of all that is drawn; 0 if left out, and with a kind one by chance
-    Raises InputError for an unknown kind, or a wrong effect.
+    Raises InputError for an unknown kind or disturbance, or a wrong effect.
     """
+    disturbance_named(disturbance)
     if seed is None:
         seed = secrets.randbits(48) if kind else 0
     case = bare_case(seed, seconds, robot=robot, engine=engine)
     case = replace(case, plans=plans or case.plans, noise=noise or case.noise, missing=missing)
     if kind:
-        return hidden_in(case, kind)
+        return replace(hidden_in(case, kind), disturbance=disturbance)
     rig_with(case.robot, effects)
     known = all(effect_named(use.name).named for use in effects)
     verdict = "consistent" if not effects else "missing_physics" if known else "unexplained"
-    return replace(case, effects=effects, verdict=verdict)
+    return replace(case, effects=effects, verdict=verdict, disturbance=disturbance)

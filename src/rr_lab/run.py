@@ -8,6 +8,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from rr_lab.disturbances import NO_DISTURBANCE, Disturbance
 from rr_lab.rig import Rig
 from rr_opt.array import Array
 from rr_opt.model.experiment import Flag, Noise, Recording
@@ -73,11 +74,14 @@ def captured(
     *,
     tracked: tuple[float, float] = (0.0, 0.0),
     missing: float = 0.0,
+    disturbance: Disturbance = NO_DISTURBANCE,
 ) -> Recording:
-    """A motion as it is recorded, with white noise; with the torque if it was written down.
+    """A motion as it is recorded; with the torque if it was written down.
 
-    tracked  the point that is taken for the joint, m, in platform 1's frame
-    missing  fraction of the samples that are lost, all channels at once
+    noise        1 sigma as the experiment states it
+    tracked      the point that is taken for the joint, m, in platform 1's frame
+    missing      fraction of the samples that are lost, all channels at once
+    disturbance  what else goes wrong
     """
     x, y, psi = motion.one.T
     phi = motion.two[:, 2] - psi
@@ -91,13 +95,19 @@ def captured(
     }
     if motion.torque is not None:
         true["torque"] = motion.torque
-    n = len(motion.t)
+    n, t = len(motion.t), disturbance.clock * motion.t
+    rate = 1 / (t[1] - t[0])
     lost = rng.random(n) < missing
-    values, sigma, flags = {}, {}, {}
-    for channel, exact in true.items():
-        size = noise.of(channel)
-        values[channel] = np.where(lost, np.nan, exact + size * rng.standard_normal(n))
-        sigma[channel] = np.full(n, size)
-        flags[channel] = np.where(lost, np.uint8(Flag.MISSING), np.uint8(0))
-    source = {"laboratory": "virtual", "rate": f"{1 / (motion.t[1] - motion.t[0]):g} Hz"}
-    return Recording(name, motion.t, values, sigma, flags, source)
+    stated = {channel: np.full(n, noise.of(channel)) for channel in true}
+    seen = {
+        channel: exact + stated[channel] / disturbance.stated * disturbance.noise(rng, n)
+        for channel, exact in true.items()
+    }
+    kept = disturbance.distort(seen, stated, rate, rng)
+    values = {channel: np.where(lost, np.nan, each) for channel, each in kept.items()}
+    flags = {
+        channel: np.where(np.isnan(each), np.uint8(Flag.MISSING), np.uint8(0))
+        for channel, each in values.items()
+    }
+    source = {"laboratory": "virtual", "rate": f"{rate:g} Hz"}
+    return Recording(name, t, values, stated, flags, source)

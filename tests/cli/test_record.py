@@ -41,6 +41,15 @@ def test_an_effect_changes_the_motion_and_nothing_else(run, recorded, tmp_path):
     assert answer["effects"][0]["parameters"]["force1"]["value"] == 2e-3
 
 
+def test_a_disturbance_spoils_the_recording_and_is_in_the_answer(run, recorded, tmp_path):
+    words = ("--seconds", "2", "--noise", "1 mm, 3 mrad", "--out", "gaps", "--seal", "answer.json")
+    assert run("record", *RUNS, *words, "--disturbance", "dropouts").exit_code == 0
+    plain, spoilt = ((tmp_path / name / "run01.csv").read_text() for name in ("rec", "gaps"))
+    assert ",,," not in plain
+    assert ",,," in spoilt
+    assert json.loads((tmp_path / "answer.json").read_text())["disturbance"] == "dropouts"
+
+
 def test_either_engine_records_the_same_run(run, tmp_path):
     ends = []
     for engine in ("mujoco", "planar"):
@@ -78,6 +87,8 @@ def test_json_stands_alone(run):
         (("--gait", "30 deg"), "Expected amplitude, period"),
         (("--gait", "30 deg, 1.2 kg"), "--period"),
         (("--effect", "gremlins"), "cannot hide"),
+        (("--disturbance", "rain"), "no disturbance 'rain'"),
+        (("--disturbance", "outliers", "--format", "vicon"), "Expected --format csv"),
         (("--effect", "floor_patch:multiplier=2"), "lacks its parameter edge_x"),
         (("--effect", "servo_lag:tau=3 kg"), "--effect servo_lag, tau"),
         (("--effect", "servo_lag:width=3"), "Expected tau"),

@@ -3,13 +3,15 @@
 from rr_lab.trial.case import Case, Claim, Named, Truth
 
 
-def truth(kind, *hidden, remains=5.0, seen=10.0, values=None, spread=0.0, engine="mujoco"):
+def truth(kind, *hidden, remains=5.0, seen=10.0, values=None, spread=0.0, engine="mujoco", **more):
     """What was hidden; every effect leaves `remains` sigma after the re-fit."""
     names = ("unknown",) if kind == "outside" else hidden
     values = values or {name: {} for name in names}
     effects = () if kind == "parameters" else hidden
     each = dict.fromkeys(effects, seen)
-    return Truth(kind, effects, values, each, dict.fromkeys(effects, remains), spread, engine)
+    return Truth(
+        kind, effects, values, each, dict.fromkeys(effects, remains), spread, engine, **more
+    )
 
 
 def said(verdict, *names, sure=1.0, groups=(), intervals=None, **more):

@@ -6,9 +6,10 @@ from dataclasses import replace
 
 import pytest
 
+from rr_lab.disturbances import DISTURBANCES
 from rr_lab.effects import REALISATIONS, effect_named
 from rr_lab.engines import ENGINES
-from rr_lab.random_case import SINGLES
+from rr_lab.random_case import KINDS, SINGLES
 from rr_lab.trial.lots import BLOCK, STRENGTHS, case_seed, draw_lot, read_kinds
 from rr_opt.outcome import InputError
 
@@ -36,7 +37,8 @@ def test_a_case_alone_is_the_same_as_among_others():
 
 def test_every_block_has_its_kinds_in_another_order():
     blocks = [[kind(lot) for lot in HUNDRED[at : at + 20]] for at in range(0, 100, 20)]
-    assert all(Counter(block) == BLOCK for block in blocks)
+    usual = {name: count for name, count in BLOCK.items() if name != "disturbed"}
+    assert all(Counter(block) == usual for block in blocks)
     assert len({tuple(block) for block in blocks}) == 5
 
 
@@ -62,7 +64,7 @@ def test_half_of_each_kind_has_nominal_values_that_are_off():
 
 
 def test_half_of_each_kind_is_driven_by_each_engine():
-    for name in BLOCK:
+    for name in KINDS:
         engines = [lot.engine for lot in HUNDRED if kind(lot) == name]
         assert set(engines) == set(ENGINES)
         assert abs(engines.count("planar") - len(engines) / 2) <= 1
@@ -82,6 +84,15 @@ def test_realisations_take_turns():
     counted = Counter(key for key in keys if effect_named(key).name == name)
     assert set(counted) == {each.key for each in REALISATIONS[name]}
     assert max(counted.values()) - min(counted.values()) <= 1
+
+
+def test_disturbances_take_turns_with_an_effect_and_without():
+    lots = [draw_lot(SEED, number, ("disturbed",)) for number in range(1, 41)]
+    counted = Counter((lot.disturbance, kind(lot)) for lot in lots)
+    assert {name for name, _ in counted} == set(DISTURBANCES)
+    assert set(counted.values()) == {2}
+    assert len({(lot.engine, kind(lot)) for lot in lots}) == 4
+    assert {lot.disturbance for lot in HUNDRED} == {""}
 
 
 def test_a_kind_may_name_what_is_hidden():
@@ -118,7 +129,15 @@ def test_wrong_kinds(text):
 
 
 @pytest.mark.parametrize(
-    "text", ["single:gremlins", "single:tether", "outside:servo_lag", "pair:servo_lag", "null:x"]
+    "text",
+    [
+        "single:gremlins",
+        "single:tether",
+        "outside:servo_lag",
+        "pair:servo_lag",
+        "null:x",
+        "disturbed:x",
+    ],
 )
 def test_wrong_effects(text):
     with pytest.raises(InputError, match=r"laboratory|does not go with"):

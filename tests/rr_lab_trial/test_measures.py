@@ -2,7 +2,7 @@
 
 import pytest
 
-from rr_lab.trial.measures import measures
+from rr_lab.trial.measures import breakdown, measures
 from rr_lab.trial.statistics import Rate
 from tests.rr_lab_trial.made_up import case, said, single, truth
 
@@ -32,6 +32,11 @@ TRIAL = [
     case(ODD, said("unexplained")),
     case(ODD, said("unexplained", DRAG, sure=0.99)),
     case(ODD, said("missing_physics", DRAG, sure=0.6)),
+    case(truth("disturbed", disturbance="dropouts"), said("consistent")),
+    case(truth("disturbed", disturbance="dropouts"), said("missing_physics", DRAG)),
+    case(truth("disturbed", DRAG, disturbance="dropouts"), RIGHT),
+    case(truth("disturbed", DRAG, disturbance="outliers"), said("missing_physics", TILT)),
+    case(truth("disturbed", DRAG, disturbance="outliers", remains=0.05), said("parameters")),
 ]
 
 BY_HAND = {
@@ -51,8 +56,26 @@ BY_HAND = {
     "parameters_named": (1, 3),
     "outside": (1, 3),
     "outside_named": (1, 3),
-    "no_answer": (3, 20),
+    "disturbed_false_claims": (1, 2),
+    "disturbed_single": (1, 2),
+    "no_answer": (3, 25),
 }
+
+
+def test_breakdown():
+    plain = truth("single", SLIP, realised={SLIP: "creep"})
+    found = breakdown([*TRIAL, case(plain, said("missing_physics", SLIP))])
+    assert {
+        what: {key: (r.count, r.total) for key, r in rows.items()} for what, rows in found.items()
+    } == {
+        "effect": {DRAG: (2, 5), SLIP: (1, 1), "tether": (1, 3)},
+        "realisation": {f"{SLIP}/creep": (1, 1)},
+        "disturbance": {
+            "dropouts, null": (1, 2),
+            "dropouts, effect": (1, 1),
+            "outliers, effect": (0, 1),
+        },
+    }
 
 
 def test_every_count():

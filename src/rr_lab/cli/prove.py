@@ -33,9 +33,9 @@ def prove(
     kinds: Annotated[
         str | None,
         typer.Option(
-            help="Only these: null, single, pair, parameters, outside; or single:EFFECT, "
-            "pair:EFFECT+EFFECT, outside:EFFECT.",
-            show_default="all",
+            help="Only these: null, single, pair, parameters, outside, disturbed; or "
+            "single:EFFECT, pair:EFFECT+EFFECT, outside:EFFECT, disturbed:NAME.",
+            show_default="all but disturbed",
         ),
     ] = None,
     engine: Annotated[

@@ -175,13 +175,24 @@ def record(
     seed: Annotated[
         int | None, typer.Option(help="Of all that is drawn; with --hide by chance if left out.")
     ] = None,
-    seconds: Annotated[str, typer.Option(help="Length of each run, s.")] = "30",
+    seconds: Annotated[
+        str, typer.Option(help="Length of each run, s; of drawn runs, the longest.")
+    ] = "30",
     noise: Annotated[
         str | None, typer.Option(help="One sigma of positions and angles.", show_default="drawn")
     ] = None,
     missing: Annotated[
         float, typer.Option(help="Fraction of the samples that are lost.", min=0, max=0.9)
     ] = 0.0,
+    disturbance: Annotated[
+        str,
+        typer.Option(
+            metavar="NAME",
+            help="Disturb the recordings (csv): lowpass_6hz, ar1_noise, outliers, dropouts ...; "
+            "docs/lab.md has them all.",
+            show_default="none",
+        ),
+    ] = "",
     engine: Annotated[
         Literal["mujoco", "planar"],
         typer.Option(help="What drives the robot: MuJoCo, or two bodies in the plane."),
@@ -222,6 +233,11 @@ def record(
                 f"--torque came with --format {form}, which has no place for it. Expected "
                 "--format csv. Leave one of them out."
             )
+        if disturbance and form != "csv":
+            raise InputError(
+                f"--disturbance came with --format {form}, whose markers it does not know. "
+                "Expected --format csv. Leave one of them out."
+            )
         folder = folder_for_results(out or Path("out/recorded"))
         require_apart(folder, seal)
         require_own(folder)
@@ -237,6 +253,7 @@ def record(
             seconds=long,
             missing=missing,
             engine=engine,
+            disturbance=disturbance,
         )
         delivery = Delivery(form, servo_log, drawn_clock(stream(case.seed, "servo")), torque=torque)
         written = write_case(case, folder, seal, delivery, steps)

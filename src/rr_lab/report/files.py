@@ -26,7 +26,7 @@ from rr_lab.report.summary import (
 from rr_lab.trial import statistics as coverage
 from rr_lab.trial.case import Case
 from rr_lab.trial.confusion import DEFINITION
-from rr_lab.trial.measures import by_engine, measures, side_by_side
+from rr_lab.trial.measures import BREAKDOWN, breakdown, by_engine, measures, side_by_side
 from rr_lab.trial.statistics import Measure
 from rr_lab.trial.trial import Opened
 from rr_opt.report.archive import remove, write_json, write_text
@@ -36,7 +36,7 @@ from rr_opt.report.text import columns
 HEAD = (
     "case", "kind", "engine", "strength", "nominal_off", "hidden", "visible_sigma",
     "refitted_sigma", "counted", "said", "outcome", "missed", "groups", "heldout_before",
-    "heldout_refitted", "heldout_after", "wall_s", "cpu_s",
+    "heldout_refitted", "heldout_after", "wall_s", "cpu_s", "disturbance",
 )  # fmt: skip
 
 
@@ -71,6 +71,7 @@ def _row(case: Case) -> list[Any]:
         claim.after if claim else None,
         case.wall,
         case.cpu,
+        truth.disturbance,
     ]
 
 
@@ -92,6 +93,7 @@ def page(opened: Opened, drawn: str) -> str:
         figure(drawn, "What was said of what was hidden", DEFINITION),
         card("Counts", _counts(every)),
         card("By engine", _engines(opened)),
+        card("By effect, realisation and disturbance", _breakdown(opened)),
         card("Misses", _misses(opened)),
         card("Intervals that hold the true value", _coverage(opened)),
         f"<footer>rr-opt {escape(opened.version)} · seed <code>{escape(opened.seed)}</code> · code "
@@ -134,6 +136,16 @@ def _engines(opened: Opened) -> str:
     return f"<p>{escape(ENGINES_TOLD)}</p>{table(head, rows)}"
 
 
+def _breakdown(opened: Opened) -> str:
+    rows = [
+        [what, key, rate_text(one), share_text(one)]
+        for what, by_key in breakdown(opened.cases).items()
+        for key, one in by_key.items()
+    ]
+    head = ["By", "What", "Right", "Share, 95 % interval"]
+    return f"<p>{escape(BREAKDOWN)}</p>{table(head, rows)}" if rows else ""
+
+
 def _misses(opened: Opened) -> str:
     if not opened.misses:
         return "<p>None.</p>"
@@ -169,6 +181,7 @@ def told(case: Case, folder: Path) -> str:
         ("case", case.id),
         ("kind", case.truth.kind),
         ("engine", case.truth.engine),
+        ("disturbance", case.truth.disturbance),
         ("hidden", hidden_text(case)),
         ("visible", visible_text(case)),
         ("said", said_text(case)),

@@ -10,7 +10,7 @@ from rr_lab.trial import statistics as p_values
 from rr_lab.trial import statistics as spread
 from rr_lab.trial.case import Case
 from rr_lab.trial.confusion import DEFINITION, confusion
-from rr_lab.trial.measures import by_engine, measures, side_by_side
+from rr_lab.trial.measures import BREAKDOWN, breakdown, by_engine, measures, side_by_side
 from rr_lab.trial.statistics import P_VALUES_DEFINITION, Rate, evenness, rate
 from rr_lab.trial.trial import Opened
 from rr_opt.answers.quantities import number
@@ -19,7 +19,7 @@ from rr_opt.answers.quantities import number
 def hidden_text(case: Case) -> str:
     """What was hidden, with its values in SI."""
     truth = case.truth
-    if truth.kind == "null":
+    if truth.kind == "null" or (truth.kind == "disturbed" and not truth.hidden):
         return "nothing"
     if truth.kind == "parameters":
         return ", ".join(
@@ -87,6 +87,13 @@ def record(opened: Opened) -> dict[str, Any]:
         "engines": {
             engine: {one.name: one.rate.record for one in own}
             for engine, own in by_engine(cases).items()
+        },
+        "breakdown": {
+            "definition": BREAKDOWN,
+            **{
+                what: {key: one.record for key, one in by_key.items()}
+                for what, by_key in breakdown(cases).items()
+            },
         },
         "confusion": _confusion(opened),
         "coverage": _coverage(opened),
@@ -173,6 +180,7 @@ def summary(opened: Opened) -> str:
         CHANGED if opened.changed else "",
         _measures(opened),
         _engines(opened),
+        _breakdown(opened),
         _summary_coverage(opened),
         _held_out(opened),
         _p_values(opened),
@@ -212,6 +220,18 @@ def _engines(opened: Opened) -> str:
     ]
     head = ("what", *(word for name in by_engine(opened.cases) for word in (name, "share")))
     return "## By engine\n\n" + ENGINES_TOLD + "\n\n" + markdown(head, rows)
+
+
+def _breakdown(opened: Opened) -> str:
+    tables = [
+        markdown(
+            (what, "right", "share, 95 % interval"), [(key, *_cells(one)) for key, one in rows]
+        )
+        for what, by_key in breakdown(opened.cases).items()
+        if (rows := by_key.items())
+    ]
+    head = f"## By effect, realisation and disturbance\n\n{BREAKDOWN}"
+    return "\n\n".join([head, *tables]) if tables else ""
 
 
 def _summary_coverage(opened: Opened) -> str:

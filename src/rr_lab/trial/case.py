@@ -16,7 +16,7 @@ OUTSIDE = "outside"
 
 @dataclass(frozen=True)
 class Truth:
-    """kind      null, parameters, single, pair or outside
+    """kind      null, parameters, single, pair, outside or disturbed, which is null or single
     hidden     names of the effects, also of those outside the catalogue
     values     by effect or, for `parameters`, by parameter: its parameters, SI
     seen       RMS deviation of each effect alone from the nominal runs, sigma
@@ -24,6 +24,7 @@ class Truth:
     spread     0: the nominal values are true; 1: off by chance
     engine     what drove the robot
     realised   by effect: which of its realisations, where it has several
+    disturbance  of the recordings, by name
     """
 
     kind: str
@@ -34,6 +35,7 @@ class Truth:
     spread: float = 0.0
     engine: str = "mujoco"
     realised: Mapping[str, str] = field(default_factory=dict)
+    disturbance: str = ""
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -74,6 +76,7 @@ def truth_from(answer: Mapping[str, Any]) -> Truth:
             for name, one in zip(hidden, answer["effects"], strict=False)
             if "realisation" in one
         },
+        disturbance=answer.get("disturbance", ""),
     )
 
 
@@ -199,7 +202,7 @@ class Case:
         claim, truth = self.claim, self.truth
         if claim is None:
             return "no answer"
-        if truth.kind == "null":
+        if truth.kind == "null" or (truth.kind == "disturbed" and not truth.hidden):
             return "right" if claim.verdict == "consistent" else "false claim"
         if truth.kind == "parameters":
             return "right" if claim.verdict == "parameters" else f"said {claim.verdict}"

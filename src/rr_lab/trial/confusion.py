@@ -6,11 +6,13 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from rr_lab.random_case import SINGLES
 from rr_lab.trial.case import Case
-from rr_lab.trial.lots import SINGLES
 
 NOTHING, VALUE, NO_NAME = "nothing", "a wrong value", "no known effect"
 SEVERAL, NONE = "several effects", "no answer"
+
+_APART = ("pair", "disturbed")
 
 DEFINITION = (
     "A row is what was hidden, a column what was said. Cases with one effect that stays visible, "
@@ -29,8 +31,8 @@ class Confusion:
 
 
 def confusion(cases: Sequence[Case]) -> Confusion:
-    """The table of all cases but pairs, and but effects that are invisible."""
-    kept = [case for case in cases if case.truth.kind != "pair" and case.scored]
+    """The table of all cases but pairs, disturbed ones, and effects that are invisible."""
+    kept = [case for case in cases if case.truth.kind not in _APART and case.scored]
     counts = Counter((hidden_label(case), said_label(case)) for case in kept)
     order = (NOTHING, VALUE, *SINGLES, NO_NAME)
     rows = tuple(name for name in order if any(row == name for row, _ in counts))

@@ -24,7 +24,8 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from rr_lab.case import Case, stream
+from rr_lab.case import Case, Delivery, stream
+from rr_lab.disturbances import DISTURBANCES, disturbance_named
 from rr_lab.effects import OUTSIDE_NAMES, REALISATIONS, effect_named
 from rr_lab.engines import ENGINES, Engine
 from rr_lab.files import answer, folder_of, seal_of
@@ -90,11 +91,14 @@ def _git(folder: Path, *words: str) -> str:
     ).stdout
 
 
-BLOCK = {"null": 5, "single": 9, "pair": 2, "parameters": 2, "outside": 2}
-"""How many of each kind there are in a block of twenty."""
+BLOCK = {"null": 5, "single": 9, "pair": 2, "parameters": 2, "outside": 2, "disturbed": 5}
+"""How many of each kind there are in a block: twenty, and five disturbed ones if asked for."""
 
 STRENGTHS = {"faint": (2.0, 5.0), "medium": (5.0, 15.0), "strong": (15.0, 60.0)}
 """RMS deviation from the nominal robot's run, sigma of the noise; drawn evenly in its logarithm."""
+
+TORQUE = 0.3
+"""The share of cases whose recordings have the servo's torque."""
 
 _BITS = 48
 _Any = TypeVar("_Any")
@@ -109,6 +113,7 @@ class Lot:
     spread  0: the nominal values are true; 1: they are off by chance, as their uncertainties say
     seed    the case's own
     engine  what drives it
+    disturbance  of its recordings, by name
     """
 
     number: int
@@ -117,6 +122,7 @@ class Lot:
     spread: float
     seed: int
     engine: Engine = "mujoco"
+    disturbance: str = ""
 
     @property
     def id(self) -> str:
@@ -142,8 +148,13 @@ def draw_lot(
     turn = block * entries.count(kind) + order[:place].count(kind)
     own = case_seed(seed, number)
     engine: Engine = _alternately(seed, engines, turn, "engine", kind)
-    target = None
+    target, disturbance = None, ""
     head, _, named = kind.partition(":")
+    if head == "disturbed":
+        disturbance = named or _in_turn(seed, tuple(DISTURBANCES), turn)
+        again = turn if named else turn // len(DISTURBANCES)
+        head, named = _alternately(seed, ("single", "null"), again, disturbance), ""
+        kind = head
     if head == "single":
         low, high = list(STRENGTHS.values())[turn % len(STRENGTHS)]
         target = float(np.exp(stream(own, "target").uniform(np.log(low), np.log(high))))
@@ -154,12 +165,12 @@ def draw_lot(
     # The laboratory changes values of the nominal robot: the others stay true. Two cases in a row
     # are alike in this, so that both engines have as many of either.
     spread = 0.0 if head == "parameters" else float(turn // 2 % 2)
-    return Lot(number, kind, target, spread, own, engine)
+    return Lot(number, kind, target, spread, own, engine, disturbance)
 
 
 def read_kinds(text: str) -> tuple[str, ...]:
-    """`null, single` as names of kinds; `single:EFFECT`, `pair:EFFECT+EFFECT` and `outside:EFFECT`
-    are kinds of their own. Raises InputError for one that there is not."""
+    """`null, single` as names of kinds; `single:EFFECT`, `pair:EFFECT+EFFECT`, `outside:EFFECT` and
+    `disturbed:DISTURBANCE` are kinds of their own. Raises InputError for one that there is not."""
     kinds = tuple(part.strip() for part in text.split(",") if part.strip())
     wrong = [kind for kind in kinds if kind.partition(":")[0] not in BLOCK]
     if wrong or not kinds:
@@ -168,7 +179,11 @@ def read_kinds(text: str) -> tuple[str, ...]:
             "them. Correct it, or leave --kinds out for all."
         )
     for kind in kinds:
-        read_kind(kind)
+        head, _, name = kind.partition(":")
+        if head == "disturbed":
+            disturbance_named(name)
+        else:
+            read_kind(kind)
     return _ordered(kinds)
 
 
@@ -221,9 +236,11 @@ def make(lot: Lot, seconds: float = 30.0) -> Made:
             spread=lot.spread,
             seconds=seconds,
             engine=lot.engine,
+            disturbance=lot.disturbance,
         )
         text = _answer_text(case, lot)
-        files = dict(folder_of(case))
+        with_torque = stream(lot.seed, "torque").random() < TORQUE
+        files = dict(folder_of(case, Delivery(torque=bool(with_torque))))
     except NotConvergedError as error:
         return Made({}, "", "", time.process_time() - began, str(error))
     return Made(files, text, seal_of(text), time.process_time() - began)
@@ -233,7 +250,7 @@ def _answer_text(case: Case, lot: Lot) -> str:
     """The laboratory's answer, what the lot was, and how visible each effect stays."""
     told: dict[str, Any] = {
         "number": lot.number,
-        "kind": lot.kind.partition(":")[0],
+        "kind": "disturbed" if lot.disturbance else lot.kind.partition(":")[0],
         "hidden": [effect_named(use.name).name for use in case.effects],
         "spread": lot.spread,
         **answer(case),
@@ -248,6 +265,7 @@ def _stays_visible(case: Case) -> dict[str, float]:
     """RMS in sigma that each effect alone leaves after the parameters are re-fitted."""
     if not case.effects:
         return {}
+    case = replace(case, disturbance="")
     refit, nominal = Refit.of(case), replace(case, robot=case.nominal)
     return {
         effect_named(use.name).name: float(f"{refit.left(replace(nominal, effects=(use,))):.4g}")

@@ -8,7 +8,7 @@ from rr_lab.engines import ENGINES
 from rr_lab.trial import statistics as coverage
 from rr_lab.trial.case import FLOOR, SURE, Case
 from rr_lab.trial.lots import STRENGTHS
-from rr_lab.trial.statistics import Measure, rate
+from rr_lab.trial.statistics import Measure, Rate, rate
 
 
 def singles(cases: Sequence[Case]) -> list[Measure]:
@@ -125,6 +125,7 @@ def measures(cases: Sequence[Case]) -> list[Measure]:
             rate(_all_named(case) for case in wrong),
         ),
         *_outside([case for case in cases if case.truth.kind == "outside"]),
+        *_disturbed([case for case in cases if case.truth.kind == "disturbed"]),
         Measure(
             "no_answer",
             "no answer",
@@ -152,6 +153,56 @@ def _outside(cases: Sequence[Case]) -> list[Measure]:
             rate(case.outcome == "named with confidence" for case in seen),
         ),
     ]
+
+
+def _disturbed(cases: Sequence[Case]) -> list[Measure]:
+    nulls = [case for case in cases if not case.truth.hidden]
+    return [
+        Measure(
+            "disturbed_false_claims",
+            "disturbed nulls with a false claim",
+            "Of the cases with disturbed recordings and nothing hidden, those whose verdict is not "
+            "`consistent`.",
+            rate(case.outcome == "false claim" for case in nulls),
+        ),
+        Measure(
+            "disturbed_single",
+            "disturbed, single effects named",
+            "Of the cases with disturbed recordings and one effect that stays visible, those that "
+            "name it and nothing else, as above.",
+            rate(case.outcome == "right" for case in cases if case.truth.hidden and case.scored),
+        ),
+    ]
+
+
+BREAKDOWN = (
+    "How many came out right. By effect and realisation: cases with one effect that stays visible; "
+    "outside the catalogue, those told `unexplained`. By disturbance: cases with disturbed "
+    "recordings, and nothing or one effect that stays visible hidden in them."
+)
+
+
+def breakdown(cases: Sequence[Case]) -> dict[str, dict[str, Rate]]:
+    """How many came out right by effect, by realisation where there are several, and by
+    disturbance."""
+    right: dict[str, dict[str, list[bool]]] = {"effect": {}, "realisation": {}, "disturbance": {}}
+    for case in cases:
+        truth = case.truth
+        if truth.kind in ("single", "outside") and case.scored:
+            (name,) = truth.hidden
+            keys = {"effect": name}
+            if truth.kind == "single" and name in truth.realised:
+                keys["realisation"] = f"{name}/{truth.realised[name]}"
+        elif truth.kind == "disturbed" and case.scored:
+            keys = {"disturbance": f"{truth.disturbance}, {'effect' if truth.hidden else 'null'}"}
+        else:
+            continue
+        for what, key in keys.items():
+            right[what].setdefault(key, []).append(case.outcome == "right")
+    return {
+        what: {key: rate(flags) for key, flags in sorted(by_key.items())}
+        for what, by_key in right.items()
+    }
 
 
 def _all_named(case: Case) -> bool:

@@ -1,0 +1,158 @@
+"""What goes wrong between a motion and its recording, beyond white noise of the size stated.
+
+None of it is physics: the right diagnosis of a disturbed recording is that of an undisturbed one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from rr_opt.array import Array
+from rr_opt.outcome import InputError
+
+Channels = Mapping[str, Array]
+Distortion = Callable[[Channels, Channels, float, np.random.Generator], Channels]
+"""(values, sigma of each channel, samples a second, random numbers) -> values as they are kept."""
+
+
+def _white(rng: np.random.Generator, n: int) -> Array:
+    return rng.standard_normal(n)
+
+
+def _kept(values: Channels, _sigma: Channels, _rate: float, _: np.random.Generator) -> Channels:
+    return values
+
+
+@dataclass(frozen=True)
+class Disturbance:
+    """noise      of unit variance, of n samples
+    distort    what becomes of the noisy channels
+    clock      seconds of the recording's clock in a true second
+    stated     the noise that the experiment states, over the true one
+    """
+
+    name: str
+    what: str
+    noise: Callable[[np.random.Generator, int], Array] = _white
+    distort: Distortion = _kept
+    clock: float = 1.0
+    stated: float = 1.0
+
+
+NO_DISTURBANCE = Disturbance("", "white noise of the size stated")
+
+
+def _low_pass(cutoff: float) -> Distortion:
+    """Butterworth, second order, forwards and backwards, as motion capture software smooths."""
+
+    def smooth(values: Channels, _sigma: Channels, rate: float, _: np.random.Generator) -> Channels:
+        from scipy.signal import butter, sosfiltfilt  # takes a second
+
+        sections = butter(2, cutoff, fs=rate, output="sos")
+        return {name: np.asarray(sosfiltfilt(sections, each)) for name, each in values.items()}
+
+    return smooth
+
+
+CORRELATION = 0.8
+"""Of successive samples of coloured noise."""
+
+
+def _coloured(rng: np.random.Generator, n: int) -> Array:
+    """AR(1) noise of unit variance."""
+    from scipy.signal import lfilter  # takes a second
+
+    steps = np.sqrt(1 - CORRELATION**2) * rng.standard_normal(n)
+    first = CORRELATION * rng.standard_normal()
+    return np.asarray(lfilter([1.0], [1.0, -CORRELATION], steps, zi=[first])[0])
+
+
+OUTLIERS, FAR = 0.02, (10.0, 60.0)
+"""The share of samples that are wild, and by how many sigma."""
+
+
+def _wild(values: Channels, sigma: Channels, _rate: float, rng: np.random.Generator) -> Channels:
+    """A sample that is wild is so in all channels, as it is when a marker is mistaken."""
+    n = len(next(iter(values.values())))
+    wild = rng.random(n) < OUTLIERS
+    return {
+        name: each + wild * sigma[name] * rng.uniform(*FAR, n) * rng.choice([-1, 1], n)
+        for name, each in values.items()
+    }
+
+
+LOST, GAP = 0.2, 0.1
+"""The share of samples that are lost, and the mean length of a gap, s."""
+
+
+def _gaps(values: Channels, _sigma: Channels, rate: float, rng: np.random.Generator) -> Channels:
+    """Samples lost in gaps: a Markov chain."""
+    ends = 1 / (GAP * rate)
+    begins = ends * LOST / (1 - LOST)
+    n = len(next(iter(values.values())))
+    chance, lost = rng.random(n), np.empty(n, bool)
+    state = bool(rng.random() < LOST)
+    for k in range(n):
+        state = chance[k] >= ends if state else chance[k] < begins
+        lost[k] = state
+    return {name: np.where(lost, np.nan, each) for name, each in values.items()}
+
+
+EVERY, LONG, BESIDE = 4.0, (0.1, 0.3), 0.15
+"""s: from one swap to the next on average, its length, and how much on either side mends it."""
+
+
+def _mended(values: Channels, _sigma: Channels, rate: float, rng: np.random.Generator) -> Channels:
+    """Where markers were swapped, a cubic through what is beside it."""
+    made = {name: each.copy() for name, each in values.items()}
+    n, beside = len(next(iter(values.values()))), round(BESIDE * rate)
+    for _ in range(round(n / rate / EVERY)):
+        size = round(rng.uniform(*LONG) * rate)
+        start = int(rng.integers(beside, max(beside + 1, n - size - beside)))
+        gap = np.arange(start, min(start + size, n))
+        near = np.concatenate([gap[0] - 1 - np.arange(beside), gap[-1] + 1 + np.arange(beside)])
+        near = near[(near >= 0) & (near < n)]
+        for each in made.values():
+            each[gap] = np.polynomial.Polynomial.fit(near, each[near], 3)(gap)
+    return made
+
+
+COARSE_ANGLE = 3e-3
+"""rad, the step of coarse angles."""
+
+
+def _coarse(values: Channels, _sigma: Channels, _rate: float, _: np.random.Generator) -> Channels:
+    return {
+        name: COARSE_ANGLE * np.rint(each / COARSE_ANGLE) if name in ("psi", "phi") else each
+        for name, each in values.items()
+    }
+
+
+DISTURBANCES = {
+    each.name: each
+    for each in (
+        Disturbance("lowpass_10hz", "low-pass filtered at 10 Hz", distort=_low_pass(10.0)),
+        Disturbance("lowpass_6hz", "low-pass filtered at 6 Hz", distort=_low_pass(6.0)),
+        Disturbance("ar1_noise", "noise correlated from sample to sample by 0.8", noise=_coloured),
+        Disturbance("outliers", "2 % of the samples are wild", distort=_wild),
+        Disturbance("dropouts", "20 % of the samples are lost, in gaps", distort=_gaps),
+        Disturbance("mended_swaps", "swapped markers were mended by a cubic", distort=_mended),
+        Disturbance("coarse_angles", "angles in steps of 3 mrad", distort=_coarse),
+        Disturbance("clock_drift", "the recording's clock is 1 % fast", clock=1.01),
+        Disturbance("noise_understated", "half of the true noise is stated", stated=0.5),
+        Disturbance("noise_overstated", "twice the true noise is stated", stated=2.0),
+    )
+}
+
+
+def disturbance_named(name: str) -> Disturbance:
+    """By name, none for an empty one; raises InputError if there is no such disturbance."""
+    if name and name not in DISTURBANCES:
+        raise InputError(
+            f"The laboratory has no disturbance {name!r}. Expected one of: "
+            f"{', '.join(DISTURBANCES)}. Correct the name."
+        )
+    return DISTURBANCES[name] if name else NO_DISTURBANCE
