@@ -12,9 +12,7 @@ from rr_opt.motion.floor_motion import FloorMotion, floor_motion, solved
 from tests.mechanics.cases import State
 
 # The curve without a name is held against the effects that it imitates, beside the diagnosis.
-MECHANICAL = tuple(
-    name for name, effect in CATALOGUE.items() if effect.enter and not effect.nameless
-)
+MECHANICAL = tuple(name for name, effect in CATALOGUE.items() if effect.enter and effect.candidate)
 
 
 class Floor(NamedTuple):
@@ -31,10 +29,10 @@ def _soft(effects: tuple[str, ...]) -> FloorMotion:
 
 
 def on_floor(
-    robot: Robot, state: State, place: np.ndarray, sides=(0.0, 0.0), *, sharp: bool = True
+    robot: Robot, state: State, place: np.ndarray, sides=(0.0, 0.0), *, for_prediction: bool = True
 ) -> Floor:
     """The robot's floor motion; axles that may slip do so at `sides`, m/s."""
-    motion = (floor_motion if sharp else _soft)(tuple(use.name for use in robot.physics))
+    motion = (floor_motion if for_prediction else _soft)(tuple(use.name for use in robot.physics))
     p = values_of(robot, motion.parameters)
     v, phi, dphi, ddphi = state
     if motion.slips:
@@ -57,4 +55,4 @@ def what_is_seen(effects: tuple[str, ...], place: np.ndarray, phi: float, values
     """x, y, psi, phi as a capture system sees them, of one effect with these values."""
     motion = floor_motion(effects)
     p = [values.get(name.split(".")[-1], np.nan) for name in motion.parameters]
-    return motion.seen([*place, 0.0], [phi, 0.0], p).full().ravel()
+    return motion.observed([*place, 0.0], [phi, 0.0], p).full().ravel()

@@ -32,7 +32,7 @@ def test_same_rates(effects):
         along = State(state.v * cos(toe), *state[1:])
         there, here = (
             motion(robot, along),
-            on_floor(robot, state, np.array([1.0, -2.0, psi]), sharp=False),
+            on_floor(robot, state, np.array([1.0, -2.0, psi]), for_prediction=False),
         )
         pose = [
             along.v * cos(psi) - there.side * sin(psi),

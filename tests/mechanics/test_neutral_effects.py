@@ -8,7 +8,7 @@ from hypothesis import given, settings
 
 from rr_opt.effects import CATALOGUE
 from rr_opt.effects.effect import Effect, Parameter
-from rr_opt.mechanics.drive import told
+from rr_opt.mechanics.drive import commanded
 from rr_opt.model.gait import SineGait
 from rr_opt.model.robot import EffectUse
 from rr_opt.motion.dynamics import steady_effects
@@ -69,7 +69,7 @@ def test_neutral_effect_changes_nothing_on_the_floor(name):
 @pytest.mark.parametrize("name", ACTING)
 @pytest.mark.parametrize("rest", [True, False], ids=["from rest", "running"])
 def test_neutral_effect_changes_no_angle(name, rest):
-    command = told(GAIT, rest)
+    command = commanded(GAIT, rest)
     made = CATALOGUE[name].actuate(command, neutral(CATALOGUE[name]), free_joint(BENCHMARK))
     np.testing.assert_allclose(made.at(TIMES), command.at(TIMES), rtol=1e-12, atol=1e-12)
     assert made.smooth
@@ -115,7 +115,7 @@ def test_each_parameter_at_its_usual_size_is_felt(name, parameter):
 def test_servo_at_its_usual_size_is_seen(name):
     effect = CATALOGUE[name]
     parameter = effect.parameters[0]
-    command = told(GAIT, False)
+    command = commanded(GAIT, False)
     made = effect.actuate(command, {parameter.name: parameter.typical}, free_joint(BENCHMARK))
     assert np.ptp(made.at(TIMES)[0] - command.at(TIMES)[0]) > 1e-3 or name == "servo_offset"
     assert np.abs(made.at(TIMES)[0] - command.at(TIMES)[0]).max() > 1e-3

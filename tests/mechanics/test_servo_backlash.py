@@ -8,7 +8,7 @@ from hypothesis import given, settings
 
 from rr_lab.engines import record
 from rr_opt.effects import CATALOGUE
-from rr_opt.mechanics.drive import told
+from rr_opt.mechanics.drive import commanded
 from rr_opt.model.gait import SineGait
 from rr_opt.model.robot import EffectUse
 from rr_opt.motion.floor_motion import free_joint
@@ -48,7 +48,7 @@ def _g(robot, phi: float) -> float:
 )
 def test_against_the_laboratory(robot, width, gait):
     seen = record(robot, gait, 5.0, "running", [EffectUse("servo_backlash", {"width": width})])
-    made = PLAY.actuate(told(gait, False), {"width": width}, free_joint(robot)).at(seen.t)[0]
+    made = PLAY.actuate(commanded(gait, False), {"width": width}, free_joint(robot)).at(seen.t)[0]
     off = made - seen.values["phi"]
     # A tenth of what a capture system tells of an angle; the widest play is 60 mrad.
     assert np.sqrt(np.mean(off**2)) < 3e-4
@@ -59,7 +59,7 @@ def test_stops_hold_and_the_swing_grows_by_half_the_play():
     gait, width = SineGait(0.6, 1.0, 0.1), 0.04
     t = np.linspace(0.0, 9.0, 4001)
     for rest in (True, False):
-        made = PLAY.actuate(told(gait, rest), {"width": width}, free_joint(LONG)).at(t)
+        made = PLAY.actuate(commanded(gait, rest), {"width": width}, free_joint(LONG)).at(t)
         ahead = made[0] - gait.angle(t)
         assert np.abs(ahead).max() <= width / 2 + 1e-6
         settled = made[0, t > 2]
@@ -70,7 +70,7 @@ def test_stops_hold_and_the_swing_grows_by_half_the_play():
 
 def test_from_rest_the_joint_waits_for_the_stop():
     gait, width = SineGait(0.6, 1.0, 0.1), 0.04
-    made = PLAY.actuate(told(gait, True), {"width": width}, free_joint(LONG))
+    made = PLAY.actuate(commanded(gait, True), {"width": width}, free_joint(LONG))
     until = width / 2 / gait.peak_rate
     waiting = made.at(np.linspace(-1.0, 0.9 * until, 20))[0]
     np.testing.assert_allclose(waiting, gait.offset, atol=1e-3)

@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from rr_opt.effects import CATALOGUE
-from rr_opt.mechanics.drive import told
+from rr_opt.mechanics.drive import commanded
 from rr_opt.model.gait import SineGait
 
 GAIT = SineGait(0.6, 0.8, 0.1)
@@ -23,7 +23,7 @@ def test_against_the_equation(tau, rest):
     ends = (begin, TIMES[-1])
     accurate = {"rtol": 1e-9, "atol": 1e-11, "max_step": 0.05}
     phi = solve_ivp(slope, ends, [GAIT.offset], t_eval=TIMES, **accurate).y[0]
-    made = CATALOGUE["servo_lag"].actuate(told(GAIT, rest), {"tau": tau}).at(TIMES)
+    made = CATALOGUE["servo_lag"].actuate(commanded(GAIT, rest), {"tau": tau}).at(TIMES)
     np.testing.assert_allclose(made[0], phi, atol=1e-7)
     np.testing.assert_allclose(made[1], (GAIT.angle(TIMES) - phi) / tau, atol=1e-7 / tau)
     np.testing.assert_allclose(made[2], (GAIT.rate(TIMES) - made[1]) / tau, atol=1e-6 / tau)
@@ -45,7 +45,7 @@ def test_against_the_equation_of_second_order(tau, beta, rest):
     accurate = {"rtol": 1e-9, "atol": 1e-11, "max_step": 0.05, "method": "LSODA"}
     phi, rate = solve_ivp(slope, ends, [GAIT.offset, 0.0], t_eval=TIMES, **accurate).y
     values = {"tau": tau, "beta": beta}
-    made = CATALOGUE["servo_lag"].actuate(told(GAIT, rest), values).at(TIMES)
+    made = CATALOGUE["servo_lag"].actuate(commanded(GAIT, rest), values).at(TIMES)
     np.testing.assert_allclose(made[0], phi, atol=2e-7)
     np.testing.assert_allclose(made[1], rate, atol=2e-6 + 1e-8 / beta)
     np.testing.assert_allclose(

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from rr_opt.effects import CATALOGUE
-from rr_opt.mechanics.drive import Drive, told
+from rr_opt.mechanics.drive import Drive, commanded
 from rr_opt.model.gait import SineGait
 
 LAG, LIMIT = CATALOGUE["servo_lag"], CATALOGUE["servo_rate_limit"]
@@ -31,7 +31,7 @@ def stepped(command: Drive, limit: float, periods: int, steps: int):
 @pytest.mark.parametrize("rest", [True, False], ids=["from rest", "running"])
 @pytest.mark.parametrize("tau", [0.0, 0.05], ids=["alone", "after a lag"])
 def test_against_small_steps(share, rest, tau):
-    command, limit = LAG.actuate(told(GAIT, rest), {"tau": tau}), share * GAIT.peak_rate
+    command, limit = LAG.actuate(commanded(GAIT, rest), {"tau": tau}), share * GAIT.peak_rate
     made = LIMIT.actuate(command, {"rate_limit": limit})
     t, phi = stepped(command, limit, 14, 250_000)
     if not rest:  # that way begins at its command, and forgets it
@@ -45,7 +45,7 @@ def test_against_small_steps(share, rest, tau):
 
 
 def test_fast_enough_is_no_limit():
-    command = told(GAIT, True)
+    command = commanded(GAIT, True)
     assert LIMIT.actuate(command, {"rate_limit": 1.01 * GAIT.peak_rate}) is command
 
 
@@ -54,7 +54,7 @@ def test_times_are_exact():
     t, limit = np.linspace(0.0, 3.0, 400), 0.7 * GAIT.peak_rate
 
     def phi(more: float) -> np.ndarray:
-        return LIMIT.actuate(told(GAIT, True), {"rate_limit": limit + more}).at(t)[0]
+        return LIMIT.actuate(commanded(GAIT, True), {"rate_limit": limit + more}).at(t)[0]
 
     wide, narrow = ((phi(step) - phi(-step)) / (2 * step) for step in (1e-4, 1e-6))
     assert np.quantile(np.abs(wide - narrow), 0.99) < 1e-3 * np.abs(narrow).max()

@@ -7,7 +7,7 @@ import pytest
 
 from rr_opt.model.gait import SineGait
 from rr_opt.motion.dynamics import dynamics_of
-from rr_opt.motion.setpoints import BLEND, Cost, cost, held, set_points
+from rr_opt.motion.setpoints import BLEND, Cost, cost, interpolated, set_points
 from rr_opt.motion.steady_cycle import cycle_of, steady_cycle
 from rr_opt.outcome import InputError
 from tests.motion.gaits import EVERY
@@ -19,7 +19,7 @@ SHAPES = pytest.mark.parametrize("gait", EVERY.values(), ids=EVERY)
 @SHAPES
 def test_between_the_blends_the_angle_is_on_the_line(gait):
     points = set_points(gait, 40.0)
-    path, late = held(points.angles, 40.0), 1 / (2 * BLEND * 40.0)
+    path, late = interpolated(points.angles, 40.0), 1 / (2 * BLEND * 40.0)
     n = len(points.angles)
     t = (np.arange(n)[:, None] + np.array([0.1, 0.5, 0.9])).ravel() / 40.0
     line = np.interp(40.0 * t, np.arange(n + 1), np.append(points.angles, points.angles[0]))
@@ -65,7 +65,7 @@ def test_a_short_blend_tends_to_straight_lines():
     points = set_points(SineGait(0.7, 1.4, 0.2), 12.0)
     truth = straight_speed(BENCHMARK, points.angles, 12.0)
     speeds = [
-        steady_cycle(BENCHMARK, held(points.angles, 12.0, blend), steps=2048).speed
+        steady_cycle(BENCHMARK, interpolated(points.angles, 12.0, blend), steps=2048).speed
         for blend in (BLEND, 2 * BLEND, 4 * BLEND)
     ]
     errors = np.abs(np.array(speeds) - truth)
@@ -77,10 +77,10 @@ def test_a_short_blend_tends_to_straight_lines():
 def test_the_steps_lead_from_the_gait_to_what_is_left(gait):
     points = set_points(gait, 33.0)
     lost = cost(BENCHMARK, points, rounded=True)
-    assert lost.asked == steady_cycle(BENCHMARK, gait).speed
-    total = math.copysign(1, lost.asked) * (lost.left - lost.asked)
+    assert lost.nominal == steady_cycle(BENCHMARK, gait).speed
+    total = math.copysign(1, lost.nominal) * (lost.final - lost.nominal)
     assert sum(lost.steps.values()) == pytest.approx(total, abs=1e-15)
-    assert lost.left == steady_cycle(BENCHMARK, held(points.rounded, 33.0)).speed
+    assert lost.final == steady_cycle(BENCHMARK, interpolated(points.rounded, 33.0)).speed
     assert set(cost(BENCHMARK, points, rounded=False).steps) == {"period", "holding"}
 
 
@@ -94,14 +94,14 @@ def test_slower_is_negative_whichever_way_it_goes(sign):
 def test_many_set_points_cost_nothing_but_the_period():
     gait = SineGait(0.7, 1.4, 0.2)
     coarse, fine = (cost(BENCHMARK, set_points(gait, rate), rounded=False) for rate in (50, 200))
-    assert abs(coarse.steps["holding"]) > 1e-5 * abs(coarse.asked)
+    assert abs(coarse.steps["holding"]) > 1e-5 * abs(coarse.nominal)
     # What is left of it falls with the square of the time between two.
     ratio = coarse.steps["holding"] / fine.steps["holding"]
     assert ratio == pytest.approx(16, rel=0.05)
     changed = steady_cycle(BENCHMARK, SineGait(0.7, 1.4 + 0.3 / 50, 0.2)).speed
     odd = cost(BENCHMARK, set_points(SineGait(0.7, 1.4 + 0.3 / 50, 0.2), 50), rounded=False)
-    assert odd.asked == changed
-    assert odd.changed == pytest.approx(coarse.asked, rel=1e-12)
+    assert odd.nominal == changed
+    assert odd.resampled == pytest.approx(coarse.nominal, rel=1e-12)
 
 
 @pytest.mark.parametrize(("period", "count"), [(0.3, 38), (0.296, 37), (1.2, 150), (0.1, 12)])

@@ -39,7 +39,7 @@ def stiff() -> System:
 
 def racer() -> System:
     motion = floor_motion()
-    return System(motion.rates, motion.seen)
+    return System(motion.rates, motion.observed)
 
 
 def path(rows: int, each: int) -> DrivePath:

@@ -7,7 +7,7 @@ from rr_opt.effects import CATALOGUE
 from rr_opt.machines.racer import drive as racer_steps
 from rr_opt.machines.racer.drive import steps_of
 from rr_opt.machines.racer.racer import RollerRacer
-from rr_opt.mechanics.drive import told
+from rr_opt.mechanics.drive import commanded
 from rr_opt.model.gait import SineGait
 from rr_opt.sysid.model import Piece
 from tests.sysid.made_up import experiment
@@ -49,7 +49,7 @@ def test_as_with_steps_of_half_a_millisecond(effect, monkeypatch):
 
 def test_a_step_ends_where_the_rate_jumps():
     gait, limit = SineGait(0.6, 1.0, 0.1), 2.5
-    drive = CATALOGUE["servo_rate_limit"].actuate(told(gait, False), {"rate_limit": limit})
+    drive = CATALOGUE["servo_rate_limit"].actuate(commanded(gait, False), {"rate_limit": limit})
     t, late = np.linspace(0.0, 5.0, 251), 0.0123
     steps = steps_of(drive, t, late)
     assert np.all(np.diff(steps.edges) > 0)

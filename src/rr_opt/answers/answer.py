@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from rr_opt.effects.effect import Port
 from rr_opt.model.robot import Robot
-from rr_opt.motion.dynamics import passed_over
+from rr_opt.motion.dynamics import ignored_in_steady_cycle
 from rr_opt.outcome import Status
 
 
@@ -50,7 +50,7 @@ class Answer:
 
 def ignored_effects(robot: Robot) -> tuple[str, ...]:
     """One sentence that names the robot's effects which steady motion ignores; empty if none."""
-    names, of_servo = passed_over(robot), passed_over(robot, Port.ACTUATION)
+    names, of_servo = ignored_in_steady_cycle(robot), ignored_in_steady_cycle(robot, Port.ACTUATION)
     if not names:
         return ()
     text = (

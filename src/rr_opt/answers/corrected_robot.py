@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from rr_opt.effects import CATALOGUE, OF_ROBOTS
-from rr_opt.mechanics.drive import told
+from rr_opt.mechanics.drive import commanded
 from rr_opt.model.experiment import Experiment
 from rr_opt.model.gait import FourierGait, Gait
 from rr_opt.model.parameters import PARAMETERS, with_parameters
@@ -65,7 +65,7 @@ def servo_made(robot: Robot, gait: Gait) -> Gait:
     uses = [use for use in robot.physics if CATALOGUE[use.name].actuate]
     if not uses:
         return gait
-    drive, joint = told(gait, rest=False), free_joint(robot)
+    drive, joint = commanded(gait, rest=False), free_joint(robot)
     for use in uses:
         actuate = CATALOGUE[use.name].actuate
         drive = actuate(drive, use.values, joint) if actuate else drive

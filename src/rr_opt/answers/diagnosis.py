@@ -23,7 +23,7 @@ from rr_opt.model.experiment import Experiment
 from rr_opt.model.gait import Gait
 from rr_opt.model.problem import Limits, Problem
 from rr_opt.model.robot import Robot
-from rr_opt.motion.dynamics import passed_over
+from rr_opt.motion.dynamics import ignored_in_steady_cycle
 from rr_opt.motion.steady_cycle import steady_cycle
 from rr_opt.outcome import RollerRacerError
 from rr_opt.sysid.diagnosis import Diagnosis, Finding, Misfit, Stage
@@ -71,7 +71,7 @@ def loss(experiment: Experiment, corrected: Robot) -> Loss | LossUnknown:
 
     # Servo effects are accounted for here, and the capture system does not change the motion.
     harmless = (Port.ACTUATION, Port.MEASUREMENT)
-    gone = [n for n in passed_over(corrected) if CATALOGUE[n].port not in harmless]
+    gone = [n for n in ignored_in_steady_cycle(corrected) if CATALOGUE[n].port not in harmless]
     if gone:
         names = listed([name.replace("_", " ") for name in gone])
         return _unknown(f"{names} has no place in a steady motion.")
@@ -148,7 +148,7 @@ class DiagnosisAnswer(Answer):
         """What the nominal robot's best gait loses; None where the nominal model is right."""
         if self.verdict == "consistent":
             return None
-        empirical = any(CATALOGUE[use.name].nameless for use in self.corrected_robot.physics)
+        empirical = any(not CATALOGUE[use.name].candidate for use in self.corrected_robot.physics)
         if self.verdict == "unexplained" and not (empirical and self.found.after < _PREDICTS):
             return _unknown("the corrected robot lacks the physics that has no name.")
         return loss(self.experiment, self.corrected_robot)

@@ -12,7 +12,7 @@ from rr_opt.model.problem import LARGEST_EXCESS
 from rr_opt.model.robot import Robot
 from rr_opt.motion.circle import Circle, Transient
 from rr_opt.motion.rollout import Measured, Trajectory
-from rr_opt.motion.setpoints import Cost, SetPoints, held
+from rr_opt.motion.setpoints import Cost, SetPoints, interpolated
 
 Format = Literal["csv", "c-header", "servo"]
 
@@ -89,7 +89,10 @@ class SetPointsAnswer(GaitAnswer):
     def beyond_servo(self) -> tuple[str, ...]:
         """A sentence if the servo is too slow for the steps between set points."""
         angles = self.points.rounded if self.format == "servo" else self.points.angles
-        needed, limit = held(angles, self.points.rate).peak_rate, self.robot.servo.rate_limit
+        needed, limit = (
+            interpolated(angles, self.points.rate).peak_rate,
+            self.robot.servo.rate_limit,
+        )
         if needed <= limit * (1 + LARGEST_EXCESS):
             return ()
         both = QUANTITIES["rate"].both

@@ -17,7 +17,7 @@ from rr_opt.model.ballast import inertia_ratio, with_load_count
 from rr_opt.model.gait import Gait
 from rr_opt.model.problem import LARGEST_EXCESS, Interval, Problem, RatioChoice
 from rr_opt.model.robot import Robot
-from rr_opt.motion.dynamics import passed_over
+from rr_opt.motion.dynamics import ignored_in_steady_cycle
 from rr_opt.outcome import Status
 from rr_opt.verify.replay import Replay, replay
 from rr_opt.verify.sweep import TOLERATED, SweepCheck, SweepResult, check_optimum
@@ -209,7 +209,7 @@ class SpeedAnswer(Answer):
         if best is None:
             return self.optimum.message
         text = f"{self._subject} at {pace_text(best.speed)}, and every check confirms it."
-        ignored = passed_over(self.problem.robot)
+        ignored = ignored_in_steady_cycle(self.problem.robot)
         if ignored:
             text += f" Optimiser and checks ignore {listed(ignored)}."
         ties = len(self.optimum.ties)

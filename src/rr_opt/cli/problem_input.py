@@ -32,9 +32,9 @@ def tell_passed_over(robot: Robot) -> None:
     if not robot.physics:
         return
     from rr_opt.effects.effect import Port
-    from rr_opt.motion.dynamics import passed_over
+    from rr_opt.motion.dynamics import ignored_in_steady_cycle
 
-    names, of_servo = passed_over(robot), passed_over(robot, Port.ACTUATION)
+    names, of_servo = ignored_in_steady_cycle(robot), ignored_in_steady_cycle(robot, Port.ACTUATION)
     if not names:
         return
     told = (

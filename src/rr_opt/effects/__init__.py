@@ -54,4 +54,4 @@ CATALOGUE: Mapping[str, Effect] = MappingProxyType({m.EFFECT.name: m.EFFECT for 
 OF_ROBOTS: Mapping[str, Effect] = MappingProxyType(
     {name: effect for name, effect in CATALOGUE.items() if effect is not zero_offset.EFFECT}
 )
-"""What a robot file may list: a capture system's zeros are those of an experiment."""
+"""What a robot file may list: the zeros of a capture system are stated by an experiment."""

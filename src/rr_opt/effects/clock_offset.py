@@ -1,4 +1,4 @@
-"""A recording's clock that is not the command's: time t of the recording is t + offset of it."""
+"""A recording with a clock of its own: its time t is the command's time t + offset."""
 
 from __future__ import annotations
 

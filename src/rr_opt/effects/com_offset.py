@@ -1,4 +1,4 @@
-"""Centres of mass beside the platforms' axes."""
+"""Centres of mass to one side of the platforms' axes."""
 
 from __future__ import annotations
 

@@ -11,12 +11,12 @@ from typing import Protocol
 import casadi as ca
 
 from rr_opt.mechanics.drive import Drive, FreeJoint
-from rr_opt.mechanics.kinematics import Mechanism, Seen
+from rr_opt.mechanics.kinematics import Mechanism, Observation
 from rr_opt.model.robot import Robot
 
 
 class Port(StrEnum):
-    """Where an effect enters; see `rr_opt.effects`."""
+    """Where an effect enters."""
 
     ACTUATION = "actuation"
     CONSTRAINT = "constraint"
@@ -26,23 +26,38 @@ class Port(StrEnum):
 
 
 @dataclass(frozen=True)
+class OperatingRange:
+    """A robot and the range over which it is operated: what the size of an effect scales with.
+
+    rate    largest rate asked of the servo, rad/s
+    speed   largest speed of the wheels, m/s
+    extent  of the floor that it covers, m
+    """
+
+    robot: Robot
+    rate: float
+    speed: float
+    extent: float = math.inf
+
+
+@dataclass(frozen=True)
 class Parameter:
     """A parameter of an effect.
 
-    unit     as pint reads it
-    bounds   where it makes sense, in that unit
-    typical  its usual size
-    neutral  the value at which the effect vanishes
-    aliases  other names under which a robot file may give it
-    natural  what would be usual for a given robot and what was asked of it, where that depends on
-             them: a value as large as `typical` would be for the paper's prototype
-    trials   from where to look for it, in natural sizes from neutral (absolute ones, if neutral is
-             not zero): more than one where the way from the first may lead nowhere
-    placed   where to look for it is told by the recordings alone
-    rough    there are as many models of it as machines
-    vague    and by such a share of its value, one sigma, do they differ in it
-    least    a fit goes no lower, as the effect turns into another there
-    most     nor higher than this, for a given robot and what was asked of it
+    unit              as pint reads it
+    bounds            within which it makes sense, in that unit
+    typical           usual magnitude on the paper's prototype
+    neutral           the value at which the effect vanishes
+    aliases           other names for it in robot files
+    typical_for       usual magnitude for a given operating range, where `typical` does not scale
+    initial_guesses   where a fit starts: distances from neutral in units of the usual magnitude,
+                      or multiples of that magnitude if neutral is not zero. Several where a fit
+                      from the first may end in a local minimum or on a plateau
+    guess_from_data   a place on the floor: only the recordings say where a fit should start
+    model_form_error  real machines follow different laws here, of which this is one
+    model_form_sigma  by which they differ in its value, 1 sigma, relative
+    fit_lower         a fit goes no lower: there the effect turns into another
+    fit_upper         a fit goes no higher, for a given operating range
     """
 
     name: str
@@ -51,63 +66,57 @@ class Parameter:
     typical: float
     neutral: float = 0.0
     aliases: tuple[str, ...] = ()
-    natural: Callable[[Setting], float] | None = None
-    trials: tuple[float, ...] = (0.05,)
-    placed: bool = False
-    rough: bool = False
-    vague: float = 0.0
-    least: float = -math.inf
-    most: Callable[[Setting], float] | None = None
+    typical_for: Callable[[OperatingRange], float] | None = None
+    initial_guesses: tuple[float, ...] = (0.05,)
+    guess_from_data: bool = False
+    model_form_error: bool = False
+    model_form_sigma: float = 0.0
+    fit_lower: float = -math.inf
+    fit_upper: Callable[[OperatingRange], float] | None = None
 
-    def size(self, setting: Setting) -> float:
-        """Its usual size for a robot and what was asked of it."""
-        return self.natural(setting) if self.natural else self.typical
-
-
-@dataclass(frozen=True)
-class Setting:
-    """A robot, and the largest speeds asked of it.
-
-    rate   of the servo, rad/s
-    speed  of the wheels, m/s
-    room   across all places where it was, m
-    """
-
-    robot: Robot
-    rate: float
-    speed: float
-    room: float = math.inf
+    def magnitude(self, operated: OperatingRange) -> float:
+        """Usual magnitude for an operating range."""
+        return self.typical_for(operated) if self.typical_for else self.typical
 
 
 class Actuate(Protocol):
-    """What a servo makes of the angle that it is told."""
+    """How a servo with the effect follows its command."""
 
     def __call__(
-        self, told: Drive, values: Mapping[str, float], joint: FreeJoint | None = None, /
+        self, command: Drive, values: Mapping[str, float], joint: FreeJoint | None = None, /
     ) -> Drive:
-        """`joint`: the joint while the servo does not hold it; None if nothing is known of it."""
+        """The angle that the servo makes of the commanded one.
+
+        joint: how the joint moves while the servo exerts no torque; None if that is not known.
+        """
         ...
 
 
 @dataclass(frozen=True)
 class Effect:
-    """An effect: what it is called, what it says, and what it changes, at one port.
+    """An effect of physics beyond the paper's model.
 
-    enter    (mechanism, symbols) -> the mechanism with the effect in it: constraint, mass, force
-    actuate  (told, values, joint) -> the angle that the servo makes of the one that it is told:
-             actuation
-    observe  (seen, symbols) -> what is recorded of what there is to see: measurement
-    delay    the parameter by which the recording's clock is behind the command's: measurement
-    stiff    whether it lets the axles slip, which they stop doing at once
-    loose    whether the joint swings by itself, so that the robot's values count for its angle
-    sharp    whether its force all but jumps with the speed, so that predictions take short steps
-    smooth   whether it has derivatives by its parameters where it vanishes
-    nameless no candidate of a diagnosis: a curve that imitates what has no name, or what an
-             experiment says of itself
-    forms    which parameters are looked for together; one form of them all, if none is given
-    imitates effects with no more parameters that a form of this one comes close to
+    family      its group in the catalogue
+    parameters  in the order in which robot files and reports list them
+    sentence    what it is, for a person
 
-    `symbols` and `values` map each parameter's name to its symbol or its value, SI.
+    One of these, which makes the effect what it is; `symbols` and `values` map each parameter's
+    name to its symbol or its value, SI:
+    enter       (mechanism, symbols) -> the mechanism with it: ports constraint, mass and force
+    actuate     (command, values, joint) -> what the servo makes of its command: port actuation
+    observe     (observation, symbols) -> what is recorded: port measurement
+    delay       name of the parameter by which the recording's clock lags the command's: port
+                measurement
+
+    For predictions and fits:
+    stiff               it lets the axles slip, which they stop doing within a step
+    backdrivable        the joint moves freely at times, so its angle depends on the robot's values
+    near_discontinuous  its force all but jumps with the speed, so predictions need short steps
+    differentiable      the prediction has derivatives by its parameters where the effect vanishes
+    candidate           a diagnosis may propose it; not so a curve fit without a physical meaning,
+                        nor what the experiment states of itself
+    forms               which parameters are fitted together; without any, all of them
+    imitates            simpler effects that one of its forms comes close to
     """
 
     name: str
@@ -117,12 +126,12 @@ class Effect:
     sentence: str
     enter: Callable[[Mechanism, Mapping[str, ca.SX]], Mechanism] | None = None
     actuate: Actuate | None = None
-    observe: Callable[[Seen, Mapping[str, ca.SX]], Seen] | None = None
+    observe: Callable[[Observation, Mapping[str, ca.SX]], Observation] | None = None
     delay: str | None = None
     stiff: bool = False
-    loose: bool = False
-    sharp: bool = False
-    smooth: bool = True
-    nameless: bool = False
+    backdrivable: bool = False
+    near_discontinuous: bool = False
+    differentiable: bool = True
+    candidate: bool = True
     forms: tuple[tuple[str, ...], ...] = ()
     imitates: tuple[str, ...] = ()

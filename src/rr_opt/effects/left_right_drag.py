@@ -1,4 +1,4 @@
-"""Wheels of a pair that do not roll equally easily: their mean friction stays, they differ."""
+"""Wheels of a pair that differ in friction about their mean."""
 
 from __future__ import annotations
 

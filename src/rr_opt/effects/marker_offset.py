@@ -1,4 +1,4 @@
-"""A tracked point that is not the joint: x and y are those of a point beside P on platform 1."""
+"""A tracked point beside the joint P, on platform 1."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from dataclasses import replace
 import casadi as ca
 
 from rr_opt.effects.effect import Effect, Parameter, Port
-from rr_opt.mechanics.kinematics import Seen, rotated
+from rr_opt.mechanics.kinematics import Observation, rotated
 
 
-def _observe(seen: Seen, values: Mapping[str, ca.SX]) -> Seen:
-    shift = rotated(ca.vertcat(values["dx"], values["dy"]), seen.psi)
-    return replace(seen, x=seen.x + shift[0], y=seen.y + shift[1])
+def _observe(observation: Observation, values: Mapping[str, ca.SX]) -> Observation:
+    shift = rotated(ca.vertcat(values["dx"], values["dy"]), observation.psi)
+    return replace(observation, x=observation.x + shift[0], y=observation.y + shift[1])
 
 
 EFFECT = Effect(

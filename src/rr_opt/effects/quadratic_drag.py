@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import casadi as ca
 
-from rr_opt.effects.effect import Effect, Parameter, Port, Setting
+from rr_opt.effects.effect import Effect, OperatingRange, Parameter, Port
 from rr_opt.mechanics.kinematics import Mechanism, with_wheel_forces
 
 # |u| as sqrt(u^2 + u0^2), u0 = 0.1 mm/s, keeps the second derivative finite at u = 0.
@@ -20,9 +20,9 @@ def _enter(mechanism: Mechanism, values: Mapping[str, ca.SX]) -> Mechanism:
     )
 
 
-def _as_viscous(setting: Setting) -> float:
+def _as_viscous(operated: OperatingRange) -> float:
     """As much drag as the viscous one at the robot's speed."""
-    return 2 * (setting.robot.k1 + setting.robot.k2) / setting.speed
+    return 2 * (operated.robot.k1 + operated.robot.k2) / operated.speed
 
 
 EFFECT = Effect(
@@ -30,7 +30,7 @@ EFFECT = Effect(
     family="rolling",
     port=Port.FORCE,
     parameters=(
-        Parameter("coefficient_total", "N s^2/m^2", (0.0, 100.0), 0.1, natural=_as_viscous),
+        Parameter("coefficient_total", "N s^2/m^2", (0.0, 100.0), 0.1, typical_for=_as_viscous),
     ),
     sentence="The wheels resist rolling with a force that grows with the square of the speed.",
     enter=_enter,

@@ -1,8 +1,8 @@
-"""Rolling resistance as a curve of speed: what is known of it is how it looks, and no name.
+"""Rolling resistance as an empirical curve of speed, where no physical law is known.
 
 Each wheel resists with force0 at rest, and with force1 to force4 at 1/8, 1/4, 1/2 and all of
-`speed`; in between straight, beyond it constant. The corners are rounded over a 64th of `speed`,
-and the jump at u = 0 as that of dry friction is.
+`speed`; straight in between, constant beyond. The corners are rounded over a 64th of `speed`, and
+the jump at u = 0 is smoothed like that of dry friction.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from rr_opt.effects.effect import Effect, Parameter, Port
 from rr_opt.mechanics.kinematics import Mechanism, with_wheel_forces
 
 KNOTS = (0.0, 0.125, 0.25, 0.5, 1.0)
-"""Where the forces are given, in parts of `speed`."""
+"""Where the forces are given, as fractions of `speed`."""
 
 _ROUNDING = 1 / 64
 
@@ -50,5 +50,5 @@ EFFECT = Effect(
     ),
     sentence="Each wheel resists rolling with a force that is given at five speeds.",
     enter=_enter,
-    nameless=True,
+    candidate=False,
 )

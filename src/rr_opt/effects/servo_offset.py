@@ -1,4 +1,4 @@
-"""A servo whose middle is not where its command says: a constant is added to the angle."""
+"""A servo whose zero is off: a constant is added to the commanded angle."""
 
 from __future__ import annotations
 
@@ -7,18 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from rr_opt.array import Array
 from rr_opt.effects.effect import Effect, Parameter, Port
 from rr_opt.mechanics.drive import Drive, FreeJoint
 
 
-def _actuate(told: Drive, values: Mapping[str, float], _: FreeJoint | None = None) -> Drive:
+def _actuate(command: Drive, values: Mapping[str, float], _: FreeJoint | None = None) -> Drive:
     shift = np.array([[values["offset"]], [0.0], [0.0]])
-
-    def at(t: Array) -> Array:
-        return told.at(t) + shift
-
-    return replace(told, at=at)
+    return replace(command, at=lambda t: command.at(t) + shift)
 
 
 EFFECT = Effect(

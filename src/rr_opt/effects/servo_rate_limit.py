@@ -1,8 +1,8 @@
-"""A servo that cannot turn faster than a limit: it falls behind its command and catches up.
+"""A servo with a limited rate: it falls behind its command and catches up.
 
-It keeps to the command until that turns faster than the limit, goes on at the limit, and keeps to
-the command again from where they meet. These times are found one after the other over some
-periods, the last of which repeats; between them the angle is known exactly.
+It follows the command until that turns faster than the limit, continues at the limit, and follows
+the command again from where they meet. These times are found one after the other over some periods,
+the last of which repeats; between them the angle is known exactly.
 """
 
 from __future__ import annotations
@@ -18,98 +18,103 @@ from rr_opt.effects.effect import Effect, Parameter, Port
 from rr_opt.mechanics.drive import Drive, FreeJoint
 
 _STEPS = 500
-"""A period, on which to look for a time that is then refined."""
+"""Steps per period on which a time is bracketed before it is refined."""
 _PERIODS = 10
-"""After so many it repeats: with half the rate that is asked for after one, a fifth after ten."""
+"""Periods until it repeats: one with half the rate that is commanded, ten with a fifth."""
 
 
-class _Stretch(NamedTuple):
-    """From time t (s) and angle y (rad) the servo turns at `rate` (rad/s), or keeps to its command
-    (0)."""
+class _Segment(NamedTuple):
+    """From time t (s) and angle y (rad) on the servo turns at `rate` (rad/s); 0: it follows its
+    command."""
 
     t: float
     y: float
     rate: float
 
 
-def _actuate(told: Drive, values: Mapping[str, float], _: FreeJoint | None = None) -> Drive:
+class _Limited(NamedTuple):
+    """A command, sampled: angle, rate and acceleration (3, n) at the times (n,), s."""
+
+    drive: Drive
+    limit: float
+    times: Array
+    sampled: Array
+
+    def segments(self, before: float) -> list[_Segment]:
+        """What the servo does from the first of the times on, where its angle is `before`."""
+        first = self.sampled[0, 0]
+        here = _Segment(float(self.times[0]), before, 0.0)
+        if before != first:
+            here = here._replace(rate=float(np.copysign(self.limit, first - before)))
+        segments, k = [here], 0
+        while True:
+            k, t = self._meeting(here, k) if here.rate else self._parting(k)
+            if k == len(self.times):
+                return segments
+            angle, rate, _ = self.drive.at(np.array([t]))[:, 0].tolist()
+            fast = not here.rate or abs(rate) > self.limit
+            here = _Segment(t, angle, float(np.copysign(self.limit, rate)) if fast else 0.0)
+            segments.append(here)
+
+    def _parting(self, k: int) -> tuple[int, float]:
+        """When the command begins to turn too fast: the index after that, and the time."""
+        fast = np.flatnonzero(np.abs(self.sampled[1, k:]) > self.limit)
+        if not len(fast):
+            return len(self.times), 0.0
+        k += int(fast[0])
+        if k == 0:
+            return 0, float(self.times[0])
+
+        def excess(t: float) -> float:
+            return abs(self.drive.at(np.array([t]))[1, 0]) - self.limit
+
+        return k, _root(excess, self.times[k - 1], self.times[k])
+
+    def _meeting(self, here: _Segment, k: int) -> tuple[int, float]:
+        """When the command is met again."""
+        times = self.times[k:]
+        behind = np.sign(here.rate) * (self.sampled[0, k:] - here.y - here.rate * (times - here.t))
+        met = np.flatnonzero((behind[1:] <= 0) & (times[1:] > here.t))
+        if not len(met):
+            return len(self.times), 0.0
+        k += int(met[0]) + 1
+
+        def gap(t: float) -> float:
+            return self.drive.at(np.array([t]))[0, 0] - here.y - here.rate * (t - here.t)
+
+        return k, _root(gap, max(self.times[k - 1], here.t), self.times[k])
+
+
+def _actuate(command: Drive, values: Mapping[str, float], _: FreeJoint | None = None) -> Drive:
     limit = values["rate_limit"]
-    times: Array = told.period / _STEPS * np.arange(_PERIODS * _STEPS + 1.0)
-    command = told.at(times)
-    if np.abs(command[1]).max() <= limit:
-        return told
-    before = float(told.at(np.array([-1.0]))[0, 0]) if told.rest else float(command[0, 0])
-    starts, angles, rates = np.array(_stretches(told, limit, times, command, before)).T
-    repeats = times[-1] - told.period
+    times: Array = command.period / _STEPS * np.arange(_PERIODS * _STEPS + 1.0)
+    limited = _Limited(command, limit, times, command.at(times))
+    if np.abs(limited.sampled[1]).max() <= limit:
+        return command
+    before = command.at(np.array([-1.0])) if command.rest else limited.sampled
+    starts, angles, rates = np.array(limited.segments(float(before[0, 0]))).T
+    repeats = times[-1] - command.period
 
     def at(t: Array) -> Array:
         t = np.asarray(t, float)
-        folded = repeats + (t - repeats) % told.period
-        if told.rest:
+        folded = repeats + (t - repeats) % command.period
+        if command.rest:
             folded = np.where(t > repeats, folded, t)
         k = np.maximum(np.searchsorted(starts, folded, side="right") - 1, 0)
         turning = angles[k] + rates[k] * (folded - starts[k]), rates[k], np.zeros_like(folded)
-        return np.where((rates[k] == 0) | (folded < 0), told.at(t), np.array(turning))
+        return np.where((rates[k] == 0) | (folded < 0), command.at(t), np.array(turning))
 
-    return replace(told, at=at, jumps=starts[1:])
-
-
-def _stretches(
-    told: Drive, limit: float, times: Array, command: Array, before: float
-) -> list[_Stretch]:
-    """What the servo does, one thing after the other, from the first of the times on."""
-    k, here = 0, _Stretch(float(times[0]), before, 0.0)
-    if before != command[0, 0]:
-        here = here._replace(rate=float(np.copysign(limit, command[0, 0] - before)))
-    made = [here]
-    while True:
-        if here.rate:
-            k, t = _meeting(told, times, command, here, k)
-        else:
-            k, t = _parting(told, limit, times, command, k)
-        if k == len(times):
-            return made
-        angle, rate, _ = told.at(np.array([t]))[:, 0].tolist()
-        fast = not here.rate or abs(rate) > limit
-        here = _Stretch(t, angle, float(np.copysign(limit, rate)) if fast else 0.0)
-        made.append(here)
+    return replace(command, at=at, jumps=starts[1:])
 
 
-def _parting(told: Drive, limit: float, times: Array, command: Array, k: int) -> tuple[int, float]:
-    """Where the command begins to turn too fast: the index after it, and the time."""
-    fast = np.flatnonzero(np.abs(command[1, k:]) > limit)
-    if not len(fast):
-        return len(times), 0.0
-    k += int(fast[0])
-    if k == 0:
-        return 0, float(times[0])
-    return k, _crossing(lambda t: abs(told.at(np.array([t]))[1, 0]) - limit, times[k - 1], times[k])
-
-
-def _meeting(
-    told: Drive, times: Array, command: Array, here: _Stretch, k: int
-) -> tuple[int, float]:
-    """Where the command is met again."""
-    behind = np.sign(here.rate) * (command[0, k:] - here.y - here.rate * (times[k:] - here.t))
-    met = np.flatnonzero((behind[1:] <= 0) & (times[k + 1 :] > here.t))
-    if not len(met):
-        return len(times), 0.0
-    k += int(met[0]) + 1
-
-    def gap(t: float) -> float:
-        return told.at(np.array([t]))[0, 0] - here.y - here.rate * (t - here.t)
-
-    return k, _crossing(gap, max(times[k - 1], here.t), times[k])
-
-
-def _crossing(gap: Callable[[float], float], low: float, high: float) -> float:
-    """Where `gap` changes sign, by false position (the Illinois rule)."""
-    at_low, at_high = gap(low), gap(high)
+def _root(function: Callable[[float], float], low: float, high: float) -> float:
+    """Where a function changes sign, by false position (the Illinois rule)."""
+    at_low, at_high = function(low), function(high)
     for _ in range(8):
         if at_low * at_high >= 0:
             break
         middle = (low * at_high - high * at_low) / (at_high - at_low)
-        there = gap(middle)
+        there = function(middle)
         if there * at_high < 0:
             low, at_low = high, at_high
         else:
@@ -126,12 +131,12 @@ EFFECT = Effect(
         Parameter(
             *("rate_limit", "rad/s", (0.1, 100.0), 3.0),
             neutral=100.0,
-            natural=lambda setting: setting.rate,
-            trials=(0.9, 0.6),
-            vague=1e-4,
+            typical_for=lambda operated: operated.rate,
+            initial_guesses=(0.9, 0.6),
+            model_form_sigma=1e-4,
         ),
     ),
     sentence="The servo cannot turn faster than a limit, and falls behind its command.",
     actuate=_actuate,
-    smooth=False,
+    differentiable=False,
 )

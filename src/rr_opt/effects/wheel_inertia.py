@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import casadi as ca
 
-from rr_opt.effects.effect import Effect, Parameter, Port, Setting
+from rr_opt.effects.effect import Effect, OperatingRange, Parameter, Port
 from rr_opt.mechanics.kinematics import Mechanism, Rotor
 
 
@@ -19,9 +19,9 @@ def _enter(mechanism: Mechanism, values: Mapping[str, ca.SX]) -> Mechanism:
     return replace(mechanism, rotors=mechanism.rotors + wheels)
 
 
-def _of_mass(setting: Setting) -> float:
-    """So much that four of them weigh as a tenth of the robot: J/h^2 each."""
-    robot = setting.robot
+def _of_mass(operated: OperatingRange) -> float:
+    """Four wheels that act like a tenth of the robot's mass: J/h^2 each."""
+    robot = operated.robot
     return 0.1 * (robot.platform1.m + robot.platform2.m) * robot.h**2 / 4
 
 
@@ -29,7 +29,7 @@ EFFECT = Effect(
     name="wheel_inertia",
     family="rolling",
     port=Port.MASS,
-    parameters=(Parameter("J", "kg m^2", (0.0, 1e-2), 1e-6, natural=_of_mass),),
+    parameters=(Parameter("J", "kg m^2", (0.0, 1e-2), 1e-6, typical_for=_of_mass),),
     sentence="Turning the wheels about their axles takes energy of its own.",
     enter=_enter,
 )

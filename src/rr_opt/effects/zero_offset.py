@@ -1,4 +1,4 @@
-"""A capture system whose zeros are off: it tells heading and servo angle too large by so much."""
+"""A capture system whose zeros are off: a constant is added to heading and servo angle."""
 
 from __future__ import annotations
 
@@ -8,11 +8,13 @@ from dataclasses import replace
 import casadi as ca
 
 from rr_opt.effects.effect import Effect, Parameter, Port
-from rr_opt.mechanics.kinematics import Seen
+from rr_opt.mechanics.kinematics import Observation
 
 
-def _observe(seen: Seen, values: Mapping[str, ca.SX]) -> Seen:
-    return replace(seen, psi=seen.psi + values["psi"], phi=seen.phi + values["phi"])
+def _observe(observation: Observation, values: Mapping[str, ca.SX]) -> Observation:
+    return replace(
+        observation, psi=observation.psi + values["psi"], phi=observation.phi + values["phi"]
+    )
 
 
 EFFECT = Effect(
@@ -25,5 +27,5 @@ EFFECT = Effect(
     ),
     sentence="The capture system tells heading and servo angle from a zero that is off.",
     observe=_observe,
-    nameless=True,
+    candidate=False,
 )

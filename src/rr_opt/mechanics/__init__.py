@@ -1,1 +1,1 @@
-"""What a robot is made of: bodies, kinematics, Kane's equations, its drive; compiled code."""
+"""Bodies, kinematics, Kane's equations, the servo's drive, integrators, compiled code."""

@@ -1,4 +1,4 @@
-"""The angle that the servo makes, as a function of time, from standing still or for ever."""
+"""The joint angle as a function of time: periodic, or from standing still."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from rr_opt.model.gait import Gait
 
 @dataclass(frozen=True)
 class Drive:
-    """phi(t) of a robot that is told a gait.
+    """phi(t) of a robot that is driven by a gait.
 
     at      t (n,) s -> phi, dphi, ddphi (3, n): rad, rad/s, rad/s2
     period  s
-    rest    the robot stands still until t = 0; else it has been driven for ever
-    jumps   when dphi jumps, (n,) s in order; for a robot driven for ever in some period, else from
-            t = 0 on, where the last period repeats. None if it never does
+    rest    the robot stands still until t = 0; else phi is periodic
+    jumps   times at which dphi jumps, (n,) s, increasing: those of one period if phi is periodic,
+            else from t = 0 on to where the last period repeats. None if there are none
     """
 
     at: Callable[[Array], Array]
@@ -34,7 +34,7 @@ class Drive:
         return self.jumps is None
 
     def jumps_within(self, low: float, high: float) -> Array:
-        """When dphi jumps between two times, (n,) s in order."""
+        """Times between two others at which dphi jumps, (n,) s, increasing."""
         if self.jumps is None or not self.jumps.size:
             return np.zeros(0)
         T, first = self.period, self.jumps
@@ -42,25 +42,25 @@ class Drive:
         turns = np.arange(np.floor((low - repeats[-1]) / T), np.ceil((high - repeats[0]) / T) + 1)
         if self.rest:
             turns = turns[turns > 0]
-        often = (repeats + T * turns[:, None]).ravel()
-        every = np.concatenate([first, often]) if self.rest else often
+        repeated = (repeats + T * turns[:, None]).ravel()
+        every = np.concatenate([first, repeated]) if self.rest else repeated
         return np.sort(every[(every > low) & (every < high)])
 
 
 @dataclass(frozen=True)
 class FreeJoint:
-    """How the joint swings while the servo's torque is zero; see `physics.free_joint`.
+    """How the joint moves while the servo exerts no torque; see `motion.floor_motion.free_joint`.
 
     swing  (phi, dphi, z, p) -> ddphi (rad/s2), zdot (m/s2)
-    p      the robot's values, SI
+    p      values of the robot's parameters, SI
     """
 
     swing: ca.Function
     p: tuple[float, ...]
 
 
-def told(gait: Gait, rest: bool) -> Drive:
-    """The gait itself; before t = 0 a robot at rest is told to keep the offset."""
+def commanded(gait: Gait, rest: bool) -> Drive:
+    """The gait itself; a robot that starts from rest is kept at the offset until t = 0."""
 
     def at(t: Array) -> Array:
         path = np.array([gait.angle(t), gait.rate(t), gait.acceleration(t)])

@@ -1,14 +1,14 @@
-"""Kane's equations of a mechanism, before anything is held or solved for.
+"""Kane's equations of a mechanism, before constraints are applied.
 
 With u = (v, s1, s2, dphi) the speeds of `kinematics`, every velocity and rate of the mechanism is
-a function of phi and u, linear in u. A body of mass m whose centre moves at V, seen from a
-platform that turns at w, accelerates by dV/dt + w x V; a rotor of inertia I turning at w by
-dw/dt. Kane's equation for speed j equates what they need with what forces F and the servo give:
+a function of phi and u, linear in u. A body of mass m whose centre moves at V, in the axes of a
+platform that turns at w, accelerates by dV/dt + w x V; a rotor of inertia I turning at w by dw/dt.
+Kane's equation for speed j equates the generalised inertia forces with those of forces F and servo:
 
     sum m (dV/dt + w x V) . dV/du_j + sum I dw/dt dw/du_j = sum F . dV/du_j + (0, F1, F2, torque)_j
 
-Row v is the equation of motion, rows s1 and s2 give the side forces that hold the axles, and
-row dphi gives the servo torque, which acts on platform 2 and reacts on platform 1. All partial
+Row v is the equation of motion, rows s1 and s2 give the constraint forces on the axles, and row
+dphi gives the servo torque, which acts on platform 2 and reacts on platform 1. All partial
 velocities and rates of change are CasADi's.
 """
 
@@ -23,12 +23,14 @@ from rr_opt.mechanics.kinematics import SPEEDS, Mechanism
 
 @dataclass(frozen=True)
 class Equations:
-    """What each speed needs beyond the given forces, as expressions.
+    """Kane's equations as expressions.
 
-    needed   (4,) left side less the forces' share, N, N, N, N m
-    udot     (4,) symbols of the speeds' rates of change
-    kinetic  energy, J;  power  that the forces give, W
-    joint    velocity (2, m/s) of P in platform 1's axes;  rate  psi-dot, rad/s
+    needed   (4,) generalised force that each speed needs beyond the given forces, N, N, N, N m
+    udot     (4,) symbols of the rates of change of the speeds
+    kinetic  energy, J
+    power    of the forces, W
+    joint    velocity (2, m/s) of P in platform 1's axes
+    rate     psi-dot, rad/s
     """
 
     needed: ca.SX
@@ -40,7 +42,7 @@ class Equations:
 
 
 def equations(robot: Mechanism) -> Equations:
-    """Kane's equations of the mechanism with all forces and bodies it has."""
+    """Kane's equations of a mechanism, with all its bodies and forces."""
     phi, u = robot.phi, robot.speeds
     udot = ca.vertcat(*(ca.SX.sym(f"{name}dot") for name in SPEEDS))
 

@@ -1,10 +1,8 @@
-"""Gravity.
+"""Where everything is on the two platforms, and how fast each part of them moves.
 
-Where everything sits on the two platforms, and how fast each part of them moves.
-
-Each platform has axes of its own: the origin at its axle's centre C, the first axis along the
-platform (from C towards where the paper draws its arrow: away from the joint P on platform 1,
-towards P on platform 2), the second to the left. Positions are fixed numbers in these axes:
+Each platform has axes of its own: the origin at the centre C of its axle, the first axis along the
+platform (from C as the paper draws its arrow: away from the joint P on platform 1, towards P on
+platform 2), the second to the left. Positions in these axes are constant:
 
                      platform 1            platform 2
     axle's centre    C1 = (0, 0)           C2 = (0, 0)
@@ -12,18 +10,18 @@ towards P on platform 2), the second to the left. Positions are fixed numbers in
     centre of mass   A1 = (-a1, 0)         A2 = (a2, 0)
     wheels                (0, +-b1)             (0, +-b2)
 
-Any motion is named by four speeds: u = (v, s1, s2, dphi), the speed of axle 1 along its rolling
-direction, the side speeds of both axles, and the servo's rate. A point r of platform i moves at
+Any motion is described by four speeds u = (v, s1, s2, dphi): the speed of axle 1 along its rolling
+direction, the side speeds of both axles, and the joint rate. A point r of platform i moves at
 V_i + w_i x r, and P belongs to both platforms, so with R the rotation by phi
 
     (v, s1 - c1 w1) = R (u2, s2 + c2 w2),        w2 = w1 + dphi
 
-which gives the yaw rate w1 and the speed u2 of axle 2 along its own axis. With s1 = s2 = 0 these
-are the paper's constraints (1) and (2), and S1 = c1 cos phi + c2 is the divisor of w1.
+which determines the yaw rate w1 and the speed u2 of axle 2 along its own axis. With s1 = s2 = 0
+these are the paper's constraints (1) and (2), and S1 = c1 cos phi + c2 is the divisor of w1.
 
-An axle may be turned by an angle toe against its platform. Then v, s1, u2, s2 count along the
-rolling direction and square to it, (v, s1) = R(-toe1) V_1, and with n2 the side direction of axle 2
-the joint gives, in its direction alone,
+An axle may be turned by an angle toe against its platform. Then v, s1, u2, s2 are taken along the
+rolling direction and perpendicular to it, (v, s1) = R(-toe1) V_1, and with n2 the side direction of
+axle 2 the joint gives, in that direction alone,
 
     w1 (c1 cos(phi + toe2) + c2 cos toe2) = (V_1 rotated by -phi) . n2 - s2 - c2 cos toe2 dphi
 """
@@ -44,8 +42,8 @@ G = 9.80665
 
 
 @dataclass(frozen=True)
-class Seen:
-    """The tracked point x, y (m), the heading psi and the angle phi (rad), as expressions."""
+class Observation:
+    """What is recorded, as expressions: tracked point x, y (m), heading psi and angle phi (rad)."""
 
     x: ca.SX
     y: ca.SX
@@ -60,7 +58,7 @@ SPEEDS = ("v", "s1", "s2", "dphi")
 
 
 def robot_values(robot: Robot) -> tuple[float, ...]:
-    """The numbers behind ROBOT_PARAMETERS, in their order, SI."""
+    """The values of ROBOT_PARAMETERS, SI."""
     return tuple((parameters_of(robot) | {"kappa1": robot.k1, "kappa2": robot.k2}).values())
 
 
@@ -93,24 +91,28 @@ class Rotor:
     rate: ca.SX
 
 
-def _nothing(_: ca.SX) -> ca.SX:
-    return ca.SX(0)
+Law = Callable[["Wheel", ca.SX], ca.SX]
+"""law(wheel, u): force along the rolling direction, N, of a wheel that rolls at u, m/s."""
 
 
 @dataclass(frozen=True)
 class Wheel:
     """A wheel of platform 1 or 2, on its left (+1) or right (-1), at a point (2, m) of it.
 
-    direction (2,) is the unit vector along which it rolls, in the platform's axes, and `resists`
-    tells, of the speed (m/s) at which it rolls, the force (N along it) that comes of its rolling
-    on this floor: another floor makes more or less of it.
+    direction   unit vector (2,) along which it rolls, in the platform's axes
+    resistances forces that come of rolling on this floor, and scale with it; drag of the air does
+                not, and is not among them
     """
 
     platform: int
     side: int
     point: ca.SX
     direction: ca.SX
-    resists: Callable[[ca.SX], ca.SX] = _nothing
+    resistances: tuple[Law, ...] = ()
+
+    def resistance(self, u: ca.SX) -> ca.SX:
+        """The force of the floor along the rolling direction, N, at the rolling speed u, m/s."""
+        return sum((law(self, u) for law in self.resistances), ca.SX(0))
 
 
 @dataclass(frozen=True)
@@ -126,12 +128,13 @@ class Force:
 class Mechanism:
     """The robot as bodies and forces over symbols; effects return a changed copy.
 
-    pose         x, y of the joint P (m) and psi (rad) on the floor (3,)
-    phi, speeds  the angle (rad) and SPEEDS (4,)
-    parameters   symbol of every robot parameter by name
-    frames       motion of platforms 1 and 2
-    held         the side speeds that are held at zero
-    sharp        whether forces may jump nearly as they do: for predictions, not for optimisers
+    pose            x, y of the joint P (m) and psi (rad) on the floor (3,)
+    phi, speeds     the joint angle (rad) and SPEEDS (4,)
+    parameters      symbol of every robot parameter by name
+    frames          motion of platforms 1 and 2
+    constrained     the side speeds that are zero by constraint
+    for_prediction  forces change sign as steeply as those of the real robot; else as smoothly as
+                    an optimiser needs
     """
 
     pose: ca.SX
@@ -143,11 +146,11 @@ class Mechanism:
     rotors: tuple[Rotor, ...]
     wheels: tuple[Wheel, ...]
     forces: tuple[Force, ...] = ()
-    held: frozenset[str] = frozenset({"s1", "s2"})
-    sharp: bool = False
+    constrained: frozenset[str] = frozenset({"s1", "s2"})
+    for_prediction: bool = False
 
     def rolling_speed(self, wheel: Wheel) -> ca.SX:
-        """Speed of the wheel's contact point along its rolling direction, m/s."""
+        """Speed of the contact point along the rolling direction, m/s."""
         return ca.dot(wheel.direction, self.frames[wheel.platform].velocity(wheel.point))
 
     def joint(self, platform: int) -> ca.SX:
@@ -155,11 +158,11 @@ class Mechanism:
         return ca.vertcat(-self.parameters["c1"] if platform == 1 else self.parameters["c2"], 0)
 
     def heading(self, platform: int) -> ca.SX:
-        """The angle of the platform's axis on the floor, rad."""
+        """Angle of the platform's axis on the floor, rad."""
         return self.pose[2] if platform == 1 else self.pose[2] + self.phi
 
-    def on_floor(self, platform: int, point: ca.SX) -> ca.SX:
-        """Where on the floor (2, m) a point (2, m) of a platform is."""
+    def floor_position(self, platform: int, point: ca.SX) -> ca.SX:
+        """Position on the floor (2, m) of a point (2, m) of a platform."""
         return self.pose[:2] + rotated(point - self.joint(platform), self.heading(platform))
 
 
@@ -180,11 +183,11 @@ def mechanism() -> Mechanism:
 def with_turned_axles(mechanism: Mechanism, toe1: ca.SX, toe2: ca.SX) -> Mechanism:
     """The paper's robot over the same symbols, its axles turned counter-clockwise, rad.
 
-    Everything is assembled anew, as every force depends on it: what else is to enter comes after.
+    It is assembled anew, as every force depends on the axles: other effects have to enter later.
     """
-    robot = mechanism
-    turned = _assembled(robot.pose, robot.phi, robot.speeds, robot.parameters, toe1, toe2)
-    return replace(turned, sharp=robot.sharp)
+    old = mechanism
+    turned = _assembled(old.pose, old.phi, old.speeds, old.parameters, toe1, toe2)
+    return replace(turned, for_prediction=old.for_prediction)
 
 
 def _assembled(
@@ -194,8 +197,8 @@ def _assembled(
     c1, c2 = p["c1"], p["c2"]
     V1 = rotated(ca.vertcat(v, s1), toe1)
     cos, sin = ca.cos(phi + toe2), ca.sin(phi + toe2)
-    level = c2 * ca.cos(toe2)
-    w1 = (V1[1] * cos - V1[0] * sin - s2 - level * dphi) / (c1 * cos + level)
+    reach = c2 * ca.cos(toe2)
+    w1 = (V1[1] * cos - V1[0] * sin - s2 - reach * dphi) / (c1 * cos + reach)
     w2 = w1 + dphi
     u2 = V1[0] * cos + (V1[1] - c1 * w1) * sin - c2 * w2 * ca.sin(toe2)
     V2 = rotated(ca.vertcat(u2, s2), toe2)
@@ -224,22 +227,16 @@ def _assembled(
     return with_resistance(bare, lambda wheel, u: -p[f"k{wheel.platform}"] * u)
 
 
-Law = Callable[[Wheel, ca.SX], ca.SX]
-"""law(wheel, u): the rolling force at a wheel, N along it, of which u is the speed, m/s."""
-
-
 def with_resistance(mechanism: Mechanism, law: Law) -> Mechanism:
-    """Add at every wheel a rolling force that comes of its rolling on this floor."""
-    wheels = tuple(replace(wheel, resists=_both(wheel, law)) for wheel in mechanism.wheels)
+    """Add at every wheel a rolling force that comes of the floor."""
+    wheels = tuple(
+        replace(wheel, resistances=(*wheel.resistances, law)) for wheel in mechanism.wheels
+    )
     return replace(with_wheel_forces(mechanism, law), wheels=wheels)
 
 
-def _both(wheel: Wheel, law: Law) -> Callable[[ca.SX], ca.SX]:
-    return lambda u: wheel.resists(u) + law(wheel, u)
-
-
 def with_wheel_forces(mechanism: Mechanism, law: Law) -> Mechanism:
-    """Add at every wheel a rolling force."""
+    """Add at every wheel a rolling force that does not come of the floor."""
     added = tuple(
         Force(
             wheel.platform,

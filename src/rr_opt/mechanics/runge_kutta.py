@@ -1,4 +1,4 @@
-"""Explicit Runge-Kutta methods as data, and the one stepper that reads them."""
+"""Explicit Runge-Kutta methods as data, and one stepper for all of them."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Tableau:
     def step(self, rhs: Callable[[float, State], State], y: State, h: Any) -> State:
         """One step of length h from y; rhs(fraction, y) with fraction of the step in [0, 1].
 
-        Works on whatever adds and scales: floats, arrays, CasADi expressions.
+        States are anything that adds and scales: floats, arrays, CasADi expressions.
         """
         slopes: list[State] = []
         for fraction, row in zip(self.c, self.a, strict=True):
@@ -61,5 +61,5 @@ BUTCHER6 = Tableau(
     ),
     b=(11 / 120, 0, 27 / 40, 27 / 40, -4 / 15, -4 / 15, 11 / 120),
 )
-"""Seven stages, order 6: Butcher, Numerical Methods for Ordinary Differential Equations (2016),
-section 33 (sixth order methods); the smallest number of stages that reaches order 6."""
+"""Seven stages, the least that reach order 6: Butcher, Numerical Methods for Ordinary Differential
+Equations (2016), section 33."""

@@ -1,9 +1,9 @@
-"""Evaluate a derived CasADi function over whole NumPy arrays at once.
+"""CasADi functions over NumPy arrays.
 
-CasADi's virtual machine runs an expression one point at a time, at some 5 ns an operation.
-Here the same list of operations is walked once and each is applied to arrays, at some 0.7 ns
-an operation and point, with no compiler needed. Inputs broadcast: what depends on the robot
-alone is computed once, what depends on the gait alone once a gait.
+CasADi's virtual machine evaluates one point at a time, at some 5 ns per operation. Here the list of
+operations is walked once and each is applied to arrays, at some 0.7 ns per operation and point,
+without a compiler. Inputs broadcast: what depends on the robot alone is computed once, what depends
+on the gait alone once per gait.
 """
 
 from __future__ import annotations
@@ -53,11 +53,10 @@ ArrayFunction = Callable[..., list[NDArray[np.float64]]]
 
 
 def over_arrays(function: ca.Function) -> ArrayFunction:
-    """The function as one of arrays: one argument per scalar entry of its inputs.
+    """An SX function as a function of arrays: one argument per scalar entry of its inputs.
 
-    function: an SX function. The result takes `function.nnz_in()` arrays that broadcast and
-    returns one array per nonzero of its outputs, in their order.
-    Raises NotImplementedError for an operation that has no array form here.
+    It takes `function.nnz_in()` arrays that broadcast and returns one array per nonzero of the
+    outputs. Raises NotImplementedError for an operation that has no array form here.
     """
     starts = np.cumsum([0, *(function.nnz_in(i) for i in range(function.n_in()))])
     ends = np.cumsum([0, *(function.nnz_out(i) for i in range(function.n_out()))])
@@ -78,8 +77,8 @@ def over_arrays(function: ca.Function) -> ArrayFunction:
         else:
             raise NotImplementedError(f"operation {code} of {function.name()} has no array form")
 
-    # The registers are CasADi's own, which it reuses as soon as a value is done with: the
-    # arrays in flight then stay few and in the processor's cache.
+    # CasADi reuses a register as soon as its value is not needed any more, so that few arrays are
+    # alive at a time and they stay in the processor's cache.
     def evaluate(*arguments: ArrayLike) -> list[NDArray[np.float64]]:
         register: list = [None] * function.sz_w()
         results: list = [np.float64(0.0)] * int(ends[-1])

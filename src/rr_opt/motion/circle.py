@@ -1,14 +1,12 @@
-"""The circle of a gait, and how a start from rest comes to it.
+"""The circle of a gait, and the transient by which a start from rest comes to it.
 
-From rest to the steady cycle: how fast the deviation dies, and what it costs.
+A small deviation dv from the steady cycle obeys d(dv)/dt = (d vdot/dv) dv, so each period
+multiplies it by the same factor dv(T)/dv(0); with viscous friction a large one too.
 
-A deviation dv from the steady cycle obeys d(dv)/dt = (d vdot/dv) dv, so each period multiplies
-it by the same factor s = dv(T)/dv(0). Where friction is not viscous this is so once dv is small.
-
-What is lost is told along the mean path. Over one period P moves, in the frame that turns
-steadily with that period, by the mean velocity V times T; in the steady cycle |V| is the speed
+The distance lost is measured along the mean path. Over one period P moves, in the frame that turns
+steadily with that period, by T times its mean velocity V; in the steady cycle |V| is the speed
 along the circle. So a period from rest falls behind by T (|V| - V_rest . V/|V|), which is summed
-until it has died; what is left then is a geometric series.
+until the deviation has died out; the rest is a geometric series.
 """
 
 from __future__ import annotations
@@ -33,7 +31,7 @@ _STILL = 1e-12  # m/s
 
 @dataclass(frozen=True)
 class Circle:
-    """Positive is to the left, whichever way the robot drives.
+    """The mean circle of a gait. Positive is to the left, whichever way the robot drives.
 
     speed      along the mean circle, m/s, positive along platform 1
     curvature  heading per metre of the mean circle, 1/m
@@ -50,7 +48,7 @@ class Circle:
 
     @property
     def straight(self) -> bool:
-        """It turns by no more than STRAIGHT a period."""
+        """It turns by no more than STRAIGHT per period."""
         return self.centre is None
 
     @property
@@ -81,33 +79,32 @@ def circle_of(cycle: Cycle) -> Circle:
             f"The gait moves the robot at {cycle.speed:.1e} m/s. Expected a gait that moves it: "
             "one that stands still has no circle. Give an amplitude above 0."
         )
-    straight = abs(cycle.dpsi) <= STRAIGHT
+    centre = None
+    if abs(cycle.dpsi) > STRAIGHT:
+        # C = dx + i dy + exp(i dpsi) C
+        half = cycle.dpsi / 2
+        C = complex(cycle.dx, cycle.dy) * 1j * np.exp(-1j * half) / (2 * math.sin(half))
+        centre = float(C.real), float(C.imag)
     return Circle(
         speed=cycle.speed,
-        # Finite and right however straight: only the centre runs off.
+        # Finite and accurate however straight: only the centre goes to infinity.
         curvature=cycle.dpsi / (cycle.period * abs(cycle.speed)),
         heading=cycle.dpsi,
         period=cycle.period,
-        centre=None if straight else _centre(cycle),
+        centre=centre,
     )
 
 
-def _centre(cycle: Cycle) -> tuple[float, float]:
-    """C = (dx, dy) + Rot(dpsi) C, solved."""
-    half = cycle.dpsi / 2
-    c = complex(cycle.dx, cycle.dy) * 1j * np.exp(-1j * half) / (2 * math.sin(half))
-    return float(c.real), float(c.imag)
-
-
 _STEPS = 512
-_DEAD = 1e-4
-_MOST = 2000
-"""Periods summed at most: the geometric series takes over wherever the sum ends."""
+_NEGLIGIBLE = 1e-4
+"""A period that adds less to the lost distance, relative, is the last that is simulated."""
+_MOST_PERIODS = 2000
+"""The geometric series continues from wherever the simulation ends."""
 
 
 @dataclass(frozen=True)
 class Transient:
-    """How a start from rest, with the command running from phase 0, comes to the steady cycle.
+    """How a start from rest, with the command beginning at phase 0, comes to the steady cycle.
 
     factor    by which a period multiplies a small deviation; 0 < factor < 1
     constant  time in which it falls to 1/e, s
@@ -121,41 +118,38 @@ class Transient:
     delay: float
 
     def periods_to(self, share: float) -> int:
-        """After how many periods a deviation is down to this share of itself."""
+        """Number of periods after which a deviation is down to this share of itself."""
         return max(math.ceil(math.log(share) / math.log(self.factor)), 0)
 
 
 def transient(robot: Robot, steady: SteadyCycle) -> Transient:
-    """The start from rest of a gait whose steady cycle is known."""
+    """The transient from rest to a known steady cycle."""
     period = steady.gait.period
-    goal = fixed_steps(robot, steady.gait, float(steady.v[0]), steps=_STEPS)
-    factor = float(goal[4, -1])
-    along = _mean_velocity(goal, period)
-    speed = float(np.hypot(*along))
-    lost = shortfall = 0.0
-    v0 = 0.0
-    for _ in range(_MOST):
+    path = fixed_steps(robot, steady.gait, float(steady.v[0]), steps=_STEPS)
+    factor = float(path[4, -1])
+    V = _mean_velocity(path, period)
+    speed = abs(V)
+    lost = shortfall = v0 = 0.0
+    for _ in range(_MOST_PERIODS):
         path = fixed_steps(robot, steady.gait, v0, steps=_STEPS)
-        shortfall = period * float(speed - _mean_velocity(path, period) @ along / speed)
+        along = (_mean_velocity(path, period) * V.conjugate()).real / speed
+        shortfall = period * (speed - along)
         lost += shortfall
         v0 = float(path[0, -1])
-        if abs(shortfall) <= _DEAD * abs(lost):
+        if abs(shortfall) <= _NEGLIGIBLE * abs(lost):
             break
     lost += shortfall * factor / (1 - factor)
     return Transient(factor, -period / math.log(factor), lost, lost / speed)
 
 
-def _mean_velocity(path: Array, period: float) -> Array:
-    """Mean velocity of P (2,), m/s, in the frame that turns steadily through this period, from
-    the heading at its start. path (5, N + 1): the states, at equal steps."""
+def _mean_velocity(path: Array, period: float) -> complex:
+    """Mean velocity of P, m/s, in the frame that turns steadily through this period from the
+    heading at its start. path (5, N + 1): states at equal steps."""
     _, psi, x, y, _ = path
     turn = psi[-1] - psi[0]
     theta = np.linspace(0.0, 1.0, path.shape[1])
-    turned = turn * theta + psi[0]
-    x, y = x - x[0], y - y[0]
-    cos, sin = np.cos(turned), np.sin(turned)
-    # By parts: Rot(-turned) dP integrates to its end value plus turn times a quarter turn of
-    # the mean of Rot(-turned) P.
-    seen = np.array([cos * x + sin * y, cos * y - sin * x])
-    mean_x, mean_y = (simpson(part, x=theta) for part in seen)
-    return (seen[:, -1] + turn * np.array([-mean_y, mean_x])) / period
+    P = np.exp(-1j * (turn * theta + psi[0])) * (x - x[0] + 1j * (y - y[0]))
+    # By parts: exp(-i turned) dP integrates to the end value of P in the turning frame plus
+    # i turn times its mean.
+    mean = simpson(P.real, x=theta) + 1j * simpson(P.imag, x=theta)
+    return complex((P[-1] + 1j * turn * mean) / period)

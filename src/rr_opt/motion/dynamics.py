@@ -1,14 +1,13 @@
-"""The equation of motion and the servo torque, by Kane's method, for any set of effects.
+"""The equation of motion and the servo torque in a gait's steady cycle, for any set of effects.
 
-Which effects have a place in a gait's steady cycle.
+Row v of Kane's equations (`mechanics.kane`), with the axles constrained, is the equation of motion;
+the other rows give the side forces and the torque. `tests/mechanics` checks the result against the
+paper's closed form, whose printed equation (3) has sign errors, and against Lagrange multipliers.
 
-There the axles are held, every place and heading is like any other, and the angle is the one that
-the servo makes. What the servo makes of its command, what the floor does here and not there, and
-what a capture system sees of it all have no place in it.
-
-Row v of Kane's equations (`kane`), with the axles held, is the equation of motion; the other rows
-give the side forces and the torque. `tests/physics` holds the result against the paper's closed
-form, whose printed equation (3) has sign errors, and against Lagrange multipliers.
+In a steady cycle the axles do not slip, every place and heading is like any other, and the joint
+follows its command. Effects that contradict this have no steady cycle and are ignored here: what
+the servo makes of its command, what the floor does in one place and not another, and what the
+capture system makes of the motion.
 """
 
 from __future__ import annotations
@@ -27,7 +26,7 @@ from rr_opt.mechanics.kinematics import (
     ROBOT_PARAMETERS,
     SPEEDS,
     Mechanism,
-    Seen,
+    Observation,
     mechanism,
     robot_values,
 )
@@ -35,30 +34,31 @@ from rr_opt.model.robot import Robot
 from rr_opt.outcome import InputError
 
 _ORDER = (Port.CONSTRAINT, Port.MASS, Port.FORCE, Port.ACTUATION, Port.MEASUREMENT)
-"""What turns the axles comes first, also of those at its port, as every force depends on it."""
+"""What turns the axles enters first, as every force depends on them."""
 _LISTED = tuple(CATALOGUE)
 
 
 @dataclass(frozen=True)
 class Assembly:
-    """A mechanism over symbols: `p` stacks those of `parameters`.
+    """A mechanism with effects, over symbols.
 
-    effects     as they were asked for
-    seen        what a capture system sees of it
-    parameters  ROBOT_PARAMETERS, then `effect.parameter` of each effect that is in one of the two
+    effects      as they were asked for
+    observation  what a capture system records of it
+    parameters   names: ROBOT_PARAMETERS, then `effect.parameter` of each effect that enters
+    p            their symbols, stacked
     """
 
     effects: tuple[str, ...]
     mechanism: Mechanism
-    seen: Seen
+    observation: Observation
     parameters: tuple[str, ...]
     p: ca.SX
 
 
-def assembled(effects: tuple[str, ...], *, sharp: bool = False) -> Assembly:
-    """The paper's robot with those of the named effects that change it or how it is seen."""
-    robot = replace(mechanism(), sharp=sharp)
-    seen = Seen(robot.pose[0], robot.pose[1], robot.pose[2], robot.phi)
+def assembled(effects: tuple[str, ...], *, for_prediction: bool = False) -> Assembly:
+    """The paper's robot with those of the named effects that change it or how it is observed."""
+    robot = replace(mechanism(), for_prediction=for_prediction)
+    observation = Observation(robot.pose[0], robot.pose[1], robot.pose[2], robot.phi)
     symbols = {name: robot.parameters[name] for name in ROBOT_PARAMETERS}
     for name in sorted(
         effects, key=lambda name: (_ORDER.index(CATALOGUE[name].port), _LISTED.index(name))
@@ -68,78 +68,49 @@ def assembled(effects: tuple[str, ...], *, sharp: bool = False) -> Assembly:
         if effect.enter:
             robot = effect.enter(robot, values)
         elif effect.observe:
-            seen = effect.observe(seen, values)
+            observation = effect.observe(observation, values)
         else:
             continue
         symbols |= {f"{name}.{parameter}": value for parameter, value in values.items()}
-    return Assembly(effects, robot, seen, tuple(symbols), ca.vertcat(*symbols.values()))
+    return Assembly(effects, robot, observation, tuple(symbols), ca.vertcat(*symbols.values()))
 
 
 def values_of(robot: Robot, parameters: tuple[str, ...]) -> NDArray[np.float64]:
-    """The numbers behind an assembly's parameters for a robot that has its effects, SI.
+    """The values of an assembly's parameters for a robot that has its effects, SI.
 
     A parameter of an effect that the robot does not give is neutral.
     """
-    own = dict(zip(ROBOT_PARAMETERS, robot_values(robot), strict=True))
-    beyond = {
+    values = dict(zip(ROBOT_PARAMETERS, robot_values(robot), strict=True)) | {
         f"{use.name}.{q.name}": use.values.get(q.name, q.neutral)
         for use in robot.physics
         for q in CATALOGUE[use.name].parameters
     }
-    return np.array([(own | beyond)[name] for name in parameters])
-
-
-def affine(vdot: ca.Function) -> bool:
-    """Whether vdot (v, phi, dphi, ddphi, p) is affine in v.
-
-    Terms in v^2 cancel between the bodies, but only once sines and cosines are multiplied out,
-    which CasADi does not do; so the second difference in v is looked at in numbers.
-    """
-    p = np.linspace(0.5, 1.5, vdot.numel_in(4))
-    for phi, dphi, ddphi in ((0.3, 1.0, -2.0), (-1.1, 0.7, 3.0), (0.8, -2.0, 0.5)):
-        low, middle, high = (float(vdot(v, phi, dphi, ddphi, p)) for v in (-1.0, 0.0, 1.0))
-        if abs(low - 2 * middle + high) > 1e-9 * (abs(low) + abs(middle) + abs(high)):
-            return False
-    return True
-
-
-def mirrored(motion: ca.Function) -> bool:
-    """Whether `Dynamics.motion` gives the mirrored state the mirrored rates."""
-    p = np.linspace(0.5, 1.5, motion.numel_in(4))
-    for v, phi, dphi, ddphi in ((0.7, 0.3, 1.0, -2.0), (-1.0, -0.9, 0.7, 3.0)):
-        here, there = (
-            np.array([float(out) for out in motion(v, sign * phi, sign * dphi, sign * ddphi, p)])
-            for sign in (1, -1)
-        )
-        if not np.allclose(there, here * [1, -1, -1, -1], rtol=1e-9, atol=1e-9):
-            return False
-    return True
+    return np.array([values[name] for name in parameters])
 
 
 @lru_cache
 def steady_effects() -> frozenset[str]:
-    """Those that have one."""
-    return frozenset(name for name, effect in CATALOGUE.items() if effect.enter and _same(name))
+    """The effects that have a steady cycle."""
+
+    def steady(name: str) -> bool:
+        robot = assembled((name,)).mechanism
+        placed = any(ca.depends_on(force.vector, robot.pose) for force in robot.forces)
+        return len(robot.constrained) == 2 and not placed
+
+    return frozenset(name for name, effect in CATALOGUE.items() if effect.enter and steady(name))
 
 
-def passed_over(robot: Robot, port: Port | None = None) -> tuple[str, ...]:
-    """The robot's effects, of one port or all, that a steady cycle passes over."""
+def ignored_in_steady_cycle(robot: Robot, port: Port | None = None) -> tuple[str, ...]:
+    """The robot's effects, of one port or all, that a steady cycle ignores."""
     names = [use.name for use in robot.physics if use.name not in steady_effects()]
     return tuple(name for name in names if port in (None, CATALOGUE[name].port))
 
 
-def _same(name: str) -> bool:
-    """Whether the axles stay held and no force depends on place or heading."""
-    robot = assembled((name,)).mechanism
-    placed = any(ca.depends_on(force.vector, robot.pose) for force in robot.forces)
-    return len(robot.held) == 2 and not placed
-
-
 @dataclass(frozen=True)
 class Dynamics:
-    """The derived model as CasADi functions; `p` stacks the values of `parameters`.
+    """The derived model as CasADi functions; p stacks the values of `parameters`.
 
-    effects  those that have a place in a steady cycle; see `steady_effects`
+    effects  those that have a steady cycle
     motion   (v, phi, dphi, ddphi, p) -> vdot, w, side, torque: acceleration of axle 1 along
              platform 1 (m/s2), yaw rate psi-dot (rad/s), velocity of P to the left of platform
              1's axis (m/s), servo torque (N m). P moves at v along the axis.
@@ -183,26 +154,23 @@ def require_friction(robot: Robot) -> None:
 
 
 def derive(effects: tuple[str, ...] = ()) -> Dynamics:
-    """Derive the model with those of the named effects that have a place in a steady cycle."""
+    """Derive the model with those of the named effects that have a steady cycle."""
     return _derived(tuple(name for name in effects if name in steady_effects()))
 
 
 @lru_cache
 def _derived(effects: tuple[str, ...]) -> Dynamics:
     assembly = assembled(effects)
-    return _held(assembly.mechanism, effects, assembly.parameters, assembly.p)
-
-
-def _held(robot: Mechanism, effects: tuple[str, ...], names: tuple[str, ...], p: ca.SX) -> Dynamics:
+    robot, p = assembly.mechanism, assembly.p
     phi, u = robot.phi, robot.speeds
     kane = equations(robot)
     needed = ca.substitute(kane.needed, kane.udot[1:3], ca.SX.zeros(2))
     vdot, ddphi = kane.udot[0], kane.udot[3]
 
     # The axles do not slip: s1 = s2 = 0 from here on. Row v is linear in vdot.
-    held = ca.vertcat(*(u[SPEEDS.index(name)] for name in sorted(robot.held)))
+    sides = ca.vertcat(*(u[SPEEDS.index(name)] for name in sorted(robot.constrained)))
     needed, kinetic, power, w, ahead, side = (
-        ca.substitute(part, held, ca.SX.zeros(held.numel()))
+        ca.substitute(part, sides, ca.SX.zeros(sides.numel()))
         for part in (needed, kane.kinetic, kane.power, kane.rate, kane.joint[0], kane.joint[1])
     )
     inertia = ca.jacobian(needed[0], vdot)
@@ -217,12 +185,12 @@ def _held(robot: Mechanism, effects: tuple[str, ...], names: tuple[str, ...], p:
         for part in (share * solved, needed, kinetic, power, w, side)
     )
     inputs = [v, phi, dphi, ddphi, p]
-    names_in = ["v", "phi", "dphi", "ddphi", "p"]
+    names = ["v", "phi", "dphi", "ddphi", "p"]
     outputs = _tidy(solved, w, side, needed[3])
-    motion = ca.Function("motion", inputs, outputs, names_in, ["vdot", "w", "side", "torque"])
+    motion = ca.Function("motion", inputs, outputs, names, ["vdot", "w", "side", "torque"])
     return Dynamics(
         effects=effects,
-        parameters=names,
+        parameters=assembly.parameters,
         motion=motion,
         energy=ca.Function(
             "energy",
@@ -231,12 +199,39 @@ def _held(robot: Mechanism, effects: tuple[str, ...], names: tuple[str, ...], p:
             ["v", "phi", "dphi", "p"],
             ["kinetic", "dissipation"],
         ),
-        sides=ca.Function("sides", inputs, _tidy(needed[1], needed[2]), names_in, ["F1", "F2"]),
-        linear=affine(ca.Function("vdot", inputs, [solved])),
-        mirrored=mirrored(motion),
+        sides=ca.Function("sides", inputs, _tidy(needed[1], needed[2]), names, ["F1", "F2"]),
+        linear=_is_affine(ca.Function("vdot", inputs, [solved])),
+        mirrored=_is_mirrored(motion),
     )
 
 
 def _tidy(*expressions: ca.SX) -> list[ca.SX]:
     """The same expressions with common parts computed once."""
     return ca.vertsplit(ca.cse(ca.vertcat(*expressions)))
+
+
+def _is_affine(vdot: ca.Function) -> bool:
+    """Whether vdot (v, phi, dphi, ddphi, p) is affine in v.
+
+    Terms in v^2 cancel between the bodies, but only once sines and cosines are multiplied out,
+    which CasADi does not do; so the second difference in v is evaluated at some states.
+    """
+    p = np.linspace(0.5, 1.5, vdot.numel_in(4))
+    for phi, dphi, ddphi in ((0.3, 1.0, -2.0), (-1.1, 0.7, 3.0), (0.8, -2.0, 0.5)):
+        low, middle, high = (float(vdot(v, phi, dphi, ddphi, p)) for v in (-1.0, 0.0, 1.0))
+        if abs(low - 2 * middle + high) > 1e-9 * (abs(low) + abs(middle) + abs(high)):
+            return False
+    return True
+
+
+def _is_mirrored(motion: ca.Function) -> bool:
+    """Whether `Dynamics.motion` gives the mirrored state the mirrored rates."""
+    p = np.linspace(0.5, 1.5, motion.numel_in(4))
+    for v, phi, dphi, ddphi in ((0.7, 0.3, 1.0, -2.0), (-1.0, -0.9, 0.7, 3.0)):
+        here, there = (
+            np.array([float(out) for out in motion(v, sign * phi, sign * dphi, sign * ddphi, p)])
+            for sign in (1, -1)
+        )
+        if not np.allclose(there, here * [1, -1, -1, -1], rtol=1e-9, atol=1e-9):
+            return False
+    return True

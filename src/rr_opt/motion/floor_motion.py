@@ -1,26 +1,23 @@
-"""The motion on the floor with every kind of effect: where the robot is, and side slip, count.
+"""The motion on the floor with every kind of effect, where place, heading and side slip count.
 
-`dynamics` is for a gait's steady cycle, where neither place nor heading matters and the axles are
-held. Here P is at (x, y), the heading is psi, and the speeds u = (v), or (v, s1, s2) where an
-effect lets the axles slip, follow
+`dynamics` is for steady cycles, where they do not. Here P is at (x, y), the heading is psi, and the
+speeds u = (v), or (v, s1, s2) where an effect lets the axles slip, obey
 
     udot = f(u, phi, dphi, place) + g(phi) ddphi
 
-A servo that starts, stops or hits something jumps in dphi, and ddphi is then no number. So the
-state holds z = u - g dphi instead of u, which needs no ddphi and does not jump:
+A servo that starts, stops or hits something jumps in dphi, where ddphi is not defined. So the state
+holds z = u - g dphi instead of u, which does not need ddphi and does not jump:
 
     zdot = f - (dg/dphi) dphi^2,        u = z + g dphi
 
-Axles that may slip stop slipping at once. What they come to rest at is s = 0 and not a z, so there
-the state holds u itself, and the drive brings the mean of ddphi over a step.
+Axles that may slip stop slipping within a step. They come to rest at s = 0 and not at some z, so
+there the state holds u itself, and the drive provides the mean of ddphi over a step.
 
-How the joint swings while the servo does not hold it: its torque is zero, and phi is free.
-
-In z = v - g dphi (see `floor_motion`) the joint obeys
+While the servo exerts no torque phi is free, and the joint obeys
 
     torque(phi, dphi, z, ddphi) = 0,        zdot = f - (dg/dphi) dphi^2
 
-of which the first is affine in ddphi. A blow on the joint changes dphi at once and z not at all.
+of which the first is affine in ddphi. An impact on the joint changes dphi at once and z not at all.
 """
 
 from __future__ import annotations
@@ -46,38 +43,36 @@ class FloorMotion:
 
     Where the axles slip, over state = (x, y, psi, v, s1, s2) and drive = (phi, dphi, ddphi).
 
-    rates   (state, drive, p) -> d(state)/dt
-    seen    (state, drive, p) -> x, y, psi, phi as a capture system sees them (4,)
-    speeds  (state, drive, p) -> v, s1, s2, w: of axle 1 and both axles' side speeds, m/s, psi-dot
-    torque  (state, drive, ddphi, p) -> of the servo, N m; ddphi is given once more
+    free      names of the speeds in the state
+    rates     (state, drive, p) -> d(state)/dt
+    observed  (state, drive, p) -> x, y, psi, phi as a capture system records them (4,)
+    speeds    (state, drive, p) -> v, s1, s2 (m/s): of axle 1, and side speeds; psi-dot (rad/s)
+    torque    (state, drive, ddphi, p) -> of the servo, N m; ddphi is an input of its own
     """
 
     effects: tuple[str, ...]
     free: tuple[str, ...]
     parameters: tuple[str, ...]
     rates: ca.Function
-    seen: ca.Function
+    observed: ca.Function
     speeds: ca.Function
     torque: ca.Function
 
     @property
     def size(self) -> int:
-        """How many numbers the state has."""
+        """Length of the state."""
         return len(POSE) + len(self.free)
 
     @property
     def slips(self) -> bool:
-        """Whether the axles may move sideways, which they stop doing at once: it is stiff."""
+        """Whether the axles may slip sideways, which makes the motion stiff."""
         return len(self.free) > 1
 
 
 @lru_cache
 def floor_motion(effects: tuple[str, ...] = ()) -> FloorMotion:
-    """Derive the motion with the named effects; those of the servo are for who drives it.
-
-    It is for predictions, so dry friction sets in as softly as its `onset` says.
-    """
-    return solved(assembled(effects, sharp=True))
+    """The motion with the named effects, for predictions; those of the servo are in the drive."""
+    return solved(assembled(effects, for_prediction=True))
 
 
 def solved(assembly: Assembly) -> FloorMotion:
@@ -85,11 +80,11 @@ def solved(assembly: Assembly) -> FloorMotion:
     robot = assembly.mechanism
     kane = equations(robot)
     phi, dphi, ddphi = robot.phi, robot.speeds[3], kane.udot[3]
-    free = [0, *(k for k in (1, 2) if SPEEDS[k] not in robot.held)]
-    held = [k for k in (1, 2) if k not in free]
-    still = ca.vertcat(robot.speeds[held], kane.udot[held])
+    free = [0, *(k for k in (1, 2) if SPEEDS[k] not in robot.constrained)]
+    fixed = [k for k in (1, 2) if k not in free]
+    still = ca.vertcat(robot.speeds[fixed], kane.udot[fixed])
     needed, joint, w, sides = (
-        ca.substitute(part, still, ca.SX.zeros(2 * len(held)))
+        ca.substitute(part, still, ca.SX.zeros(2 * len(fixed)))
         for part in (kane.needed, kane.joint, kane.rate, robot.speeds[1:3])
     )
     u, udot = robot.speeds[free], kane.udot[free]
@@ -101,19 +96,19 @@ def solved(assembly: Assembly) -> FloorMotion:
     g = -inverse @ ca.jacobian(needed[free], ddphi)
 
     slips = len(free) > 1
-    held_speeds = ca.vertcat(*(ca.SX.sym(f"z_{SPEEDS[k]}") for k in free))
-    speed = held_speeds if slips else held_speeds + g * dphi
+    z = ca.vertcat(*(ca.SX.sym(f"z_{SPEEDS[k]}") for k in free))
+    speed = z if slips else z + g * dphi
     psi = robot.pose[2]
     cos, sin = ca.cos(psi), ca.sin(psi)
     pose_rate = ca.vertcat(cos * joint[0] - sin * joint[1], sin * joint[0] + cos * joint[1], w)
-    onward = f + g * ddphi if slips else f - ca.jtimes(g, phi, dphi**2)
+    slope = f + g * ddphi if slips else f - ca.jtimes(g, phi, dphi**2)
     torque = ca.substitute(needed[3], udot, f + g * ddphi)
     rates, shown, torque = (
         ca.cse(ca.substitute(part, u, speed))
-        for part in (ca.vertcat(pose_rate, onward), ca.vertcat(robot.speeds[0], sides, w), torque)
+        for part in (ca.vertcat(pose_rate, slope), ca.vertcat(robot.speeds[0], sides, w), torque)
     )
-    seen = ca.vertcat(*(getattr(assembly.seen, name) for name in ("x", "y", "psi", "phi")))
-    state, p = ca.vertcat(robot.pose, held_speeds), assembly.p
+    seen = assembly.observation
+    state, p = ca.vertcat(robot.pose, z), assembly.p
     drive = ca.vertcat(phi, dphi, ddphi) if slips else ca.vertcat(phi, dphi)
     given = ca.SX.sym("ddphi")
     names = ["state", "drive", "p"]
@@ -122,7 +117,13 @@ def solved(assembly: Assembly) -> FloorMotion:
         free=tuple(SPEEDS[k] for k in free),
         parameters=assembly.parameters,
         rates=ca.Function("rates", [state, drive, p], [rates], names, ["rates"]),
-        seen=ca.Function("seen", [state, drive, p], [seen], names, ["seen"]),
+        observed=ca.Function(
+            "seen",
+            [state, drive, p],
+            [ca.vertcat(seen.x, seen.y, seen.psi, seen.phi)],
+            names,
+            ["seen"],
+        ),
         speeds=ca.Function("speeds", [state, drive, p], [shown], names, ["speeds"]),
         torque=ca.Function(
             "torque",
@@ -140,7 +141,7 @@ def free_joint(robot: Robot) -> FreeJoint:
 
 
 def free_joint_of(values: Callable[[tuple[str, ...]], Iterable[float]]) -> FreeJoint:
-    """The same of a robot that is told by the values of its parameters, SI."""
+    """The same for a robot given by the values of its parameters, SI."""
     return FreeJoint(_swing(), tuple(values(floor_motion().parameters)))
 
 
@@ -152,6 +153,6 @@ def _swing() -> ca.Function:
     state, drive = ca.vertcat(ca.SX.zeros(len(POSE)), z), ca.vertcat(phi, dphi)
     torque = motion.torque(state, drive, ddphi, p)
     free = -ca.substitute(torque, ddphi, ca.SX(0)) / ca.jacobian(torque, ddphi)
-    onward = motion.rates(state, drive, p)[len(POSE)]
-    out = ca.vertsplit(ca.cse(ca.vertcat(free, onward)))
+    zdot = motion.rates(state, drive, p)[len(POSE)]
+    out = ca.vertsplit(ca.cse(ca.vertcat(free, zdot)))
     return ca.Function("swing", [phi, dphi, z, p], out)

@@ -1,13 +1,17 @@
-"""The equation of motion of a gait as CasADi integrators: fixed steps, and cvodes.
+"""The equation of motion of a gait as CasADi integrators: fixed steps, and CVODES.
 
-Both carry the state (v, psi, x, y, s) with s = dv/dv(0) the sensitivity that closes a cycle.
-cvodes at tight tolerance is the reference that everything else is held against. Neither steps
-across a jump of the servo's acceleration: both begin anew at each piece of the gait.
+Both carry the state (v, psi, x, y, s), where s = dv/dv(0) is the sensitivity that closes a cycle.
+CVODES at tight tolerance is the reference that everything else is checked against.
+
+No method of high order may step across a jump of the servo's acceleration. So a gait is a sequence
+of pieces between jumps, which differ in their coefficients alone: one expression in time serves
+them all, and gaits of one form share what is compiled from it. A smooth gait is one piece.
 """
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from functools import lru_cache
 
 import casadi as ca
@@ -16,21 +20,67 @@ from numpy.typing import ArrayLike
 
 from rr_opt.array import Array
 from rr_opt.mechanics.runge_kutta import BUTCHER6, Tableau
-from rr_opt.model.gait import Gait
+from rr_opt.model.gait import FourierGait, FreeGait, Gait, SineGait
 from rr_opt.model.robot import Robot
-from rr_opt.motion.command import Form, form_of, numbers_of
 from rr_opt.motion.dynamics import derive, dynamics_of
 
 STATE = ("v", "psi", "x", "y", "s")
 
 _SNAP = 1e-9
-"""A time so near to the end of a piece, relative to the piece, is that end."""
+"""A time this near to the end of a piece, relative to its length, is that end."""
 
 _CVODES = {"reltol": 1e-12, "abstol": 1e-13, "max_num_steps": 10_000_000}
 
 
+@dataclass(frozen=True)
+class _Form:
+    """How phi is written on a piece: as a Fourier series, or as a parabola if `harmonics` is 0.
+
+    The coefficients are period, offset, sines and cosines, with t = 0 where the gait begins; or
+    phi, its rate and its acceleration at t = 0, where the piece begins.
+    """
+
+    harmonics: int = 0
+
+    @property
+    def size(self) -> int:
+        """Number of coefficients."""
+        return 2 + 2 * self.harmonics if self.harmonics else 3
+
+    def command(self, t: ca.SX, coefficients: ca.SX) -> tuple[ca.SX, ca.SX, ca.SX]:
+        """phi (rad), dphi/dt (rad/s) and d2phi/dt2 (rad/s2) at t (s)."""
+        if not self.harmonics:
+            angle, rate, acceleration = ca.vertsplit(coefficients)
+            return angle + t * (rate + t * acceleration / 2), rate + t * acceleration, acceleration
+        period, offset, *amplitudes = ca.vertsplit(coefficients)
+        phi, dphi, ddphi = offset, ca.SX(0), ca.SX(0)
+        for n in range(1, self.harmonics + 1):
+            omega = 2 * math.pi * n / period
+            sine, cosine = amplitudes[n - 1], amplitudes[self.harmonics + n - 1]
+            s, c = ca.sin(omega * t), ca.cos(omega * t)
+            phi += sine * s + cosine * c
+            dphi += omega * (sine * c - cosine * s)
+            ddphi -= omega**2 * (sine * s + cosine * c)
+        return phi, dphi, ddphi
+
+
+def _pieces(gait: Gait) -> tuple[_Form, Array]:
+    """The form of a gait, and the coefficients of each piece, (form.size, gait.pieces)."""
+    match gait:
+        case SineGait():
+            return _Form(1), np.array([[gait.period], [gait.offset], [gait.amplitude], [0.0]])
+        case FourierGait():
+            coefficients = [gait.period, gait.offset, *gait.sines, *gait.cosines]
+            return _Form(gait.harmonics), np.array(coefficients)[:, None]
+        case FreeGait():
+            angles, rates = gait.nodes
+            return _Form(), np.array([angles[:-1], rates[:-1], gait.accelerations])
+        case _:
+            raise TypeError(f"no expression is known for a gait of shape {gait.shape!r}")
+
+
 def whole_steps(gait: Gait, steps: int) -> int:
-    """The least number of equal steps a period, `steps` or more, whose ends meet all jumps."""
+    """The least number of equal steps per period, at least `steps`, that meet all jumps."""
     return gait.pieces * math.ceil(steps / gait.pieces)
 
 
@@ -39,20 +89,22 @@ def fixed_steps(
 ) -> Array:
     """States (5, n + 1) over one period from v(0) = v0, at n = whole_steps(gait, steps)."""
     dynamics = dynamics_of(robot)
+    form, coefficients = _pieces(gait)
     n = whole_steps(gait, steps)
     each, h = n // gait.pieces, gait.period / n
-    path = _path(dynamics.effects, form_of(gait), method, n)
-    since = np.tile(np.arange(each) * h, gait.pieces)
-    numbers = np.repeat(numbers_of(gait), each, axis=1)
-    inputs = np.vstack([numbers, np.tile(dynamics.values(robot)[:, None], n)])
-    out = path(_start(v0), since[None], np.full((1, n), h), inputs)
+    path = _path(dynamics.effects, form, method, n)
+    t = np.tile(np.arange(each) * h, gait.pieces)
+    values = np.tile(dynamics.values(robot)[:, None], n)
+    inputs = np.vstack([np.repeat(coefficients, each, axis=1), values])
+    out = path(_start(v0), t[None], np.full((1, n), h), inputs)
     return np.column_stack([_start(v0), np.asarray(out)])
 
 
 def cvodes(robot: Robot, gait: Gait, v0: float, times: ArrayLike) -> Array:
     """States (5, len(times)) at `times` (s, increasing from 0) by CVODES at 1e-12, relative."""
     times = np.asarray(times, float)
-    dynamics, numbers = dynamics_of(robot), numbers_of(gait)
+    dynamics = dynamics_of(robot)
+    form, coefficients = _pieces(gait)
     values = dynamics.values(robot)
     length = gait.period / gait.pieces if gait.pieces > 1 else float(times[-1])
     at = times[1:] / length
@@ -61,12 +113,12 @@ def cvodes(robot: Robot, gait: Gait, v0: float, times: ArrayLike) -> Array:
     states, state = [_start(v0)[:, None]], _start(v0)
     for k in range(piece[-1] + 1):
         inside = slice(*np.searchsorted(piece, [k, k + 1]))
-        # Rounded, as pieces that are cut alike then share an integrator.
+        # Rounded, so that pieces with the same grid share an integrator.
         grid = tuple(np.round(at[inside] - k, 12))
         grid += () if grid and grid[-1] == 1.0 else (1.0,)
-        run = _cvodes(dynamics.effects, form_of(gait), grid)
-        p = np.concatenate([[length], numbers[:, k % gait.pieces], values])
-        out = np.asarray(run(x0=state, p=p)["xf"])
+        integrator = _cvodes(dynamics.effects, form, grid)
+        p = np.concatenate([[length], coefficients[:, k % gait.pieces], values])
+        out = np.asarray(integrator(x0=state, p=p)["xf"])
         states.append(out[:, : inside.stop - inside.start])
         state = out[:, -1]
     return np.hstack(states)
@@ -77,12 +129,12 @@ def _start(v0: float) -> Array:
 
 
 @lru_cache
-def _path(effects: tuple[str, ...], form: Form, method: Tableau, steps: int) -> ca.Function:
+def _path(effects: tuple[str, ...], form: _Form, method: Tableau, steps: int) -> ca.Function:
     return _stepper(effects, form, method).mapaccum(steps)
 
 
 @lru_cache
-def _stepper(effects: tuple[str, ...], form: Form, method: Tableau) -> ca.Function:
+def _stepper(effects: tuple[str, ...], form: _Form, method: Tableau) -> ca.Function:
     state, t, p, rhs = _symbols(effects, form)
     slope = ca.Function("slope", [state, t, p], [rhs])
     h = ca.SX.sym("h")
@@ -91,8 +143,8 @@ def _stepper(effects: tuple[str, ...], form: Form, method: Tableau) -> ca.Functi
 
 
 @lru_cache
-def _cvodes(effects: tuple[str, ...], form: Form, grid: tuple[float, ...]) -> ca.Function:
-    """Time is counted in lengths of the piece, so that its length need not be known here."""
+def _cvodes(effects: tuple[str, ...], form: _Form, grid: tuple[float, ...]) -> ca.Function:
+    """Time is in lengths of the piece, so that the length is a parameter."""
     state, t, p, rhs = _symbols(effects, form)
     part, length = ca.SX.sym("part"), ca.SX.sym("length")
     ode = length * ca.substitute(rhs, t, part * length)
@@ -101,7 +153,8 @@ def _cvodes(effects: tuple[str, ...], form: Form, grid: tuple[float, ...]) -> ca
 
 
 @lru_cache
-def _symbols(effects: tuple[str, ...], form: Form) -> tuple[ca.SX, ca.SX, ca.SX, ca.SX]:
+def _symbols(effects: tuple[str, ...], form: _Form) -> tuple[ca.SX, ca.SX, ca.SX, ca.SX]:
+    """State, time, parameters (coefficients of the gait, then the robot's), d(state)/dt."""
     dynamics = derive(effects)
     state = ca.SX.sym("state", len(STATE))
     v, psi, _, _, s = ca.vertsplit(state)

@@ -1,10 +1,4 @@
-"""A gait driven for some time, from rest or from the steady state, and what the motion amounts to.
-
-What a driven motion amounts to: its largest torque, and its speed over the last period.
-
-The samples of a trajectory may lie far apart, and hold one side of each jump of the torque. So the
-motion is simulated once more, a period at a time, at times that meet every jump.
-"""
+"""A gait driven for some time, from rest or from the steady state, and measures of the motion."""
 
 from __future__ import annotations
 
@@ -83,43 +77,37 @@ def one_period(steady: SteadyCycle) -> Trajectory:
 def repeated(steady: SteadyCycle, cycles: int) -> Trajectory:
     """The steady cycle driven `cycles` times: each period is the last, moved rigidly."""
     n = len(steady.t) - 1
-    x, y, psi = (part[:n] for part in (steady.x, steady.y, steady.psi))
-    turn = steady.psi[-1] - steady.psi[0]
-    parts, at, heading = [], np.array([steady.x[0], steady.y[0]]), 0.0
-    step = np.array([steady.x[-1] - steady.x[0], steady.y[-1] - steady.y[0]])
-    for _ in range(cycles):
-        cos, sin = np.cos(heading), np.sin(heading)
-        dx, dy = x - x[0], y - y[0]
-        parts.append(
-            np.array([at[0] + cos * dx - sin * dy, at[1] + sin * dx + cos * dy, psi + heading])
-        )
-        at = at + np.array([cos * step[0] - sin * step[1], sin * step[0] + cos * step[1]])
-        heading += turn
-    end = np.array([[at[0]], [at[1]], [steady.psi[0] + heading]])
-    x, y, psi = np.hstack([*parts, end])
+    P, psi = steady.x + 1j * steady.y, steady.psi
+    step, turn = P[-1] - P[0], psi[-1] - psi[0]
+    headings = turn * np.arange(cycles + 1)
+    turned = np.exp(1j * headings)
+    starts = P[0] + np.append(0.0, np.cumsum(turned[:-1] * step))
+    path = starts[:-1, None] + turned[:-1, None] * (P[:n] - P[0])
+    path = np.append(path.ravel(), starts[-1])
+    heading = np.append((headings[:-1, None] + psi[:n]).ravel(), psi[0] + headings[-1])
     t = np.arange(cycles * n + 1) * (steady.t[-1] / n)
-
-    def again(part: Array) -> Array:
-        return np.append(np.tile(part[:n], cycles), part[0])
-
-    return Trajectory(t, x, y, psi, again(steady.phi), again(steady.v), again(steady.torque))
+    phi, v, torque = (
+        np.append(np.tile(part[:n], cycles), part[0])
+        for part in (steady.phi, steady.v, steady.torque)
+    )
+    return Trajectory(t, np.real(path), np.imag(path), heading, phi, v, torque)
 
 
 _STEPS = 2048
 _SNAP = 1e-9
-"""So much of a period, at the end of a motion, is rounding."""
+"""This share of a period, at the end of a motion, is rounding."""
 _SETTLED = 1e-9
-"""A period that changes v by no more of its largest value repeats until the end."""
+"""A period that changes v by no more, relative to its largest value, repeats until the end."""
 
 
 @dataclass(frozen=True)
 class Measured:
-    """Of a motion from its first to its last sample:
+    """Measures of a motion from its first to its last sample.
 
     peak_torque  largest |torque| of the servo at any time, N m
-    mean_v       mean of v over the last period, m/s; over all of a motion that is shorter
-    speed        along the mean circle of the last period, m/s, positive along platform 1; None of
-                 a motion that is shorter
+    mean_v       mean of v over the last period, m/s; over all of a shorter motion
+    speed        along the mean circle of the last period, m/s, positive along platform 1; None for
+                 a shorter motion
     """
 
     peak_torque: float
@@ -130,7 +118,9 @@ class Measured:
 def measured(robot: Robot, gait: Gait, driven: Trajectory) -> Measured:
     """Measure a motion that a gait drives from phase 0.
 
-    The last period ends with the last 2048th of one that the motion completes.
+    The samples of a trajectory may be far apart, and hold one side of each jump of the torque. So
+    the motion is simulated once more, a period at a time, at times that meet every jump. The last
+    period ends with the last 2048th of a period that the motion completes.
     """
     count = whole_steps(gait, _STEPS)
     grid = np.linspace(0.0, gait.period, count + 1)
@@ -161,7 +151,7 @@ def measured(robot: Robot, gait: Gait, driven: Trajectory) -> Measured:
 
 
 def _peak(robot: Robot, gait: Gait, t: Array, v: Array) -> float:
-    """Largest |torque| at times t, N m: on both sides, but within the motion."""
+    """Largest |torque| from the first to the last of the times t, on both sides of jumps, N m."""
     after = torque_after(robot, gait, t, v)
     before = torque_before(robot, gait, t, v) if gait.pieces > 1 else after
     return float(max(np.abs(after[:-1]).max(), np.abs(before[1:]).max()))
@@ -173,8 +163,7 @@ def _last_period(path: Array, begun: Array) -> Array:
     Both begin with P at the origin and heading 0: the second is moved to the end of the first.
     """
     then = begun.copy()
-    cos, sin = np.cos(path[1, -1]), np.sin(path[1, -1])
+    P = np.exp(1j * path[1, -1]) * (begun[2] + 1j * begun[3])
     then[1] += path[1, -1]
-    then[2] = path[2, -1] + cos * begun[2] - sin * begun[3]
-    then[3] = path[3, -1] + sin * begun[2] + cos * begun[3]
+    then[2], then[3] = path[2, -1] + P.real, path[3, -1] + P.imag
     return np.hstack([path[:, begun.shape[1] - 1 :], then[:, 1:]])

@@ -1,14 +1,12 @@
-"""A gait as set points of a controller, how a servo moves that follows them, and the cost.
-
-A gait as set points at the rate of a controller, and how a servo moves that follows them.
+"""A gait as set points of a controller, the motion of a servo that follows them, and their cost.
 
 A controller sends an angle every 1/rate seconds and holds it. A servo cannot jump: it is taken to
-move at a constant speed from each set point to the next, and to be there when the next one comes.
-At a set point its speed changes at a constant acceleration, over an eighth of the time between two
-(straight lines with parabolic blends, as trajectory generators of servos have them). A longer or
-shorter blend changes little while the steps are a few counts each; many set points a count make
-jerks that no servo follows, and the rate they would need says so. A servo that lags moves less;
-that needs a model of the servo and is not counted.
+move at constant speed from each set point to the next, and to be there when the next one comes. At
+a set point its speed changes at a constant acceleration, over an eighth of the time between two
+(straight lines with parabolic blends, as trajectory generators of servos use). A longer or shorter
+blend changes little while each step is a few counts of the servo; many set points per count make
+jerks that no servo follows, as the rate they need shows. A servo that lags moves less; that needs a
+model of the servo and is not counted.
 """
 
 from __future__ import annotations
@@ -27,22 +25,22 @@ from rr_opt.motion.steady_cycle import require_regular, steady_cycle
 from rr_opt.outcome import InputError
 
 COUNT = math.radians(300) / 1024
-"""What one count of the servo CDS5516 is worth: 300 degrees over 1024 counts, rad."""
+"""One count of the servo CDS5516, rad: 300 degrees over 1024 counts."""
 CENTRE, LAST = 512, 1023
 """The count of phi = 0, and the largest one."""
 
 _FEWEST, _MOST = 8, 20_000
 BLEND = 8
-"""A blend lasts the time between two set points over this number."""
+"""Time between two set points over the duration of a blend."""
 
 
 @dataclass(frozen=True)
 class SetPoints:
-    """A gait sampled at equal times, a whole number of times in its period.
+    """A gait sampled at equal times, a whole number of times per period.
 
     gait    as it was asked for
     rate    of the set points, 1/s
-    played  the same gait with the period that is played
+    played  the gait with the period in which the set points are played
     angles  phi at 0, 1/rate, 2/rate, ..., rad, (N,)
     """
 
@@ -53,7 +51,7 @@ class SetPoints:
 
     @property
     def counts(self) -> NDArray[np.int_]:
-        """The angles as counts of the servo. Raises InputError where it has no count for one."""
+        """The angles as counts of the servo. Raises InputError if they exceed its range."""
         counts = np.round(CENTRE + self.angles / COUNT).astype(int)
         if counts.min() < 0 or counts.max() > LAST:
             worst = math.degrees(self.angles[np.abs(self.angles).argmax()])
@@ -73,9 +71,9 @@ class SetPoints:
 def set_points(gait: Gait, rate: float, *, keep_period: bool = False) -> SetPoints:
     """Sample a gait about `rate` times a second.
 
-    Its period is changed to the nearest whole number of samples; or, keep_period, the rate is.
+    Its period is changed to the nearest whole number of samples; with keep_period, the rate is.
     Raises InputError for a gait that does not move, and for a rate that gives too few or too many
-    of them.
+    samples.
     """
     if gait.amplitude == 0:
         raise InputError(
@@ -95,8 +93,8 @@ def set_points(gait: Gait, rate: float, *, keep_period: bool = False) -> SetPoin
     return SetPoints(gait, rate, played, played.angle(np.arange(count) / rate))
 
 
-def held(angles: Array, rate: float, blend: int = BLEND) -> FreeGait:
-    """How the servo moves that is sent these angles (rad) again and again, `rate` times a second.
+def interpolated(angles: Array, rate: float, blend: int = BLEND) -> FreeGait:
+    """The motion of a servo that is sent these angles (rad) periodically, `rate` times a second.
 
     The blend of each corner lies half before and half after its set point; the whole is late by
     that half, which changes no speed.
@@ -116,34 +114,39 @@ def held(angles: Array, rate: float, blend: int = BLEND) -> FreeGait:
 
 @dataclass(frozen=True)
 class Cost:
-    """Signed speeds, m/s: of the gait; with its period changed; with its set points held; and with
-    them rounded to counts too (None if they are not)."""
+    """Signed speeds, m/s, after each step from a gait to its set points.
 
-    asked: float
-    changed: float
-    held: float
+    nominal       of the gait
+    resampled     with its period changed to a whole number of set points
+    interpolated  with the servo moving from set point to set point
+    rounded       with the set points rounded to counts too; None if they are not
+    """
+
+    nominal: float
+    resampled: float
+    interpolated: float
     rounded: float | None
 
     @property
-    def left(self) -> float:
-        """What is left of the speed in the end."""
-        return self.held if self.rounded is None else self.rounded
+    def final(self) -> float:
+        """After all steps."""
+        return self.interpolated if self.rounded is None else self.rounded
 
     @property
     def steps(self) -> dict[str, float]:
         """What each step adds to the speed, m/s; below 0 where the robot gets slower."""
-        sign = math.copysign(1.0, self.asked)
+        sign = math.copysign(1.0, self.nominal)
         steps = {
-            "period": sign * (self.changed - self.asked),
-            "holding": sign * (self.held - self.changed),
+            "period": sign * (self.resampled - self.nominal),
+            "holding": sign * (self.interpolated - self.resampled),
         }
         if self.rounded is not None:
-            steps["rounding"] = sign * (self.rounded - self.held)
+            steps["rounding"] = sign * (self.rounded - self.interpolated)
         return steps
 
 
 def cost(robot: Robot, points: SetPoints, *, rounded: bool) -> Cost:
-    """What each step from the gait to its set points does to the speed.
+    """The effect of each step from the gait to its set points on the speed.
 
     Raises InputError for angles beyond the servo's counts, a robot without friction or a gait
     through the singular posture; NotConvergedError for a gait that does not settle.
@@ -151,6 +154,6 @@ def cost(robot: Robot, points: SetPoints, *, rounded: bool) -> Cost:
     require_friction(robot)
     require_regular(robot, points.gait)
     angles = [points.angles, *([points.rounded] if rounded else [])]
-    driven = [points.gait, points.played, *(held(each, points.rate) for each in angles)]
-    asked, changed, plain, *rest = (steady_cycle(robot, gait).speed for gait in driven)
-    return Cost(asked, changed, plain, rest[0] if rest else None)
+    gaits = [points.gait, points.played, *(interpolated(each, points.rate) for each in angles)]
+    speeds = [steady_cycle(robot, gait).speed for gait in gaits]
+    return Cost(*speeds[:3], rounded=speeds[3] if rounded else None)

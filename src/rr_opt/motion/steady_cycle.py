@@ -1,22 +1,20 @@
-"""The steady cycle: the one speed v(0) that a period carries back to itself.
+"""The steady cycle: the speed v(0) that a period maps to itself, and the rigid motion it makes.
 
-The rigid motion of one cycle, and the average speed along the circle it makes.
+The period maps v(0) to v(T). With viscous friction the map is affine, so that one Newton step from
+anywhere is exact; else Newton's method goes on, safeguarded by a bracket.
 
-One steady period moves the robot by (dx, dy) and turns it by dpsi, both seen from platform 1 at
-the start; repeated, that is a circle about a fixed centre C. P does not stay at one distance
-from C within the period, so the chord of P depends on where the period is cut. Seen from the
-frame that turns about C at Omega = dpsi/T, P's path is periodic; its mean point is at radius R
-and the speed along the mean circle is R |Omega|, whatever the cut.
+One steady period moves the robot by (dx, dy) and turns it by dpsi, both in platform 1's axes at the
+start; repeated, that is a circle about a fixed centre C. P does not stay at one distance from C
+within the period, so the chord of P depends on where the period is cut. In the frame that turns
+about C at Omega = dpsi/T, P's path is periodic; its mean point is at radius R, and the speed along
+the mean circle is R |Omega|, whatever the cut.
 
-C runs off to infinity as the gait straightens. Omega C does not:
+C moves off to infinity as the gait straightens. With points as complex numbers, Omega C does not:
 
-    Omega C = (dpsi/2)/sin(dpsi/2) / T * Rot(dpsi/2 + 90 deg) (dx, dy)  up to the sign below
+    Omega C = i (dpsi/2)/sin(dpsi/2)/T exp(-i dpsi/2) (dx + i dy)
 
-and with it Omega p = Rot(-Omega t) (Omega P - Omega C) is formed directly. A straight gait is
-the limit and no special case: its Omega p is the chord over T, turned by 90 degrees.
-
-The period maps v(0) to v(T); where friction is viscous the map is affine and one Newton step
-from anywhere is exact, otherwise Newton's method goes on inside a bracket until it stands still.
+so Omega p = exp(-i Omega t) (Omega P - Omega C) is formed directly. A straight gait is the limit
+and no special case: its Omega p is the chord over T, turned by 90 degrees.
 """
 
 from __future__ import annotations
@@ -39,11 +37,11 @@ from rr_opt.outcome import InputError, NotConvergedError
 
 @dataclass(frozen=True)
 class Cycle:
-    """What one steady period does.
+    """The rigid motion of one steady period.
 
     dx, dy   displacement of P, m, in platform 1's axes at the start of the period
     dpsi     heading gained, rad
-    speed    average speed along the mean circle, m/s, positive along platform 1's axis
+    speed    mean speed along the mean circle, m/s, positive along platform 1's axis
     radius   of the mean circle, m; inf for a straight gait
     """
 
@@ -56,51 +54,38 @@ class Cycle:
 
 
 def cycle_of(period: float, x: ArrayLike, y: ArrayLike, psi: ArrayLike) -> Cycle:
-    """The cycle from P's path over one steady period.
+    """The cycle of P's path over one steady period.
 
     x, y, psi: (N + 1,) at equal steps, both ends included; m, m, rad (unwrapped).
     """
     x, y, psi = (np.asarray(values, float) for values in (x, y, psi))
-    start = _rotate(-psi[0], np.array([x - x[0], y - y[0]]))
-    dx, dy = start[:, -1]
+    P = np.exp(-1j * psi[0]) * (x - x[0] + 1j * (y - y[0]))
     dpsi = float(psi[-1] - psi[0])
-    omega = dpsi / period
-    # C solves C = (dx, dy) + Rot(dpsi) C.
-    half = dpsi / 2
-    stretch = 1.0 / np.sinc(half / math.pi) / period
-    omega_c = stretch * _quarter_turn(_rotate(-half, np.array([dx, dy])))
-
+    omega, half = dpsi / period, dpsi / 2
+    # C solves C = dx + i dy + exp(i dpsi) C.
+    omega_c = 1j * np.exp(-1j * half) * P[-1] / (np.sinc(half / math.pi) * period)
     turned = omega * np.arange(len(x) - 1) * period / (len(x) - 1)
-    omega_p = _rotate(-turned, omega * start[:, :-1] - omega_c[:, None]).mean(axis=1)
-    velocity = _quarter_turn(omega_p)
-    seen = psi[:-1] - psi[0] - turned
-    ahead = velocity @ np.array([np.cos(seen).mean(), np.sin(seen).mean()])
-    speed = math.copysign(math.hypot(*omega_p), ahead)
+    omega_p = np.mean(np.exp(-1j * turned) * (omega * P[:-1] - omega_c))
+    heading = np.mean(np.exp(1j * (psi[:-1] - psi[0] - turned)))
+    forward = (1j * omega_p * np.conj(heading)).real
+    speed = math.copysign(abs(omega_p), forward)
     radius = abs(speed / omega) if omega else math.inf
-    return Cycle(period, float(dx), float(dy), dpsi, speed, radius)
+    return Cycle(period, float(P[-1].real), float(P[-1].imag), dpsi, speed, radius)
 
 
-def _rotate(angle: ArrayLike, vector: Array) -> Array:
-    cos, sin = np.cos(angle), np.sin(angle)
-    return np.array([cos * vector[0] - sin * vector[1], sin * vector[0] + cos * vector[1]])
-
-
-def _quarter_turn(vector: Array) -> Array:
-    return np.array([-vector[1], vector[0]])
-
-
-_JUST = 1e-6
-"""How far before a jump its left side is looked at, in lengths of a piece."""
+_JUST_BEFORE = 1e-6
+"""Where the left side of a jump is evaluated, in lengths of a piece."""
 
 
 def torque_after(robot: Robot, gait: Gait, t: Array, v: Array) -> Array:
-    """Torque on platform 2, N m, at times t (N,) in s with speeds v (N,) in m/s."""
+    """Torque on platform 2, N m, at times t (N,) in s with speeds v (N,) in m/s; where it jumps,
+    the value after the jump."""
     return _torque(robot, gait, t, v, gait.acceleration(t))
 
 
 def torque_before(robot: Robot, gait: Gait, t: Array, v: Array) -> Array:
-    """The same with the acceleration just before t, which differs where it jumps at t."""
-    just_before = t - _JUST * gait.period / gait.pieces
+    """The same; where it jumps, the value before the jump."""
+    just_before = t - _JUST_BEFORE * gait.period / gait.pieces
     return _torque(robot, gait, t, v, gait.acceleration(just_before))
 
 
@@ -122,17 +107,18 @@ def require_regular(robot: Robot, gait: Gait) -> None:
 
 
 _NEWTON_STEPS = 80
-_FIRST_STEP, _ABSURD = 0.1, 1e4  # m/s
+_FIRST_STEP, _RUNAWAY = 0.1, 1e4  # m/s
 _FLAT = 1e-12
+"""A slope of v(T) - v(0) over v(0) that is no smaller in size leaves Newton's step undefined."""
 
 
 @dataclass(frozen=True)
 class SteadyCycle:
     """One steady period at N + 1 equal steps: t (s), phi (rad), v (m/s), psi (rad), x, y (m),
-    torque (N m), and the cycle they make.
+    torque (N m), and its rigid motion.
 
-    Where the acceleration jumps a sample lies, and the torque has two values there: `torque` is
-    the one after the jump, `torque_before` the one before.
+    Every jump of the acceleration is at a sample, where the torque has two values: `torque` is the
+    one after the jump, `torque_before` the one before.
     """
 
     gait: Gait
@@ -148,37 +134,37 @@ class SteadyCycle:
 
     @property
     def speed(self) -> float:
-        """Average speed, m/s, positive along platform 1."""
+        """Mean speed, m/s, positive along platform 1."""
         return self.cycle.speed
 
 
 def steady_cycle(robot: Robot, gait: Gait, *, steps: int = 512) -> SteadyCycle:
-    """The steady cycle by fixed steps of order 6, `steps` of them or what the gait's pieces need.
+    """The steady cycle by at least so many fixed steps of order 6.
 
-    Raises NotConvergedError if there is none: without friction, say, or in a singular posture.
+    Raises NotConvergedError if there is none: without friction, or through the singular posture.
     """
     return _close(robot, gait, lambda v0: fixed_steps(robot, gait, v0, steps=steps))
 
 
 def reference_cycle(robot: Robot, gait: Gait, *, samples: int = 2048) -> SteadyCycle:
-    """The steady cycle by cvodes at tight tolerance. Raises as steady_cycle."""
+    """The steady cycle by CVODES at tight tolerance. Raises as steady_cycle."""
     times = np.linspace(0.0, gait.period, whole_steps(gait, samples) + 1)
     return _close(robot, gait, lambda v0: cvodes(robot, gait, v0, times))
 
 
 def _close(robot: Robot, gait: Gait, rollout: Callable[[float], Array]) -> SteadyCycle:
     v0, low, high = 0.0, -math.inf, math.inf
-    # Beyond it a step can jump over the pole and close a cycle that does not exist.
-    reached = gait.peak_angle >= robot.singular_angle
-    for _ in range(0 if reached else _NEWTON_STEPS):
+    # Past the singular posture a step can jump over the pole and close a cycle that does not exist.
+    singular = gait.peak_angle >= robot.singular_angle
+    for _ in range(0 if singular else _NEWTON_STEPS):
         path = rollout(v0)
         gap, slope = path[0, -1] - v0, path[4, -1] - 1.0
-        if not np.isfinite(gap) or abs(v0) > _ABSURD:
+        if not np.isfinite(gap) or abs(v0) > _RUNAWAY:
             break
         if abs(gap) <= 1e-12 + 1e-10 * np.abs(path[0]).max():
-            return _cycle(robot, gait, path)
+            return _steady(robot, gait, path)
         # Friction brakes, so v(T) - v(0) falls as v(0) grows: the sign of the gap says on which
-        # side the cycle lies, and what Newton's method proposes is held to it.
+        # side the cycle lies, and a Newton step that leaves the bracket is replaced.
         low, high = (v0, high) if gap > 0 else (low, v0)
         proposed = v0 - gap / slope if slope < -_FLAT else math.nan
         if low < proposed < high:
@@ -194,22 +180,21 @@ def _close(robot: Robot, gait: Gait, rollout: Callable[[float], Array]) -> Stead
     )
 
 
-def _cycle(robot: Robot, gait: Gait, path: Array) -> SteadyCycle:
+def _steady(robot: Robot, gait: Gait, path: Array) -> SteadyCycle:
     v, psi, x, y, _ = path
     t = np.linspace(0.0, gait.period, len(v))
     after = torque_after(robot, gait, t, v)
     before = torque_before(robot, gait, t, v) if gait.pieces > 1 else after
-    made = cycle_of(gait.period, x, y, psi)
-    return SteadyCycle(gait, t, gait.angle(t), v, psi, x, y, after, before, made)
+    cycle = cycle_of(gait.period, x, y, psi)
+    return SteadyCycle(gait, t, gait.angle(t), v, psi, x, y, after, before, cycle)
 
 
 BETWEEN = 16
-"""Points among which a peak is looked for, for each sample of the cycle."""
+"""Points per sample of a cycle among which a peak is looked for."""
 
 
 def peak_torque(steady: SteadyCycle) -> float:
-    """Largest |torque|, N m: a spline on each piece, from just after a jump to just before the
-    next."""
+    """Largest |torque|, N m, by a spline on each piece between jumps."""
     pieces = steady.gait.pieces
     each = (len(steady.t) - 1) // pieces
     inside = steady.torque[:-1].reshape(pieces, each)

@@ -105,9 +105,9 @@ def setpoints_summary(answer: SetPointsAnswer, file: Path) -> str:
         *gait_lines(points.gait),
         ("set points", f"{len(points.angles)} a period, {_rate_text(points)}"),
         ("  period", _period_text(points)),
-        ("speed", f"{speed_text(cost.asked)}, of the gait itself"),
+        ("speed", f"{speed_text(cost.nominal)}, of the gait itself"),
         *((f"  {name}", f"{_change(cost, name)} {_WORDS[name]}") for name in cost.steps),
-        ("  left", f"{speed_text(cost.left)}, {_change(cost)}"),
+        ("  left", f"{speed_text(cost.final)}, {_change(cost)}"),
         ("file", str(file)),
     ]
     return "\n".join([*columns(rows), "", MODEL]) + "\n"
@@ -123,8 +123,8 @@ def setpoints_record(answer: SetPointsAnswer, file: Path) -> dict[str, Any]:
         "rate": points.rate,
         "points": len(points.angles),
         "period": points.played.period,
-        "speed": cost.asked,
-        "speed_left": cost.left,
+        "speed": cost.nominal,
+        "speed_left": cost.final,
         "cost": {"period": 0.0, "holding": 0.0, "rounding": None, **cost.steps},
         "model": MODEL,
         "file": str(file),
@@ -149,7 +149,7 @@ def _period_text(points: SetPoints) -> str:
 def _change(cost: Cost, name: str | None = None) -> str:
     """`-0.36 mm/s (-0.28 %)`: of one step, or of all together."""
     change = cost.steps[name] if name else sum(cost.steps.values())
-    if abs(change) <= _NOTHING * abs(cost.asked):
+    if abs(change) <= _NOTHING * abs(cost.nominal):
         return "0 mm/s"
-    share = f" ({100 * change / abs(cost.asked):+.2f} %)" if cost.asked else ""
+    share = f" ({100 * change / abs(cost.nominal):+.2f} %)" if cost.nominal else ""
     return f"{'+' if change > 0 else ''}{number(1e3 * change, 3)} mm/s{share}"

@@ -12,7 +12,7 @@ import numpy as np
 from rr_opt.array import Array
 from rr_opt.effects import CATALOGUE
 from rr_opt.machines.racer.parameters import values_of
-from rr_opt.mechanics.drive import Drive, FreeJoint, told
+from rr_opt.mechanics.drive import Drive, FreeJoint, commanded
 from rr_opt.model.experiment import Run
 from rr_opt.motion.floor_motion import free_joint_of
 from rr_opt.sysid.sensitivities import DriveSlopes
@@ -108,7 +108,7 @@ class Drives:
             for name in effects
             if CATALOGUE[name].actuate
         )
-        loose = any(CATALOGUE[name].loose for name, _ in own)
+        loose = any(CATALOGUE[name].backdrivable for name, _ in own)
         return self._of(run, own, joint_of(given) if loose else None)
 
     def _made(
@@ -117,7 +117,7 @@ class Drives:
         own: tuple[tuple[str, tuple[tuple[str, float], ...]], ...],
         joint: FreeJoint | None,
     ) -> Drive:
-        drive = told(self._runs[run].gait, self._runs[run].start == "rest")
+        drive = commanded(self._runs[run].gait, self._runs[run].start == "rest")
         for name, values in own:
             actuate = CATALOGUE[name].actuate
             if actuate:
@@ -181,7 +181,10 @@ def joint_of(given: Mapping[str, float]) -> FreeJoint:
 def grain(effects: Sequence[str]) -> dict[str, bool]:
     """Whether some states settle at once, and whether some forces jump with the speed."""
     every = [CATALOGUE[name] for name in effects]
-    return {"stiff": any(one.stiff for one in every), "sharp": any(one.sharp for one in every)}
+    return {
+        "stiff": any(one.stiff for one in every),
+        "sharp": any(one.near_discontinuous for one in every),
+    }
 
 
 def _of_drive(name: str) -> bool:

@@ -101,7 +101,7 @@ def _smooth(t: Array, predicted: Array, seen: Array) -> tuple[Array, Array]:
 @lru_cache
 def _rolling(effects: tuple[str, ...]) -> ca.Function:
     """(speeds, phi, p) -> the rolling speeds of the wheels (4,), m/s."""
-    assembly = assembled(effects, sharp=True)
+    assembly = assembled(effects, for_prediction=True)
     robot = assembly.mechanism
     rolling = ca.vertcat(*(robot.rolling_speed(wheel) for wheel in robot.wheels))
     return ca.Function("rolling", [robot.speeds, robot.phi, assembly.p], [rolling])
@@ -110,7 +110,9 @@ def _rolling(effects: tuple[str, ...]) -> ca.Function:
 @lru_cache
 def _places(effects: tuple[str, ...]) -> ca.Function:
     """(pose, phi, p) -> x, y of the wheels on the floor, one wheel after the other (8,), m."""
-    assembly = assembled(effects, sharp=True)
+    assembly = assembled(effects, for_prediction=True)
     robot = assembly.mechanism
-    places = ca.vertcat(*(robot.on_floor(wheel.platform, wheel.point) for wheel in robot.wheels))
+    places = ca.vertcat(
+        *(robot.floor_position(wheel.platform, wheel.point) for wheel in robot.wheels)
+    )
     return ca.Function("places", [robot.pose, robot.phi, assembly.p], [places])

@@ -10,7 +10,7 @@ import numpy as np
 
 from rr_opt.array import Array
 from rr_opt.effects import CATALOGUE
-from rr_opt.effects.effect import Effect, Parameter, Setting
+from rr_opt.effects.effect import Effect, OperatingRange, Parameter
 from rr_opt.model.experiment import Experiment
 from rr_opt.model.parameters import PARAMETERS, Uncertainty, parameters_of
 from rr_opt.model.robot import EffectUse
@@ -43,7 +43,7 @@ def nominal(experiment: Experiment) -> dict[str, float]:
     return parameters_of(robot) | neutral | given | dict.fromkeys(ZEROS.values(), 0.0)
 
 
-def uncertain(experiment: Experiment, setting: Setting) -> tuple[Quantity, ...]:
+def uncertain(experiment: Experiment, setting: OperatingRange) -> tuple[Quantity, ...]:
     """The robot's own values that are not known exactly, those of the effects that it has, and the
     capture system's zeros."""
     values = nominal(experiment)
@@ -53,7 +53,7 @@ def uncertain(experiment: Experiment, setting: Setting) -> tuple[Quantity, ...]:
     return (*own, *(q for use in experiment.robot.physics for q in _present(use, setting)))
 
 
-def candidate(effect: Effect, setting: Setting) -> Candidate:
+def candidate(effect: Effect, setting: OperatingRange) -> Candidate:
     """An effect that may be missing."""
     forms = effect.forms or (tuple(q.name for q in effect.parameters),)
     own = {q.name: q for q in effect.parameters}
@@ -91,12 +91,12 @@ def values_by(
     return out
 
 
-def _present(use: EffectUse, setting: Setting) -> Iterator[Quantity]:
+def _present(use: EffectUse, setting: OperatingRange) -> Iterator[Quantity]:
     """The values of an effect that the nominal robot has: how strong it is, is not known."""
     for q in CATALOGUE[use.name].parameters:
         value = use.values.get(q.name, q.neutral)
-        if value != q.neutral and not q.placed:
-            size = max(abs(value), 0.1 * q.size(setting))
+        if value != q.neutral and not q.guess_from_data:
+            size = max(abs(value), 0.1 * q.magnitude(setting))
             yield Quantity(
                 f"{use.name}.{q.name}", q.unit, value, size, True, *q.bounds, value, free=True
             )
@@ -117,26 +117,26 @@ def _zero(name: str, sigma: float) -> Quantity:
     return Quantity(name, "rad", 0.0, sigma, True, -1.0, 1.0, 0.0)
 
 
-def _highest(q: Parameter, setting: Setting) -> float:
-    return min(q.bounds[1], q.most(setting)) if q.most else q.bounds[1]
+def _highest(q: Parameter, setting: OperatingRange) -> float:
+    return min(q.bounds[1], q.fit_upper(setting)) if q.fit_upper else q.bounds[1]
 
 
-def _form(effect: str, parameters: Sequence[Parameter], setting: Setting) -> Form:
-    sizes = [q.size(setting) for q in parameters]
+def _form(effect: str, parameters: Sequence[Parameter], setting: OperatingRange) -> Form:
+    sizes = [q.magnitude(setting) for q in parameters]
     quantities = tuple(
         Quantity(
             *(f"{effect}.{q.name}", q.unit, q.neutral, size, False),
-            *(max(q.bounds[0], q.least), _highest(q, setting), q.neutral),
+            *(max(q.bounds[0], q.fit_lower), _highest(q, setting), q.neutral),
         )
         for q, size in zip(parameters, sizes, strict=True)
     )
     choices = [
-        [size * trial for trial in q.trials] if q.neutral or q.bounds[0] == 0 else [0.0]
+        [size * trial for trial in q.initial_guesses] if q.neutral or q.bounds[0] == 0 else [0.0]
         for q, size in zip(parameters, sizes, strict=True)
     ]
     starts = (
         ()
-        if any(q.placed for q in parameters)
+        if any(q.guess_from_data for q in parameters)
         else tuple(
             {q.name: value for q, value in zip(quantities, chosen, strict=True)}
             for chosen in itertools.product(*choices)

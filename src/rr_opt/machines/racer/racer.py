@@ -18,7 +18,7 @@ import numpy as np
 
 from rr_opt.array import Array
 from rr_opt.effects import CATALOGUE
-from rr_opt.effects.effect import Setting
+from rr_opt.effects.effect import OperatingRange
 from rr_opt.effects.rolling_force_curve import EFFECT
 from rr_opt.machines.racer.observed import observed
 from rr_opt.machines.racer.parameters import ZERO_OFFSET, ZEROS, candidate, nominal, uncertain
@@ -71,7 +71,7 @@ class RollerRacer:
     channels = CHANNELS
     window = 5.0
 
-    def __init__(self, experiment: Experiment, setting: Setting | None = None) -> None:
+    def __init__(self, experiment: Experiment, setting: OperatingRange | None = None) -> None:
         """setting: what was asked of the robot; left out, it is told from the runs."""
         self.experiment = experiment
         self._given = setting
@@ -121,16 +121,16 @@ class RollerRacer:
         return {
             name: candidate(effect, self.setting)
             for name, effect in CATALOGUE.items()
-            if name not in self.simulated.built_in and not effect.nameless
+            if name not in self.simulated.built_in and effect.candidate
         }
 
     @property
-    def setting(self) -> Setting:
+    def setting(self) -> OperatingRange:
         """What was asked of the robot, for the usual sizes of the effects."""
         return self._given or self._told
 
     @cached_property
-    def _told(self) -> Setting:
+    def _told(self) -> OperatingRange:
         gaits = [run.gait for run in self.experiment.runs]
         distances = [
             np.nanmedian(np.hypot(*(np.diff(d.values[:: len(d.t) // 20, k]) for k in (0, 1))))
@@ -141,12 +141,12 @@ class RollerRacer:
         places = np.vstack([d.values[:, :2] for d in self.runs])
         room = float(np.max(np.nanmax(places, axis=0) - np.nanmin(places, axis=0)))
         speed = max(float(np.median(distances)), 1e-3)
-        return Setting(self.experiment.robot, fastest, speed, room)
+        return OperatingRange(self.experiment.robot, fastest, speed, room)
 
     @property
     def jumping(self) -> frozenset[str]:
         """The effects that have no derivative where they vanish."""
-        return frozenset(name for name, effect in CATALOGUE.items() if not effect.smooth)
+        return frozenset(name for name, effect in CATALOGUE.items() if not effect.differentiable)
 
     @property
     def dear(self) -> frozenset[str]:
@@ -162,13 +162,17 @@ class RollerRacer:
     def rough(self) -> frozenset[str]:
         """The quantities of effects of which there are as many models as machines."""
         every = ((effect, q) for effect in CATALOGUE.values() for q in effect.parameters)
-        return frozenset(f"{effect.name}.{q.name}" for effect, q in every if q.rough)
+        return frozenset(f"{effect.name}.{q.name}" for effect, q in every if q.model_form_error)
 
     @property
     def vague(self) -> Mapping[str, float]:
         """How far such models differ in a quantity."""
         every = ((effect, q) for effect in CATALOGUE.values() for q in effect.parameters)
-        return {f"{effect.name}.{q.name}": q.vague for effect, q in every if q.vague}
+        return {
+            f"{effect.name}.{q.name}": q.model_form_sigma
+            for effect, q in every
+            if q.model_form_sigma
+        }
 
     def propose(self, name: str, form: int, fit: Fit) -> Sequence[Proposal]:
         """From where to look for an effect that jumps; see `racer_proposals`."""

@@ -106,7 +106,7 @@ def systematic(
     millimetres.
     """
     effects = [CATALOGUE[name] for name in best.names]
-    bordered = any(effect.family == "floor" and not effect.smooth for effect in effects)
+    bordered = any(effect.family == "floor" and not effect.differentiable for effect in effects)
     if not best.chosen or any(_blurred(effect) for effect in effects):
         return False
     if best.misfit < (BORDERED if bordered else EXACT) ** 2 * base.misfit:
@@ -121,8 +121,8 @@ def systematic(
 
 
 def _blurred(effect: Effect) -> bool:
-    jumps = effect.actuate is not None and not effect.smooth
-    return jumps or any(q.rough for q in effect.parameters)
+    jumps = effect.actuate is not None and not effect.differentiable
+    return jumps or any(q.model_form_error for q in effect.parameters)
 
 
 @dataclass(frozen=True)

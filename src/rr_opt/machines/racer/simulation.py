@@ -28,7 +28,7 @@ from rr_opt.sysid.shooting import DrivePath, Path, System, predict_all
 def driven(effects: tuple[str, ...]) -> tuple[System, FloorMotion]:
     """The motion with these effects, the same for every recording."""
     motion = floor_motion(effects)
-    return System(motion.rates, motion.seen, stiff_states(motion), lasts=True), motion
+    return System(motion.rates, motion.observed, stiff_states(motion), lasts=True), motion
 
 
 def stiff_states(motion: FloorMotion) -> int:

@@ -60,13 +60,13 @@ _SIDES = slice(4, 6)
 @lru_cache
 def pushed_motion(effects: tuple[str, ...]) -> tuple[System, FloorMotion]:
     """The motion with the pushes as further drives."""
-    plain = assembled(effects, sharp=True)
+    plain = assembled(effects, for_prediction=True)
     push = ca.SX.sym("push", FURTHER)
     motion = solved(
         Assembly(
             plain.effects,
             _pushed(plain.mechanism, push),
-            plain.seen,
+            plain.observation,
             (*plain.parameters, *DRIVES[:FURTHER]),
             ca.vertcat(plain.p, push),
         )
@@ -76,7 +76,8 @@ def pushed_motion(effects: tuple[str, ...]) -> tuple[System, FloorMotion]:
     drive = ca.SX.sym("drive", rows + FURTHER)
     inputs = [state, drive[:rows], ca.vertcat(p, drive[rows:])]
     rates, seen = (
-        ca.Function(f.name(), [state, drive, p], [f(*inputs)]) for f in (motion.rates, motion.seen)
+        ca.Function(f.name(), [state, drive, p], [f(*inputs)])
+        for f in (motion.rates, motion.observed)
     )
     return System(rates, seen, stiff_states(motion)), motion
 

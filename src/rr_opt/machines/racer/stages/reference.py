@@ -33,7 +33,7 @@ from scipy.stats import chi2
 
 from rr_opt.array import Array
 from rr_opt.machines.racer.racer import RollerRacer
-from rr_opt.mechanics.drive import told
+from rr_opt.mechanics.drive import commanded
 from rr_opt.mechanics.kane import Equations, equations
 from rr_opt.mechanics.kinematics import ROBOT_PARAMETERS, Mechanism, mechanism, rotated
 from rr_opt.mechanics.vectorised import ArrayFunction, over_arrays
@@ -96,7 +96,7 @@ def deviates(model: RollerRacer, runs: Sequence[int]) -> bool:
         here, data = model.experiment.runs[run], model.runs[run]
         rest = here.start == "rest"
         wiggle = wiggles(data.t, here.gait.period, rest)[0]
-        _, own, rank = deviation(wiggle, data, told(here.gait, rest).at(data.t)[0])
+        _, own, rank = deviation(wiggle, data, commanded(here.gait, rest).at(data.t)[0])
         worth, dof = worth + own, dof + rank
     return bool(chi2.sf(worth, dof) < _FOLLOW)
 
@@ -176,7 +176,7 @@ def path(model: RollerRacer, run: int, predicted: Array, *, follow: bool) -> Pat
     """
     here, data = model.experiment.runs[run], model.runs[run]
     t, period, rest = data.t, here.gait.period, here.start == "rest"
-    command = told(here.gait, rest).at(t)
+    command = commanded(here.gait, rest).at(t)
     wiggle, rate, bend = wiggles(t, period, rest)
     beta = np.zeros(wiggle.shape[1])
     if follow:

@@ -32,7 +32,7 @@ from rr_opt.machines.racer.racer import RollerRacer
 from rr_opt.machines.racer.stages.gram import Gram, Known, Worth, eliminated, products
 from rr_opt.machines.racer.stages.reference import Reference, columns, hats, linearised
 from rr_opt.machines.racer.stages.respond import missed, path_of, start_of, wiggled
-from rr_opt.mechanics.drive import told
+from rr_opt.mechanics.drive import commanded
 from rr_opt.sysid.diagnosis import Curve
 
 _BINS = {"phase": 12, "speed": 6, "heading": 8, "along": 6, "across": 6, "time": 6}
@@ -130,7 +130,7 @@ def servo_test(model: RollerRacer, refs: Sequence[Reference]) -> Servo:
 def _residual(model: RollerRacer, ref: Reference, offset: float) -> tuple[Array, Array]:
     """(recorded - command)/sigma where there is something, and its slope by the clock's offset."""
     here = model.experiment.runs[ref.run]
-    command = told(here.gait, here.start == "rest").at(ref.t + offset)
+    command = commanded(here.gait, here.start == "rest").at(ref.t + offset)
     r = (ref.data[:, 3] - command[0]) / ref.sigma[:, 3]
     seen = np.isfinite(r)
     return r[seen], (command[1] / ref.sigma[:, 3])[seen]
