@@ -5,7 +5,7 @@ import math
 from rr_opt.outcome import Status
 from rr_paper.equation3 import CORRECTED
 from rr_paper.publication import ANGLE_LIMIT
-from rr_paper.report.audit_gaits import sections
+from rr_paper.report.audit_gaits import findings
 
 
 def test_signs(found):
@@ -61,7 +61,7 @@ def test_turning(found):
 
 
 def test_every_number_is_one(found):
-    for section in sections(found):
+    for section in findings(found):
         assert "nan" not in " ".join(section.sentences)
         for row in section.rows:
             assert len(row) == len(section.head)

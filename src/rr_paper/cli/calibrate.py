@@ -25,8 +25,9 @@ def calibrate(
         from rr_opt.report.archive import folder_for_results, strict_json
 
         folder = folder_for_results(out or Path("out") / "calibration")
+        from rr_opt.report.text import terminal
         from rr_paper.calibration.calibration import calibrate as compute
-        from rr_paper.report.calibration import record, summary, write_calibration
+        from rr_paper.report.calibration import document, record, write_calibration
 
         found = compute(steps)
         steps("files")
@@ -34,4 +35,4 @@ def calibrate(
     if json:
         typer.echo(strict_json(record(found)), nl=False)
     else:
-        typer.echo(summary(found, written), nl=False)
+        typer.echo(terminal(document(found, {}), written), nl=False)

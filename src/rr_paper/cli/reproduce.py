@@ -27,7 +27,8 @@ def reproduce(
         from rr_opt.report.archive import folder_for_results, strict_json
 
         folder = folder_for_results(out or Path("out") / "paper")
-        from rr_paper.report.reproduction import record, summary, write_reproduction
+        from rr_opt.report.text import terminal
+        from rr_paper.report.reproduction import document, record, write_reproduction
         from rr_paper.reproduction import reproduce as compute
 
         found = compute(problem, steps)
@@ -42,4 +43,4 @@ def reproduce(
     if json:
         typer.echo(strict_json(record(found, sha256)), nl=False)
     else:
-        typer.echo(summary(found, written), nl=False)
+        typer.echo(terminal(document(found, sha256, {}), written), nl=False)

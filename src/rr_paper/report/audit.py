@@ -7,20 +7,19 @@ from dataclasses import dataclass
 
 from rr_opt.answers.quantities import number
 from rr_opt.model.ballast import Loads, load_count
+from rr_opt.report.document import Cell, Table, table
 from rr_paper.consistency import KAPPA, LARGEST_WHEEL, Hypothesis
 from rr_paper.equation3 import CORRECTED, PRINTED, REVERSED
 from rr_paper.prototype import BOX, UNITS
 from rr_paper.publication import RATIOS, ROWS, T_POINT, TABLE_1, TABLE_2, TABLE_3
 from rr_paper.reproduction import Reproduction
 
-Value = str | float | None
-
 
 @dataclass(frozen=True)
-class Section:
+class Finding:
     """A question about the paper: `key` names it in files; `finding` answers it in a sentence.
 
-    head, rows  its table: SI values, or in the unit of the head; None is left empty
+    head, rows  its table: SI values, or in the unit of the head
     """
 
     key: str
@@ -28,10 +27,15 @@ class Section:
     finding: str
     sentences: tuple[str, ...]
     head: tuple[str, ...]
-    rows: tuple[tuple[Value, ...], ...]
+    rows: tuple[tuple[Cell, ...], ...]
+
+    @property
+    def table(self) -> Table:
+        """Its numbers."""
+        return table(self.head, self.rows)
 
 
-def signs_section(found: Reproduction) -> Section:
+def signs_finding(found: Reproduction) -> Finding:
     """Which signs mechanics gives."""
     audit, path = found.signs, found.signs.comparison
     deviation = {one.signs: one for one in audit.deviations}
@@ -70,13 +74,13 @@ def signs_section(found: Reproduction) -> Section:
             f"these equations. It drives this gait at {number(1e3 * found.mujoco, 4)} mm/s, "
             f"{number(apart, 1)} % from the corrected equation."
         )
-    rows: list[tuple[Value, ...]] = []
+    rows: list[tuple[Cell, ...]] = []
     for signs, one in deviation.items():
-        powers: tuple[Value, ...] = (None,) * 4
+        powers: tuple[Cell, ...] = (None,) * 4
         if e := energy.get(signs):
             powers = (1e3 * e.servo, 1e3 * e.friction, 1e3 * e.fictitious, e.speed)
         rows.append((signs.name, one.kane, one.multipliers, one.median, *powers))
-    return Section(
+    return Finding(
         "signs",
         "Equation (3) is printed with wrong signs",
         "B1, B2 and D have the wrong sign, and so has epsilon inside B2. No sign convention for v "
@@ -88,7 +92,7 @@ def signs_section(found: Reproduction) -> Section:
     )  # fmt: skip
 
 
-def missing_section(found: Reproduction) -> Section:
+def missing_finding(found: Reproduction) -> Finding:
     """The unknowns, and how strongly a speed depends on each."""
     row, tables, k = found.start.row, found.tables, found.robot.k1
     ranges = " or ".join(f"{number(a, 3)} to {number(b, 3)} rad" for a, b in tables.allowed)
@@ -97,7 +101,7 @@ def missing_section(found: Reproduction) -> Section:
         f"{one.name} from {number(1e3 * one.least, 3)} to {number(1e3 * one.largest, 3)} mm/s"
         for one in spread
     )
-    return Section(
+    return Finding(
         "left-out",
         "What Table 1 leaves out",
         "The speeds cannot be computed from the printed values.",
@@ -124,12 +128,12 @@ def missing_section(found: Reproduction) -> Section:
     )  # fmt: skip
 
 
-def columns_section(found: Reproduction) -> Section:
+def columns_finding(found: Reproduction) -> Finding:
     """Both interpretations of the columns, row by row."""
     rows, third = found.tables.rows, found.tables.table3
     off = [str(i) for i, one in enumerate(third, 1) if not one.columns_agree]
     exception = f" Not in row {', '.join(off)} of Table 3." if off else ""
-    return Section(
+    return Finding(
         "columns",
         "The two speed columns have unclear heads",
         "One column has intervals, so it is measured; the other is headed v_exp. Either that head "
@@ -170,7 +174,7 @@ def _count(rows: tuple[object, ...], name: str) -> int:
 _QUESTIONS = {"ratio": "J20/J10", "kappa": "kappa", "equation": "equation (3)"}
 
 
-def readings_section(found: Reproduction) -> Section:
+def readings_finding(found: Reproduction) -> Finding:
     """What is consistent with the nine averages, and with Table 1."""
     audit = found.consistency
     mean, other = audit.of("ratio", "mean"), audit.of("ratio", "other")
@@ -197,7 +201,7 @@ def readings_section(found: Reproduction) -> Section:
         f"{number(low)} to {number(high)} {UNITS[name]}"
         for name, (low, high) in BOX.items()
     )
-    return Section(
+    return Finding(
         "readings",
         "Which readings the data allow",
         "The nine averages exclude kappa in N m s, but no definition of J20/J10. Table 1 excludes "

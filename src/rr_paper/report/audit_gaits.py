@@ -7,6 +7,7 @@ import math
 from rr_opt.answers.quantities import number
 from rr_opt.answers.speed import SpeedAnswer
 from rr_opt.outcome import Status
+from rr_opt.report.document import Cell
 from rr_paper.best_amplitude import Peak
 from rr_paper.publication import (
     ANGLE_LIMIT,
@@ -18,23 +19,22 @@ from rr_paper.publication import (
     RPM,
 )
 from rr_paper.report.audit import (
-    Section,
-    Value,
-    columns_section,
-    missing_section,
-    readings_section,
-    signs_section,
+    Finding,
+    columns_finding,
+    missing_finding,
+    readings_finding,
+    signs_finding,
 )
 from rr_paper.reproduction import Reproduction
 
 
-def limits_section(found: Reproduction) -> Section:
+def limits_finding(found: Reproduction) -> Finding:
     """What the paper's gaits demand of the servo."""
     over = [one for one in found.demands if one.excess is not None]
     driven = sum(one.where.startswith("Table 3") for one in over)
     rates = ", ".join(f"{one.where} {number(one.rpm, 3)} rpm" for one in over)
     fourth, fifth = found.ratio_surface.too_fast, found.period_surface.too_fast
-    return Section(
+    return Finding(
         "limits",
         "Runs and ranges beyond Table 1's 30 rpm",
         f"{driven} of Table 3's six runs, Table 2, Fig. 6 and much of Figs. 4 and 5 are beyond the "
@@ -53,11 +53,11 @@ def limits_section(found: Reproduction) -> Section:
     )
 
 
-def posture_section(found: Reproduction) -> Section:
+def posture_finding(found: Reproduction) -> Finding:
     """Where the model breaks down."""
     posture = found.posture
     largest = max(FIGURE_4.amplitude[1], FIGURE_5.amplitude[1])
-    return Section(
+    return Finding(
         "posture",
         "The singular posture is within the servo's range",
         f"At |phi| = {number(posture.angle, 3)} rad the equations divide by 0; the servo may go to "
@@ -82,7 +82,7 @@ def posture_section(found: Reproduction) -> Section:
     )
 
 
-def period_section(found: Reproduction) -> Section:
+def period_finding(found: Reproduction) -> Finding:
     """How the speed depends on the period."""
     ratios, (viscous, printed) = found.period.ratios, found.period.spreads
     inside = sum(one.low <= one.model <= one.high for one in ratios)
@@ -91,7 +91,7 @@ def period_section(found: Reproduction) -> Section:
     above = sum(one.other > largest for one in ratios)
     swapped = ", ".join(_span(one.other_low, one.other_high) for one in ratios)
     outside = sum(one.other_low > largest for one in ratios)
-    return Section(
+    return Finding(
         "period",
         "Speed falls as 1/T^2 with viscous friction; do the tables?",
         "The column with intervals neither confirms nor excludes the law. The column v_exp "
@@ -130,7 +130,7 @@ def _span(low: float, high: float) -> str:
     return f"{number(low, 3)} to {number(high, 3)}"
 
 
-def amplitude_section(found: Reproduction) -> Section:
+def amplitude_finding(found: Reproduction) -> Finding:
     """What remains of the best amplitude."""
     best = found.best
     own = "; ".join(f"{_peak_text(peak)} for J20/J10 = {number(J)}" for J, peak in best.own)
@@ -144,7 +144,7 @@ def amplitude_section(found: Reproduction) -> Section:
         for one in best.robots
     )
     confirmed = all(one.status is Status.OPTIMAL for one in (best.limited, best.unlimited))
-    return Section(
+    return Finding(
         "amplitude",
         "Is about 1 rad the best amplitude?",
         f"Not under the paper's own limit, which leaves {number(best.allowed)} rad at T = 1 s. "
@@ -170,7 +170,7 @@ def amplitude_section(found: Reproduction) -> Section:
     )
 
 
-def _peak_cells(peak: Peak) -> tuple[Value, ...]:
+def _peak_cells(peak: Peak) -> tuple[Cell, ...]:
     return peak.amplitude, "yes" if peak.inside else "end of range", peak.reverses
 
 
@@ -189,7 +189,7 @@ def _gait_text(answer: SpeedAnswer) -> str:
     )
 
 
-def turning_section(found: Reproduction) -> Section:
+def turning_finding(found: Reproduction) -> Finding:
     """The claim at the paper's gaits, and elsewhere."""
     turning = found.turning
     sign, radius, first = turning.sign, turning.radius, turning.circles[0]
@@ -208,7 +208,7 @@ def turning_section(found: Reproduction) -> Section:
             f"The turn stays on its side{radius_text} up to {number(end, 3)} rad, next to the "
             "singular posture."
         )
-    return Section(
+    return Finding(
         "turning",
         "Does the sign of phi0 define the direction, and a larger phi0 a smaller radius?",
         f"At the paper's three gaits {'both hold' if both else 'it does not hold'}. In general "
@@ -240,16 +240,16 @@ def turning_section(found: Reproduction) -> Section:
     )  # fmt: skip
 
 
-def sections(found: Reproduction) -> tuple[Section, ...]:
-    """All sections, in reading order."""
+def findings(found: Reproduction) -> tuple[Finding, ...]:
+    """All of them, in reading order."""
     return (
-        signs_section(found),
-        missing_section(found),
-        columns_section(found),
-        readings_section(found),
-        limits_section(found),
-        posture_section(found),
-        period_section(found),
-        amplitude_section(found),
-        turning_section(found),
+        signs_finding(found),
+        missing_finding(found),
+        columns_finding(found),
+        readings_finding(found),
+        limits_finding(found),
+        posture_finding(found),
+        period_finding(found),
+        amplitude_finding(found),
+        turning_finding(found),
     )

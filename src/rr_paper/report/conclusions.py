@@ -30,10 +30,11 @@ def box(unknown: Unknown) -> str:
 
 def profile_span(one: Interval, profile: Profile) -> str:
     """A profile's interval; `open` where the box ends it."""
-    ends = (("below", profile.low <= 0), ("above", profile.high >= 1))
-    open_at = [word for word, is_open in ends if is_open]
-    text = span(one.unknown, profile.ends(one.unknown))
-    return f"{text} (open {' and '.join(open_at)})" if open_at else text
+    below, above = profile.low <= 0, profile.high >= 1
+    if below and above:
+        return "whole box"
+    open_side = " (open below)" if below else " (open above)" if above else ""
+    return span(one.unknown, profile.ends(one.unknown)) + open_side
 
 
 def aicc_text(aicc: AICc) -> str:
