@@ -88,13 +88,14 @@ def document(found: Calibration, figures: Mapping[str, str]) -> Document:
 
 
 def _interval_table(found: Calibration) -> Table:
-    head = ("Unknown", "Measured", "Posterior", "Profile, Student", "Profile, normal", "Verdict")
+    head = ("Unknown", "Measured", "Box", "Posterior", "Profile, Student", "Profile, normal",
+            "Verdict")  # fmt: skip
     return table(
         head,
         [
-            (one.unknown.symbol, SHORT[one.column], span(one.unknown, one.posterior),
-             profile_span(one, one.profile), profile_span(one, one.normal),
-             Badge(one.verdict, _TONES[one.verdict]))
+            (one.unknown.symbol, SHORT[one.column], box(one.unknown),
+             span(one.unknown, one.posterior), profile_span(one, one.profile),
+             profile_span(one, one.normal), Badge(one.verdict, _TONES[one.verdict]))
             for one in found.intervals()
         ],
     )  # fmt: skip
