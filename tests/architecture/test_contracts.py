@@ -22,7 +22,7 @@ PLANTED = [
     ("layers", "rr_opt/mechanics/planted.py", "import rr_opt.motion.steady_cycle"),
     ("layers", "rr_opt/effects/planted.py", "import rr_opt.motion.dynamics"),
     ("layers", "rr_opt/files/planted.py", "import rr_opt.motion.steady_cycle"),
-    ("layers", "rr_opt/motion/planted.py", "import rr_opt.files.units"),
+    ("layers", "rr_opt/motion/planted.py", "import rr_opt.files.lint"),
     ("layers", "rr_opt/design/planted.py", "import rr_opt.cli.main"),
     ("layers", "rr_opt/design/planted.py", "import rr_opt.batch.run"),
     ("layers", "rr_opt/sysid/planted.py", "import rr_opt.machines.racer.racer"),
@@ -44,7 +44,7 @@ PLANTED = [
     ("plain-model", "rr_opt/model/robot.py", "import casadi as ca"),
     ("trial-apart", "rr_lab/trial/planted.py", "import rr_opt.sysid.verdict"),
     ("lab-apart", "rr_lab/rig.py", "import rr_opt.motion.steady_cycle"),
-    ("lab-apart", "rr_lab/draw.py", "import rr_opt.files.units"),
+    ("lab-apart", "rr_lab/draw.py", "import rr_opt.files.lint"),
     ("engines-apart", "rr_lab/planar/planted.py", "import rr_lab.mujoco.plant"),
 ]
 PACKAGES = ("rr_opt", "rr_lab", "rr_paper")

@@ -10,19 +10,19 @@ from hypothesis import strategies as st
 
 from rr_opt.files.experiment_file import named_files, read_plan
 from rr_opt.files.experiment_model import (
-    CountScaleModel,
     ExperimentModel,
     MarkersModel,
-    NoiseModel,
     RecordingModel,
     UncertaintyModel,
 )
+from rr_opt.files.fields import keys_of
 from rr_opt.files.gait_record import FourierRecord, SineRecord
 from rr_opt.files.issue import InvalidFileError
 from rr_opt.files.lint import lint_file
+from rr_opt.model.experiment import CountScale, Noise
 
 MODELS = (
-    *(ExperimentModel, NoiseModel, MarkersModel, CountScaleModel, RecordingModel),
+    *(ExperimentModel, keys_of(Noise), MarkersModel, keys_of(CountScale), RecordingModel),
     *(UncertaintyModel, SineRecord, FourierRecord),
 )
 KEYS = sorted({key for model in MODELS for key in model.model_fields})

@@ -10,16 +10,19 @@ import yaml
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
+from rr_opt.files.fields import keys_of
 from rr_opt.files.issue import InvalidFileError
 from rr_opt.files.lint import lint_file
 from rr_opt.files.problem_file import read_problem
-from rr_opt.files.problem_model import GaitModel, InertiaRatioModel, LimitsModel, ProblemModel
-from rr_opt.files.robot_file import PlatformModel, RobotModel, ServoModel, read_robot
+from rr_opt.files.problem_model import ProblemModel
+from rr_opt.files.robot_file import PlatformModel, RobotModel, read_robot
 from rr_opt.files.source import SHIPPED
+from rr_opt.model.problem import GaitBounds, Limits, RatioChoice
+from rr_opt.model.robot import Servo
 
 MODELS = (
-    *(ProblemModel, GaitModel, InertiaRatioModel, LimitsModel),
-    *(RobotModel, PlatformModel, ServoModel),
+    *(ProblemModel, keys_of(GaitBounds), keys_of(RatioChoice), keys_of(Limits)),
+    *(RobotModel, PlatformModel, keys_of(Servo)),
 )
 KEYS = sorted({key for model in MODELS for key in model.model_fields})
 WORDS = st.sampled_from(["sine", "joint", "loads", "30 rpm", "1 mm", ".inf", "measured", "F1"])

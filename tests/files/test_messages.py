@@ -8,9 +8,8 @@ from rr_opt.files.lint import lint_file
 
 MESSAGES = {
     "gait: {amplitud: 1}": (
-        "Read the key 'amplitud'. Expected one of: shape, harmonics, intervals, amplitude, period, "
-        "offset. "
-        "Did you mean `amplitude`?"
+        "Read the key 'amplitud'. Expected one of: amplitude, period, offset, shape, harmonics, "
+        "intervals. Did you mean `amplitude`?"
     ),
     "zzz: 1": (
         "Read the key 'zzz'. Expected one of: robot, gait, inertia_ratio, limits, direction. "

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from rr_opt.files.issue import nearest
+from rr_opt.messages import nearest
 
 GAIT = ["shape", "harmonics", "intervals", "amplitude", "period", "offset"]
 PROBLEM = ["robot", "gait", "inertia_ratio", "limits", "direction"]

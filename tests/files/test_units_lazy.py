@@ -7,7 +7,7 @@ import sys
 
 PROGRAM = """
 import sys
-from rr_opt.files.units import to_si
+from rr_opt.units import to_si
 assert to_si("1e-5", "m") == 1e-5
 assert "pint" not in sys.modules and "casadi" not in sys.modules
 assert to_si("1 mm", "m") == 1e-3

@@ -6,8 +6,8 @@ import time
 
 import pytest
 
-from rr_opt.files.units import to_si
 from rr_opt.outcome import InputError
+from rr_opt.units import to_si
 
 REFUSED = [
     ("3 s", "m", "Read '3 s', a time. Expected a number, or a number with a unit, in m."),

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rr_opt.files.units import to_si
+from rr_opt.units import to_si
 
 WORTH = {
     ("mm", "m"): 1e-3,

@@ -6,7 +6,6 @@ from dataclasses import fields, replace
 
 import pytest
 
-from rr_opt.files.units import to_si
 from rr_opt.model.parameters import (
     PARAMETERS,
     PLATFORM_SYMBOLS,
@@ -15,6 +14,7 @@ from rr_opt.model.parameters import (
     with_parameters,
 )
 from rr_opt.model.robot import Platform
+from rr_opt.units import to_si
 from tests.robots import BENCHMARK
 
 

@@ -76,8 +76,8 @@ def beyond_reach(robot: Robot, plans: Iterable[Plan]) -> list[str]:
 def read_effects(texts: Iterable[str]) -> tuple[EffectUse, ...]:
     """`coulomb_friction:force1=0.02,force2=20 mN` each. Raises InputError with all mistakes."""
     from rr_lab.effects import effect_named
-    from rr_opt.files.fields import Quantity
     from rr_opt.model.robot import EffectUse
+    from rr_opt.units import Quantity
 
     uses, wrong = [], []
     for text in texts:
@@ -116,8 +116,8 @@ def read_effects(texts: Iterable[str]) -> tuple[EffectUse, ...]:
 
 def read_noise(text: str) -> Noise:
     """`1 mm, 3 mrad`: standard deviations of position and angle. Raises InputError."""
-    from rr_opt.files.fields import Quantity
     from rr_opt.model.experiment import Noise
+    from rr_opt.units import Quantity
 
     parts = text.split(",")
     if len(parts) != 2:

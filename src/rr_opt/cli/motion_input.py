@@ -38,8 +38,9 @@ class Source:
 def source_of_result(document: Document) -> Source:
     """What a result gives. Raises InputError if it holds no gait, or a wrong one."""
     from rr_opt.files.gait_record import gait_from
-    from rr_opt.files.issue import InvalidFileError, shown
+    from rr_opt.files.issue import InvalidFileError
     from rr_opt.files.robot_file import robot_from
+    from rr_opt.messages import shown
 
     robot: Any = document.data.get("robot")
     if not isinstance(document.data.get("gait"), dict) or not isinstance(robot, dict):
@@ -124,12 +125,13 @@ def read_options(**given: str | float | None) -> dict[str, float]:
 
     Raises InputError with everything that is wrong with all of them.
     """
-    from rr_opt.files.fields import Quantity
+    from rr_opt.model import gait
+    from rr_opt.units import Quantity
 
     kinds = {
-        "amplitude": Quantity("rad", "30 deg", at_least=0),
-        "period": Quantity("s", "1.2 s", above=0),
-        "offset": Quantity("rad", "10 deg"),
+        "amplitude": gait.AMPLITUDE,
+        "period": gait.PERIOD,
+        "offset": gait.OFFSET,
         "seconds": Quantity("s", "10", above=0),
         "rate": Quantity("1/s", "100", above=0),
     }

@@ -83,7 +83,7 @@ def _target(
 ) -> Target:
     """What is asked. Raises InputError with everything that is wrong with the values."""
     from rr_opt.design.turn.target import Target, checked
-    from rr_opt.files.fields import Quantity
+    from rr_opt.units import Quantity
 
     values: dict[str, float] = {}
     wrong = []

@@ -15,12 +15,12 @@ from rr_opt.files.experiment_model import (
 from rr_opt.files.experiment_plan import ExperimentPlan, PlannedRun, places_from
 from rr_opt.files.fields import validate
 from rr_opt.files.gait_record import gait_from
-from rr_opt.files.issue import InvalidFileError, Issue, has_errors, shown
+from rr_opt.files.issue import InvalidFileError, Issue, has_errors
 from rr_opt.files.problem_file import kind_of
 from rr_opt.files.robot_file import robot_from
 from rr_opt.files.source import is_result, read_document
 from rr_opt.files.yaml_text import Document
-from rr_opt.model.experiment import CountScale, Noise
+from rr_opt.messages import shown
 from rr_opt.model.gait import Gait
 from rr_opt.model.robot import Robot
 
@@ -231,11 +231,11 @@ def plan_from(document: Document, file: Path) -> tuple[ExperimentPlan | None, li
         name=file.absolute().parent.name,
         document=document,
         robot=robot,
-        noise=Noise(**model.noise.model_dump()),
+        noise=model.noise,
         uncertainty=uncertainty_of(model.uncertainty, robot),
         runs=runs,
         markers=markers,
-        counts=CountScale(**model.servo_counts.model_dump()),
+        counts=model.servo_counts,
         paths=(
             file,
             *paths,

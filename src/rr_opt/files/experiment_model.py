@@ -2,33 +2,39 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Annotated, Any, Literal
 
 from pydantic import Field, GetJsonSchemaHandler, SkipValidation, create_model
 from pydantic_core import CoreSchema
 
-from rr_opt.files.fields import Count, Quantity, Uncertain
+from rr_opt.files.fields import FileModel, Key, Section
 from rr_opt.files.gait_record import FourierRecord, FreeRecord, SineRecord
-from rr_opt.files.robot_file import FileModel, RobotModel
+from rr_opt.files.robot_file import RobotModel
+from rr_opt.messages import shown
 from rr_opt.model.experiment import CountScale, Noise, Start, Use
 from rr_opt.model.parameters import (
     PARAMETERS,
     PLATFORM_SYMBOLS,
     SYMBOLS,
+    UNKNOWN_FACTOR,
     Spread,
     Uncertainty,
     parameters_of,
 )
 from rr_opt.model.robot import Robot
+from rr_opt.outcome import InputError
+from rr_opt.units import Quantity, to_si
 
 _ZEROS = ("psi_zero", "phi_zero")
 
 
 def _fields() -> Iterator[tuple[str, Any]]:
     def optional(unit: str, example: str, description: str, absolute: bool = False) -> Any:
-        kind = Annotated[Spread | None, Uncertain(unit, example, absolute)]
+        kind = Annotated[Spread | None, Key(Uncertain(unit, example, absolute))]
         return kind, Field(default=None, description=f"One sigma of {description}.")
 
     for symbol, one in SYMBOLS.items():
@@ -41,6 +47,39 @@ def _fields() -> Iterator[tuple[str, Any]]:
             yield name, optional(one.unit, one.sigma_example, meant)
     for key in _ZEROS:
         yield key, optional("rad", "5 mrad", f"the zero of {key[:3]}, rad; else exact", True)
+
+
+@dataclass(frozen=True)
+class Uncertain:
+    """Reads a Spread: `2 mm`, `5 %`, `unknown`; a zero of the capture system only absolutely."""
+
+    unit: str
+    example: str
+    absolute: bool = False
+
+    def read(self, value: object) -> Spread:
+        """The spread. Raises InputError."""
+        if not self.absolute and isinstance(value, str):
+            if value.strip() == "unknown":
+                return Spread(factor=UNKNOWN_FACTOR)
+            if value.strip().endswith("%"):
+                return Spread(relative=self._share(value))
+        try:
+            return Spread(sigma=Quantity(self.unit, self.example, at_least=0).read(value))
+        except InputError as error:
+            other = "" if self.absolute else " A share such as `5 %`, or `unknown`, will do too."
+            raise InputError(f"{error}{other}") from None
+
+    def _share(self, value: str) -> float:
+        share = to_si(value, "")
+        if not 0 <= share < math.inf:
+            raise InputError(f"Read {shown(value)}. Expected a share of at least 0. Write `5 %`.")
+        return share
+
+    def json_schema(self) -> dict[str, Any]:
+        """JSON Schema: an absolute uncertainty, or other text."""
+        number = Quantity(self.unit, self.example, at_least=0).json_schema()
+        return number if self.absolute else {**number, "examples": [self.example, "5 %", "unknown"]}
 
 
 UncertaintyModel: Any = create_model(
@@ -85,32 +124,7 @@ def shares_of_nothing(model: Any, robot: Robot) -> Iterator[tuple[str, str]]:
 
 PLACE = Quantity("m", "40 mm")
 
-Deviation = Annotated[float, Quantity("m", "1 mm", above=0)]
-Turn = Annotated[float, Quantity("rad", "3 mrad", above=0)]
-Torque = Annotated[float, Quantity("N m", "3 mN*m", above=0)]
-Range = Annotated[float, Quantity("rad", "300 deg")]
-CountOfZero = Annotated[float, Quantity("", "512")]
-Counts = Annotated[int, Count(2, 1_000_000)]
 Up = Literal["x", "y", "z", "-x", "-y", "-z"]
-
-
-class NoiseModel(FileModel):
-    """One standard deviation of the capture system."""
-
-    position: Deviation = Field(description="Of x and y, m.")
-    angle: Turn = Field(description="Of psi and phi, rad.")
-    torque: Torque = Field(default=Noise.torque, description="Of the torque, N m.")
-
-
-class CountScaleModel(FileModel):
-    """What the counts of the servo's logs mean; without it those of the CDS5516."""
-
-    counts: Counts = Field(default=CountScale.counts, description="How many counts there are.")
-    range: Range = Field(
-        default=CountScale.range,
-        description="The angle they cover, rad; negative where phi falls as they rise.",
-    )
-    zero: CountOfZero = Field(default=CountScale.zero, description="The count at which phi = 0.")
 
 
 class _PlacesSchema:
@@ -163,7 +177,7 @@ class ExperimentModel(FileModel):
     robot: Annotated[str | RobotModel, SkipValidation] = Field(
         description="A robot file, relative to this one, or the robot itself: nominal values."
     )
-    noise: NoiseModel = Field(description="How well the capture system sees.")
+    noise: Annotated[Noise, Section()] = Field(description="How well the capture system sees.")
     uncertainty: UncertaintyModel = Field(  # pyright: ignore[reportInvalidTypeForm] - it is made
         default_factory=UncertaintyModel, description="How well nominal values are known."
     )
@@ -174,6 +188,6 @@ class ExperimentModel(FileModel):
     markers: Annotated[MarkersModel | None, SkipValidation] = Field(
         default=None, description="Where the markers sit; needed for marker files."
     )
-    servo_counts: CountScaleModel = Field(
-        default_factory=CountScaleModel, description="What the counts of servo logs mean."
+    servo_counts: Annotated[CountScale, Section()] = Field(
+        default_factory=CountScale, description="What the counts of servo logs mean."
     )

@@ -11,8 +11,9 @@ from typing import Any
 
 from rr_opt.files.experiment_model import PLACE, MarkersModel
 from rr_opt.files.fields import validate
-from rr_opt.files.issue import Issue, has_errors, shown
+from rr_opt.files.issue import Issue, has_errors
 from rr_opt.files.yaml_text import Document
+from rr_opt.messages import shown
 from rr_opt.model.experiment import CountScale, Noise, Start, Uncertainty, Use
 from rr_opt.model.gait import Gait
 from rr_opt.model.robot import Robot

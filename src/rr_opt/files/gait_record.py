@@ -7,103 +7,55 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import fields
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, GetCoreSchemaHandler
-from pydantic_core import CoreSchema, core_schema
+from pydantic import Field
 
-from rr_opt.files.fields import Quantity, raising_value_error, validate
-from rr_opt.files.issue import Issue, shown, unknown_word
-from rr_opt.files.robot_file import FileModel
+from rr_opt.files.fields import FileModel, Key, keys_of, validate
+from rr_opt.files.issue import Issue
 from rr_opt.files.yaml_text import Document
-from rr_opt.model.gait import FourierGait, FreeGait, Gait, SineGait
-from rr_opt.outcome import InputError
+from rr_opt.messages import shown, unknown_word
+from rr_opt.model.gait import AMPLITUDE, OFFSET, FourierGait, FreeGait, Gait, SineGait
 
-MOST_NUMBERS = 10_000
-"""Longer lists than any gait has are refused unread."""
-
-
-class Numbers:
-    """Annotates a tuple of floats that a file gives as a list of quantities."""
-
-    def __init__(self, unit: str, least: int):
-        self.quantity = Quantity(unit, "0.1")
-        self.least = least
-
-    def read(self, value: object) -> tuple[float, ...]:
-        """The numbers in SI. Raises InputError, which names the first that is wrong."""
-        unit = self.quantity.unit
-        if not isinstance(value, list) or not self.least <= len(value) <= MOST_NUMBERS:
-            got = f"a list of {len(value)}" if isinstance(value, list) else shown(value)
-            raise InputError(
-                f"Read {got}. Expected a list of at least {self.least} numbers in {unit}. "
-                "Take the gait from a result that rr-opt wrote."
-            )
-        return tuple(self._one(number, item) for number, item in enumerate(value, 1))
-
-    def _one(self, number: int, item: object) -> float:
-        try:
-            return self.quantity.read(item)
-        except InputError as error:
-            raise InputError(f"Number {number} of the list: {error}") from None
-
-    def __get_pydantic_core_schema__(self, _: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        return core_schema.no_info_plain_validator_function(raising_value_error(self.read))
+_AMPLITUDE = Annotated[float | None, Key(AMPLITUDE)]
+_OFFSET = Annotated[float | None, Key(OFFSET)]
+_LARGEST = "largest |phi - offset|, rad."
 
 
-Angle = Annotated[float, Quantity("rad", "0.5")]
-Size = Annotated[float, Quantity("rad", "0.5", at_least=0)]
-OptionalAngle = Annotated[float | None, Quantity("rad", "0.5")]
-OptionalSize = Annotated[float | None, Quantity("rad", "0.5", at_least=0)]
-Duration = Annotated[float, Quantity("s", "1.2 s", above=0)]
-Rate = Annotated[float, Quantity("rad/s", "1.5")]
-
-
-class SineRecord(FileModel):
+class SineRecord(keys_of(SineGait)):
     """phi(t) = amplitude sin(2 pi t/period) + offset."""
 
     shape: Literal["sine"] = Field(default="sine", description="`sine`")
-    amplitude: Size = Field(description="amplitude, rad.")
-    period: Duration = Field(description="period, s.")
-    offset: Angle = Field(description="offset, rad.")
+    offset: _OFFSET = Field(description="offset, rad.")
 
 
-class FourierRecord(FileModel):
+class FourierRecord(keys_of(FourierGait)):
     """phi(t) = offset + sum of sines[n-1] sin(2 pi n t/period) + cosines[n-1] cos(2 pi n t/period).
 
-    The amplitude says no more than the sines and cosines do.
+    The amplitude follows from the sines and cosines.
     """
 
     shape: Literal["fourier"] = Field(description="`fourier`")
-    amplitude: OptionalSize = Field(default=None, description="largest |phi - offset|, rad.")
-    period: Duration = Field(description="period, s.")
-    offset: Angle = Field(description="offset, rad.")
-    sines: Annotated[tuple[float, ...], Numbers("rad", 1)] = Field(
-        description="the sizes of the sines, rad, one for each harmonic."
-    )
-    cosines: Annotated[tuple[float, ...], Numbers("rad", 1)] = Field(
-        description="the sizes of the cosines, rad, one for each harmonic."
-    )
+    amplitude: _AMPLITUDE = Field(default=None, description=_LARGEST)
 
 
-class FreeRecord(FileModel):
+class FreeRecord(keys_of(FreeGait)):
     """phi(t) with a constant acceleration on each of many equal intervals of the period.
 
-    Amplitude and offset say no more than the other values do.
+    Amplitude and offset follow from the other values.
     """
 
     shape: Literal["free"] = Field(description="`free`")
-    amplitude: OptionalSize = Field(default=None, description="largest |phi - offset|, rad.")
-    period: Duration = Field(description="period, s.")
-    offset: OptionalAngle = Field(default=None, description="mean of phi, rad.")
-    angle0: Angle = Field(description="phi at the start, rad.")
-    rate0: Rate = Field(description="dphi/dt at the start, rad/s.")
-    accelerations: Annotated[tuple[float, ...], Numbers("rad/s^2", 2)] = Field(
-        description="d2phi/dt2 on each interval, rad/s2."
-    )
+    amplitude: _AMPLITUDE = Field(default=None, description=_LARGEST)
+    offset: _OFFSET = Field(default=None, description="mean of phi, rad.")
 
 
-_MODELS = {"sine": SineRecord, "fourier": FourierRecord, "free": FreeRecord}
+_SHAPES: dict[str, tuple[type[FileModel], Any]] = {
+    "sine": (SineRecord, SineGait),
+    "fourier": (FourierRecord, FourierGait),
+    "free": (FreeRecord, FreeGait),
+}
 
 _ROUNDING = 1e-6
 """What a record that was written by a program may be off by, relative to the gait's size."""
@@ -111,80 +63,69 @@ _ROUNDING = 1e-6
 
 def gait_record(gait: Gait) -> dict[str, Any]:
     """The gait in SI, complete: `gait_from` makes the same gait of it, to the last digit."""
-    record: dict[str, Any] = {
-        "shape": gait.shape,
-        "amplitude": gait.amplitude,
-        "period": gait.period,
-        "offset": gait.offset,
-    }
-    if isinstance(gait, FourierGait):
-        record |= {"sines": list(gait.sines), "cosines": list(gait.cosines)}
-    elif isinstance(gait, FreeGait):
-        record |= {
-            "angle0": gait.angle0,
-            "rate0": gait.rate0,
-            "accelerations": list(gait.accelerations),
-        }
-    return record
+    size = {name: getattr(gait, name) for name in ("shape", "amplitude", "period", "offset")}
+    own: Any = gait
+    values = {one.name: getattr(gait, one.name) for one in fields(own)}
+    return size | {key: list(v) if isinstance(v, tuple) else v for key, v in values.items()}
 
 
 def gait_from(document: Document) -> tuple[Gait | None, list[Issue]]:
     """The gait that a mapping describes (None if there are issues), and all issues."""
     shape = document.data.get("shape", "sine")
     if not isinstance(shape, str):
-        message = f"Read {shown(shape)}. Expected one of: {', '.join(_MODELS)}."
+        message = f"Read {shown(shape)}. Expected one of: {', '.join(_SHAPES)}."
         return None, [document.issue("error", ("shape",), message)]
-    if shape not in _MODELS:
-        message = unknown_word(shape, list(_MODELS), "word")
+    if shape not in _SHAPES:
+        message = unknown_word(shape, list(_SHAPES), "word")
         return None, [document.issue("error", ("shape",), message)]
-    model, issues = validate(_MODELS[shape], document)
-    if isinstance(model, SineRecord):
-        return SineGait(model.amplitude, model.period, model.offset), issues
-    if isinstance(model, FourierRecord):
-        if len(model.sines) != len(model.cosines):
-            message = (
-                f"Read {len(model.cosines)} cosines and {len(model.sines)} sines. Expected as "
-                "many of each. Write 0 for those that are missing."
-            )
-            return None, [document.issue("error", ("cosines",), message)]
-        gait = FourierGait(model.period, model.offset, model.sines, model.cosines)
-    elif isinstance(model, FreeRecord):
-        gait = FreeGait(model.period, model.angle0, model.rate0, model.accelerations)
-        issues = [document.issue("error", key, text) for key, text in _open_ends(gait)]
-    else:
+    record, kind = _SHAPES[shape]
+    model, issues = validate(record, document)
+    if model is None:
         return None, issues
-    issues += [document.issue("error", key, text) for key, text in _disagreements(gait, model)]
+    values = dict(model)
+    gait: Any = kind(**{one.name: values[one.name] for one in fields(kind)})
+    wrong: list[tuple[str, str]] = []
+    if isinstance(gait, FourierGait) and len(gait.sines) != len(gait.cosines):
+        message = (
+            f"Read {len(gait.cosines)} cosines and {len(gait.sines)} sines. Expected as many of "
+            "each. Write 0 for those that are missing."
+        )
+        wrong.append(("cosines", message))
+    else:
+        wrong += _open_ends(gait) if isinstance(gait, FreeGait) else ()
+        wrong += _disagreements(gait, values) if shape != "sine" else ()
+    issues += [document.issue("error", (key,), message) for key, message in wrong]
     return (None if issues else gait), issues
 
 
-def _open_ends(gait: FreeGait) -> Iterator[tuple[tuple[str, ...], str]]:
-    """Where the values of a free gait do not come back to where they began."""
+def _open_ends(gait: FreeGait) -> Iterator[tuple[str, str]]:
+    """Key and message where a free gait does not come back to where it began."""
     ends = zip(("angle", "rate"), gait.nodes, ("rad", "rad/s"), strict=True)
     for what, values, unit in ends:
         gap = float(values[-1] - values[0])
         if not abs(gap) <= _ROUNDING * (1 + abs(values).max()):
             yield (
-                ("accelerations",),
+                "accelerations",
                 f"After a period the {what} is {gap:.3g} {unit} from where it began. Expected it "
                 "to come back, so that the gait can be repeated. Correct rate0 or accelerations.",
             )
 
 
 def _disagreements(
-    gait: FourierGait | FreeGait, model: FourierRecord | FreeRecord
-) -> Iterator[tuple[tuple[str, ...], str]]:
-    """Where what follows from the other values is given, and says something else."""
+    gait: FourierGait | FreeGait, given: dict[str, Any]
+) -> Iterator[tuple[str, str]]:
+    """Key and message where a value is given that follows from the others, and differs."""
     if gait.amplitude == 0:
         yield (
-            ("amplitude",),
+            "amplitude",
             "Read a gait that does not move the servo. Expected one that does: its values make "
             "an amplitude of 0. Correct them.",
         )
     for key in ("amplitude", "offset"):
-        given, made = getattr(model, key), getattr(gait, key)
-        if given is not None and not abs(given - made) <= _ROUNDING * (1 + gait.peak_angle):
+        value, made = given[key], getattr(gait, key)
+        if value is not None and not abs(value - made) <= _ROUNDING * (1 + gait.peak_angle):
             yield (
-                (key,),
-                f"Read {given:.6g} rad. Expected {made:.6g} rad, which is what the gait's other "
+                key,
+                f"Read {value:.6g} rad. Expected {made:.6g} rad, which is what the gait's other "
                 f"values make. Correct them, or delete {key}.",
             )

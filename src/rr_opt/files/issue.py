@@ -2,21 +2,13 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
-from difflib import get_close_matches
 from typing import Literal
 
 from rr_opt.outcome import InputError
 
 Level = Literal["error", "warning"]
-
-_LONGEST_SHOWN = 60
-_SHORTEST_GUESSED = 3
-_ALIKE = 0.72
-"""Twice the letters that two words share in order, over the letters of both: `friction` and
-`direction` have 0.71, `gate` and `gait` 0.75."""
 
 
 @dataclass(frozen=True)
@@ -52,52 +44,3 @@ class InvalidFileError(InputError):
 def has_errors(issues: Iterable[Issue]) -> bool:
     """True if one of the issues is an error and not only a warning."""
     return any(issue.level == "error" for issue in issues)
-
-
-def shown(value: object) -> str:
-    """A value as a message quotes it: on one line, without control characters, not long."""
-    text = _written(value)
-    return text if len(text) <= _LONGEST_SHOWN else text[: _LONGEST_SHOWN - 4] + " ..."
-
-
-def _written(value: object) -> str:
-    if value is None:
-        return "nothing"
-    if isinstance(value, dict):
-        return "a mapping" if value else "an empty mapping"
-    if isinstance(value, list):
-        return f"[{', '.join(_written(item) for item in value)}]"
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    if isinstance(value, float) and not math.isfinite(value):
-        return f"{value}".replace("inf", ".inf").replace("nan", ".nan")
-    return repr(value) if isinstance(value, str) else str(value)
-
-
-def nearest(word: str, known: Sequence[str]) -> str | None:
-    """The known word that `word` was most likely meant to be, if one is near.
-
-    Near is the same word in other letters' case; a beginning, or a part between underscores, of
-    one known word alone; or most letters in the same order. Anything less is a guess.
-    """
-    meant = word.casefold()
-    folded = {name.casefold(): name for name in reversed(known)}
-    if meant in folded:
-        return folded[meant]
-    if not _SHORTEST_GUESSED <= len(meant) <= _LONGEST_SHOWN:
-        return None
-    near = get_close_matches(meant, list(folded), n=1, cutoff=_ALIKE)
-    near = near or [one for one in folded if one.startswith(meant) or meant in one.split("_")]
-    return folded[near[0]] if len(near) == 1 else None
-
-
-def unknown_word(word: str, known: Sequence[str], kind: str) -> str:
-    """The message for a word that is none of those known, naming the nearest."""
-    near = nearest(word, known)
-    advice = f"Did you mean `{near}`?" if near else "Correct it, or delete it."
-    return f"Read the {kind} {shown(word)}. Expected {one_of(known)}. {advice}"
-
-
-def one_of(words: Sequence[str]) -> str:
-    """The words as a message offers them."""
-    return f"one of: {', '.join(words)}" if len(words) > 1 else f"`{words[0]}`"

@@ -7,11 +7,12 @@ from typing import Any
 
 from rr_opt.effects import OF_ROBOTS
 from rr_opt.effects.effect import Effect, Parameter
-from rr_opt.files.fields import Quantity
-from rr_opt.files.issue import Issue, shown, unknown_word
+from rr_opt.files.issue import Issue
 from rr_opt.files.yaml_text import Document
+from rr_opt.messages import shown, unknown_word
 from rr_opt.model.robot import EffectUse
 from rr_opt.outcome import InputError
+from rr_opt.units import Quantity
 
 
 def read_effects(document: Document) -> tuple[tuple[EffectUse, ...], list[Issue]]:

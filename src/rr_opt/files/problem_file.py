@@ -9,14 +9,15 @@ from pathlib import Path
 from typing import Literal
 
 from rr_opt.files.fields import validate
-from rr_opt.files.issue import InvalidFileError, Issue, Level, has_errors, nearest, shown
-from rr_opt.files.problem_model import OWN_SHAPE, GaitModel, LimitsModel, ProblemModel
+from rr_opt.files.issue import InvalidFileError, Issue, Level, has_errors
+from rr_opt.files.problem_model import OWN_SHAPE, ProblemModel
 from rr_opt.files.robot_file import RobotModel, robot_from
 from rr_opt.files.source import SHIPPED, is_result, problem_path, read_content, read_document
 from rr_opt.files.yaml_text import Document
-from rr_opt.model.ballast import Loads, inertia_ratio, with_inertia_ratio
-from rr_opt.model.problem import GaitBounds, Interval, Limits, Problem, RatioChoice
-from rr_opt.model.robot import Robot, Servo
+from rr_opt.messages import nearest, shown
+from rr_opt.model.ballast import inertia_ratio, with_inertia_ratio
+from rr_opt.model.problem import GaitBounds, Interval, Problem, RatioChoice
+from rr_opt.model.robot import Robot
 from rr_opt.outcome import InputError
 
 Kind = Literal["robot", "problem", "study", "experiment", "result"]
@@ -85,10 +86,10 @@ LONGEST_PERIOD = 60.0
 """Longer ones are taken for a slip of the unit, s."""
 
 
-def gait_findings(gait: GaitModel, document: Document) -> Iterator[Issue]:
+def gait_findings(gait: GaitBounds, document: Document) -> Iterator[Issue]:
     """Gaits that say nothing, or whose steady cycle nobody could compute or wait for."""
     for key, shape in OWN_SHAPE.items():
-        if getattr(gait, key) is not None and gait.shape != shape:
+        if key in document.data.get("gait", {}) and gait.shape != shape:
             message = (
                 f"Read {key} of a gait with the shape `{gait.shape}`. Only a `{shape}` gait "
                 f"has {key}. Write `shape: {shape}`, or delete this key."
@@ -260,50 +261,21 @@ def problem_from(sources: Sources) -> tuple[Problem | None, list[Issue]]:
     issues += found
     if model is None or robot is None:
         return None, issues
-    ratio = _ratio(model)
-    issues += _contradictions(model, ratio, robot, document)
+    issues += _contradictions(model, robot, document)
     if has_errors(issues):
         return None, issues
+    ratio = model.inertia_ratio
     problem = Problem(
         robot=robot,
-        limits=_limits(model.limits, robot.servo),
-        gait=_gait(model.gait),
+        limits=model.limits,
+        gait=model.gait,
         inertia_ratio=reachable(ratio, robot) if ratio else None,
         direction=model.direction,
     )
     return problem, issues
 
 
-def _gait(given: GaitModel) -> GaitBounds:
-    counts = {key: getattr(given, key) for key in OWN_SHAPE}
-    return GaitBounds(
-        amplitude=given.amplitude,
-        period=given.period,
-        offset=given.offset,
-        shape=given.shape,
-        **{key: count for key, count in counts.items() if count is not None},
-    )
-
-
-def _ratio(model: ProblemModel) -> RatioChoice | None:
-    given = model.inertia_ratio
-    if given is None:
-        return None
-    return RatioChoice(given.bounds, given.about, given.by, Loads(**given.loads.model_dump()))
-
-
-def _limits(given: LimitsModel, servo: Servo) -> Limits:
-    return Limits(
-        angle=servo.angle_limit if given.angle is None else given.angle,
-        rate=servo.rate_limit if given.rate is None else given.rate,
-        torque=servo.torque_limit if given.torque is None else given.torque,
-        singularity=given.singularity,
-    )
-
-
-def _contradictions(
-    model: ProblemModel, ratio: RatioChoice | None, robot: Robot, document: Document
-) -> Iterator[Issue]:
+def _contradictions(model: ProblemModel, robot: Robot, document: Document) -> Iterator[Issue]:
     """What the problem asks for and its robot cannot do."""
     yield from gait_findings(model.gait, document)
     if robot.k1 == robot.k2 == 0 and not robot.physics:
@@ -312,7 +284,7 @@ def _contradictions(
             "gait settles to a steady speed. Give at least one platform a kappa above 0."
         )
         yield document.issue("error", ("robot",), message)
-    if ratio:
+    if ratio := model.inertia_ratio:
         for level, key, message in ratio_findings(ratio, robot):
             yield document.issue(level, ("inertia_ratio", key), message)
         written = document.data["inertia_ratio"]

@@ -8,16 +8,18 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, Field, GetJsonSchemaHandler, SkipValidation
+from pydantic import ConfigDict, Field, GetJsonSchemaHandler, SkipValidation
 from pydantic_core import CoreSchema
 
-from rr_opt.files.fields import Quantity, validate
-from rr_opt.files.issue import InvalidFileError, Issue, has_errors, shown, unknown_word
+from rr_opt.files.fields import FileModel, Key, Section, keys_of, validate
+from rr_opt.files.issue import InvalidFileError, Issue, has_errors
 from rr_opt.files.source import read_document
 from rr_opt.files.yaml_text import Document, KeyPath, path_text
+from rr_opt.messages import shown, unknown_word
 from rr_opt.model.ballast import inertia_ratio
 from rr_opt.model.parameters import SYMBOLS
 from rr_opt.model.robot import Platform, Robot, Servo
+from rr_opt.units import Quantity
 
 _LARGEST_LENGTH = 5.0
 """Longer platforms are taken for millimetres written as metres, m."""
@@ -124,61 +126,19 @@ def _longest(platform: Platform) -> tuple[str, float]:
 DEFAULT_WHEEL_RADIUS = 0.020
 """h where a robot file does not need one, m."""
 
-ANGLE = Quantity("rad", "2.6", above=0, below=math.pi)
-RATE = Quantity("rad/s", "30 rpm", above=0, endless=True)
-TORQUE = Quantity("N m", "14 kgf*cm", above=0, endless=True)
-Angle = Annotated[float, ANGLE]
-Rate = Annotated[float, RATE]
-Torque = Annotated[float, TORQUE]
 
-
-class FileModel(BaseModel):
-    """Keys of a file: none other than those named, and nothing converted in silence."""
-
-    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
-
-
-def quantity(symbol: str) -> Quantity:
-    """Unit and range of a parameter of the robot."""
-    one = SYMBOLS[symbol]
-    return Quantity(one.unit, one.example, above=one.above, at_least=one.at_least)
-
-
-def described(symbol: str, **default: Any) -> Any:
-    """A field that says what the parameter is."""
-    one = SYMBOLS[symbol]
-    return Field(**default, description=f"{one.definition}, {one.unit.replace('^', '')}.")
-
-
-class PlatformModel(FileModel):
+class PlatformModel(keys_of(Platform)):
     """One platform with its wheel pair. Give kappa or k, not both."""
 
     model_config = ConfigDict(
         json_schema_extra={"oneOf": [{"required": ["kappa"]}, {"required": ["k"]}]}
     )
 
-    m: Annotated[float, quantity("m")] = described("m")
-    I: Annotated[float, quantity("I")] = described("I")
-    c: Annotated[float, quantity("c")] = described("c")
-    a: Annotated[float, quantity("a")] = described("a")
-    b: Annotated[float, quantity("b")] = described("b")
-    kappa: Annotated[float | None, quantity("kappa")] = described("kappa", default=None)
-    k: Annotated[float | None, Quantity("N s/m", "0.155", at_least=0)] = Field(
+    kappa: Annotated[float | None, Key(SYMBOLS["kappa"].quantity)] = Field(
+        default=None, description=SYMBOLS["kappa"].description
+    )
+    k: Annotated[float | None, Key(Quantity("N s/m", "0.155", at_least=0))] = Field(
         default=None, description="Viscous friction of one wheel along the floor, kappa/h^2, N s/m."
-    )
-
-
-class ServoModel(FileModel):
-    """What the servo can do."""
-
-    angle_limit: Angle = Field(
-        default=Servo.angle_limit, description="Largest |phi|, rad, below pi."
-    )
-    rate_limit: Rate = Field(
-        default=Servo.rate_limit, description="Largest |dphi/dt|, rad/s; .inf: no limit."
-    )
-    torque_limit: Torque = Field(
-        default=Servo.torque_limit, description="Largest |torque|, N m; .inf: no limit."
     )
 
 
@@ -200,11 +160,13 @@ class RobotModel(FileModel):
     name: str = Field(default="", description="What people call this robot.")
     platform1: PlatformModel = Field(description="The platform whose heading is psi.")
     platform2: PlatformModel = Field(description="The platform that the servo turns by phi.")
-    h: Annotated[float | None, quantity("h")] = Field(
+    h: Annotated[float | None, Key(SYMBOLS["h"].quantity)] = Field(
         default=None,
         description="Wheel radius, m. Needed with kappa or physics; else 20 mm, without effect.",
     )
-    servo: ServoModel = Field(default_factory=ServoModel, description="The servo's limits.")
+    servo: Annotated[Servo, Section()] = Field(
+        default_factory=Servo, description="The servo's limits."
+    )
     physics: Annotated[list[dict[str, Any]], SkipValidation, _EffectsSchema()] = Field(
         default_factory=list, description="Effects beyond the paper's model, by catalogue name."
     )
@@ -221,7 +183,7 @@ _KEYS: dict[str, tuple[str, ...]] = {
     "": tuple(key for key in RobotModel.model_fields if key not in ("name", "provenance")),
     "platform1": tuple(PlatformModel.model_fields),
     "platform2": tuple(PlatformModel.model_fields),
-    "servo": tuple(ServoModel.model_fields),
+    "servo": tuple(keys_of(Servo).model_fields),
 }
 
 
@@ -286,7 +248,7 @@ def robot_from(document: Document) -> tuple[Robot | None, list[Issue]]:
         platform1=_platform(model.platform1, h),
         platform2=_platform(model.platform2, h),
         h=h,
-        servo=Servo(**model.servo.model_dump()),
+        servo=model.servo,
         name=model.name,
         **beyond,
     )

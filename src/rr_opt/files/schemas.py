@@ -7,9 +7,9 @@ from typing import Any, Literal, get_args
 from pydantic import BaseModel
 
 from rr_opt.files.experiment_model import ExperimentModel
-from rr_opt.files.issue import unknown_word
 from rr_opt.files.problem_model import ProblemModel, StudyModel
 from rr_opt.files.robot_file import RobotModel
+from rr_opt.messages import unknown_word
 from rr_opt.outcome import InputError
 
 FileKind = Literal["robot", "problem", "study", "experiment"]

@@ -10,12 +10,13 @@ from typing import Any
 import numpy as np
 
 from rr_opt.files.fields import validate
-from rr_opt.files.issue import Issue, shown
+from rr_opt.files.issue import Issue
 from rr_opt.files.problem_model import MOST_CASES, RangeModel
 from rr_opt.files.study_keys import Key, key_of
-from rr_opt.files.units import to_si
 from rr_opt.files.yaml_text import Document, KeyPath
+from rr_opt.messages import shown
 from rr_opt.outcome import InputError
+from rr_opt.units import to_si
 
 
 def refuse_conflict(key: Key, values: object, seen: Mapping[KeyPath, tuple[Key, object]]) -> None:

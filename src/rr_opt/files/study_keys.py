@@ -10,11 +10,12 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from rr_opt.files.issue import InvalidFileError, Issue, shown, unknown_word
+from rr_opt.files.issue import InvalidFileError, Issue
 from rr_opt.files.problem_file import Sources, problem_sources
 from rr_opt.files.schemas import schema
 from rr_opt.files.source import SHIPPED, read_document
 from rr_opt.files.yaml_text import Document, KeyPath, path_text
+from rr_opt.messages import shown, unknown_word
 from rr_opt.outcome import InputError
 
 _STEP = re.compile(r"(?:^|\.)([A-Za-z_][A-Za-z0-9_-]*)|\[([0-9]{1,3})\]")

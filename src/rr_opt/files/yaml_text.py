@@ -14,7 +14,8 @@ from typing import Any, NoReturn
 
 import yaml
 
-from rr_opt.files.issue import InvalidFileError, Issue, Level, shown
+from rr_opt.files.issue import InvalidFileError, Issue, Level
+from rr_opt.messages import shown
 
 KeyPath = tuple[str | int, ...]
 """The keys and list indices that lead to a value."""

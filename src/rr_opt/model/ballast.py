@@ -11,31 +11,40 @@ inertia together.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, Literal
 
+from rr_opt.model.fields import SI, data, declared
 from rr_opt.model.robot import Platform, Robot
 from rr_opt.outcome import InputError
+from rr_opt.units import Quantity
 
 About = Literal["joint", "centre"]
 By = Literal["inertia", "loads"]
 
 
-@dataclass(frozen=True)
-class Loads:
-    """Loads that can be hung on platform 2.
+_DISTANCE = Quantity("m", "44.1 mm", at_least=0)
 
-    mass      of one load, kg (Table 1: 66 g)
+
+@data
+class Loads:
+    """Loads that can be hung on platform 2; one weighs 66 g in Table 1.
+
+    mass      of one load, kg
     distance  from the joint P to the loads along platform 2's axis, towards its axle, m
     spread    of the loads to either side of the axis, m: they hang in a balanced way, so the
               centre of mass stays on the axis and each adds mass*spread^2 of inertia
     whole     True: only whole numbers of loads exist
     """
 
-    mass: float = 0.066
-    distance: float = 0.0441
-    spread: float = 0.05
-    whole: bool = False
+    mass: SI = declared(Quantity("kg", "66 g", above=0), "Mass of one load, kg.", default=0.066)
+    distance: SI = declared(
+        _DISTANCE, "From the joint P to the loads, towards the axle, m.", default=0.0441
+    )
+    spread: SI = declared(
+        _DISTANCE, "Of the loads to either side of the platform's axis, m.", default=0.05
+    )
+    whole: bool = declared(None, "true: only whole numbers of loads exist.", default=False)
 
     @property
     def each(self) -> tuple[float, float, float]:

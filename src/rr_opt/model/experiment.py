@@ -13,26 +13,28 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rr_opt.array import Array
+from rr_opt.model.fields import SI, Count, data, declared
 from rr_opt.model.gait import Gait
 from rr_opt.model.parameters import Uncertainty
 from rr_opt.model.robot import Robot
+from rr_opt.units import Quantity
 
 
-@dataclass(frozen=True)
+@data
 class CountScale:
-    """Counts to phi; by default those of the servo CDS5516.
+    """What the counts of a servo's log mean; the defaults are those of the servo CDS5516."""
 
-    counts  how many there are over `range`, rad; a negative range: phi falls as they rise
-    zero    the count at which phi = 0
-    """
-
-    counts: int = 1024
-    range: float = math.radians(300)
-    zero: float = 512.0
+    counts: int = declared(Count(2, 1_000_000), "How many counts there are.", default=1024)
+    range: SI = declared(
+        Quantity("rad", "300 deg"),
+        "The angle they cover, rad; negative where phi falls as they rise.",
+        default=math.radians(300),
+    )
+    zero: SI = declared(Quantity("", "512"), "The count at which phi = 0.", default=512.0)
 
     @property
     def each(self) -> float:
-        """By how much phi rises with a count, rad."""
+        """By how much phi rises per count, rad."""
         return self.range / self.counts
 
 
@@ -87,13 +89,13 @@ Use = Literal["fit", "holdout"]
 Start = Literal["rest", "running"]
 
 
-@dataclass(frozen=True)
+@data
 class Noise:
-    """Standard deviation of the capture system: position (m), angle (rad); torque (N m)."""
+    """One standard deviation of the capture system: position (m), angle (rad), torque (N m)."""
 
-    position: float
-    angle: float
-    torque: float = 0.003
+    position: SI = declared(Quantity("m", "1 mm", above=0), "Of x and y, m.")
+    angle: SI = declared(Quantity("rad", "3 mrad", above=0), "Of psi and phi, rad.")
+    torque: SI = declared(Quantity("N m", "3 mN*m", above=0), "Of the torque, N m.", default=0.003)
 
     def of(self, channel: str) -> float:
         """That of x, y, psi, phi or torque."""

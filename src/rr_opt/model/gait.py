@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol, Self
 
@@ -11,6 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rr_opt.array import Array
+from rr_opt.model.fields import SI, Numbers, Series, data, declared
+from rr_opt.units import Quantity
 
 
 class Gait(Protocol):
@@ -72,16 +73,23 @@ class Gait(Protocol):
         ...
 
 
-@dataclass(frozen=True)
+AMPLITUDE = Quantity("rad", "30 deg", at_least=0)
+PERIOD = Quantity("s", "1.2 s", at_least=0.01)
+"""No servo follows 100 Hz: a shorter period is a slip of the unit."""
+OFFSET = Quantity("rad", "10 deg")
+_ANGLE = Quantity("rad", "0.5")
+
+
+@data
 class SineGait:
     """phi(t) = amplitude sin(2 pi t/period) + offset (the paper's equation 5).
 
     amplitude (alpha) and offset (phi0) in rad, period (T) in s.
     """
 
-    amplitude: float
-    period: float
-    offset: float = 0.0
+    amplitude: SI = declared(AMPLITUDE, "amplitude, rad.")
+    period: SI = declared(PERIOD, "period, s.")
+    offset: SI = declared(OFFSET, "offset, rad.", default=0.0)
 
     shape = "sine"
     pieces = 1
@@ -124,17 +132,19 @@ _SAMPLES = 64
 """Samples per harmonic among which an extreme is looked for."""
 
 
-@dataclass(frozen=True)
+@data
 class FourierGait:
     """phi(t) = offset + sum over n of sines[n-1] sin(2 pi n t/T) + cosines[n-1] cos(2 pi n t/T).
 
     period (T) in s, offset (phi0), sines (alpha_n) and cosines (beta_n), as many of each, in rad.
     """
 
-    period: float
-    offset: float
-    sines: tuple[float, ...]
-    cosines: tuple[float, ...]
+    period: SI = declared(PERIOD, "period, s.")
+    offset: SI = declared(OFFSET, "offset, rad.")
+    sines: Numbers = declared(Series(_ANGLE), "the sizes of the sines, rad, one for each harmonic.")
+    cosines: Numbers = declared(
+        Series(_ANGLE), "the sizes of the cosines, rad, one for each harmonic."
+    )
 
     shape = "fourier"
     pieces = 1
@@ -202,7 +212,7 @@ class FourierGait:
         return float(max(size.max(), peaks.max(initial=0.0)))
 
 
-@dataclass(frozen=True)
+@data
 class FreeGait:
     """phi(t) with a constant acceleration on each of N equal intervals of the period.
 
@@ -211,10 +221,12 @@ class FreeGait:
     rounding, jumps where the next begins.
     """
 
-    period: float
-    angle0: float
-    rate0: float
-    accelerations: tuple[float, ...]
+    period: SI = declared(PERIOD, "period, s.")
+    angle0: SI = declared(_ANGLE, "phi at the start, rad.")
+    rate0: SI = declared(Quantity("rad/s", "1.5"), "dphi/dt at the start, rad/s.")
+    accelerations: Numbers = declared(
+        Series(Quantity("rad/s^2", "0.1"), least=2), "d2phi/dt2 on each interval, rad/s2."
+    )
 
     shape = "free"
 

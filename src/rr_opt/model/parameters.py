@@ -8,8 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
-from rr_opt.model.robot import Robot
+from rr_opt.units import Quantity
+
+if TYPE_CHECKING:
+    from rr_opt.model.robot import Robot
 
 
 @dataclass(frozen=True)
@@ -83,6 +87,16 @@ class Parameter:
         return (
             (self.symbol,) if self.platform is None else (f"platform{self.platform}", self.symbol)
         )
+
+    @property
+    def quantity(self) -> Quantity:
+        """Its unit and range."""
+        return Quantity(self.unit, self.example, above=self.above, at_least=self.at_least)
+
+    @property
+    def description(self) -> str:
+        """Its definition with the unit, as a sentence."""
+        return f"{self.definition}, {self.unit.replace('^', '')}."
 
     @property
     def full_words(self) -> str:

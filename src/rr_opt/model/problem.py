@@ -4,76 +4,89 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 from rr_opt.model.ballast import About, By, Loads
-from rr_opt.model.robot import Robot
+from rr_opt.model.fields import SI, Bounds, Count, Interval, OptionalSI, Range, data, declared
+from rr_opt.model.gait import AMPLITUDE, OFFSET
+from rr_opt.model.robot import ANGLE_LIMIT, RATE_LIMIT, TORQUE_LIMIT, Robot
+from rr_opt.units import Quantity
 
 Direction = Literal["forward", "backward", "either"]
 Shape = Literal["sine", "fourier", "free"]
 
 
-@dataclass(frozen=True)
-class Interval:
-    """A closed interval; `low == high` fixes the quantity."""
-
-    low: float
-    high: float
-
-    @property
-    def fixed(self) -> bool:
-        """Both ends are one."""
-        return self.low == self.high
-
-    def clip(self, value: float) -> float:
-        """The number of the interval that is nearest to value."""
-        return min(max(value, self.low), self.high)
-
-
-@dataclass(frozen=True)
+@data
 class GaitBounds:
     """Where amplitude (rad), period (s) and offset (rad) of the gait may lie, and its shape.
 
-    A gait that is no sine has the mean angle `offset`, its first harmonic has at least the least
-    amplitude, and phi never leaves the offset by more than the largest. So every sine within the
-    bounds is a gait of the other shapes within the bounds too.
+    A fourier or free gait has the mean angle offset, its first harmonic has at least the least
+    amplitude, and it never leaves the offset by more than the largest: every sine within the
+    bounds is allowed, and other shapes with it.
 
     harmonics  of a `fourier` gait
     intervals  of a `free` gait, on each of which the servo's acceleration is constant
     """
 
-    amplitude: Interval = Interval(0.05, 2.6)
-    period: Interval = Interval(0.3, 3.0)
-    offset: Interval = Interval(0.0, 0.0)
-    shape: Shape = "sine"
-    harmonics: int = 3
-    intervals: int = 96
+    amplitude: Bounds = declared(Range(AMPLITUDE), "Amplitude, rad.", default=Interval(0.05, 2.6))
+    period: Bounds = declared(
+        Range(Quantity("s", "1.2 s", above=0)), "Period, s.", default=Interval(0.3, 3.0)
+    )
+    offset: Bounds = declared(
+        Range(OFFSET),
+        "Offset, rad: phi swings about it, and if it is not 0 the robot turns.",
+        default=Interval(0.0, 0.0),
+    )
+    shape: Shape = declared(
+        None,
+        "The shape of phi(t): sine; fourier, of several harmonics; or free, with a "
+        "constant acceleration on each of many intervals of the period.",
+        default="sine",
+    )
+    harmonics: int = declared(Count(1, 16), "Of a fourier gait; 3 if left out.", default=3)
+    intervals: int = declared(
+        Count(16, 384, even=True), "Of a free gait, an even number; 96 if left out.", default=96
+    )
 
 
-@dataclass(frozen=True)
+@data
 class RatioChoice:
     """J20/J10 as a decision: its bounds, its definition and its realisation."""
 
-    bounds: Interval
-    about: About = "joint"
-    by: By = "inertia"
-    loads: Loads = field(default_factory=Loads)
+    bounds: Bounds = declared(Range(Quantity("", "0.2", above=0)), "J20/J10, dimensionless.")
+    about: About = declared(
+        None, "The J are taken about the joint P, or each centre of mass.", default="joint"
+    )
+    by: By = declared(None, "Realised by I of platform 2 alone, or by loads.", default="inertia")
+    loads: Loads = field(
+        default_factory=Loads,
+        metadata={"description": "The loads, if the ratio is realised by loads."},
+    )
 
 
 LARGEST_EXCESS = 1e-4
 """By so much, relative to it, a gait may go over a limit and still counts as keeping it."""
 
 
-@dataclass(frozen=True)
+@data
 class Limits:
     """|phi| <= angle (rad), |dphi/dt| <= rate (rad/s), |torque| <= torque (N m),
-    S1 = c1 cos phi + c2 >= singularity (m)."""
+    S1 = c1 cos phi + c2 >= singularity (m).
 
-    angle: float
-    rate: float
-    torque: float
-    singularity: float = 0.020
+    A limit that is left out (None) is the robot's servo's; the Problem fills it in.
+    """
+
+    angle: OptionalSI = declared(ANGLE_LIMIT, "Largest |phi|, rad, below pi.", default=None)
+    rate: OptionalSI = declared(
+        RATE_LIMIT, "Largest |dphi/dt|, rad/s; .inf: no limit.", default=None
+    )
+    torque: OptionalSI = declared(
+        TORQUE_LIMIT, "Largest |torque|, N m; .inf: no limit.", default=None
+    )
+    singularity: SI = declared(
+        Quantity("m", "20 mm", above=0), "The least S1 = c1 cos phi + c2 allowed, m.", default=0.020
+    )
 
     def worst(self, reached: Mapping[str, float]) -> tuple[str, float]:
         """The limit that is broken most, or kept most narrowly, and its excess relative to it.
@@ -94,20 +107,24 @@ class Limits:
 ANY = Interval(-math.inf, math.inf)
 
 
-@dataclass(frozen=True)
+@data
 class Turn:
     """Which circles a gait may go round; what is not asked may be anything.
 
     Positive is to the left (counter-clockwise, seen from above), wherever the robot goes.
-
-    curvature  heading gained per metre along the mean circle, 1/m
-    yaw_rate   heading gained per second, rad/s
-    heading    heading gained per period, rad
     """
 
-    curvature: Interval = ANY
-    yaw_rate: Interval = ANY
-    heading: Interval = ANY
+    curvature: Bounds = declared(
+        Range(Quantity("1/m", "0.5")),
+        "Heading gained per metre along the mean circle, 1/m.",
+        default=ANY,
+    )
+    yaw_rate: Bounds = declared(
+        Range(Quantity("rad/s", "10 deg/s")), "Heading gained per second, rad/s.", default=ANY
+    )
+    heading: Bounds = declared(
+        Range(Quantity("rad", "90 deg")), "Heading gained per period, rad.", default=ANY
+    )
 
 
 @dataclass(frozen=True)
@@ -118,8 +135,15 @@ class Problem:
     """
 
     robot: Robot
-    limits: Limits
+    limits: Limits = field(default_factory=Limits)
     gait: GaitBounds = field(default_factory=GaitBounds)
     inertia_ratio: RatioChoice | None = None
     direction: Direction = "either"
     turn: Turn | None = None
+
+    def __post_init__(self) -> None:
+        servo, given = self.robot.servo, self.limits
+        able = {"angle": servo.angle_limit, "rate": servo.rate_limit, "torque": servo.torque_limit}
+        left_out = {name: value for name, value in able.items() if getattr(given, name) is None}
+        if left_out:
+            object.__setattr__(self, "limits", replace(given, **left_out))

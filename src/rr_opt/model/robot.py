@@ -9,9 +9,19 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
+from typing import Any
+
+from rr_opt.model.fields import SI, data, declared
+from rr_opt.model.parameters import SYMBOLS
+from rr_opt.units import Quantity
 
 
-@dataclass(frozen=True)
+def _parameter(symbol: str) -> Any:
+    one = SYMBOLS[symbol]
+    return declared(one.quantity, one.description)
+
+
+@data
 class Platform:
     """One platform with its wheel pair.
 
@@ -23,12 +33,12 @@ class Platform:
     kappa  viscous friction of one wheel about its axle, N m s
     """
 
-    m: float
-    I: float
-    c: float
-    a: float
-    b: float
-    kappa: float
+    m: SI = _parameter("m")
+    I: SI = _parameter("I")
+    c: SI = _parameter("c")
+    a: SI = _parameter("a")
+    b: SI = _parameter("b")
+    kappa: SI = _parameter("kappa")
 
     @property
     def joint_to_centre(self) -> float:
@@ -38,18 +48,27 @@ class Platform:
     @property
     def joint_inertia(self) -> float:
         """Moment of inertia about P by the parallel-axis theorem, kg m2."""
-        # Products overflow to infinity, which is then told of; powers raise.
+        # A product overflows to infinity, which a check then reports; a power raises.
         reach = self.joint_to_centre
         return self.I + self.m * (reach * reach)
 
 
-@dataclass(frozen=True)
+ANGLE_LIMIT = Quantity("rad", "2.6", above=0, below=math.pi)
+RATE_LIMIT = Quantity("rad/s", "30 rpm", above=0, endless=True)
+TORQUE_LIMIT = Quantity("N m", "14 kgf*cm", above=0, endless=True)
+
+
+@data
 class Servo:
     """What the servo can do: |phi| (rad), |dphi/dt| (rad/s), |torque| (N m)."""
 
-    angle_limit: float = 2.6
-    rate_limit: float = math.pi
-    torque_limit: float = 1.37
+    angle_limit: SI = declared(ANGLE_LIMIT, "Largest |phi|, rad, below pi.", default=2.6)
+    rate_limit: SI = declared(
+        RATE_LIMIT, "Largest |dphi/dt|, rad/s; .inf: no limit.", default=math.pi
+    )
+    torque_limit: SI = declared(
+        TORQUE_LIMIT, "Largest |torque|, N m; .inf: no limit.", default=1.37
+    )
 
 
 @dataclass(frozen=True)
@@ -60,7 +79,7 @@ class EffectUse:
     values: Mapping[str, float]
 
 
-@dataclass(frozen=True)
+@data
 class Robot:
     """A Roller Racer. `physics` lists effects beyond the paper's model.
 
@@ -70,7 +89,7 @@ class Robot:
 
     platform1: Platform
     platform2: Platform
-    h: float
+    h: SI = _parameter("h")
     servo: Servo = field(default_factory=Servo)
     physics: tuple[EffectUse, ...] = ()
     provenance: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))

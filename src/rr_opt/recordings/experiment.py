@@ -10,7 +10,8 @@ import numpy as np
 
 from rr_opt.files.experiment_file import named_files, read_plan
 from rr_opt.files.experiment_plan import ExperimentPlan, MarkerPlaces, PlannedRun
-from rr_opt.files.issue import InvalidFileError, Issue, has_errors, shown
+from rr_opt.files.issue import InvalidFileError, Issue, has_errors
+from rr_opt.messages import shown
 from rr_opt.model.experiment import Experiment, Recording, Run
 from rr_opt.outcome import InputError
 from rr_opt.recordings.markers.layout import Layout

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rr_opt.array import Array
-from rr_opt.files.issue import shown
+from rr_opt.messages import shown
 from rr_opt.recordings.readers.text import refuse
 from rr_opt.recordings.time_axis import check_rate, in_order, rate_of, time_doubts
 

@@ -8,7 +8,7 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
-from rr_opt.files.issue import shown
+from rr_opt.messages import shown
 from rr_opt.model.experiment import CHANNELS, Flag, Noise, Recording
 from rr_opt.recordings.readers.text import Text, check_columns, find_header, read_table, refuse
 from rr_opt.recordings.time_axis import in_order, rate_of, time_doubts

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Literal
 
-from rr_opt.files.issue import shown
+from rr_opt.messages import shown
 from rr_opt.model.experiment import CHANNELS, CountScale, Noise, Recording
 from rr_opt.recordings.readers.c3d import is_c3d, markers_from_c3d
 from rr_opt.recordings.readers.marker_rows import MarkerData

@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rr_opt.array import Array
-from rr_opt.files.issue import InvalidFileError, Issue, nearest, shown
+from rr_opt.files.issue import InvalidFileError, Issue
+from rr_opt.messages import nearest, shown
 
 _MOST = 20
 """A file that is wrong in every row is told from its first ones."""

@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from rr_opt.files.issue import shown
+from rr_opt.messages import shown
 from rr_opt.recordings.readers.marker_rows import MarkerData, MarkerRows, marker_data
 from rr_opt.recordings.readers.text import Text, cells_of, read_table, refuse, separator_of
 

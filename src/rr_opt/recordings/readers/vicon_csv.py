@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rr_opt.files.issue import shown
+from rr_opt.messages import shown
 from rr_opt.recordings.readers.marker_rows import MarkerData, MarkerRows, marker_data
 from rr_opt.recordings.readers.text import Text, cells_of, read_table, refuse, separator_of
 

@@ -1,8 +1,8 @@
-"""A number, or a number with its unit, to SI.
+"""Numbers with units, such as `30 rpm`, to SI.
 
-`30 rpm` is pi rad/s. pint knows what a unit is worth and is loaded only when one is written.
-It never sees the text itself: the text is split here into names and small whole powers, so
-that a hostile expression such as `9**9**9**9` is refused and not computed.
+pint knows the units, and is loaded only when one is written. It never sees the text itself: the
+text is split here into names and small integer powers, so a hostile expression such as
+`9**9**9**9` is refused, not computed.
 
 Angles are kept apart from plain numbers: 30 Hz is not 30 rad/s, and 5 % is not an angle.
 """
@@ -11,10 +11,11 @@ from __future__ import annotations
 
 import math
 import re
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
-from rr_opt.files.issue import nearest, shown
+from rr_opt.messages import nearest, shown
 from rr_opt.outcome import InputError
 
 _KINDS = {
@@ -36,14 +37,8 @@ _KINDS = {
 }
 """What base units, as pint writes them, measure."""
 
-
-def kind_of_quantity(base: str) -> str:
-    """The kind of quantity that has these base units: `kg·m²/s²` is a torque."""
-    return _KINDS.get(base, "another kind of quantity")
-
-
-LONGEST = 60
-"""Longest text read as a quantity, characters."""
+_LONGEST = 60
+"""Longest text read as a number with a unit, characters."""
 
 _NUMBER = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 _QUANTITY = re.compile(rf"\s*({_NUMBER})\s*(.*)", re.DOTALL)
@@ -58,10 +53,10 @@ _ALSO = {"N m s": ("N m s/rad",), "N m": ("N m/rad",)}
 
 
 def to_si(value: object, unit: str) -> float:
-    """The value in `unit`, which must be an SI unit such as `rad/s`; "" is dimensionless.
+    """The value in `unit`, an SI unit such as `rad/s`; "" is dimensionless.
 
-    A plain number is taken to be in `unit` already. Infinity is passed through if it was
-    given as a number. Raises InputError for anything that is not a number of that dimension.
+    A plain number is in `unit` already, and may be infinite. Raises InputError for anything that is
+    not a number of that dimension.
     """
     if isinstance(value, bool) or not isinstance(value, int | float | str):
         raise InputError(f"Read {shown(value)}. Expected {_wanted(unit)}.")
@@ -84,7 +79,7 @@ def _wanted(unit: str) -> str:
 
 
 def _split(text: str, unit: str) -> tuple[float, str]:
-    match = _QUANTITY.fullmatch(text) if len(text) <= LONGEST else None
+    match = _QUANTITY.fullmatch(text) if len(text) <= _LONGEST else None
     if match is None:
         raise InputError(f"Read the text {shown(text)}. Expected {_wanted(unit)}.")
     return float(match[1]), match[2].strip()
@@ -104,7 +99,7 @@ def _worth(written: str, unit: str, text: str) -> float:
         expected_factor, expected = _base(accepted)
         if dimension == expected:
             return factor / expected_factor
-    what = kind_of_quantity(dimension)
+    what = _KINDS.get(dimension, "another kind of quantity")
     advice = ""
     if unit == "rad/s" and dimension == _base("Hz")[1]:
         advice = " Turns per second or radians per second? Write rpm, rad/s or deg/s."
@@ -164,8 +159,78 @@ def _factors(written: str) -> list[tuple[str, int]]:
             signs.pop()
         if token["sign"] != "1" and token[0].strip():
             sign = -1 if token["sign"] == "/" else 1
-    if position < len(written) or len(signs) != 1 or sign != 1:
+    nothing = (written and not factors) or re.search(r"\(\s*\)", written)
+    if position < len(written) or len(signs) != 1 or sign != 1 or nothing:
         raise _UnitError(
             "Its unit cannot be understood; units look like `kg m^2`, `N*s/m` or `rpm`."
         )
     return factors
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A number with its unit and range, as a file or a caller may give it.
+
+    unit      the SI unit, "" if it has none
+    above     exclusive lower bound; at_least, at_most: inclusive; below: exclusive
+    endless   `.inf` is allowed and means that there is no limit
+    example   a text that a user could write
+    """
+
+    unit: str
+    example: str
+    above: float | None = None
+    at_least: float | None = None
+    at_most: float | None = None
+    below: float | None = None
+    endless: bool = False
+
+    def read(self, value: object) -> float:
+        """The value in `unit`. Raises InputError if it is not one, or out of its range."""
+        try:
+            number = to_si(value, self.unit)
+        except InputError as error:
+            raise InputError(f"{error} Write for example `{self.example}`.") from None
+        inside = (
+            (self.above is None or number > self.above)
+            and (self.at_least is None or number >= self.at_least)
+            and (self.at_most is None or number <= self.at_most)
+            and (self.below is None or number < self.below)
+            and (math.isfinite(number) or (self.endless and number > 0))
+        )
+        if not inside:
+            known = "" if isinstance(value, int | float) else f", {number:.6g} {self.unit}".rstrip()
+            raise InputError(
+                f"Read {shown(value)}{known}. Expected {self.range_text()}. "
+                f"Write for example `{self.example}`."
+            )
+        return number
+
+    def range_text(self) -> str:
+        """What is expected, in words."""
+        parts = [
+            f"{word} {bound:.6g}"
+            for word, bound in (
+                ("above", self.above),
+                ("at least", self.at_least),
+                ("at most", self.at_most),
+                ("below", self.below),
+            )
+            if bound is not None
+        ]
+        kind = f"a number in {self.unit}" if self.unit else "a number"
+        last = ", or .inf for no limit" if self.endless else ""
+        return " ".join([kind, " and ".join(parts) or "that is finite"]) + last
+
+    def json_schema(self) -> dict[str, Any]:
+        """JSON Schema: a number within the range, or a text with a unit."""
+        bounds = {
+            "exclusiveMinimum": self.above,
+            "minimum": self.at_least,
+            "maximum": self.at_most,
+            "exclusiveMaximum": self.below,
+        }
+        number = {"type": "number", **{k: v for k, v in bounds.items() if v is not None}}
+        unit = self.unit or "dimensionless"
+        text = {"type": "string", "description": f"a number with a unit of the kind {unit}"}
+        return {"anyOf": [number, text], "examples": [self.example], "x-unit": unit}
