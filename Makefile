@@ -14,15 +14,19 @@ BIN := $(VENV)/bin
 PIP := PIP_DISABLE_PIP_VERSION_CHECK=1 PYTHONWARNINGS=ignore $(BIN)/python -m pip --no-input
 INSTALL := $(PIP) install -qq
 
+# The sections of requirements.lock: a heading `# [NAME]`, then pins up to an empty line.
+section = sed -n '/^\# \[$(1)\]/,/^$$/p' requirements.lock
+
 # A stamp carries the checksum of what was installed and where. Changed pins, or a checkout
 # that was moved, need a new environment; a touched file does not.
-checksum = $(shell { pwd; cat pyproject.toml $(1); } | cksum | cut -d' ' -f1)
-RUN := $(VENV)/run-$(call checksum,requirements/run.txt)
-BENCHMARKS ?= startup optimise turn sweep fit study recordings diagnose
+checksum = $(shell { pwd; cat pyproject.toml; $(foreach name,$(1),$(call section,$(name));) } | cksum | cut -d' ' -f1)
+RUN := $(VENV)/run-$(call checksum,run)
+DEV := $(VENV)/dev-$(call checksum,run dev)
+DOCS := $(VENV)/docs-$(call checksum,run docs)
 BENCH_VENV := .venv-bench
-BENCH := $(BENCH_VENV)/ready-$(call checksum,requirements/run.txt requirements/bench.txt)
+BENCH := $(BENCH_VENV)/ready-$(call checksum,run bench)
+BENCHMARKS ?= startup optimise turn sweep fit study recordings diagnose
 MEASURE := OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 $(BENCH_VENV)/bin/python -W ignore
-DEV := $(VENV)/dev-$(call checksum,requirements/run.txt requirements/dev.txt)
 
 .DEFAULT_GOAL := help
 .PHONY: help run test check format-check lint types contracts format readme results bench real prove demo pins clean
@@ -56,7 +60,7 @@ format: $(DEV) ## format the code and sort its imports
 	$(BIN)/ruff format .
 
 readme: $(DEV) ## run every command of README.md
-	$(BIN)/python scripts/readme_commands.py README.md
+	$(BIN)/python -m tests.readme_commands README.md
 
 results: $(DEV) ## write the results that are kept in results/
 	$(BIN)/rr-opt maximize-speed --out results/prototype
@@ -65,7 +69,7 @@ results: $(DEV) ## write the results that are kept in results/
 	$(BIN)/rr-opt shapes --out results/shapes
 	$(BIN)/rr-opt turn-chart --out results/turn-chart
 	$(BIN)/rr-opt study problems/studies/servo.yaml --restart --out results/servo
-	$(BIN)/python scripts/lab_null.py
+	$(BIN)/python -m benchmarks.lab_agreement
 	$(BIN)/rr-opt reproduce --out results/paper
 	$(BIN)/rr-opt calibrate --out results/calibration
 
@@ -75,23 +79,37 @@ bench: $(BENCH) ## measure against other ways to the same answer, into results/b
 	done; $(MEASURE) -m benchmarks.regression
 
 real: $(DEV) ## diagnose a real pendulum (DATA=/path/to/data_measured.csv)
-	$(BIN)/python scripts/real_pendulum.py "$(DATA)"
+	$(BIN)/python -m benchmarks.real_pendulum "$(DATA)"
 
 prove: $(DEV) ## try the diagnosis on 100 sealed cases, of the commit's own seed (hours)
 	$(BIN)/rr-opt prove --workers $(WORKERS) --out results/proof
 
 demo: $(DEV) ## record, diagnose, open the seal, correct, predict: some minutes (SEED=5)
-	$(BIN)/python scripts/demonstration.py --seed $(SEED)
+	$(BIN)/python docs/demonstration.py --seed $(SEED)
 
 pins: $(RUN) ## pin the newest dependencies that pyproject.toml allows
-	$(BIN)/python scripts/pins.py
+	@set -e; export LC_ALL=C; new=$$(mktemp -d); trap 'rm -r "$$new"' EXIT; \
+	freeze() { \
+	  $(BIN)/python -m venv --clear "$$new/venv"; pip="$$new/venv/bin/python -m pip --no-input"; \
+	  $$pip install -qq 'setuptools>=77' "$$2"; \
+	  $$pip freeze --all --exclude pip --exclude rr-opt | sort >"$$new/$$1"; \
+	  if [ -n "$$(comm -23 "$$new/run" "$$new/$$1")" ]; then \
+	    echo "The extras of $$1 change pins of run: give pyproject.toml narrower bounds." >&2; exit 1; \
+	  fi; \
+	}; \
+	freeze run .; freeze dev '.[netcdf,animate,cluster,lab,dev]'; freeze docs '.[docs]'; \
+	{ \
+	  sed '/^# \[run\]/,$$d' requirements.lock; echo '# [run]'; cat "$$new/run"; \
+	  for name in dev docs; do printf '\n# [%s]\n' $$name; comm -13 "$$new/run" "$$new/$$name"; done; \
+	  echo; sed -n '/^# \[bench\]/,$$p' requirements.lock; \
+	} >"$$new/lock"; cp "$$new/lock" requirements.lock
 
 clean: ## remove the environment and everything temporary
 	rm -rf $(VENV) $(BENCH_VENV) build dist out .pytest_cache .hypothesis .ruff_cache .import_linter_cache
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
 	rm -rf src/*.egg-info
 
-$(RUN): | requirements/run.txt
+$(RUN): | requirements.lock
 	@for python in $(PYTHONS); do \
 	  if $$python -c 'import sys; sys.exit(sys.version_info < tuple(map(int, "$(MIN_PYTHON)".split("."))))' \
 	    2>/dev/null; then found=$$python; break; fi; \
@@ -106,18 +124,24 @@ $(RUN): | requirements/run.txt
 	fi; \
 	echo "Setting up $(VENV) with $$($$found -V); once, a minute or two ..."; \
 	$$found -m venv --clear $(VENV)
-	@$(INSTALL) -r requirements/run.txt
+	@$(call section,run) | $(INSTALL) -r /dev/stdin
 	@$(INSTALL) --no-deps --no-build-isolation -e .
 	@touch $@
 
 $(DEV): $(RUN)
 	@echo "Installing what tests and checks need ..."
-	@$(INSTALL) -r requirements/dev.txt
+	@$(call section,dev) | $(INSTALL) -r /dev/stdin
 	@touch $@
 
-$(BENCH): $(RUN)
+$(DOCS): $(RUN)
+	@echo "Installing what the documentation needs ..."
+	@$(call section,docs) | $(INSTALL) -r /dev/stdin
+	@touch $@
+
+$(BENCH): BIN := $(BENCH_VENV)/bin
+$(BENCH): | $(RUN)
 	@echo "Installing what to measure against, into $(BENCH_VENV) ..."
-	@$(BIN)/python -m venv --clear $(BENCH_VENV)
-	@PIP_DISABLE_PIP_VERSION_CHECK=1 $(BENCH_VENV)/bin/python -m pip --no-input install -qq --no-deps -r requirements/bench.txt
-	@PIP_DISABLE_PIP_VERSION_CHECK=1 $(BENCH_VENV)/bin/python -m pip --no-input install -qq --no-deps --no-build-isolation -e .
+	@$(VENV)/bin/python -m venv --clear $(BENCH_VENV)
+	@$(call section,bench) | $(INSTALL) --no-deps -r /dev/stdin
+	@$(INSTALL) --no-deps --no-build-isolation -e .
 	@touch $@

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from rr_opt.files.lint import lint_file
-from scripts.readme_commands import Commands, File, blocks, missing, steps
+from tests.readme_commands import Commands, File, blocks, missing, steps
 
 ROOT = Path(__file__).parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -23,7 +23,7 @@ def dry_run(targets):
 
 
 def test_make_readme_runs_the_readme():
-    assert "scripts/readme_commands.py README.md" in dry_run(["readme"])
+    assert "-m tests.readme_commands README.md" in dry_run(["readme"])
 
 
 def test_no_block_is_passed_over():

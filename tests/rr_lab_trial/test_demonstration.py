@@ -4,8 +4,8 @@ import math
 
 import pytest
 
+from docs.demonstration import effect_text, mean_speed
 from rr_lab.cli.record import read_effects
-from scripts.demonstration import effect_text, mean_speed
 
 
 def written(path, speed, heading):

@@ -1,4 +1,4 @@
-"""A real pendulum, diagnosed: `python scripts/real_pendulum.py PATH/TO/data_measured.csv`.
+"""A real pendulum, diagnosed: `python -m benchmarks.real_pendulum PATH/TO/data_measured.csv`.
 
 The recording is that of the DFKI RIC Underactuated Robotics Lab's torque-limited simple pendulum
 (system identification under PD control: time, position, velocity, torque). Begun with viscous

@@ -1,4 +1,4 @@
-"""How well the laboratory agrees with the reduced model: `python scripts/lab_null.py`.
+"""How well the laboratory agrees with the reduced model: `python -m benchmarks.lab_agreement`.
 
 Robots and gaits by lot, nothing hidden. Each run of ten periods is recorded by each engine with
 smaller and smaller steps; CVODES drives the reduced model from the initial state that fits best.
@@ -96,10 +96,10 @@ def main() -> None:
 
 HEAD = f"""# The laboratory with nothing hidden
 
-Written by `python scripts/lab_null.py`. {RUNS} robots and gaits by lot, {PERIODS} periods each, in
-each engine and in the reduced model, which starts where it fits best (place, heading, speed). The
-displacement is that over all periods. Sigma is 1 mm and 3 mrad. Seconds are CPU time for 30 s.
-Columns without `worst` are medians. `null.csv` has every run.
+Written by `python -m benchmarks.lab_agreement`. {RUNS} random robots and gaits, {PERIODS} periods
+each, in each engine and in the reduced model, which starts where it fits best (place, heading,
+speed). The displacement is that over all periods. Sigma is 1 mm and 3 mrad. Seconds are CPU time
+for 30 s. Columns without `worst` are medians. `null.csv` has every run.
 """
 
 NAMES = {"mujoco": "MuJoCo", "planar": "The planar engine"}

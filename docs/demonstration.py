@@ -1,4 +1,4 @@
-"""Five minutes with the whole tool: `python scripts/demonstration.py [--seed N]`.
+"""Five minutes with the whole tool: `python docs/demonstration.py [--seed N]`.
 
 A robot with something hidden in it is recorded, and the answer sealed. The diagnosis sees the
 recordings alone. Then the seal is opened, the fastest gait is looked for with the model as believed
