@@ -59,3 +59,12 @@ def test_the_angle_limit_is_below_half_a_turn(write, robot_text, limit: str):
     (issue,) = lint_file(write(f"{robot_text}servo: {{angle_limit: {limit}}}\n"))
     assert issue.path == "servo.angle_limit"
     assert "below 3.14159" in issue.message
+
+
+@pytest.mark.parametrize("text", ["root: secret\nuser: secret\n", "root:secret\nuser:secret\n"])
+def test_a_file_that_is_none_of_ours_is_not_quoted(write, text):
+    write(text, "passwords")
+    (issue,) = lint_file(write("robot: passwords\n", "problem.yaml"))
+    assert "Expected" in issue.message
+    assert "secret" not in str(issue)
+    assert "user" not in str(issue)

@@ -146,6 +146,13 @@ def test_a_value_is_refused_where_it_is_written_with_its_case(write):
         ("vary: {limits.rate: [30 rpm, 180 deg/s]}\n", "vary.'limits.rate'", "'180 deg/s'"),
         ("vary: {direction: [forward, forward]}\n", "vary.direction", "value 2"),
         (
+            "vary: limits.rate = 10 .. 30 rpm\ntogether: [{limits.torque: [1, 2]}]\n",
+            "vary",
+            "Expected keys, each with its values",
+        ),
+        ("vary: [a]\ntogether: [{limits.torque: [1, 2]}]\n", "vary", "Read ['a']"),
+        ("vary: {limits.torque: [1, 2]}\ntogether: 7\n", "together", "Expected a list"),
+        (
             "together: [{limits.rate: [1, 1, 1], limits.torque: [1, 2, 1]}]\n",
             "together[0]",
             "value 3, which is value 1",

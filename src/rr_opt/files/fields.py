@@ -24,7 +24,7 @@ from pydantic_core import CoreSchema, core_schema
 
 from rr_opt.files.issue import Issue
 from rr_opt.files.yaml_text import Document
-from rr_opt.messages import one_of, shown, unknown_word
+from rr_opt.messages import nearest, one_of, shown, unknown_word
 from rr_opt.model.fields import Interval, Range, Reader
 from rr_opt.outcome import InputError
 
@@ -130,11 +130,22 @@ _EXPECTED = {
     "model_attributes_type": "keys with values under it",
     "string_type": "a text",
     "bool_type": "true or false",
+    "list_type": "a list",
 }
 
 
 def validate(model: type[Model], document: Document) -> tuple[Model | None, list[Issue]]:
-    """The document as a model, or None and every issue found."""
+    """The document as a model, or None and every issue found.
+
+    Of a whole file that has none of the model's keys, nothing is quoted: another file was named.
+    """
+    known = list(model.model_fields)
+    if not document.prefix and len(document.data) > 1:
+        if not any(nearest(key, known) for key in document.data):
+            message = (
+                f"Read {len(document.data)} keys, none of them known. Expected {one_of(known)}."
+            )
+            return None, [document.issue("error", (), f"{message} Is this the right file?")]
     try:
         return model.model_validate(document.data), []
     except ValidationError as error:

@@ -276,8 +276,12 @@ def _groups(
 ) -> list[tuple[KeyPath, dict[str, Any]]]:
     """The keys of each axis or axes, and where they stand."""
     groups: list[tuple[KeyPath, dict[str, Any]]] = []
-    if isinstance(varied := document.data.get("vary"), dict):
+    varied = document.data.get("vary", {})
+    if isinstance(varied, dict):
         groups += [(("vary",), {key: values}) for key, values in varied.items()]
+    else:
+        note(("vary",), f"Read {shown(varied)}. Expected keys, each with its values. Write for "
+             "example `{limits.rate: {from: 10 rpm, to: 60 rpm, count: 11}}`.")  # fmt: skip
     if isinstance(together := document.data.get("together"), list):
         for number, group in enumerate(together):
             if isinstance(group, dict) and group:

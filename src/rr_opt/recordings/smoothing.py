@@ -28,6 +28,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.linalg import get_lapack_funcs, solveh_banded
 from scipy.optimize import minimize_scalar
 from scipy.special import factorial
@@ -99,27 +100,25 @@ class Precision:
     above: Array
 
 
-def precision(step: Array, ratio: float, weight: Array) -> Precision:
-    """That of the states at n samples.
+def precision(step: Array, ratio: float, seen: Array) -> Precision:
+    """That of the states at n nodes.
 
-    step: (n - 1,), between samples; ratio: q over a sample's variance; weight: (n,), 1 over the
-    samples' variances relative to that variance, 0 where there is no sample.
+    step: (n - 1,), between nodes; ratio: q over a sample's variance; seen: (n, 3, 3), what the
+    samples at a node say of its state, in units of one over that variance.
     """
     A = transition(step)
     # Q(step) is Q(1) between two diagonal scalings, which are inverted without loss.
     scale = step[:, None] ** -(ORDER - 0.5 - np.arange(ORDER))
     W = scale[:, :, None] * np.linalg.inv(diffusion(np.ones(1))[0]) * scale[:, None] / ratio
     WA = W @ A
-    D = np.zeros((len(weight), ORDER, ORDER))
-    D[:, 0, 0] = weight
-    D += _VAGUE * np.eye(ORDER)
+    D = seen + _VAGUE * np.eye(ORDER)
     D[1:] += W
     D[:-1] += np.swapaxes(A, 1, 2) @ WA
     return Precision(D, -np.swapaxes(WA, 1, 2))
 
 
 def mean(P: Precision, pull: Array) -> Array:
-    """The states' means (n, 3); pull: (n,), weight times sample."""
+    """The states' means (n, 3); pull: (n, 3), what the samples make of each."""
     n = len(pull)
     size = ORDER * n
     band = np.zeros((2 * ORDER, size))
@@ -129,8 +128,7 @@ def mean(P: Precision, pull: Array) -> Array:
             if i <= j:
                 band[2 * ORDER - 1 + i - j, columns] = P.diagonal[:, i, j]
             band[ORDER - 1 + i - j, columns[1:]] = P.above[:, i, j]
-    right = np.zeros(size)
-    right[::ORDER] = pull
+    right = pull.reshape(size)
     return solveh_banded(band, right, overwrite_ab=True, check_finite=False).reshape(n, ORDER)
 
 
@@ -210,9 +208,13 @@ def strength(y: Array, sigma: float) -> float:
     return float(np.exp(best.x))
 
 
-_CLOSEST, _FARTHEST = 1e-3, 1e3
-"""Neighbours are taken to be at least and at most so many steps apart. Across more than the latter
-they say nothing of each other, and arithmetic would suffer."""
+_CLOSEST = 0.3
+"""Samples within so many steps of the first of them share a node: the noise that drives the signal
+adds nothing between them that a sample would show, and steps much smaller would suffer in the
+arithmetic, which has their fifth power."""
+_FARTHEST = 1e3
+"""Neighbours are taken to be at most so many steps apart. Across more they say nothing of each
+other, and arithmetic would suffer."""
 _SMOOTH_FEWEST = 4
 
 
@@ -251,9 +253,16 @@ def smoothed(t: Array, y: Array, sigma: Array | float, ratio: float) -> Smooth:
     u = (t - t[known].mean()) / tau
     trend = np.polynomial.Polynomial.fit(u[known], y[known], 2)
     left = np.where(known, y - trend(u), 0.0) / usual
-    P = precision(np.clip(np.diff(u), _CLOSEST, _FARTHEST), ratio, weight)
-    state = mean(P, weight * left) * usual
-    spread = covariance(P)
+    node = _nodes(u)
+    first = np.flatnonzero(np.diff(node, prepend=-1))
+    A = transition(u - u[first][node])
+    # Each sample sees the signal of its node's state, moved on to its own time.
+    H = A[:, 0]
+    seen = np.add.reduceat(weight[:, None, None] * H[:, :, None] * H[:, None], first)
+    pull = np.add.reduceat((weight * left)[:, None] * H, first)
+    P = precision(np.clip(np.diff(u[first]), _CLOSEST, _FARTHEST), ratio, seen)
+    state = np.einsum("nij,nj->ni", A, mean(P, pull)[node]) * usual
+    spread = A @ covariance(P)[node] @ np.swapaxes(A, 1, 2)
     sigmas = usual * np.sqrt(np.maximum(spread[:, range(3), range(3)], 0.0))
     return Smooth(
         state[:, 0] + trend(u),
@@ -262,6 +271,16 @@ def smoothed(t: Array, y: Array, sigma: Array | float, ratio: float) -> Smooth:
         sigmas[:, 0], sigmas[:, 1] / tau, sigmas[:, 2] / tau**2,
         weight * spread[:, 0, 0],
     )  # fmt: skip
+
+
+def _nodes(u: Array) -> NDArray[np.int_]:
+    """The node of each of the increasing times u (n,), in steps, from 0."""
+    begins = np.diff(u, prepend=-np.inf) >= _CLOSEST
+    start = -np.inf
+    for i in np.flatnonzero(~begins | np.append(~begins[1:], False)):
+        if u[i] - start >= _CLOSEST:
+            begins[i], start = True, u[i]
+    return np.cumsum(begins) - 1
 
 
 def derivatives(t: Array, y: Array, sigma: Array | float | None = None) -> Smooth:

@@ -20,6 +20,8 @@ def time_step(t: Array) -> float:
     return float(np.median(step)) if len(step) else 1.0
 
 
+_LATEST = 1e12
+"""No clock shows so many seconds, in any unit."""
 _RESTARTS = 5
 """A file whose time falls back less often, and by more rows than this at once, was joined."""
 
@@ -42,12 +44,13 @@ class Order:
 def in_order(t: Array, values: Array, lines: Sequence[int] | NDArray[np.int64]) -> Order:
     """The order of rows with the times t (n,) and values (n, ...), which stand at some lines.
 
-    A row without a time has no place. Of rows with one time the first is kept.
+    A row without a time, or with one that no clock shows, has no place. Of rows with one time the
+    first is kept.
     """
     doubts: list[str] = []
     lines = np.asarray(lines)
-    rows = np.flatnonzero(np.isfinite(t))
-    lost = lines[~np.isfinite(t)]
+    timed = np.abs(t) < _LATEST
+    rows, lost = np.flatnonzero(timed), lines[~timed]
     if len(lost):
         doubts.append(f"Without a time, and so left out: {_rows(lost)}.")
     moved = np.zeros(len(rows), bool)

@@ -51,7 +51,8 @@ def recordings(draw):
     for name in CHANNELS:
         values[name][holes] = np.nan
         flags[name] = np.where(np.isnan(values[name]), Flag.MISSING, 0).astype(np.uint8)
-    t = np.cumsum(rng.uniform(0.5, 1.5, n)) * draw(st.sampled_from([1e-6, 1e-2, 1.0, 1e4]))
+    least, jitter = draw(st.sampled_from([(0.5, 1), (1e-12, 1), (1e-12, 9)]))
+    t = np.cumsum(least + rng.random(n) ** jitter) * draw(st.sampled_from([1e-6, 1e-2, 1.0, 1e4]))
     if draw(st.booleans()):
         t[n // 2 :] += draw(st.sampled_from([1e-9, 10.0, 1e6]))
     sigma = np.full(n, draw(st.sampled_from([1e-9, 1e-3, np.nan, 10.0])))

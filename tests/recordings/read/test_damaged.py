@@ -160,6 +160,7 @@ ONCE_FAILED = {
     "huge times": PLAIN.replace(b"0.01", b"1e300").replace(b"0.02", b"2e300"),
     "tiny times": PLAIN.replace(b"0.01", b"5e-324").replace(b"0.02", b"1e-323"),
     "times of all sizes": PLAIN.replace(b"0.01", b"1e9").replace(b"0.02", b"1e-300"),
+    "a huge time": PLAIN + b"1e308,1,2,3,4\n",
     "signalling NaN": c3d().replace(struct.pack("<f", 100.0) + struct.pack("<f", 200.0), SIGNAL),
     "endless label": c3d().replace(b"\xff\x01\x02mm", b"\xff\x04\xff\xff\xff\xff"),
 }

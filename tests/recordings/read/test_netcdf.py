@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import json
 from types import MappingProxyType
 
@@ -149,3 +150,22 @@ def test_half_a_file(tmp_path, run, part):
 def test_netcdf_3(write):
     with pytest.raises(InputError, match="netCDF 3"):
         read_file(write(b"CDF\x01" + bytes(40)))
+
+
+def test_a_damaged_file_is_an_error_and_nothing_else_is_printed(tmp_path, capfd):
+    (tmp_path / "a.csv").write_text("t,x,y,psi,phi\n0,1,2,3,4\n0.01,1,2,3,4\n")
+    made = read_file(tmp_path / "a.csv")
+    path = write_netcdf(tmp_path / "a.nc", made)
+    whole = path.read_bytes()
+    rng = np.random.default_rng(0)
+    told = []
+    for _ in range(60):
+        at = int(rng.integers(len(whole)))
+        path.write_bytes(whole[:at] + rng.bytes(8) + whole[at + 8 :])
+        try:
+            read_file(path)
+        except InputError as error:
+            told.append(str(error))
+        gc.collect()
+    assert len(told) > 10
+    assert capfd.readouterr() == ("", "")

@@ -77,8 +77,8 @@ REFUSED = {
     "no frame": (TEXT.replace("\n2\t", "\n\t"), 8, "no number of a frame"),
     "no time": (
         TEXT.replace("0.00\t1000", "\t1000").replace("0.02\t", "\t").replace("0.04\t", "\t"),
-        6,
-        "no time in column 2",
+        7,
+        "no row with a time",
     ),
 }
 

@@ -89,6 +89,9 @@ def marker_data(
     doubts += told
     t = (rows.frame - 1) / rows.rate if rows.t is None else rows.t
     order = in_order(t, rows.positions, rows.lines)
+    if not len(order.rows):
+        first = int(rows.lines[0]) if len(rows.lines) else None
+        refuse(file, "Read no row with a time. Expected one in each. Export it once more.", first)
     positions = rows.positions[order.rows] * scale
     origin = (positions == 0).all(axis=2)
     if origin.any():

@@ -188,6 +188,10 @@ SIGNATURE = b"\x89HDF\r\n\x1a\n"
 """How every netCDF 4 file begins, which is HDF 5."""
 
 
+_LARGEST = 500_000_000
+"""A compressed file of a few bytes can state any number of values; bytes."""
+
+
 def is_netcdf(path: Path) -> bool:
     """Whether a file that is there begins as netCDF 4 does."""
     with path.open("rb") as file:
@@ -223,8 +227,16 @@ def commanded_gait(path: Path) -> Gait | None:
 
 def _opened(path: Path) -> Any:
     xarray = library()
+    import h5py
+
     try:
+        # h5netcdf prints a traceback when it throws away a file that it could not open.
+        with h5py.File(path) as file:
+            file.visititems(lambda name, item: None)
         with xarray.open_dataset(path, engine="h5netcdf", decode_cf=False) as opened:
+            if opened.nbytes > _LARGEST:
+                refuse(str(path), f"The file holds {opened.nbytes / 1e9:.3g} GB of numbers. "
+                       f"Expected at most {_LARGEST / 1e9:g} GB. Cut the recording.")  # fmt: skip
             return opened.load()
     except InputError:
         raise

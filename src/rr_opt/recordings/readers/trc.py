@@ -62,8 +62,6 @@ def markers_from_trc(text: Text, name: str) -> MarkerData:
         unit_place=("`Units`", 3),
         lines=table.lines,
     )
-    if not np.isfinite(table.values[:, 1]).any():
-        refuse(text.file, "Read no time in column 2. Expected one in each row.", 6)
     said = stated.get("numframes", "")
     if said.isdecimal() and int(said) != len(frames):
         doubts.append(f"The header states {int(said)} frames, and there are {len(frames)}.")
