@@ -140,12 +140,13 @@ def validate(model: type[Model], document: Document) -> tuple[Model | None, list
     Of a whole file that has none of the model's keys, nothing is quoted: another file was named.
     """
     known = list(model.model_fields)
-    if not document.prefix and len(document.data) > 1:
-        if not any(nearest(key, known) for key in document.data):
-            message = (
-                f"Read {len(document.data)} keys, none of them known. Expected {one_of(known)}."
-            )
-            return None, [document.issue("error", (), f"{message} Is this the right file?")]
+    keys = document.data
+    if not document.prefix and len(keys) > 1 and not any(nearest(key, known) for key in keys):
+        message = (
+            f"Read {len(keys)} keys, and none that is known. Expected {one_of(known)}. "
+            "Is this the right file?"
+        )
+        return None, [document.issue("error", (), message)]
     try:
         return model.model_validate(document.data), []
     except ValidationError as error:

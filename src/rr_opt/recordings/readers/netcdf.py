@@ -232,7 +232,7 @@ def _opened(path: Path) -> Any:
     try:
         # h5netcdf prints a traceback when it throws away a file that it could not open.
         with h5py.File(path) as file:
-            file.visititems(lambda name, item: None)
+            file.visititems(lambda *_: None)
         with xarray.open_dataset(path, engine="h5netcdf", decode_cf=False) as opened:
             if opened.nbytes > _LARGEST:
                 refuse(str(path), f"The file holds {opened.nbytes / 1e9:.3g} GB of numbers. "
