@@ -55,9 +55,10 @@ def test_every_miss_is_listed_with_its_page(folder):
     told = json.loads((folder / "proof.json").read_text())["misses"]
     pages = {case: f"said/{case}/{name}" for case, name in MISSES.items()}
     assert {miss["case"]: miss["page"] for miss in told} == pages
-    for text in ((folder / "README.md").read_text(), (folder / "report.html").read_text()):
-        for page in pages.values():
-            assert page in text
+    text, html = ((folder / name).read_text() for name in ("README.md", "report.html"))
+    for number, page in pages.items():
+        assert f"\n| {number}  |" in text
+        assert page in html
 
 
 def test_each_engine_is_counted_and_told(folder):

@@ -283,16 +283,16 @@ def _misses(opened: Opened) -> str:
     if not opened.misses:
         return "## Misses\n\nNone."
     rows = [
-        (f"[{case.id}]({page_of(case)})", case.outcome, case.truth.engine, hidden_text(case),
+        (case.id, case.outcome, case.truth.engine, hidden_text(case),
          visible_text(case), said_text(case))
         for case in opened.misses
     ]  # fmt: skip
     head = ("case", "outcome", "engine", "hidden", "visible", "said")
     again = (
-        "`rr-opt prove --case ID --out FOLDER`, where FOLDER is the one that this is in, makes and "
-        "diagnoses one again, if the code is still that of the trial."
+        "`rr-opt prove --case ID --out FOLDER`, where FOLDER holds this page, makes "
+        "and diagnoses a case again and writes its report. The code has to be that of the trial."
     )
-    return f"## Misses\n\nEvery one, with its page. {again}\n\n" + markdown(head, rows)
+    return f"## Misses\n\n{again}\n\n" + markdown(head, rows)
 
 
 def _not_made(opened: Opened) -> str:
