@@ -12,16 +12,31 @@ from rr_opt.array import Array
 from rr_opt.model.gait import SineGait
 from rr_opt.model.problem import Problem
 from rr_opt.model.robot import Robot
-from rr_paper.best_amplitude import BestAmplitude, audit_best_amplitude
 from rr_paper.consistency import Consistency, audit_hypotheses
-from rr_paper.period_law import PeriodLaw, audit_period
+from rr_paper.gaits import (
+    BestAmplitude,
+    PeriodLaw,
+    ServoDemand,
+    SingularPosture,
+    Turning,
+    audit_best_amplitude,
+    audit_period,
+    audit_turning,
+    servo_demands,
+    singular_posture,
+)
 from rr_paper.prototype import ABOUT_P, Sensitivity, sensitivities
 from rr_paper.publication import TABLE_3
-from rr_paper.servo_demand import ServoDemand, SingularPosture, servo_demands, singular_posture
 from rr_paper.signs import SignAudit, audit_signs
-from rr_paper.surfaces import SpeedSurface, figure4, figure5
-from rr_paper.tables import Start, Tables, recompute, start_from_rest
-from rr_paper.turning import Turning, audit_turning
+from rr_paper.tables import (
+    SpeedSurface,
+    Start,
+    Tables,
+    figure4,
+    figure5,
+    recompute,
+    start_from_rest,
+)
 
 _TYPICAL = TABLE_3[1]
 """The row that is driven where the paper does not say which run it shows."""

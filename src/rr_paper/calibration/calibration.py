@@ -11,12 +11,10 @@ from scipy.stats import chi2
 from rr_opt.array import Array
 from rr_opt.files.problem_file import read_problem
 from rr_paper.calibration.comparison import Assessment, assess
-from rr_paper.calibration.coverage import Coverage, coverage
 from rr_paper.calibration.fit import Effort, Estimator, Fit, estimator
+from rr_paper.calibration.intervals import Coverage, Posterior, Profile, coverage, profiles, sample
 from rr_paper.calibration.likelihood import Data, measured
 from rr_paper.calibration.models import DRY, MODELS, READINGS, VISCOUS, Model, Reading
-from rr_paper.calibration.posterior import Posterior, sample
-from rr_paper.calibration.profile import Profile, profiles
 from rr_paper.calibration.unknowns import UNKNOWNS, Unknown, shares
 from rr_paper.publication import COLUMNS, Column
 

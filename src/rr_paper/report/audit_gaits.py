@@ -8,7 +8,7 @@ from rr_opt.answers.quantities import number
 from rr_opt.answers.speed import SpeedAnswer
 from rr_opt.outcome import Status
 from rr_opt.report.document import Cell
-from rr_paper.best_amplitude import Peak
+from rr_paper.gaits import Peak
 from rr_paper.publication import (
     ANGLE_LIMIT,
     BEST_AMPLITUDE,

@@ -5,8 +5,8 @@ from __future__ import annotations
 from rr_opt.answers.quantities import number
 from rr_paper.calibration.calibration import JOINT_LEVEL, Calibration, Interval, shipped_values
 from rr_paper.calibration.comparison import AICc
+from rr_paper.calibration.intervals import Profile
 from rr_paper.calibration.models import DRY, READINGS, VISCOUS
-from rr_paper.calibration.profile import Profile
 from rr_paper.calibration.unknowns import UNKNOWNS, Unknown
 from rr_paper.publication import COLUMNS, Column
 

@@ -32,13 +32,11 @@ from rr_opt.report.figures.style import (
 )
 from rr_paper.consistency import QUESTIONS, Consistency, Question
 from rr_paper.equation3 import CORRECTED, PRINTED
-from rr_paper.period_law import PeriodLaw
+from rr_paper.gaits import PeriodLaw, Turning
 from rr_paper.publication import ANGLE_LIMIT, RATE_LIMIT, Row
 from rr_paper.reproduction import Reproduction
 from rr_paper.signs import Comparison
-from rr_paper.surfaces import SpeedSurface
-from rr_paper.tables import AMPLITUDES, RecomputedRow, Start, Tables
-from rr_paper.turning import Turning
+from rr_paper.tables import AMPLITUDES, RecomputedRow, SpeedSurface, Start, Tables
 
 _THREE = (FORWARD, PLATFORM1, BACKWARD)
 """Colours of three rows or circles."""

@@ -17,7 +17,7 @@ from rr_paper.publication import CITATION, RATE_LIMIT
 from rr_paper.report.audit import Finding
 from rr_paper.report.audit_gaits import findings
 from rr_paper.reproduction import Reproduction
-from rr_paper.surfaces import SpeedSurface
+from rr_paper.tables import SpeedSurface
 
 AUDIT, RECORD = "audit.md", "reproduce.json"
 
