@@ -12,8 +12,7 @@ import numpy as np
 
 from rr_lab.case import Case, Delivery, Plan, motion_of, recorded, stream
 from rr_lab.effects import effect_named, rig_with
-from rr_lab.formats import c3d_bytes, log_text, vicon_text
-from rr_lab.markers import places, seen
+from rr_lab.formats import c3d_bytes, log_text, places, seen, vicon_text
 from rr_opt.model.experiment import Recording
 from rr_opt.model.parameters import PARAMETERS, PLATFORM_SYMBOLS, Uncertainty, parameters_of
 from rr_opt.model.robot import EffectUse, Platform, Robot

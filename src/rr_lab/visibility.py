@@ -1,6 +1,4 @@
-"""How visible what is hidden in a case is, and how strong it has to be for that.
-
-How visible what is hidden in a case is, told by the laboratory itself.
+"""How visible hidden effects are, by the laboratory's own runs, and how strong they have to be.
 
 A run of the case is held against the same run of the nominal robot, both without noise, after the
 initial state has been fitted: place, heading, and the speed with which the run begins. What is left

@@ -108,14 +108,13 @@ def prove(
     if opened is None:
         typer.echo(f"{cases} cases in {folder / 'cases'}, their answers in {folder / 'answers'}")
         return
-    from rr_lab.report.files import write_proof
-    from rr_lab.report.summary import record, summary
+    from rr_lab.report.trial import document, record, write_proof
+    from rr_opt.report.text import terminal
 
     written = write_proof(opened, folder)
     tidy(folder, [case.id for case in opened.cases if not case.missed])
-    typer.echo(strict_json(record(opened)) if json else summary(opened), nl=False)
-    if not json:
-        typer.echo("\n" + "".join(f"{path}\n" for path in written), nl=False)
+    text = strict_json(record(opened)) if json else terminal(document(opened), written)
+    typer.echo(text, nl=False)
 
 
 def _count(words: str, steps: Iterator[int], done: int, total: int) -> None:
@@ -135,8 +134,7 @@ def _count(words: str, steps: Iterator[int], done: int, total: int) -> None:
 
 def _one(folder: Path, drawn: Drawn, number: int, *, json: bool) -> str:
     """Make one case again, diagnose it, and tell what was hidden and what was said."""
-    from rr_lab.report.files import told
-    from rr_lab.report.summary import case_record
+    from rr_lab.report.trial import case_record, case_text
     from rr_lab.trial.child import one_case
     from rr_lab.trial.lots import draw_lot
     from rr_opt.cli.steps import Steps
@@ -146,7 +144,7 @@ def _one(folder: Path, drawn: Drawn, number: int, *, json: bool) -> str:
     place = folder / "again" / lot.id
     with Steps() as steps:
         found = one_case(lot, place, write_bytes, steps)
-    return strict_json(case_record(found)) if json else told(found, place)
+    return strict_json(case_record(found)) if json else case_text(found, place)
 
 
 def _drawn(

@@ -1,11 +1,9 @@
-"""One case diagnosed by a program of its own, and how that ended.
-
-One case diagnosed by a program of its own, which is given the case's folder and nothing else.
+"""One case diagnosed by a separate process, which is given the case's folder and nothing else.
 
 What this isolates: the program runs in a new process, in a temporary folder that is named alike for
 every case and holds a copy of the recordings. Its arguments name that folder, its environment is a
 short list of variables, and its Python takes no settings from outside. No argument, variable, file
-or file name there tells the case's number, its kind, the seed or where the answer is.
+or file name there reveals the case's number, its kind, the seed or where the answer is.
 
 What it does not: the process belongs to the same user, who may read all files of the machine. A
 program that went to look for the answer would find it. `rr-opt diagnose` does not look.

@@ -1,13 +1,10 @@
-"""What each case of a trial is, by lot from the trial's seed; the case made and sealed.
+"""What each case of a trial is, drawn from the trial's seed; the case made and sealed.
 
-The seed of a published trial: the hash of the commit that it is run on.
-
-Nobody can choose such a seed, as it changes with every change of the code that it tries.
-
-What each case of a trial is, by lot from the trial's seed and the case's number.
+The seed of a published trial is the hash of the commit that it runs on. Nobody can choose it, as it
+changes with every change of the code that is tried.
 
 Kinds come in blocks of fixed composition, shuffled, so that a case depends on nothing but seed,
-kinds and its own number: a trial can be made longer, and one case can be made again by itself.
+kinds and its own number: a trial can be extended, and one case can be made again by itself.
 """
 
 from __future__ import annotations

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from rr_lab.engines import ENGINES
-from rr_lab.trial import statistics as coverage
 from rr_lab.trial.case import FLOOR, SURE, Case
 from rr_lab.trial.lots import STRENGTHS
-from rr_lab.trial.statistics import Measure, Rate, rate
+from rr_lab.trial.statistics import COVERAGE, Measure, Rate, intervals, rate
 
 
 def singles(cases: Sequence[Case]) -> list[Measure]:
@@ -112,7 +111,7 @@ def measures(cases: Sequence[Case]) -> list[Measure]:
         *pairs([case for case in cases if case.truth.kind == "pair"]),
         Measure(
             "parameters",
-            "wrong values told as such",
+            "wrong values recognised",
             "Of the cases with one or two wrong nominal values, those with the verdict "
             "`parameters`, whichever it names.",
             rate(case.outcome == "right" for case in wrong),
@@ -216,9 +215,9 @@ def by_engine(cases: Sequence[Case]) -> dict[str, list[Measure]]:
     for engine in ENGINES:
         own = [case for case in cases if case.truth.engine == engine]
         if own:
-            held = rate(one.held for one in coverage.intervals(own))
-            title = "intervals that hold the true value"
-            covered = Measure("coverage", title, coverage.DEFINITION, held)
+            held = rate(one.held for one in intervals(own))
+            title = "intervals that contain the true value"
+            covered = Measure("coverage", title, COVERAGE, held)
             found[engine] = [*measures(own), covered]
     return found
 

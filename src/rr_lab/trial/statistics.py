@@ -56,11 +56,11 @@ class Measure:
     rate: Rate
 
 
-DEFINITION = (
+COVERAGE = (
     "Of the 95 % intervals of the parameters of effects that were named by their own name under "
-    "the verdict `missing_physics`, and of wrong values named under `parameters`, those that hold "
-    "the true value; 95 % of them should. Not counted: edge_x and edge_y of a floor patch, as any "
-    "point on its edge is as good."
+    "the verdict `missing_physics`, and of wrong values named under `parameters`, those that "
+    "contain the true value; 95 % of them should. Not counted: edge_x and edge_y of a floor patch, "
+    "as any point on its edge is as good."
 )
 _ANY_POINT = ("edge_x", "edge_y")
 
@@ -115,7 +115,7 @@ def _of(case: Case) -> list[Covered]:
     ]
 
 
-P_VALUES_DEFINITION = (
+P_VALUES = (
     "Where nothing is hidden the p-values of a test should be even between 0 and 1: Kolmogorov and "
     "Smirnov's distance from that, and the chance of one so large; and how many are below 0.05."
 )

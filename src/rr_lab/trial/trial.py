@@ -1,9 +1,7 @@
-"""A trial from its seed to its opened answers, going on behind what its journals have.
-
-A trial in its order: every case is made and sealed before the first is diagnosed.
+"""A trial from its seed to its opened answers: every case is sealed before the first is diagnosed.
 
 Two journals keep what is finished, `made.jsonl` and `said.jsonl`, a line a case: a trial that was
-stopped, however, goes on behind them. In the trial's folder `answers/ID.json` has what is hidden,
+interrupted resumes from them. In the trial's folder `answers/ID.json` has what is hidden,
 `cases/ID/` the recordings, `said/ID/` what the diagnosis wrote.
 """
 
