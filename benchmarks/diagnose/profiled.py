@@ -12,11 +12,12 @@ from unittest.mock import patch
 
 import numpy as np
 
-from rr_opt.cli.diagnose_input import read, usable
 from rr_opt.machines.racer import unknown_input as pushed
 from rr_opt.machines.racer.diagnose import diagnose_racer
 from rr_opt.machines.racer.racer import RollerRacer
 from rr_opt.machines.racer.stages import gram as stages_gram
+from rr_opt.recordings.experiment import read_experiment
+from rr_opt.recordings.usable import usable
 from rr_opt.sysid import least_squares as problem
 from rr_opt.sysid import sensitivities as gram
 from rr_opt.sysid import shooting as shoot
@@ -34,7 +35,7 @@ WATCHED = {
 
 def lines(folder: Path) -> list[str]:
     """A paragraph: shares of the CPU time of one process, and operations counted."""
-    experiment, _ = usable(read(folder)[2])
+    experiment, _ = usable(read_experiment(folder))
     model = RollerRacer(experiment)
     spent, done, works = Counter[str](), Counter[str](), Counter[str]()
     with ExitStack() as stack:

@@ -25,6 +25,8 @@ PLANTED = [
     ("layers", "rr_opt/motion/planted.py", "import rr_opt.files.lint"),
     ("layers", "rr_opt/design/planted.py", "import rr_opt.cli.main"),
     ("layers", "rr_opt/design/planted.py", "import rr_opt.batch.run"),
+    ("layers", "rr_opt/report/planted.py", "import rr_opt.api.fastest"),
+    ("layers", "rr_opt/api/planted.py", "import rr_opt.cli.main"),
     ("layers", "rr_opt/sysid/planted.py", "import rr_opt.machines.racer.racer"),
     ("packages", "rr_opt/report/planted.py", "import rr_lab.rig"),
     ("packages", "rr_opt/report/planted.py", "import rr_paper.publication"),

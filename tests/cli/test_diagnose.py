@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rr_opt.cli.shared_work import SharedWork
+from rr_opt.batch.shared_work import SharedWork
 from rr_opt.model.gait import SineGait
 from rr_opt.motion.rollout import rollout
 from tests.cli.test_interrupt import PROGRAM, interrupted
@@ -117,10 +117,11 @@ def test_recordings_that_cannot_tell_are_refused(run, tables, tmp_path, change, 
 
 
 def test_one_recording_that_cannot_tell_is_left_out(tables, tmp_path):
-    from rr_opt.cli.diagnose_input import read, usable
+    from rr_opt.recordings.experiment import read_experiment
+    from rr_opt.recordings.usable import usable
 
     write(tmp_path / "trial", [tables[0], tables[1][:60], tables[2]], ("fit",) * 3)
-    experiment, told = usable(read(tmp_path / "trial")[2])
+    experiment, told = usable(read_experiment(tmp_path / "trial"))
     assert [one.name for one in experiment.runs] == ["run0.csv", "run2.csv"]
     assert len(told) == 1
     assert told[0].startswith("run1.csv: ")

@@ -37,7 +37,7 @@ def written(tmp_path, names):
 def test_one_line_names_them_all(run, tmp_path, verb):
     done = run(verb, str(written(tmp_path, OF_ROBOTS)), *GAIT, *VERBS[verb], "--json")
     assert done.exit_code == 0, done.stderr
-    (line,) = (line for line in done.stderr.splitlines() if "passed over" in line)
+    (line,) = (line for line in done.stderr.splitlines() if " ignored: " in line)
     for name in OF_ROBOTS:
         assert (name in line) == (name not in steady_effects())
     assert json.loads(done.stdout)
@@ -47,4 +47,4 @@ def test_nothing_is_said_of_the_others(run, tmp_path):
     path = written(tmp_path, sorted(steady_effects()))
     done = run("simulate", str(path), *GAIT, *VERBS["simulate"])
     assert done.exit_code == 0, done.stderr
-    assert "passed over" not in done.stderr
+    assert " ignored: " not in done.stderr

@@ -76,7 +76,7 @@ def test_wrong_input(run, options, said):
     "options", [("--amplitude", "0", "--period", "1"), ("--amplitude", "1.9", "--period", "1")]
 )
 def test_a_gait_without_a_circle(run, options):
-    done = run("circle", *options)
+    done = run("circle", "--quiet", *options)
     assert done.exit_code == 2
     assert done.stderr.count("\n") == 1
 

@@ -53,7 +53,7 @@ def test_planar_cases_need_no_mujoco(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("workers", [1, 2])
 def test_shared_work_comes_in_order_with_any_number_of_processes(workers):
-    from rr_opt.cli.shared_work import SharedWork
+    from rr_opt.batch.shared_work import SharedWork
 
     work = SharedWork(workers)
     try:

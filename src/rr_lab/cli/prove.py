@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 from rr_opt.cli.options import out_option
-from rr_opt.cli.study import CaseProgress
+from rr_opt.cli.steps import Steps
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -122,10 +122,11 @@ def _count(words: str, steps: Iterator[int], done: int, total: int) -> None:
     if done:
         typer.echo(f"{done} of {total} cases are {words} from an earlier run.", err=True)
     try:
-        with CaseProgress(done, total) as progress:
+        with Steps() as progress:
+            progress(f"case {min(done + 1, total)} of {total}")
             for _ in steps:
                 done += 1
-                progress()
+                progress(f"case {min(done + 1, total)} of {total}")
     except KeyboardInterrupt:
         kept = f"{done} of {total} cases are {words}"
         typer.echo(f"{kept} and kept. The same command goes on with the others.", err=True)
@@ -137,7 +138,6 @@ def _one(folder: Path, drawn: Drawn, number: int, *, json: bool) -> str:
     from rr_lab.report.trial import case_record, case_text
     from rr_lab.trial.child import one_case
     from rr_lab.trial.lots import draw_lot
-    from rr_opt.cli.steps import Steps
     from rr_opt.report.archive import strict_json, write_bytes
 
     lot = draw_lot(drawn.seed, number, drawn.kinds, drawn.engines)

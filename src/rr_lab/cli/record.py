@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
-from rr_opt.cli.options import out_option
-from rr_opt.cli.problem_input import place
+from rr_opt.cli.options import out_option, place
 from rr_opt.cli.steps import Steps
 from rr_opt.outcome import InputError
 
@@ -28,7 +27,7 @@ def read_runs(texts: Iterable[str], seconds: float) -> tuple[Plan, ...]:
     Raises InputError with everything that is wrong.
     """
     from rr_lab.case import Plan
-    from rr_opt.cli.motion_input import read_options
+    from rr_opt.cli.options import read_options
     from rr_opt.model.gait import SineGait
 
     plans, wrong = [], []
@@ -220,7 +219,7 @@ def record(
         from rr_lab.cli.case_files import require_apart, require_own, write_case
         from rr_lab.formats import drawn_clock
         from rr_lab.random_case import case_of
-        from rr_opt.cli.motion_input import read_options
+        from rr_opt.cli.options import read_options
         from rr_opt.report.archive import folder_for_results, strict_json
 
         if hide and (effect or seal is None):

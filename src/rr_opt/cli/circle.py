@@ -2,28 +2,21 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from rr_opt.cli.options import Amplitude, Driven, Offset, Period, read_gait, read_options
+from rr_opt.cli.show import show
 from rr_opt.cli.steps import Steps
 
 
 def circle(
-    source: Annotated[
-        Path | None,
-        typer.Argument(
-            metavar="[FILE]",
-            help="Robot file, problem file or result.json; the paper's prototype if left out.",
-        ),
-    ] = None,
+    source: Driven = None,
     *,
-    amplitude: Annotated[
-        str | None, typer.Option(help="Amplitude, rad, or with a unit: '30 deg'.")
-    ] = None,
-    period: Annotated[str | None, typer.Option(help="Period, s, or with a unit.")] = None,
-    offset: Annotated[str | None, typer.Option(help="Offset, rad, or with a unit.")] = None,
+    amplitude: Amplitude = None,
+    period: Period = None,
+    offset: Offset = None,
     json: Annotated[
         bool, typer.Option("--json", help="Print a machine-readable record alone on stdout.")
     ] = False,
@@ -33,24 +26,9 @@ def circle(
     With it how a start from rest comes to that circle. Left is positive, seen from above.
     """
     with Steps() as steps:
-        from rr_opt.answers.motion import CircleAnswer
-        from rr_opt.cli.motion_input import read_options, read_source
-        from rr_opt.motion.circle import circle_of, transient
-        from rr_opt.motion.dynamics import require_friction
-        from rr_opt.motion.steady_cycle import require_regular, steady_cycle
-        from rr_opt.report.archive import strict_json
-        from rr_opt.report.turn.circle import circle_record, circle_summary
-
         options = read_options(amplitude=amplitude, period=period, offset=offset)
-        given = read_source(source, options)
-        robot, gait = given.robot, given.gait
-        require_friction(robot)
-        require_regular(robot, gait)
-        steps("steady cycle")
-        steady = steady_cycle(robot, gait)
-        round_, start = circle_of(steady.cycle), transient(robot, steady)
-        answer = CircleAnswer(robot, gait, given.status, round_, start)
-    if json:
-        typer.echo(strict_json(circle_record(answer)), nl=False)
-    else:
-        typer.echo(circle_summary(answer), nl=False)
+        driven = read_gait(source, options)
+        from rr_opt.api import drive
+
+        answer = drive.circle(driven, progress=steps)
+    show(answer, json=json)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 
 # An interrupt while these are loaded shows a traceback, so they are few and light.
-from rr_opt.cli import interrupt
+from rr_opt import interrupt
 from rr_opt.outcome import EXIT_INTERRUPTED
 
 

@@ -15,7 +15,8 @@ from typer.core import TyperCommand, TyperGroup
 from typer.main import get_command_from_info
 from typer.models import CommandInfo
 
-from rr_opt.cli import interrupt
+from rr_opt import interrupt
+from rr_opt.cli.steps import silence
 from rr_opt.outcome import EXIT_INTERRUPTED, EXIT_WRONG_INPUT, RollerRacerError
 from rr_opt.version import __version__
 
@@ -24,6 +25,9 @@ VERBS = (
     *("study", "inspect", "diagnose", "lint", "schema"),
 )
 """Each is the function of its name in the module of its name."""
+
+
+_SHORT_HELP = {"help_option_names": ["-h", "--help"]}
 
 
 class Verbs(TyperGroup):
@@ -43,8 +47,9 @@ class Verbs(TyperGroup):
             if other is None:
                 return None
             verb = other.load()
-        info = CommandInfo(name=cmd_name, callback=verb, cls=TyperCommand)
-        return get_command_from_info(info, pretty_exceptions_short=False, rich_markup_mode=None)
+        made = _command(cmd_name, verb)
+        made.params += _quiet_option()
+        return made
 
     def invoke(self, ctx: Any) -> Any:
         """Run a verb."""
@@ -55,7 +60,9 @@ class Verbs(TyperGroup):
                 return _interrupted()
             typer.echo(str(error), err=True)
             raise typer.Exit(error.exit_code) from None
-        except KeyboardInterrupt:
+        except KeyboardInterrupt as error:
+            if str(error):
+                typer.echo(str(error), err=True)
             return _interrupted()
         except BrokenPipeError:
             raise
@@ -69,6 +76,31 @@ class Verbs(TyperGroup):
             if interrupt.seen():
                 return _interrupted()
             raise
+
+
+def _quiet_option() -> Any:
+    """--quiet, as every verb has it."""
+
+    def quiet(
+        quiet: Annotated[
+            bool,
+            typer.Option(
+                *("--quiet", "-q"),
+                callback=silence,
+                expose_value=False,
+                help="No progress and no warnings on stderr.",
+            ),
+        ] = False,
+    ) -> None:
+        silence(quiet)
+
+    made = _command("quiet", quiet)
+    return [one for one in made.params if one.name == "quiet"]
+
+
+def _command(name: str, function: Any) -> Any:
+    info = CommandInfo(name=name, callback=function, cls=TyperCommand, context_settings=_SHORT_HELP)
+    return get_command_from_info(info, pretty_exceptions_short=False, rich_markup_mode=None)
 
 
 def _others() -> dict[str, Any]:
@@ -88,6 +120,7 @@ app = typer.Typer(
     cls=Verbs,
     no_args_is_help=True,
     add_completion=False,
+    context_settings=_SHORT_HELP,
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
     help="Find the best gait of a Roller Racer robot, and check it.",

@@ -4,27 +4,45 @@ from __future__ import annotations
 
 import re
 import sys
+import time
 from types import TracebackType
 from typing import Any, Self
 
-from rr_opt.cli import interrupt
+from rr_opt import interrupt
 
 _COUNTED = re.compile(r"(.*?)\s*(\d+) of (\d+)$")
+_PARTS = 4
+"""Of a counted stage that are told where stderr is no terminal."""
+
+_quiet = False
+
+
+def silence(quiet: bool) -> None:
+    """Whether the progress of this process is silent from now on."""
+    global _quiet  # noqa: PLW0603 - there is one stderr
+    _quiet = quiet
+
+
+def silent() -> bool:
+    """Whether the user wants no progress and no warnings."""
+    return _quiet
 
 
 class Steps:
     """A context within which `steps(text)` tells the step; `start 3 of 8` moves a bar.
 
-    On a terminal one line is redrawn; elsewhere nothing is drawn, as logs need no animation.
-    A call also ends the work if the user has asked for it.
+    On a terminal one line is redrawn; elsewhere each stage is a line. A call also ends the work if
+    the user has asked for it.
     """
 
     def __init__(self) -> None:
         self._bar: Any = None
         self._task: Any = None
+        self._stage: Any = None
+        self._begun = time.monotonic()
 
     def __enter__(self) -> Self:
-        if sys.stderr.isatty():
+        if sys.stderr.isatty() and not _quiet:
             self._bar = _bar()
             self._task = self._bar.add_task("starting", total=None)
             self._bar.start()
@@ -33,14 +51,16 @@ class Steps:
     def __call__(self, text: str) -> None:
         """Tell that a step begins."""
         interrupt.check()
-        if self._bar is None:
-            return
         counted = _COUNTED.fullmatch(text)
-        if counted:
-            number, total = int(counted[2]), int(counted[3])
+        number, total = (int(counted[2]), int(counted[3])) if counted else (1, None)
+        if self._bar is not None:
             self._bar.update(self._task, description=text, completed=number - 1, total=total)
-        else:
-            self._bar.update(self._task, description=text, completed=0, total=None)
+        elif not _quiet:
+            stage = (counted[1], _PARTS * number // (total or 1)) if counted else text
+            if stage != self._stage:
+                seconds = time.monotonic() - self._begun
+                print(f"{seconds:6.1f} s  {text}", file=sys.stderr, flush=True)  # noqa: T201
+            self._stage = stage
 
     def __exit__(
         self,
@@ -56,12 +76,21 @@ class Steps:
 
 def _bar() -> Any:
     from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+    from rich.progress import (
+        BarColumn,
+        Progress,
+        TextColumn,
+        TimeElapsedColumn,
+        TimeRemainingColumn,
+    )
 
     return Progress(
         TextColumn("{task.description:<28}"),
         BarColumn(bar_width=24),
         TimeElapsedColumn(),
+        TextColumn("left"),
+        TimeRemainingColumn(),
         console=Console(stderr=True),
         transient=True,
+        speed_estimate_period=60,
     )

@@ -7,22 +7,23 @@ from typing import Annotated
 
 import typer
 
-from rr_opt.cli.options import ProblemFile, json_option, out_option
-from rr_opt.cli.problem_input import name_of, read
+from rr_opt.cli.options import ProblemFile, json_option, out_option, read_problem, results_folder
+from rr_opt.cli.show import show
 from rr_opt.cli.steps import Steps
-from rr_opt.outcome import Status
+
+Points = Annotated[
+    int,
+    typer.Option(
+        help="About so many gaits on the grid, and at least two values of each quantity.",
+        min=1,
+        max=5_000_000,
+    ),
+]
 
 
 def sweep(
     problem: ProblemFile = None,
-    points: Annotated[
-        int,
-        typer.Option(
-            help="About so many gaits on the grid, and at least two values of each quantity.",
-            min=1,
-            max=5_000_000,
-        ),
-    ] = 10_000,
+    points: Points = 10_000,
     out: Annotated[Path | None, out_option("out/NAME-sweep")] = None,
     json: Annotated[bool, json_option("sweep.json")] = False,
 ) -> None:
@@ -31,26 +32,10 @@ def sweep(
     Writes all of them, the best one, and a figure; no solver is involved.
     """
     with Steps() as steps:
-        steps("reading")
-        posed, sha256 = read(problem)
-        from rr_opt.answers.sweep import SweepAnswer
-        from rr_opt.motion.dynamics import require_friction
-        from rr_opt.report.archive import folder_for_results, strict_json
-        from rr_opt.report.swept import record, summary, values_per_decision, write_sweep
-        from rr_opt.verify.sweep import sweep as try_all
+        posed = read_problem(problem)
+        folder = results_folder(out, f"{posed.name}-sweep")
+        from rr_opt.api import survey
 
-        require_friction(posed.robot)
-        name = name_of(problem)
-        folder = folder_for_results(out or Path("out") / f"{name}-sweep")
-        counts = values_per_decision(posed, points)
-        tried = try_all(posed, counts, lambda done, of: steps(f"gait {done} of {of}"))
-        swept = SweepAnswer(name, sha256, posed, tried)
-        steps("files")
-        written = write_sweep(swept, folder)
-    if json:
-        typer.echo(strict_json(record(swept)), nl=False)
-    else:
-        typer.echo(summary(swept, written), nl=False)
-    if swept.status is Status.INFEASIBLE:
-        typer.echo(swept.message, err=True)
-        raise typer.Exit(swept.status.exit_code)
+        swept = survey.sweep(posed, points, progress=steps)
+        files = swept.save(folder, progress=steps)
+    show(swept, files, json=json)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,6 +11,7 @@ from typing import Any
 from rr_opt.files.experiment_model import PLACE, MarkersModel
 from rr_opt.files.fields import validate
 from rr_opt.files.issue import Issue, has_errors
+from rr_opt.files.source import fingerprint
 from rr_opt.files.yaml_text import Document
 from rr_opt.messages import shown
 from rr_opt.model.experiment import CountScale, Noise, Start, Uncertainty, Use
@@ -60,13 +60,8 @@ class ExperimentPlan:
 
     @property
     def sha256(self) -> str:
-        """Over the bytes of every file, each preceded by its length, in hex."""
-        digest = hashlib.sha256()
-        for path in self.paths:
-            content = path.read_bytes()
-            digest.update(f"{len(content)}\n".encode())
-            digest.update(content)
-        return digest.hexdigest()
+        """The fingerprint of every file."""
+        return fingerprint(self.paths)
 
 
 _PLATFORMS = ("platform1", "platform2")

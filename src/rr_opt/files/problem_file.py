@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
@@ -12,11 +11,11 @@ from rr_opt.files.fields import validate
 from rr_opt.files.issue import InvalidFileError, Issue, Level, has_errors
 from rr_opt.files.problem_model import OWN_SHAPE, ProblemModel
 from rr_opt.files.robot_file import RobotModel, robot_from
-from rr_opt.files.source import SHIPPED, is_result, problem_path, read_content, read_document
+from rr_opt.files.source import SHIPPED, fingerprint, is_result, problem_path, read_document
 from rr_opt.files.yaml_text import Document
 from rr_opt.messages import nearest, shown
-from rr_opt.model.ballast import inertia_ratio, with_inertia_ratio
-from rr_opt.model.problem import GaitBounds, Interval, Problem, RatioChoice
+from rr_opt.model.ballast import with_inertia_ratio
+from rr_opt.model.problem import GaitBounds, Problem, RatioChoice, reachable
 from rr_opt.model.robot import Robot
 from rr_opt.outcome import InputError
 
@@ -44,15 +43,6 @@ Finding = tuple[Level, str, str]
 """Level, key under `inertia_ratio`, message."""
 
 _ROUNDING = 1e-9
-
-
-def reachable(choice: RatioChoice, robot: Robot) -> RatioChoice:
-    """The choice without the ratios below the robot's own, if loads realise it: they only add."""
-    own = inertia_ratio(robot, choice.about)
-    low, high = choice.bounds.low, choice.bounds.high
-    if choice.by == "inertia" or low >= own or high < own * (1 - _ROUNDING):
-        return choice
-    return replace(choice, bounds=Interval(own, max(own, high)))
 
 
 def ratio_findings(choice: RatioChoice, robot: Robot) -> Iterator[Finding]:
@@ -230,23 +220,27 @@ def read_problem(path: str | Path | None = None) -> Problem:
     A robot file stands for the shipped problem with that robot and its servo's limits.
     Raises InvalidFileError with everything that is wrong in the problem and its robot.
     """
-    problem, issues = problem_from(problem_sources(path))
+    sources = problem_sources(path)
+    problem, issues = problem_from(sources)
     if problem is None:
         raise InvalidFileError(issues)
-    return problem
+    return problem.read_from(name_of(path), fingerprint(sources.paths))
+
+
+def name_of(path: str | Path | None) -> str:
+    """What a problem is called: its folder if the file is a problem.yaml, else the file."""
+    if path is None:
+        return "prototype"
+    full = problem_path(Path(path).resolve())
+    return full.parent.name if full.name == "problem.yaml" else full.stem
 
 
 def input_sha256(path: str | Path | None = None) -> str:
-    """SHA-256, in hex, over the bytes of the problem file and of the robot file it names.
+    """The fingerprint of the problem file and of the robot file it names.
 
-    Each file is preceded by its length in bytes. Raises InvalidFileError if one is unreadable.
+    Raises InvalidFileError if one is unreadable.
     """
-    digest = hashlib.sha256()
-    for file in problem_sources(path).paths:
-        content = read_content(file)
-        digest.update(f"{len(content)}\n".encode())
-        digest.update(content)
-    return digest.hexdigest()
+    return fingerprint(problem_sources(path).paths)
 
 
 def problem_from(sources: Sources) -> tuple[Problem | None, list[Issue]]:

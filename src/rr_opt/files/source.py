@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
+from collections.abc import Iterable
 from importlib.resources import files
 from pathlib import Path
 
@@ -42,11 +44,24 @@ def read_document(path: Path) -> Document:
     return parse_result(content, str(path)) or parse_yaml(content, str(path))
 
 
-def read_content(path: Path) -> bytes:
-    """The bytes of a file, one more than `LARGEST` at most. Raises InvalidFileError."""
+def fingerprint(paths: Iterable[Path]) -> str:
+    """SHA-256, in hex, over the bytes of files. Raises InvalidFileError if one is unreadable.
+
+    Each is preceded by its length, so that none can pass for two.
+    """
+    digest = hashlib.sha256()
+    for path in paths:
+        content = read_content(path, None)
+        digest.update(f"{len(content)}\n".encode())
+        digest.update(content)
+    return digest.hexdigest()
+
+
+def read_content(path: Path, most: int | None = LARGEST + 1) -> bytes:
+    """So many bytes of a file; None: all of them. Raises InvalidFileError."""
     try:
         with path.open("rb") as file:
-            return file.read(LARGEST + 1)
+            return file.read(most)
     except FileNotFoundError:
         why = "There is no such file. Check its name and folder."
     except IsADirectoryError:

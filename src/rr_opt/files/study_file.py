@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import itertools
 import math
 import re
@@ -15,7 +14,7 @@ from rr_opt.files.fields import validate
 from rr_opt.files.issue import InvalidFileError, Issue, has_errors
 from rr_opt.files.problem_file import kind_of, problem_from
 from rr_opt.files.problem_model import StudyModel
-from rr_opt.files.source import read_content, read_document
+from rr_opt.files.source import fingerprint, read_document
 from rr_opt.files.study_axes import Axis, Line, axes_of
 from rr_opt.files.study_keys import Setting, base_sources, with_values
 from rr_opt.files.yaml_text import Document
@@ -177,7 +176,7 @@ def study_from(document: Document, file: Path) -> tuple[Study | None, list[Issue
     issues += found_in.issues()
     if has_errors(issues):
         return None, issues
-    return Study(file.stem, tuple(axes), tuple(problems), _sha256(paths)), issues
+    return Study(file.stem, tuple(axes), tuple(problems), fingerprint(paths)), issues
 
 
 def _settings(axes: list[Axis], steps: Iterable[int]) -> list[Setting]:
@@ -190,13 +189,3 @@ def _settings(axes: list[Axis], steps: Iterable[int]) -> list[Setting]:
 
 def _distinct(issues: list[Issue]) -> list[Issue]:
     return list(dict.fromkeys(issues))
-
-
-def _sha256(paths: Iterable[Path]) -> str:
-    """Each file is preceded by its length in bytes, so that none can pass for two."""
-    digest = hashlib.sha256()
-    for path in paths:
-        content = read_content(path)
-        digest.update(f"{len(content)}\n".encode())
-        digest.update(content)
-    return digest.hexdigest()

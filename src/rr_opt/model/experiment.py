@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from enum import IntFlag
 from types import MappingProxyType
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from rr_opt.array import Array
+from rr_opt.messages import shown
 from rr_opt.model.fields import SI, Count, data, declared
 from rr_opt.model.gait import Gait
-from rr_opt.model.parameters import Uncertainty
+from rr_opt.model.parameters import Uncertainty, default_uncertainty
 from rr_opt.model.robot import Robot
+from rr_opt.outcome import InputError
 from rr_opt.units import Quantity
 
 
@@ -71,6 +73,42 @@ class Recording:
     flags: Mapping[str, NDArray[np.uint8]]
     source: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
     doubts: tuple[str, ...] = ()
+
+    @classmethod
+    def of(
+        cls,
+        t: ArrayLike,
+        *,
+        x: ArrayLike,
+        y: ArrayLike,
+        psi: ArrayLike,
+        phi: ArrayLike,
+        torque: ArrayLike | None = None,
+        name: str = "recording",
+    ) -> Recording:
+        """A recording from arrays (n,), in SI; NaN is a missing value.
+
+        Raises InputError for times that do not rise, and arrays that are not as long as they are.
+        """
+        given = {"x": x, "y": y, "psi": psi, "phi": phi, "torque": torque}
+        times = np.array(t, float)
+        values = {one: np.array(y, float) for one, y in given.items() if y is not None}
+        shapes = {one: y.shape for one, y in {"t": times, **values}.items()}
+        if times.ndim != 1 or len(set(shapes.values())) > 1 or not (np.diff(times) > 0).all():
+            read = ", ".join(f"{one} {shape}" for one, shape in shapes.items())
+            raise InputError(
+                f"{name}: Read arrays of the shapes {read}. Expected arrays (n,) of one length, "
+                "and times that rise."
+            )
+        return cls(
+            name,
+            times,
+            MappingProxyType(values),
+            MappingProxyType({one: np.full(len(times), np.nan) for one in values}),
+            MappingProxyType(
+                {one: np.uint8(Flag.MISSING) * ~np.isfinite(y) for one, y in values.items()}
+            ),
+        )
 
     def __len__(self) -> int:
         return len(self.t)
@@ -131,6 +169,7 @@ class Experiment:
 
     uncertainty  by parameter: the names of `PARAMETERS`, psi_zero and phi_zero. What is not named
                  is exact
+    sha256       fingerprint of the files it was read from; empty if it was made in Python
     """
 
     robot: Robot
@@ -138,3 +177,34 @@ class Experiment:
     uncertainty: Mapping[str, Uncertainty]
     runs: tuple[Run, ...]
     name: str = ""
+    sha256: str = ""
+
+    @classmethod
+    def of(
+        cls,
+        robot: Robot,
+        runs: Iterable[Run],
+        noise: Noise | None = None,
+        *,
+        uncertainty: Mapping[str, Uncertainty | float] | None = None,
+        name: str = "experiment",
+    ) -> Experiment:
+        """An experiment in Python, with the same defaults as an experiment file.
+
+        noise        1 mm and 3 mrad unless given
+        uncertainty  of some parameters, a number being one sigma in SI; the others' are the default
+
+        Raises InputError for the name of an uncertainty that is not known.
+        """
+        known = default_uncertainty(robot)
+        given = {
+            key: one if isinstance(one, Uncertainty) else Uncertainty(float(one))
+            for key, one in (uncertainty or {}).items()
+        }
+        names = [*known, "psi_zero", "phi_zero"]
+        for key in given:
+            if key not in names:
+                raise InputError(
+                    f"Read the uncertainty of {shown(key)}. Expected that of {', '.join(names)}."
+                )
+        return cls(robot, noise or Noise(1e-3, 3e-3), {**known, **given}, tuple(runs), name)

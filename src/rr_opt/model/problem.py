@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
-from rr_opt.model.ballast import About, By, Loads
+from rr_opt.model.ballast import About, By, Loads, inertia_ratio
 from rr_opt.model.fields import SI, Bounds, Count, Interval, OptionalSI, Range, data, declared
 from rr_opt.model.gait import AMPLITUDE, OFFSET
 from rr_opt.model.robot import ANGLE_LIMIT, RATE_LIMIT, TORQUE_LIMIT, Robot
@@ -132,6 +132,8 @@ class Problem:
     """Which gait drives `robot` fastest within `gait`, `inertia_ratio`, `limits` and `turn`?
 
     `inertia_ratio` None: the robot as it is; `turn` None: straight or on any circle.
+
+    sha256  fingerprint of the files it was read from; empty if it was made or changed in Python
     """
 
     robot: Robot
@@ -140,6 +142,8 @@ class Problem:
     inertia_ratio: RatioChoice | None = None
     direction: Direction = "either"
     turn: Turn | None = None
+    name: str = field(default="", compare=False)
+    sha256: str = field(default="", init=False, compare=False, repr=False)
 
     def __post_init__(self) -> None:
         servo, given = self.robot.servo, self.limits
@@ -147,3 +151,38 @@ class Problem:
         left_out = {name: value for name, value in able.items() if getattr(given, name) is None}
         if left_out:
             object.__setattr__(self, "limits", replace(given, **left_out))
+
+    def read_from(self, name: str, sha256: str) -> Problem:
+        """The problem with its name and the fingerprint of its files."""
+        read = replace(self, name=name)
+        object.__setattr__(read, "sha256", sha256)
+        return read
+
+    def with_robot(self, robot: Robot) -> Problem:
+        """The same problem for another robot, with limits no wider than that robot's servo's."""
+        servo, given = robot.servo, self.limits
+        limits = replace(
+            given,
+            angle=min(given.angle, servo.angle_limit),
+            rate=min(given.rate, servo.rate_limit),
+            torque=min(given.torque, servo.torque_limit),
+        )
+        choice = self.inertia_ratio
+        return replace(
+            self,
+            robot=robot,
+            limits=limits,
+            inertia_ratio=reachable(choice, robot) if choice else None,
+        )
+
+
+_ROUNDING = 1e-9
+
+
+def reachable(choice: RatioChoice, robot: Robot) -> RatioChoice:
+    """The choice without the ratios below the robot's own, if loads realise it: they only add."""
+    own = inertia_ratio(robot, choice.about)
+    low, high = choice.bounds.low, choice.bounds.high
+    if choice.by == "inertia" or low >= own or high < own * (1 - _ROUNDING):
+        return choice
+    return replace(choice, bounds=Interval(own, max(own, high)))

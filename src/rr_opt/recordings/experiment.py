@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from rr_opt.files.experiment_file import named_files, read_plan
+from rr_opt.files.experiment_file import FILE_NAME, experiment_path, named_files, read_plan
 from rr_opt.files.experiment_plan import ExperimentPlan, MarkerPlaces, PlannedRun
 from rr_opt.files.issue import InvalidFileError, Issue, has_errors
 from rr_opt.messages import shown
@@ -134,6 +134,12 @@ def read_experiment(folder: str | Path) -> Experiment:
     A recording with a servo's log is put on the command's clock, as far as the log can tell it.
     Raises InvalidFileError with everything that is wrong in the file and in every recording.
     """
+    file = experiment_path(Path(folder))
+    if file != Path(folder) and not file.exists():
+        raise InputError(
+            f"{folder}: Read a folder without {FILE_NAME}. Expected that file, which names the "
+            "robot and the recordings. `rr-opt schema experiment` tells its keys."
+        )
     plan, read, issues = _read(folder)
     if plan is None:
         raise InvalidFileError(issues)
@@ -152,7 +158,7 @@ def experiment_of(folder: str | Path) -> tuple[Experiment | None, list[Issue]]:
 
 
 def _experiment(plan: ExperimentPlan, runs: Sequence[Run]) -> Experiment:
-    return Experiment(plan.robot, plan.noise, plan.uncertainty, tuple(runs), plan.name)
+    return Experiment(plan.robot, plan.noise, plan.uncertainty, tuple(runs), plan.name, plan.sha256)
 
 
 def _cleaned(read: ReadRun) -> Run:

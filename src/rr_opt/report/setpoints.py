@@ -97,7 +97,7 @@ _WORDS = {
 }
 
 
-def setpoints_summary(answer: SetPointsAnswer, file: Path) -> str:
+def setpoints_summary(answer: SetPointsAnswer, file: Path | None) -> str:
     """The gait, its set points, the speed before and after, and the file."""
     points, cost = answer.points, answer.cost
     rows = [
@@ -108,12 +108,12 @@ def setpoints_summary(answer: SetPointsAnswer, file: Path) -> str:
         ("speed", f"{speed_text(cost.nominal)}, of the gait itself"),
         *((f"  {name}", f"{_change(cost, name)} {_WORDS[name]}") for name in cost.steps),
         ("  left", f"{speed_text(cost.final)}, {_change(cost)}"),
-        ("file", str(file)),
+        *([("file", str(file))] if file else []),
     ]
     return "\n".join([*columns(rows), "", MODEL]) + "\n"
 
 
-def setpoints_record(answer: SetPointsAnswer, file: Path) -> dict[str, Any]:
+def setpoints_record(answer: SetPointsAnswer, file: Path | None) -> dict[str, Any]:
     """The same for scripts, SI; `cost` is the speed lost (negative) or gained by each step."""
     points, cost = answer.points, answer.cost
     return {
@@ -127,7 +127,7 @@ def setpoints_record(answer: SetPointsAnswer, file: Path) -> dict[str, Any]:
         "speed_left": cost.final,
         "cost": {"period": 0.0, "holding": 0.0, "rounding": None, **cost.steps},
         "model": MODEL,
-        "file": str(file),
+        "file": str(file) if file else None,
         "version": __version__,
     }
 

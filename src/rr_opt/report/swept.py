@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import math
 from pathlib import Path
 from typing import Any
 
@@ -12,19 +11,13 @@ import numpy as np
 from rr_opt.answers.quantities import number, speed_text, with_unit
 from rr_opt.answers.sweep import SweepAnswer
 from rr_opt.files.gait_record import gait_record
-from rr_opt.model.problem import Problem
 from rr_opt.report.archive import remove, write_json, write_text
 from rr_opt.report.text import columns, gait_lines
 from rr_opt.verify.evaluate import LIMITS, Evaluated, Found
-from rr_opt.verify.grid import DECISIONS, free_decisions
+from rr_opt.verify.grid import DECISIONS
 from rr_opt.version import __version__
 
 _NAMES = ("sweep.json", "sweep.csv", "sweep.svg")
-
-
-def values_per_decision(problem: Problem, points: int) -> int:
-    """How many values of each free decision make about so many gaits."""
-    return max(2, math.ceil(points ** (1 / max(len(free_decisions(problem)), 1))))
 
 
 def record(swept: SweepAnswer) -> dict[str, Any]:

@@ -8,7 +8,6 @@ from typing import Annotated
 import typer
 
 from rr_opt.cli.options import Figures, json_option, out_option
-from rr_opt.cli.problem_input import read
 from rr_opt.cli.steps import Steps
 
 
@@ -23,9 +22,10 @@ def reproduce(
     """
     with Steps() as steps:
         steps("reading")
-        problem, sha256 = read(None)
+        from rr_opt.api.load import shipped
         from rr_opt.report.archive import folder_for_results, strict_json
 
+        problem = shipped()
         folder = folder_for_results(out or Path("out") / "paper")
         from rr_opt.report.text import terminal
         from rr_paper.report.reproduction import document, record, write_reproduction
@@ -33,7 +33,7 @@ def reproduce(
 
         found = compute(problem, steps)
         steps("files")
-        written = write_reproduction(found, sha256, folder, figures=figures)
+        written = write_reproduction(found, problem.sha256, folder, figures=figures)
     if found.mujoco is None:
         typer.echo(
             "MuJoCo is not installed, so it could not be used as a further check of the signs of "
@@ -41,6 +41,6 @@ def reproduce(
             err=True,
         )
     if json:
-        typer.echo(strict_json(record(found, sha256)), nl=False)
+        typer.echo(strict_json(record(found, problem.sha256)), nl=False)
     else:
-        typer.echo(terminal(document(found, sha256, {}), written), nl=False)
+        typer.echo(terminal(document(found, problem.sha256, {}), written), nl=False)

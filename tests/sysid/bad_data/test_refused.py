@@ -7,13 +7,14 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from rr_opt.cli.diagnose_input import checked, read, usable
 from rr_opt.cli.main import app
 from rr_opt.effects import CATALOGUE
 from rr_opt.files.issue import has_errors
 from rr_opt.machines.racer.racer import RollerRacer
 from rr_opt.model.gait import SineGait
 from rr_opt.outcome import InputError
+from rr_opt.recordings.experiment import read_experiment
+from rr_opt.recordings.usable import checked, usable
 from rr_opt.sysid.model import Piece
 from tests.sysid.bad_data.folder import GAITS, written
 from tests.sysid.made_up import experiment, recorded
@@ -23,7 +24,7 @@ DEGREES = 180 / np.pi
 
 def refusal(folder):
     with pytest.raises(InputError) as caught:
-        usable(read(folder)[2])
+        usable(read_experiment(folder))
     return str(caught.value)
 
 
@@ -80,10 +81,10 @@ def test_noise_that_drowns_the_motion(tmp_path):
 
 
 def test_what_is_refused_is_no_clean_bill_of_lint(tmp_path):
-    from rr_opt.cli.lint import _issues
+    from rr_opt.api.lint import lint
 
-    assert not has_errors(_issues(written(tmp_path / "right")))
-    assert has_errors(_issues(written(tmp_path / "mm", lambda table: table * [1, 1e3, 1e3, 1, 1])))
+    assert not has_errors(lint(written(tmp_path / "right")))
+    assert has_errors(lint(written(tmp_path / "mm", lambda table: table * [1, 1e3, 1e3, 1, 1])))
 
 
 def test_too_short_or_too_still(tmp_path):
@@ -103,7 +104,7 @@ def test_too_short_or_too_still(tmp_path):
 def test_another_amplitude_is_told_and_not_refused(tmp_path):
     amplitude, period, offset = GAITS[1]
     gaits = [GAITS[0], (1.5 * amplitude, period, offset), GAITS[2]]
-    trial, told = usable(read(written(tmp_path, gaits=gaits))[2])
+    trial, told = usable(read_experiment(written(tmp_path, gaits=gaits)))
     assert len(trial.runs) == 3
     assert told == ()
     said = [[text for text in run.recording.doubts if "commanded" in text] for run in trial.runs]
@@ -150,11 +151,11 @@ def test_no_fault_of_the_robot_is_refused(effect, values):
 )
 def test_noise_that_is_not_what_the_recordings_have(tmp_path, stated, key, said):
     folder = written(tmp_path)
-    assert not any(checked(read(folder)[2]).said)
+    assert not any(checked(read_experiment(folder)).said)
     path = folder / "experiment.yaml"
     name = stated.split(":")[0]
     path.write_text(re.sub(rf"{name}: [^,}}]+", stated, path.read_text()))
-    every = checked(read(folder)[2])
+    every = checked(read_experiment(folder))
     assert len(every.said) == len(every.doubts)
     assert all(said in one and f"Correct `{key}`" in one for one in every.said)
     told = CliRunner().invoke(app, ["lint", str(folder)])

@@ -6,9 +6,9 @@ import os
 from collections.abc import Callable, Iterable
 from typing import Any
 
+from rr_opt import interrupt
 from rr_opt.batch.local import LocalPool
 from rr_opt.batch.run import run
-from rr_opt.cli import interrupt
 
 _WORKERS = 2
 

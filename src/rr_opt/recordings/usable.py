@@ -1,20 +1,17 @@
-"""What `diagnose` is given: an experiment whose recordings can tell something."""
+"""Which recordings of an experiment can be diagnosed, and what is wrong with the others."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 
-from rr_opt.files.experiment_file import FILE_NAME, experiment_path, read_plan
 from rr_opt.model.experiment import CHANNELS, Experiment, Run
 from rr_opt.model.robot import Robot
 from rr_opt.outcome import InputError
 from rr_opt.recordings.against_plan import HALF_A_PERIOD, plan_doubts
 from rr_opt.recordings.channel_warnings import unit_doubts
-from rr_opt.recordings.experiment import read_experiment
 from rr_opt.recordings.noise import noise_stated_doubts
 from rr_opt.recordings.warnings import Doubt, texts
 
@@ -30,17 +27,6 @@ _GRAVE = ("units", "command")
 """Doubts with which nothing can be fitted."""
 _LARGEST_GAP = 4.0
 """Seconds without any data of a channel; the motion in between is then nobody's."""
-
-
-def read(source: Path) -> tuple[str, str, Experiment]:
-    """Name, fingerprint and experiment of a folder. Raises InputError with all that is wrong."""
-    if source.is_dir() and not experiment_path(source).exists():
-        raise InputError(
-            f"{source}: Read a folder without {FILE_NAME}. Expected that file, which names the "
-            "robot and the recordings. `rr-opt schema experiment` tells its keys."
-        )
-    plan, _ = read_plan(source)
-    return plan.name, plan.sha256, read_experiment(source)
 
 
 @dataclass(frozen=True)

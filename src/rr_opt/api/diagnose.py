@@ -1,0 +1,111 @@
+"""Why recordings of a robot differ from its simulation."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import closing
+from dataclasses import replace
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+
+from rr_opt.answers.diagnosis import DiagnosisAnswer
+from rr_opt.api.identity import identity
+from rr_opt.api.result import Plots, Progress, Result, quiet
+from rr_opt.model.experiment import Experiment, Noise, Run
+from rr_opt.outcome import NotConvergedError
+from rr_opt.recordings.experiment import read_experiment
+from rr_opt.recordings.usable import usable
+from rr_opt.recordings.warnings import texts
+
+
+class ExplainedExperiment(Result, DiagnosisAnswer):
+    """The diagnosis of an experiment.
+
+    verdict          `consistent`, `parameters`, `missing_physics` or `unexplained`
+    effects          accepted, strongest first, each with `name`, `confidence` and `parameters`,
+                     whose `value`, `low` and `high` (95 %) are in SI; for the verdict `parameters`
+                     those
+    corrected_robot  the nominal robot with all of them, which any other function takes
+    loss             what the best gait of the nominal robot would lose, or why that is unknown
+    found            the whole diagnosis
+    """
+
+    def record(self, files: Sequence[Path] = ()) -> dict[str, Any]:
+        """The content of diagnosis.json."""
+        from rr_opt.report.diagnosis.record import record
+
+        return record(self)
+
+    def summary(self, files: Sequence[Path] = ()) -> str:
+        """The verdict, what was found, and what to record next, as text."""
+        from rr_opt.report.diagnosis.files import summary
+
+        return summary(self, files)
+
+    def plot(self) -> Plots:
+        """Evidence, paths, misfit before and after, and the lost speed."""
+        from rr_opt.report.figures.diagnosis import draw
+
+        return Plots(draw(self)[0])
+
+    def _write(self, folder: Path, figures: bool, progress: Progress) -> list[Path]:
+        from rr_opt.report.diagnosis.files import write_diagnosis
+
+        return write_diagnosis(self, folder, page=figures, progress=progress)
+
+
+def diagnose(
+    experiment: Experiment | str | Path, *, workers: int | None = None, progress: Progress = quiet
+) -> ExplainedExperiment:
+    """What the simulation of a robot leaves out, how strong it is, and how sure that is.
+
+    experiment  or its folder
+    workers     processes; None: two. A script that uses more than one keeps its own work under
+                `if __name__ == "__main__":`
+
+    Raises InputError for an experiment that cannot be used, with all reasons, and
+    NotConvergedError if no simulation comes near the recordings.
+    """
+    if not isinstance(experiment, Experiment):
+        experiment = read_experiment(experiment)
+    name, sha256 = identity(experiment)
+    trial, left_out = usable(_cleaned(experiment))
+    # Here and not above: a wrong input is told before a second of imports.
+    from rr_opt.batch.shared_work import SharedWork
+
+    with closing(SharedWork(workers)) as work:
+        from rr_opt.machines.racer.diagnose import diagnose_racer
+        from rr_opt.machines.racer.racer import RollerRacer
+        from rr_opt.sysid.diagnose import Steps
+
+        found = diagnose_racer(RollerRacer(trial), Steps(say=progress, each=work))
+    if not (found.before < float("inf") and found.after < float("inf")):
+        raise NotConvergedError(
+            "The fits did not converge: a simulation left the range of numbers. Expected motion "
+            "near that of the nominal robot. Look at the recordings with `rr-opt inspect`, and "
+            "check the robot's values."
+        )
+    return ExplainedExperiment(name, sha256, trial, found, left_out)
+
+
+def _cleaned(experiment: Experiment) -> Experiment:
+    """With recordings that were made from arrays treated as those of files are."""
+    runs = tuple(
+        run if run.recording.source else _as_read(run, experiment.noise) for run in experiment.runs
+    )
+    return replace(experiment, runs=runs)
+
+
+def _as_read(run: Run, noise: Noise) -> Run:
+    from rr_opt.recordings.cleaning import clean
+
+    sigma = {
+        channel: np.where(np.isfinite(known), known, noise.of(channel))
+        for channel, known in run.recording.sigma.items()
+    }
+    made = clean(replace(run.recording, sigma=MappingProxyType(sigma)))
+    doubts = (*run.recording.doubts, *texts(made.doubts))
+    return replace(run, recording=replace(made.recording, doubts=doubts))

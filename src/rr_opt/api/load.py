@@ -1,0 +1,195 @@
+"""What files hold: a problem, a robot, an experiment, a study, or a gait to drive."""
+
+from __future__ import annotations
+
+import math
+import shlex
+import warnings
+from collections.abc import Container
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from rr_opt.answers.quantities import with_unit
+from rr_opt.api.arguments import read_arguments
+from rr_opt.files.gait_record import gait_from
+from rr_opt.files.issue import InvalidFileError
+from rr_opt.files.lint import lint_file
+from rr_opt.files.problem_file import kind_of, name_of, read_problem
+from rr_opt.files.robot_file import read_robot, robot_from
+from rr_opt.files.source import read_document
+from rr_opt.files.yaml_text import Document
+from rr_opt.messages import shown
+from rr_opt.model.experiment import Experiment
+from rr_opt.model.gait import Gait, SineGait
+from rr_opt.model.problem import GaitBounds, Problem
+from rr_opt.model.robot import Robot
+from rr_opt.outcome import InputError
+
+PathLike = str | Path
+
+
+class InputWarning(UserWarning):
+    """Something in a file looks wrong, and it can be used all the same."""
+
+
+def load(path: PathLike) -> Problem:
+    """The problem of a file, or of a folder with problem.yaml.
+
+    A robot file stands for the shipped problem with that robot and its servo's limits. Warns with
+    InputWarning of what looks wrong. Raises InputError with everything that is wrong.
+    """
+    problem = read_problem(path)
+    for issue in lint_file(path):
+        warnings.warn(str(issue), InputWarning, stacklevel=2)
+    return problem
+
+
+def load_robot(path: PathLike) -> Robot:
+    """The robot of a robot file. Raises InputError with everything that is wrong."""
+    return read_robot(Path(path))
+
+
+def load_experiment(path: PathLike) -> Experiment:
+    """The experiment of a folder with experiment.yaml and recordings, which are cleaned.
+
+    Raises InputError with everything that is wrong in the file and in every recording.
+    """
+    from rr_opt.recordings.experiment import read_experiment
+
+    return read_experiment(path)
+
+
+def prototype() -> Robot:
+    """The paper's prototype."""
+    return shipped().robot
+
+
+def shipped() -> Problem:
+    """The problem of the paper's prototype that `rr-opt maximize-speed` solves."""
+    return read_problem(None)
+
+
+@dataclass(frozen=True)
+class RobotWithGait:
+    """A gait with the robot that is to drive it.
+
+    status    of the result that the gait was taken from; None if it was not taken from one
+    warnings  what a user may take this gait for that it is not
+    """
+
+    robot: Robot
+    gait: Gait
+    status: str | None = None
+    warnings: tuple[str, ...] = ()
+
+
+_AMPLITUDE, _PERIOD, _OFFSET = 0.785, 1.0, 0.0
+"""The gait where none is given: the paper's run with T = 1 s."""
+
+
+def load_gait(
+    path: PathLike | None = None,
+    *,
+    amplitude: float | str | None = None,
+    period: float | str | None = None,
+    offset: float | str | None = None,
+) -> RobotWithGait:
+    """The robot of a file, and a gait for it; None: the paper's prototype.
+
+    A result.json has its own gait, of whatever shape. Of a problem the values that it fixes are
+    taken, and the others are those of the paper's run with T = 1 s, brought within the bounds.
+    amplitude (rad), period (s) and offset (rad), numbers or text with a unit, go before what the
+    file says. Raises InputError for a file that holds no robot or problem.
+    """
+    values = read_arguments({"amplitude": amplitude, "period": period, "offset": offset})
+    source = _source(None if path is None else Path(path), values)
+    gait = source.gait
+    size = {name: getattr(gait, name) for name in ("amplitude", "period", "offset")}
+    return replace(source, gait=gait.resized(**{**size, **values}) if values else gait)
+
+
+def _source(path: Path | None, given: Container[str]) -> RobotWithGait:
+    if path is not None and path.is_file():
+        document = read_document(path)
+        if kind_of(document) == "result":
+            return _of_result(document)
+        if "platform1" in document.data:
+            gait = SineGait(_AMPLITUDE, _PERIOD, _OFFSET)
+            return RobotWithGait(read_robot(path), gait, None, _doubts(path, gait, None, given))
+    if path is not None and path.is_dir():
+        _require_problem(path)
+    problem = read_problem(path)
+    bounds = problem.gait
+    gait = SineGait(
+        bounds.amplitude.clip(_AMPLITUDE), bounds.period.clip(_PERIOD), bounds.offset.clip(_OFFSET)
+    )
+    return RobotWithGait(problem.robot, gait, None, _doubts(path, gait, bounds, given))
+
+
+def _of_result(document: Document) -> RobotWithGait:
+    """Raises InputError if it holds no gait, or a wrong one."""
+    robot: Any = document.data.get("robot")
+    if not isinstance(document.data.get("gait"), dict) or not isinstance(robot, dict):
+        raise InputError(
+            f"{document.file}: The result holds no gait: its status is "
+            f"`{document.data['status']}`. Give the result of a problem that was solved."
+        )
+    servo = robot.get("servo")
+    if isinstance(servo, dict):
+        # null in a result is a limit that does not exist.
+        robot["servo"] = {key: math.inf if v is None else v for key, v in servo.items()}
+    read, issues = robot_from(document.section("robot"))
+    gait, found = gait_from(document.section("gait"))
+    if read is None or gait is None:
+        raise InvalidFileError([*issues, *found])
+    status, message = (document.data.get(key) for key in ("status", "message"))
+    if status == "optimal":
+        return RobotWithGait(read, gait, "optimal")
+    why = f" {message}" if isinstance(message, str) else ""
+    doubt = (
+        f"{document.file}: The status of this result is {shown(status)} and not 'optimal'.{why} "
+        "Its gait is driven all the same."
+    )
+    return RobotWithGait(read, gait, status if isinstance(status, str) else shown(status), (doubt,))
+
+
+def _doubts(
+    path: Path | None, gait: Gait, bounds: GaitBounds | None, given: Container[str]
+) -> tuple[str, ...]:
+    """What a user may take for the optimum of a file (None: the prototype), in whole sentences.
+
+    bounds  of the problem; None of a robot file
+    given   what was asked of the gait: with amplitude and period the user has chosen it
+    """
+    of = "the prototype" if path is None else str(path)
+    units = {"amplitude": "rad", "period": "s"}
+    defaults = [
+        name for name in units if name not in given and not (bounds and getattr(bounds, name).fixed)
+    ]
+    shape = bounds.shape if bounds else "sine"
+    told = []
+    if defaults:
+        values = [f"{name} {with_unit(getattr(gait, name), units[name])}" for name in defaults]
+        told.append(
+            f"No {' and '.join(defaults)} given. The default is driven, {' and '.join(values)} "
+            f"after the paper's run, and not the optimum of {of}."
+        )
+    if shape != "sine":
+        told.append(f"The problem asks for a `{shape}` gait, and a sine is driven.")
+    if not told:
+        return ()
+    command = shlex.join(["rr-opt", "maximize-speed", *([] if path is None else [str(path)])])
+    result = Path("out") / name_of(path) / "result.json"
+    choice = ", or --amplitude and --period" if defaults else ""
+    return (" ".join([*told, f"Run `{command}` first and give {result}{choice}."]),)
+
+
+def _require_problem(folder: Path) -> None:
+    if not (folder / "problem.yaml").exists():
+        result = folder / "result.json"
+        raise InputError(
+            f"{folder}: This is a folder without problem.yaml. Expected a result.json, a robot "
+            "file, a problem file or its folder. "
+            + (f"Give {result}." if result.is_file() else "Give one of them.")
+        )
