@@ -29,7 +29,7 @@ BENCHMARKS ?= startup optimise turn sweep fit study recordings diagnose
 MEASURE := OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 $(BENCH_VENV)/bin/python -W ignore
 
 .DEFAULT_GOAL := help
-.PHONY: help run test check format-check lint types contracts format readme results bench real prove demo pins clean
+.PHONY: help run test check format-check lint types contracts format readme results bench real prove demo docs pins clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/\1|\2/p' $(MAKEFILE_LIST) | \
@@ -103,6 +103,9 @@ pins: $(RUN) ## pin the newest dependencies that pyproject.toml allows
 	  for name in dev docs; do printf '\n# [%s]\n' $$name; comm -13 "$$new/run" "$$new/$$name"; done; \
 	  echo; sed -n '/^# \[bench\]/,$$p' requirements.lock; \
 	} >"$$new/lock"; cp "$$new/lock" requirements.lock
+
+docs: $(DOCS) ## build the documentation's site, into out/site
+	$(BIN)/python -m mkdocs build --quiet --strict --site-dir out/site
 
 clean: ## remove the environment and everything temporary
 	rm -rf $(VENV) $(BENCH_VENV) build dist out .pytest_cache .hypothesis .ruff_cache .import_linter_cache
