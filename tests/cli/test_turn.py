@@ -35,7 +35,7 @@ def test_turn_and_back_again(run, plain):
     assert arc["length"] == pytest.approx(arc["time"] * abs(told["speed"]), rel=1e-6)
     assert arc["time"] == pytest.approx(arc["periods"] * told["gait"]["period"])
     assert told["turn"]["offset_opened"]
-    again = run("circle", "out/plain-turn/result.json", "--json")
+    again = run("circle", "out/plain-turn-heading--90deg-radius-0.5m/result.json", "--json")
     circle = json.loads(again.stdout)
     assert circle["radius"] == pytest.approx(0.5, rel=1e-6)
     assert circle["curvature"] < 0

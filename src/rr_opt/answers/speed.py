@@ -74,6 +74,8 @@ class SpeedAnswer(Answer):
     sha256         fingerprint of its files
     optimum        as the optimiser left it
     replay, sweep  the evidence; None where there is no optimum to check
+    as_built       speed of the fastest gait of the robot as it is, m/s, where the optimum has
+                   another inertia ratio; None elsewhere, and if that robot has no such gait
     """
 
     name: str
@@ -81,6 +83,7 @@ class SpeedAnswer(Answer):
     optimum: Optimum
     replay: Replay | None = None
     sweep: SweepCheck | None = None
+    as_built: float | None = None
 
     @property
     def problem(self) -> Problem:
@@ -106,6 +109,11 @@ class SpeedAnswer(Answer):
     def inertia_ratio(self) -> float | None:
         """J20/J10 of that robot, in the problem's definition; None if there is no gait."""
         return self.optimum.ratio
+
+    @property
+    def rebuilt(self) -> bool:
+        """Whether the optimum has another inertia ratio than the robot as it is."""
+        return self.robot.platform2 != self.problem.robot.platform2
 
     @cached_property
     def limits(self) -> dict[str, LimitRow]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +27,7 @@ class FastestGait(Result, SpeedAnswer):
     """The fastest gait of a problem, with the evidence for it.
 
     speed, gait, robot, inertia_ratio   None without a gait, but for the robot
+    as_built the speed at best without a change of the inertia ratio, where it was to be chosen
     limits   by name (angle, rate, torque, singularity), each with `limit`, `value`, `active` and
              `shadow_price`, SI
     bounds   the same of amplitude, period, offset and inertia_ratio
@@ -64,7 +66,12 @@ def maximize_speed(problem: Problem, *, progress: Progress = quiet) -> FastestGa
     Raises InputError for a robot without friction, which has no steady speed.
     """
     optimum = design.maximize_speed(problem, progress)
-    return FastestGait(*identity(problem), optimum, *evidence(optimum, progress))
+    best = FastestGait(*identity(problem), optimum, *evidence(optimum, progress))
+    if optimum.best is None or not best.rebuilt:
+        return best
+    progress("the robot as built")
+    as_built = design.maximize_speed(replace(problem, inertia_ratio=None)).best
+    return replace(best, as_built=as_built.speed if as_built else None)
 
 
 class FastestShapes(Result, ShapesAnswer):

@@ -20,9 +20,10 @@ from rr_opt.files.robot_file import read_robot, robot_from
 from rr_opt.files.source import read_document
 from rr_opt.files.yaml_text import Document
 from rr_opt.messages import shown
+from rr_opt.model.ballast import inertia_ratio, load_count, with_inertia_ratio, with_load_count
 from rr_opt.model.experiment import Experiment
 from rr_opt.model.gait import Gait, SineGait
-from rr_opt.model.problem import GaitBounds, Problem
+from rr_opt.model.problem import GaitBounds, Problem, RatioChoice
 from rr_opt.model.robot import Robot
 from rr_opt.outcome import InputError
 
@@ -36,8 +37,8 @@ class InputWarning(UserWarning):
 def load(path: PathLike) -> Problem:
     """The problem of a file, or of a folder with problem.yaml.
 
-    A robot file stands for the shipped problem with that robot and its servo's limits. Warns with
-    InputWarning of what looks wrong. Raises InputError with everything that is wrong.
+    A robot file stands for the shipped problem with that robot as it is and its servo's limits.
+    Warns with InputWarning of what looks wrong. Raises InputError with everything that is wrong.
     """
     problem = read_problem(path)
     for issue in lint_file(path):
@@ -124,7 +125,40 @@ def _source(path: Path | None, given: Container[str]) -> RobotWithGait:
     gait = SineGait(
         bounds.amplitude.clip(_AMPLITUDE), bounds.period.clip(_PERIOD), bounds.offset.clip(_OFFSET)
     )
-    return RobotWithGait(problem.robot, gait, None, _doubts(path, gait, bounds, given))
+    doubts = _doubts(path, gait, bounds, given)
+    # The shipped problem lets the ratio be chosen; what is driven then is the prototype.
+    if path is None or problem.inertia_ratio is None:
+        return RobotWithGait(problem.robot, gait, None, doubts)
+    robot, note = _with_nearest_ratio(problem.robot, problem.inertia_ratio)
+    return RobotWithGait(robot, gait, None, (*doubts, *note))
+
+
+def _with_nearest_ratio(robot: Robot, choice: RatioChoice) -> tuple[Robot, tuple[str, ...]]:
+    """The robot with the allowed inertia ratio that is nearest to its own, and what to say of it.
+
+    Raises InputError if no whole number of loads gives an allowed one.
+    """
+    own = inertia_ratio(robot, choice.about)
+    ratio = choice.bounds.clip(own)
+    if choice.by == "loads" and choice.loads.whole:
+        count = math.ceil(load_count(robot, ratio, choice.about, choice.loads) - 1e-9)
+        loaded = replace(robot, platform2=with_load_count(robot.platform2, choice.loads, count))
+        ratio = inertia_ratio(loaded, choice.about)
+        if ratio > choice.bounds.high * (1 + 1e-9):
+            raise InputError(
+                "No whole number of loads gives an inertia ratio J20/J10 from "
+                f"{choice.bounds.low:.4g} to {choice.bounds.high:.4g}. Widen `inertia_ratio`."
+            )
+    if ratio == own:
+        return robot, ()
+    made = with_inertia_ratio(robot, ratio, choice.about, choice.by, choice.loads)
+    if choice.bounds.fixed:
+        return made, ()
+    return made, (
+        f"The problem leaves the inertia ratio J20/J10 open from {choice.bounds.low:.4g} to "
+        f"{choice.bounds.high:.4g}. The nearest to the robot's own {own:.4g} is driven, "
+        f"{ratio:.4g}, and not the optimum.",
+    )
 
 
 def _of_result(document: Document) -> RobotWithGait:

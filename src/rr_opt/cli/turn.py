@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -36,7 +37,7 @@ def turn(
         str | None, typer.Option(help="Path that the heading change may take, m.")
     ] = None,
     cycles: Annotated[Literal["any", "whole"], typer.Option(help=_CYCLES)] = "any",
-    out: Annotated[Path | None, out_option("out/NAME-turn")] = None,
+    out: Annotated[Path | None, out_option("out/NAME-turn-...")] = None,
     json: Annotated[bool, json_option("result.json")] = False,
     figures: Figures = True,
 ) -> None:
@@ -48,9 +49,19 @@ def turn(
     with Steps() as steps:
         asked = read_options(radius=radius, heading=heading, within=within, length=length)
         posed = read_problem(problem)
-        folder = results_folder(out, f"{posed.name}-turn")
+        folder = results_folder(out, f"{posed.name}-turn-{_asked(asked, cycles)}")
         from rr_opt.api import fastest
 
         turned = fastest.turn(posed, **asked, whole=cycles == "whole", progress=steps)
         files = turned.save(folder, figures=figures, progress=steps)
     show(turned, files, json=json)
+
+
+def _asked(asked: dict[str, float], cycles: str) -> str:
+    """`heading-90deg-radius-0.5m-whole`, so that another turn has another folder."""
+    parts = [
+        f"{name}-{math.degrees(value):.6g}deg" if name == "heading" else f"{name}-{value:g}{unit}"
+        for name, unit in (("heading", ""), ("radius", "m"), ("within", "s"), ("length", "m"))
+        if (value := asked.get(name)) is not None
+    ]
+    return "-".join([*parts, *(["whole"] if cycles == "whole" else [])])

@@ -124,7 +124,7 @@ class Sources:
 def problem_sources(path: str | Path | None) -> Sources:
     """The parts of a problem: a problem file, its folder, a robot file, or None (as shipped).
 
-    A robot file stands for the shipped problem with that robot and its servo's limits.
+    A robot file stands for the shipped problem with that robot as it is and its servo's limits.
     Raises InvalidFileError if the file cannot be read, or is of another kind.
     """
     file = problem_path(SHIPPED if path is None else Path(path))
@@ -176,7 +176,7 @@ def result_issue(document: Document) -> Issue:
 def _shipped_problem_with(robot: Document, file: Path) -> Sources:
     problem = read_document(SHIPPED / "problem.yaml")
     limits = problem.section("limits").without("angle", "rate", "torque").data
-    data = {**problem.without("robot").data, "limits": limits}
+    data = {**problem.without("robot", "inertia_ratio").data, "limits": limits}
     shipped = Document(f"the shipped problem, with {file}", data, problem.lines)
     return Sources((SHIPPED / "problem.yaml", file), shipped, robot)
 
@@ -217,7 +217,7 @@ def _with_robot_file(problem: Document, file: Path) -> Sources:
 def read_problem(path: str | Path | None = None) -> Problem:
     """The problem of a file, of a folder with problem.yaml, or (None) the shipped one.
 
-    A robot file stands for the shipped problem with that robot and its servo's limits.
+    A robot file stands for the shipped problem with that robot as it is and its servo's limits.
     Raises InvalidFileError with everything that is wrong in the problem and its robot.
     """
     sources = problem_sources(path)

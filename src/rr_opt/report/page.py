@@ -207,6 +207,8 @@ def _tiles(answer: SpeedAnswer) -> str:
     gait = best.gait
     tiles = [
         (f"{1e3 * best.speed:+.1f} mm/s", f"mean speed, {direction_text(best.speed)}"),
+        *([(f"{1e3 * answer.as_built:+.1f} mm/s", "at best with the inertia ratio as built")]
+          if answer.as_built is not None else []),
         (with_unit(gait.amplitude, "rad"), f"amplitude, {math.degrees(gait.amplitude):.2f}°"),
         (with_unit(gait.period, "s"), f"period, {number(1 / gait.period)} Hz"),
         (with_unit(gait.offset, "rad"), f"offset, {math.degrees(gait.offset):.2f}°"),

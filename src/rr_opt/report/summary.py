@@ -15,6 +15,7 @@ from rr_opt.answers.quantities import (
     with_unit,
 )
 from rr_opt.answers.speed import SpeedAnswer
+from rr_opt.model.ballast import inertia_ratio
 from rr_opt.report.result import turns
 from rr_opt.report.text import columns, gait_formula, gait_lines
 
@@ -65,8 +66,22 @@ def ratio_text(answer: SpeedAnswer) -> str:
     text = f"{number(ratio)} about {'the joint P' if about == 'joint' else 'the centres of mass'}"
     if choice is None:
         return text + ", the robot as it is"
-    means = "loads on platform 2" if choice.by == "loads" else "the inertia of platform 2"
-    return f"{text}, by {means} (I2 = {robot.platform2.I:.4g} kg m2)"
+    means = ", by loads on platform 2" if choice.by == "loads" else ""
+    built = answer.problem.robot
+    if not answer.rebuilt:
+        return f"{text}, the robot as it is (I2 = {built.platform2.I:.4g} kg m2)"
+    own = inertia_ratio(built, about)
+    return (
+        f"{text}{means}: I2 {built.platform2.I:.4g} -> {robot.platform2.I:.4g} kg m2 "
+        f"(ratio {number(own)} -> {number(ratio)})"
+    )
+
+
+def as_built_text(answer: SpeedAnswer) -> str:
+    """The best speed with the inertia ratio unchanged; empty if it has not changed."""
+    if not answer.rebuilt or answer.as_built is None:
+        return ""
+    return f"{speed_text(answer.as_built)} at best, with I2 unchanged"
 
 
 def cycle_text(answer: SpeedAnswer) -> str:
@@ -93,6 +108,7 @@ def _gait(answer: SpeedAnswer) -> list[str]:
         *gait_lines(best.gait),
         ("  J20/J10", ratio_text(answer)),
         ("speed", f"{speed_text(best.speed)}, {way}: {_LEADS[way]}"),
+        *([("  as built", as_built)] if (as_built := as_built_text(answer)) else []),
         ("cycle", cycle_text(answer)),
     ]
     return columns(rows)
