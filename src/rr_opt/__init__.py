@@ -59,6 +59,7 @@ if TYPE_CHECKING:
     from rr_opt.api.survey import TurnChart as TurnChart
     from rr_opt.api.survey import sweep as sweep
     from rr_opt.api.survey import turn_chart as turn_chart
+    from rr_opt.api.template import init as init
     from rr_opt.files.schemas import schema as schema
     from rr_opt.model.experiment import Experiment as Experiment
     from rr_opt.model.experiment import Noise as Noise
@@ -90,6 +91,7 @@ _HOMES = {
     "shipped",
     "api.study": "SolvedStudy load_study study",
     "api.survey": "Sweep TurnChart sweep turn_chart",
+    "api.template": "init",
     "files.schemas": "schema",
     "model.experiment": "Experiment Noise Recording Run",
     "model.gait": "FourierGait FreeGait Gait SineGait",

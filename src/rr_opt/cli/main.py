@@ -22,7 +22,7 @@ from rr_opt.version import __version__
 
 VERBS = (
     *("maximize-speed", "shapes", "sweep", "turn", "turn-chart", "circle", "simulate", "export"),
-    *("study", "inspect", "diagnose", "lint", "schema"),
+    *("study", "inspect", "diagnose", "init", "lint", "schema"),
 )
 """Each is the function of its name in the module of its name."""
 
