@@ -4,6 +4,7 @@ A fenced block means, by its language:
 
 sh      commands, one a line. `make` runs at the root of the checkout, all else in one temporary
         folder. A command that fails ends the run.
+python  a script, run in the folder.
 yaml    a file, whose name is in its first line as a comment; it is written to the folder.
 text    lines that the commands of the `sh` block before it print, in this order and among
         others. Numbers may differ by one part in a thousand.
@@ -43,17 +44,26 @@ class Commands:
     printed: tuple[str, ...] = ()
 
 
+@dataclass(frozen=True)
+class Script:
+    """Python code that is shown."""
+
+    text: str
+
+
 def blocks(markdown: str) -> list[tuple[str, str]]:
     """Language and text of every fenced block."""
     return _BLOCK.findall(markdown)
 
 
-def steps(markdown: str) -> list[File | Commands]:
+def steps(markdown: str) -> list[File | Commands | Script]:
     """What a reader who follows the text does. Raises ValueError for a block without meaning."""
-    found: list[File | Commands] = []
+    found: list[File | Commands | Script] = []
     for language, text in blocks(markdown):
         if language == "sh":
             found.append(Commands(tuple(_commands(text))))
+        elif language == "python":
+            found.append(Script(text))
         elif language == "yaml":
             name = re.match(r"# (\S+\.yaml)\n", text)
             if name is None:
@@ -63,7 +73,9 @@ def steps(markdown: str) -> list[File | Commands]:
             lines = tuple(line for line in text.splitlines() if line.strip(" ."))
             found[-1] = replace(found[-1], printed=lines)
         else:
-            raise ValueError(f"A block is sh, yaml, or text after sh; got `{language}`:\n{text}")
+            raise ValueError(
+                f"A block is sh, python, yaml, or text after sh; got `{language}`:\n{text}"
+            )
     return found
 
 
@@ -124,6 +136,9 @@ def main() -> None:
         for step in steps(text):
             if isinstance(step, File):
                 (Path(folder) / step.name).write_text(step.text, encoding="utf-8")
+            elif isinstance(step, Script):
+                print(step.text, flush=True)
+                subprocess.run([sys.executable, "-c", step.text], cwd=folder, check=True)
             else:
                 _run(step, Path(folder))
 

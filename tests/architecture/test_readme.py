@@ -1,12 +1,14 @@
 """Every command and file that README.md shows is one that `make readme` runs or writes."""
 
+import re
 import subprocess
 from pathlib import Path
 
 import pytest
 
+import rr_opt
 from rr_opt.files.lint import lint_file
-from tests.readme_commands import Commands, File, blocks, missing, steps
+from tests.readme_commands import Commands, File, Script, blocks, missing, steps
 
 ROOT = Path(__file__).parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -31,6 +33,14 @@ def test_no_block_is_passed_over():
     assert README.count("```") == 2 * len(blocks(README))
 
 
+def test_python_is_run_and_uses_public_names():
+    scripts = [step.text for step in STEPS if isinstance(step, Script)]
+    assert scripts
+    for text in scripts:
+        names = re.findall(r"\brr\.(\w+)", text)
+        assert [name for name in names if name not in rr_opt.__all__] == []
+
+
 def test_set_up_and_tests_are_one_command_each():
     assert {"make run", "make test"} <= set(COMMANDS)
 
@@ -51,7 +61,7 @@ def test_the_file_shown_is_right(file, tmp_path):
     "text",
     [
         "```sh\nrm -rf results\n```\n",
-        "```python\nprint(1)\n```\n",
+        "```ruby\nputs 1\n```\n",
         "```\nrr-opt sweep\n```\n",
         "```yaml\nh: 20 mm\n```\n",
         "```text\nout of nowhere\n```\n",
