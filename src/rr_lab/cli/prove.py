@@ -21,13 +21,11 @@ if TYPE_CHECKING:
 
 def prove(
     *,
-    cases: Annotated[int, typer.Option(help="How many.", min=1, max=999)] = 100,
+    cases: Annotated[int, typer.Option(help="Number of cases.", min=1, max=999)] = 100,
     seed: Annotated[
         str | None,
         typer.Option(
-            metavar="HEX",
-            help="Of all lots; left out, the hash of the commit.",
-            show_default="commit",
+            metavar="HEX", help="Random seed, hexadecimal.", show_default="hash of the commit"
         ),
     ] = None,
     kinds: Annotated[
@@ -41,13 +39,13 @@ def prove(
     engine: Annotated[
         Literal["mujoco", "planar", "both"] | None,
         typer.Option(
-            help="What drives the cases: one of the two, or each half of each kind.",
+            help="Physics engine: one of the two, or each for half of each kind.",
             show_default="both",
         ),
     ] = None,
     out: Annotated[Path | None, out_option("out/proof")] = None,
     workers: Annotated[
-        int | None, typer.Option(help="Processes here.", min=1, show_default="one a core")
+        int | None, typer.Option(help="Number of processes.", min=1, show_default="one per core")
     ] = None,
     scheduler: Annotated[
         str | None, typer.Option(help="Work on a dask cluster: tcp://HOST:PORT of its scheduler.")
@@ -56,8 +54,8 @@ def prove(
         int | None,
         typer.Option(
             metavar="ID",
-            help="Make and diagnose this case alone, of the trial in --out if there is one, and "
-            "tell both.",
+            help="Make and diagnose only this case, of the trial in --out if there is one, and "
+            "print the answer beside the diagnosis.",
             min=1,
         ),
     ] = None,
@@ -65,17 +63,17 @@ def prove(
         bool,
         typer.Option(
             "--make-only",
-            help="Make and seal the cases, and diagnose none: cases/ID and answers/ID.json.",
+            help="Only make and seal the cases, as cases/ID and answers/ID.json; diagnose none.",
         ),
     ] = False,
     restart: Annotated[
-        bool, typer.Option("--restart", help="Forget the cases of an earlier run.")
+        bool, typer.Option("--restart", help="Discard the cases of an earlier run.")
     ] = False,
-    json: Annotated[bool, typer.Option("--json", help="Print proof.json alone on stdout.")] = False,
+    json: Annotated[bool, typer.Option("--json", help="Print only proof.json on stdout.")] = False,
 ) -> None:
-    """Try `diagnose` on cases of the laboratory whose answers are sealed, and count.
+    """Test `diagnose` on sealed cases of the laboratory, and count how often it is right.
 
-    A run that was stopped goes on where it was when the same command is given again.
+    An interrupted run resumes when the same command is repeated.
     """
     from rr_lab.mujoco.plant import engine as mujoco
     from rr_lab.trial.trial import drawn_of, tidy, whole_trial
@@ -120,7 +118,7 @@ def prove(
 def _count(words: str, steps: Iterator[int], done: int, total: int) -> None:
     """Carry the steps out and show how many are done."""
     if done:
-        typer.echo(f"{done} of {total} cases are {words} from an earlier run.", err=True)
+        typer.echo(f"{done} of {total} cases were {words} in an earlier run.", err=True)
     try:
         with Steps() as progress:
             progress(f"case {min(done + 1, total)} of {total}")
@@ -129,7 +127,7 @@ def _count(words: str, steps: Iterator[int], done: int, total: int) -> None:
                 progress(f"case {min(done + 1, total)} of {total}")
     except KeyboardInterrupt:
         kept = f"{done} of {total} cases are {words}"
-        typer.echo(f"{kept} and kept. The same command goes on with the others.", err=True)
+        typer.echo(f"{kept} and kept. Repeat the command to resume.", err=True)
         raise
 
 

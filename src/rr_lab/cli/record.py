@@ -136,7 +136,7 @@ def record(
         Path | None,
         typer.Argument(
             metavar="[ROBOT]",
-            help="Robot file; the paper's prototype, or with --hide one drawn by lot, if left out.",
+            help="Robot file; default: the paper's prototype, or a random one with --hide.",
         ),
     ] = None,
     *,
@@ -145,56 +145,55 @@ def record(
         typer.Option(
             metavar="RUN",
             help="A run: '30 deg, 1.2 s, 10 deg, rest, holdout' are amplitude, period, offset, "
-            "start (rest, running) and use (fit, holdout). Once for each run; seven or eight are "
-            "drawn if left out.",
+            "start (rest, running) and use (fit, holdout). Repeat for more runs; default: seven "
+            "or eight random ones.",
         ),
     ] = None,
     effect: Annotated[
         list[str] | None,
         typer.Option(
             metavar="EFFECT",
-            help="What the nominal robot does not have: 'coulomb_friction:force1=2 mN,force2=2 mN'."
-            " May be given more than once.",
+            help="Physics that the nominal robot lacks: 'coulomb_friction:force1=2 mN,force2=2 mN'."
+            " Repeat for more effects.",
         ),
     ] = None,
     hide: Annotated[
         str | None,
         typer.Option(
             metavar="KIND",
-            help="Draw what is hidden: random, null, parameters, single, pair, outside, or "
+            help="Hide random physics: random, null, parameters, single, pair, outside, or "
             "single:EFFECT. Needs --seal.",
         ),
     ] = None,
     seal: Annotated[
         Path | None,
         typer.Option(
-            parser=place, metavar="FILE", help="Write the answer there, and its hash to the folder."
+            parser=place, metavar="FILE", help="File for the answer; its hash goes to the folder."
         ),
     ] = None,
     seed: Annotated[
-        int | None, typer.Option(help="Of all that is drawn; with --hide by chance if left out.")
+        int | None, typer.Option(help="Random seed; default: 0, or with --hide a new one.")
     ] = None,
     seconds: Annotated[
-        str, typer.Option(help="Length of each run, s; of drawn runs, the longest.")
+        str, typer.Option(help="Length of each run in s; of random runs, the longest.")
     ] = "30",
     noise: Annotated[
-        str | None, typer.Option(help="One sigma of positions and angles.", show_default="drawn")
+        str | None,
+        typer.Option(help="Standard deviations of positions and angles.", show_default="random"),
     ] = None,
-    missing: Annotated[
-        float, typer.Option(help="Fraction of the samples that are lost.", min=0, max=0.9)
-    ] = 0.0,
+    missing: Annotated[float, typer.Option(help="Fraction of lost samples.", min=0, max=0.9)] = 0.0,
     disturbance: Annotated[
         str,
         typer.Option(
             metavar="NAME",
             help="Disturb the recordings (csv): lowpass_6hz, ar1_noise, outliers, dropouts ...; "
-            "docs/lab.md has them all.",
+            "docs/lab.md lists them all.",
             show_default="none",
         ),
     ] = "",
     engine: Annotated[
         Literal["mujoco", "planar"],
-        typer.Option(help="What drives the robot: MuJoCo, or two bodies in the plane."),
+        typer.Option(help="Physics engine: MuJoCo, or two bodies in the plane."),
     ] = "mujoco",
     form: Annotated[
         Literal["csv", "vicon", "c3d"],
@@ -206,7 +205,7 @@ def record(
     torque: Annotated[bool, typer.Option("--torque", help="Add the servo's torque (csv).")] = False,
     out: Annotated[Path | None, out_option("out/recorded")] = None,
     json: Annotated[
-        bool, typer.Option("--json", help="Print a machine-readable summary alone on stdout.")
+        bool, typer.Option("--json", help="Print only a machine-readable summary on stdout.")
     ] = False,
 ) -> None:
     """Record a virtual robot.

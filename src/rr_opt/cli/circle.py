@@ -18,12 +18,12 @@ def circle(
     period: Period = None,
     offset: Offset = None,
     json: Annotated[
-        bool, typer.Option("--json", help="Print a machine-readable record alone on stdout.")
+        bool, typer.Option("--json", help="Print only a machine-readable record on stdout.")
     ] = False,
 ) -> None:
-    """Tell the circle that a gait drives: radius, centre, speed, time for a full turn.
+    """Compute the circle of a gait: radius, centre, speed, time for a full turn.
 
-    With it how a start from rest comes to that circle. Left is positive, seen from above.
+    Also shows how a start from rest approaches it. Left is positive, seen from above.
     """
     with Steps() as steps:
         options = read_options(amplitude=amplitude, period=period, offset=offset)

@@ -23,10 +23,10 @@ def diagnose(
         bool, typer.Option("--page/--no-page", help="Draw figures and write report.html.")
     ] = True,
     workers: Annotated[
-        int | None, typer.Option(help="Processes here.", min=1, show_default="two")
+        int | None, typer.Option(help="Number of processes.", min=1, show_default="two")
     ] = None,
 ) -> None:
-    """Find where the simulation goes wrong, what it leaves out, how much of it, and how sure.
+    """Find out why recordings differ from the simulation: where, by which physics, and how sure.
 
     Writes diagnosis.json, robot-corrected.yaml for the other verbs, and report.html.
     """

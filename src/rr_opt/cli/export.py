@@ -22,10 +22,10 @@ from rr_opt.cli.show import show
 from rr_opt.cli.steps import Steps
 
 _FORMAT = (
-    "csv: time and angle in rad and degrees; c-header: an array for C; "
+    "csv: time and angle in rad and degrees; c-header: a C array; "
     "servo: counts of the servo CDS5516."
 )
-_KEEP = "Change the rate and not the period to fit them in."
+_KEEP = "Adjust the rate instead of the period."
 
 
 def export(
@@ -34,7 +34,7 @@ def export(
     kind: Annotated[
         Literal["csv", "c-header", "servo"], typer.Option("--format", help=_FORMAT)
     ] = "csv",
-    rate: Annotated[float, typer.Option(help="Set points a second.")] = 125.0,
+    rate: Annotated[float, typer.Option(help="Set points per second.")] = 125.0,
     keep_period: Annotated[bool, typer.Option("--keep-period", help=_KEEP)] = False,
     amplitude: Amplitude = None,
     period: Period = None,
@@ -44,8 +44,8 @@ def export(
 ) -> None:
     """Write a gait as set points for a controller.
 
-    A period holds a whole number of set points. What that, moving from one to the next, and
-    rounding to the servo's counts cost in speed is told each by itself.
+    A period holds a whole number of set points. The loss of speed is reported separately for
+    the adjusted period, the straight lines between set points, and rounding to counts.
     """
     with Steps() as steps:
         gait = {"amplitude": amplitude, "period": period, "offset": offset}

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from rr_opt.model.gait import Gait
 
 _SOURCE = "A recording (plain CSV, Vicon CSV, C3D, TRC or netCDF), or the folder of an experiment."
-_LAYOUT = "Where each marker sits; estimated from the recording if left out."
+_LAYOUT = "Position of each marker; default: estimated from the recording."
 _NETCDF = "Also write the recording, with its flags, as netCDF."
 
 
@@ -28,13 +28,13 @@ def inspect(
         Path | None, typer.Option(metavar="CSV", help="The servo's log, on its own clock.")
     ] = None,
     amplitude: Annotated[
-        str | None, typer.Option(help="Commanded amplitude, rad, or with a unit.")
+        str | None, typer.Option(help="Commanded amplitude in rad, or with a unit.")
     ] = None,
     period: Annotated[str | None, typer.Option(help="Commanded period, s.")] = None,
     offset: Annotated[str | None, typer.Option(help="Commanded offset, rad.")] = None,
     start: Annotated[
         Literal["rest", "running"],
-        typer.Option(help="The robot stood still until t = 0, or was running."),
+        typer.Option(help="Whether the robot stood still until t = 0 or was already running."),
     ] = "running",
     out: Annotated[Path | None, out_option("out/NAME-inspect")] = None,
     netcdf: Annotated[Path | None, typer.Option(metavar="FILE", help=_NETCDF)] = None,
@@ -43,8 +43,7 @@ def inspect(
 ) -> None:
     """Read a recording, clean it, and list every warning.
 
-    Nothing is filled in or dropped: outliers are flagged, gaps stay gaps. Writes inspection.json
-    and report.html.
+    Outliers are flagged, and gaps stay gaps. Writes inspection.json and report.html.
     """
     with Steps() as steps:
         steps("reading")

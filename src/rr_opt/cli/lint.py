@@ -21,7 +21,7 @@ def lint(
     files: Annotated[list[Path], typer.Argument(help=_FILES)],
     json: Annotated[bool, typer.Option("--json", help="Print JSON on stdout.")] = False,
 ) -> None:
-    """Check input files and print every problem of all of them. Exits 2 if one is an error."""
+    """Check input files and list every mistake in them. Exits with 2 if there is an error."""
     from rr_opt.api import lint as library
     from rr_opt.files.issue import has_errors
 

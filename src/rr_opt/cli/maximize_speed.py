@@ -25,7 +25,7 @@ def maximize_speed(
 ) -> None:
     """Find the fastest gait of a problem.
 
-    It is checked by simulation and against a plain sweep, and told with the limits that hold it.
+    The answer is checked by a simulation and a sweep, and reported with its active limits.
     """
     with Steps() as steps:
         posed = read_problem(problem)

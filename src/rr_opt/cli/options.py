@@ -37,33 +37,33 @@ def out_option(shown: str, help: str = "Folder for the results.", metavar: str =
 
 def json_option(file: str) -> Any:
     """--json, which prints what the file holds."""
-    return typer.Option("--json", help=f"Print {file} alone on stdout.")
+    return typer.Option("--json", help=f"Print only {file} on stdout.")
 
 
 ProblemFile = Annotated[
     Path | None,
     typer.Argument(
-        help="Problem file, its folder, or a robot file; the paper's prototype if left out."
+        help="Problem file, its folder, or a robot file; default: the paper's prototype."
     ),
 ]
 Driven = Annotated[
     Path | None,
     typer.Argument(
         metavar="[FILE]",
-        help="Robot file, problem file or result.json; the paper's prototype if left out.",
+        help="Robot file, problem file or result.json; default: the paper's prototype.",
     ),
 ]
-Amplitude = Annotated[str | None, typer.Option(help="Amplitude, rad, or with a unit: '30 deg'.")]
-Period = Annotated[str | None, typer.Option(help="Period, s, or with a unit.")]
-Offset = Annotated[str | None, typer.Option(help="Offset, rad, or with a unit.")]
+Amplitude = Annotated[str | None, typer.Option(help="Amplitude in rad, or with a unit: '30 deg'.")]
+Period = Annotated[str | None, typer.Option(help="Period in s, or with a unit.")]
+Offset = Annotated[str | None, typer.Option(help="Offset in rad, or with a unit.")]
 Summary = Annotated[
-    bool, typer.Option("--json", help="Print a machine-readable summary alone on stdout.")
+    bool, typer.Option("--json", help="Print only a machine-readable summary on stdout.")
 ]
 Figures = Annotated[
     bool, typer.Option("--figures/--no-figures", help="Draw figures and write report.html.")
 ]
 Workers = Annotated[
-    int | None, typer.Option(help="Processes here.", min=1, show_default="one a core")
+    int | None, typer.Option(help="Number of processes.", min=1, show_default="one per core")
 ]
 Scheduler = Annotated[
     str | None, typer.Option(help="Solve on a dask cluster: tcp://HOST:PORT of its scheduler.")

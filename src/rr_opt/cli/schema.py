@@ -13,7 +13,7 @@ from rr_opt.outcome import InputError
 def schema(
     kind: Annotated[str, typer.Argument(help="Which file: robot, problem, study or experiment.")],
 ) -> None:
-    """Print the JSON Schema of a kind of input file, with which editors complete and check it."""
+    """Print the JSON Schema of an input file, with which editors complete and check it."""
     from rr_opt.files.schemas import schema as json_schema
 
     try:

@@ -23,9 +23,9 @@ def shapes(
     json: Annotated[bool, json_option("shapes.json")] = False,
     figures: Figures = True,
 ) -> None:
-    """Compare the fastest sine with faster shapes: 3 and 5 harmonics, and a free gait.
+    """Compare the fastest sine with other waveforms: 3 and 5 harmonics, and a free gait.
 
-    All keep the same limits, and each is checked. The shape that the problem asks for is ignored.
+    All satisfy the same limits, and each is checked. The problem's own shape is ignored.
     """
     with Steps() as steps:
         posed = read_problem(problem)

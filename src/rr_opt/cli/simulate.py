@@ -22,8 +22,8 @@ from rr_opt.cli.options import (
 from rr_opt.cli.show import show
 from rr_opt.cli.steps import Steps
 
-_START = "From rest, or from the speed that the gait settles to."
-Film = Annotated[Literal["gif", "mp4"] | None, typer.Option(help="Also make a film.")]
+_START = "From rest, or from the steady state."
+Film = Annotated[Literal["gif", "mp4"] | None, typer.Option(help="Also make an animation.")]
 Format = Annotated[Literal["csv", "netcdf"], typer.Option("--format", help="Trajectory file.")]
 
 
@@ -33,17 +33,17 @@ def simulate(
     amplitude: Amplitude = None,
     period: Period = None,
     offset: Offset = None,
-    seconds: Annotated[float, typer.Option(help="How long to drive, s.")] = 10.0,
+    seconds: Annotated[float, typer.Option(help="Simulated time, s.")] = 10.0,
     start: Annotated[Literal["rest", "steady"], typer.Option(help=_START)] = "rest",
-    rate: Annotated[float, typer.Option(help="Samples a second.")] = 100.0,
+    rate: Annotated[float, typer.Option(help="Samples per second.")] = 100.0,
     out: Annotated[Path | None, out_option("out/NAME-motion", "Folder for the files.")] = None,
     kind: Format = "csv",
     animate: Film = None,
     json: Summary = False,
 ) -> None:
-    """Drive a gait for some time.
+    """Simulate a gait for some time.
 
-    Writes the trajectory, a figure and, if asked for, a film.
+    Writes the trajectory, a figure and, on request, an animation.
     """
     with Steps() as steps:
         gait = {"amplitude": amplitude, "period": period, "offset": offset}

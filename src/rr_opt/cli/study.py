@@ -18,18 +18,18 @@ def study(
     workers: Workers = None,
     scheduler: Scheduler = None,
     cold: Annotated[
-        bool, typer.Option("--cold", help="Solve every case from cold starts alone.")
+        bool, typer.Option("--cold", help="Solve every case from scratch, not from its neighbours.")
     ] = False,
     restart: Annotated[
-        bool, typer.Option("--restart", help="Forget the rows of an earlier run.")
+        bool, typer.Option("--restart", help="Discard the rows of an earlier run.")
     ] = False,
-    netcdf: Annotated[bool, typer.Option("--netcdf", help="Write study.nc too.")] = False,
+    netcdf: Annotated[bool, typer.Option("--netcdf", help="Also write study.nc.")] = False,
     json: Annotated[bool, json_option("study.json")] = False,
     figures: Figures = True,
 ) -> None:
-    """Solve a problem with many values of its keys: limits, the robot's parameters, bounds.
+    """Solve a problem for many values of its keys: limits, robot parameters, bounds.
 
-    A run that was stopped goes on where it was when the same command is given again.
+    An interrupted run resumes when the same command is repeated.
     """
     with Steps() as steps:
         from rr_opt.api import study as library

@@ -14,7 +14,7 @@ from rr_opt.cli.steps import Steps
 Points = Annotated[
     int,
     typer.Option(
-        help="About so many gaits on the grid, and at least two values of each quantity.",
+        help="Approximate number of gaits on the grid; at least two values of each quantity.",
         min=1,
         max=5_000_000,
     ),
@@ -27,9 +27,9 @@ def sweep(
     out: Annotated[Path | None, out_option("out/NAME-sweep")] = None,
     json: Annotated[bool, json_option("sweep.json")] = False,
 ) -> None:
-    """Try gaits all over the bounds.
+    """Evaluate a grid of gaits within the bounds.
 
-    Writes all of them, the best one, and a figure; no solver is involved.
+    Writes every gait, the best one and a figure. No solver is involved.
     """
     with Steps() as steps:
         posed = read_problem(problem)

@@ -20,9 +20,9 @@ from rr_opt.cli.options import (
 from rr_opt.cli.show import show
 from rr_opt.cli.steps import Steps
 
-_RADIUS = "Radius of the circle, m, or with a unit; positive to the left."
-_HEADING = "Change of heading, rad, or with a unit: '90 deg'; positive to the left."
-_CYCLES = "whole: a whole number of periods makes the heading change."
+_RADIUS = "Radius of the circle in m, or with a unit; positive to the left."
+_HEADING = "Change of heading in rad, or with a unit: '90 deg'; positive to the left."
+_CYCLES = "whole: the change of heading takes a whole number of periods."
 
 
 def turn(
@@ -31,20 +31,20 @@ def turn(
     radius: Annotated[str | None, typer.Option(help=_RADIUS)] = None,
     heading: Annotated[str | None, typer.Option(help=_HEADING)] = None,
     within: Annotated[
-        str | None, typer.Option(help="Time that the heading change may take, s.")
+        str | None, typer.Option(help="Longest time for the change of heading, s.")
     ] = None,
     length: Annotated[
-        str | None, typer.Option(help="Path that the heading change may take, m.")
+        str | None, typer.Option(help="Longest path for the change of heading, m.")
     ] = None,
     cycles: Annotated[Literal["any", "whole"], typer.Option(help=_CYCLES)] = "any",
     out: Annotated[Path | None, out_option("out/NAME-turn-...")] = None,
     json: Annotated[bool, json_option("result.json")] = False,
     figures: Figures = True,
 ) -> None:
-    """Find the gait that turns fastest.
+    """Find the fastest gait for a turn.
 
     Give --radius; or --heading with --radius, --within or --length. Left is positive, seen from
-    above, whichever way the robot drives; the problem says which way it may.
+    above, whichever way the robot drives. The problem sets the direction of travel.
     """
     with Steps() as steps:
         asked = read_options(radius=radius, heading=heading, within=within, length=length)

@@ -17,8 +17,8 @@ def turn_chart(
 ) -> None:
     """Chart the circles of a robot: radius over offset, amplitude and period.
 
-    Finds the tightest circle within the limits, and tells where the offset alone does not decide
-    on the circle. The inertia ratio is that of the robot as it is.
+    Finds the tightest circle within the limits, and reports where the offset alone does not
+    determine the circle. The inertia ratio is the robot's own.
     """
     with Steps() as steps:
         posed = read_problem(problem)

@@ -15,10 +15,10 @@ def calibrate(
     out: Annotated[Path | None, out_option("out/calibration")] = None,
     json: Annotated[bool, json_option("calibration.json")] = False,
 ) -> None:
-    """Estimate what the paper does not give of its prototype, and compare models.
+    """Estimate the prototype's unpublished parameters, and compare models.
 
     Uses the nine averages of Tables 2 and 3, for both readings of their columns, and shows which
-    unknowns they do not determine. Takes two to three minutes.
+    unknowns they do not identify. Takes two to three minutes.
     """
     with Steps() as steps:
         steps("starting")

@@ -16,7 +16,7 @@ def reproduce(
     json: Annotated[bool, json_option("reproduce.json")] = False,
     figures: Figures = True,
 ) -> None:
-    """Recompute the paper's tables and figures, and check what it says.
+    """Recompute the paper's tables and figures, and check its statements.
 
     Takes about a minute. The robot is the shipped prototype.
     """
