@@ -79,7 +79,7 @@ def test_infeasible_problem_exits_3_and_says_why_everywhere(run, impossible, tmp
     assert "rate" in result["message"]
     assert result["message"] in done.stderr
     page = (tmp_path / "res" / "report.html").read_text()
-    assert "No gait keeps all limits" in page
+    assert "No gait respects all limits" in page
 
 
 def test_an_earlier_figure_does_not_survive_a_run_without(run, impossible, tmp_path):

@@ -4,13 +4,19 @@ import re
 from dataclasses import replace
 from html.parser import HTMLParser
 
-from rr_opt.report.page import page
+from rr_opt.report.document import Figure
+from rr_opt.report.speed import speed_document
+from rr_opt.report.webpage import page as page_of
 
-SVG = {"path": "<svg/>"}
+FIGURE = Figure("path", "Path", "<svg/>", "the path")
+
+
+def page(answer):
+    return page_of(speed_document(answer, [FIGURE]))
 
 
 def test_the_verdict_comes_first(answer):
-    text = page(answer, SVG)
+    text = page(answer)
     title = re.search("<h1>(.*?)</h1>", text)
     assert title
     assert "mm/s" in title[1]
@@ -18,7 +24,7 @@ def test_the_verdict_comes_first(answer):
 
 
 def test_nothing_is_fetched(answer):
-    text = page(answer, SVG)
+    text = page(answer)
     assert "http" not in text
     assert all(source.startswith("data:") for source in re.findall('src="(.*?)"', text))
 
@@ -34,22 +40,22 @@ def test_every_tag_is_closed(answer):
         def handle_endtag(self, tag):
             assert open_tags.pop() == tag
 
-    Closing().feed(page(answer, SVG))
+    Closing().feed(page(answer))
     assert open_tags == []
 
 
 def test_a_failed_check_is_the_headline(answer):
     doubtful = replace(answer, sweep=replace(answer.sweep, gap=-0.1))
-    text = page(doubtful, SVG)
+    text = page(doubtful)
     assert "<h1>No confirmed optimum</h1>" in text
     assert 'class="bad"' in text
 
 
 def test_names_are_escaped(answer):
-    assert "<script>" not in page(replace(answer, name="<script>"), SVG)
+    assert "<script>" not in page(replace(answer, name="<script>"))
 
 
 def test_provenance_is_shown(answer):
-    text = page(answer, SVG)
-    assert 'badge measured">measured' in text
-    assert 'badge assumed">assumed' in text
+    text = page(answer)
+    assert 'badge good">measured' in text
+    assert 'badge warn">assumed' in text

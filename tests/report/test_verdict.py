@@ -6,7 +6,7 @@ import pytest
 
 from rr_opt.outcome import Status
 from rr_opt.report.result import result
-from rr_opt.report.summary import summary
+from rr_opt.report.speed import summary
 
 
 def failed(answer, **changes):

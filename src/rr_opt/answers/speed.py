@@ -216,26 +216,35 @@ class SpeedAnswer(Answer):
         best = self.optimum.best
         if best is None:
             return self.optimum.message
-        text = f"{self._subject} at {pace_text(best.speed)}, and every check confirms it."
+        first = f"{self._subject} at {pace_text(best.speed)}, and every check confirms it."
+        return " ".join([first, *self.remarks])
+
+    @property
+    def remarks(self) -> list[str]:
+        """What else there is to know of the gait, in sentences."""
+        best = self.optimum.best
+        if best is None:
+            return []
+        texts = []
         ignored = ignored_in_steady_cycle(self.problem.robot)
         if ignored:
-            text += f" Optimiser and checks ignore {listed(ignored)}."
+            texts.append(f"Optimiser and checks ignore {listed(ignored)}.")
         ties = len(self.optimum.ties)
         if ties:
-            text += f" {ties} other gait{'s are' if ties > 1 else ' is'} as fast: a tie."
+            texts.append(f"{ties} other gait{'s are' if ties > 1 else ' is'} as fast: a tie.")
         sine = self.optimum.sine
         if sine:
             gain = 100 * (abs(best.speed) / sine - 1)
-            text += f" That is {gain:.1f} % faster than the fastest sine."
-        text += self._servo_note(best.gait)
+            texts.append(f"That is {gain:.1f} % faster than the fastest sine.")
+        texts += self._servo_note(best.gait)
         if self.sweep and math.isnan(self.sweep.error):
-            text += " The sweep's own model cannot represent this shape and does not check it."
+            texts.append("The sweep's own model cannot represent this shape and does not check it.")
         if self.optimum.sideways:
-            text += (
-                " It sits where forward turns into backward: its mean velocity is at right angles "
+            texts.append(
+                "It sits where forward turns into backward: its mean velocity is at right angles "
                 "to its mean heading, and its direction is a matter of definition."
             )
-        return text
+        return texts
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -258,7 +267,7 @@ class SpeedAnswer(Answer):
             active |= _matters(price, limit, best.speed)
         return LimitRow(name, limit, value, active, price if active else 0.0)
 
-    def _servo_note(self, gait: Gait) -> str:
+    def _servo_note(self, gait: Gait) -> list[str]:
         """What the problem's limits allow beyond the servo of the robot file."""
         servo, needed = self.problem.robot.servo, self.replay.reached if self.replay else {}
         beyond = [
@@ -271,11 +280,11 @@ class SpeedAnswer(Answer):
             if value > able * (1 + LARGEST_EXCESS)
         ]
         if not beyond:
-            return ""
-        return (
-            " But the problem allows more than the robot's servo: the gait exceeds its "
+            return []
+        return [
+            "But the problem allows more than the robot's servo: the gait exceeds its "
             f"{listed(beyond)} limit."
-        )
+        ]
 
 
 def evidence(

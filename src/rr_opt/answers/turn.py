@@ -64,16 +64,16 @@ class TurnAnswer(SpeedAnswer):
         )
 
     @property
-    def message(self) -> str:
-        """The outcome in a paragraph."""
-        text = super().message
-        if not self.opened or self.arc is None or self.status is not Status.OPTIMAL:
-            return text
+    def remarks(self) -> list[str]:
+        """What else there is to know of the gait, in sentences."""
+        if not self.opened or self.arc is None:
+            return super().remarks
         bounds = self.problem.gait.offset
-        return (
-            f"{text} The problem fixes the offset, and a turn needs one: it was freed to all that "
-            f"the limits allow, {number(bounds.low)} to {number(bounds.high)} rad."
-        )
+        return [
+            *super().remarks,
+            "The problem fixes the offset, and a turn needs one: it was freed to all that the "
+            f"limits allow, {number(bounds.low)} to {number(bounds.high)} rad.",
+        ]
 
     @property
     def _subject(self) -> str:

@@ -131,13 +131,13 @@ class DrivenCircle(Result, CircleAnswer):
 
     def record(self, files: Sequence[Path] = ()) -> dict[str, Any]:
         """Radius, centre, speed and the transient."""
-        from rr_opt.report.turn.circle import circle_record
+        from rr_opt.report.turn import circle_record
 
         return circle_record(self)
 
     def summary(self, files: Sequence[Path] = ()) -> str:
         """The same as text."""
-        from rr_opt.report.turn.circle import circle_summary
+        from rr_opt.report.turn import circle_summary
 
         return circle_summary(self)
 

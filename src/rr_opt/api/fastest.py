@@ -43,18 +43,18 @@ class FastestGait(Result, SpeedAnswer):
 
     def summary(self, files: Sequence[Path] = ()) -> str:
         """Gait, speed, limits and checks as text."""
-        from rr_opt.report.summary import summary
+        from rr_opt.report.speed import summary
 
         return summary(self, files)
 
     def plot(self) -> Plots:
         """Speed map (of a sine), path, cycle, and what each limit is worth."""
-        from rr_opt.report.figures.answer import draw
+        from rr_opt.report.figures.speed import draw
 
         return Plots(draw(self))
 
     def _write(self, folder: Path, figures: bool, progress: Progress) -> list[Path]:
-        from rr_opt.report.files import write_results
+        from rr_opt.report.speed import write_results
 
         return write_results(self, folder, figures=figures, progress=progress)
 
@@ -94,7 +94,7 @@ class FastestShapes(Result, ShapesAnswer):
 
     def plot(self) -> Plots:
         """The gaits of all families."""
-        from rr_opt.report.shapes import draw
+        from rr_opt.report.figures.shapes import draw
 
         return Plots({"shapes": drawn} if (drawn := draw(self)) else {})
 
@@ -142,24 +142,24 @@ class FastestTurn(Result, TurnAnswer):
 
     def record(self, files: Sequence[Path] = ()) -> dict[str, Any]:
         """The content of result.json."""
-        from rr_opt.report.turn.summary import turn_result
+        from rr_opt.report.turn import turn_result
 
         return turn_result(self)
 
     def summary(self, files: Sequence[Path] = ()) -> str:
         """The turn, its gait, limits and checks as text."""
-        from rr_opt.report.turn.summary import turn_summary
+        from rr_opt.report.turn import turn_summary
 
         return turn_summary(self, files)
 
     def plot(self) -> Plots:
         """As of any fastest gait."""
-        from rr_opt.report.figures.answer import draw
+        from rr_opt.report.figures.speed import draw
 
         return Plots(draw(self))
 
     def _write(self, folder: Path, figures: bool, progress: Progress) -> list[Path]:
-        from rr_opt.report.turn.summary import write_turn
+        from rr_opt.report.turn import write_turn
 
         return write_turn(self, folder, figures=figures, progress=progress)
 

@@ -33,13 +33,13 @@ class SolvedStudy(Result, StudyAnswer):
 
     def record(self, files: Sequence[Path] = ()) -> dict[str, Any]:
         """The content of study.json: the table row by row, and the gaits."""
-        from rr_opt.report.study.page import record
+        from rr_opt.report.study import record
 
         return record(self)
 
     def summary(self, files: Sequence[Path] = ()) -> str:
         """How many cases were solved, and the fastest, as text."""
-        from rr_opt.report.study.page import summary
+        from rr_opt.report.study import summary
 
         return summary(self, list(files))
 
@@ -58,7 +58,7 @@ class SolvedStudy(Result, StudyAnswer):
         netcdf: bool = False,
     ) -> list[Path]:
         """Write study.csv, study.json and, if asked for, study.nc, with figures and page."""
-        from rr_opt.report.study.page import write_study
+        from rr_opt.report.study import write_study
 
         check_files(netcdf=netcdf)
         return write_study(self, folder_for_results(Path(path)), netcdf=netcdf, figures=figures)
@@ -66,7 +66,7 @@ class SolvedStudy(Result, StudyAnswer):
 
 def check_files(*, netcdf: bool) -> None:
     """Raise InputError, before anything is computed, for a file that cannot be made here."""
-    from rr_opt.report.study.page import check_wishes
+    from rr_opt.report.study import check_wishes
 
     check_wishes(netcdf=netcdf)
 

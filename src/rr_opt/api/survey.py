@@ -24,13 +24,13 @@ class Sweep(Result, SweepAnswer):
 
     def record(self, files: Sequence[Path] = ()) -> dict[str, Any]:
         """The content of sweep.json."""
-        from rr_opt.report.swept import record
+        from rr_opt.report.sweep import record
 
         return record(self)
 
     def summary(self, files: Sequence[Path] = ()) -> str:
         """The best gait and the grid as text."""
-        from rr_opt.report.swept import summary
+        from rr_opt.report.sweep import summary
 
         return summary(self, list(files))
 
@@ -41,7 +41,7 @@ class Sweep(Result, SweepAnswer):
         return Plots({"sweep": draw(self.found.found, self.best)})
 
     def _write(self, folder: Path, figures: bool, progress: Progress) -> list[Path]:
-        from rr_opt.report.swept import write_sweep
+        from rr_opt.report.sweep import write_sweep
 
         progress("files")
         return write_sweep(self, folder)
@@ -69,13 +69,13 @@ class TurnChart(Result, TurnChartAnswer):
 
     def record(self, files: Sequence[Path] = ()) -> dict[str, Any]:
         """The content of turn-chart.json."""
-        from rr_opt.report.turn.chart import chart_record
+        from rr_opt.report.turn_chart import chart_record
 
         return chart_record(self)
 
     def summary(self, files: Sequence[Path] = ()) -> str:
         """The tightest circle and the paper's claim as text."""
-        from rr_opt.report.turn.chart import chart_summary
+        from rr_opt.report.turn_chart import chart_summary
 
         return chart_summary(self, list(files))
 
@@ -86,7 +86,7 @@ class TurnChart(Result, TurnChartAnswer):
         return Plots({"turn-chart": draw(self.seen, self.tight)})
 
     def _write(self, folder: Path, figures: bool, progress: Progress) -> list[Path]:
-        from rr_opt.report.turn.chart import write_chart
+        from rr_opt.report.turn_chart import write_chart
 
         progress("files")
         return write_chart(self, folder)

@@ -11,12 +11,13 @@ _NEGLIGIBLE = 1e-4
 
 
 def gait_facts(gait: Gait) -> tuple[Fact, ...]:
-    """Shape, amplitude, period and offset."""
+    """Shape, amplitude, period, offset and, of a Fourier gait, the coefficients."""
     return (
         Fact("gait", *_shape(gait)),
         _both("amplitude", gait.amplitude),
         Fact("period", with_unit(gait.period, "s"), f"({with_unit(1 / gait.period, 'Hz')})"),
         _both("offset", gait.offset),
+        *_harmonics(gait),
     )
 
 
@@ -33,8 +34,7 @@ def _both(name: str, value: float) -> Fact:
     return Fact(name, first, f"({second}")
 
 
-def harmonics(gait: Gait) -> tuple[Fact, ...]:
-    """The coefficients of a Fourier gait; nothing for other shapes."""
+def _harmonics(gait: Gait) -> tuple[Fact, ...]:
     if not isinstance(gait, FourierGait):
         return ()
     least = _NEGLIGIBLE * max(map(abs, gait.sines + gait.cosines))

@@ -12,7 +12,9 @@ from rr_opt.answers.quantities import number, speed_text
 from rr_opt.files.gait_record import gait_record
 from rr_opt.motion.rollout import Measured
 from rr_opt.report.archive import remove, write_text
-from rr_opt.report.text import columns, gait_formula, gait_lines
+from rr_opt.report.document import Fact
+from rr_opt.report.gait import gait_facts
+from rr_opt.report.text import facts_text
 from rr_opt.report.trajectory_file import write_csv, write_netcdf
 
 
@@ -20,17 +22,15 @@ def motion_summary(motion: MotionAnswer, files: Iterable[Path]) -> str:
     """The gait, how far it went and how fast at the end, and the files."""
     record = motion_record(motion, files)
     begun = "rest" if motion.start == "rest" else "the steady state"
-    degrees = math.degrees(record["turned"])
-    rows = [
-        ("gait", gait_formula(motion.gait)),
-        *gait_lines(motion.gait),
-        ("time", f"{number(record['seconds'])} s from {begun}"),
-        ("moved", f"{number(record['distance'])} m, turned by {number(degrees)} deg"),
-        *_speed_lines(motion.measured),
-        ("torque", f"{number(record['peak_torque'])} N m at most"),
-        *(("files" if not i else "", file) for i, file in enumerate(record["files"])),
-    ]
-    return "\n".join(columns(rows)) + "\n"
+    degrees = number(math.degrees(record["turned"]))
+    return facts_text(
+        *gait_facts(motion.gait),
+        Fact("time", f"{number(record['seconds'])} s from {begun}"),
+        Fact("moved", f"{number(record['distance'])} m, turned by {degrees} deg"),
+        *_speed_facts(motion.measured),
+        Fact("torque", f"{number(record['peak_torque'])} N m at most"),
+        *(Fact("files" if not i else "", file) for i, file in enumerate(record["files"])),
+    )
 
 
 def motion_record(motion: MotionAnswer, files: Iterable[Path]) -> dict[str, Any]:
@@ -51,14 +51,12 @@ def motion_record(motion: MotionAnswer, files: Iterable[Path]) -> dict[str, Any]
     }
 
 
-def _speed_lines(measured: Measured) -> list[tuple[str, ...]]:
+def _speed_facts(measured: Measured) -> list[Fact]:
     mean = f"{speed_text(measured.mean_v)}, mean v of axle 1"
     if measured.speed is None:
-        return [("speed", f"{mean}, less than a period")]
-    return [
-        ("speed", f"{speed_text(measured.speed)}, along the mean circle of the last period"),
-        ("", f"{mean} over the last period"),
-    ]
+        return [Fact("speed", f"{mean}, less than a period")]
+    circle = f"{speed_text(measured.speed)}, along the mean circle of the last period"
+    return [Fact("speed", circle), Fact("", f"{mean} over the last period")]
 
 
 Format = Literal["csv", "netcdf"]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import math
 from pathlib import Path
 from typing import Any
@@ -13,7 +12,9 @@ from rr_opt.answers.motion import Format, SetPointsAnswer
 from rr_opt.answers.quantities import number, speed_text, with_unit
 from rr_opt.files.gait_record import gait_record
 from rr_opt.motion.setpoints import CENTRE, COUNT, Cost, SetPoints
-from rr_opt.report.text import columns, gait_formula, gait_lines
+from rr_opt.report.document import Fact, csv_text
+from rr_opt.report.gait import gait_facts
+from rr_opt.report.text import facts_text
 from rr_opt.version import __version__
 
 ENDINGS: dict[Format, str] = {"csv": "-angles.csv", "c-header": ".h", "servo": "-counts.csv"}
@@ -29,26 +30,19 @@ def text_of(points: SetPoints, kind: Format) -> str:
 
 def _csv(points: SetPoints) -> str:
     """A row a set point: t (s), phi (rad), phi_deg (degrees)."""
-    return _table(points, "t,phi,phi_deg", [points.angles, np.degrees(points.angles)], "%.9g")
+    rows = zip(
+        _times(points), points.angles.tolist(), np.degrees(points.angles).tolist(), strict=True
+    )
+    return csv_text(("t", "phi", "phi_deg"), rows)
 
 
 def _counts(points: SetPoints) -> str:
     """A row a set point: t (s) and the count, 512 where phi is 0."""
-    return _table(points, "t,count", [points.counts], "%d")
+    return csv_text(("t", "count"), zip(_times(points), points.counts.tolist(), strict=True))
 
 
-def _table(points: SetPoints, header: str, columns: list[np.ndarray], form: str) -> str:
-    t = np.arange(len(points.angles)) / points.rate
-    text = io.StringIO()
-    np.savetxt(
-        text,
-        np.column_stack([t, *columns]),
-        fmt=["%.9g", *[form] * len(columns)],
-        delimiter=",",
-        header=header,
-        comments="",
-    )
-    return text.getvalue()
+def _times(points: SetPoints) -> list[float]:
+    return (np.arange(len(points.angles)) / points.rate).tolist()
 
 
 def _c_header(points: SetPoints) -> str:
@@ -100,17 +94,16 @@ _WORDS = {
 def setpoints_summary(answer: SetPointsAnswer, file: Path | None) -> str:
     """The gait, its set points, the speed before and after, and the file."""
     points, cost = answer.points, answer.cost
-    rows = [
-        ("gait", gait_formula(points.gait)),
-        *gait_lines(points.gait),
-        ("set points", f"{len(points.angles)} a period, {_rate_text(points)}"),
-        ("  period", _period_text(points)),
-        ("speed", f"{speed_text(cost.nominal)}, of the gait itself"),
-        *((f"  {name}", f"{_change(cost, name)} {_WORDS[name]}") for name in cost.steps),
-        ("  left", f"{speed_text(cost.final)}, {_change(cost)}"),
-        *([("file", str(file))] if file else []),
-    ]
-    return "\n".join([*columns(rows), "", MODEL]) + "\n"
+    text = facts_text(
+        *gait_facts(points.gait),
+        Fact("set points", f"{len(points.angles)} a period, {_rate_text(points)}"),
+        Fact("  period", _period_text(points)),
+        Fact("speed", f"{speed_text(cost.nominal)}, of the gait itself"),
+        *(Fact(f"  {name}", f"{_change(cost, name)} {_WORDS[name]}") for name in cost.steps),
+        Fact("  left", f"{speed_text(cost.final)}, {_change(cost)}"),
+        *((Fact("file", str(file)),) if file else ()),
+    )
+    return f"{text}\n{MODEL}\n"
 
 
 def setpoints_record(answer: SetPointsAnswer, file: Path | None) -> dict[str, Any]:

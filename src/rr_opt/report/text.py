@@ -6,13 +6,12 @@ import textwrap
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from rr_opt.answers.quantities import QUANTITIES, with_unit
-from rr_opt.model.gait import FourierGait, FreeGait, Gait
 from rr_opt.report.document import (
     Block,
     Chain,
     Checks,
     Document,
+    Fact,
     Facts,
     Gallery,
     Link,
@@ -22,32 +21,10 @@ from rr_opt.report.document import (
 
 _WIDTH = 100
 
-_NOTHING = 1e-4
-"""A coefficient so small, relative to the largest, is what an optimiser leaves of 0."""
 
-
-def gait_formula(gait: Gait) -> str:
-    """What phi(t) is made of."""
-    if isinstance(gait, FourierGait):
-        return f"phi(t) = offset + {gait.harmonics} harmonics of the period"
-    if isinstance(gait, FreeGait):
-        return f"phi(t) with a constant acceleration on each of {gait.pieces} intervals"
-    return "phi(t) = amplitude sin(2 pi t/period) + offset"
-
-
-def gait_lines(gait: Gait) -> list[tuple[str, ...]]:
-    """Amplitude, period, offset and, of a Fourier gait, the harmonics, a row each."""
-    rows = [
-        ("  amplitude", QUANTITIES["amplitude"].both(gait.amplitude)),
-        ("  period", f"{with_unit(gait.period, 's')} ({with_unit(1 / gait.period, 'Hz')})"),
-        ("  offset", QUANTITIES["offset"].both(gait.offset)),
-    ]
-    if isinstance(gait, FourierGait):
-        least = _NOTHING * max(map(abs, gait.sines + gait.cosines))
-        for n, sizes in enumerate(zip(gait.sines, gait.cosines, strict=True), 1):
-            sine, cosine = (with_unit(size if abs(size) >= least else 0, "rad") for size in sizes)
-            rows.append((f"  harmonic {n}", f"{sine} of the sine, {cosine} of the cosine"))
-    return rows
+def facts_text(*facts: Fact) -> str:
+    """Facts below one another, with a newline at their end."""
+    return "\n".join(_lines(Facts(facts))) + "\n"
 
 
 def terminal(document: Document, files: Iterable[Path] = ()) -> str:

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import io
 from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from rr_opt.motion.rollout import Trajectory
 from rr_opt.outcome import InputError
 from rr_opt.report.archive import whole, write_text
+from rr_opt.report.document import csv_text
 from rr_opt.version import __version__
 
 _COLUMNS = {
@@ -28,10 +26,8 @@ _COLUMNS = {
 def write_csv(path: Path, trajectory: Trajectory) -> Path:
     """Write t,x,y,psi,phi,v,torque in SI units under a header row."""
     names = [field.name for field in fields(Trajectory)]
-    table = np.column_stack([getattr(trajectory, name) for name in names])
-    text = io.StringIO()
-    np.savetxt(text, table, fmt="%.9g", delimiter=",", header=",".join(names), comments="")
-    return write_text(path, text.getvalue())
+    columns = (getattr(trajectory, name).tolist() for name in names)
+    return write_text(path, csv_text(names, zip(*columns, strict=True)))
 
 
 def netcdf_writer() -> Any:

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.axes import Axes
 
+from rr_opt.answers.shapes import ShapesAnswer, family
 from rr_opt.model.gait import Gait
-from rr_opt.report.figures.style import BACKWARD, FORWARD, GREY, INK, LIMIT
+from rr_opt.report.figures.style import BACKWARD, FORWARD, GREY, INK, LIMIT, figure, styled, svg
 
 _SAMPLES = 1500
 _SHADES = (0.35, 0.55, 0.75, 1.0)
@@ -23,6 +24,23 @@ class Line:
     gait: Gait
     speed: float
     gain: float
+
+
+def draw(compared: ShapesAnswer) -> str:
+    """The figure as SVG text; empty if no family has an optimum."""
+    lines = [
+        Line(family(one), one.optimum.best.gait, one.speed or 0.0, compared.gain(one) or 0.0)
+        for one in compared.solved
+        if one.optimum.best
+    ]
+    if not lines:
+        return ""
+    with styled():
+        drawn = figure(8.6, 4.2)
+        axes = drawn.subplot_mosaic([["angle", "speed"], ["rate", "speed"]], width_ratios=[1.1, 1])
+        in_order = [axes[name] for name in ("angle", "rate", "speed")]
+        shapes(in_order, lines, compared.answers[0].optimum.problem.limits.rate)
+        return svg(drawn)
 
 
 def shapes(axes: Sequence[Axes], lines: Sequence[Line], rate_limit: float) -> Sequence[Axes]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import math
 from pathlib import Path
 from typing import Any
@@ -10,12 +9,13 @@ from typing import Any
 import numpy as np
 
 from rr_opt.answers.corrected_robot import finite
-from rr_opt.answers.quantities import direction_text, number, speed_text, with_unit
+from rr_opt.answers.quantities import number, with_unit
 from rr_opt.answers.turn_chart import TurnChartAnswer, sine_text
 from rr_opt.files.gait_record import gait_record
-from rr_opt.outcome import Status
 from rr_opt.report.archive import remove, write_json, write_text
-from rr_opt.report.text import columns
+from rr_opt.report.document import Document, Fact, Facts, Section, csv_text
+from rr_opt.report.gait import speed_fact
+from rr_opt.report.text import terminal
 from rr_opt.verify.turn.chart import TurnMap
 from rr_opt.verify.turn.offset_claim import RadiusClaim, SignClaim
 from rr_opt.version import __version__
@@ -29,50 +29,54 @@ _COLUMNS = (
 
 def chart_summary(chart: TurnChartAnswer, files: list[Path]) -> str:
     """The chart as text for a terminal."""
-    rows: list[tuple[str, str]] = []
-    if chart.tight:
-        rows += [
-            ("tightest", f"{with_unit(chart.tight.radius, 'm')} by {sine_text(chart.tight.gait)}"),
-            ("  speed", f"{speed_text(chart.tight.speed)}, {direction_text(chart.tight.speed)}"),
-        ]
-    if chart.status is Status.OPTIMAL:
-        rows += [("claim", "the sign of the offset sets the side"), *_sign_rows(chart.sign)]
-        rows += [("claim", "a larger offset makes a smaller radius"), *_radius_rows(chart.radius)]
-    rows += [("files" if not i else "", str(file)) for i, file in enumerate(files)]
-    head = chart.message if chart.tight else chart.status.value
-    return "\n".join([f"{chart.name}: {head}", "", *columns(rows)]) + "\n"
+    tight = chart.tight
+    sections: tuple[Section, ...] = ()
+    if tight:
+        circle = f"{with_unit(tight.radius, 'm')} by {sine_text(tight.gait)}"
+        facts = (Fact("tightest", circle), speed_fact(tight.speed))
+        sections = (
+            Section("", (Facts(facts),)),
+            Section("The sign of the offset sets the side", (_sign_facts(chart.sign),)),
+            Section("A larger offset makes a smaller radius", (_radius_facts(chart.radius),)),
+        )
+    title = chart.message if tight else chart.status.value
+    return terminal(Document(chart.name, "turn chart", title, "", sections), files)
 
 
-def _sign_rows(claim: SignClaim) -> list[tuple[str, str]]:
+def _sign_facts(claim: SignClaim) -> Facts:
     verdict = (
         f"holds for all {claim.gaits} gaits"
         if claim.holds
         else f"fails: {claim.rarer} of {claim.gaits} gaits turn to the other side"
     )
-    rows = [
-        ("  verdict", verdict),
-        ("  forward", f"{claim.forward_left} left, {claim.forward_right} right at offsets above 0"),
-        ("  backward", f"{claim.backward_left} left, {claim.backward_right} right"),
+    facts = [
+        Fact("verdict", verdict),
+        Fact(
+            "forward", f"{claim.forward_left} left, {claim.forward_right} right at offsets above 0"
+        ),
+        Fact("backward", f"{claim.backward_left} left, {claim.backward_right} right"),
     ]
     if claim.exception:
-        rows.append(("  first at", sine_text(claim.exception)))
-    return rows
+        facts.append(Fact("first at", sine_text(claim.exception)))
+    return Facts(tuple(facts))
 
 
-def _radius_rows(claim: RadiusClaim) -> list[tuple[str, str]]:
+def _radius_facts(claim: RadiusClaim) -> Facts:
+    curves = f"{claim.curves} curves of one amplitude and period"
     if claim.first is None or claim.worst is None:
-        return [("  verdict", f"holds on all {claim.curves} curves of one amplitude and period")]
+        return Facts((Fact("verdict", f"holds on all {curves}"),))
     most = (
-        "runs off to a straight line where the turn changes sides"
+        "grows without bound to a straight line, where the turn changes sides"
         if math.isinf(claim.factor)
-        else f"comes to {number(claim.factor)} times its least"
+        else f"reaches {number(claim.factor)} times its least"
     )
-    return [
-        ("  verdict", f"fails on {claim.growing} of {claim.curves} curves of one amplitude and "
-            "period"),
-        ("  first at", sine_text(claim.first)),
-        ("  worst", f"the radius {most}, by {sine_text(claim.worst)}"),
-    ]  # fmt: skip
+    return Facts(
+        (
+            Fact("verdict", f"fails on {claim.growing} of {curves}"),
+            Fact("first at", sine_text(claim.first)),
+            Fact("worst", f"the radius {most}, by {sine_text(claim.worst)}"),
+        )
+    )
 
 
 def chart_record(chart: TurnChartAnswer) -> dict[str, Any]:
@@ -130,18 +134,12 @@ def _csv(seen: TurnMap) -> str:
     where there is no steady cycle within the limits on the angle."""
     alpha, T, phi0 = np.meshgrid(seen.amplitude, seen.period, seen.offset, indexing="ij")
     arrays = (alpha, T, phi0, seen.curvature, seen.speed, seen.heading, seen.peak_torque)
-    parts = [*arrays, seen.keeps.astype(float)]
+    parts = [*arrays, seen.keeps.astype(int)]
     # phi0 and -phi0 are mirror images: what turns has the other sign there.
     left = slice(None, 0, -1) if seen.two_sided else slice(0, 0)
     mirror = [-part if i in (2, 3, 5) else part for i, part in enumerate(parts)]
     both = [
-        np.concatenate([there[..., left], here], axis=-1).ravel()
+        np.concatenate([there[..., left], here], axis=-1).ravel() + 0
         for here, there in zip(parts, mirror, strict=True)
     ]
-    text = io.StringIO()
-    form = ["%.9g"] * (len(_COLUMNS) - 1) + ["%d"]
-    header = ",".join(_COLUMNS)
-    np.savetxt(
-        text, np.column_stack(both) + 0.0, fmt=form, delimiter=",", header=header, comments=""
-    )
-    return text.getvalue().replace("nan", "")
+    return csv_text(_COLUMNS, zip(*(part.tolist() for part in both), strict=True))

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import io
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from rr_opt.answers.quantities import number, speed_text, with_unit
+from rr_opt.answers.quantities import number, with_unit
 from rr_opt.answers.sweep import SweepAnswer
 from rr_opt.files.gait_record import gait_record
 from rr_opt.report.archive import remove, write_json, write_text
-from rr_opt.report.text import columns, gait_lines
+from rr_opt.report.document import Document, Fact, Facts, Section, csv_text
+from rr_opt.report.gait import gait_facts, speed_fact
+from rr_opt.report.text import terminal
 from rr_opt.verify.evaluate import LIMITS, Evaluated, Found
 from rr_opt.verify.grid import DECISIONS
 from rr_opt.version import __version__
@@ -51,19 +50,19 @@ def _found_record(one: Found | None) -> dict[str, Any] | None:
 def summary(swept: SweepAnswer, files: list[Path]) -> str:
     """The sweep as text for a terminal."""
     best, grid = swept.best, swept.found.found
-    rows: list[tuple[str, ...]] = []
+    facts: list[Fact] = []
     if best:
-        rows = [
-            ("gait", "phi(t) = amplitude sin(2 pi t/period) + offset"),
-            *gait_lines(best.gait),
-            ("  J20/J10", "the robot as it is" if best.ratio is None else number(best.ratio)),
-            ("speed", speed_text(best.speed)),
-            ("torque", f"{with_unit(best.peak_torque, 'N m')} at most"),
+        ratio = "the robot as it is" if best.ratio is None else number(best.ratio)
+        facts = [
+            *gait_facts(best.gait),
+            Fact("J20/J10", ratio),
+            speed_fact(best.speed),
+            Fact("torque", f"{with_unit(best.peak_torque, 'N m')} at most"),
         ]
-    rows.append(("grid", f"{len(grid.speed)} gaits, {int(grid.feasible.sum())} keep every limit"))
-    rows += [("files" if not i else "", str(file)) for i, file in enumerate(files)]
-    head = f"{swept.name}: {swept.message}" if best else f"{swept.name}: infeasible"
-    return "\n".join([head, "", *columns(rows)]) + "\n"
+    kept = f"{len(grid.speed)} gaits, of which {int(grid.feasible.sum())} respect all limits"
+    section = Section("", (Facts((*facts, Fact("grid", kept))),))
+    title = swept.message if best else "infeasible"
+    return terminal(Document(swept.name, "sweep", title, "", (section,)), files)
 
 
 def write_sweep(swept: SweepAnswer, folder: Path) -> list[Path]:
@@ -82,9 +81,6 @@ def _csv(found: Evaluated) -> str:
     """A row a gait of the grid, SI; 1 in a limit's column where it is kept. An empty ratio is the
     robot as it is; an empty speed, a gait at or past the limits on the angle."""
     names = (*DECISIONS, "speed", "peak_torque", *(f"keeps_{name}" for name in LIMITS))
-    kept = [found.keeps[name] for name in LIMITS]
-    table = np.column_stack([*found.decisions, found.speed, found.peak_torque, *kept])
-    text = io.StringIO()
-    form = ["%.9g"] * (len(names) - len(kept)) + ["%d"] * len(kept)
-    np.savetxt(text, table, fmt=form, delimiter=",", header=",".join(names), comments="")
-    return text.getvalue().replace("nan", "")
+    kept = [found.keeps[name].astype(int) for name in LIMITS]
+    columns = [*found.decisions, found.speed, found.peak_torque, *kept]
+    return csv_text(names, zip(*(column.tolist() for column in columns), strict=True))

@@ -1,1 +1,0 @@
-"""What turns, circles and the chart of them tell."""
