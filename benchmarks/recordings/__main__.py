@@ -34,12 +34,12 @@ PLACES = {
 WORK = f"""
 import sys, time
 began = time.perf_counter()
-from rr_opt.recordings.from_markers import recording_from_markers
-from rr_opt.recordings.layout import Layout
-from rr_opt.recordings.readers.registry import read_file
+from rr_opt.model.experiment import Layout
+from rr_opt.recordings.markers.pose import fit_markers
+from rr_opt.recordings.readers import read_file
 places = {PLACES!r}
 layout = Layout(*({{n: p[1:] for n, p in places.items() if p[0] == i}} for i in (1, 2)))
-recording = recording_from_markers(read_file(sys.argv[1]), layout)
+recording = fit_markers(read_file(sys.argv[1]), layout).recording
 wall = time.perf_counter() - began
 import resource
 kilo = 1 if sys.platform == "darwin" else 1024

@@ -113,7 +113,7 @@ def test_netcdf_holds_the_recording_with_its_flags(run, tmp_path):
     write_vicon(tmp_path / "run.csv")
     done = run("inspect", "run.csv", "--no-figures", "--netcdf", "run.nc")
     assert done.exit_code == 0, done.stderr
-    from rr_opt.recordings.readers.registry import read_file
+    from rr_opt.recordings.readers import read_file
 
     read = read_file(tmp_path / "run.nc")
     assert len(read) == 3001

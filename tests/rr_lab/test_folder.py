@@ -11,7 +11,7 @@ from rr_lab.formats import ServoClock
 from rr_lab.random_case import random_case
 from rr_opt.model.experiment import Noise
 from rr_opt.recordings.experiment import read_experiment
-from rr_opt.recordings.readers.registry import read_file
+from rr_opt.recordings.readers import read_file
 
 
 @pytest.fixture(scope="module")

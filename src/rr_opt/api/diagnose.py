@@ -18,7 +18,6 @@ from rr_opt.model.experiment import Experiment, Noise, Run
 from rr_opt.outcome import NotConvergedError
 from rr_opt.recordings.experiment import read_experiment
 from rr_opt.recordings.usable import usable
-from rr_opt.recordings.warnings import texts
 
 
 class ExplainedExperiment(Result, DiagnosisAnswer):
@@ -107,5 +106,5 @@ def _as_read(run: Run, noise: Noise) -> Run:
         for channel, known in run.recording.sigma.items()
     }
     made = clean(replace(run.recording, sigma=MappingProxyType(sigma)))
-    doubts = (*run.recording.doubts, *texts(made.doubts))
+    doubts = (*run.recording.doubts, *made.doubts)
     return replace(run, recording=replace(made.recording, doubts=doubts))

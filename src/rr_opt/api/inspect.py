@@ -13,7 +13,8 @@ from rr_opt.files.source import fingerprint
 from rr_opt.model.experiment import Start
 from rr_opt.model.gait import Gait
 from rr_opt.outcome import InputError
-from rr_opt.recordings.inspection import Inspection, inspect_experiment, inspect_file, is_experiment
+from rr_opt.recordings.experiment import inspect_experiment, is_experiment
+from rr_opt.recordings.inspection import Inspection, inspect_file
 from rr_opt.report.archive import file_for_result, folder_for_results
 
 

@@ -12,7 +12,7 @@ from rr_opt.files.experiment_model import (
     shares_of_nothing,
     uncertainty_of,
 )
-from rr_opt.files.experiment_plan import ExperimentPlan, PlannedRun, places_from
+from rr_opt.files.experiment_plan import ExperimentPlan, PlannedRun, layout_from
 from rr_opt.files.fields import validate
 from rr_opt.files.gait_record import gait_from
 from rr_opt.files.issue import InvalidFileError, Issue, has_errors
@@ -236,6 +236,7 @@ def plan_from(document: Document, file: Path) -> tuple[ExperimentPlan | None, li
         runs=runs,
         markers=markers,
         counts=model.servo_counts,
+        columns={name: one for name, one in dict(model.columns).items() if one is not None},
         paths=(
             file,
             *paths,
@@ -249,7 +250,7 @@ def plan_from(document: Document, file: Path) -> tuple[ExperimentPlan | None, li
 def _markers(document: Document) -> tuple[Any, list[Issue]]:
     given = document.data["markers"]
     if isinstance(given, dict):
-        return places_from(document.section("markers"))
+        return layout_from(document.section("markers"))
     message = f"Read {shown(given)}. Expected `platform1` and `platform2`, each with its markers."
     return None, [document.issue("error", ("markers",), message)]
 

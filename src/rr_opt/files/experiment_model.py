@@ -14,8 +14,9 @@ from pydantic_core import CoreSchema
 from rr_opt.files.fields import FileModel, Key, Section
 from rr_opt.files.gait_record import FourierRecord, FreeRecord, SineRecord
 from rr_opt.files.robot_file import RobotModel
-from rr_opt.messages import shown
-from rr_opt.model.experiment import CountScale, Noise, Start, Use
+from rr_opt.messages import shown, unknown_word
+from rr_opt.model.experiment import UNITS, Column, CountScale, Noise, Start, Use
+from rr_opt.model.fields import Count
 from rr_opt.model.parameters import (
     PARAMETERS,
     PLATFORM_SYMBOLS,
@@ -122,6 +123,60 @@ def shares_of_nothing(model: Any, robot: Robot) -> Iterator[tuple[str, str]]:
             )
 
 
+@dataclass(frozen=True)
+class ColumnOf:
+    """Reads a Column: its name, or a mapping with name, factor and bits; unit: of the channel."""
+
+    unit: str
+
+    def read(self, value: object) -> Column:
+        """The column. Raises InputError."""
+        given = value if isinstance(value, dict) else {"column": value}
+        for key in given:
+            if key not in _COLUMN:
+                raise InputError(unknown_word(str(key), _COLUMN, "key"))
+        name, bits = given.get("column"), given.get("bits")
+        if not isinstance(name, str) or not name.strip():
+            raise InputError(
+                f"Read {shown(name)}. Expected the name of a column. Write for example "
+                "`psi: theta`, or `{column: theta, factor: 1 deg}`."
+            )
+        factor = self._factor.read(given.get("factor", 1))
+        return Column(name, factor, None if bits is None else _BITS.read(bits))
+
+    @property
+    def _factor(self) -> Quantity:
+        return Quantity(self.unit, f"0.001 {self.unit}".strip())
+
+    def json_schema(self) -> dict[str, Any]:
+        """JSON Schema: a name, or a mapping."""
+        keys = {
+            "column": {"type": "string", "minLength": 1},
+            "factor": {**self._factor.json_schema(), "description": "What 1 in the column is."},
+            "bits": {**_BITS.json_schema(), "description": "Bits of a count with a sign."},
+        }
+        whole = {"type": "object", "properties": keys, "required": ["column"]}
+        return {"anyOf": [keys["column"], {**whole, "additionalProperties": False}]}
+
+
+_COLUMN = ("column", "factor", "bits")
+_BITS = Count(2, 64)
+
+
+def _columns() -> Iterator[tuple[str, Any]]:
+    for name, unit in {**UNITS, "goal": "", "present": ""}.items():
+        where = f"Where {name}{f' ({unit})' if unit else ''} is."
+        kind = Annotated[Column | None, Key(ColumnOf(unit))]
+        yield name, (kind, Field(default=None, description=where))
+
+
+ColumnsModel: Any = create_model(
+    "ColumnsModel",
+    __base__=FileModel,
+    __doc__="Where channels are in text files that name them otherwise, and in which unit.",
+    **dict(_columns()),
+)
+
 PLACE = Quantity("m", "40 mm")
 
 Up = Literal["x", "y", "z", "-x", "-y", "-z"]
@@ -187,6 +242,10 @@ class ExperimentModel(FileModel):
     )
     markers: Annotated[MarkersModel | None, SkipValidation] = Field(
         default=None, description="Where the markers sit; needed for marker files."
+    )
+    columns: ColumnsModel = Field(  # pyright: ignore[reportInvalidTypeForm] - it is made
+        default_factory=ColumnsModel,
+        description="Columns of text files that go by another name, or hold another unit.",
     )
     servo_counts: Annotated[CountScale, Section()] = Field(
         default_factory=CountScale, description="What the counts of servo logs mean."

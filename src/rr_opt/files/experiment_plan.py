@@ -14,19 +14,10 @@ from rr_opt.files.issue import Issue, has_errors
 from rr_opt.files.source import fingerprint
 from rr_opt.files.yaml_text import Document
 from rr_opt.messages import shown
-from rr_opt.model.experiment import CountScale, Noise, Start, Uncertainty, Use
+from rr_opt.model.experiment import Column, CountScale, Layout, Noise, Start, Uncertainty, Use
 from rr_opt.model.gait import Gait
 from rr_opt.model.robot import Robot
 from rr_opt.outcome import InputError
-
-
-@dataclass(frozen=True)
-class MarkerPlaces:
-    """Of each platform's markers, by name, (forward, left[, up]) from P, m; and what axis is up."""
-
-    platform1: Mapping[str, tuple[float, ...]]
-    platform2: Mapping[str, tuple[float, ...]]
-    up: str
 
 
 @dataclass(frozen=True)
@@ -54,8 +45,9 @@ class ExperimentPlan:
     noise: Noise
     uncertainty: Mapping[str, Uncertainty]
     runs: tuple[PlannedRun, ...]
-    markers: MarkerPlaces | None
+    markers: Layout | None
     counts: CountScale
+    columns: Mapping[str, Column]
     paths: tuple[Path, ...]
 
     @property
@@ -68,7 +60,7 @@ _PLATFORMS = ("platform1", "platform2")
 _FEWEST = 2
 
 
-def places_from(document: Document) -> tuple[MarkerPlaces | None, list[Issue]]:
+def layout_from(document: Document) -> tuple[Layout | None, list[Issue]]:
     """The places that the section `markers` gives (None if there are issues), and all issues."""
     model, issues = validate(MarkersModel, document)
     places: dict[str, dict[str, tuple[float, ...]]] = {}
@@ -84,7 +76,7 @@ def places_from(document: Document) -> tuple[MarkerPlaces | None, list[Issue]]:
     if model is None or has_errors(issues):
         return None, issues
     first, second = (MappingProxyType(places[platform]) for platform in _PLATFORMS)
-    return MarkerPlaces(first, second, model.up), issues
+    return Layout(first, second, model.up), issues
 
 
 def _places(document: Document, platform: str) -> tuple[dict[str, tuple[float, ...]], list[Issue]]:

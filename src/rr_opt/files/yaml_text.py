@@ -14,7 +14,7 @@ from typing import Any, NoReturn
 
 import yaml
 
-from rr_opt.files.issue import InvalidFileError, Issue, Level
+from rr_opt.files.issue import InvalidFileError, Issue, Level, refuse
 from rr_opt.messages import shown
 
 KeyPath = tuple[str | int, ...]
@@ -89,17 +89,13 @@ def parse_yaml(content: bytes, file: str) -> Document:
     Raises InvalidFileError, naming `file`, with everything that was found wrong.
     """
     if len(content) > LARGEST:
-        _refuse(file, f"The file is larger than {LARGEST / 1e6:g} MB. Expected a short YAML file.")
+        refuse(file, f"The file is larger than {LARGEST / 1e6:g} MB. Expected a short YAML file.")
     try:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = content.count(b"\n", 0, error.start) + 1
-        _refuse(file, "The text is not UTF-8. Save the file with the encoding UTF-8.", line)
+        refuse(file, "The text is not UTF-8. Save the file with the encoding UTF-8.", line)
     return _Reading(text, file).document()
-
-
-def _refuse(file: str, message: str, line: int | None = None) -> NoReturn:
-    raise InvalidFileError([Issue("error", "", message, line, file)])
 
 
 class _Reading:

@@ -1,6 +1,4 @@
-"""Angles that jump by a turn because somebody kept them within one.
-
-A recording cleaned: angles unwrapped, outliers flagged, noise measured, and every doubt told.
+"""A recording cleaned: angles unwrapped, outliers flagged, noise measured, all that is odd told.
 
 Nothing is filled in, nothing is smoothed and no value is changed but for whole turns of an angle.
 """
@@ -15,18 +13,12 @@ import numpy as np
 
 from rr_opt.array import Array
 from rr_opt.model.experiment import Flag, Recording
-from rr_opt.recordings.channel_warnings import (
-    channel_doubts,
-    motion_doubts,
-    step_doubts,
-    turn_doubts,
-    unit_doubts,
-)
+from rr_opt.recordings.channel_checks import channel_notices, unit_notices
 from rr_opt.recordings.gaps import LACKING, Gap, Jump, gaps, jumps, without_copies
 from rr_opt.recordings.noise import NoiseEstimate
 from rr_opt.recordings.outliers import outliers, step_of, usual_noise
 from rr_opt.recordings.time_axis import time_step
-from rr_opt.recordings.warnings import Doubt
+from rr_opt.recordings.warnings import Notice, notice
 
 
 def unwrapped(angle: Array) -> Array:
@@ -55,25 +47,24 @@ class Cleaned:
     recording  flags set; sigma, where it was not stated, as estimated
     noise      by channel, from its unflagged samples
     jumps      by channel
-    doubts     in sentences, all of this step; not those of the reader
+    doubts     all of this step; not those of the reader
     """
 
     recording: Recording
     noise: Mapping[str, NoiseEstimate]
     gaps: tuple[Gap, ...]
     jumps: Mapping[str, tuple[Jump, ...]]
-    doubts: tuple[Doubt, ...]
+    doubts: tuple[Notice, ...]
 
 
 def clean(recording: Recording) -> Cleaned:
     """Look at every channel of a recording; its own doubts stay with it."""
     recording, copies = without_copies(_of_numbers(recording))
     turns = {one: turns_taken(recording.data(one)) for one in _ANGLES}
-    units = unit_doubts(recording)
-    if not any(doubt.kind == "units" for doubt in units):
-        recording = _without_turns(recording, turns)
-    else:
+    units = unit_notices(recording)
+    if units:
         turns = {}
+    recording = _without_turns(recording, turns)
     lacking = np.diff(recording.t) > LACKING * time_step(recording.t)
     values, flags, sigma, noise, found, steps = {}, {}, {}, {}, {}, {}
     for channel in recording.channels:
@@ -96,14 +87,9 @@ def clean(recording: Recording) -> Cleaned:
         found[channel] = tuple(jump for jump in all_jumps if not lacking[jump.row])
     made = replace(recording, sigma=MappingProxyType(sigma), flags=MappingProxyType(flags))
     holes = gaps(made)
-    doubts = (
-        *units,
-        *copies,
-        *turn_doubts(turns),
-        *motion_doubts(made, noise, stated=recording.sigma),
-        *step_doubts(steps, recording.sigma),
-        *channel_doubts(made, noise, holes, found, stated=recording.sigma),
-    )
+    turned = [notice("turns.angle", angle=one, count=n) for one, n in turns.items() if n]
+    channels = channel_notices(made, noise, steps, holes, found, stated=recording.sigma)
+    doubts = (*units, *copies, *turned, *channels)
     return Cleaned(made, MappingProxyType(noise), holes, MappingProxyType(found), doubts)
 
 

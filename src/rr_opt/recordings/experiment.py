@@ -2,130 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 
+from rr_opt.array import Array
 from rr_opt.files.experiment_file import FILE_NAME, experiment_path, named_files, read_plan
-from rr_opt.files.experiment_plan import ExperimentPlan, MarkerPlaces, PlannedRun
+from rr_opt.files.experiment_plan import ExperimentPlan, PlannedRun
 from rr_opt.files.issue import InvalidFileError, Issue, has_errors
-from rr_opt.messages import shown
-from rr_opt.model.experiment import Experiment, Recording, Run
+from rr_opt.model.experiment import Experiment, Run
 from rr_opt.outcome import InputError
-from rr_opt.recordings.markers.layout import Layout
-from rr_opt.recordings.readers.marker_rows import MarkerData
-from rr_opt.recordings.readers.netcdf import commanded_gait, is_netcdf
-from rr_opt.recordings.readers.registry import read_file
-from rr_opt.recordings.readers.servo_log import ServoLog
-from rr_opt.recordings.warnings import texts
+from rr_opt.recordings.inspection import Circumstances, Inspection, inspected
+from rr_opt.recordings.readers import ReadOptions, read_file
+from rr_opt.recordings.readers.netcdf import commanded_gait
+
+Progress = Callable[[str], object]
 
 
-@dataclass(frozen=True)
-class ReadRun:
-    """A run as its files have it, and the servo's log of it."""
-
-    run: Run
-    log: ServoLog | None
-
-
-def read_run(
-    plan: ExperimentPlan, number: int, planned: PlannedRun
-) -> tuple[ReadRun | None, list[Issue]]:
-    """The run (None if an issue is an error), and all issues; nothing is raised."""
-    issues: list[Issue] = []
-    recording = log = None
-    try:
-        recording = _recording(plan, planned.file)
-        issues += _other_command(plan, number, planned, recording)
-    except InputError as error:
-        issues += _issues(plan, number, "file", error)
-    try:
-        log = _servo_log(plan, planned.servo_log) if planned.servo_log else None
-    except InputError as error:
-        issues += _issues(plan, number, "servo_log", error)
-    for one in (recording, log):
-        if one is not None:
-            issues += [
-                Issue("warning", "", doubt, None, one.source.get("file", one.name))
-                for doubt in one.doubts
-            ]
-    if recording is None or has_errors(issues):
-        return None, issues
-    return ReadRun(Run(recording, planned.gait, planned.use, planned.start), log), issues
-
-
-def _other_command(
-    plan: ExperimentPlan, number: int, planned: PlannedRun, recording: Recording
-) -> list[Issue]:
-    """A warning where a file that says what was commanded says something else.
-
-    Raises InputError if what it says cannot be read.
-    """
-    if not is_netcdf(planned.file):
-        return []
-    said = commanded_gait(planned.file)
-    if said is None or np.allclose(said.angle(recording.t), planned.gait.angle(recording.t)):
-        return []
-    message = "Read another gait than the file says was commanded. The one written here was taken."
-    return [plan.document.issue("warning", ("recordings", number, "gait"), message)]
-
-
-def _issues(plan: ExperimentPlan, number: int, key: str, error: InputError) -> list[Issue]:
-    """What went wrong with a file: where it went wrong in it, or else where the file is named."""
-    if isinstance(error, InvalidFileError):
-        return list(error.issues)
-    return [plan.document.issue("error", ("recordings", number, key), str(error))]
-
-
-def _recording(plan: ExperimentPlan, file: Path) -> Recording:
-    """The motion that a file holds. Raises InputError."""
-    read = read_file(file, plan.noise, plan.counts)
-    if isinstance(read, ServoLog):
-        raise InputError(
-            f"Read {shown(file.name)}, a servo's log. Expected a recording of the robot. "
-            "Name the log under `servo_log`."
-        )
-    if isinstance(read, Recording):
-        return read
-    if plan.markers is None:
-        raise InputError(
-            f"Read {shown(file.name)}, a marker file. Expected `markers`, the place of each on "
-            f"the robot; the file has {shown(', '.join(read.labels))}. Add the key."
-        )
-    # Here and not above: it loads scipy, which a plain recording does without.
-    from rr_opt.recordings.markers.pose import recording_from_markers
-
-    return recording_from_markers(read, layout_for(read, plan.markers), plan.noise.position)
-
-
-def layout_for(data: MarkerData, places: MarkerPlaces) -> Layout:
-    """The layout under the names that a file's markers have, whose subject may be left out.
-
-    Raises InputError if the file lacks all markers of a platform.
-    """
-    subject = f"{data.source.get('subject', '')}:"
-    platforms = []
-    for platform, given in (("platform1", places.platform1), ("platform2", places.platform2)):
-        named = {name.removeprefix(subject): place for name, place in given.items()}
-        if not set(named) & set(data.labels):
-            raise InputError(
-                f"Read the markers {shown(', '.join(data.labels))} in {shown(data.name)}. Expected "
-                f"some of `markers.{platform}`: {shown(', '.join(given))}. Correct the names."
-            )
-        platforms.append(named)
-    return Layout(*platforms, up=places.up)
-
-
-def _servo_log(plan: ExperimentPlan, file: Path) -> ServoLog:
-    read = read_file(file, plan.noise, plan.counts)
-    if not isinstance(read, ServoLog):
-        raise InputError(
-            f"Read {shown(file.name)}, which is no servo's log. Expected CSV with the header row "
-            "`t,goal,present`. Name it under `file` if it is the recording."
-        )
-    return read
+def is_experiment(path: Path) -> bool:
+    """Whether a path is an experiment's folder or file, and not one recording."""
+    return path.is_dir() or path.suffix.lower() in (".yaml", ".yml")
 
 
 def read_experiment(folder: str | Path) -> Experiment:
@@ -140,53 +37,82 @@ def read_experiment(folder: str | Path) -> Experiment:
             f"{folder}: Read a folder without {FILE_NAME}. Expected that file, which names the "
             "robot and the recordings. `rr-opt schema experiment` tells its keys."
         )
-    plan, read, issues = _read(folder)
-    if plan is None:
+    experiment, issues = experiment_of(folder)
+    if experiment is None:
         raise InvalidFileError(issues)
-    return _experiment(plan, [_cleaned(one) for one in read])
+    return experiment
 
 
 def experiment_of(folder: str | Path) -> tuple[Experiment | None, list[Issue]]:
-    """The experiment as read (None if an issue is an error), and all issues, doubts as warnings.
+    """The same (None if an issue is an error), and all issues, doubts as warnings.
 
-    A file that cannot be read is an issue too; nothing is raised, and no recording is cleaned.
+    A file that cannot be read is an issue too; nothing is raised.
     """
-    plan, read, issues = _read(folder)
-    if plan is None:
-        return None, issues
-    return _experiment(plan, [one.run for one in read]), issues
-
-
-def _experiment(plan: ExperimentPlan, runs: Sequence[Run]) -> Experiment:
-    return Experiment(plan.robot, plan.noise, plan.uncertainty, tuple(runs), plan.name, plan.sha256)
-
-
-def _cleaned(read: ReadRun) -> Run:
-    # Here and not above: they load scipy, which a look for mistakes does without.
-    from rr_opt.recordings.cleaning import clean
-    from rr_opt.recordings.clocks.synchrony import synchronised, with_doubts
-
-    run, recording = read.run, read.run.recording
-    if read.log is not None:
-        recording = with_doubts(synchronised(recording, read.log, run.gait, run.start))
-    made = clean(recording)
-    doubts = (*recording.doubts, *texts(made.doubts))
-    return replace(run, recording=replace(made.recording, doubts=doubts))
-
-
-def _read(folder: str | Path) -> tuple[ExperimentPlan | None, list[ReadRun], list[Issue]]:
-    """The plan (None if an issue is an error), what its runs' files hold, and all issues."""
     try:
         plan, issues = read_plan(folder)
     except InvalidFileError as error:
-        return None, [], [*error.issues, *_in_files(Path(folder))]
-    runs: list[ReadRun] = []
+        return None, [*error.issues, *_in_files(Path(folder))]
+    runs: list[Run] = []
     for number, planned in enumerate(plan.runs):
-        run, found = read_run(plan, number, planned)
-        issues += found
-        if run is not None:
-            runs.append(run)
-    return (None if has_errors(issues) else plan), runs, issues
+        found, told = _inspected(plan, number, planned, estimate=False)
+        issues += told
+        if found is not None:
+            recording = found.recording
+            file = recording.source.get("file", recording.name)
+            issues += [Issue("warning", "", doubt, None, file) for doubt in recording.doubts]
+            runs.append(Run(recording, planned.gait, planned.use, planned.start))
+    if has_errors(issues):
+        return None, issues
+    made = Experiment(plan.robot, plan.noise, plan.uncertainty, tuple(runs), plan.name, plan.sha256)
+    return made, issues
+
+
+def inspect_experiment(path: Path, progress: Progress) -> list[Inspection]:
+    """Every recording of an experiment file or its folder.
+
+    Raises InvalidFileError with everything that is wrong in the file and in every recording.
+    """
+    plan, _ = read_plan(path)
+    inspections: list[Inspection] = []
+    issues: list[Issue] = []
+    for number, planned in enumerate(plan.runs):
+        progress(f"recording {number + 1} of {len(plan.runs)}")
+        found, told = _inspected(plan, number, planned, estimate=True)
+        issues += told
+        inspections += [found] if found is not None else []
+    if has_errors(issues):
+        raise InvalidFileError(issues)
+    return inspections
+
+
+def _inspected(
+    plan: ExperimentPlan, number: int, planned: PlannedRun, *, estimate: bool
+) -> tuple[Inspection | None, list[Issue]]:
+    """A recording (None if an issue is an error), and all issues; nothing is raised.
+
+    estimate: the places of markers that the plan does not give.
+    """
+    options = ReadOptions(plan.noise, plan.counts, plan.columns)
+    known = Circumstances(plan.markers, options, planned.gait, planned.start, planned.servo_log)
+    try:
+        found = inspected(planned.file, known, estimate=estimate)
+        return found, _other_command(plan, number, planned, found.recording.t)
+    except InvalidFileError as error:
+        return None, list(error.issues)
+    except InputError as error:
+        return None, [plan.document.issue("error", ("recordings", number, "file"), str(error))]
+
+
+def _other_command(plan: ExperimentPlan, number: int, planned: PlannedRun, t: Array) -> list[Issue]:
+    """A warning where a file that says what was commanded says something else.
+
+    Raises InputError if what it says cannot be read.
+    """
+    said = commanded_gait(planned.file)
+    if said is None or np.allclose(said.angle(t), planned.gait.angle(t)):
+        return []
+    message = "Read another gait than the file says was commanded. The one written here was taken."
+    return [plan.document.issue("warning", ("recordings", number, "gait"), message)]
 
 
 def _in_files(folder: Path) -> list[Issue]:

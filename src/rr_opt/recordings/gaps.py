@@ -1,14 +1,12 @@
 """Where a recording has no data, stands still or jumps.
 
-Where a channel jumps: the level before and the level after do not meet.
-
-A parabola through the seven samples before and one through the seven after are compared half way
-between the two. At a kink they meet, at a jump they do not.
+A jump is where the level before and the level after do not meet: a parabola through the seven
+samples before and one through the seven after are compared half way between the two. At a kink they
+meet, at a jump they do not.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 
@@ -19,7 +17,7 @@ from scipy.ndimage import maximum_filter1d
 from rr_opt.array import Array
 from rr_opt.model.experiment import CHANNELS, Flag, Recording
 from rr_opt.recordings.time_axis import time_step
-from rr_opt.recordings.warnings import Doubt, size_text
+from rr_opt.recordings.warnings import Notice, counted, notice
 
 SHORT = 0.1
 """A gap of a drawing that is bridged, s."""
@@ -94,7 +92,7 @@ _COMMON = 0.2
 """A recording of which a larger part repeats has no noise to tell by: it is computed."""
 
 
-def without_copies(recording: Recording) -> tuple[Recording, tuple[Doubt, ...]]:
+def without_copies(recording: Recording) -> tuple[Recording, tuple[Notice, ...]]:
     """The recording with samples that repeat the last one in every channel flagged OUTLIER.
 
     They are no measurements: a capture that hangs writes its last values again.
@@ -107,27 +105,18 @@ def without_copies(recording: Recording) -> tuple[Recording, tuple[Doubt, ...]]:
     count = sum(b - a for a, b in stretches)
     if not stretches or count > _COMMON * len(recording):
         return recording, ()
-    member = _member(len(recording), stretches)
+    member = np.zeros(len(recording), bool)
+    for first, last in stretches:
+        member[first:last] = True
     flags = {
         channel: np.where(member, flag | np.uint8(Flag.OUTLIER), flag).astype(np.uint8)
         for channel, flag in recording.flags.items()
     }
-    t = recording.t
-    longest = max(stretches, key=lambda one: one[1] - one[0])
-    text = (
-        f"{count} samples repeat the last one in every channel, {len(stretches)} "
-        f"time{'s' if len(stretches) > 1 else ''}, the longest for "
-        f"{t[longest[1] - 1] - t[longest[0] - 1]:.3g} s from t = {t[longest[0] - 1]:.6g} s: a "
-        "stream that stood still? Flagged."
-    )
-    return replace(recording, flags=MappingProxyType(flags)), (Doubt("held", text),)
-
-
-def _member(n: int, stretches: list[tuple[int, int]]) -> NDArray[np.bool_]:
-    member = np.zeros(n, bool)
-    for a, b in stretches:
-        member[a:b] = True
-    return member
+    first, last = max(stretches, key=lambda one: one[1] - one[0])
+    start, end = recording.t[first - 1], recording.t[last - 1]
+    times = counted(len(stretches), "time")
+    told = notice("held.rows", count=count, times=times, longest=end - start, start=start)
+    return replace(recording, flags=MappingProxyType(flags)), (told,)
 
 
 _SIDE = 7
@@ -169,41 +158,3 @@ def jumps(y: Array, sigma: float) -> tuple[Jump, ...]:
     off = np.nan_to_num(beyond / (sigma * np.sqrt(2 * (level**2).sum())))
     peak = (off > _SURE) & (off >= maximum_filter1d(off, _APART))
     return tuple(Jump(int(i) + _SIDE - 1, float(size[i])) for i in np.flatnonzero(peak))
-
-
-_TOGETHER = 2
-"""Rows within which jumps are one event."""
-_LISTED = 3
-
-
-def jump_doubts(recording: Recording, found: Mapping[str, Sequence[Jump]]) -> Iterator[Doubt]:
-    """A sentence for each instant at which channels jump, the first ones."""
-    events = _events(found)
-    for row, sizes in events[:_LISTED]:
-        listed = ", ".join(f"{name} by {size_text(name, size)}" for name, size in sizes.items())
-        yield Doubt("jump", f"At t = {recording.t[row]:.6g} s jumps {listed}: {_why(set(sizes))}")
-    if len(events) > _LISTED:
-        yield Doubt("jump", f"There are {len(events) - _LISTED} more jumps.")
-
-
-def _events(found: Mapping[str, Sequence[Jump]]) -> list[tuple[int, dict[str, float]]]:
-    """Rows, and the size by channel of what jumps there."""
-    events: list[tuple[int, dict[str, float]]] = []
-    jumps = sorted((jump.row, channel, jump.size) for channel in found for jump in found[channel])
-    for row, channel, size in jumps:
-        if events and row - events[-1][0] <= _TOGETHER and channel not in events[-1][1]:
-            events[-1][1][channel] = size
-        else:
-            events.append((row, {channel: size}))
-    return events
-
-
-def _why(channels: set[str]) -> str:
-    if "phi" in channels and len(channels) > 1:
-        return "time that is missing, or a blow?"
-    if channels <= {"x", "y", "psi"} and channels & {"x", "y"}:
-        return (
-            "the floor frame was set anew, or a marker has another's name? Recordings share one "
-            "floor frame: cut it there."
-        )
-    return "a marker with another's name, or a blow?"

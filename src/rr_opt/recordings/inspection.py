@@ -1,42 +1,50 @@
-"""One recording, read, cleaned and looked at: everything that a page or a script shows of it."""
+"""The one way in: a recording read, put on the command's clock, cleaned and looked at."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
-from rr_opt.files.experiment_file import experiment_path, read_plan
-from rr_opt.files.experiment_plan import ExperimentPlan, MarkerPlaces, PlannedRun, places_from
-from rr_opt.files.issue import InvalidFileError, Issue, has_errors
+from rr_opt.files.experiment_plan import layout_from
+from rr_opt.files.issue import InvalidFileError, Issue, refuse
 from rr_opt.files.problem_file import kind_of
 from rr_opt.files.source import read_document
-from rr_opt.model.experiment import Recording, Start
+from rr_opt.messages import shown
+from rr_opt.model.experiment import Layout, Recording, Start
 from rr_opt.model.gait import Gait
 from rr_opt.outcome import InputError
 from rr_opt.recordings.cleaning import Cleaned, clean
-from rr_opt.recordings.clocks.clock_fit import ClockFit
-from rr_opt.recordings.clocks.clocks import against_command
-from rr_opt.recordings.clocks.synchrony import Synchrony, synchronised
-from rr_opt.recordings.clocks.warnings import command_doubts, start_doubts
-from rr_opt.recordings.experiment import layout_for
-from rr_opt.recordings.markers.layout import Layout
+from rr_opt.recordings.clock_fit import ClockFit, against_command, command_notices, start_notices
 from rr_opt.recordings.markers.pose import MarkerFit, fit_markers
-from rr_opt.recordings.readers.marker_rows import MarkerData
-from rr_opt.recordings.readers.registry import read_file
-from rr_opt.recordings.readers.servo_log import ServoLog
-from rr_opt.recordings.warnings import Doubt, texts
+from rr_opt.recordings.readers import MarkerData, ReadOptions, ServoLog, read_file
+from rr_opt.recordings.servo_clock import Synchrony, synchronised
+
+
+@dataclass(frozen=True)
+class Circumstances:
+    """What is known of a recording beside its file; all of it may be unknown.
+
+    layout   of the markers; None: estimated from the recording
+    options  with which its files are read
+    """
+
+    layout: Layout | None = None
+    options: ReadOptions = field(default_factory=ReadOptions)
+    gait: Gait | None = None
+    start: Start = "running"
+    servo_log: Path | None = None
 
 
 @dataclass(frozen=True)
 class Inspection:
     """What was found of one recording.
 
-    markers   the rigid fit, of marker files
-    gait      what the servo was told, where it is known
-    command   phi against it
-    synchrony what the servo's log says of the clocks, where there is one
-    doubts    all of them, the reader's first
+    markers    the rigid fit, of marker files
+    gait       what the servo was told, where it is known
+    command    phi against it
+    synchrony  what the servo's log says of the clocks, where there is one
+    doubts     all of them: of reading, of the log, of cleaning, and of phi against its command
     """
 
     cleaned: Cleaned
@@ -48,97 +56,13 @@ class Inspection:
 
     @property
     def recording(self) -> Recording:
-        """With all flags set."""
+        """With all flags set, and all doubts but those of its command."""
         return self.cleaned.recording
 
     @property
     def name(self) -> str:
         """Of the file."""
         return self.recording.name
-
-
-@dataclass(frozen=True)
-class Told:
-    """What is known of a recording beside its file; all of it may be unknown.
-
-    noise  standard deviation of a marker's coordinate, m
-    """
-
-    layout: Layout | None = None
-    noise: float | None = None
-    gait: Gait | None = None
-    start: Start = "running"
-    log: ServoLog | None = None
-
-
-def inspect(read: Recording | MarkerData, told: Told) -> Inspection:
-    """Clean a recording and look at it. Raises InputError if markers make no robot."""
-    markers = None
-    if isinstance(read, MarkerData):
-        markers = fit_markers(read, told.layout, told.noise)
-        recording = markers.recording
-    else:
-        recording = read
-    first: list[Doubt] = []
-    synchrony = None
-    if told.log is not None:
-        synchrony = synchronised(recording, told.log, told.gait, told.start)
-        recording = synchrony.recording
-        first += synchrony.doubts
-        if markers is not None:
-            markers = replace(markers, recording=recording)
-    cleaned = clean(recording)
-    doubts = [*cleaned.doubts, *first]
-    command = None
-    if told.gait is not None:
-        rest = told.start == "rest"
-        t, phi = cleaned.recording.t, cleaned.recording.data("phi")
-        command = against_command(t, phi, told.gait, from_rest=rest)
-        shifted = synchrony is not None and synchrony.shift is not None
-        period = told.gait.period
-        doubts += command_doubts(command, from_rest=rest, period=period, clock_known=shifted)
-        doubts += start_doubts(float(t[0]), period) if rest else ()
-    said = (*recording.doubts, *(told.log.doubts if told.log else ()), *texts(doubts))
-    return Inspection(cleaned, markers, told.gait, command, synchrony, said)
-
-
-Progress = Callable[[str], object]
-
-
-def is_experiment(path: Path) -> bool:
-    """Whether a path is an experiment's folder or file, and not one recording."""
-    return path.is_dir() or path.suffix.lower() in (".yaml", ".yml")
-
-
-def inspect_experiment(path: Path, progress: Progress) -> list[Inspection]:
-    """Every recording of an experiment file or its folder.
-
-    Raises InvalidFileError with everything that is wrong in the file and in every recording.
-    """
-    plan, _ = read_plan(experiment_path(path))
-    found: list[Inspection] = []
-    issues: list[Issue] = []
-    for number, run in enumerate(plan.runs, 1):
-        progress(f"recording {number} of {len(plan.runs)}")
-        try:
-            found.append(_of_plan(plan, run))
-        except InvalidFileError as error:
-            issues += error.issues
-        except InputError as error:
-            issues.append(Issue("error", "", str(error), None, str(run.file)))
-    if has_errors(issues):
-        raise InvalidFileError(issues)
-    return found
-
-
-def _of_plan(plan: ExperimentPlan, run: PlannedRun) -> Inspection:
-    read = read_file(run.file, plan.noise, plan.counts)
-    log = read_file(run.servo_log, plan.noise, plan.counts) if run.servo_log else None
-    layout = None
-    if isinstance(read, MarkerData) and plan.markers is not None:
-        layout = layout_for(read, plan.markers)
-    told = Told(layout, plan.noise.position, run.gait, run.start, _servo_log(log))
-    return inspect(_robot(read), told)
 
 
 def inspect_file(
@@ -153,20 +77,111 @@ def inspect_file(
 
     layout: a YAML file with the markers' places; servo_log, gait and start: where they are known.
     """
-    read = _robot(read_file(path))
-    places = read_places(layout) if layout else None
-    told = Told(gait=gait, start=start, log=_servo_log(read_file(servo_log) if servo_log else None))
-    if places is not None:
-        if not isinstance(read, MarkerData):
+    places = read_layout(layout) if layout else None
+    found = inspected(path, Circumstances(places, ReadOptions(), gait, start, servo_log))
+    if places is not None and found.markers is None:
+        refuse(
+            str(layout),
+            f"Read the places of markers. Expected a marker file beside them, and {path.name} "
+            "holds motion already. Leave --layout away.",
+        )
+    return found
+
+
+def inspected(file: Path, known: Circumstances, *, estimate: bool = True) -> Inspection:
+    """What a file holds, with all that is known of it.
+
+    estimate: the layout, where it is not known. Raises InvalidFileError with all that is wrong in
+    the file and in the servo's log, and InputError, naming the file, if it is another kind of file.
+    """
+    read, log = _read_both(file, known)
+    if isinstance(read, ServoLog):
+        raise InputError(
+            f"Read {shown(file.name)}, a servo's log. Expected a recording of the robot. Name the "
+            "log under `servo_log`, or with --servo-log, beside a recording."
+        )
+    if known.servo_log is not None and not isinstance(log, ServoLog):
+        raise InputError(
+            f"Read {shown(known.servo_log.name)}, which is no servo's log. Expected CSV with the "
+            "header row `t,goal,present`. Name it under `file` if it is the recording."
+        )
+    if isinstance(read, MarkerData) and known.layout is None and not estimate:
+        raise InputError(
+            f"Read {shown(file.name)}, a marker file. Expected `markers`, the place of each on the "
+            f"robot; the file has {shown(', '.join(read.labels))}. Add the key."
+        )
+    try:
+        return inspect(read, log, known)
+    except InputError as error:
+        refuse(str(file), str(error))
+
+
+def _read_both(file: Path, known: Circumstances) -> tuple[Any, Any]:
+    """The recording and the servo's log. Raises InvalidFileError with all that is wrong in both."""
+    found: list[Any] = []
+    issues: list[Issue] = []
+    for path in (file, known.servo_log):
+        try:
+            found.append(None if path is None else read_file(path, known.options))
+        except InvalidFileError as error:
+            issues += error.issues
+    if issues:
+        raise InvalidFileError(issues)
+    return found[0], found[1]
+
+
+def inspect(read: Recording | MarkerData, log: ServoLog | None, known: Circumstances) -> Inspection:
+    """Look at what a file holds. Raises InputError if markers make no robot."""
+    markers = synchrony = None
+    if isinstance(read, MarkerData):
+        layout = None if known.layout is None else layout_for(read, known.layout)
+        noise = known.options.noise
+        markers = fit_markers(read, layout, noise.position if noise else None)
+        recording = markers.recording
+    else:
+        recording = read
+    doubts = recording.doubts
+    if log is not None:
+        synchrony = synchronised(recording, log, known.gait, known.start)
+        recording = synchrony.recording
+        doubts += (*log.doubts, *synchrony.doubts)
+        if markers is not None:
+            markers = replace(markers, recording=recording)
+    cleaned = clean(recording)
+    doubts += cleaned.doubts
+    cleaned = replace(cleaned, recording=replace(cleaned.recording, doubts=doubts))
+    command = None
+    if known.gait is not None:
+        rest, period = known.start == "rest", known.gait.period
+        t, phi = cleaned.recording.t, cleaned.recording.data("phi")
+        command = against_command(t, phi, known.gait, from_rest=rest)
+        shifted = synchrony is not None and synchrony.shift is not None
+        doubts += tuple(
+            command_notices(command, from_rest=rest, period=period, clock_known=shifted)
+        )
+        doubts += tuple(start_notices(float(t[0]), period)) if rest else ()
+    return Inspection(cleaned, markers, known.gait, command, synchrony, doubts)
+
+
+def layout_for(data: MarkerData, stated: Layout) -> Layout:
+    """The layout under the names that a file's markers have, whose subject may be left out.
+
+    Raises InputError if the file lacks all markers of a platform.
+    """
+    subject = f"{data.source.get('subject', '')}:"
+    platforms = []
+    for platform, given in (("platform1", stated.platform1), ("platform2", stated.platform2)):
+        named = {name.removeprefix(subject): place for name, place in given.items()}
+        if not set(named) & set(data.labels):
             raise InputError(
-                f"{layout}: Read the places of markers. Expected a marker file beside them, and "
-                f"{path.name} holds motion already. Leave --layout away."
+                f"Read the markers {shown(', '.join(data.labels))}. Expected some of "
+                f"`markers.{platform}`: {shown(', '.join(given))}. Correct the names."
             )
-        told = replace(told, layout=layout_for(read, places))
-    return inspect(read, told)
+        platforms.append(named)
+    return Layout(*platforms, up=stated.up)
 
 
-def read_places(path: Path) -> MarkerPlaces:
+def read_layout(path: Path) -> Layout:
     """The places of markers in a YAML file: its own keys, or those of its section `markers`.
 
     Raises InvalidFileError.
@@ -177,25 +192,7 @@ def read_places(path: Path) -> MarkerPlaces:
     elif "robot" in document.data and kind_of(document) == "experiment":
         message = "Read an experiment without `markers`. Expected the places of markers. Add them."
         raise InvalidFileError([document.issue("error", (), message)])
-    places, issues = places_from(document)
+    places, issues = layout_from(document)
     if places is None:
         raise InvalidFileError(issues)
     return places
-
-
-def _robot(read: Recording | MarkerData | ServoLog) -> Recording | MarkerData:
-    if isinstance(read, ServoLog):
-        raise InputError(
-            f"{read.source.get('file', read.name)}: Read a servo's log. Expected a recording of "
-            "the robot. Name the log with --servo-log, beside a recording."
-        )
-    return read
-
-
-def _servo_log(read: object) -> ServoLog | None:
-    if read is None or isinstance(read, ServoLog):
-        return read
-    raise InputError(
-        "Read a recording of the robot. Expected a servo's log: CSV with the header row "
-        "`t,goal,present`. Name the log."
-    )

@@ -1,6 +1,4 @@
-"""How noisy a channel is, from the channel alone, and whether that is what was stated.
-
-How noisy a channel is, from the channel alone, and whether its noise is white.
+"""How noisy a channel is, from the channel alone, and whether its noise is white.
 
 The sixth difference of a smooth motion is next to nothing, that of white noise is sqrt(924) of its
 standard deviation. Differences over two samples see the noise at half the frequency: with white
@@ -12,15 +10,12 @@ count. The uncertainties are those of the mean over pieces of the recording.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.special import erf, stdtr
 
 from rr_opt.array import Array
-from rr_opt.model.experiment import Recording
-from rr_opt.recordings.warnings import Doubt, size_text
 
 _ORDER = 6
 _SIGNS = np.array([(-1.0) ** i * math.comb(_ORDER, i) for i in range(_ORDER + 1)])
@@ -116,43 +111,3 @@ def _spread(d: Array) -> float:
             break
         sigma = float(np.sqrt(np.mean(inside**2) / _KEPT))
     return sigma
-
-
-_KEYS = {"noise.position": ("x", "y"), "noise.angle": ("psi", "phi")}
-
-_FAR = 5.0
-"""Times the scatter, or the other way round, that are far.
-
-A capture that was smoothed scatters a few times less at the highest frequencies than it errs.
-"""
-
-
-def noise_stated_doubts(recording: Recording) -> tuple[Doubt, ...]:
-    """One for each noise of the experiment file that is far from what its channels scatter by.
-
-    Too large, it hides what is missing; too small, it makes every difference one that matters. The
-    noise of a motion that was fitted to markers is not stated.
-    """
-    if "motion" in recording.source:
-        return ()
-    return tuple(doubt for key, names in _KEYS.items() for doubt in _of(recording, key, names))
-
-
-def _of(recording: Recording, key: str, names: tuple[str, ...]) -> Iterator[Doubt]:
-    for name in names:
-        seen = noise_of(recording.data(name))
-        said = float(np.nanmedian(recording.sigma[name]))
-        times = seen.times(said)
-        if times < 1 / _FAR:
-            more = "What is smaller than that is not found."
-        elif times > _FAR:
-            more = "Every difference larger than that counts as a mismatch."
-        else:
-            continue
-        yield Doubt(
-            "noise",
-            f"The noise of {name} is stated as {size_text(name, said)}, and its values scatter by "
-            f"{size_text(name, seen.sigma)} from one to the next. {more} Correct `{key}` if it is "
-            "not meant so.",
-        )
-        return

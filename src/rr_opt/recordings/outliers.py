@@ -1,16 +1,10 @@
-"""How far samples may be off the motion where nobody stated the noise, or its steps are coarse.
-
-Whether a sample follows from those before it, or from those after it.
-
-Where the motion has a kink (a start, a servo at its rate limit) a smooth curve through both sides
-misses good samples. But one side alone foretells them: a sample is an outlier only if neither does.
-
-Samples that the motion does not explain: found, and never those of a kink.
+"""Samples that the motion does not explain: found, and never those of a kink.
 
 A sample is suspected if it is off the smooth curve through all others by more than Gaussian noise
 is once in a million. The worst of its surroundings is taken out, the curve is drawn again, and so
-on until none is left; then each that was taken out is tried again. What remains suspect is an
-outlier if the samples before it and those after it, each on their own, do not foretell it either.
+on until none is left; then each that was taken out is tried again. Where the motion has a kink (a
+start, a servo at its rate limit) a smooth curve through both sides misses good samples, but one
+side alone foretells them: a sample is an outlier only if neither side does.
 """
 
 from __future__ import annotations

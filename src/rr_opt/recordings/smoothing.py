@@ -1,26 +1,15 @@
-"""A channel smoothed: its value and derivatives at every sample, each with its sigma.
+"""A recorded channel smoothed: signal and derivatives at every sample, each with its sigma.
 
-A smooth signal of which nothing is known: its third derivative is white noise.
+The signal is taken for one whose third derivative is white noise, seen with the sensor's white
+noise. Smoothing with this prior is the quintic smoothing spline, the strength of the first noise is
+its smoothing parameter (G. Wahba, J. R. Stat. Soc. B 40, 1978, pp. 364-372): the likeliest for the
+data, with no window to choose. Where the motion has a kink, as at a start from rest, the true
+derivative jumps and the error is larger than its sigma.
 
-The state is the signal, its first and its second derivative, in steps of time. Smoothing with this
-prior is the quintic smoothing spline; its one number q, the strength of the noise, is the spline's
-smoothing parameter. (G. Wahba, J. R. Stat. Soc. B 40, 1978, pp. 364-372.)
-
-A signal and its derivatives from noisy samples, with what is known of each.
-
-The state at every sample (signal, first and second derivative) is Gaussian with a block-tridiagonal
-precision. Its mean is one banded Cholesky solve. Its covariances come from cyclic reduction: every
-other block is eliminated, all at once, until one is left; then the blocks come back in the
-opposite order with their covariances. Both are exact for any times and gaps, without a loop over
-samples.
-
-Derivatives of a recorded channel, with their uncertainty; for a diagnosis to look at.
-
-The channel is a signal whose third derivative is white noise, plus the sensor's white noise. The
-strength of the first is the likeliest for the data, that of the second is estimated from the data
-or given; there is no window to choose. What comes out are means and standard deviations of the
-signal and its derivatives, given all samples. They are those of this prior: where the motion has a
-kink, as at a start from rest, the true derivative jumps and the error is larger than its sigma.
+The states (signal, first and second derivative, in steps of time) are Gaussian with a
+block-tridiagonal precision. Their mean is one banded Cholesky solve. Their covariances come from
+cyclic reduction: every other block is eliminated, all at once, until one is left; then the blocks
+come back in the opposite order. Both are exact for any times and gaps, without a loop over samples.
 """
 
 from __future__ import annotations

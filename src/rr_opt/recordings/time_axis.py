@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rr_opt.array import Array
-from rr_opt.recordings.readers.text import refuse
+from rr_opt.files.issue import refuse
+from rr_opt.recordings.warnings import Notice, notice
 
 
 def time_step(t: Array) -> float:
@@ -38,7 +39,7 @@ class Order:
     rows: NDArray[np.int64]
     moved: NDArray[np.bool_]
     unsure: NDArray[np.bool_]
-    doubts: tuple[str, ...]
+    doubts: tuple[Notice, ...]
 
 
 def in_order(t: Array, values: Array, lines: Sequence[int] | NDArray[np.int64]) -> Order:
@@ -47,31 +48,28 @@ def in_order(t: Array, values: Array, lines: Sequence[int] | NDArray[np.int64]) 
     A row without a time, or with one that no clock shows, has no place. Of rows with one time the
     first is kept.
     """
-    doubts: list[str] = []
+    doubts: list[Notice] = []
     lines = np.asarray(lines)
     timed = np.abs(t) < _LATEST
     rows, lost = np.flatnonzero(timed), lines[~timed]
     if len(lost):
-        doubts.append(f"Without a time, and so left out: {_rows(lost)}.")
+        doubts.append(notice("time.none", rows=_rows(lost)))
     moved = np.zeros(len(rows), bool)
     if (np.diff(t[rows]) < 0).any():
         moved = ~_longest_rising(t[rows])
-        doubts.append(f"Out of order, and put where the time says: {_rows(lines[rows[moved]])}.")
+        doubts.append(notice("time.order", rows=_rows(lines[rows[moved]])))
         back = np.flatnonzero(np.diff(t[rows]) < 0)
         if len(back) < _RESTARTS and moved.sum() > _RESTARTS * len(back):
-            at = rows[back[0]], rows[back[0] + 1]
+            before, after = rows[back[0]], rows[back[0] + 1]
             doubts.append(
-                f"The time falls back from {t[at[0]]:.6g} to {t[at[1]]:.6g} s in line "
-                f"{lines[at[1]]}: two recordings in one file, or a clock that was set? Part them."
+                notice("time.restart", before=t[before], after=t[after], line=lines[after])
             )
         order = np.argsort(t[rows], kind="stable")
         rows, moved = rows[order], moved[order]
     again = np.diff(t[rows], prepend=np.nan) == 0
     unsure = np.zeros(len(rows), bool)
     if again.any():
-        doubts.append(
-            f"With the time of another row, and so left out: {_rows(lines[rows[again]])}."
-        )
+        doubts.append(notice("time.twice", rows=_rows(lines[rows[again]])))
         kept = np.flatnonzero(~again)[np.cumsum(~again) - 1]
         mine, first = (
             values[rows[which]].reshape(again.sum(), -1) for which in (again, kept[again])
@@ -79,10 +77,7 @@ def in_order(t: Array, values: Array, lines: Sequence[int] | NDArray[np.int64]) 
         same = (mine == first) | (np.isnan(mine) & np.isnan(first))
         unsure[kept[again][~same.all(axis=1)]] = True
         if unsure.any():
-            doubts.append(
-                f"{unsure.sum()} of the times have rows that say different things; none of them "
-                "was taken as data."
-            )
+            doubts.append(notice("time.conflict", count=unsure.sum()))
     keep = ~again
     return Order(rows[keep], moved[keep], unsure[keep], tuple(doubts))
 
@@ -158,9 +153,8 @@ def check_rate(rate: float, file: str, line: int | None = None) -> None:
         )
 
 
-def time_doubts(t: Array, rate: float, stated: float | None = None) -> tuple[str, ...]:
+def time_notices(t: Array, rate: float, stated: float | None = None) -> Iterator[Notice]:
     """What is odd about increasing times (n >= 2) that come at a rate, Hz; stated: by a header."""
-    doubts = []
     steps = np.diff(t) * rate
     # Where a row is lacking the steps about it do not make up for it, as they do for a late one.
     around = np.convolve(np.concatenate([[1.0], steps, [1.0]]), np.ones(3), "valid")
@@ -169,29 +163,20 @@ def time_doubts(t: Array, rate: float, stated: float | None = None) -> tuple[str
         listed = ", ".join(
             f"{steps[at] / rate:.4g} s at t = {t[at]:.6g} s" for at in jumps[:_LISTED]
         )
-        more = ", ..." if len(jumps) > _LISTED else ""
-        lacking = int(np.round(steps[jumps] - 1).sum())
-        doubts.append(
-            f"The time jumps {_times(len(jumps))} ({listed}{more}): at {rate:.5g} Hz about "
-            f"{lacking} rows are missing."
+        yield notice(
+            "time.jump",
+            often="once" if len(jumps) == 1 else f"{len(jumps)} times",
+            listed=listed + (", ..." if len(jumps) > _LISTED else ""),
+            rate=rate,
+            lacking=int(np.round(steps[jumps] - 1).sum()),
         )
     usual = np.delete(steps, jumps)
-    uneven = np.abs(usual - 1) > _UNEVEN + 1.01 * _printed(t) * rate
-    if uneven.any():
-        doubts.append(
-            f"The rows do not come at a constant rate: {uneven.sum()} of {len(usual)} steps differ "
-            f"by more than {100 * _UNEVEN:.0f} % from {1000 / rate:.4g} ms."
-        )
+    uneven = int((np.abs(usual - 1) > _UNEVEN + 1.01 * _printed(t) * rate).sum())
+    if uneven:
+        most, step = 100 * _UNEVEN, 1000 / rate
+        yield notice("time.uneven", uneven=uneven, count=len(usual), most=most, usual=step)
     if stated is not None and abs(rate / stated - 1) > _OTHER_RATE:
-        doubts.append(
-            f"The header states {stated:.6g} Hz, and the times come at {rate:.6g} Hz. The times "
-            "were taken."
-        )
-    return tuple(doubts)
-
-
-def _times(count: int) -> str:
-    return "once" if count == 1 else f"{count} times"
+        yield notice("time.rate", stated=stated, rate=rate)
 
 
 def _printed(t: Array) -> float:

@@ -29,7 +29,7 @@ def recording(change=None, seed=0, moved=None, stated=True):
 
 
 def texts(cleaned):
-    return " ".join(doubt.text for doubt in cleaned.doubts)
+    return " ".join(doubt for doubt in cleaned.doubts)
 
 
 def scaled(names, factor):

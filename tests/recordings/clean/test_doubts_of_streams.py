@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 from scipy.signal import butter, filtfilt
 
-from rr_opt.model.experiment import CHANNELS, Recording
+from rr_opt.model.experiment import CHANNELS, Layout, Recording
 from rr_opt.outcome import InputError
 from rr_opt.recordings.cleaning import clean
-from rr_opt.recordings.markers.layout import Layout
 from rr_opt.recordings.markers.pose import fit_markers
 from tests.recordings.clean.world import LAYOUT, kinds, markers, motion
 
@@ -39,7 +38,7 @@ def test_a_filtered_recording_has_no_outliers(cut, stated):
 
 def test_rounding_is_told_and_is_no_jump():
     made = clean(noisy(lambda y: np.round(y, 2)))
-    told = [doubt.text for doubt in made.doubts if doubt.kind == "steps"]
+    told = [doubt for doubt in made.doubts if doubt.kind == "steps"]
     assert [text.split()[0] for text in told] == list(CHANNELS)
     assert "steps of 10 mm" in told[0]
     assert "jump" not in kinds(made.doubts)
@@ -53,7 +52,7 @@ def test_a_stream_that_stood_still_is_flagged():
 
     made = clean(noisy(hang))
     assert all((made.recording.flags[name][500:520] == 2).all() for name in CHANNELS)
-    assert "stream that stood still" in " ".join(doubt.text for doubt in made.doubts)
+    assert "stream that stood still" in " ".join(doubt for doubt in made.doubts)
     assert "jump" not in kinds(made.doubts)
     assert "held" not in kinds(clean(noisy()).doubts)
 
@@ -64,7 +63,7 @@ def test_a_floor_frame_set_anew_is_one_doubt():
     place = (recording.values["x"] + 1j * recording.values["y"])[1000:] * turn + 0.1
     recording.values["x"][1000:], recording.values["y"][1000:] = place.real, place.imag
     recording.values["psi"][1000:] += 0.3
-    told = [doubt.text for doubt in clean(recording).doubts if doubt.kind == "jump"]
+    told = [doubt for doubt in clean(recording).doubts if doubt.kind == "jump"]
     assert len(told) == 1
     assert "At t = 9.99 s" in told[0]
     assert "floor frame" in told[0]
@@ -74,7 +73,7 @@ def test_all_channels_at_once_are_time_that_is_missing():
     def cut(y):
         return np.concatenate([y[:700], y[740:], y[-40:]])
 
-    text = next(doubt.text for doubt in clean(noisy(cut)).doubts if doubt.kind == "jump")
+    text = next(doubt for doubt in clean(noisy(cut)).doubts if doubt.kind == "jump")
     assert "time that is missing" in text
 
 

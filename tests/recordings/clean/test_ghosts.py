@@ -20,7 +20,7 @@ def test_a_marker_that_jumps_is_left_out_and_told():
     rows = np.flatnonzero(found.ghosts.out[:, at])
     assert set(range(321, 331)) == set(rows)
     assert found.ghosts.out.sum() == 10
-    text = " ".join(doubt.text for doubt in found.doubts)
+    text = " ".join(doubt for doubt in found.doubts)
     assert "T3" in text
     assert "t = 3.21 s" in text
     assert "40 mm" in text or "39 mm" in text or "41 mm" in text

@@ -5,10 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rr_opt.model.experiment import Flag
+from rr_opt.model.experiment import Flag, Layout
 from rr_opt.outcome import InputError
-from rr_opt.recordings.markers.layout import Layout
-from rr_opt.recordings.markers.pose import recording_from_markers
+from rr_opt.recordings.markers.pose import fit_markers
 from tests.recordings.clean.world import LAYOUT, markers, motion
 
 SIGMA = 5e-4
@@ -19,7 +18,7 @@ def without(names, rows):
     positions = data.positions.copy()
     for name in names:
         positions[rows, data.labels.index(name)] = np.nan
-    return recording_from_markers(replace(data, positions=positions), LAYOUT, SIGMA)
+    return fit_markers(replace(data, positions=positions), LAYOUT, SIGMA).recording
 
 
 def test_two_of_each_are_enough():
@@ -56,15 +55,15 @@ def test_turns_are_counted_across_a_gap():
 def test_a_layout_with_other_names_is_refused_in_three_sentences():
     data = markers(motion(), SIGMA, 1)
     with pytest.raises(InputError, match=r"The file has the markers L1.*Expected.*Correct"):
-        recording_from_markers(data, Layout({"A": (0, 0), "B": (0, 1)}, {"C": (0, 0)}))
+        fit_markers(data, Layout({"A": (0, 0), "B": (0, 1)}, {"C": (0, 0)}))
 
 
 def test_a_frame_turned_on_its_side_is_read_by_the_axis_that_is_up():
     data = markers(motion(), SIGMA, 1)
     # y up: the floor's x and y are the capture's z and x.
     turned = data.positions[..., [1, 2, 0]]
-    upright = recording_from_markers(data, LAYOUT, SIGMA)
+    upright = fit_markers(data, LAYOUT, SIGMA).recording
     aside = Layout(LAYOUT.platform1, LAYOUT.platform2, up="y")
-    made = recording_from_markers(replace(data, positions=turned), aside, SIGMA)
+    made = fit_markers(replace(data, positions=turned), aside, SIGMA).recording
     for name in ("x", "y", "psi", "phi"):
         np.testing.assert_allclose(made.values[name], upright.values[name], atol=1e-12)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rr_opt.recordings.markers.layout import Layout
+from rr_opt.model.experiment import Layout
 from rr_opt.recordings.markers.pose import fit_markers
 from tests.recordings.clean.world import LAYOUT, kinds, markers, motion
 
@@ -49,7 +49,7 @@ def test_a_swap_is_put_right(names, rows):
     # Markers that are near each other in some postures may pass for each other, within the noise.
     assert len(told) > 0.95 * len(planted)
     assert worst(found) < 5.5
-    text = " ".join(doubt.text for doubt in found.doubts)
+    text = " ".join(doubt for doubt in found.doubts)
     assert f"{names[0]} and {names[1]}" in text
     assert "swapped labels" in text
 
@@ -67,7 +67,7 @@ def test_names_exchanged_in_the_layout_are_told_and_put_right():
     wrong = dict(LAYOUT.platform1)
     wrong["L1"], wrong["R1"] = wrong["R1"], wrong["L1"]
     found = fit_markers(markers(motion(), SIGMA, 3), Layout(wrong, LAYOUT.platform2), SIGMA)
-    assert "in the whole recording" in found.doubts[0].text
+    assert "in the whole recording" in found.doubts[0]
     assert worst(found) < 5.5
 
 
@@ -100,6 +100,6 @@ def test_three_in_a_ring_and_two_pairs_at_once_are_put_right(names, rows):
     positions[1500:2400:30, 3] += 0.1
     found = fit_markers(replace(data, positions=positions), LAYOUT, SIGMA)
     assert worst(found) < 5.5
-    text = " ".join(doubt.text for doubt in found.doubts)
+    text = " ".join(doubt for doubt in found.doubts)
     assert "swapped labels" in text or "in the whole recording" in text
     assert all(name in text for name in names)

@@ -7,9 +7,8 @@ import pytest
 
 from rr_opt.model.gait import SineGait
 from rr_opt.outcome import InputError
-from rr_opt.recordings.markers.layout import Layout
-from rr_opt.recordings.markers.pose import fit_markers, recording_from_markers
-from rr_opt.recordings.markers.unknown_layout import guessed_layout
+from rr_opt.recordings.markers.layout import Layout, guessed_layout
+from rr_opt.recordings.markers.pose import fit_markers
 from tests.recordings.clean.world import LAYOUT, markers, motion
 
 SIGMA = 5e-4
@@ -34,14 +33,14 @@ def test_the_joint_is_found_within_what_is_told():
 
 def test_p_is_that_of_the_known_layout_and_the_angles_differ_by_constants():
     data = markers(motion(), SIGMA, 1)
-    known = recording_from_markers(data, LAYOUT)
+    known = fit_markers(data, LAYOUT).recording
     found = fit_markers(data, None)
     for name in ("x", "y"):
         assert np.abs(found.recording.values[name] - known.values[name]).max() < 5e-4
     for name in ("psi", "phi"):
         apart = found.recording.values[name] - known.values[name]
         assert apart.std() < 0.4 * np.median(known.sigma[name])
-    assert "zeros of psi and phi, cannot be known" in found.doubts[0].text
+    assert "zeros of psi and phi, cannot be known" in found.doubts[0]
 
 
 def test_a_marker_on_the_floor_is_on_neither_platform():
@@ -76,8 +75,8 @@ def test_a_layout_that_is_off_by_millimetres_is_put_right_but_for_its_axes():
     data = markers(motion(), SIGMA, 1)
     found = fit_markers(data, wrong)
     assert abs(found.noise / SIGMA - 1) < 0.03
-    assert "from where the layout has it" in found.doubts[0].text
-    known = recording_from_markers(data, LAYOUT)
+    assert "from where the layout has it" in found.doubts[0]
+    known = fit_markers(data, LAYOUT).recording
     for name in ("psi", "phi"):
         apart = found.recording.values[name] - known.values[name]
         assert apart.std() < 0.4 * np.median(known.sigma[name])

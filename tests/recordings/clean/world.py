@@ -9,9 +9,9 @@ from functools import cache
 import numpy as np
 
 from rr_opt.files.problem_file import read_problem
+from rr_opt.model.experiment import Layout
 from rr_opt.model.gait import SineGait
 from rr_opt.motion.rollout import Trajectory, rollout
-from rr_opt.recordings.markers.layout import Layout
 from rr_opt.recordings.readers.marker_rows import MarkerData
 
 LAYOUT = Layout(

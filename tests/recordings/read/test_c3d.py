@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from rr_opt.recordings.readers import read_file
 from rr_opt.recordings.readers.marker_rows import MarkerData
-from rr_opt.recordings.readers.registry import read_file
 
 ezc3d = pytest.importorskip("ezc3d")
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from rr_opt.files.issue import InvalidFileError
-from rr_opt.recordings.readers.registry import read_file
+from rr_opt.recordings.readers import read_file
 
 INTEL, DEC, MIPS = 84, 85, 86
 PLACES = [(100.0, -250.0, 3.5), (101.0, -251.0, 4.5)]

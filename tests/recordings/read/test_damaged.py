@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 
 from rr_opt.model.experiment import Recording
 from rr_opt.outcome import InputError
+from rr_opt.recordings.readers import read_file
 from rr_opt.recordings.readers.marker_rows import MarkerData
-from rr_opt.recordings.readers.registry import read_file
 
 FUZZ = settings(
     deadline=None, max_examples=120, suppress_health_check=[HealthCheck.function_scoped_fixture]

@@ -13,8 +13,8 @@ from rr_opt.cli.main import app
 from rr_opt.files.issue import InvalidFileError
 from rr_opt.model.gait import SineGait
 from rr_opt.recordings.experiment import experiment_of, read_experiment
+from rr_opt.recordings.readers import read_file
 from rr_opt.recordings.readers.netcdf import to_dataset, write_netcdf
-from rr_opt.recordings.readers.registry import read_file
 
 HEAD = """\
 robot:
@@ -205,11 +205,10 @@ def test_lint_reads_the_recordings_too(write, tmp_path):
         "experiment.yaml",
     )
     done = lint(tmp_path)
-    assert done.exit_code == 0
-    *warnings, last = done.stdout.splitlines()
-    assert last == f"{tmp_path}: can be used"
-    assert [line.split(": ")[2] for line in warnings] == ["one.csv", "two.csv"]
-    assert all("too short to tell" in line for line in warnings)
+    assert done.exit_code == 2
+    assert "No recording to fit is left" in done.stdout
+    short = [line.split(": ")[2] for line in done.stdout.splitlines() if "too short" in line]
+    assert short == ["one.csv", "two.csv"]
     write("t,x,y,psi,phi\n0,1,2,3,4\n1,a,2,3,4\n", "two.csv")
     done = lint(tmp_path)
     assert done.exit_code == 2

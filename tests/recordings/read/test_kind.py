@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from rr_opt.model.experiment import Recording
+from rr_opt.recordings.readers import read_file
 from rr_opt.recordings.readers.marker_rows import MarkerData
 from rr_opt.recordings.readers.netcdf import write_netcdf
-from rr_opt.recordings.readers.registry import read_file
 from rr_opt.recordings.readers.servo_log import ServoLog
 
 TEXTS = {

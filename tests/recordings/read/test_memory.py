@@ -14,7 +14,7 @@ MARKERS = 8
 READ = """
 import resource, sys
 from pathlib import Path
-from rr_opt.recordings.readers.registry import read_file
+from rr_opt.recordings.readers import read_file
 data = read_file(sys.argv[1])
 status = Path("/proc/self/status")
 if status.exists():

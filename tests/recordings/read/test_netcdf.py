@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 from rr_opt.model.experiment import CHANNELS, Noise, Recording
 from rr_opt.model.gait import FourierGait, SineGait
 from rr_opt.outcome import InputError
+from rr_opt.recordings.readers import ReadOptions, read_file
 from rr_opt.recordings.readers.netcdf import from_dataset, gait_of, to_dataset, write_netcdf
-from rr_opt.recordings.readers.registry import read_file
 
 h5py = pytest.importorskip("h5py")
 xarray = pytest.importorskip("xarray")
@@ -74,7 +74,7 @@ def test_nothing_is_lost(tmp_path, recording):
 @pytest.fixture
 def run(write):
     return read_file(
-        write("t,x,y,psi,phi\n0,1,2,3,4\n0.1,,2,3,4\n0.2,1,2,3,4\n"), Noise(1e-3, 3e-3)
+        write("t,x,y,psi,phi\n0,1,2,3,4\n0.1,,2,3,4\n0.2,1,2,3,4\n"), ReadOptions(Noise(1e-3, 3e-3))
     )
 
 
@@ -112,7 +112,7 @@ def test_a_file_of_another_program_will_do(tmp_path):
     data = data.assign_coords(t=np.arange(n) / 10)
     data.attrs["source"] = "rr-opt 1.0"
     data.to_netcdf(tmp_path / "run.nc", engine="h5netcdf")
-    run = read_file(tmp_path / "run.nc", Noise(1e-3, 3e-3))
+    run = read_file(tmp_path / "run.nc", ReadOptions(Noise(1e-3, 3e-3)))
     assert run.values["phi"].tolist() == [0.5, 1.5, 2.5, 3.5]
     assert run.sigma["phi"].tolist() == [3e-3] * n
     assert run.doubts == ("Variables that were not read: v.",)

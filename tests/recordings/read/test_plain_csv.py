@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from rr_opt.model.experiment import Flag, Noise, Recording
-from rr_opt.recordings.readers.registry import read_file
+from rr_opt.recordings.readers import ReadOptions, read_file
 
 ROWS = """\
 t,x,y,psi,phi
@@ -43,7 +43,7 @@ def test_any_order_of_columns_and_others_are_told(write):
 
 def test_sigma_is_the_noise_stated_and_else_unknown(write):
     path = write(ROWS.replace("phi", "phi,torque").replace("\n0", ",0\n0"))
-    stated = read_file(path, Noise(0.001, 0.003, 0.004))
+    stated = read_file(path, ReadOptions(Noise(0.001, 0.003, 0.004)))
     assert {name: set(stated.sigma[name]) for name in stated.channels} == {
         "x": {0.001}, "y": {0.001}, "psi": {0.003}, "phi": {0.003}, "torque": {0.004},
     }  # fmt: skip

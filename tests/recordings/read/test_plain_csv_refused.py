@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from rr_opt.files.issue import InvalidFileError
-from rr_opt.recordings.readers.registry import read_file
+from rr_opt.recordings.readers import read_file
 
 ROWS = "t,x,y,psi,phi\n0.00,1,2,3,4\n0.01,1,2,3,4\n0.02,1,2,3,4\n"
 
@@ -15,7 +15,7 @@ CASES = {
     "underscore": (ROWS.replace("0.02,1", "0.02,1_0"), 4, "Read '1_0' in column 2 (x)."),
     "too many cells": (ROWS.replace("2,3,4\n0.02", "2,3,4,5\n0.02"), 3, "Read 6 cells."),
     "a column missing": (ROWS.replace("psi", "heading"), 1, "Expected also `psi`."),
-    "a column misspelt": (ROWS.replace("phi", "phi1"), 1, "Did you mean `phi` for 'phi1'?"),
+    "a column misspelt": (ROWS.replace("phi", "phi1"), 1, "write `columns: {phi: phi1}`"),
     "a column twice": (ROWS.replace("y,psi", "x,psi"), 1, "Read the column `x` twice."),
     "no header": (ROWS.split("\n", 1)[1], 1, "The first row holds numbers"),
     "no rows": ("t,x,y,psi,phi\n", 1, "Read no row with a time."),
@@ -23,7 +23,7 @@ CASES = {
     "no times": ("t,x,y,psi,phi\n,1,2,3,4\n,1,2,3,4\n", 1, "Read no row with a time."),
     "one time": ("t,x,y,psi,phi\n1,1,2,3,4\n1,1,2,3,4\n", 1, "Read 1 row with a time."),
     "another table": ("name,age\nA,3\n", 1, "Expected a header row such as `t,x,y,psi,phi`"),
-    "a motive file": ("Format Version,1.23,Take Name,a\n", 1, "OptiTrack Motive"),
+    "a table of OpenSim": ("inDegrees=no\nendheader\n", 1, "OpenSim"),
     "bytes 0": (b"t,x,y,psi,phi\n0,1,\x002,3,4\n", 2, "Read a byte 0"),
     "half of UTF-16": ("t,x\n".encode("utf-16") + b"\x00", 2, "not UTF-16"),
 }

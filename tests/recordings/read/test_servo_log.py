@@ -9,7 +9,7 @@ import pytest
 
 from rr_opt.files.issue import InvalidFileError
 from rr_opt.model.experiment import CountScale
-from rr_opt.recordings.readers.registry import read_file
+from rr_opt.recordings.readers import ReadOptions, read_file
 from rr_opt.recordings.readers.servo_log import ServoLog
 
 TEXT = "t,goal,present\n7.000,512,500\n7.004,614.4,512\n7.008,,1023\n7.012,0,\n"
@@ -28,7 +28,7 @@ def test_counts_and_angles_of_the_cds5516(write):
 
 
 def test_another_scale_and_a_servo_that_turns_the_other_way(write):
-    log = read_file(write(TEXT), scale=CountScale(4096, -2 * math.pi, 500.0))
+    log = read_file(write(TEXT), ReadOptions(counts=CountScale(4096, -2 * math.pi, 500.0)))
     np.testing.assert_allclose(log.present_angle[:2], [0, -12 * 2 * math.pi / 4096])
     assert log.resolution > 0
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from rr_opt.model.experiment import Flag
-from rr_opt.recordings.readers.registry import read_file
+from rr_opt.recordings.readers import read_file
 from rr_opt.recordings.time_axis import in_order
 
 

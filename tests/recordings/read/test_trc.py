@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from rr_opt.files.issue import InvalidFileError
+from rr_opt.recordings.readers import read_file
 from rr_opt.recordings.readers.marker_rows import MarkerData
-from rr_opt.recordings.readers.registry import read_file
 
 TEXT = """\
 PathFileType\t4\t(X/Y/Z)\ttrial.trc

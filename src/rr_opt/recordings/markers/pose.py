@@ -1,7 +1,8 @@
-"""The floor's two axes in the capture system's frame, and what tilts out of the floor."""
+"""The motion of P and both angles that the markers of a file tell, and what is odd about them."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 
@@ -12,20 +13,26 @@ from rr_opt.array import Array
 from rr_opt.model.experiment import CHANNELS, Flag, Recording
 from rr_opt.outcome import InputError
 from rr_opt.recordings.cleaning import unwrapped
-from rr_opt.recordings.markers.layout import Bodies, Layout, bodies_of, check_scale
+from rr_opt.recordings.markers.layout import (
+    Bodies,
+    Guessed,
+    Layout,
+    bodies_of,
+    check_scale,
+    guessed_layout,
+)
 from rr_opt.recordings.markers.rigid import Fit, fit, marker_noise, refined
 from rr_opt.recordings.markers.swaps import (
     Ghosts,
     Order,
     Swap,
+    members,
     put_right,
     swapped_throughout,
     without_ghosts,
 )
-from rr_opt.recordings.markers.unknown_layout import guessed_layout
-from rr_opt.recordings.markers.warnings import marker_doubts
 from rr_opt.recordings.readers.marker_rows import MarkerData
-from rr_opt.recordings.warnings import Doubt, texts
+from rr_opt.recordings.warnings import Notice, counted, notice, when
 
 _AXES = {
     "z": (0, 1, 2, 1.0),
@@ -133,25 +140,18 @@ class MarkerFit:
     tilt: Array
     swaps: tuple[Swap, ...]
     ghosts: Ghosts
-    doubts: tuple[Doubt, ...]
-
-
-def recording_from_markers(
-    data: MarkerData, layout: Layout | None, noise_sigma: float | None = None
-) -> Recording:
-    """The recording that a marker file holds; its doubts tell what was put right or left out.
-
-    layout: None has it estimated from the file itself; psi's and phi's zeros are then unknown.
-    noise_sigma: standard deviation of one coordinate of a marker, m; None takes the residuals'.
-    Raises InputError if the markers cannot be matched with two platforms.
-    """
-    return fit_markers(data, layout, noise_sigma).recording
+    doubts: tuple[Notice, ...]
 
 
 def fit_markers(
     data: MarkerData, layout: Layout | None, noise_sigma: float | None = None
 ) -> MarkerFit:
-    """The same, with all that was found on the way. Raises InputError as above."""
+    """The motion that a marker file holds, and all that was found, put right and left out.
+
+    layout: None has it estimated from the file itself; psi's and phi's zeros are then unknown.
+    noise_sigma: standard deviation of one coordinate of a marker, m; None takes the residuals'.
+    Raises InputError if the markers cannot be matched with two platforms.
+    """
     guess = None
     if layout is None:
         above = seen_from_above(_places(data), "z")[0]
@@ -174,7 +174,7 @@ def fit_markers(
         np.sqrt(_mean(fitted.residual**2)),
         tilt(bodies, height), tuple(swaps), ghosts, (),
     )  # fmt: skip
-    doubts = marker_doubts(data, layout, made, guess, always, noise_sigma)
+    doubts = _notices(data, layout, made, guess, always, noise_sigma)
     return replace(made, doubts=doubts, recording=_told(made.recording, data, doubts))
 
 
@@ -222,8 +222,115 @@ def _recording(data: MarkerData, fitted: Fit, sigma: float, lost: NDArray[np.int
     return Recording(data.name, data.t, values, sigmas, flags)
 
 
-def _told(recording: Recording, data: MarkerData, doubts: tuple[Doubt, ...]) -> Recording:
+def _told(recording: Recording, data: MarkerData, doubts: tuple[Notice, ...]) -> Recording:
     source = {**data.source, "motion": "a rigid fit of both platforms to the markers, by frame"}
-    return replace(
-        recording, source=MappingProxyType(source), doubts=(*data.doubts, *texts(doubts))
+    return replace(recording, source=MappingProxyType(source), doubts=(*data.doubts, *doubts))
+
+
+_MATTERS = 0.5
+"""Times the noise by which a marker must be off its place to be told."""
+_STATED = 1.5
+"""Times the stated noise from which on the residuals contradict it."""
+_TILTS = 6.0
+"""Times the typical tilt from which on a frame's is told."""
+
+
+def _notices(
+    data: MarkerData,
+    layout: Layout,
+    made: MarkerFit,
+    guess: Guessed | None,
+    always: Order | None,
+    noise_sigma: float | None,
+) -> tuple[Notice, ...]:
+    """All of them, the gravest first."""
+    return (
+        *_of_layout(data, layout, made, guess),
+        *_of_names(data, made, always),
+        *_of_ghosts(data, made),
+        *_of_noise(made, noise_sigma),
+        *_of_tilt(data, made),
     )
+
+
+def _of_layout(
+    data: MarkerData, layout: Layout, made: MarkerFit, guess: Guessed | None
+) -> Iterator[Notice]:
+    if guess is not None:
+        one, two = (", ".join(names) for names in (guess.layout.platform1, guess.layout.platform2))
+        yield notice("layout.estimated", one=one, two=two, joint=1e3 * guess.joint)
+    used = set(made.bodies.labels)
+    absent = [name for name in [*layout.platform1, *layout.platform2] if name not in used]
+    if absent:
+        yield notice("layout.absent", names=", ".join(absent))
+    extra = [name for name in data.labels if name not in used]
+    if extra:
+        yield notice("layout.unused", names=", ".join(extra))
+    off = np.hypot(*made.shift.T)
+    if guess is None and off.max() > _MATTERS * np.nan_to_num(made.noise):
+        worst, count = int(off.argmax()), int((off > 0).sum())
+        name = made.bodies.labels[worst]
+        yield notice("layout.moved", name=name, off=1e3 * off[worst], count=count)
+
+
+def _of_names(data: MarkerData, made: MarkerFit, always: Order | None) -> Iterator[Notice]:
+    names = made.bodies.labels
+    if always:
+        yield notice("swap.always", names=_and(names[i] for i in members(always)))
+    together: dict[tuple[int, ...], list[int]] = {}
+    for swap in made.swaps:
+        together.setdefault(swap.members, []).extend(swap.frames.tolist())
+    for several, frames in together.items():
+        both = _and(names[i] for i in several)
+        yield notice("swap.frames", names=both, **_frames(data, sorted(frames)))
+
+
+def _and(names: Iterable[str]) -> str:
+    *others, last = names
+    return f"{', '.join(others)} and {last}"
+
+
+def _frames(data: MarkerData, rows: Sequence[int] | NDArray[np.int_]) -> dict[str, str]:
+    return {"frames": counted(len(rows), "frame"), "when": when(data.t, rows)}
+
+
+def _of_ghosts(data: MarkerData, made: MarkerFit) -> Iterator[Notice]:
+    for i, name in enumerate(made.bodies.labels):
+        rows = np.flatnonzero(made.ghosts.out[:, i])
+        if len(rows):
+            off = _off(made, i, rows)
+            yield notice("ghost.marker", name=name, off=off, **_frames(data, rows))
+    if len(made.ghosts.lost):
+        yield notice("lost.frames", **_frames(data, made.ghosts.lost))
+
+
+def _off(made: MarkerFit, i: int, rows: NDArray[np.int_]) -> str:
+    """By how much the marker is off, as a part of a sentence."""
+    where, values = made.bodies.platform[i], made.recording.values
+    heading = values["psi"] + (values["phi"] if where else 0.0)
+    forward, left = made.bodies.places[i]
+    fitted = values["x"] + 1j * values["y"] + (forward + 1j * left) * np.exp(1j * heading)
+    off = np.abs(made.ghosts.left_out[rows, i] - fitted[rows])
+    off = off[np.isfinite(off)]
+    return f" (off by up to {1e3 * off.max():.0f} mm)" if len(off) else ""
+
+
+def _of_noise(made: MarkerFit, noise_sigma: float | None) -> Iterator[Notice]:
+    if noise_sigma and made.noise > _STATED * noise_sigma:
+        yield notice("noise.markers", noise=1e3 * made.noise, stated=1e3 * noise_sigma)
+
+
+def _of_tilt(data: MarkerData, made: MarkerFit) -> Iterator[Notice]:
+    """Of frames in which a platform leans more than it usually does."""
+    for one in (0, 1):
+        lean = np.degrees(made.tilt[:, one])
+        known = np.isfinite(lean)
+        if known.sum() < 20:
+            continue
+        usual = float(np.median(lean[known]))
+        rows = np.flatnonzero(known & (lean > max(_TILTS * usual, np.degrees(0.01))))
+        if len(rows):
+            most = np.nanmax(lean)
+            yield notice(
+                "tilt.platform", platform=one + 1, most=most, usual=usual, **_frames(data, rows)
+            )

@@ -1,9 +1,5 @@
 """The least-squares fit of two rigid platforms, joined at P, to markers seen from above.
 
-One platform by itself: a planar Procrustes problem, and what it says about P.
-
-Symbols as in `rigid.py`.
-
 A frame's unknowns are P and the two headings. Each platform alone is a planar Procrustes problem:
 with its markers' centroids taken off, the heading is the angle of one sum. The two then have to
 agree on P. Each heading is eliminated from its platform's normal equations, which leaves for P the
@@ -15,12 +11,11 @@ information
 the two platforms' own, weighted by M. The headings follow P by (S/T) u. That is exact but for the
 curvature of a rotation over the distance by which the platforms disagree on P. No loop over frames.
 
-The platforms' shapes as the recording has them: a layout is measured by hand, markers are not.
-
-Where the markers sit a millimetre from where the layout says, their residuals have a mean in the
-platform's axes. Put right, the fit no longer jumps when a marker goes missing. Axes and origin stay
-the layout's: the residuals of a least-squares fit have no mean shift or turn of a platform that
-would not pull P apart.
+The platforms' shapes are the recording's, as a layout is measured by hand. Where the markers sit a
+millimetre from where the layout says, their residuals have a mean in the platform's axes. Put
+right, the fit no longer jumps when a marker goes missing. Axes and origin stay the layout's: the
+residuals of a least-squares fit have no mean shift or turn of a platform that would not pull P
+apart.
 """
 
 from __future__ import annotations

@@ -1,17 +1,13 @@
-"""Markers whose names were exchanged by the capture system, and single ones that are elsewhere.
+"""Markers whose names the capture system exchanged, put right, and single ones that are elsewhere.
 
-Single markers that are not where their platform is: ghosts, reflections, jumps.
-
-In a frame that does not fit, each marker is left out in turn, then each pair. The smallest set
-whose absence makes the frame fit is to blame. Where several of one size do, none can be told from
-the other, and all of them are left out. A frame that nothing makes fit is not taken as data.
-
-Markers whose names were exchanged by the capture system, found and put right.
-
-Two names are exchanged back in the frames that do not fit; where the frame then fits, they were
+Names: two are exchanged back in the frames that do not fit; where a frame then fits, they were
 swapped. A name that sits on another marker while its own is missing is found in the same way. In
 frames that no pair mends, and no single marker is to blame for, three names in a ring and two pairs
 at once are tried. Nothing depends on the frames before, so a swap may last to the end of the file.
+
+Ghosts, reflections, jumps: in a frame that still does not fit, each marker is left out in turn,
+then each pair. The smallest set whose absence makes the frame fit is to blame. Where several of one
+size do, all of them are left out. A frame that nothing makes fit is not taken as data.
 """
 
 from __future__ import annotations

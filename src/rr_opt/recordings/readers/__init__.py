@@ -1,1 +1,73 @@
-"""Readers of recordings, a file each, and the registry of them."""
+"""Files of recordings, read by what they hold; a format is a module here with a READER."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import NoReturn
+
+from rr_opt.files.issue import refuse
+from rr_opt.messages import shown
+from rr_opt.model.experiment import Recording
+from rr_opt.recordings.readers import c3d, netcdf, plain_csv, servo_log, trc, vicon_csv
+from rr_opt.recordings.readers.marker_rows import MarkerData
+from rr_opt.recordings.readers.servo_log import ServoLog
+from rr_opt.recordings.readers.text import (
+    Reader,
+    ReadOptions,
+    Text,
+    decode,
+    find_header,
+    read_bytes,
+)
+
+__all__ = ["READERS", "MarkerData", "ReadOptions", "ServoLog", "read_file"]
+
+READERS: tuple[Reader, ...] = (
+    c3d.READER,
+    netcdf.READER,
+    trc.READER,
+    vicon_csv.READER,
+    servo_log.READER,
+    plain_csv.READER,
+)
+"""Asked in this order whether a file is theirs."""
+
+
+def read_file(
+    path: str | Path, options: ReadOptions | None = None
+) -> Recording | MarkerData | ServoLog:
+    """What a file holds: motion, markers, or a servo's log.
+
+    Raises InvalidFileError with file, line and column of what is wrong, and InputError if an extra
+    that the format needs is not installed.
+    """
+    file, options = str(path), options or ReadOptions()
+    content = read_bytes(Path(path))
+    for reader in READERS:
+        if reader.binary and reader.sniff(content):
+            return reader.read(file, content, options)
+    text = decode(content, file)
+    del content  # an hour of markers is large
+    for reader in READERS:
+        if not reader.binary and reader.sniff(text, options):
+            return reader.read(file, text, options)
+    _refuse(text)
+
+
+def _refuse(text: Text) -> NoReturn:
+    """Raise InvalidFileError for a file of no known kind."""
+    header = find_header(text)
+    first = text.lines[header.at] if header else ""
+    names = header.names if header else ()
+    advice = "Check that it is a recording."
+    if "endheader" in "\n".join(text.lines[:20]).casefold():
+        advice = "It looks like a table of OpenSim: export C3D or TRC instead."
+    elif names and all(name.replace(".", "").lstrip("+-").isdecimal() for name in names):
+        advice = "The first row holds numbers: write the header row `t,x,y,psi,phi` above it."
+    formats = ", ".join(reader.format for reader in READERS[:-2])
+    refuse(
+        text.file,
+        f"Read {shown(first)}. Expected a header row such as `t,x,y,psi,phi` or `t,goal,present`, "
+        f"or one of: {formats}. {advice}",
+        header.at + 1 if header else 1,
+    )

@@ -1,13 +1,10 @@
-"""The parameters of a C3D file: groups of named numbers and texts (c3d.org, user guide).
+"""C3D, the binary format of motion capture (c3d.org, user guide).
 
-A chain of entries, each with the distance to the next. Nothing in a damaged chain is followed out
-of the file or backwards.
-
-C3D, the binary format of motion capture (c3d.org).
-
-A header of 512 bytes, the parameters, then frame after frame the points and the analog samples. It
-is read here, and not by a library: the usual one ends the program on damaged files, and reads no
-more than 65535 frames, 11 minutes at 100 Hz.
+A header of 512 bytes, the parameters, then frame after frame the points and the analog samples. The
+parameters are groups of named numbers and texts, a chain of entries, each with the distance to the
+next; nothing in a damaged chain is followed out of the file or backwards. It is read here, and not
+by a library: the usual one ends the program on damaged files, and reads no more than 65535 frames,
+11 minutes at 100 Hz.
 """
 
 from __future__ import annotations
@@ -19,8 +16,10 @@ from math import prod
 import numpy as np
 from numpy.typing import NDArray
 
+from rr_opt.files.issue import refuse
 from rr_opt.recordings.readers.marker_rows import MarkerData, MarkerRows, marker_data
-from rr_opt.recordings.readers.text import refuse
+from rr_opt.recordings.readers.text import Reader, ReadOptions
+from rr_opt.recordings.warnings import Notice, notice
 
 INTEL, DEC, MIPS = 84, 85, 86
 """The processors whose numbers a file may hold, as byte 4 of the parameters names them."""
@@ -145,7 +144,7 @@ def read_header(content: bytes) -> Header:
 
 def frame_count(
     content: bytes, header: Header, parameters: Mapping[str, Values], file: str
-) -> tuple[int, list[str]]:
+) -> tuple[int, list[Notice]]:
     """How many frames there are, and what is odd about their number. Raises InvalidFileError."""
     end = parameters.get("TRIAL:ACTUAL_END_FIELD", ())
     last = header.last
@@ -165,10 +164,7 @@ def frame_count(
         # The last block is filled up with zeros, which are no frames.
         count = max(len(content.rstrip(b"\0")) - header.start, 0)
         count = -(-count // header.frame_bytes)
-        return count, [
-            f"The header can count to frame {_LAST_COUNT} only; the file has {count} frames, and "
-            "all were read."
-        ]
+        return count, [notice("file.counter", last=_LAST_COUNT, count=count)]
     return stated, []
 
 
@@ -198,16 +194,13 @@ _NOT_MARKERS = ("ANGLES", "FORCES", "MOMENTS", "POWERS", "SCALARS")
 """Parameters of the group POINT that list points which are no places."""
 
 
-def is_c3d(content: bytes) -> bool:
+def sniff(content: bytes) -> bool:
     """Whether the first bytes are those of a C3D file."""
     return len(content) > 1 and content[1] == _KEY and 0 < content[0] < 128
 
 
-def markers_from_c3d(content: bytes, file: str, name: str) -> MarkerData:
-    """The markers of a C3D file, whose bytes are `content`.
-
-    A residual below 0 is a marker that was not seen. Raises InvalidFileError.
-    """
+def read(file: str, content: bytes, _: ReadOptions) -> MarkerData:
+    """The markers of a C3D file. A residual below 0 is a marker that was not seen."""
     try:
         header = read_header(content)
         parameters = read_parameters(content, BLOCK * (content[0] - 1), header.processor)
@@ -218,21 +211,18 @@ def markers_from_c3d(content: bytes, file: str, name: str) -> MarkerData:
     others = {one for key in _NOT_MARKERS for one in parameters.get(f"POINT:{key}", ())}
     kept = [at for at, label in enumerate(labels) if label not in others]
     if len(kept) < len(labels):
-        doubts.append(f"{len(labels) - len(kept)} points are no places, and were not read.")
+        doubts.append(notice("file.points", count=len(labels) - len(kept)))
     if not kept:
         refuse(file, "The C3D file has no markers. Expected at least one. Export the trajectories.")
     positions, residual = points_of(content, header, count, kept)
     endless = np.isinf(positions).any(axis=2)
     if endless.any():
-        doubts.append(f"{endless.sum()} positions are infinite, and were taken as missing.")
+        doubts.append(notice("marker.infinite", count=endless.sum()))
     positions[endless | ~(residual >= 0)] = np.nan
     residual[~(residual >= 0)] = np.nan
     made_up = residual == 0
     if made_up.any() and (residual > 0).any():
-        doubts.append(
-            f"{made_up.sum()} positions have the residual 0: the capture's software made them up, "
-            "and nobody measured them."
-        )
+        doubts.append(notice("marker.filled", count=made_up.sum()))
     rate = _number(parameters, "POINT:RATE", header.rate)
     frame = header.first + np.arange(count, dtype=np.int64)
     unit = parameters.get("POINT:UNITS", ())
@@ -247,7 +237,7 @@ def markers_from_c3d(content: bytes, file: str, name: str) -> MarkerData:
         lines=frame,
         residual=residual,
     )
-    return marker_data(rows, name, {"file": file, "format": "C3D"}, doubts)
+    return marker_data(rows, {"file": file, "format": "C3D"}, doubts)
 
 
 def _labels(parameters: Mapping[str, Values], count: int) -> list[str]:
@@ -260,3 +250,6 @@ def _labels(parameters: Mapping[str, Values], count: int) -> list[str]:
 def _number(parameters: Mapping[str, Values], name: str, default: float) -> float:
     values = parameters.get(name, ())
     return float(values[0]) if values and isinstance(values[0], float) else default
+
+
+READER = Reader("C3D", sniff, read, binary=True)

@@ -5,15 +5,17 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rr_opt.array import Array
+from rr_opt.files.issue import refuse
 from rr_opt.messages import shown
-from rr_opt.recordings.readers.text import refuse
-from rr_opt.recordings.time_axis import check_rate, in_order, rate_of, time_doubts
+from rr_opt.recordings.time_axis import check_rate, in_order, rate_of, time_notices
+from rr_opt.recordings.warnings import Notice, notice
 
 
 @dataclass(frozen=True)
@@ -73,7 +75,7 @@ class MarkerRows:
 
 
 def marker_data(
-    rows: MarkerRows, name: str, source: Mapping[str, str], doubts: Sequence[str] = ()
+    rows: MarkerRows, source: Mapping[str, str], doubts: Sequence[Notice] = ()
 ) -> MarkerData:
     """The markers in order of time, in metres, under clean names.
 
@@ -95,30 +97,28 @@ def marker_data(
     positions = rows.positions[order.rows] * scale
     origin = (positions == 0).all(axis=2)
     if origin.any():
-        doubts.append(f"{origin.sum()} positions are exactly 0, 0, 0, and were taken as missing.")
+        doubts.append(notice("marker.origin", count=origin.sum()))
     positions[origin] = np.nan
     positions[order.unsure] = np.nan
     # A position is there as a whole, or not at all.
     positions[np.isnan(positions).any(axis=2)] = np.nan
     never = [one for one, seen in zip(labels, _seen(positions), strict=True) if not seen]
     if never:
-        doubts.append(f"Never seen: {', '.join(never)}.")
+        doubts.append(notice("marker.never", names=", ".join(never)))
     t = t[order.rows]
     rate = rows.rate
     doubts += order.doubts
     if len(t) > 1:
         measured = rate_of(t, file)
         rate = rate if rows.t is None else measured
-        doubts += time_doubts(t, measured, rows.rate if rows.t is not None else None)
+        doubts += time_notices(t, measured, rows.rate if rows.t is not None else None)
     if len(t) and rows.frame[order.rows][0] != 1 and rows.t is None:
-        doubts.append(
-            f"The first frame is {rows.frame[order.rows][0]}, so that t begins at {t[0]:.6g} s."
-        )
+        doubts.append(notice("time.first", frame=rows.frame[order.rows][0], start=t[0]))
     clock = "t = 0 at frame 1" if rows.t is None else "the file's own times"
     extra = {"subject": subject} if subject else {}
     told_unit = {"unit": rows.unit or "mm (assumed)", "rate": f"{rate:.6g} Hz", "clock": clock}
     return MarkerData(
-        name=name,
+        name=Path(file).name,
         t=t,
         frame=rows.frame[order.rows],
         labels=labels,
@@ -134,10 +134,10 @@ def _seen(positions: Array) -> NDArray[np.bool_]:
     return np.isfinite(positions[:, :, 0]).sum(axis=0) > 0
 
 
-def _scale(rows: MarkerRows, file: str) -> tuple[float, list[str]]:
+def _scale(rows: MarkerRows, file: str) -> tuple[float, list[Notice]]:
     """Metres in one unit."""
     if not rows.unit:
-        return 1e-3, ["The file states no unit of length; millimetres were assumed."]
+        return 1e-3, [notice("file.unit")]
     if rows.unit.casefold() not in _METRES:
         place, line = rows.unit_place
         message = f"Read the unit {shown(rows.unit)}. Expected mm, cm, m or in. Correct {place}."
@@ -145,12 +145,12 @@ def _scale(rows: MarkerRows, file: str) -> tuple[float, list[str]]:
     return _METRES[rows.unit.casefold()], []
 
 
-def clean_labels(written: Sequence[str]) -> tuple[tuple[str, ...], str, list[str]]:
+def clean_labels(written: Sequence[str]) -> tuple[tuple[str, ...], str, list[Notice]]:
     """Names that are each there once, the subject that they share, and what was changed.
 
     `Subject:Marker` becomes `Marker` if all that have a subject have the same one.
     """
-    doubts: list[str] = []
+    doubts: list[Notice] = []
     subjects = {one.split(":", 1)[0] for one in written if ":" in one}
     subject = subjects.pop() if len(subjects) == 1 else ""
     bare = [one.removeprefix(f"{subject}:") if subject else one for one in written]
@@ -163,9 +163,7 @@ def clean_labels(written: Sequence[str]) -> tuple[tuple[str, ...], str, list[str
             again = next(
                 n for n in range(2, len(bare) + 2) if f"{label} ({n})" not in bare + labels
             )
-            doubts.append(
-                f"The marker {shown(label)} is there again, and called {label} ({again})."
-            )
+            doubts.append(notice("marker.twice", label=shown(label), name=f"{label} ({again})"))
             label = f"{label} ({again})"
         labels.append(label)
     return tuple(labels), subject, doubts

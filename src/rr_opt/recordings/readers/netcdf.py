@@ -1,6 +1,4 @@
-"""A recording in a netCDF file, by way of an xarray Dataset.
-
-A recording as an xarray Dataset and back, without loss.
+"""A recording in a netCDF file, by way of an xarray Dataset, and back without loss.
 
 Over the dimension `t`: the channels under their names, `<channel>_sigma`, `<channel>_flag`, and
 `command`, the commanded angle, where it is known. Units and meanings are attributes (CF
@@ -18,12 +16,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rr_opt.files.gait_record import gait_from, gait_record
-from rr_opt.files.issue import InvalidFileError
+from rr_opt.files.issue import InvalidFileError, refuse
 from rr_opt.files.yaml_text import Document
 from rr_opt.model.experiment import CHANNELS, Flag, Noise, Recording
 from rr_opt.model.gait import Gait
 from rr_opt.outcome import InputError
-from rr_opt.recordings.readers.text import refuse
+from rr_opt.recordings.readers.text import Reader, ReadOptions
+from rr_opt.recordings.warnings import notice
 from rr_opt.version import __version__
 
 if TYPE_CHECKING:
@@ -137,7 +136,7 @@ def from_dataset(data: xarray.Dataset, file: str, noise: Noise | None = None) ->
     }
     others = [str(name) for name in data.variables if name not in known]
     doubts = from_json(data, "doubts", list, file)
-    doubts += [f"Variables that were not read: {', '.join(others)}."] if others else []
+    doubts += [notice("file.variables", names=", ".join(others))] if others else []
     source = {"file": file, "format": "netCDF"}
     if "source" in data.attrs:
         source = from_json(data, "source", dict, file)
@@ -186,16 +185,11 @@ def _flag_attributes(name: str) -> dict[str, Any]:
 
 SIGNATURE = b"\x89HDF\r\n\x1a\n"
 """How every netCDF 4 file begins, which is HDF 5."""
+_NETCDF3 = (b"CDF\x01", b"CDF\x02", b"CDF\x05")
 
 
 _LARGEST = 500_000_000
 """A compressed file of a few bytes can state any number of values; bytes."""
-
-
-def is_netcdf(path: Path) -> bool:
-    """Whether a file that is there begins as netCDF 4 does."""
-    with path.open("rb") as file:
-        return file.read(len(SIGNATURE)) == SIGNATURE
 
 
 def write_netcdf(path: Path, recording: Recording, gait: Gait | None = None) -> Path:
@@ -211,17 +205,26 @@ def write_netcdf(path: Path, recording: Recording, gait: Gait | None = None) -> 
     return path
 
 
-def read_netcdf(path: Path, noise: Noise | None = None) -> Recording:
-    """The recording of a netCDF file, whoever wrote it; noise: where the file states none.
+def sniff(content: bytes) -> bool:
+    """Whether a file begins as netCDF does, 4 or older."""
+    return content.startswith((SIGNATURE, *_NETCDF3))
 
-    Raises InvalidFileError if it cannot be read, InputError if it holds no recording or an extra
-    is missing.
-    """
-    return from_dataset(_opened(path), str(path), noise)
+
+def read(file: str, content: bytes, options: ReadOptions) -> Recording:
+    """The recording of a netCDF file, whoever wrote it. Raises InputError without the extra."""
+    if not content.startswith(SIGNATURE):
+        refuse(file, "This is netCDF 3. Expected netCDF 4. Convert it with `nccopy -k nc4`.")
+    return from_dataset(_opened(Path(file)), file, options.noise)
 
 
 def commanded_gait(path: Path) -> Gait | None:
-    """The gait that a netCDF file says was commanded, if it says. Raises as `read_netcdf`."""
+    """The gait that a netCDF file says was commanded; None if it does not say, or is no netCDF.
+
+    Raises as `read`.
+    """
+    with path.open("rb") as file:
+        if file.read(len(SIGNATURE)) != SIGNATURE:
+            return None
     return gait_of(_opened(path), str(path))
 
 
@@ -243,3 +246,6 @@ def _opened(path: Path) -> Any:
     except Exception as error:
         # Whatever a damaged file makes the library say.
         refuse(str(path), f"The netCDF file cannot be read: {error}. Write it once more.")
+
+
+READER = Reader("netCDF", sniff, read, binary=True)

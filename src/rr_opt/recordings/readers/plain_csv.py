@@ -2,66 +2,46 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from pathlib import Path
 from types import MappingProxyType
 
 import numpy as np
-from numpy.typing import NDArray
 
-from rr_opt.messages import shown
-from rr_opt.model.experiment import CHANNELS, Flag, Noise, Recording
-from rr_opt.recordings.readers.text import Text, check_columns, find_header, read_table, refuse
-from rr_opt.recordings.time_axis import in_order, rate_of, time_doubts
+from rr_opt.model.experiment import CHANNELS, Flag, Recording
+from rr_opt.recordings.readers.columns import column_names, read_columns
+from rr_opt.recordings.readers.text import Reader, ReadOptions, Text
 
 _NEEDED = ("t", *CHANNELS)
 _KNOWN = (*_NEEDED, "torque")
 
 
-def recording_from_csv(text: Text, name: str, noise: Noise | None = None) -> Recording:
+def sniff(text: Text, options: ReadOptions) -> bool:
+    """Whether a header row has the time, or several of the channels."""
+    names = column_names(text, options.columns, _KNOWN)
+    return "t" in names or len(names & set(CHANNELS)) > 1
+
+
+def read(file: str, text: Text, options: ReadOptions) -> Recording:
     """The recording of a plain CSV; columns in any order, others than those known are told.
 
-    noise: standard deviations; without it they are NaN. An empty cell, NaN or infinity is flagged
-    MISSING, a row that stood in another place than its time OUT_OF_ORDER, and so is the first of
-    rows that share a time and say different things. Raises InvalidFileError.
+    An empty cell, NaN or infinity is flagged MISSING, a row that stood in another place than its
+    time OUT_OF_ORDER, and so is the first of rows that share a time and say different things.
     """
-    header = find_header(text)
-    if header is None:
-        refuse(text.file, "The file holds no rows. Expected `t,x,y,psi,phi`. Export it once more.")
-    columns = check_columns(header, _NEEDED, _KNOWN, text.file)
-    table = read_table(text, header.at + 1, len(text.lines), header.separator, header.names)
-    doubts = list(table.doubts)
-    others = [one for one in header.names if one not in _KNOWN]
-    if others:
-        doubts.append(f"Columns that were not read: {shown(', '.join(others))}.")
-    t = table.values[:, columns["t"]]
-    channels = [name for name in _KNOWN[1:] if name in columns]
-    values = table.values[:, [columns[name] for name in channels]]
-    order = in_order(t, values, table.lines)
-    t, values = t[order.rows], values[order.rows]
-    rate = rate_of(t, text.file, header.at + 1)
-    flags = np.where(np.isnan(values), Flag.MISSING, 0).astype(np.uint8)
-    flags[order.moved | order.unsure] |= np.uint8(Flag.OUT_OF_ORDER)
-    source = {
-        "file": text.file,
-        "format": "plain CSV",
-        "encoding": text.encoding,
-        "rate": f"{rate:.6g} Hz",
-        "clock": "the recording's own t",
-    }
+    found = read_columns(text, _NEEDED, _KNOWN, options.columns)
+    flags = np.where(np.isnan(found.values), Flag.MISSING, 0).astype(np.uint8)
+    flags[found.order.moved | found.order.unsure] |= np.uint8(Flag.OUT_OF_ORDER)
+    noise = options.noise
+    sigma = {one: noise.of(one) if noise else np.nan for one in found.names}
+    source = {**found.source, "format": "plain CSV", "clock": "the recording's own t"}
     return Recording(
-        name,
-        t,
-        _by_channel(channels, values),
-        MappingProxyType(
-            {one: np.full(len(t), noise.of(one) if noise else np.nan) for one in channels}
-        ),
-        _by_channel(channels, flags),
+        Path(file).name,
+        found.t,
+        MappingProxyType(dict(zip(found.names, found.values.T.copy(), strict=True))),
+        MappingProxyType({one: np.full(len(found.t), size) for one, size in sigma.items()}),
+        MappingProxyType(dict(zip(found.names, flags.T.copy(), strict=True))),
         MappingProxyType(source),
-        (*doubts, *order.doubts, *time_doubts(t, rate)),
+        found.doubts,
     )
 
 
-def _by_channel(channels: list[str], values: NDArray) -> Mapping[str, NDArray]:
-    return MappingProxyType(
-        {name: np.ascontiguousarray(values[:, at]) for at, name in enumerate(channels)}
-    )
+READER = Reader("plain CSV", sniff, read)

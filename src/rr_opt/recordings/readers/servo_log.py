@@ -5,15 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 from types import MappingProxyType
 
 import numpy as np
 
 from rr_opt.array import Array
-from rr_opt.messages import shown
-from rr_opt.model.experiment import CountScale
-from rr_opt.recordings.readers.text import Text, check_columns, find_header, read_table, refuse
-from rr_opt.recordings.time_axis import in_order, rate_of, time_doubts
+from rr_opt.model.experiment import CHANNELS
+from rr_opt.recordings.readers.columns import column_names, read_columns
+from rr_opt.recordings.readers.text import Reader, ReadOptions, Text
+from rr_opt.recordings.warnings import notice
 
 
 @dataclass(frozen=True)
@@ -49,56 +50,50 @@ class ServoLog:
 _POSITIONS = ("goal", "present")
 
 
-def servo_log_from_csv(text: Text, name: str, scale: CountScale | None = None) -> ServoLog:
+def sniff(text: Text, options: ReadOptions) -> bool:
+    """Whether a header row has one of the positions and none of a recording's channels."""
+    names = column_names(text, options.columns, ("t", *CHANNELS, *_POSITIONS))
+    return bool(names & set(_POSITIONS)) and not names & set(CHANNELS)
+
+
+def read(file: str, text: Text, options: ReadOptions) -> ServoLog:
     """The log of a CSV with a column `t` (s) and at least one of `goal` and `present` (counts).
 
     Positions of rows that stood in another place than their time, or share it with a row that
-    says something else, are NaN. Raises InvalidFileError.
+    says something else, are NaN.
     """
-    scale = scale or CountScale()
-    header = find_header(text)
-    if header is None:
-        refuse(text.file, "The file holds no rows. Expected `t,goal,present`. Export it once more.")
-    needed = [one for one in _POSITIONS if one in header.names] or list(_POSITIONS)
-    columns = check_columns(header, ("t", *needed), ("t", *_POSITIONS), text.file)
-    table = read_table(text, header.at + 1, len(text.lines), header.separator, header.names)
-    others = [one for one in header.names if one not in ("t", *_POSITIONS)]
-    doubts = list(table.doubts)
-    if others:
-        doubts.append(f"Columns that were not read: {shown(', '.join(others))}.")
-    t = table.values[:, columns["t"]]
-    values = table.values[:, [columns[one] for one in needed]]
-    order = in_order(t, values, table.lines)
-    t, values = t[order.rows], values[order.rows]
-    values[order.moved | order.unsure] = np.nan
-    rate = rate_of(t, text.file, header.at + 1)
+    scale = options.counts
+    known = ("t", *_POSITIONS)
+    names = column_names(text, options.columns, known)
+    needed = ("t", *([one for one in _POSITIONS if one in names] or _POSITIONS))
+    found = read_columns(text, needed, known, options.columns)
+    values = found.values
+    values[found.order.moved | found.order.unsure] = np.nan
+    doubts = found.doubts
     outside = (values < 0) | (values >= scale.counts)
     if outside.any():
-        doubts.append(
-            f"{outside.sum()} positions lie outside 0 to {scale.counts - 1} counts: is the scale "
-            "that of this servo?"
-        )
-    counts = dict(zip(needed, values.T.copy(), strict=True))
+        doubts += (notice("servo.counts", count=outside.sum(), last=scale.counts - 1),)
+    counts = dict(zip(found.names, values.T.copy(), strict=True))
     angles = {one: (read - scale.zero) * scale.each for one, read in counts.items()}
+    source = {
+        **found.source,
+        "format": "servo log CSV",
+        "clock": "the servo's own t",
+        "scale": f"{scale.counts} counts over {math.degrees(scale.range):.6g} degrees, "
+        f"phi = 0 at {scale.zero:g}",
+    }
     return ServoLog(
-        name=name,
-        t=t,
+        name=Path(file).name,
+        t=found.t,
         goal=counts.get("goal"),
         present=counts.get("present"),
         goal_angle=angles.get("goal"),
         present_angle=angles.get("present"),
         resolution=abs(scale.each),
-        rate=rate,
-        source=MappingProxyType(
-            {
-                "file": text.file,
-                "format": "servo log CSV",
-                "encoding": text.encoding,
-                "rate": f"{rate:.6g} Hz",
-                "clock": "the servo's own t",
-                "scale": f"{scale.counts} counts over {math.degrees(scale.range):.6g} degrees, "
-                f"phi = 0 at {scale.zero:g}",
-            }
-        ),
-        doubts=(*doubts, *order.doubts, *time_doubts(t, rate)),
+        rate=found.rate,
+        source=MappingProxyType(source),
+        doubts=doubts,
     )
+
+
+READER = Reader("servo log CSV", sniff, read)

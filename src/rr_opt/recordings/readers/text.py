@@ -1,38 +1,52 @@
-"""The bytes of a recording's file, its lines as text whatever its encoding, and its table."""
+"""What readers share: the bytes of a file, its lines whatever its encoding, and its columns."""
 
 from __future__ import annotations
 
 import codecs
 import io
 import stat
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import NoReturn
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rr_opt.array import Array
-from rr_opt.files.issue import InvalidFileError, Issue
-from rr_opt.messages import nearest, shown
-
-_MOST = 20
-"""A file that is wrong in every row is told from its first ones."""
-
-
-def refuse(file: str, message: str, line: int | None = None) -> NoReturn:
-    """Raise InvalidFileError with one message about a file."""
-    raise InvalidFileError([Issue("error", "", message, line, file)])
+from rr_opt.files.issue import refuse, refuse_all
+from rr_opt.messages import shown
+from rr_opt.model.experiment import Column, CountScale, Noise
+from rr_opt.recordings.warnings import Notice, notice
 
 
-def refuse_all(file: str, found: Sequence[tuple[int, str]]) -> NoReturn:
-    """Raise InvalidFileError with a line and a message for each mistake, the first of many."""
-    issues = [Issue("error", "", message, line, file) for line, message in found[:_MOST]]
-    if len(found) > _MOST:
-        more = f"There are {len(found) - _MOST} more mistakes of this kind. Correct the first ones."
-        issues.append(Issue("error", "", more, None, file))
-    raise InvalidFileError(issues)
+@dataclass(frozen=True)
+class ReadOptions:
+    """What the files of recordings do not say themselves.
+
+    noise    standard deviations of motion that states none; None: they are NaN
+    counts   what the counts of a servo's log mean
+    columns  by channel, the column that it is in, where a text file names it otherwise
+    """
+
+    noise: Noise | None = None
+    counts: CountScale = field(default_factory=CountScale)
+    columns: Mapping[str, Column] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Reader:
+    """A format.
+
+    sniff   whether some content is of it: bytes if it is binary, else Text and the options
+    read    the data of a file, from its name, its content and the options. Raises InvalidFileError
+    binary  whether it is no text
+    """
+
+    format: str
+    sniff: Callable[..., bool]
+    read: Callable[[str, Any, ReadOptions], Any]
+    binary: bool = False
 
 
 _MARKS = (
@@ -162,48 +176,6 @@ def find_header(text: Text) -> Header | None:
     return None
 
 
-def check_columns(
-    header: Header, needed: Sequence[str], known: Sequence[str], file: str
-) -> dict[str, int]:
-    """Where each known column is. Raises InvalidFileError if one is missing or there twice."""
-    line = header.at + 1
-    if header.names and all(_is_number(name) for name in header.names):
-        refuse(
-            file,
-            f"Read numbers in the first row. Expected a header row, `{','.join(needed)}`. "
-            "Write it above the numbers.",
-            line,
-        )
-    twice = [name for name in known if header.names.count(name) > 1]
-    missing = [name for name in needed if name not in header.names]
-    wrong = []
-    if "t" in missing and "time" in header.names:
-        refuse(file, "Read the column `time`. Expected `t`, in s. Rename it.", line)
-    if twice:
-        wrong.append(f"Read the column `{twice[0]}` twice. Expected it once. Delete one of them.")
-    if missing:
-        others = [name for name in header.names if name not in known]
-        near = {name: nearest(name, missing) for name in others}
-        guesses = [f"`{meant}` for {shown(name)}" for name, meant in near.items() if meant]
-        advice = f"Did you mean {', '.join(guesses)}?" if guesses else "Add what is missing."
-        # A letter alone is like no other: the columns that there are tell more.
-        wrong.append(
-            f"Read the columns {shown(', '.join(header.names))}. Expected also "
-            f"{', '.join(f'`{name}`' for name in missing)}. {advice}"
-        )
-    if wrong:
-        refuse(file, " ".join(wrong), line)
-    return {name: header.names.index(name) for name in known if name in header.names}
-
-
-def _is_number(cell: str) -> bool:
-    try:
-        float(cell.replace(",", "."))
-    except ValueError:
-        return False
-    return True
-
-
 _TABLE_BLOCK = 20_000
 """Rows converted at once: no more than a few of their copies are in memory together."""
 
@@ -214,7 +186,7 @@ class Table:
 
     values: Array
     lines: NDArray[np.int64]
-    doubts: tuple[str, ...]
+    doubts: tuple[Notice, ...]
 
 
 @dataclass
@@ -240,9 +212,7 @@ def read_table(text: Text, first: int, last: int, separator: str, names: Sequenc
     rows = [at for at in range(first, last) if text.lines[at].strip(blank)]
     cut = bool(rows) and not text.ended and rows[-1] == len(text.lines) - 1
     cut = cut and text.lines[rows[-1]].count(separator) < len(names) - 1
-    doubts = []
-    if cut:
-        doubts.append(f"The file ends within line {rows.pop() + 1}, which was left out.")
+    doubts = [notice("file.cut", line=rows.pop() + 1)] if cut else []
     blocks = [
         _block(reading, [text.lines[at] for at in rows[start : start + _TABLE_BLOCK]], rows[start:])
         for start in range(0, len(rows), _TABLE_BLOCK)
@@ -252,14 +222,11 @@ def read_table(text: Text, first: int, last: int, separator: str, names: Sequenc
     values = np.concatenate(blocks) if blocks else np.empty((0, len(names)))
     lines = np.array(rows, np.int64) + 1
     if reading.short:
-        doubts.append(
-            f"{_rows_text(reading.short)} fewer cells than the header. What they lack was taken "
-            "as missing."
-        )
+        doubts.append(notice("file.short", rows=_rows_text(reading.short)))
     endless = np.isinf(values)
     if endless.any():
         where = lines[endless.any(axis=1)].tolist()
-        doubts.append(f"{_rows_text(where)} an infinite number, which was taken as missing.")
+        doubts.append(notice("file.infinite", rows=_rows_text(where)))
         values[endless] = np.nan
     return Table(values, lines, tuple(doubts))
 

@@ -11,19 +11,26 @@ import math
 
 import numpy as np
 
+from rr_opt.files.issue import refuse
 from rr_opt.messages import shown
 from rr_opt.recordings.readers.marker_rows import MarkerData, MarkerRows, marker_data
-from rr_opt.recordings.readers.text import Text, cells_of, read_table, refuse, separator_of
+from rr_opt.recordings.readers.text import (  # fmt: skip
+    Reader,
+    ReadOptions,
+    Text,
+    cells_of,
+    read_table,
+    separator_of,
+)
+from rr_opt.recordings.warnings import Notice, notice
 
-MARK = "PathFileType"
 
-
-def is_trc(text: Text) -> bool:
+def sniff(text: Text, _: ReadOptions) -> bool:
     """Whether the file begins as every TRC file does."""
-    return text.lines[0].lstrip().startswith(MARK)
+    return text.lines[0].lstrip().startswith("PathFileType")
 
 
-def markers_from_trc(text: Text, name: str) -> MarkerData:
+def read(file: str, text: Text, _: ReadOptions) -> MarkerData:
     """The markers of a TRC file. Raises InvalidFileError."""
     if len(text.lines) < 6:
         refuse(
@@ -64,9 +71,9 @@ def markers_from_trc(text: Text, name: str) -> MarkerData:
     )
     said = stated.get("numframes", "")
     if said.isdecimal() and int(said) != len(frames):
-        doubts.append(f"The header states {int(said)} frames, and there are {len(frames)}.")
-    source = {"file": text.file, "format": "TRC", "encoding": text.encoding}
-    return marker_data(rows, name, source, [*table.doubts, *doubts])
+        doubts.append(notice("file.frames", stated=int(said), count=len(frames)))
+    source = {"file": file, "format": "TRC", "encoding": text.encoding}
+    return marker_data(rows, source, [*table.doubts, *doubts])
 
 
 def _stated(text: Text) -> dict[str, str]:
@@ -94,7 +101,7 @@ def _rate(text: Text, stated: dict[str, str]) -> float:
 
 def _names(
     text: Text, head: list[str], stated: dict[str, str], separator: str
-) -> tuple[list[str], list[str]]:
+) -> tuple[list[str], list[Notice]]:
     """The markers' names, and what is odd about them: one above each X, every third column."""
     axes = [cell for cell in cells_of(text.lines[4], separator)[2:] if cell]
     count = max(len(axes) // 3, 1)
@@ -104,5 +111,8 @@ def _names(
     names = every_third if all(every_third) or len(together) != count else together
     said = stated.get("nummarkers", "")
     if said.isdecimal() and int(said) != count:
-        return names, [f"The header states {int(said)} markers, and names {count}."]
+        return names, [notice("file.markers", stated=int(said), count=count)]
     return names, []
+
+
+READER = Reader("TRC", sniff, read)

@@ -1,6 +1,4 @@
-"""The five lines of header that a section of a Vicon Nexus CSV begins with.
-
-The CSV that Vicon Nexus exports: sections, each with its own rate; `Trajectories` has markers.
+"""The CSV of Vicon Nexus: sections, each with its own rate; `Trajectories` has the markers.
 
 A section has five lines of header: its title; its rate, Hz; the names, each above the first of its
 columns; `Frame,Sub Frame,X,Y,Z,...`; the units. It ends with a blank line.
@@ -9,13 +7,23 @@ columns; `Frame,Sub Frame,X,Y,Z,...`; the units. It ends with a blank line.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
+from rr_opt.files.issue import refuse
 from rr_opt.messages import shown
 from rr_opt.recordings.readers.marker_rows import MarkerData, MarkerRows, marker_data
-from rr_opt.recordings.readers.text import Text, cells_of, read_table, refuse, separator_of
+from rr_opt.recordings.readers.text import (  # fmt: skip
+    Reader,
+    ReadOptions,
+    Text,
+    cells_of,
+    read_table,
+    separator_of,
+)
+from rr_opt.recordings.warnings import Notice, notice
 
 
 @dataclass(frozen=True)
@@ -92,12 +100,12 @@ _TITLE = "trajectories"
 _SECTIONS = (_TITLE, "devices", "model outputs", "joints", "segments", "trajectory count", "events")
 
 
-def is_vicon(text: Text) -> bool:
+def sniff(text: Text, _: ReadOptions) -> bool:
     """Whether the file has a line that is the title of a section, and no more than that."""
     return any(_title(line) in _SECTIONS for line in text.lines[:50]) or _start(text) is not None
 
 
-def markers_from_vicon(text: Text, name: str) -> MarkerData:
+def read(file: str, text: Text, _: ReadOptions) -> MarkerData:
     """The markers of the section `Trajectories`. Raises InvalidFileError."""
     start = _start(text)
     if start is None:
@@ -132,9 +140,9 @@ def markers_from_vicon(text: Text, name: str) -> MarkerData:
         unit_place=("the row of units", head.first_row),
         lines=table.lines,
     )
-    source = {"file": text.file, "format": "Vicon Nexus CSV", "encoding": text.encoding}
+    source = {"file": file, "format": "Vicon Nexus CSV", "encoding": text.encoding}
     doubts = [*table.doubts, *_unread(text, start, last, head)]
-    return marker_data(rows, name, source, doubts)
+    return marker_data(rows, source, doubts)
 
 
 def _title(line: str) -> str:
@@ -163,16 +171,17 @@ def _owners(head: Head) -> list[tuple[str, str]]:
     return [(role, owner.get(at, "")) for at, role in enumerate(head.roles)]
 
 
-def _unread(text: Text, start: int, last: int, head: Head) -> list[str]:
+def _unread(text: Text, start: int, last: int, head: Head) -> Iterator[Notice]:
     """What the file holds besides."""
-    doubts = []
     taken = 3 * len(head.markers)
     other = [role for role in head.roles if role not in ("frame", "sub frame", "x", "y", "z", "")]
     if len(head.roles) - taken > 2 and other:
-        doubts.append(f"Columns that were not read: {shown(', '.join(dict.fromkeys(other)))}.")
+        yield notice("file.columns", names=shown(", ".join(dict.fromkeys(other))))
     outside = [*range(start), *range(last, len(text.lines))]
     titles = [_title(text.lines[at]) for at in outside if text.lines[at][:1].isalpha()]
     others = [one for one in titles if one in _SECTIONS]
     if others:
-        doubts.append(f"Sections that were not read: {', '.join(dict.fromkeys(others))}.")
-    return doubts
+        yield notice("file.sections", names=", ".join(dict.fromkeys(others)))
+
+
+READER = Reader("Vicon Nexus CSV", sniff, read)

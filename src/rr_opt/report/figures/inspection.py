@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from rr_opt.array import Array
 from rr_opt.model.experiment import Flag, Recording
 from rr_opt.model.gait import Gait
-from rr_opt.recordings.clocks.clock_fit import ClockFit
+from rr_opt.recordings.clock_fit import ClockFit
 from rr_opt.recordings.gaps import Gap, bridged
 from rr_opt.recordings.inspection import Inspection
 from rr_opt.recordings.markers.pose import MarkerFit

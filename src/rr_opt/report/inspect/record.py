@@ -10,11 +10,11 @@ import numpy as np
 
 from rr_opt.files.gait_record import gait_record
 from rr_opt.model.experiment import Flag, Recording
-from rr_opt.recordings.clocks.clock_fit import ClockFit
-from rr_opt.recordings.clocks.synchrony import Synchrony
+from rr_opt.recordings.clock_fit import ClockFit
 from rr_opt.recordings.inspection import Inspection
 from rr_opt.recordings.markers.pose import MarkerFit
 from rr_opt.recordings.noise import NoiseEstimate
+from rr_opt.recordings.servo_clock import Synchrony
 from rr_opt.recordings.time_axis import time_step
 from rr_opt.version import __version__
 

@@ -1,0 +1,233 @@
+"""The angle's clock against that of the command: by how much it is off, how fast it drifts.
+
+A pure delay of the servo and a clock that is late are one thing in a recording: both shift phi
+against its command by the same time at every instant. Only a start from rest, or a delay that is
+not pure (a lag, which also makes the angle smaller), can tell one from the other.
+
+phi as seen at t is matched with a reference, the command or the servo's log, at the time
+
+    u = t + offset + drift (t - t_mid),   phi = bias + scale (g(u) - mean g)
+
+by nonlinear least squares. Scale and bias are free, as a servo that lags also moves less. The
+covariance is the sandwich with Bartlett's weights over lags (W. K. Newey and K. D. West,
+Econometrica 55, 1987, pp. 703-708), so that what is left may be coloured.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from rr_opt.array import Array
+from rr_opt.model.gait import Gait
+from rr_opt.recordings.warnings import Notice, notice
+
+Reference = Callable[[Array], tuple[Array, Array]]
+"""The reference and its rate at times (m,), rad and rad/s; NaN where it is not known."""
+
+_FEWEST = 20
+_COVERED = 1.959964
+"""Standard deviations on either side of 95 %."""
+
+
+@dataclass(frozen=True)
+class ClockFit:
+    """The reference's time is t + offset + drift (t - t_mid).
+
+    offset, drift  s, and s per s
+    scale, bias    of phi against the reference; 1, and rad
+    sigma          standard deviations of those four, in this order
+    t_mid          the middle of the samples that were used, s
+    residual       root mean square of what is left, rad
+    samples        how many were used
+    """
+
+    offset: float
+    drift: float
+    scale: float
+    bias: float
+    sigma: tuple[float, float, float, float]
+    t_mid: float
+    residual: float
+    samples: int
+
+    def interval(self, which: int = 0) -> tuple[float, float]:
+        """95 % interval of offset (0), drift (1), scale (2) or bias (3)."""
+        value = (self.offset, self.drift, self.scale, self.bias)[which]
+        half = _COVERED * self.sigma[which]
+        return value - half, value + half
+
+
+def clock_fit(t: Array, phi: Array, reference: Reference, offset: float) -> ClockFit | None:
+    """The fit that starts from an offset, s; None if there is too little to fit.
+
+    t, phi: (n,), s and rad, NaN where there is no sample.
+    """
+    known = np.isfinite(phi) & np.isfinite(reference(t + offset)[0])
+    if known.sum() < _FEWEST:
+        return None
+    t, phi = t[known], phi[known]
+    t_mid = float((t[0] + t[-1]) / 2)
+    since = t - t_mid
+    middle = float(np.nanmean(reference(t + offset)[0]))
+
+    def off(p: Array) -> Array:
+        g, _ = reference(t + p[0] + p[1] * since)
+        return np.nan_to_num(p[3] + middle + p[2] * (g - middle) - phi)
+
+    def slopes(p: Array) -> Array:
+        g, rate = reference(t + p[0] + p[1] * since)
+        outside = ~np.isfinite(g)
+        J = np.stack([p[2] * rate, p[2] * rate * since, g - middle, np.ones_like(g)], 1)
+        J[outside] = 0.0
+        return J
+
+    size = float(np.ptp(phi))
+    if not size > 0:
+        return None
+    start = [offset, 0.0, 1.0, 0.0]
+    found = least_squares(off, start, slopes, method="lm", x_scale="jac")  # type: ignore[arg-type]
+    left, J = off(found.x), slopes(found.x)
+    variances = _variances(J, left)
+    if variances is None:
+        return None
+    sigma = np.sqrt(variances)
+    o, d, s, b = (float(value) for value in found.x)
+    rms = float(np.sqrt(np.mean(left**2)))
+    return ClockFit(o, d, s, b, tuple(sigma.tolist()), t_mid, rms, len(t))  # type: ignore[arg-type]
+
+
+def _variances(J: Array, left: Array) -> Array | None:
+    """Of the unknowns: the sandwich's, and not below those for white noise."""
+    scale = np.linalg.norm(J, axis=0)
+    if not (scale > 0).all():
+        return None
+    unit = J / scale
+    information = unit.T @ unit
+    if np.linalg.cond(information) > 1e10:
+        return None
+    score = unit * left[:, None]
+    lags = min(round(1.5 * len(left) ** (1 / 3)), len(left) // 4)
+    meat = score.T @ score
+    for lag in range(1, lags + 1):
+        later = score[lag:].T @ score[:-lag]
+        meat += (1 - lag / (lags + 1)) * (later + later.T)
+    bread = np.linalg.inv(information)
+    white = np.diag(bread) * float(left @ left) / (len(left) - len(scale))
+    # The estimate over lags falls short by chance as often as it exceeds: the larger is taken.
+    return np.maximum(np.diag(bread @ meat @ bread), white) / scale**2
+
+
+_SHIFTS = 64
+
+
+def command_reference(gait: Gait, *, from_rest: bool) -> Reference:
+    """The command and its rate; from_rest: its first angle is held before its time 0."""
+
+    def reference(u: Array) -> tuple[Array, Array]:
+        if not from_rest:
+            return gait.angle(u), gait.rate(u)
+        begun = np.maximum(u, 0.0)
+        return gait.angle(begun), np.where(u < 0, 0.0, gait.rate(begun))
+
+    return reference
+
+
+def against_command(
+    t: Array, phi: Array, gait: Gait, *, from_rest: bool = False
+) -> ClockFit | None:
+    """phi (n,), rad, seen at t (n,), s, against its command; None if it cannot be matched.
+
+    The offset is sought within half a period to either side. A negative one is a phi that lags.
+    from_rest: the command begins at its time 0, and its first angle is held before.
+    """
+    reference = command_reference(gait, from_rest=from_rest)
+    shifts = (np.arange(_SHIFTS) / _SHIFTS - 0.5) * gait.period
+    start = _best_shift(t, phi, reference, shifts)
+    return None if start is None else clock_fit(t, phi, reference, start)
+
+
+def _best_shift(t: Array, phi: Array, reference: Reference, shifts: Array) -> float | None:
+    known = np.flatnonzero(np.isfinite(phi))
+    known = known[:: max(1, len(known) // 2000)]
+    if len(known) < 2 or np.ptp(phi[known]) == 0:
+        return None
+    seen = phi[known] - phi[known].mean()
+    alike = []
+    for shift in shifts:
+        g, _ = reference(t[known] + shift)
+        g = g - g.mean()
+        alike.append(float(seen @ g) / max(float(np.linalg.norm(g)), 1e-300))
+    return float(shifts[int(np.argmax(alike))])
+
+
+_LATE = 1e-3
+"""An offset smaller than this matters to nobody, s."""
+_SURE = 3.0
+_RUNS_OFF = 1e-5
+_LESS = 0.01
+_BIASED = 2e-3
+_HALF = 0.05
+"""Periods."""
+
+
+def command_notices(
+    fit: ClockFit | None, *, from_rest: bool, period: float, clock_known: bool = False
+) -> Iterator[Notice]:
+    """Of phi against its command, whose period is in s.
+
+    clock_known: a servo's log has told the clock's part.
+    """
+    if fit is None:
+        yield notice("command.still")
+        return
+    if abs(abs(fit.offset) / period - 0.5) < _HALF:
+        yield notice("command.sign")
+        return
+    if fit.scale <= 0.1:
+        yield notice("command.other", scale=fit.scale)
+        return
+    if abs(fit.offset) > max(_LATE, _SURE * fit.sigma[0]):
+        low, high = sorted(1e3 * abs(end) for end in fit.interval(0))
+        why = _why_late(fit, from_rest=from_rest, clock_known=clock_known)
+        way, size = "lags" if fit.offset < 0 else "leads", 1e3 * abs(fit.offset)
+        yield notice("clock.offset", way=way, size=size, low=low, high=high, why=why)
+    if abs(fit.drift) > max(_RUNS_OFF, _SURE * fit.sigma[1]):
+        low, high = (1e6 * end for end in fit.interval(1))
+        yield notice("clock.drift", drift=1e6 * fit.drift, low=low, high=high)
+    if abs(fit.scale - 1) > max(_LESS, _SURE * fit.sigma[2]):
+        half, why = 1.96 * fit.sigma[2], _why(fit.scale)
+        yield notice("command.scale", scale=fit.scale, half=half, why=why)
+    if abs(fit.bias) > max(_BIASED, _SURE * fit.sigma[3]):
+        yield notice("command.bias", bias=1e3 * fit.bias, degrees=np.degrees(fit.bias))
+
+
+def start_notices(first: float, period: float) -> Iterator[Notice]:
+    """Of a recording that begins at a time, s, although the robot started from rest at t = 0."""
+    if first >= period / 4:
+        yield notice("clock.start", first=first)
+
+
+def _why(scale: float) -> str:
+    if abs(np.radians(scale) - 1) < 0.2:
+        return "degrees for radians?"
+    if scale < 1:
+        return "a lag or backlash makes it less; a clock would not."
+    return "play with inertia makes it more; a clock would not."
+
+
+def _why_late(fit: ClockFit, *, from_rest: bool, clock_known: bool) -> str:
+    if fit.offset > 0:
+        return "a clock that is off, as no servo moves before it is told"
+    if clock_known:
+        return "a servo that is late, as its log has told what the clocks are off by"
+    both = "a servo that is late, or a clock that is off."
+    if from_rest:
+        return (
+            f"{both} The start from rest is part of the fit, but only a model of the servo can "
+            "tell one from the other"
+        )
+    return f"{both} This recording cannot tell one from the other: they are one thing in it"

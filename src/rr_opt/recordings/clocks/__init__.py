@@ -1,1 +1,0 @@
-"""The clocks of a capture system, of the command and of a servo's log."""

@@ -1,0 +1,167 @@
+"""The columns of a text file with a header row, whatever they are called, in order of time."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rr_opt.array import Array
+from rr_opt.files.issue import refuse
+from rr_opt.messages import nearest, shown
+from rr_opt.model.experiment import Column
+from rr_opt.recordings.readers.text import Header, Text, find_header, read_table
+from rr_opt.recordings.time_axis import Order, in_order, rate_of, time_notices
+from rr_opt.recordings.warnings import Notice, notice
+
+
+@dataclass(frozen=True)
+class Columns:
+    """The known columns of a table, its rows in the order of their times.
+
+    t       (n,), s; values (n, k), of the channels `names`, NaN where a cell is empty
+    rate    rows per second, Hz
+    order   of the rows
+    source  where they come from, plain text by name
+    """
+
+    t: Array
+    values: Array
+    names: tuple[str, ...]
+    rate: float
+    order: Order
+    source: Mapping[str, str]
+    doubts: tuple[Notice, ...]
+
+
+def read_columns(
+    text: Text, needed: Sequence[str], known: Sequence[str], columns: Mapping[str, Column]
+) -> Columns:
+    """The columns `t` and those known that a text file with a header row has.
+
+    columns: where a channel is that goes by another name. Raises InvalidFileError with every
+    column that is needed and missing, or there twice, and for every cell that is not a number.
+    """
+    header = find_header(text)
+    if header is None:
+        expected = f"`{','.join(needed)}`"
+        refuse(text.file, f"The file holds no rows. Expected {expected}. Export it once more.")
+    header = _renamed(header, columns, known)
+    _check(header, needed, known, text.file)
+    table = read_table(text, header.at + 1, len(text.lines), header.separator, header.names)
+    doubts = list(table.doubts)
+    others = [one for one in header.names if one not in known]
+    if others:
+        doubts.append(notice("file.columns", names=shown(", ".join(others))))
+    names = [one for one in known if one in header.names]
+    values = table.values[:, [header.names.index(one) for one in names]]
+    for at, name in enumerate(names):
+        if name in columns:
+            values[:, at], told = _converted(values[:, at], columns[name])
+            doubts += told
+    t, values = values[:, names.index("t")], np.delete(values, names.index("t"), axis=1)
+    order = in_order(t, values, table.lines)
+    t, values = t[order.rows], values[order.rows]
+    rate = rate_of(t, text.file, header.at + 1)
+    source = {"file": text.file, "encoding": text.encoding, "rate": f"{rate:.6g} Hz"}
+    return Columns(
+        t, values, tuple(one for one in names if one != "t"), rate, order, source,
+        (*doubts, *order.doubts, *time_notices(t, rate)),
+    )  # fmt: skip
+
+
+def column_names(text: Text, columns: Mapping[str, Column], known: Sequence[str]) -> set[str]:
+    """What the columns of a text file are called; nothing if it has no header row."""
+    header = find_header(text)
+    return set(_renamed(header, columns, known).names) if header else set()
+
+
+def _renamed(header: Header, columns: Mapping[str, Column], known: Sequence[str]) -> Header:
+    """The header with the names of the channels where other columns stand for them."""
+    names = list(header.names)
+    for channel, column in columns.items():
+        foreign = column.column.strip().casefold()
+        if channel in known and foreign in header.names:
+            names = [f"{one}, as named" if one == channel else one for one in names]
+            names[header.names.index(foreign)] = channel
+    return replace(header, names=tuple(names))
+
+
+def _converted(values: Array, column: Column) -> tuple[Array, list[Notice]]:
+    """Counts with their sign, and in SI."""
+    told = []
+    if column.bits:
+        negative = values >= 2 ** (column.bits - 1)
+        values = np.where(negative, values - 2**column.bits, values)
+        if negative.any():
+            told.append(
+                notice("file.signed", count=negative.sum(), column=column.column, bits=column.bits)
+            )
+    return values * column.factor, told
+
+
+def _check(header: Header, needed: Sequence[str], known: Sequence[str], file: str) -> None:
+    line = header.at + 1
+    if header.names and all(_is_number(name) for name in header.names):
+        refuse(
+            file,
+            f"Read numbers in the first row. Expected a header row, `{','.join(needed)}`. "
+            "Write it above the numbers.",
+            line,
+        )
+    twice = [name for name in known if header.names.count(name) > 1]
+    missing = [name for name in needed if name not in header.names]
+    wrong = []
+    if twice:
+        wrong.append(f"Read the column `{twice[0]}` twice. Expected it once. Delete one of them.")
+    if missing:
+        guesses = _guesses([name for name in header.names if name not in known], missing)
+        meant = ", ".join(f"{name}: {column}" for name, column in guesses.items())
+        advice = "Add what is missing."
+        if guesses:
+            advice = f"Rename them, or write `columns: {{{meant}}}` in the experiment file."
+        # A letter alone is like no other: the columns that there are tell more.
+        wrong.append(
+            f"Read the columns {shown(', '.join(header.names))}. Expected also "
+            f"{', '.join(f'`{name}`' for name in missing)}. {advice}"
+        )
+    if wrong:
+        refuse(file, " ".join(wrong), line)
+
+
+def _is_number(cell: str) -> bool:
+    try:
+        float(cell.replace(",", "."))
+    except ValueError:
+        return False
+    return True
+
+
+_FOREIGN = {
+    "t": ("time", "timestamp", "seconds", "sec"),
+    "psi": ("yaw", "heading", "theta", "orientation"),
+    "phi": ("joint", "steering", "servo", "angle", "alpha"),
+    "torque": ("load", "moment", "tau"),
+}
+"""What others call the channels."""
+
+
+def _guesses(names: Sequence[str], missing: Sequence[str]) -> dict[str, str]:
+    """The columns that may be the missing ones under another name, by its beginning."""
+    found: dict[str, str] = {}
+    for channel in missing:
+        words = (channel, *_FOREIGN.get(channel, ()))
+        meant = [
+            name
+            for name in names
+            if name not in found.values()
+            and (
+                any(re.split(r"[^a-z]", name)[0] == word for word in words)
+                or nearest(name, [channel]) == channel
+            )
+        ]
+        if meant:
+            found[channel] = meant[0]
+    return found

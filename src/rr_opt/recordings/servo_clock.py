@@ -1,0 +1,376 @@
+"""A recording put on the command's clock by way of the servo's log.
+
+Two steps lead from the capture's time to the command's: phi against the log's present position
+tells the log's time, and the log's goal against the gait tells the command's. What the servo is
+late by lies between goal and present, so it stays in the recording; the clocks' part is taken out.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from types import MappingProxyType
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicHermiteSpline
+
+from rr_opt.array import Array
+from rr_opt.model.experiment import Recording, Start
+from rr_opt.model.gait import Gait
+from rr_opt.recordings.clock_fit import ClockFit, Reference, clock_fit, command_reference
+from rr_opt.recordings.outliers import outliers
+from rr_opt.recordings.readers.servo_log import ServoLog
+from rr_opt.recordings.smoothing import derivatives
+from rr_opt.recordings.warnings import Notice, notice
+
+_STEP = 0.02
+"""Step at which two recordings are compared all along, s."""
+_OVERLAP = 0.2
+"""The part of the shorter recording that has to overlap."""
+_PEAK = 0.9
+"""Peaks that are likely: so high relative to the best."""
+_LONGEST = 20_000.0
+"""Recordings of more than this are not compared, s."""
+
+
+@dataclass(frozen=True)
+class Peaks:
+    """Offsets (m,), s, at which two signals are alike: how much (at most 1), and over how many s.
+
+    A periodic motion has one a period.
+    """
+
+    offset: Array
+    alike: Array
+    overlap: Array
+
+    def tried(self, near: tuple[float, ...], most: int) -> list[float]:
+        """Those worth a fit: the likest, the longest, and the nearest to some offsets, s."""
+        likest = np.argsort(-self.alike, kind="stable")[:most]
+        longest = np.argsort(-self.alike * self.overlap, kind="stable")[:most]
+        nearest = [int(np.abs(self.offset - one).argmin()) for one in near if len(self.offset)]
+        return self.offset[sorted({*likest.tolist(), *longest.tolist(), *nearest})].tolist()
+
+
+def peaks(t: Array, one: Array, s: Array, two: Array) -> Peaks:
+    """Of offsets from t to s, where `one` is seen at t (n,) and `two` at s (m,); NaN is nothing."""
+    # Here and not above: it takes half a second to load, and only servo logs need it.
+    from scipy.signal import correlate
+
+    first, second = _resampled(t, one), _resampled(s, two)
+    if first is None or second is None:
+        return Peaks(np.empty(0), np.empty(0), np.empty(0))
+    alike = correlate(second, first, method="fft")
+    overlap = correlate(np.ones(len(second)), np.ones(len(first)), method="fft")
+    size = np.sqrt(
+        np.maximum(correlate(second**2, np.ones(len(first)), method="fft"), 0)
+        * np.maximum(correlate(np.ones(len(second)), first**2, method="fft"), 0)
+    )
+    fits = overlap > _OVERLAP * min(len(first), len(second))
+    score = np.where(fits, alike / np.maximum(size, 1e-12), -1.0)
+    peak = np.r_[False, (score[1:-1] > score[:-2]) & (score[1:-1] >= score[2:]), False]
+    rows = np.flatnonzero(peak & (score > _PEAK * score.max()) & (score > 0))
+    lag = (rows - (len(first) - 1)) * _STEP
+    return Peaks(s[0] - t[0] + lag, score[rows], overlap[rows] * _STEP)
+
+
+def _resampled(t: Array, y: Array) -> Array | None:
+    known = np.isfinite(y)
+    if known.sum() < 2 or not 0 < t[-1] - t[0] < _LONGEST:
+        return None
+    z = np.interp(np.arange(t[0], t[-1], _STEP), t[known], y[known])
+    z = z - z.mean()
+    return z if np.abs(z).max() > 0 else None
+
+
+_CLOCKS_MOST = 6
+"""Likest peaks, and longest ones, that are fitted."""
+_APART = 0.02
+"""Offsets that are closer are one, s."""
+_AS_GOOD = 1.25
+"""Times the residual of the best offset with which another is as likely."""
+
+
+def against_log(
+    t: Array, phi: Array, log: ServoLog, near: tuple[float, ...] = ()
+) -> tuple[ClockFit, ...]:
+    """phi as the capture saw it against the servo's log, on the log's clock: all likely fits.
+
+    Against `present` if the log has it, else against `goal`. A motion that only repeats itself
+    leaves whole periods open, so there may be many; the longest overlap is first. near: offsets, s,
+    about which one is tried in any case. None at all if the two share no motion.
+    """
+    angle = log.present_angle if log.present_angle is not None else log.goal_angle
+    if angle is None:
+        return ()
+    smooth = derivatives(log.t, angle, log.resolution / np.sqrt(12))
+    known = np.isfinite(smooth.value)
+    if known.sum() < 2:
+        return ()
+    curve = CubicHermiteSpline(log.t[known], smooth.value[known], smooth.first[known])
+    slope = curve.derivative()
+    first, last = log.t[known][[0, -1]]
+
+    def reference(u: Array) -> tuple[Array, Array]:
+        inside = (u >= first) & (u <= last)
+        return np.where(inside, curve(u), np.nan), np.where(inside, slope(u), np.nan)
+
+    return likely_fits(t, phi, reference, peaks(t, phi, log.t, angle).tried(near, _CLOCKS_MOST))
+
+
+def likely_fits(
+    t: Array, phi: Array, reference: Reference, offsets: list[float]
+) -> tuple[ClockFit, ...]:
+    """The fits from some offsets, s, that are about as good as the best; most samples first."""
+    tried = (clock_fit(t, phi, reference, one) for one in offsets)
+    fits = sorted((fit for fit in tried if fit is not None), key=lambda fit: fit.residual)
+    good = [fit for fit in fits if fit.residual <= _AS_GOOD * fits[0].residual]
+    good.sort(key=lambda fit: -fit.samples)
+    apart: list[ClockFit] = []
+    for fit in good:
+        if all(abs(fit.offset - other.offset) > _APART for other in apart):
+            apart.append(fit)
+    return tuple(apart)
+
+
+_IN_PERIOD = 16
+"""Starts of the fit in a period of the command."""
+_LOOKED_AT = 400
+"""Samples that the starts are compared on."""
+_MOST = 6
+
+
+def goal_fits(log: ServoLog, gait: Gait, *, from_rest: bool) -> tuple[ClockFit, ...]:
+    """The log's goal against the command: all likely fits, the command's time being t + offset.
+
+    from_rest: the command's first angle is held before its time 0, which shows when it began if
+    the log goes back so far. Otherwise whole periods stay open. Empty without a goal that moves.
+    """
+    goal = log.goal_angle
+    if goal is None:
+        return ()
+    moving = np.flatnonzero(np.isfinite(goal))
+    moving = moving[_commanded(goal[moving], from_rest=from_rest)]
+    if len(moving) < 2:
+        return ()
+    t, goal = log.t[moving], goal[moving]
+    reference = command_reference(gait, from_rest=from_rest)
+    step = gait.period / _IN_PERIOD
+    # A periodic command is the same a period later; one that begins is not.
+    span = t[-1] - t[0] if from_rest else 0.0
+    shifts = np.arange(-t[0] - span, -t[0] + gait.period, step)
+    look = np.linspace(0, len(t) - 1, min(_LOOKED_AT, len(t))).astype(int)
+    off = np.array([_off(goal[look], reference(t[look] + one)[0]) for one in shifts])
+    lowest = [
+        i for i in range(len(off))
+        if off[i] <= off[max(i - 1, 0)] and off[i] <= off[min(i + 1, len(off) - 1)]
+    ]  # fmt: skip
+    lowest.sort(key=lambda i: off[i])
+    return likely_fits(t, goal, reference, [float(shifts[i]) for i in lowest[:_MOST]])
+
+
+def _commanded(goal: Array, *, from_rest: bool) -> NDArray[np.bool_]:
+    """Without the time after the last change, and unless it tells the start, before the first."""
+    changes = np.flatnonzero(np.diff(goal))
+    row = np.arange(len(goal))
+    if not len(changes):
+        return np.zeros(len(goal), bool)
+    return (row <= changes[-1] + 1) & ((row >= changes[0]) | from_rest)
+
+
+def _off(goal: Array, told: Array) -> float:
+    """Root mean square difference, but for a constant: phi's zero is not the clock's affair."""
+    return float(np.std(goal - told))
+
+
+_COVERED = 1.959964
+_LOSS = 1e-3
+"""phi may move by so much less than the servo's shaft before play is suspected."""
+
+
+@dataclass(frozen=True)
+class Shift:
+    """The command's time is t + offset + drift (t - t_mid).
+
+    offset, drift  s, and s per s; sigma: their standard deviations
+    play           by how much of the offset phi may be late behind the servo's shaft, s, as what
+                   gives between them makes phi move less
+    applied        whether the recording was moved: only if the offset or the drift is surely there
+    """
+
+    offset: float
+    drift: float
+    sigma: tuple[float, float]
+    t_mid: float
+    play: float
+    applied: bool
+
+    def of(self, t: Array) -> Array:
+        """The command's times of the recording's times t (n,), s."""
+        return t + self.offset + self.drift * (t - self.t_mid)
+
+    def interval(self, which: int = 0) -> tuple[float, float]:
+        """95 % interval of the offset (0), s, or of the drift (1)."""
+        value, half = (self.offset, self.drift)[which], _COVERED * self.sigma[which]
+        return value - half, value + half
+
+    def __str__(self) -> str:
+        low, high = self.interval()
+        return (
+            f"t {self.offset:+.5f} s (95 %: {low:+.5f} to {high:+.5f} s), and gains "
+            f"{1e6 * self.drift:+.3g} +- {_COVERED * 1e6 * self.sigma[1]:.2g} us a second"
+        )
+
+
+def shift_of(log: ClockFit, goal: ClockFit, period: float, *, rest: bool) -> Shift:
+    """The two fits as one; the capture's time to the log's, and the log's to the command's.
+
+    rest: the command has a beginning. Otherwise it is the same a period (s) later, and the shift
+    nearest to none is told.
+    """
+    since = log.t_mid + log.offset - goal.t_mid
+    offset = log.offset + goal.offset + goal.drift * since
+    if not rest:
+        offset -= period * round(offset / period)
+    drift = (1 + log.drift) * (1 + goal.drift) - 1
+    sigma = (
+        math.hypot(log.sigma[0], goal.sigma[0], since * goal.sigma[1]),
+        math.hypot(log.sigma[1], goal.sigma[1]),
+    )
+    loses = log.scale < 1 - max(_LOSS, _SURE * log.sigma[2])
+    play = math.acos(max(log.scale, 0.0)) * period / (2 * math.pi) if loses else 0.0
+    sure = abs(offset) > max(_SURE * sigma[0], play) or (
+        abs(drift) > _SURE * sigma[1] and not loses
+    )
+    return Shift(offset, drift, sigma, log.t_mid, play, sure)
+
+
+_LESS, _SURE = 0.01, 3.0
+_LEFT = 0.5
+"""The part of phi's motion that may be left, before it is another motion than the log's."""
+_ANOTHER = 0.05
+"""By how much the goal's amplitude may differ from the gait's."""
+
+
+def unlike(fit: ClockFit, phi: Array) -> bool:
+    """Whether phi (n,), rad, is another motion than the log's."""
+    return fit.scale <= 0 or fit.residual > _LEFT * float(np.nanstd(phi))
+
+
+def log_notices(
+    fit: ClockFit, goal: ClockFit | None, shift: Shift | None, others: tuple[float, ...]
+) -> Iterator[Notice]:
+    """fit: phi against the log; goal: its goal against the gait; others: offsets, s, as likely as
+    the one taken."""
+    if shift is None:
+        low, high = fit.interval(0)
+        drift, half = 1e6 * fit.drift, 1.96e6 * fit.sigma[1]
+        yield notice("log.clock", offset=fit.offset, low=low, high=high, drift=drift, half=half)
+    else:
+        yield from _of_shift(shift)
+    if goal is not None and abs(goal.scale - 1) > _ANOTHER:
+        yield notice("log.goal", scale=goal.scale)
+    if others:
+        also = ", ".join(f"{other:+.3f}" for other in others[:3])
+        taken = f"{'nearest to none' if shift else 'of the longest overlap'}"
+        yield notice("log.offsets", others=also, taken=taken)
+    if abs(fit.scale - 1) > max(_LESS, _SURE * fit.sigma[2]):
+        yield notice("log.scale", scale=fit.scale)
+
+
+def _of_shift(shift: Shift) -> Iterator[Notice]:
+    low, high = (1e3 * end for end in shift.interval())
+    told = f"{1e3 * shift.offset:+.3g} ms (95 %: {low:+.3g} to {high:+.3g} ms)"
+    play = ""
+    if shift.play:
+        play = (
+            " phi moves less than the servo's shaft. What gives between them may make it late by "
+            f"up to {1e3 * shift.play:.2g} ms, and that looks like an offset too."
+        )
+    if shift.applied:
+        drift, half = 1e6 * shift.drift, 1.96e6 * shift.sigma[1]
+        yield notice("clock.shifted", shift=told, drift=drift, half=half, play=play)
+    elif shift.play:
+        yield notice("clock.play", shift=told, play=play)
+
+
+@dataclass(frozen=True)
+class Synchrony:
+    """What the servo's log says about a recording's clock.
+
+    recording  on the command's clock, if `shift` was applied
+    log        phi against the log; None if they share no motion
+    goal       the log's goal against the gait; None without a gait or a goal
+    shift      from the recording's own clock to the command's; None if it cannot be told
+    """
+
+    recording: Recording
+    log: ClockFit | None
+    goal: ClockFit | None
+    shift: Shift | None
+    doubts: tuple[Notice, ...]
+
+
+def synchronised(
+    recording: Recording, log: ServoLog, gait: Gait | None, start: Start = "running"
+) -> Synchrony:
+    """The recording on the command's clock, as far as the log can tell it; it is not cleaned yet.
+
+    gait: what was commanded; without it the clocks are compared, and nothing is shifted. Of offsets
+    that are as likely the one is taken that shifts the recording least, and of those the one
+    that most samples tell.
+    """
+    t, phi = recording.t, _phi(recording)
+    # Against its goal alone phi's clock has the servo's lag in it.
+    goals = (
+        goal_fits(log, gait, from_rest=start == "rest")
+        if gait is not None and log.present_angle is not None
+        else ()
+    )
+    fits = against_log(t, phi, log, tuple(-one.offset for one in goals))
+    if not fits or unlike(fits[0], phi):
+        return Synchrony(recording, None, None, None, (notice("log.other"),))
+    period = gait.period if gait else math.nan
+    pairs = [(one, two) for one in fits for two in goals or (None,)]
+    shifts = [
+        None if two is None else shift_of(one, two, period, rest=start == "rest")
+        for one, two in pairs
+    ]
+    sizes = [0.0 if one is None else abs(one.offset) for one in shifts]
+    nearest = [i for i, size in enumerate(sizes) if size < min(sizes) + _APART]
+    best = max(nearest, key=lambda i: pairs[i][0].samples)
+    (fit, goal), shift = pairs[best], shifts[best]
+    others = tuple(one.offset for one in fits if one is not fit)
+    if shift is not None:
+        # A shift by less than half a period is the one that was meant.
+        far = start == "rest" and abs(shift.offset) > period / 2
+        others = _apart([one.offset for one in shifts if one], shift.offset) if far else ()
+    if shift is not None and shift.applied:
+        recording = replace(recording, t=shift.of(t))
+    told = tuple(log_notices(fit, goal, shift, others))
+    return Synchrony(_told(recording, log, shift), fit, goal, shift, told)
+
+
+def _apart(offsets: list[float], taken: float) -> tuple[float, ...]:
+    """Those that are not the one taken, nearest to it first, s."""
+    apart = {round(one, 2): one for one in offsets if abs(one - taken) > _APART}
+    return tuple(sorted(apart.values(), key=lambda one: abs(one - taken)))
+
+
+def _phi(recording: Recording) -> Array:
+    """phi without outliers, which would pull at the clock."""
+    phi, sigma = recording.data("phi"), recording.sigma["phi"]
+    if not (np.isfinite(sigma) & (sigma > 0)).all():
+        return phi
+    return np.where(outliers(recording.t, phi, sigma).outlier, np.nan, phi)
+
+
+def _told(recording: Recording, log: ServoLog, shift: Shift | None) -> Recording:
+    told: dict[str, str] = {"servo log": f"{log.name}, {log.rate:.6g} Hz"}
+    if shift is not None and shift.applied:
+        told["clock"] = f"the command's, by the servo's log: the recording's {shift}"
+    elif shift is not None:
+        told["servo log"] += f"; the command's clock is the recording's {shift}: not shifted"
+    return replace(recording, source=MappingProxyType({**recording.source, **told}))
