@@ -7,14 +7,14 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 PAGES = sorted([*(ROOT / "docs").glob("*.md"), ROOT / "README.md", ROOT / "CONTRIBUTING.md"])
-NAMED = re.compile(r"`((?:src/)?[a-z_]+(?:/[a-z_0-9]+)+(?:\.py)?)`")
+NAMED = re.compile(r"`((?:src/|tests/)?[a-z_]+(?:/[a-z_0-9]+)+(?:\.py)?)`")
 LINK = re.compile(r"\]\(([^)#:]+)(?:#[^)]*)?\)")
 
 
 def places(text):
     """The files of the library that a text names in backticks."""
     tops = {path.name for path in (ROOT / "src" / "rr_opt").iterdir() if path.is_dir()}
-    return [name for name in NAMED.findall(text) if name.split("/")[0] in {*tops, "src"}]
+    return [name for name in NAMED.findall(text) if name.split("/")[0] in {*tops, "src", "tests"}]
 
 
 def absent(page):

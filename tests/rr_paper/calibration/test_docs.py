@@ -59,7 +59,7 @@ def test_the_models():
 def test_the_coverage():
     kept = FOUND["coverage"]
     for kind, told in (
-        ("posterior", r"held the truth in (\d+) to (\d+) %"),
+        ("posterior", r"contained the truth in (\d+) to (\d+) %"),
         ("profile_student", r"the profile's in (\d+) to (\d+) %"),
         ("profile_normal", r"by the normal law in (\d+) to (\d+) %"),
     ):
