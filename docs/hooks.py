@@ -12,7 +12,7 @@ from mkdocs.structure.files import File, Files  # pyright: ignore[reportMissingI
 
 ROOT = Path(__file__).parents[1]
 PAGES = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")
-OTHERS = ("LICENSE", "CITATION.cff", "problems/**/*.yaml")
+OTHERS = ("LICENSE", "CITATION.cff", "problems/**/*.yaml", "docs/notebooks/*.ipynb")
 RESULTS = ("*.md", "*.svg", "*.csv", "*.json")
 
 

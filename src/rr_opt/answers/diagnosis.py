@@ -27,6 +27,7 @@ from rr_opt.motion.dynamics import ignored_in_steady_cycle
 from rr_opt.motion.steady_cycle import steady_cycle
 from rr_opt.outcome import RollerRacerError
 from rr_opt.sysid.diagnosis import Diagnosis, Finding, Misfit, Stage
+from rr_opt.verify.sweep import TOLERATED, check_optimum
 
 
 @dataclass(frozen=True)
@@ -77,9 +78,11 @@ def loss(experiment: Experiment, corrected: Robot) -> Loss | LossUnknown:
         return _unknown(f"{names} has no place in a steady motion.")
     try:
         before, after = (maximize_speed(_problem(one)) for one in (experiment.robot, corrected))
-        if before.best is None or after.best is None:
+        if before.best is None or after.best is None or after.ratio is None:
             return _unknown(next(one.message for one in (before, after) if one.best is None))
         believed, best = before.best, after.best
+        if check_optimum(after.problem, best.gait, after.ratio, best.speed).gap < -TOLERATED:
+            return _unknown("a plain sweep finds a faster gait of the corrected robot.")
         reached = steady_cycle(corrected, servo_made(corrected, believed.gait)).speed
     except RollerRacerError as error:
         return _unknown(str(error))

@@ -17,13 +17,25 @@ def quiet(_: str) -> None:
     """Progress that nobody hears of."""
 
 
-class Plots(Mapping[str, str]):
-    """Figures by name, each as SVG text. A notebook shows them all."""
+class Svg(str):
+    """A figure as SVG text, which a notebook shows."""
+
+    __slots__ = ()
+
+    def _repr_svg_(self) -> str:
+        return self[self.find("<svg") :]
+
+    def __repr__(self) -> str:
+        return f"<Svg, {len(self)} characters>"
+
+
+class Plots(Mapping[str, Svg]):
+    """Figures by name. A notebook shows them all."""
 
     def __init__(self, figures: Mapping[str, str]):
-        self._figures = dict(figures)
+        self._figures = {name: Svg(svg) for name, svg in figures.items()}
 
-    def __getitem__(self, name: str) -> str:
+    def __getitem__(self, name: str) -> Svg:
         return self._figures[name]
 
     def __iter__(self) -> Iterator[str]:
@@ -36,7 +48,7 @@ class Plots(Mapping[str, str]):
         return f"Plots({', '.join(self._figures)})"
 
     def _repr_html_(self) -> str:
-        return "\n".join(f"<div>{svg[svg.find('<svg') :]}</div>" for svg in self._figures.values())
+        return "\n".join(f"<div>{svg._repr_svg_()}</div>" for svg in self.values())
 
     def save(self, folder: str | Path) -> list[Path]:
         """Write NAME.svg for each; returns the files."""

@@ -103,3 +103,14 @@ def test_a_gait_that_drives_the_robot_the_other_way_loses_more_than_all():
     less = replace(turned, reached=0.2)
     assert share_lost(less) == "20 %"
     assert "Lost by the wrong model: 20 %." in loss_sentences(less)
+
+
+def test_a_gait_that_a_sweep_beats_is_no_best_gait(missing, monkeypatch):
+    from rr_opt.answers import diagnosis
+    from rr_opt.verify.sweep import SweepCheck
+
+    beaten = SweepCheck(100, 0.2, None, None, -0.5, 0.1, 0.0)
+    monkeypatch.setattr(diagnosis, "check_optimum", lambda *_: beaten)
+    told = loss(missing.experiment, missing.experiment.robot)
+    assert isinstance(told, LossUnknown)
+    assert "a plain sweep finds a faster gait" in told.sentence
