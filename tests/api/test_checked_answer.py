@@ -68,7 +68,9 @@ def test_simulate_circle_and_export_a_result(problem, tmp_path):
     motion = rr.simulate(best, seconds=2)
     record = command("simulate", result, "--seconds", 2, "--out", "moved")
     assert motion.record() == {**record, "files": []}
-    assert motion.record() == rr.simulate(best.robot, best.gait, 2).record() | {"status": "optimal"}
+    assert motion.record() == rr.simulate(best.robot, best.gait, "2 s").record() | {
+        "status": "optimal"
+    }
     circle = rr.circle(best).record()
     assert circle["radius"] is None
     assert circle["speed"] == pytest.approx(command("circle", result)["speed"])

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any, Literal, Protocol
 
 from rr_opt.answers.motion import CircleAnswer, MotionAnswer, SetPointsAnswer
+from rr_opt.api.arguments import read_arguments
 from rr_opt.api.result import Plots, Progress, Result, quiet
 from rr_opt.model.gait import Gait
 from rr_opt.model.robot import Robot
@@ -106,10 +107,10 @@ def check_files(format: Literal["csv", "netcdf"], film: Literal["gif", "mp4"] | 
 def simulate(
     robot: Robot | HasGait,
     gait: Gait | None = None,
-    seconds: float = 10.0,
+    seconds: float | str = 10.0,
     *,
     start: Literal["rest", "steady"] = "rest",
-    rate: float = 100.0,
+    rate: float | str = 100.0,
     progress: Progress = quiet,
 ) -> SimulatedMotion:
     """A gait driven for some time, from rest or from the speed that it settles to.
@@ -117,11 +118,13 @@ def simulate(
     robot  or a result, whose own gait is then driven unless another is given
     rate   samples a second
 
-    Raises InputError for a robot without friction, and for a motion through a singular posture.
+    Numbers are SI, text has a unit. Raises InputError for a gait through a singular posture, and
+    for the steady start of a robot without friction.
     """
     robot, gait, status = _driven(robot, gait)
+    read = read_arguments({"seconds": seconds, "rate": rate})
     progress("simulate by CVODES")
-    driven = rollout(robot, gait, seconds, start, rate)
+    driven = rollout(robot, gait, read["seconds"], start, read["rate"])
     progress("measure")
     return SimulatedMotion(robot, gait, status, start, driven, measured(robot, gait, driven))
 
@@ -211,7 +214,7 @@ def export(
     gait: Gait | None = None,
     *,
     format: Literal["csv", "c-header", "servo"] = "csv",
-    rate: float = 125.0,
+    rate: float | str = 125.0,
     keep_period: bool = False,
     progress: Progress = quiet,
 ) -> ExportedGait:
@@ -226,7 +229,8 @@ def export(
     from rr_opt.report.setpoints import text_of
 
     robot, gait, status = _driven(robot, gait)
-    points = set_points(gait, rate, keep_period=keep_period)
+    each_second = read_arguments({"rate": rate})["rate"]
+    points = set_points(gait, each_second, keep_period=keep_period)
     # Before the work, as an angle may be beyond the counts.
     text_of(points, format)
     progress("what the set points cost")

@@ -89,7 +89,8 @@ def study(
     """Solve every case of a study, or of a study file; neighbours begin at neighbours' optima.
 
     folder     where finished rows are kept, so that the same call goes on after an interruption
-    workers    processes here; None: one for each core
+    workers    processes here; None: one for each core. A script that uses more than one keeps its
+               own work under `if __name__ == "__main__":`
     scheduler  of a dask cluster to work on instead, `tcp://HOST:PORT`
     cold       solve every case from cold starts alone
     restart    discard the rows of an earlier run

@@ -119,7 +119,6 @@ app = typer.Typer(
     name="rr-opt",
     cls=Verbs,
     no_args_is_help=True,
-    add_completion=False,
     context_settings=_SHORT_HELP,
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
