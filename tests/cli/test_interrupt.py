@@ -95,3 +95,26 @@ def test_interrupted_while_it_writes(tmp_path, verb, number):
     )
     assert code == 130, stderr
     assert list(tmp_path.iterdir()) == []
+
+
+STUDY = "problem:\n  gait: {period: 1 s}\nvary:\n  limits.rate: [10 rpm, 20 rpm, 30 rpm]\n"
+
+
+@pytest.mark.parametrize("delay", [0.05, 0.15, 0.3])
+def test_ctrl_c_while_the_processes_of_a_study_start(tmp_path, delay):
+    """A terminal sends it to all of them, and they are not ready for it yet."""
+    (tmp_path / "study.yaml").write_text(STUDY)
+    command = [sys.executable, "-c", PROGRAM, "study", "study.yaml", "--workers", "2"]
+    with subprocess.Popen(
+        command, stderr=subprocess.PIPE, text=True, cwd=tmp_path, start_new_session=True
+    ) as running:
+        assert running.stderr is not None
+        for line in running.stderr:
+            if "case 1 of 3" in line:
+                break
+        time.sleep(delay)
+        os.killpg(running.pid, signal.SIGINT)
+        _, stderr = running.communicate(timeout=60)
+    assert running.returncode == 130, stderr
+    assert "Traceback" not in stderr
+    assert "rows are kept" in stderr

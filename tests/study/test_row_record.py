@@ -2,6 +2,7 @@
 
 import copy
 import json
+import random
 
 import pytest
 
@@ -74,3 +75,36 @@ def test_what_is_no_row_is_refused(rows):
 )
 def test_gaits_of_every_shape(gait):
     assert gait_from(json.loads(json.dumps(gait_record(gait)))) == gait
+
+
+VALUES = (None, True, 0, -1, 0.7, 1e308, 10**400, "", "x", "9" * 500, [], [1], ["a"], {}, {"a": {}})
+
+
+def places(record, above=()):
+    """The path of every value within a record."""
+    items = record.items() if isinstance(record, dict) else enumerate(record)
+    for key, value in items:
+        yield (*above, key)
+        if isinstance(value, (dict, list)):
+            yield from places(value, (*above, key))
+
+
+def test_whatever_is_wrong_in_a_row_is_said_in_a_sentence(rows):
+    rng, said = random.Random(11), []
+    records = [json.loads(json.dumps(row_record(row))) for row in rows.values()]
+    for _ in range(1500):
+        changed = copy.deepcopy(rng.choice(records))
+        *above, last = rng.choice(list(places(changed)))
+        place = changed
+        for key in above:
+            place = place[key]
+        place[last] = rng.choice(VALUES)
+        try:
+            row = row_from(changed)
+        except (KeyError, TypeError, ValueError) as error:
+            said.append(str(error))
+        else:
+            # What is accepted is a row that can be written again.
+            assert json.loads(json.dumps(row_record(row), allow_nan=False)) == changed
+    assert all(0 < len(sentence) < 200 for sentence in said)
+    assert len(said) > 1000

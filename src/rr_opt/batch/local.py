@@ -6,8 +6,10 @@ import os
 import signal
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import Future
+from contextlib import contextmanager
+from multiprocessing import resource_tracker
 from typing import Any
 
 from joblib import cpu_count
@@ -39,7 +41,7 @@ class LocalPool:
     def submit(self, function: Callable[[Any], Any], argument: Any) -> Future[Any]:
         """Have function(argument) computed."""
         # An interrupt in the middle would leave work behind that nobody knows of.
-        with held_back(signal.SIGINT, signal.SIGTERM):
+        with held_back(signal.SIGINT, signal.SIGTERM), _blocked(signal.SIGINT):
             future = self._executor.submit(function, argument)
             self._given = {one for one in self._given if not one.done()} | {future}
         return future
@@ -70,6 +72,19 @@ class LocalPool:
             initargs=(os.getpid(),),
             env=ONE_THREAD,
         )
+
+
+@contextmanager
+def _blocked(number: signal.Signals) -> Iterator[None]:
+    """Within it this thread takes no such signal, and neither do processes started here: they
+    inherit the mask, and Ctrl-C goes to them too while they still load."""
+    # Which would unblock it if it were started within (Python 3.11).
+    resource_tracker.ensure_running()
+    mask = signal.pthread_sigmask(signal.SIG_BLOCK, [number])
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
 
 
 def _begin(parent: int) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import math
+import sys
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields
 from typing import Any, Literal, get_args
@@ -88,7 +88,8 @@ def gait_from(record: Mapping[str, Any]) -> Gait:
     """The gait of a record. Raises KeyError, TypeError or ValueError if it is not one."""
     kind = _GAITS.get(record["shape"])
     if kind is None:
-        raise ValueError(f"its gait has the shape {record['shape']!r}, not one of {list(_GAITS)}")
+        shape = _shown(record["shape"])
+        raise ValueError(f"its gait has the shape {shape}, not one of {list(_GAITS)}")
     values = {
         one.name: tuple(value) if isinstance(value := record[one.name], list) else value
         for one in fields(kind)
@@ -107,40 +108,79 @@ def row_record(row: Row) -> dict[str, Any]:
 def row_from(record: Mapping[str, Any]) -> Row:
     """The row of a record. Raises KeyError, TypeError or ValueError if it is not one."""
     values = dict(record)
+    statuses = [status.value for status in Status]
+    if values["status"] not in statuses:
+        raise ValueError(f"`status` is {_shown(values['status'])}, not one of {statuses}")
     values["status"] = Status(values["status"])
     if values["started"] not in get_args(Started):
-        raise ValueError(f"`started` is {values['started']!r}, not one of {get_args(Started)}")
-    for name in ("tried", "continued", "expected"):
-        if values[name] is not None:
-            values[name] = tuple(values[name])
-            for number in values[name]:
-                _check_number(name, number)
+        started = _shown(values["started"])
+        raise ValueError(f"`started` is {started}, not one of {get_args(Started)}")
+    _check_fields(Row, values)
+    for name in ("tried", "continued"):
+        values[name] = _numbers(name, values[name], whole=True)
+    if values["expected"] is not None:
+        values["expected"] = _numbers("expected", values["expected"], count=2)
     if (values["optimum"] is None) == (values["status"] is Status.OPTIMAL):
         raise ValueError(f"`status` is {values['status'].value!r}, which does not fit `optimum`")
     if values["optimum"] is not None:
         values["optimum"] = _optimum_from(values["optimum"])
-    _check_numbers(Row, values)
     return Row(**values)
 
 
 def _optimum_from(record: Mapping[str, Any]) -> Optimum:
-    values = {**record, "held": tuple(record["held"])}
-    _check_numbers(Optimum, values)
+    values = dict(record)
+    _check_fields(Optimum, values)
+    held = values["held"]
+    if not isinstance(held, (list, tuple)) or not all(isinstance(name, str) for name in held):
+        raise ValueError(f"`held` is {_shown(held)}, not a list of names")
     for name in ("prices", "bound_prices"):
+        if not isinstance(values[name], dict):
+            raise ValueError(f"`{name}` is {_shown(values[name])}, not an object")
         for key, price in values[name].items():
             _check_number(f"{name}.{key}", price)
     gait_from(values["gait"])
-    return Optimum(**values)
+    return Optimum(**{**values, "held": tuple(held)})
 
 
-def _check_numbers(kind: type, values: Mapping[str, Any]) -> None:
-    """Raise KeyError for a field that is missing, ValueError for one that is not a number."""
+_PLAIN = {"str": (str, "a text"), "bool": (bool, "true or false")}
+
+
+def _check_fields(kind: type, values: Mapping[str, Any]) -> None:
+    """Raise KeyError for a field that is missing, ValueError for a wrong number, text or truth."""
     for one in fields(kind):
         value = values[one.name]
         if one.type in ("float", "int") or (one.type == "float | None" and value is not None):
-            _check_number(one.name, value)
+            _check_number(one.name, value, whole=one.type == "int")
+        elif one.type in _PLAIN and not isinstance(value, _PLAIN[one.type][0]):
+            raise ValueError(f"`{one.name}` is {_shown(value)}, not {_PLAIN[one.type][1]}")
 
 
-def _check_number(name: str, value: Any) -> None:
-    if isinstance(value, bool) or not isinstance(value, (float, int)) or not math.isfinite(value):
-        raise ValueError(f"`{name}` is {value!r}, not a finite number")
+def _numbers(
+    name: str, values: Any, *, whole: bool = False, count: int | None = None
+) -> tuple[Any, ...]:
+    if not isinstance(values, (list, tuple)) or (count is not None and len(values) != count):
+        raise ValueError(
+            f"`{name}` is {_shown(values)}, not a list of {f'{count} ' if count else ''}numbers"
+        )
+    for value in values:
+        _check_number(name, value, whole=whole)
+    return tuple(values)
+
+
+def _check_number(name: str, value: Any, *, whole: bool = False) -> None:
+    number = isinstance(value, (float, int)) and not isinstance(value, bool)
+    # An integer may be too large for a float.
+    if not number or not abs(value) <= sys.float_info.max:
+        raise ValueError(f"`{name}` is {_shown(value)}, not a finite number")
+    if whole and not isinstance(value, int):
+        raise ValueError(f"`{name}` is {_shown(value)}, not a whole number")
+
+
+def _shown(value: Any) -> str:
+    """What was read, cut where it is long."""
+    text = "a number of very many digits" if _endless(value) else repr(value)
+    return text if len(text) <= 60 else f"{text[:57]}..."
+
+
+def _endless(value: Any) -> bool:
+    return isinstance(value, int) and abs(value) > sys.float_info.max
