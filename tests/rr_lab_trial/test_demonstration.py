@@ -5,7 +5,7 @@ import math
 import pytest
 
 from docs.demonstration import effect_text, mean_speed
-from rr_lab.cli.record import read_effects
+from rr_lab.api.arguments import read_effects
 
 
 def written(path, speed, heading):

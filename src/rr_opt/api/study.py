@@ -11,7 +11,7 @@ from typing import Any
 from rr_opt.answers.study import StudyAnswer
 from rr_opt.api.result import Plots, Progress, Result, quiet
 from rr_opt.batch.journal import Journal
-from rr_opt.batch.run import Pool, run
+from rr_opt.batch.run import Pool, pool_of, run
 from rr_opt.design.study.case import solve_case, solve_study
 from rr_opt.design.study.plan import plan
 from rr_opt.design.study.row import Row, row_from, row_record
@@ -99,9 +99,9 @@ def study(
     """
     if not isinstance(asked, Study):
         asked = load_study(asked)
-    pool_of = partial(_pool, workers, scheduler)
+    pool = partial(pool_of, workers, scheduler)
     if folder is None:
-        return _solved(asked, {}, lambda *_: None, pool_of, progress, cold=cold)
+        return _solved(asked, {}, lambda *_: None, pool, progress, cold=cold)
     identity = {"input_sha256": asked.sha256, "version": __version__, "cold": cold}
     path, cases = folder_for_results(Path(folder)) / JOURNAL, len(asked.problems)
     with Journal(path, identity, read=row_from, cases=cases, restart=restart) as journal:
@@ -113,7 +113,7 @@ def study(
             journal.append(case, row_record(row))
 
         try:
-            return _solved(asked, rows, keep, pool_of, progress, cold=cold)
+            return _solved(asked, rows, keep, pool, progress, cold=cold)
         except KeyboardInterrupt:
             raise KeyboardInterrupt(
                 f"{len(rows)} of {cases} rows are kept. The same command goes on with the others."
@@ -124,7 +124,7 @@ def _solved(
     asked: Study,
     rows: dict[int, Row],
     keep: Callable[[int, Row], object],
-    pool_of: Callable[[], Pool],
+    open_pool: Callable[[], Pool],
     progress: Progress,
     *,
     cold: bool,
@@ -133,7 +133,7 @@ def _solved(
     rows, total = dict(rows), len(asked.problems)
     if len(rows) < total:
         planned = plan([axis.numbers for axis in asked.axes], asked.shape)
-        with closing(pool_of()) as pool:
+        with closing(open_pool()) as pool:
             progress(f"case {len(rows) + 1} of {total}")
             solve = partial(run, pool, solve_case)
             for case, row in solve_study(asked.problems, planned, rows, solve, cold=cold):
@@ -141,13 +141,3 @@ def _solved(
                 rows[case] = row
                 progress(f"case {min(len(rows) + 1, total)} of {total}")
     return SolvedStudy(asked, tuple(rows[case] for case in range(total)))
-
-
-def _pool(workers: int | None, scheduler: str | None) -> Pool:
-    if scheduler:
-        from rr_opt.batch.cluster import ClusterPool
-
-        return ClusterPool(scheduler)
-    from rr_opt.batch.local import LocalPool
-
-    return LocalPool(workers)

@@ -42,6 +42,17 @@ class Pool(Protocol):
         ...
 
 
+def pool_of(workers: int | None, scheduler: str | None) -> Pool:
+    """So many processes here (None: one for each core), or those of a dask cluster."""
+    if scheduler:
+        from rr_opt.batch.cluster import ClusterPool
+
+        return ClusterPool(scheduler)
+    from rr_opt.batch.local import LocalPool
+
+    return LocalPool(workers)
+
+
 Task = TypeVar("Task")
 Result = TypeVar("Result")
 

@@ -1,0 +1,1 @@
+"""What the laboratory offers: recordings of a virtual robot, and the blind trial."""

@@ -1,0 +1,115 @@
+"""What the laboratory is asked for as text: runs, effects, noise."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+from rr_lab.case import Plan
+from rr_lab.effects import effect_named
+from rr_opt.answers.quantities import QUANTITIES
+from rr_opt.api.arguments import read_arguments
+from rr_opt.model.experiment import Noise
+from rr_opt.model.gait import SineGait
+from rr_opt.model.robot import EffectUse, Robot
+from rr_opt.outcome import InputError
+from rr_opt.units import Quantity
+
+STARTS, USES = ("rest", "running"), ("fit", "holdout")
+
+
+def read_runs(texts: Iterable[str], seconds: float) -> tuple[Plan, ...]:
+    """`30 deg, 1.2 s, 10 deg, rest, holdout`: amplitude, period, offset; words may be left out.
+
+    Raises InputError with everything that is wrong.
+    """
+    plans, wrong = [], []
+    for n, text in enumerate(texts, 1):
+        parts = [part.strip() for part in text.split(",")]
+        words = [part for part in parts if part in (*STARTS, *USES)]
+        sizes = [part for part in parts if part not in words]
+        start: Any = next((word for word in words if word in STARTS), "running")
+        use: Any = next((word for word in words if word in USES), "fit")
+        if len(sizes) not in (2, 3):
+            wrong.append(
+                f"--gait: Read {text!r}. Expected amplitude, period and offset, and rest, running, "
+                "fit or holdout. Write for example '30 deg, 1.2 s, 0, rest, holdout'."
+            )
+            continue
+        named = zip(("amplitude", "period", "offset"), sizes, strict=False)
+        try:
+            values = read_arguments(dict(named), prefix="--")
+        except InputError as error:
+            wrong.append(f"--gait {text!r}: {error}")
+            continue
+        gait = SineGait(values["amplitude"], values["period"], values.get("offset", 0.0))
+        # Headings differ, as a floor's slope shows in no single one.
+        pose = (0.0, 0.0, 2.4 * (n - 1))
+        plans.append(Plan(f"run{n:02d}.csv", gait, seconds, start, use, pose))
+    if wrong:
+        raise InputError("\n".join(wrong))
+    return tuple(plans)
+
+
+def beyond_reach(robot: Robot, plans: Iterable[Plan]) -> list[str]:
+    """A warning for each run that turns the joint further than its servo can."""
+    angle, limit = QUANTITIES["angle"], robot.servo.angle_limit
+    return [
+        f"{plan.name} goes to {angle.both(plan.gait.peak_angle)}, and the servo's limit "
+        f"is {angle.both(limit)}. It is recorded as if the servo could. Plain numbers are radians: "
+        "write `30 deg` for degrees."
+        for plan in plans
+        if plan.gait.peak_angle > limit
+    ]
+
+
+def read_effects(texts: Iterable[str]) -> tuple[EffectUse, ...]:
+    """`coulomb_friction:force1=0.02,force2=20 mN` each. Raises InputError with all mistakes."""
+    uses, wrong = [], []
+    for text in texts:
+        name, _, rest = text.partition(":")
+        effect = effect_named(name.strip())
+        units = effect.accepted
+        values = {}
+        for part in filter(None, (part.strip() for part in rest.split(","))):
+            key, _, value = (piece.strip() for piece in part.partition("="))
+            if key not in units:
+                wrong.append(
+                    f"--effect {name}: Read {part!r}. Expected {' or '.join(units)}. "
+                    f"Write for example `{effect.parameters[0].name}=VALUE`."
+                )
+                continue
+            unit = "" if units[key].unit == "1" else units[key].unit
+            one = units[key]
+            example = f"{one.typical:g} {unit}".strip()
+            least = None if one.signed or one.neutral is None else 0.0
+            try:
+                values[key] = Quantity(unit, example, at_least=least).read(value)
+            except InputError as error:
+                wrong.append(f"--effect {name}, {key}: {error}")
+        if not rest.strip():
+            first = effect.parameters[0]
+            example = f"{first.typical:g} {first.unit}".removesuffix(" 1")
+            wrong.append(
+                f"--effect {name}: Read no value, and without one it does nothing. Write for "
+                f"example `{effect.name}:{first.name}={example}`."
+            )
+        uses.append(EffectUse(effect.name, values))
+    if wrong:
+        raise InputError("\n".join(wrong))
+    return tuple(uses)
+
+
+def read_noise(text: str) -> Noise:
+    """`1 mm, 3 mrad`: standard deviations of position and angle. Raises InputError."""
+    parts = text.split(",")
+    if len(parts) != 2:
+        raise InputError(
+            f"--noise: Read {text!r}. Expected that of positions and that of angles. Write for "
+            "example '1 mm, 3 mrad'."
+        )
+    sizes = [
+        Quantity(unit, example, above=0).read(part.strip())
+        for unit, example, part in zip(("m", "rad"), ("1 mm", "3 mrad"), parts, strict=True)
+    ]
+    return Noise(*sizes)
