@@ -29,5 +29,9 @@ def on_files(files: Files, config: Any) -> Files:
         for path in paths
         if "said" not in path.parts
     ]
-    theirs = [one for one in files if one.generated_by or not one.src_uri.endswith((".md", ".py"))]
+    theirs = [
+        one
+        for one in files
+        if one.generated_by or not one.src_uri.endswith((".md", ".py", ".ipynb"))
+    ]
     return Files([*ours, *theirs])

@@ -50,14 +50,14 @@ def test_a_check_that_fails_is_no_optimum(problem):
 
 
 def test_turn(problem):
-    turned = rr.turn(problem, radius=0.8)
+    turned = rr.turn("mine.yaml", radius=0.8)
     record = command("turn", "mine.yaml", "--radius", 0.8, "--no-figures")
     assert turned.record() == record
     assert turned.radius == pytest.approx(0.8)
 
 
 def test_sweep(problem):
-    swept = rr.sweep(problem, 100)
+    swept = rr.sweep("mine.yaml", 100)
     assert swept.record() == command("sweep", "mine.yaml", "--points", 100)
 
 
@@ -72,6 +72,7 @@ def test_simulate_circle_and_export_a_result(problem, tmp_path):
         "status": "optimal"
     }
     circle = rr.circle(best).record()
+    assert rr.circle(result).record()["speed"] == pytest.approx(circle["speed"])
     assert circle["radius"] is None
     assert circle["speed"] == pytest.approx(command("circle", result)["speed"])
     points = rr.export(best, format="servo")

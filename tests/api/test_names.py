@@ -41,3 +41,9 @@ def test_type_checkers_see_the_same_names():
 def test_an_unknown_name_is_an_attribute_error():
     with pytest.raises(AttributeError, match="maximise_speed"):
         rr.maximise_speed  # noqa: B018
+
+
+def test_the_page_of_the_library_shows_them_all():
+    page = (Path(__file__).parents[2] / "docs" / "library.md").read_text(encoding="utf-8")
+    homes = {getattr(rr, name).__module__ for name in NAMES}
+    assert [home for home in homes if f"::: {home}\n" not in page + "\n"] == []

@@ -8,6 +8,7 @@ from typing import Any, Literal, Protocol
 
 from rr_opt.answers.motion import CircleAnswer, MotionAnswer, SetPointsAnswer
 from rr_opt.api.arguments import read_arguments
+from rr_opt.api.load import PathLike, load_gait
 from rr_opt.api.result import Plots, Progress, Result, quiet
 from rr_opt.model.gait import Gait
 from rr_opt.model.robot import Robot
@@ -34,8 +35,10 @@ class HasGait(Protocol):
         ...
 
 
-def _driven(robot: Robot | HasGait, gait: Gait | None) -> tuple[Robot, Gait, str | None]:
+def _driven(robot: Robot | HasGait | PathLike, gait: Gait | None) -> tuple[Robot, Gait, str | None]:
     """Robot, gait, and the status of the result that the gait is from."""
+    if isinstance(robot, str | Path):
+        robot = load_gait(robot)
     if isinstance(robot, Robot):
         if gait is None:
             raise InputError("Read a robot without a gait. Expected both. Give for example "
@@ -105,7 +108,7 @@ def check_files(format: Literal["csv", "netcdf"], film: Literal["gif", "mp4"] | 
 
 
 def simulate(
-    robot: Robot | HasGait,
+    robot: Robot | HasGait | PathLike,
     gait: Gait | None = None,
     seconds: float | str = 10.0,
     *,
@@ -115,7 +118,7 @@ def simulate(
 ) -> SimulatedMotion:
     """A gait driven for some time, from rest or from the speed that it settles to.
 
-    robot  or a result, whose own gait is then driven unless another is given
+    robot  or a result or its file, whose own gait is then driven unless another is given
     rate   samples a second
 
     Numbers are SI, text has a unit. Raises InputError for a gait through a singular posture, and
@@ -153,7 +156,7 @@ class DrivenCircle(Result, CircleAnswer):
 
 
 def circle(
-    robot: Robot | HasGait, gait: Gait | None = None, *, progress: Progress = quiet
+    robot: Robot | HasGait | PathLike, gait: Gait | None = None, *, progress: Progress = quiet
 ) -> DrivenCircle:
     """The circle of a gait: radius, centre, speed, time for a full turn; left is positive.
 
@@ -210,7 +213,7 @@ def setpoints_file(
 
 
 def export(
-    robot: Robot | HasGait,
+    robot: Robot | HasGait | PathLike,
     gait: Gait | None = None,
     *,
     format: Literal["csv", "c-header", "servo"] = "csv",

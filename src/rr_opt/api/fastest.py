@@ -12,6 +12,7 @@ from rr_opt.answers.speed import SpeedAnswer, evidence
 from rr_opt.answers.turn import TurnAnswer
 from rr_opt.api.arguments import read_arguments
 from rr_opt.api.identity import identity
+from rr_opt.api.load import PathLike, problem_of
 from rr_opt.api.result import Plots, Progress, Result, quiet
 from rr_opt.design import maximize_speed as design
 from rr_opt.design.turn.fastest_turn import fastest_turn
@@ -59,12 +60,13 @@ class FastestGait(Result, SpeedAnswer):
         return write_results(self, folder, figures=figures, progress=progress)
 
 
-def maximize_speed(problem: Problem, *, progress: Progress = quiet) -> FastestGait:
-    """The fastest gait of a problem, checked by simulation and against a plain sweep.
+def maximize_speed(problem: Problem | PathLike, *, progress: Progress = quiet) -> FastestGait:
+    """The fastest gait of a problem or its file, checked by simulation and against a plain sweep.
 
     Where no gait keeps every limit, or a check fails, the result's `status` and `message` say so.
     Raises InputError for a robot without friction, which has no steady speed.
     """
+    problem = problem_of(problem)
     optimum = design.maximize_speed(problem, progress)
     best = FastestGait(*identity(problem), optimum, *evidence(optimum, progress))
     if optimum.best is None or not best.rebuilt:
@@ -104,12 +106,13 @@ class FastestShapes(Result, ShapesAnswer):
         return write_shapes(self, folder, figures=figures, progress=progress)
 
 
-def shapes(problem: Problem, *, progress: Progress = quiet) -> FastestShapes:
+def shapes(problem: Problem | PathLike, *, progress: Progress = quiet) -> FastestShapes:
     """The fastest sine beside the fastest gaits of 3 and 5 harmonics and of free shape.
 
     All keep the limits of the problem, whose own shape is ignored, and each is checked. Raises
     InputError for a robot without friction.
     """
+    problem = problem_of(problem)
     name, sha256 = identity(problem)
     optima = design.compare_shapes(problem, progress)
     swept = None
@@ -165,7 +168,7 @@ class FastestTurn(Result, TurnAnswer):
 
 
 def turn(
-    problem: Problem,
+    problem: Problem | PathLike,
     *,
     radius: float | str | None = None,
     heading: float | str | None = None,
@@ -187,6 +190,7 @@ def turn(
     """
     asked = {"radius": radius, "heading": heading, "within": within, "length": length}
     target = checked(Target(**read_arguments(asked), whole=whole))
+    problem = problem_of(problem)
     name, sha256 = identity(problem)
     turned = fastest_turn(problem, target, progress)
     optimum, arc = turned.optimum, turned.arc

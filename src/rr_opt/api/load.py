@@ -71,6 +71,11 @@ def shipped() -> Problem:
     return read_problem(None)
 
 
+def problem_of(problem: Problem | PathLike) -> Problem:
+    """A problem as it is, or that of a file."""
+    return problem if isinstance(problem, Problem) else load(problem)
+
+
 @dataclass(frozen=True)
 class RobotWithGait:
     """A gait with the robot that is to drive it.

@@ -10,6 +10,7 @@ from typing import Any
 from rr_opt.answers.sweep import SweepAnswer
 from rr_opt.answers.turn_chart import TurnChartAnswer
 from rr_opt.api.identity import identity
+from rr_opt.api.load import PathLike, problem_of
 from rr_opt.api.result import Plots, Progress, Result, quiet
 from rr_opt.model.problem import Problem
 from rr_opt.motion.dynamics import require_friction
@@ -47,11 +48,14 @@ class Sweep(Result, SweepAnswer):
         return write_sweep(self, folder)
 
 
-def sweep(problem: Problem, points: int = 10_000, *, progress: Progress = quiet) -> Sweep:
+def sweep(
+    problem: Problem | PathLike, points: int = 10_000, *, progress: Progress = quiet
+) -> Sweep:
     """About so many gaits all over the bounds, each evaluated; the best is refined.
 
     Raises InputError for a robot without friction.
     """
+    problem = problem_of(problem)
     require_friction(problem.robot)
     counts = max(2, math.ceil(points ** (1 / max(len(free_decisions(problem)), 1))))
     tried = verify.sweep(problem, counts, lambda done, of: progress(f"gait {done} of {of}"))
@@ -92,11 +96,12 @@ class TurnChart(Result, TurnChartAnswer):
         return write_chart(self, folder)
 
 
-def turn_chart(problem: Problem, *, progress: Progress = quiet) -> TurnChart:
+def turn_chart(problem: Problem | PathLike, *, progress: Progress = quiet) -> TurnChart:
     """Radius over offset, amplitude and period, and the tightest circle within the limits.
 
     The inertia ratio is that of the robot as it is. Raises InputError for a robot without friction.
     """
+    problem = problem_of(problem)
     require_friction(problem.robot)
     progress("chart")
     seen = turn_map(problem, _DRAWN)
