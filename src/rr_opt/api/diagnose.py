@@ -40,7 +40,7 @@ class ExplainedExperiment(Result, DiagnosisAnswer):
 
     def summary(self, files: Sequence[Path] = ()) -> str:
         """The verdict, what was found, and what to record next, as text."""
-        from rr_opt.report.diagnosis.files import summary
+        from rr_opt.report.diagnosis.document import summary
 
         return summary(self, files)
 
@@ -51,7 +51,7 @@ class ExplainedExperiment(Result, DiagnosisAnswer):
         return Plots(draw(self)[0])
 
     def _write(self, folder: Path, figures: bool, progress: Progress) -> list[Path]:
-        from rr_opt.report.diagnosis.files import write_diagnosis
+        from rr_opt.report.diagnosis.document import write_diagnosis
 
         return write_diagnosis(self, folder, page=figures, progress=progress)
 

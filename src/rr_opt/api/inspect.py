@@ -38,7 +38,7 @@ class InspectedRecordings(Result):
 
     def summary(self, files: Sequence[Path] = ()) -> str:
         """Samples, noise, gaps and doubts as text."""
-        from rr_opt.report.inspect.page import summary
+        from rr_opt.report.inspect.document import summary
 
         return summary(self.recordings, files)
 
@@ -64,7 +64,7 @@ class InspectedRecordings(Result):
         netcdf: str | Path | None = None,
     ) -> list[Path]:
         """Write inspection.json and the page; netcdf: a file for the one recording."""
-        from rr_opt.report.inspect.page import write_inspection, write_recording
+        from rr_opt.report.inspect.document import write_inspection, write_recording
 
         folder = folder_for_results(Path(path))
         if netcdf is not None:

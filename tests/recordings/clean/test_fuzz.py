@@ -14,7 +14,7 @@ from rr_opt.recordings.inspection import Circumstances, inspect
 from rr_opt.recordings.markers.pose import fit_markers
 from rr_opt.recordings.readers.marker_rows import MarkerData
 from rr_opt.report.archive import strict_json
-from rr_opt.report.inspect.page import summary
+from rr_opt.report.inspect.document import summary
 from rr_opt.report.inspect.record import record
 from tests.recordings.clean.world import LAYOUT
 

@@ -8,8 +8,8 @@ import subprocess
 
 import pytest
 
-from rr_opt.report.diagnosis.page import page
-from rr_opt.report.figures.diagnosis import draw
+from rr_opt.report.diagnosis.document import diagnosis_document, figures_of
+from rr_opt.report.webpage import page
 
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))), None)
 DESK, PHONE = 1200, 412
@@ -29,7 +29,7 @@ frame.addEventListener("load", () => {{
   const all = query => [...inner.querySelectorAll(query)];
   told.textContent = JSON.stringify({{
     verdict: all("h1").filter(seen).map(one => one.textContent),
-    boxes: all("ol.strip li").map(one => [seen(one), one.className, one.textContent,
+    boxes: all("ol.chain li").map(one => [seen(one), one.className, one.textContent,
       view.getComputedStyle(one).backgroundColor]),
     figures: all("figure img").map(one => seen(one) && one.complete && one.naturalWidth > 0
       && one.getBoundingClientRect().height > 60),
@@ -45,7 +45,9 @@ frame.addEventListener("load", () => {{
 @pytest.fixture(scope="module")
 def texts(every):
     """The page of each verdict."""
-    return {verdict: page(one, *draw(one)) for verdict, one in every.items()}
+    return {
+        verdict: page(diagnosis_document(one, figures_of(one))) for verdict, one in every.items()
+    }
 
 
 def shown(text, width, folder):
@@ -93,7 +95,7 @@ def test_the_guilty_stage_alone_is_lit(texts, tmp_path):
     seen, _ = shown(texts["missing_physics"], DESK, tmp_path)
     colours = {name.split("✗")[0]: colour for _, kind, name, colour in seen["boxes"]}
     lit = [kind for _, kind, _, colour in seen["boxes"] if colour == colours["rolling"]]
-    assert lit == ["guilty"]
+    assert lit == ["fault"]
     seen, _ = shown(texts["consistent"], DESK, tmp_path)
     assert {kind for _, kind, *_ in seen["boxes"]} == {"untested"}
 

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from rr_opt.report.diagnosis.page import strip
+from rr_opt.report.diagnosis.document import chain_note
 from rr_opt.report.diagnosis.words import stage_words
 
 
@@ -20,8 +20,8 @@ def test_what_the_diagnosis_says_of_the_place_is_under_the_strip_whether_or_not_
     where = "The tests point elsewhere."
     found = replace(missing.found, where=where)
     dark = tuple(replace(stage, guilty=False) for stage in found.stages)
-    lit = strip(replace(missing, found=found))
-    unlit = strip(replace(missing, found=replace(found, stages=dark, verdict="consistent")))
+    lit = chain_note(replace(missing, found=found))
+    unlit = chain_note(replace(missing, found=replace(found, stages=dark, verdict="consistent")))
     assert f"{where} Lit: " in lit
     assert where in unlit
     assert "Lit:" not in unlit

@@ -1,0 +1,236 @@
+"""An inspection as a document, as text for a terminal, and as a folder."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from rr_opt.answers.quantities import number, with_unit
+from rr_opt.model.experiment import Flag
+from rr_opt.recordings.inspection import Inspection
+from rr_opt.recordings.time_axis import time_step
+from rr_opt.recordings.warnings import size_text
+from rr_opt.report.archive import remove, whole, write_json, write_text
+from rr_opt.report.document import (
+    Badge,
+    Cell,
+    Document,
+    Fact,
+    Facts,
+    Figure,
+    Gallery,
+    Section,
+    Table,
+    table,
+    warnings,
+)
+from rr_opt.report.inspect.record import path_record, record
+from rr_opt.report.text import terminal
+from rr_opt.report.webpage import PAGE, page
+from rr_opt.version import __version__
+
+
+def inspection_document(
+    name: str, sha256: str, found: Sequence[Inspection], figures: Sequence[Sequence[Figure]] = ()
+) -> Document:
+    """The report of recordings; figures: of each recording."""
+    several, count = len(found) > 1, sum(len(one.doubts) for one in found)
+    what = f"{len(found)} recordings" if several else "A recording"
+    sections = [Section("Recordings", (_table(found),), brief=False)] if several else []
+    for place, one in enumerate(found):
+        doubts = warnings(one.doubts) if one.doubts else "No warnings."
+        sections.append(Section(one.name, (Facts(tuple(_facts(one))), doubts)))
+        if figures:
+            sections.append(Section("", (Gallery(tuple(figures[place])),), brief=False))
+    return Document(
+        name=name,
+        kind="recordings",
+        title=f"{what} with {count} warning{'s' if count != 1 else ''}"
+        if count
+        else f"{what} without warnings",
+        lead="Read each warning before the recording is used. Nothing was filled in or dropped."
+        if count
+        else "Nothing looks wrong in what was read.",
+        good=not count,
+        sections=tuple(sections),
+        footer=(f"rr-opt {__version__}", f"input SHA-256 `{sha256}`"),
+    )
+
+
+def summary(found: Sequence[Inspection], written: Sequence[Path]) -> str:
+    """Every recording with its warnings, then the files."""
+    return terminal(inspection_document("", "", found), written)
+
+
+def _facts(found: Inspection) -> Iterator[Fact]:
+    recording = found.recording
+    t = recording.t
+    yield Fact("format", str(recording.source.get("format", "recording")))
+    length, start = with_unit(float(t[-1] - t[0]), "s"), with_unit(float(t[0]), "s")
+    rate = with_unit(1 / time_step(t), "Hz")
+    yield Fact("length", f"{length} from t = {start}", f"{len(recording)} samples at {rate}")
+    yield Fact("path", _path_text(found))
+    yield Fact("phi", _phi_text(found))
+    yield Fact("noise", ", ".join(_noise_text(found, name) for name in recording.channels))
+    sigma = {name: float(np.median(one)) for name, one in recording.sigma.items()}
+    yield Fact("sigma taken", ", ".join(f"{n} {size_text(n, s)}" for n, s in sigma.items()))
+    yield Fact("flagged", _flagged_text(found))
+    if found.markers is not None:
+        fit = found.markers
+        yield Fact(
+            "markers",
+            f"{len(fit.bodies.labels)} on two rigid platforms, with {1e3 * fit.noise:.3g} mm of "
+            "noise per coordinate",
+        )
+    if found.command is not None:
+        fit = found.command
+        yield Fact(
+            "command",
+            f"phi's clock {1e3 * fit.offset:+.2f} +- {1.96e3 * fit.sigma[0]:.2g} ms, "
+            f"scale {fit.scale:.4f} +- {1.96 * fit.sigma[2]:.1g}, "
+            f"{1e3 * fit.bias:+.2f} mrad; residual {1e3 * fit.residual:.3g} mrad",
+        )
+    if found.synchrony is not None and found.synchrony.shift is not None:
+        shift = found.synchrony.shift
+        yield Fact(
+            "servo log",
+            f"the command's clock is {1e3 * shift.offset:+.3f} +- {1.96e3 * shift.sigma[0]:.2g} ms "
+            "ahead of the recording's: "
+            f"{'put on the command clock' if shift.applied else 'not shifted'}",
+        )
+
+
+def _path_text(found: Inspection) -> str:
+    """How far, how fast, and how much it turned."""
+    path = path_record(found.recording)
+    if path["net"] is None:
+        return "no data"
+    turned = "" if path["turn"] is None else f", turned by {math.degrees(path['turn']):+.1f} deg"
+    speed = f", {1e3 * path['speed']:.1f} mm/s" if path["speed"] is not None else ""
+    return f"{with_unit(path['net'], 'm')} from start to end{speed}{turned}"
+
+
+def _phi_text(found: Inspection) -> str:
+    phi = found.recording.data("phi")
+    if not np.isfinite(phi).any():
+        return "no data"
+    return f"{number(float(np.nanmin(phi)))} to {number(float(np.nanmax(phi)))} rad"
+
+
+def _noise_text(found: Inspection, channel: str) -> str:
+    noise = found.cleaned.noise[channel]
+    if not math.isfinite(noise.sigma):
+        return f"{channel} ?"
+    return f"{channel} {size_text(channel, noise.sigma)}"
+
+
+def _flagged_text(found: Inspection) -> str:
+    """How many samples of which channels are not taken as data, and why."""
+    recording = found.recording
+    told = []
+    for channel in recording.channels:
+        flags = recording.flags[channel]
+        counts = [
+            f"{int((flags & flag > 0).sum())} {str(flag.name).lower().replace('_', ' ')}"
+            for flag in Flag
+            if (flags & flag).any()
+        ]
+        if counts:
+            told.append(f"{channel}: {', '.join(counts)}")
+    return "; ".join(told) or "nothing"
+
+
+def _table(found: Sequence[Inspection]) -> Table:
+    head = ["Recording", "Samples", "Length", "Noise of x", "Noise of phi", "Warnings"]
+    rows: list[list[Cell]] = []
+    for one in found:
+        noise, t, count = one.cleaned.noise, one.recording.t, len(one.doubts)
+        rows.append(
+            [
+                one.name,
+                str(len(t)),
+                f"{t[-1] - t[0]:.4g} s",
+                size_text("x", noise["x"].sigma),
+                size_text("phi", noise["phi"].sigma),
+                Badge(str(count), "warn") if count else Badge("none", "good"),
+            ]
+        )
+    return table(head, rows)
+
+
+_FIGURES = {
+    "path": (
+        "The joint's path",
+        "The recorded path seen from above",
+        "P seen from above. Arrows: platform 1's heading.",
+    ),
+    "noise": (
+        "Noise",
+        "Noise of each channel against the stated noise",
+        "From sixth differences, with a 95 % interval, against the stated noise. White noise is "
+        "the same at half the frequency; behind a low-pass filter it is larger there.",
+    ),
+    "rigid": (
+        "Markers on rigid platforms",
+        "Residuals of the markers by frame and by marker",
+        "Residuals of a fit of two rigid platforms joined at P: by frame, and by marker.",
+    ),
+    "channels": (
+        "Channels",
+        "Every channel over time, with gaps and flagged samples",
+        "What is taken as data. Bands: gaps; gaps of up to 0.1 s are bridged by a thin line, in "
+        "this figure only. Crosses: flagged samples, those within the axes.",
+    ),
+    "command": (
+        "phi against its command",
+        "The angle over the phase of its command, and the difference over time",
+        "Above: samples at their phase of the period. Below: the difference over time.",
+    ),
+}
+
+RECORD = "inspection.json"
+
+
+def write_inspection(
+    name: str,
+    sha256: str,
+    found: Sequence[Inspection],
+    folder: Path,
+    *,
+    figures: bool,
+    progress: Callable[[str], object],
+) -> list[Path]:
+    """Write everything; returns the files in the order to name them."""
+    remove(folder, (RECORD, PAGE))
+    written = [write_json(folder / RECORD, record(name, sha256, found))]
+    if not figures:
+        return written
+    # Here and not above: without figures matplotlib need not be loaded.
+    from rr_opt.report.figures.inspection import draw
+
+    figures_of = []
+    for place, one in enumerate(found, 1):
+        progress(f"figures {place} of {len(found)}")
+        drawn, prefix = draw(one), f"{one.name}: " if len(found) > 1 else ""
+        figures_of.append(
+            [
+                Figure(key, f"{prefix}{title}", drawn[key], alt, caption)
+                for key, (title, alt, caption) in _FIGURES.items()
+                if key in drawn
+            ]
+        )
+    document = inspection_document(name, sha256, found, figures_of)
+    return [write_text(folder / PAGE, page(document)), *written]
+
+
+def write_recording(path: Path, found: Inspection) -> Path:
+    """Write the cleaned recording to a netCDF file, whole. Raises InputError without the extra."""
+    from rr_opt.recordings.readers.netcdf import write_netcdf
+
+    with whole(path) as temporary:
+        write_netcdf(temporary, replace(found.recording, doubts=found.doubts), found.gait)
+    return path
