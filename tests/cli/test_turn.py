@@ -42,6 +42,23 @@ def test_turn_and_back_again(run, plain):
     assert circle["time_for_full_turn"] == pytest.approx(4 * arc["time"], rel=1e-6)
 
 
+def test_each_question_has_its_own_folder(run, plain, tmp_path):
+    for options in (
+        ("--radius", "50 cm"),
+        ("--radius", "60 cm"),
+        ("--heading", "90 deg", "--radius", "50 cm"),
+        ("--heading", "90 deg", "--within", "20"),
+    ):
+        assert run("turn", plain, *options, "--no-figures").exit_code == 0
+    names = {path.name for path in (tmp_path / "out").iterdir()}
+    assert names == {
+        "plain-turn-radius-0.5m",
+        "plain-turn-radius-0.6m",
+        "plain-turn-heading-90deg-radius-0.5m",
+        "plain-turn-heading-90deg-within-20s",
+    }
+
+
 def test_the_summary_tells_arc_checks_and_page(run, plain, tmp_path):
     done = run("turn", plain, "--radius", "1", "--out", "res")
     assert done.exit_code == 0, done.stderr
