@@ -15,7 +15,7 @@ def test_lint_finds_nothing(run, tmp_path, kind):
     files = done.stdout.split()
     assert all((tmp_path / file).is_file() for file in files)
     place = "experiment" if kind == "experiment" else files[0]
-    assert run("lint", place).stdout == f"{place}: can be used\n"
+    assert run("lint", place).stdout == f"{place}: OK\n"
 
 
 def test_a_problem_is_what_comes_without_a_word(run, tmp_path):

@@ -70,7 +70,7 @@ def test_the_summary_tells_arc_checks_and_page(run, plain, tmp_path):
 def test_out_of_reach(run, plain):
     done = run("turn", plain, "--radius", "5 cm", "--no-figures")
     assert done.exit_code == 3
-    assert "The nearest that keeps every limit" in done.stderr
+    assert "The closest feasible one is" in done.stderr
 
 
 @pytest.mark.parametrize(

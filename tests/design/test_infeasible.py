@@ -1,4 +1,4 @@
-"""A problem without a feasible gait names the limits that clash and how far each must give."""
+"""A problem without a feasible gait names the limits that conflict and how far each must change."""
 
 import math
 from dataclasses import replace

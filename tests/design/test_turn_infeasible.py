@@ -1,4 +1,4 @@
-"""A turn out of reach names the nearest in reach, which can be asked for, and what holds it."""
+"""An infeasible turn names the closest feasible one, which can be asked for, and what limits it."""
 
 import math
 import re
@@ -25,7 +25,9 @@ def test_too_tight():
     message = refused(turning(SHORT, round_(0.2)))
     assert "radius of 0.2 m to the left" in message
     assert "limit `singularity`" in message
-    nearest = float(re.search(r"limit is a radius of ([\d.]+) m to the left", message)[1])
+    nearest = float(
+        re.search(r"one is a radius of ([\d.]+) m to the left", message)[1]
+    )
     assert maximize_speed(turning(SHORT, round_(nearest))).status is Status.OPTIMAL
 
 
@@ -39,7 +41,7 @@ def test_offsets_of_one_sign_turn_to_one_side():
 def test_a_direction_that_stands_in_the_way():
     message = refused(turning(SHORT, round_(0.5), direction="backward"))
     assert "drives forward" in message
-    assert "A gait that drives forward makes it." in message
+    assert "A gait that drives forward achieves it." in message
 
 
 def test_too_soon_tells_the_time_that_it_takes():

@@ -23,7 +23,7 @@ def run(*arguments: object):
 def test_good_files():
     result = run("lint", SHIPPED, SHIPPED / "problem.yaml")
     assert result.exit_code == 0
-    assert result.stdout == f"{SHIPPED}: can be used\n{SHIPPED / 'problem.yaml'}: can be used\n"
+    assert result.stdout == f"{SHIPPED}: OK\n{SHIPPED / 'problem.yaml'}: OK\n"
 
 
 def test_a_warning_is_printed_and_exits_with_0():

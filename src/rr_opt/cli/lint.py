@@ -35,6 +35,6 @@ def lint(
             for issue in issues:
                 typer.echo(str(issue))
             if not has_errors(issues):
-                typer.echo(f"{name}: can be used")
+                typer.echo(f"{name}: OK")
     if wrong:
         raise typer.Exit(EXIT_WRONG_INPUT)

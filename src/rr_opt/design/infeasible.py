@@ -1,6 +1,6 @@
-"""Why no gait keeps all limits, and how far each must give, in sentences.
+"""Why no gait respects all limits, and how far each must change, in sentences.
 
-Angle, rate and singularity bound the amplitude alone, so their clashes with the gait's bounds
+Angle, rate and singularity bound the amplitude alone, so their conflicts with the gait's bounds
 are known exactly. For the torque the smallest peak that any allowed gait has is searched, and for
 a turn the nearest that any allowed gait makes.
 """
@@ -39,9 +39,9 @@ def direction_clash(problem: Problem, fastest: float) -> str:
     other = "backward" if problem.direction == "forward" else "forward"
     return _told(
         [
-            f"`direction: {problem.direction}` clashes with the bounds: every gait tried that "
-            f"keeps the other limits drives {other}, the slowest at {abs(fastest):.3g} m/s. Allow "
-            f"`direction: {other}` or `either`, or widen the bounds on amplitude, period or offset."
+            f"`direction: {problem.direction}` conflicts with the bounds: every gait tried that "
+            f"respects the other limits drives {other}, the slowest at {abs(fastest):.3g} m/s. "
+            f"Allow `direction: {other}` or `either`, or widen the gait's bounds."
         ]
     )
 
@@ -49,8 +49,8 @@ def direction_clash(problem: Problem, fastest: float) -> str:
 def _told(clashes: list[str]) -> str:
     if not clashes:
         return ""
-    both = ["All of these have to give at once."] if len(clashes) > 1 else []
-    return " ".join(["No gait keeps all limits.", *clashes, *both])
+    both = ["All of these have to change together."] if len(clashes) > 1 else []
+    return " ".join(["No gait respects all limits.", *clashes, *both])
 
 
 def _angle(problem: Problem) -> list[str]:
@@ -63,7 +63,7 @@ def _angle(problem: Problem) -> list[str]:
     clashes = []
     if needed > limits.angle * _ROUNDING:
         clashes.append(
-            f"Limit `angle` ({limits.angle:.6g} rad) clashes with {of}: raise the limit to "
+            f"Limit `angle` ({limits.angle:.6g} rad)  conflicts with {of}: raise the limit to "
             f"{_up(needed)} rad, or {_lower(limits.angle, least)}."
         )
     reach = reach_before_singularity(robot, limits.singularity)
@@ -86,12 +86,14 @@ def _angle(problem: Problem) -> list[str]:
                 else f"{_lower(reach, least)}; no margin allows it, as S1 falls to {S1:.6g} mm, "
                 "past the singular posture."
             )
-            clashes.append(f"{asked}, so |phi| <= {_down(reach)} rad) clashes with {of}: {margin}")
+            clashes.append(
+                f"{asked}, so |phi| <= {_down(reach)} rad) conflicts with {of}: {margin}"
+            )
     return clashes
 
 
 def _lower(reach: float, offset: float) -> str:
-    """How the gait's bounds must give for |phi| to stay within reach."""
+    """How the gait's bounds must change for |phi| to stay within reach."""
     if reach > offset:
         return f"lower the amplitude's bound to {_down(reach - offset)} rad"
     return f"bring the offset within {_down(reach)} rad and the amplitude's bound below the rest"
@@ -103,7 +105,7 @@ def _rate(problem: Problem) -> list[str]:
     if needed <= limits.rate * _ROUNDING:
         return []
     return [
-        f"Limit `rate` ({limits.rate:.6g} rad/s) clashes with the amplitude's lower bound "
+        f"Limit `rate` ({limits.rate:.6g} rad/s) conflicts with the amplitude's lower bound "
         f"{gait.amplitude.low:.6g} rad and the period's upper bound {gait.period.high:.6g} s: "
         f"raise the limit to {_up(needed)} rad/s ({_up(needed * 30 / math.pi)} rpm), or the "
         f"period's bound to {_up(2 * math.pi * gait.amplitude.low / limits.rate)} s, or lower the "
@@ -112,7 +114,7 @@ def _rate(problem: Problem) -> list[str]:
 
 
 def _up(value: float) -> str:
-    """Six digits, rounded up: a limit given as told then is enough."""
+    """Six digits, rounded up: the limit as printed is then enough."""
     return _rounded(value, math.ceil)
 
 
@@ -145,7 +147,7 @@ def _torque(problem: Problem, box: Decisions, landscapes: list[Landscape]) -> li
     # The search for it is good to a few parts in ten thousand.
     enough = _up(1.001 * least)
     return [
-        f"Limit `torque` ({limit:.6g} N m) clashes with the gait's bounds: among the gaits that "
+        f"Limit `torque` ({limit:.6g} N m) conflicts with the gait's bounds: among the gaits that "
         f"keep the other limits, the least peak torque is {enough} N m. Raise the limit to that, "
         "or allow longer periods or smaller amplitudes."
     ]

@@ -22,7 +22,7 @@ from rr_opt.motion.steady_cycle import steady_cycle
 _SENTENCES = {
     "Solve_Succeeded": "A local optimum within the solver's tolerance.",
     "Solved_To_Acceptable_Level": "The solver stopped near an optimum, short of its tolerance.",
-    "Infeasible_Problem_Detected": "No gait near this start keeps all limits.",
+    "Infeasible_Problem_Detected": "No gait near this start respects all limits.",
     "Maximum_Iterations_Exceeded": "The solver ran out of iterations.",
     "Maximum_CpuTime_Exceeded": "The solver ran out of time.",
     "Restoration_Failed": "The solver could not get back to gaits that keep the limits.",

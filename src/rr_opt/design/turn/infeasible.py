@@ -69,26 +69,26 @@ def turn_clashes(problem: Problem, box: Decisions, landscapes: list[Landscape]) 
     nearest = nearest_turn(problem, box, landscapes, direction)
     if nearest.distance <= SURE:
         return []
-    sentences = [f"The turn asked for is {asked_text(turn)}."]
+    sentences = [f"The requested turn, {asked_text(turn)}, is infeasible."]
     if nearest.distance >= OUT_OF_REACH:
         sentences.append(
-            f"Every gait tried that keeps the limits drives {_OPPOSITE[direction]}; one that was "
-            "not tried may not."
+            f"Every gait tried that satisfies the limits drives {_OPPOSITE[direction]}; others "
+            "may not."
         )
     else:
         gait, held = nearest.gait, held_by(problem, box, nearest)
         listed = " and ".join([", ".join(held[:-1]), held[-1]] if len(held) > 1 else held)
-        held_text = listed or "no limit: the robot itself comes no nearer"
+        held_text = listed or "no limit: the robot itself turns no closer to it"
         sentences.append(
-            f"The nearest that keeps every limit is {reached_text(turn, nearest)}, by amplitude "
+            f"The closest feasible one is {reached_text(turn, nearest)}, with amplitude "
             f"{gait.amplitude:.4g} rad, period {gait.period:.4g} s, offset {gait.offset:.4g} rad. "
-            f"What holds it there is {held_text}."
+            f"It is limited by {held_text}."
         )
     if direction != "either":
         other = nearest_turn(problem, box, landscapes, _OPPOSITE[direction])
         if other.distance <= SURE:
-            sentences.append(f"A gait that drives {_OPPOSITE[direction]} makes it.")
-    return [" ".join([*sentences, "Ask for a turn in reach, or let what stands in its way give."])]
+            sentences.append(f"A gait that drives {_OPPOSITE[direction]} achieves it.")
+    return [" ".join([*sentences, "Ask for a feasible turn, or relax what limits it."])]
 
 
 def held_by(problem: Problem, box: Decisions, nearest: Nearest) -> list[str]:
