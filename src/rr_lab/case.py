@@ -105,7 +105,7 @@ def recorded(
 def play(
     case: Case, progress: Callable[[str], None] = lambda _: None, step: float | None = None
 ) -> Experiment:
-    """Make all recordings of a case; `progress` is told of each before it is made."""
+    """Make all recordings of a case; `progress` is called before each."""
     runs = []
     for n, plan in enumerate(case.plans):
         progress(f"recording {n + 1} of {len(case.plans)}")

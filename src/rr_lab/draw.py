@@ -1,4 +1,4 @@
-"""Cases drawn by lot: effects, plans of runs, robots, and what their builder believes wrongly."""
+"""Random effects, plans of runs, robots, and wrong nominal values."""
 
 from __future__ import annotations
 

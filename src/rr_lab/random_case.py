@@ -1,4 +1,4 @@
-"""A case by lot: a robot, its runs, and what is hidden in it."""
+"""A random case: a robot, its runs, and what is hidden in it."""
 
 from __future__ import annotations
 

@@ -73,7 +73,7 @@ class Reference:
 @dataclass(frozen=True)
 class Gauge:
     """Nominal runs by their plans; called with a case of the same nominal robot and the same plans,
-    it tells the RMS deviation of the case from them, in sigma."""
+    it returns the RMS deviation of the case from them, in sigma."""
 
     references: tuple[tuple[Plan, Reference], ...]
 

@@ -25,9 +25,7 @@ def test_too_tight():
     message = refused(turning(SHORT, round_(0.2)))
     assert "radius of 0.2 m to the left" in message
     assert "limit `singularity`" in message
-    nearest = float(
-        re.search(r"one is a radius of ([\d.]+) m to the left", message)[1]
-    )
+    nearest = float(re.search(r"one is a radius of ([\d.]+) m to the left", message)[1])
     assert maximize_speed(turning(SHORT, round_(nearest))).status is Status.OPTIMAL
 
 

@@ -23,7 +23,7 @@ Progress = Callable[[str], None]
 
 @dataclass(frozen=True)
 class Proof:
-    """A trial of so many cases, with the files written; opened is None if they were only made."""
+    """A trial of some cases, with the files written; opened is None if they were only made."""
 
     folder: Path
     cases: int
@@ -68,7 +68,7 @@ def prove(
     make_only: bool = False,
     progress: Progress = lambda _: None,
 ) -> Proof:
-    """Make and seal so many cases, diagnose each blind, open and score them.
+    """Make and seal cases, diagnose each blind, then open and score them.
 
     An interrupted trial resumes when the same is asked for again. Raises InputError if the folder
     has another trial, or an answer that was changed.
@@ -137,7 +137,7 @@ def drawn(
     """
     place = folder_for_results(Path(folder))
     found = _drawn(drawn_of(place) if resumed else None, seed, kinds, engine, place)
-    # A laboratory without its engine is told before any case is, and not for each.
+    # A missing engine is reported once, before any case.
     if "mujoco" in found.engines:
         mujoco()
     return place, found

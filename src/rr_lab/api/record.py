@@ -36,8 +36,8 @@ class Written:
     @property
     def record(self) -> dict[str, Any]:
         """As plain data."""
-        told = {"folder": str(self.folder), "files": list(self.files)}
-        return {**told, "seal": str(self.seal), "sha256": self.digest} if self.seal else told
+        data = {"folder": str(self.folder), "files": list(self.files)}
+        return {**data, "seal": str(self.seal), "sha256": self.digest} if self.seal else data
 
     @property
     def summary(self) -> str:

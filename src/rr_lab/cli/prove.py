@@ -1,4 +1,4 @@
-"""`rr-opt prove`: sealed cases by lot, diagnosed blind, opened and scored."""
+"""`rr-opt prove`: random sealed cases, diagnosed blind, opened and scored."""
 
 from __future__ import annotations
 

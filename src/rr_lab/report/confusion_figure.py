@@ -1,4 +1,4 @@
-"""What was said of what was hidden: right is blue and on the diagonal, wrong is orange."""
+"""Diagnosis against truth: right is blue and on the diagonal, wrong is orange."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def matrix(ax: Axes, counted: Confusion) -> None:
         for x, column in enumerate(counted.columns):
             _cell(ax, x, y, counted.counts.get((row, column), 0), totals[row], right=row == column)
     right = sum(counted.counts.get((row, row), 0) for row in counted.rows)
-    ax.set_title(f"{right} of {sum(totals.values())} said what was hidden", pad=14)
+    ax.set_title(f"{right} of {sum(totals.values())} right", pad=14)
     ax.set_xlim(0, max(1, len(counted.columns)))
     ax.set_ylim(max(1, len(counted.rows)), 0)
     ax.set_aspect("equal")
@@ -54,7 +54,7 @@ def matrix(ax: Axes, counted: Confusion) -> None:
     for label in ax.get_xticklabels():
         label.set(ha="right", rotation_mode="anchor")
     ax.set_yticks([y + 0.5 for y in range(len(counted.rows))], map(_words, counted.rows))
-    ax.set_xlabel("said")
+    ax.set_xlabel("diagnosis")
     ax.set_ylabel("hidden")
 
 

@@ -231,7 +231,7 @@ def _held_out(opened: Opened) -> Table:
         after = row["after"]
         cells = (row["before"].median, row["refitted"].median, after.median, after.most)
         rows.append((kind, str(after.count), *_numbers(cells)))
-    head = ("kind", "cases", "as believed", "parameters", "as found", "as found, 90 % below")
+    head = ("kind", "cases", "nominal", "re-fitted", "corrected", "corrected, 90 % below")
     return table(head, rows)
 
 
@@ -241,7 +241,7 @@ def _p_values(opened: Opened) -> Table:
          str(one["below_005"]))
         for test, one in statistics.evenness(opened.cases).items()
     ]  # fmt: skip
-    return table(("test", "nulls", "distance", "chance", "below 0.05"), rows)
+    return table(("test", "nulls", "distance", "p-value", "below 0.05"), rows)
 
 
 def _times(opened: Opened) -> Table:

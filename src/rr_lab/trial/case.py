@@ -59,7 +59,7 @@ class Truth:
 def truth_from(answer: Mapping[str, Any]) -> Truth:
     """The truth of an opened answer."""
     hidden = tuple(answer["hidden"])
-    told = answer["rms_deviation_from_nominal_in_sigma"]
+    visible = answer["rms_deviation_from_nominal_in_sigma"]
     return Truth(
         kind=answer["kind"],
         hidden=hidden,
@@ -67,7 +67,7 @@ def truth_from(answer: Mapping[str, Any]) -> Truth:
             one["name"]: {name: each["value"] for name, each in one["parameters"].items()}
             for one in answer["effects"]
         },
-        seen={name: told[f"visibility_{name}"] for name in hidden},
+        seen={name: visible[f"visibility_{name}"] for name in hidden},
         remains={name: answer["stays_visible"][name] for name in hidden},
         spread=answer["spread"],
         engine=answer["engine"],
@@ -98,7 +98,7 @@ class Claim:
     named       strongest first
     groups      names that the recordings cannot tell apart
     before, refitted, after  held-out misfit, RMS in sigma, 1 is the noise: as believed, with the
-                parameters alone, with all that was found; None where it was not told
+                parameters alone, with all that was found; None where it is unknown
     p_values    by the test's name
     """
 
@@ -212,7 +212,7 @@ class Case:
 
     @property
     def scored(self) -> bool:
-        """Whether it counts in the headline: what nobody can see is told apart."""
+        """Whether it counts in the headline; invisible effects are counted separately."""
         return self.truth.visible
 
     @property

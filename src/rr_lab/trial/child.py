@@ -80,7 +80,7 @@ class Said:
 
 
 def diagnose_apart(task: Task) -> Said:
-    """Run the program on a copy of the folder; however it ends, that is told and nothing raised."""
+    """Run the program on a copy of the folder; returns how it ended, and raises nothing."""
     with tempfile.TemporaryDirectory(prefix="rr-opt-", ignore_cleanup_errors=True) as place:
         top = Path(place)
         (top / RECORDINGS).mkdir()
@@ -91,7 +91,7 @@ def diagnose_apart(task: Task) -> Said:
             name: (top / SAID / name).read_bytes() for name in KEPT if (top / SAID / name).is_file()
         }
         printed = (top / "output.txt").read_text(encoding="utf-8", errors="replace")
-        printed = printed.replace(f"{top}{os.sep}", "")  # the folder is gone, and tells nothing
+        printed = printed.replace(f"{top}{os.sep}", "")  # the folder is gone
     code, wall, cpu, late = ended
     return Said(code, files, printed[-_LONGEST:], wall, cpu, late)
 
@@ -119,7 +119,7 @@ def _run(task: Task, top: Path) -> tuple[int, float, float, bool]:
         timer = threading.Timer(task.limit, end)
         timer.start()
         try:
-            # wait4 and not Popen.wait: it tells the CPU time of this process alone.
+            # wait4 and not Popen.wait: it returns the CPU time of this process alone.
             _, status, usage = os.wait4(process.pid, 0)
         except BaseException:
             _kill(process)

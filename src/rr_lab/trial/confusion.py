@@ -1,4 +1,4 @@
-"""What was said of what was hidden, counted."""
+"""Diagnosis against truth: a confusion matrix."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ SEVERAL, NONE = "several effects", "no answer"
 _APART = ("pair", "disturbed")
 
 DEFINITION = (
-    "A row is what was hidden, a column what was said. Cases with one effect that stays visible, "
-    "nothing, wrong values, or an effect outside the catalogue. A name that the diagnosis says "
-    "cannot be told from the true one counts as the true one."
+    "Rows are what was hidden, columns the diagnosis. Cases with one effect that stays visible, "
+    "nothing, wrong values, or an effect outside the catalogue. A name that the diagnosis calls "
+    "indistinguishable from the true one counts as the true one."
 )
 
 

@@ -222,7 +222,7 @@ class Made:
 def make(lot: Lot, seconds: float = 30.0) -> Made:
     """Draw, drive and record a case; seconds: length of each run.
 
-    A motion that the engine loses is told, and not raised.
+    If the engine fails, `failed` says why; nothing is raised.
     """
     began = time.process_time()
     try:
@@ -244,8 +244,8 @@ def make(lot: Lot, seconds: float = 30.0) -> Made:
 
 
 def _answer_text(case: Case, lot: Lot) -> str:
-    """The laboratory's answer, what the lot was, and how visible each effect stays."""
-    told: dict[str, Any] = {
+    """The laboratory's answer, what was drawn, and how visible each effect remains."""
+    data: dict[str, Any] = {
         "number": lot.number,
         "kind": "disturbed" if lot.disturbance else lot.kind.partition(":")[0],
         "hidden": [effect_named(use.name).name for use in case.effects],
@@ -255,7 +255,7 @@ def _answer_text(case: Case, lot: Lot) -> str:
         # So that the seal of a guess never matches.
         "salt": secrets.token_hex(16),
     }
-    return json.dumps(told, indent=2) + "\n"
+    return json.dumps(data, indent=2) + "\n"
 
 
 def _stays_visible(case: Case) -> dict[str, float]:

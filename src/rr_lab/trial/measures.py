@@ -30,7 +30,7 @@ def singles(cases: Sequence[Case]) -> list[Measure]:
             "single effects named",
             f"Of the cases with one effect that stays visible ({FLOOR:g} sigma or more) after the "
             "nominal parameters are re-fitted, those with the verdict `missing_physics` that name "
-            "it, or one that the diagnosis says cannot be told from it, and nothing else.",
+            "it, or one that the diagnosis calls indistinguishable from it, and nothing else.",
             rate(case.outcome == "right" for case in seen),
         ),
         *by_strength,
@@ -42,7 +42,7 @@ def singles(cases: Sequence[Case]) -> list[Measure]:
         ),
         Measure(
             "single_invisible",
-            "invisible, and no wrong name",
+            "invisible, no wrong name",
             f"Of the cases with one effect that leaves less than {FLOOR:g} sigma after the re-fit, "
             "those that answer and do not name another one.",
             rate(not case.missed for case in hidden),
@@ -140,7 +140,7 @@ def _outside(cases: Sequence[Case]) -> list[Measure]:
     return [
         Measure(
             "outside",
-            "outside the catalogue, flagged",
+            "outside the catalogue, recognised",
             "Of the cases with an effect that no name exists for and that stays visible, those "
             f"with the verdict `unexplained` and no name of a confidence above {SURE:g}.",
             rate(case.outcome == "right" for case in seen),
@@ -175,9 +175,9 @@ def _disturbed(cases: Sequence[Case]) -> list[Measure]:
 
 
 BREAKDOWN = (
-    "How many came out right. By effect and realisation: cases with one effect that stays visible; "
-    "outside the catalogue, those told `unexplained`. By disturbance: cases with disturbed "
-    "recordings, and nothing or one effect that stays visible hidden in them."
+    "How many came out right. By effect and realisation: cases with one visible effect; outside "
+    "the catalogue, those with the verdict `unexplained`. By disturbance: cases with disturbed "
+    "recordings in which nothing or one visible effect is hidden."
 )
 
 

@@ -1,21 +1,18 @@
-"""What stays visible of an effect once the nominal robot's parameters are re-fitted.
+"""What remains visible of an effect after the nominal robot's parameters are re-fitted.
 
-An effect whose mark other values of the parameters make as well cannot be named by anybody. How
-much of it is left is told by the laboratory's own runs, so that what is tried does not judge
-itself: the runs that are fitted, without noise, against those of the nominal robot with each
-parameter moved by up to three sigma, a friction of which nothing is known within its factor, and
-the start of each run free.
+An effect that other parameter values can imitate cannot be named by anybody. How much of it remains
+is computed from the laboratory's own runs, so that the diagnosis does not judge itself. The fitted
+runs, without noise, are compared with those of the nominal robot, whose parameters may move by up
+to three sigma (an unknown friction within its factor) and whose initial states are free.
 
-The fit is Gauss-Newton with the derivatives of the nominal robot. The best of a few steps is taken:
-where the robot is too far from linear for them, more is called visible than is, never less.
+The fit is Gauss-Newton with the derivatives of the nominal robot; the best of a few steps is taken.
+Where the robot is too nonlinear for that, the visibility is overestimated, never underestimated.
 
-All runs that are held against each other are made with the same coarse step, five times that of the
-visibility: what it makes wrong is wrong in all of them alike and drops out. Where an engine drives
-an effect with a finer step than it is asked for, the nominal runs are made again with one as fine,
-or of 1 ms, whose own error is 0.03 sigma at most. The derivatives, which only say where to look,
-are told by runs with twice the coarse step. Of 28
-effects by lot 18 are told within 2 % of what steps of 1 ms tell, and 25 within 9 %. The other three
-are where the steps do not settle, and the best of the few is one by chance.
+All runs that are compared use the same coarse step, five times that of the visibility, so that its
+error cancels. Where an engine needs a finer step for an effect, the nominal runs are repeated with
+that step, or with 1 ms, whose own error is 0.03 sigma at most. The derivatives, which only give the
+direction, come from runs with twice the coarse step. Of 28 random effects 18 agree within 2 % with
+steps of 1 ms, and 25 within 9 %. In the other three Gauss-Newton does not settle.
 """
 
 from __future__ import annotations
@@ -122,7 +119,7 @@ class Refit:
 
 
 def moved_robot(case: Case, sigmas: Array) -> Robot:
-    """The nominal robot with its parameters moved by so many sigma, in the order of the case's
+    """The nominal robot with its parameters moved by `sigmas`, in the order of the case's
     uncertainties."""
     values = parameters_of(case.nominal)
     for (name, known), by in zip(case.uncertainty.items(), sigmas, strict=True):

@@ -36,8 +36,8 @@ class Rate:
     @property
     def record(self) -> dict[str, Any]:
         """As plain data."""
-        told = {"count": self.count, "total": self.total}
-        return {**told, "fraction": self.fraction, "ci95": list(self.interval)}
+        data = {"count": self.count, "total": self.total}
+        return {**data, "fraction": self.fraction, "ci95": list(self.interval)}
 
 
 def rate(flags: Iterable[bool]) -> Rate:
@@ -116,12 +116,12 @@ def _of(case: Case) -> list[Covered]:
 
 
 P_VALUES = (
-    "Where nothing is hidden the p-values of a test should be even between 0 and 1: Kolmogorov and "
-    "Smirnov's distance from that, and the chance of one so large; and how many are below 0.05."
+    "Where nothing is hidden the p-values of a test should be uniform between 0 and 1: the "
+    "Kolmogorov-Smirnov distance, its own p-value, and how many are below 0.05."
 )
 
 FEWEST = 8
-"""Of fewer p-values nothing is told."""
+"""With fewer p-values nothing is reported."""
 
 
 def evenness(cases: Sequence[Case]) -> dict[str, dict[str, Any]]:
@@ -131,10 +131,10 @@ def evenness(cases: Sequence[Case]) -> dict[str, dict[str, Any]]:
         if case.truth.kind == "null" and case.claim and case.claim.p_values:
             for test, p in case.claim.p_values.items():
                 found.setdefault(test, []).append(p)
-    return {test: _told(values) for test, values in found.items() if len(values) >= FEWEST}
+    return {test: _uniformity(values) for test, values in found.items() if len(values) >= FEWEST}
 
 
-def _told(values: list[float]) -> dict[str, Any]:
+def _uniformity(values: list[float]) -> dict[str, Any]:
     found = kstest(values, "uniform")
     return {
         "count": len(values),
@@ -145,9 +145,8 @@ def _told(values: list[float]) -> dict[str, Any]:
 
 
 HELD_OUT = (
-    "RMS misfit of recordings that took no part in the fit, in sigma, of which 1 is the noise "
-    "floor: of the model as believed, with its parameters alone re-fitted, and with all that was "
-    "found."
+    "RMS misfit of recordings that took no part in the fit, in units of the noise sigma: "
+    "of the nominal model, with its parameters re-fitted, and with all effects found."
 )
 TIME = "Time of one diagnosis with its page, one process a case, s."
 

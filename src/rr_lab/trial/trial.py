@@ -218,8 +218,8 @@ def drawn_of(folder: Path) -> Drawn | None:
 PACKAGE = Path(__file__).parents[1]
 
 Count = Callable[[str, Iterator[int], int], None]
-"""Exhausts an iterator that yields a number for each case; told in words what is done with the
-cases, and how many are done already."""
+"""Exhausts an iterator that yields a number for each case; the text says what is done with the
+cases, the number how many are done already."""
 
 
 def whole_trial(

@@ -148,7 +148,7 @@ def curves(found: Reproduction) -> dict[str, str]:
 
 
 def _surface(surface: SpeedSurface, every: int) -> str:
-    """Every fifth amplitude, and every so many ratios or periods."""
+    """Every fifth amplitude; `every`: the step of ratios or periods."""
     head = ("amplitude", "ratio", "period", "speed", "peak_rate", "keeps_30_rpm")
     rows = [
         (surface.amplitude[i], surface.ratio[j], surface.period[j], surface.speed[i, j],
