@@ -235,14 +235,6 @@ def name_of(path: str | Path | None) -> str:
     return full.parent.name if full.name == "problem.yaml" else full.stem
 
 
-def input_sha256(path: str | Path | None = None) -> str:
-    """The fingerprint of the problem file and of the robot file it names.
-
-    Raises InvalidFileError if one is unreadable.
-    """
-    return fingerprint(problem_sources(path).paths)
-
-
 def problem_from(sources: Sources) -> tuple[Problem | None, list[Issue]]:
     """The problem (None if an issue is an error), and all issues of its files."""
     issues = list(sources.issues)
