@@ -1,6 +1,6 @@
 """Ctrl-C, remembered: compiled code may swallow the exception that Python raises for it.
 
-A run that is told to end (SIGTERM) ends in the same way, so that nothing half written is left.
+A run that is asked to end (SIGTERM) ends in the same way, so that nothing half written is left.
 """
 
 from __future__ import annotations

@@ -81,7 +81,7 @@ def servo_made(robot: Robot, gait: Gait) -> Gait:
 
 
 _DIGITS = 7
-"""Of a fitted value that are written: more than any recording tells."""
+"""Of a fitted value that are written: more than any recording determines."""
 
 
 def corrected_robot(experiment: Experiment, found: Diagnosis) -> Robot:

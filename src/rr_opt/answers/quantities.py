@@ -10,7 +10,7 @@ from dataclasses import dataclass
 class Quantity:
     """A kind of quantity: its symbol, SI unit, and a second unit with its worth per SI unit.
 
-    `price_unit` is the second unit if prices are best told per that unit, else the SI unit.
+    `price_unit` is the second unit if prices are best given per that unit, else the SI unit.
     """
 
     words: str
@@ -49,13 +49,13 @@ QUANTITIES = {
 
 _ROUNDING = 1e-12
 _CRAWLING = 1e-3
-"""Slower than this a speed is told in mm/s alone, m/s."""
+"""Slower than this a speed is given in mm/s alone, m/s."""
 
 
 def number(value: float, digits: int = 4) -> str:
     """A number with so many significant digits, without an exponent where it is readable.
 
-    What is smaller than anything that is told here is a zero that rounding has left.
+    Anything smaller than what is reported here is rounding error.
     """
     if not math.isfinite(value):
         return f"{value}"

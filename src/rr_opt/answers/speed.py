@@ -323,7 +323,7 @@ def _matters(price: float, limit: float, speed: float) -> bool:
 
 def _swing(row: BoundRow, price: float, speed: float) -> BoundRow:
     """The row of the amplitude of a gait that is no sine: the lower bound is on its first
-    harmonic and the upper one on its swing, so the price tells which is active."""
+    harmonic and the upper one on its swing, so the price shows which is active."""
     if row.active == "fixed":
         return row
     side: Literal["low", "high"] = "high" if price > 0 else "low"

@@ -72,7 +72,7 @@ def diagnose(
         experiment = read_experiment(experiment)
     name, sha256 = identity(experiment)
     trial, left_out = usable(_cleaned(experiment))
-    # Here and not above: a wrong input is told before a second of imports.
+    # Here and not above: a wrong input is reported before a second of imports.
     from rr_opt.batch.shared_work import SharedWork
 
     with closing(SharedWork(workers)) as work:

@@ -47,7 +47,7 @@ class LocalPool:
         return future
 
     def is_lost(self, error: BaseException) -> bool:  # noqa: ARG002 - as every pool
-        """Never: what died is told by BrokenExecutor."""
+        """Never: BrokenExecutor reports what died."""
         return False
 
     def restart(self) -> None:

@@ -1,7 +1,7 @@
 """Every case to an outcome, whatever happens to the processes that compute it.
 
 If a process dies, nothing says which case it died over. So every case that was under way is done
-again, each alone in the pool: the one over which a process dies once more is told as lost.
+again, each alone in the pool: the one over which a process dies once more is reported as lost.
 """
 
 from __future__ import annotations

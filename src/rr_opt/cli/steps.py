@@ -12,7 +12,7 @@ from rr_opt import interrupt
 
 _COUNTED = re.compile(r"(.*?)\s*(\d+) of (\d+)$")
 _PARTS = 4
-"""Of a counted stage that are told where stderr is no terminal."""
+"""Of a counted stage that are printed where stderr is no terminal."""
 
 _quiet = False
 
@@ -29,7 +29,7 @@ def silent() -> bool:
 
 
 class Steps:
-    """A context within which `steps(text)` tells the step; `start 3 of 8` moves a bar.
+    """A context within which `steps(text)` shows the step; `start 3 of 8` moves a bar.
 
     On a terminal one line is redrawn; elsewhere each stage is a line. A call also ends the work if
     the user has asked for it.

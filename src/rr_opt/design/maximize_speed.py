@@ -63,7 +63,7 @@ class Optimum:
 
     @property
     def ties(self) -> tuple[Candidate, ...]:
-        """Other optima as fast as the best, within what is told apart."""
+        """Other optima as fast as the best, within the resolution."""
         if self.best is None:
             return ()
         least = abs(self.best.speed) * (1 - SAME_SPEED)

@@ -22,7 +22,7 @@ PROMISING = 0.3
 _APART = 0.3
 # A search for what no gait can do is made once, and its answer has to be sure.
 _PATIENCE, _ENDS, _FINEST_NODES = 3, 4, 96
-# What is told of a gait that has no steady cycle.
+# The values of a gait that has no steady cycle.
 _GROSS = 1e6
 ROUGH = Effort(iterations=8, first=0.08, last=0.02)
 THOROUGH = Effort(iterations=25, first=0.04, last=0.006)

@@ -25,7 +25,7 @@ EFFECT = Effect(
         Parameter("psi", "rad", (-1.0, 1.0), 0.01),
         Parameter("phi", "rad", (-1.0, 1.0), 0.01),
     ),
-    sentence="The capture system tells heading and servo angle from a zero that is off.",
+    sentence="The capture system measures heading and servo angle from a zero that is off.",
     observe=_observe,
     candidate=False,
 )

@@ -28,7 +28,7 @@ from rr_opt.model.robot import Robot
 def robot_of(document: Document, file: Path) -> tuple[Robot | None, list[Path], list[Issue]]:
     """The robot (None if it cannot be read), the files it is in beside this one, and all issues."""
     if "robot" not in document.data:
-        return None, [], []  # told with the other keys that are missing
+        return None, [], []  # reported with the other missing keys
     given = document.data["robot"]
     if isinstance(given, dict):
         return _with_paths(robot_from(document.section("robot")), [])
@@ -182,7 +182,7 @@ def read_plan(path: str | Path) -> tuple[ExperimentPlan, list[Issue]]:
     if kind_of(document) != "experiment":
         message = (
             "Read a file that names no recordings. Expected an experiment, with `robot`, `noise` "
-            "and `recordings`. `rr-opt schema experiment` tells its keys."
+            "and `recordings`. `rr-opt schema experiment` lists its keys."
         )
         raise InvalidFileError([document.issue("error", (), message)])
     plan, issues = plan_from(document, file)

@@ -47,7 +47,7 @@ def has_errors(issues: Iterable[Issue]) -> bool:
 
 
 _MOST = 20
-"""A file that is wrong in every row is told from its first ones."""
+"""A file that is wrong in every row is described by its first ones."""
 
 
 def refuse(file: str, message: str, line: int | None = None) -> NoReturn:

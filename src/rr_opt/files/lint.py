@@ -18,7 +18,7 @@ def lint_file(path: str | Path) -> list[Issue]:
     """All issues of a robot, problem, study or experiment file, and of the files that it names.
 
     A folder stands for its problem.yaml, or else its experiment.yaml, whose recordings are not
-    read. The kind of the file is told from its keys. Nothing is raised: a file that cannot be read
+    read. The keys of a file show its kind. Nothing is raised: a file that cannot be read
     is an issue too.
     """
     try:

@@ -190,7 +190,7 @@ _KEYS: dict[str, tuple[str, ...]] = {
 def read_provenance(document: Document) -> tuple[Mapping[str, str], list[Issue]]:
     """Key path -> the sentence that says where the value comes from.
 
-    A friction given as `k` is told under `kappa`, the name by which the robot keeps it.
+    A friction given as `k` is reported under `kappa`, the name by which the robot keeps it.
     """
     found: dict[str, str] = {}
     issues: list[Issue] = []

@@ -203,7 +203,7 @@ def _ranged(
 
 
 def _numbers(values: list[Any], key: Key) -> tuple[float, ...] | None:
-    """The values in SI, if they are numbers. What is wrong with one is told by its case."""
+    """The values in SI, if they are numbers. A wrong value is reported by its case."""
     if key.unit is None:
         return None
     try:

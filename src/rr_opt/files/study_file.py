@@ -161,7 +161,7 @@ def study_from(document: Document, file: Path) -> tuple[Study | None, list[Issue
     except InvalidFileError as error:
         return None, [*issues, *error.issues]
     if has_errors(issues):
-        # What is wrong with the problem itself is told in one go with what is varied.
+        # Mistakes in the problem itself are reported together with those in what is varied.
         return None, _distinct([*issues, *problem_from(base)[1]])
     problems: list[Problem] = []
     paths = [file, *base.paths]

@@ -35,7 +35,7 @@ def read_experiment(folder: str | Path) -> Experiment:
     if file != Path(folder) and not file.exists():
         raise InputError(
             f"{folder}: Read a folder without {FILE_NAME}. Expected that file, which names the "
-            "robot and the recordings. `rr-opt schema experiment` tells its keys."
+            "robot and the recordings. `rr-opt schema experiment` lists its keys."
         )
     experiment, issues = experiment_of(folder)
     if experiment is None:

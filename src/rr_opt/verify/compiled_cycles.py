@@ -169,7 +169,7 @@ class CompiledCycles:
         self._piece = _PIECE[viscous]
 
     def viscous(self, points: Points, p: Array, n: int, straight: bool) -> Steady:
-        """What `SteadyFourier.cycles` tells, arrays (K,), from n samples where friction is
+        """What `SteadyFourier.cycles` returns, arrays (K,), from n samples where friction is
         viscous; p the robots' parameters (len, R)."""
         known, sizes = table(n, straight)
         return self._run(points, p, straight, n, *sizes, known)

@@ -42,4 +42,4 @@ def test_the_terminal_gets_the_verdict_first(every, verdict):
     text = summary(every[verdict], [])
     assert text.startswith("verdict")
     assert verdict in text.splitlines()[0]
-    assert "8.10 sigma before, 1.00 after" in text
+    assert "8.10 before, 1.00 after" in text

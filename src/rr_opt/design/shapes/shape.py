@@ -1,4 +1,4 @@
-"""What a shape of gait has to tell multiple shooting.
+"""The interface between a shape of gait and multiple shooting.
 
 phi is a function of the phase theta alone, given the shape's decisions and, for a shape that is
 not one formula, unknowns at every node. Rates are in radians per period until the period divides

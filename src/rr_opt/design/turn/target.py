@@ -122,7 +122,7 @@ def posed(problem: Problem, target: Target) -> tuple[Problem, bool]:
 
 
 SURE = 2e-3
-"""The search is good to a few parts in ten thousand; what is told to be in reach, is."""
+"""The search is good to a few parts in ten thousand; what is reported as feasible, is."""
 
 
 @dataclass(frozen=True)
@@ -167,7 +167,7 @@ def reached_text(turn: Turn, nearest: Nearest) -> str:
         if asked == ANY:
             continue
         value = getattr(nearest, name)
-        # Nearer to the asked value is out of reach: a little further away is told.
+        # Nearer to the asked value is infeasible: a little further away is reported.
         value *= 1 - math.copysign(SURE, (asked.clip(value) - value) * value)
         text = {
             "curvature": _radius(value, False),

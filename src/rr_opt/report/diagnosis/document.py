@@ -113,7 +113,7 @@ _STATES = {
     "fault": ("fault", "✗ fault"),
     "clear": ("clear", "✓ clear"),
     "not clear": ("unclear", "? not clear"),
-    "after the fault": ("after", "after the fault"),
+    "downstream of the fault": ("after", "downstream of the fault"),
 }
 
 
@@ -165,7 +165,7 @@ def effects_table(one: DiagnosisAnswer) -> Table:
         for k, (name, value) in enumerate(finding.parameters.items()):
             first: list[Cell] = _effect_cells(finding) if k == 0 else ["", "", ""]
             rows.append([first[0], name, value_text(value), *first[1:]])
-    head = ["Effect", "Parameter", "Value [95 % interval]", "Confidence", "Removes"]
+    head = ["Effect", "Parameter", "Value [95 % interval]", "Confidence", "Explains"]
     return table(head, rows)
 
 
@@ -302,23 +302,25 @@ def _off(one: DiagnosisAnswer) -> str:
 def _key_facts(one: DiagnosisAnswer) -> Iterator[Fact]:
     found = one.found
     yield Fact("misfit before", f"{found.before:.2f} σ", one.proven_on)
-    yield Fact("misfit now", f"{found.after:.2f} σ", "1 is the noise")
+    yield Fact("misfit now", f"{found.after:.2f} σ", "in units of the noise")
     for finding in found.findings[:3]:
         if found.verdict == "missing_physics":
             name = candidate_words([finding.name])
-            yield Fact("of the mismatch goes with", share_text(finding), name)
+            yield Fact("of the mismatch explained by", share_text(finding), name)
         for name, each in list(finding.parameters.items())[:2]:
             value, _, interval = value_text(each).partition(" [")
             yield Fact(name, value, f"95 %: {interval.rstrip(']')}")
     if isinstance(one.loss, Loss):
-        yield Fact("of the speed lost", share_lost(one.loss), "by the best gait as believed")
+        yield Fact(
+            "of the speed lost", share_lost(one.loss), "by the best gait of the nominal model"
+        )
 
 
 def _open(one: DiagnosisAnswer) -> Iterator[str]:
     found = one.found
     for group in found.indistinguishable:
         names = " from ".join(candidate_words([name]) for name in group)
-        yield f"These recordings cannot tell {names}."
+        yield f"These recordings cannot distinguish {names}."
     yield from (each.sentence for each in found.residue)
     if found.next_experiment is not None:
         yield found.next_experiment.sentence
@@ -358,17 +360,17 @@ def _finding(finding: Finding, verdict: str) -> list[tuple[str, str]]:
         return [(f"  {name}", value_text(value)) for name, value in finding.parameters.items()]
     minor = ", minor" if finding.minor else ""
     name = candidate_words([finding.name])
-    head = f"confidence {finding.confidence:.2f}, removes {share_text(finding)}{minor}"
+    head = f"confidence {finding.confidence:.2f}, explains {share_text(finding)}{minor}"
     values = [(f"  {key}", value_text(value)) for key, value in finding.parameters.items()]
     return [(name, head), *values]
 
 
 def _misfit(one: DiagnosisAnswer) -> list[tuple[str, str]]:
     found = one.found
-    before, after = f"{found.before:.2f} sigma before", f"{found.after:.2f} after"
+    before, after = f"{found.before:.2f} before", f"{found.after:.2f} after"
     if found.together is not None:
         after += f" ({found.together:.2f} with values that fit all recordings)"
-    return [("misfit", f"{before}, {after}, 1 is the noise ({_proof(one)})")]
+    return [("misfit", f"{before}, {after}, in units of the noise ({_proof(one)})")]
 
 
 def _proof(one: DiagnosisAnswer) -> str:

@@ -9,7 +9,7 @@ from rr_opt.answers.quantities import number, with_unit
 from rr_opt.model.gait import Gait
 
 _NONE = 5e-4
-"""A smaller share of the speed is not told as a loss."""
+"""A smaller share of the speed is not reported as a loss."""
 
 
 def share_lost(one: Loss) -> str:

@@ -13,7 +13,7 @@ from rr_opt.version import __version__
 
 
 def fit_record(one: DiagnosisAnswer) -> dict[str, Any]:
-    """Everything in sigma; 1 is the noise.
+    """Everything in units of the noise sigma.
 
     Where none is held out, `heldout_rms_before` and `_after` are of the fitted recordings, each
     predicted from the others, and `heldout_rms_parameters` is of the fitted ones as they are.

@@ -121,18 +121,18 @@ def _fixed(value: float, digits: int | None) -> str:
 
 
 def share_text(finding: Finding) -> str:
-    """How much of the mismatch goes with it."""
+    """The share of the mismatch that it explains."""
     return f"{100 * finding.removes:.0f} %"
 
 
 def stage_words(stages: Sequence[Stage]) -> list[str]:
-    """Of each stage `fault`, `clear`, `not clear` or, downstream of a fault, `after the fault`.
+    """Of each stage `fault`, `clear`, `not clear` or, `downstream of the fault`.
 
     Not clear is a stage that is not lit and sees something all the same.
     """
     first = next((k for k, stage in enumerate(stages) if stage.guilty), len(stages))
     return [
-        "fault" if stage.guilty else "after the fault" if k > first else _unlit(stage)
+        "fault" if stage.guilty else "downstream of the fault" if k > first else _unlit(stage)
         for k, stage in enumerate(stages)
     ]
 

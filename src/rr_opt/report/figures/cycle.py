@@ -40,7 +40,7 @@ def cycle(axes: Sequence[Axes], steady: SteadyCycle, limits: Limits) -> Sequence
 
 
 def against_limit(ax: Axes, t: ArrayLike, values: ArrayLike, limit: float, label: str) -> Axes:
-    """A quantity over time with its limit; a limit far away is told in words instead."""
+    """A quantity over time with its limit; a limit far away is given in words instead."""
     values = np.asarray(values, float)
     ax.plot(t, values, color=FORWARD)
     ax.set_ylabel(label)

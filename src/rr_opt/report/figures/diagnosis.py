@@ -152,7 +152,7 @@ def lost_speed(ax: Axes, one: Loss) -> Axes:
 def misfit(
     ax: Axes, nominal: Sequence[Misfit], refitted: Sequence[Misfit], final: Sequence[Misfit]
 ) -> Axes:
-    """A row a recording, RMS in sigma over all channels; 1 is the noise."""
+    """A row a recording, RMS in sigma over all channels."""
     rows = range(len(final))
     ax.hlines(rows, [one.rms for one in final], [one.rms for one in nominal], color=FAINT, lw=4)
     ax.plot([one.rms for one in nominal], rows, "o", ms=7, mfc="white", mec=NOMINAL, mew=1.8,
@@ -177,7 +177,7 @@ def misfit(
         ax.set_xlim(0.8, 1.3 * largest)
         ax.xaxis.set_major_formatter(FuncFormatter(lambda x, _: number(x, 2)))
         ax.xaxis.set_minor_formatter(FuncFormatter(lambda _x, _y: ""))
-    ax.set_xlabel("misfit, σ; 1 is the noise")
+    ax.set_xlabel("misfit, in units of the noise σ")
     return ax
 
 

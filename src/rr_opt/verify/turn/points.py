@@ -1,6 +1,6 @@
 """Gaits that turn as asked, from gaits all over the bounds: the points of a turn's sweep.
 
-A gait is told by its period, the share of the amplitude that the limits leave it, its offset and
+A gait is given by its period, the share of the amplitude that the limits leave it, its offset and
 its inertia ratio. Newton's method moves the offset, and the amplitude too where two quantities
 of the turn are fixed, until the gait turns as asked.
 """
@@ -163,7 +163,7 @@ def _rows(seen: Speeds, period: Array) -> dict[str, Array]:
 
 
 def _solved(matrix: Array, right: Array) -> Array:
-    """Newton's change (K, m), none longer than _LONGEST; none where it cannot be told."""
+    """Newton's change (K, m), none longer than _LONGEST; none where it cannot be computed."""
     with np.errstate(all="ignore"):
         size = np.abs(np.linalg.det(matrix))
         good = np.isfinite(size) & (size > 1e-12) & np.isfinite(right).all(axis=1)
