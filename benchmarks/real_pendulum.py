@@ -19,11 +19,11 @@ import numpy as np
 from scipy.linalg import block_diag
 from scipy.signal import butter, sosfiltfilt
 
+from benchmarks.pendulum_page import Cut, Told, drawn, page, record, rms_of
 from rr_opt.machines.pendulum.pendulum import Pendulum, Swing
 from rr_opt.model.experiment import Uncertainty
 from rr_opt.outcome import InputError
 from rr_opt.report.archive import write_json, write_text
-from rr_opt.report.pendulum import Cut, Told, drawn, page, record, rms_of
 from rr_opt.sysid.candidate import whole
 from rr_opt.sysid.diagnose import diagnose
 from rr_opt.sysid.diagnosis import Misfit

@@ -23,8 +23,7 @@ from rr_opt.motion.circle import Circle, circle_of
 from rr_opt.motion.rollout import Trajectory, rollout
 from rr_opt.motion.steady_cycle import steady_cycle as simulated_cycle
 from rr_opt.verify.speeds import speeds
-from rr_opt.verify.turn.chart import turn_map
-from rr_opt.verify.turn.offset_claim import RadiusClaim, SignClaim, radius_claim, sign_claim
+from rr_opt.verify.turn_chart import RadiusClaim, SignClaim, radius_claim, sign_claim, turn_map
 from rr_paper.consistency import Hypothesis
 from rr_paper.equation3 import CORRECTED, PRINTED, Signs, steady_cycle
 from rr_paper.prototype import ABOUT_P, box_grid, prototype, random_prototype

@@ -8,8 +8,8 @@ import pytest
 
 from benchmarks.turn.problems import REFERENCE, SHORT, round_, turning
 from rr_opt.design.maximize_speed import maximize_speed
-from rr_opt.design.turn.fastest_turn import fastest_turn
-from rr_opt.design.turn.target import Target
+from rr_opt.design.turn import fastest_turn
+from rr_opt.design.turn_target import Target
 from rr_opt.model.problem import Interval
 from rr_opt.outcome import Status
 

@@ -5,7 +5,7 @@ import pytest
 from rr_opt.model.gait import SineGait
 from rr_opt.motion.circle import circle_of
 from rr_opt.motion.steady_cycle import steady_cycle
-from rr_opt.verify.turn.circle import check_circle
+from rr_opt.verify.replay import check_circle
 from tests.robots import BENCHMARK, DRY
 
 

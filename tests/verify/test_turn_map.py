@@ -13,8 +13,7 @@ from rr_opt.model.problem import GaitBounds, Interval
 from rr_opt.motion.circle import circle_of
 from rr_opt.motion.steady_cycle import steady_cycle
 from rr_opt.verify.speeds import speeds
-from rr_opt.verify.turn.chart import tightest, turn_map
-from rr_opt.verify.turn.offset_claim import radius_claim, sign_claim
+from rr_opt.verify.turn_chart import radius_claim, sign_claim, tightest, turn_map
 
 
 def test_circles_are_those_of_the_simulation():

@@ -6,7 +6,7 @@ from benchmarks.turn.problems import PROBLEMS
 from rr_opt.design.maximize_speed import maximize_speed
 from rr_opt.model.gait import SineGait
 from rr_opt.motion.steady_cycle import steady_cycle
-from rr_opt.verify.turn.sweep import check_turn
+from rr_opt.verify.turn_sweep import check_turn
 
 
 @pytest.mark.parametrize("name", ["short_2m", "reference_whole_torque"])

@@ -8,11 +8,11 @@ from dataclasses import dataclass, field
 from rr_opt.answers.answer import Check
 from rr_opt.answers.quantities import direction_text, number, with_unit
 from rr_opt.answers.speed import SpeedAnswer
-from rr_opt.design.turn.fastest_turn import Arc
-from rr_opt.design.turn.target import Target
+from rr_opt.design.turn import Arc
+from rr_opt.design.turn_target import Target
 from rr_opt.model.problem import ANY
 from rr_opt.outcome import Status
-from rr_opt.verify.turn.circle import LARGEST, PERIODS, CircleCheck
+from rr_opt.verify.replay import LARGEST, PERIODS, CircleCheck
 
 
 @dataclass(frozen=True)

@@ -9,8 +9,7 @@ from rr_opt.answers.quantities import with_unit
 from rr_opt.model.gait import SineGait
 from rr_opt.model.problem import Problem
 from rr_opt.outcome import Status
-from rr_opt.verify.turn.chart import Tightest, TurnMap
-from rr_opt.verify.turn.offset_claim import RadiusClaim, SignClaim
+from rr_opt.verify.turn_chart import RadiusClaim, SignClaim, Tightest, TurnMap
 
 _SPIN = 1e-4
 """A smaller radius, m, is that of a robot that turns on the spot."""

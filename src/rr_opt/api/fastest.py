@@ -15,13 +15,12 @@ from rr_opt.api.identity import identity
 from rr_opt.api.load import PathLike, problem_of
 from rr_opt.api.result import Plots, Progress, Result, quiet
 from rr_opt.design import maximize_speed as design
-from rr_opt.design.turn.fastest_turn import fastest_turn
-from rr_opt.design.turn.target import Target, checked
+from rr_opt.design.turn import fastest_turn
+from rr_opt.design.turn_target import Target, checked
 from rr_opt.model.problem import Problem
-from rr_opt.verify.replay import replay
+from rr_opt.verify.replay import check_circle, replay
 from rr_opt.verify.sweep import sweep
-from rr_opt.verify.turn.circle import check_circle
-from rr_opt.verify.turn.sweep import check_turn
+from rr_opt.verify.turn_sweep import check_turn
 
 
 class FastestGait(Result, SpeedAnswer):

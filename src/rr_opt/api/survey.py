@@ -16,8 +16,7 @@ from rr_opt.model.problem import Problem
 from rr_opt.motion.dynamics import require_friction
 from rr_opt.verify import sweep as verify
 from rr_opt.verify.grid import free_decisions
-from rr_opt.verify.turn.chart import tightest, turn_map
-from rr_opt.verify.turn.offset_claim import radius_claim, sign_claim
+from rr_opt.verify.turn_chart import radius_claim, sign_claim, tightest, turn_map
 
 
 class Sweep(Result, SweepAnswer):

@@ -27,9 +27,8 @@ from rr_opt.design.decisions import (
 )
 from rr_opt.design.infeasible import direction_clash, posture_clashes, torque_clash
 from rr_opt.design.landscape import Cycles, Landscape
-from rr_opt.design.scan import FINER_NODES, Seed
+from rr_opt.design.scan import FINER_NODES, Seed, scan_shapes
 from rr_opt.design.seeds import find_seeds
-from rr_opt.design.shape_scan import scan_shapes
 from rr_opt.design.solve import Candidate, Dense, dense, solve
 from rr_opt.design.transcription import LADDER, Mesh, at_least, intervals_for, regular
 from rr_opt.model.gait import Gait, SineGait

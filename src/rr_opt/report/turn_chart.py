@@ -16,8 +16,7 @@ from rr_opt.report.archive import remove, write_json, write_text
 from rr_opt.report.document import Document, Fact, Facts, Section, csv_text
 from rr_opt.report.gait import speed_fact
 from rr_opt.report.text import terminal
-from rr_opt.verify.turn.chart import TurnMap
-from rr_opt.verify.turn.offset_claim import RadiusClaim, SignClaim
+from rr_opt.verify.turn_chart import RadiusClaim, SignClaim, TurnMap
 from rr_opt.version import __version__
 
 _NAMES = ("turn-chart.json", "turn-chart.csv", "turn-chart.svg")

@@ -88,7 +88,7 @@ class Speeds(NamedTuple):
 
 
 def viscous_source(powers: ca.Function) -> str:
-    """Around (phi, p) -> the powers of `speed_powers`."""
+    """Around (phi, p) -> the powers of `steady_fourier`."""
     return _source(in_stages(powers, "rr", (1, 0)), powers.nnz_in(1), "viscous")
 
 
@@ -204,7 +204,7 @@ def compiled(
     dynamics: Dynamics, powers: ca.Function | None, *, make: bool
 ) -> CompiledCycles | None:
     """The loops of a model that was compiled before, or is now if `make`; None where that cannot
-    be. powers: of `speed_powers`, where the friction is viscous."""
+    be. powers: of `steady_fourier`, where the friction is viscous."""
     try:
         source = newton_source(dynamics) if powers is None else viscous_source(powers)
     except NotImplementedError:

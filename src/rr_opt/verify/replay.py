@@ -1,19 +1,32 @@
 """Replay: the winner, simulated by cvodes at tight tolerance, as if nothing were known of it.
 
 The steady cycle is found anew, the speed measured from P's path, and every limit looked at
-between the optimiser's nodes too, and on both sides of every jump of the torque.
+between the optimiser's nodes too, and on both sides of every jump of the torque. A turn is replayed
+for many periods on its circle, and from rest.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
+from rr_opt.array import Array
 from rr_opt.model.gait import Gait
 from rr_opt.model.problem import Limits
 from rr_opt.model.robot import Robot
-from rr_opt.motion.steady_cycle import BETWEEN, SteadyCycle, peak_torque, reference_cycle
+from rr_opt.motion.circle import Transient, circle_of, transient
+from rr_opt.motion.integrators import cvodes
+from rr_opt.motion.steady_cycle import (
+    BETWEEN,
+    Cycle,
+    SteadyCycle,
+    cycle_of,
+    peak_torque,
+    reference_cycle,
+    steady_cycle,
+)
 
 
 @dataclass(frozen=True)
@@ -51,3 +64,95 @@ def replay(robot: Robot, gait: Gait, limits: Limits, claimed: float) -> Replay:
     }
     _, excess = limits.worst(reached)
     return Replay(steady.speed, abs(steady.speed - claimed) / abs(claimed), reached, excess, steady)
+
+
+PERIODS = 50
+LARGEST = 1e-4
+"""Largest distance from the circle, relative to its radius."""
+
+_SAMPLES = 128
+_SETTLED = 1e-6
+_LONGEST = 2000
+
+
+@dataclass(frozen=True)
+class CircleCheck:
+    """What the simulation says. All distances are relative to the claimed radius, or to the way
+    driven where that is shorter.
+
+    ends       largest distance of P, at the end of a period, from where it should be by then
+    mean       largest difference between a period's mean circle and the claimed one
+    rest       the same of the last of `periods` periods from rest
+    curvature  claimed, 1/m
+    transient  how a start from rest comes to the circle
+    """
+
+    ends: float
+    mean: float
+    rest: float
+    periods: int
+    curvature: float
+    transient: Transient
+
+    @property
+    def passed(self) -> bool:
+        """It stays on the circle, and comes to it from rest."""
+        return max(self.ends, self.mean, self.rest) <= LARGEST
+
+
+def check_circle(robot: Robot, gait: Gait, curvature: float) -> CircleCheck:
+    """Hold a claimed curvature, 1/m, against a simulation.
+
+    Raises NotConvergedError if the gait has no steady cycle.
+    """
+    steady = steady_cycle(robot, gait)
+    start = transient(robot, steady)
+    length = abs(steady.speed) * gait.period
+    radius = 1 / max(abs(curvature), 1e-300)
+    x, y, psi = _driven(robot, gait, float(steady.v[0]), PERIODS)
+    ends = np.array([x[::_SAMPLES], y[::_SAMPLES]])
+    k = np.arange(PERIODS + 1)
+    off = np.hypot(*(ends - _predicted(steady.cycle, PERIODS))) / np.minimum(
+        radius, length * np.maximum(k, 1)
+    )
+    mean = max(_off(_period(gait, x, y, psi, i), curvature) for i in range(PERIODS))
+    last = min(max(PERIODS, start.periods_to(_SETTLED)), _LONGEST)
+    end = _period(gait, *_driven(robot, gait, 0.0, last), last - 1)
+    return CircleCheck(
+        ends=float(off.max()),
+        mean=mean,
+        rest=_off(end, curvature),
+        periods=last,
+        curvature=curvature,
+        transient=start,
+    )
+
+
+def _driven(robot: Robot, gait: Gait, v0: float, periods: int) -> tuple[Array, Array, Array]:
+    """x, y (m) and psi (rad) at _SAMPLES + 1 times a period, ends shared."""
+    times = np.linspace(0.0, periods * gait.period, periods * _SAMPLES + 1)
+    _, psi, x, y, _ = cvodes(robot, gait, v0, times)
+    return x, y, psi
+
+
+def _period(gait: Gait, x: Array, y: Array, psi: Array, i: int) -> Cycle:
+    part = slice(i * _SAMPLES, (i + 1) * _SAMPLES + 1)
+    return cycle_of(gait.period, x[part], y[part], psi[part])
+
+
+def _off(cycle: Cycle, curvature: float) -> float:
+    """Difference of the radii, relative; where the circle is wider than the way of a period
+    times 50, of the curvatures times that way."""
+    made = circle_of(cycle).curvature
+    scale = max(abs(curvature), 1 / (PERIODS * abs(cycle.speed) * cycle.period))
+    return abs(made - curvature) / scale
+
+
+def _predicted(cycle: Cycle, periods: int) -> Array:
+    """P at the ends of periods, (2, periods + 1): the rigid motion of one, again and again."""
+    at, heading, points = 0j, 0.0, [0j]
+    for _ in range(periods):
+        at += complex(cycle.dx, cycle.dy) * complex(math.cos(heading), math.sin(heading))
+        heading += cycle.dpsi
+        points.append(at)
+    return np.array([np.real(points), np.imag(points)])

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from rr_opt.answers.quantities import with_unit
 from rr_opt.report.figures.style import LIMIT, figure, note, styled, svg
-from rr_opt.verify.turn.chart import Tightest, TurnMap
+from rr_opt.verify.turn_chart import Tightest, TurnMap
 
 _WIDEST = 20.0
 """m; wider circles are left out of the picture."""

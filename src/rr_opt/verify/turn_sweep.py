@@ -21,7 +21,7 @@ from rr_opt.verify.evaluate import Found
 from rr_opt.verify.grid import boxes, whole_loads
 from rr_opt.verify.speeds import least_S1, model_of, robot_with, speed_of, speeds
 from rr_opt.verify.sweep import SweepCheck, held_against
-from rr_opt.verify.turn.points import Care, Points, Turning
+from rr_opt.verify.turn_points import Care, Points, Turning
 
 _SLACK = 1e-6
 

@@ -12,10 +12,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from rr_opt.design.decisions import decisions, settings_of
-from rr_opt.design.infeasible import posture_clashes
+from rr_opt.design.infeasible import OUT_OF_REACH, nearest_turn, posture_clashes
 from rr_opt.design.maximize_speed import Optimum, maximize_speed
-from rr_opt.design.turn.infeasible import OUT_OF_REACH, nearest_turn
-from rr_opt.design.turn.target import SURE, Target, posed
+from rr_opt.design.turn_target import SURE, Target, posed
 from rr_opt.model.problem import Interval, Problem
 from rr_opt.motion.steady_cycle import steady_cycle
 from rr_opt.outcome import Status

@@ -1,1 +1,0 @@
-"""Turns: gaits that go round a circle that is asked for."""

@@ -1,1 +1,0 @@
-"""Turns by the sweep's model."""
