@@ -77,8 +77,9 @@ def _whitened(y: Array, factor: Array) -> Array:
     return np.asarray(solved, float)[:, 0]
 
 
-_VAGUE = 1e-9
-"""Precision of the signal and its derivatives before any sample, relative to a sample's."""
+_VAGUE = (1e-9, 1e-6, 1e-3, 1.0)
+"""Precision of the signal and its derivatives before any sample, relative to a sample's. Only where
+few samples are left, at most uneven times, rounding takes more than the first."""
 
 
 @dataclass(frozen=True)
@@ -89,7 +90,7 @@ class Precision:
     above: Array
 
 
-def precision(step: Array, ratio: float, seen: Array) -> Precision:
+def precision(step: Array, ratio: float, seen: Array, vague: float) -> Precision:
     """That of the states at n nodes.
 
     step: (n - 1,), between nodes; ratio: q over a sample's variance; seen: (n, 3, 3), what the
@@ -100,7 +101,7 @@ def precision(step: Array, ratio: float, seen: Array) -> Precision:
     scale = step[:, None] ** -(ORDER - 0.5 - np.arange(ORDER))
     W = scale[:, :, None] * np.linalg.inv(diffusion(np.ones(1))[0]) * scale[:, None] / ratio
     WA = W @ A
-    D = seen + _VAGUE * np.eye(ORDER)
+    D = seen + vague * np.eye(ORDER)
     D[1:] += W
     D[:-1] += np.swapaxes(A, 1, 2) @ WA
     return Precision(D, -np.swapaxes(WA, 1, 2))
@@ -249,9 +250,9 @@ def smoothed(t: Array, y: Array, sigma: Array | float, ratio: float) -> Smooth:
     H = A[:, 0]
     seen = np.add.reduceat(weight[:, None, None] * H[:, :, None] * H[:, None], first)
     pull = np.add.reduceat((weight * left)[:, None] * H, first)
-    P = precision(np.clip(np.diff(u[first]), _CLOSEST, _FARTHEST), ratio, seen)
-    state = np.einsum("nij,nj->ni", A, mean(P, pull)[node]) * usual
-    spread = A @ covariance(P)[node] @ np.swapaxes(A, 1, 2)
+    means, covariances = _solved(np.minimum(np.diff(u[first]), _FARTHEST), ratio, seen, pull)
+    state = np.einsum("nij,nj->ni", A, means[node]) * usual
+    spread = A @ covariances[node] @ np.swapaxes(A, 1, 2)
     sigmas = usual * np.sqrt(np.maximum(spread[:, range(3), range(3)], 0.0))
     return Smooth(
         state[:, 0] + trend(u),
@@ -260,6 +261,18 @@ def smoothed(t: Array, y: Array, sigma: Array | float, ratio: float) -> Smooth:
         sigmas[:, 0], sigmas[:, 1] / tau, sigmas[:, 2] / tau**2,
         weight * spread[:, 0, 0],
     )  # fmt: skip
+
+
+def _solved(step: Array, ratio: float, seen: Array, pull: Array) -> tuple[Array, Array]:
+    """Means (n, 3) and covariances (n, 3, 3), with as vague a prior as rounding allows."""
+    for vague in _VAGUE[:-1]:
+        try:
+            P = precision(step, ratio, seen, vague)
+            return mean(P, pull), covariance(P)
+        except np.linalg.LinAlgError:
+            continue
+    P = precision(step, ratio, seen, _VAGUE[-1])
+    return mean(P, pull), covariance(P)
 
 
 def _nodes(u: Array) -> NDArray[np.int_]:

@@ -7,7 +7,7 @@ time.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -233,6 +233,10 @@ _LOOK = 60.0
 _TOO_FAR, _NOT_FAR = 10.0, 0.05
 """Times as far sideways as a turn takes the joint, or as little, in another unit only. Wheels that
 slide leave 0.7."""
+_ALONG = 0.5
+"""A smaller part than this is not that of a frame that is right."""
+_BETTER, _ALMOST = 2.0, 1.15
+"""Times as much that is left in a wrong frame, and in one that may be right too."""
 _WITH, _STRIDE = 0.7, 5
 """Correlation of the angles' steps, over so many samples, from which on they turn together."""
 
@@ -262,18 +266,42 @@ def _of_units(sizes: dict[str, float], length: float) -> Iterator[Notice]:
         yield notice("units.heading", psi=sizes["psi"], phi=sizes["phi"])
 
 
+_FRAMES: dict[str, Callable[[Array, Array], tuple[Array, Array]]] = {
+    "x and y exchanged": lambda x, y: (y, x),
+    "x mirrored": lambda x, y: (-x, y),
+    "y mirrored": lambda x, y: (x, -y),
+    "psi turned by 180 deg": lambda x, y: (-x, -y),
+    "psi turned by 90 deg": lambda x, y: (y, -x),
+    "psi turned by -90 deg": lambda x, y: (-y, x),
+}
+"""What may be wrong with a frame, and how to put it right."""
+
+
 def _of_frame(x: Array, y: Array, psi: Array, c: float) -> Iterator[Notice]:
     """A turn of platform 1 about its axle takes the joint c sideways; wheels that slip, less."""
+    share, left = _sideways(x, y, psi, c)
+    others = {what: _sideways(*right(x, y), psi, c)[1] for what, right in _FRAMES.items()}
+    best = min(others.values())
+    if share < _ALONG and left > _BETTER * best:
+        meant = [what for what, off in others.items() if off < _ALMOST * best]
+        yield notice("units.frame", meant=" or ".join(meant), left=1e3 * left, best=1e3 * best)
+    elif abs(share) > _TOO_FAR or 0 < abs(share) < _NOT_FAR:
+        unit = "millimetres or centimetres" if abs(share) > 1 else "another unit"
+        yield notice("units.sideways", ratio=abs(share), unit=unit)
+
+
+def _sideways(x: Array, y: Array, psi: Array, c: float) -> tuple[float, float]:
+    """The part of c by which turns take the joint sideways, and what is left of its way, m."""
     dx, dy, turned = (values[_STRIDE:] - values[:-_STRIDE] for values in (x, y, psi))
     heading = (psi[_STRIDE:] + psi[:-_STRIDE]) / 2
     side = np.cos(heading) * dy - np.sin(heading) * dx
     known = np.isfinite(side) & np.isfinite(turned)
-    turned, side = turned[known], side[known]
+    # The joint is behind the axle: psi is the heading from it towards there.
+    side, turned = side[known], -c * turned[known]
     swings = float(turned @ turned)
-    ratio = abs(float(side @ turned)) / (c * swings) if swings > 0 and c > 0 else 0.0
-    if ratio > _TOO_FAR or 0 < ratio < _NOT_FAR:
-        unit = "millimetres or centimetres" if ratio > 1 else "another unit"
-        yield notice("units.sideways", ratio=ratio, unit=unit)
+    if not swings > 0:
+        return 0.0, 0.0
+    return float(side @ turned) / swings, float(np.sqrt(np.mean((side - turned) ** 2)))
 
 
 def _of_signs(psi: Array, phi: Array) -> Iterator[Notice]:

@@ -137,6 +137,11 @@ TABLE: dict[str, Entry] = {
         "The joint moves sideways {ratio:.3g} times as far as the turns of platform 1 take it. "
         "Expected metres: are these {unit}?"
     ),
+    "units.frame": _error(
+        "Place and heading do not go together: the joint moves sideways by {left:.3g} mm at a time "
+        "as no turn of platform 1 takes it. Expected less, and with {meant} it is {best:.3g} mm.",
+        "Correct the frame, or the columns.",
+    ),
     "units.phi": _error(
         "phi ranges over {moved:.3g} in a period, and the gait over {commanded:.3g} rad. Expected "
         "about the same: is one of them in degrees, or did the servo not follow?"

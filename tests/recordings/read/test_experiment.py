@@ -216,3 +216,16 @@ def test_lint_reads_the_recordings_too(write, tmp_path):
     done = lint("--json", tmp_path / "experiment.yaml")
     (issue,) = json.loads(done.stdout)["issues"]
     assert (issue["line"], issue["file"]) == (3, f"{tmp_path}/two.csv")
+
+
+def test_a_heading_that_is_kept_within_a_turn_is_right_for_all_verbs(write, tmp_path):
+    t, x, y, psi, phi = motion(600)
+    wrapped = (psi + 2.0 + np.pi) % (2 * np.pi) - np.pi
+    turned = (x + 1j * y) * np.exp(2j)
+    write(plain((t, turned.real, turned.imag, wrapped, phi)), "one.csv")
+    write(f"{HEAD}recordings:\n- {{file: one.csv, {GAIT}}}\n", "experiment.yaml")
+    experiment, issues = experiment_of(tmp_path)
+    assert experiment is not None
+    assert np.abs(np.diff(experiment.runs[0].recording.values["psi"])).max() < 0.1
+    assert any("jumps by a whole turn" in issue.message for issue in issues)
+    assert "degrees" not in lint(tmp_path).stdout

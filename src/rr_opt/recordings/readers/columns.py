@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -117,10 +117,10 @@ def _check(header: Header, needed: Sequence[str], known: Sequence[str], file: st
     if twice:
         wrong.append(f"Read the column `{twice[0]}` twice. Expected it once. Delete one of them.")
     if missing:
-        guesses = _guesses([name for name in header.names if name not in known], missing)
-        meant = ", ".join(f"{name}: {column}" for name, column in guesses.items())
+        meant_by = guesses([name for name in header.names if name not in known], missing)
+        meant = ", ".join(f"{name}: {column}" for name, column in meant_by.items())
         advice = "Add what is missing."
-        if guesses:
+        if meant_by:
             advice = f"Rename them, or write `columns: {{{meant}}}` in the experiment file."
         # A letter alone is like no other: the columns that there are tell more.
         wrong.append(
@@ -148,8 +148,8 @@ _FOREIGN = {
 """What others call the channels."""
 
 
-def _guesses(names: Sequence[str], missing: Sequence[str]) -> dict[str, str]:
-    """The columns that may be the missing ones under another name, by its beginning."""
+def guesses(names: Iterable[str], missing: Sequence[str]) -> dict[str, str]:
+    """By channel, the columns that may be the missing ones, by the beginning of their names."""
     found: dict[str, str] = {}
     for channel in missing:
         words = (channel, *_FOREIGN.get(channel, ()))

@@ -8,7 +8,7 @@ from types import MappingProxyType
 import numpy as np
 
 from rr_opt.model.experiment import CHANNELS, Flag, Recording
-from rr_opt.recordings.readers.columns import column_names, read_columns
+from rr_opt.recordings.readers.columns import column_names, guesses, read_columns
 from rr_opt.recordings.readers.text import Reader, ReadOptions, Text
 
 _NEEDED = ("t", *CHANNELS)
@@ -16,9 +16,9 @@ _KNOWN = (*_NEEDED, "torque")
 
 
 def sniff(text: Text, options: ReadOptions) -> bool:
-    """Whether a header row has the time, or several of the channels."""
+    """Whether a header row has the time, or several of the channels, if by another name."""
     names = column_names(text, options.columns, _KNOWN)
-    return "t" in names or len(names & set(CHANNELS)) > 1
+    return "t" in names or len(names & set(CHANNELS)) > 1 or len(guesses(names, _NEEDED)) > 2
 
 
 def read(file: str, text: Text, options: ReadOptions) -> Recording:

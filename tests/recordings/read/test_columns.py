@@ -1,0 +1,78 @@
+"""`columns` maps names, units and counts of foreign files; what it cannot map is refused."""
+
+import numpy as np
+import pytest
+
+from rr_opt.files.issue import InvalidFileError
+from rr_opt.model.experiment import Column
+from rr_opt.recordings.experiment import experiment_of, read_experiment
+from rr_opt.recordings.readers import ReadOptions, ServoLog, read_file
+from tests.recordings.read.test_experiment import GAIT, HEAD, motion, plain
+
+FOREIGN = """\
+Time (ms);pos x;pos y;yaw;joint;load
+0;1000;2000;90;0.1;65535
+10;1001;2000;91;0.2;3
+20;1002;2000;92;0.3;32768
+"""
+COLUMNS = {
+    "t": Column("time (ms)", 1e-3),
+    "x": Column("pos x", 1e-3),
+    "y": Column("Pos Y", 1e-3),
+    "psi": Column("yaw", np.pi / 180),
+    "phi": Column("joint"),
+    "torque": Column("load", 1.13e-3, 16),
+}
+
+
+def test_names_units_and_counts(write):
+    run = read_file(write(FOREIGN), ReadOptions(columns=COLUMNS))
+    np.testing.assert_allclose(run.t, [0, 0.01, 0.02])
+    np.testing.assert_allclose(run.values["x"], [1, 1.001, 1.002])
+    np.testing.assert_allclose(run.values["psi"], np.radians([90, 91, 92]))
+    np.testing.assert_allclose(run.values["torque"], 1.13e-3 * np.array([-1, 3, -32768]))
+    assert [doubt.code for doubt in run.doubts] == ["file.signed"]
+
+
+def test_a_column_that_is_called_as_the_channel_gives_way_to_the_one_that_is_named(write):
+    text = "t,x,y,psi,theta,phi\n0,1,2,9,3,4\n0.01,1,2,9,3,4\n"
+    run = read_file(write(text), ReadOptions(columns={"psi": Column("theta")}))
+    assert run.values["psi"].tolist() == [3, 3]
+    assert run.doubts == ("Columns that were not read: 'psi, as named'.",)
+    # A file that has its own name for it is read too.
+    assert read_file(write(plain(motion())), ReadOptions(columns=COLUMNS)).values["psi"].any()
+
+
+def test_a_servo_log_may_have_other_names_too(write):
+    columns = {"goal": Column("cmd"), "t": Column("clock")}
+    log = read_file(write("clock,cmd\n0,512\n0.004,513\n"), ReadOptions(columns=columns))
+    assert isinstance(log, ServoLog)
+    assert log.goal is not None
+    assert log.goal.tolist() == [512, 513]
+
+
+def test_what_is_missing_is_guessed(write):
+    with pytest.raises(InvalidFileError) as caught:
+        read_file(write("time,x_m,y_m,yaw,theta2,phi_rad\n0,1,2,3,4,5\n1,1,2,3,4,5\n"))
+    told = str(caught.value)
+    assert "write `columns: {t: time, x: x_m, y: y_m, psi: yaw, phi: phi_rad}`" in told
+
+
+def test_an_experiment_file_says_them(write, tmp_path):
+    text = plain(motion()).replace("t,x,y,psi,phi", "time,x,y,theta,angle")
+    write(text, "one.csv")
+    columns = "columns: {t: time, psi: {column: theta, factor: 1 rad}, phi: {column: angle}}\n"
+    runs = f"recordings:\n- {{file: one.csv, {GAIT}}}\n"
+    write(HEAD + columns + runs, "experiment.yaml")
+    (run,) = read_experiment(tmp_path).runs
+    np.testing.assert_allclose(run.recording.values["psi"], motion()[3], atol=0.02)
+    for wrong, said in (
+        ("{psy: theta}", "Read the key 'psy'"),
+        ("{psi: 3}", "Expected the name of a column"),
+        ("{psi: {column: theta, factor: 1 m}}", "'1 m', a length"),
+        ("{psi: {column: theta, bits: 0}}", "a whole number from 2 to 64"),
+        ("{psi: {column: theta, scale: 2}}", "Read the key 'scale'"),
+        ("7", "Read 7"),
+    ):
+        write(f"{HEAD}columns: {wrong}\n{runs}", "experiment.yaml")
+        assert any(said in str(issue) for issue in experiment_of(tmp_path)[1]), wrong
