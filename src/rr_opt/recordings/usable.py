@@ -252,11 +252,9 @@ def plan_notices(run: Run, robot: Robot) -> tuple[Notice, ...]:
     sizes = {name: _swing(t, values, period) for name, values in channels.items()}
     x, y, psi, phi = channels.values()
     length = robot.platform1.c + robot.platform2.c
-    return (
-        *_of_command(t, phi, run.gait),
-        *(tuple(_of_units(sizes, length)) or _of_frame(x, y, psi, robot.platform1.c)),
-        *_of_signs(psi, phi),
-    )
+    units, signs = tuple(_of_units(sizes, length)), tuple(_of_signs(psi, phi))
+    frame = () if units or signs else _of_frame(x, y, psi, robot.platform1.c)
+    return (*_of_command(t, phi, run.gait), *units, *frame, *signs)
 
 
 def _of_units(sizes: dict[str, float], length: float) -> Iterator[Notice]:

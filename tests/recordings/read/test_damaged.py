@@ -44,7 +44,24 @@ def c3d() -> bytes:
 SIGNAL = bytes.fromhex("010080ff010080ff")
 """Two signalling NaNs."""
 
-FILES = {"plain": PLAIN, "servo": SERVO, "vicon": VICON, "trc": TRC, "c3d": c3d()}
+MOTIVE = (
+    b"Format Version,1.23,Capture Frame Rate,100,Length Units,Meters\n\n,,Marker,Marker,Marker\n"
+    b",,A,A,A\n,,1,1,1\n,,Position,Position,Position\nFrame,Time (Seconds),X,Y,Z\n"
+    b"0,0.00,1,2,3\n1,0.01,1,2,3\n"
+)
+QUALISYS = (
+    b"NO_OF_FRAMES\t2\nFREQUENCY\t100\nDATA_INCLUDED\t3D\nMARKER_NAMES\tA\n"
+    b"Frame\tTime\tA X\tA Y\tA Z\n1\t0.00\t1\t2\t3\n2\t0.01\t1\t2\t3\n"
+)
+FILES = {
+    "motive": MOTIVE,
+    "qualisys": QUALISYS,
+    "plain": PLAIN,
+    "servo": SERVO,
+    "vicon": VICON,
+    "trc": TRC,
+    "c3d": c3d(),
+}
 PIECES = st.sampled_from(
     [
         piece.encode()

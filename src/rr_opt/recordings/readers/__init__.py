@@ -8,7 +8,16 @@ from typing import NoReturn
 from rr_opt.files.issue import refuse
 from rr_opt.messages import shown
 from rr_opt.model.experiment import Recording
-from rr_opt.recordings.readers import c3d, netcdf, plain_csv, servo_log, trc, vicon_csv
+from rr_opt.recordings.readers import (
+    c3d,
+    motive_csv,
+    netcdf,
+    plain_csv,
+    qualisys_tsv,
+    servo_log,
+    trc,
+    vicon_csv,
+)
 from rr_opt.recordings.readers.marker_rows import MarkerData
 from rr_opt.recordings.readers.servo_log import ServoLog
 from rr_opt.recordings.readers.text import (
@@ -26,6 +35,8 @@ READERS: tuple[Reader, ...] = (
     c3d.READER,
     netcdf.READER,
     trc.READER,
+    motive_csv.READER,
+    qualisys_tsv.READER,
     vicon_csv.READER,
     servo_log.READER,
     plain_csv.READER,

@@ -48,7 +48,13 @@ class MarkerData:
 
 
 _METRES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "dm": 0.1, "in": 0.0254, "inches": 0.0254}
-_METRES |= {"millimeters": 1e-3, "millimetres": 1e-3, "meters": 1.0, "metres": 1.0}
+_METRES |= {
+    "millimeters": 1e-3,
+    "millimetres": 1e-3,
+    "centimeters": 1e-2,
+    "meters": 1.0,
+    "metres": 1.0,
+}
 
 
 @dataclass(frozen=True)
