@@ -18,6 +18,7 @@ from hypothesis import strategies as st
 from typer.testing import CliRunner
 
 from rr_opt.cli.main import app
+from rr_opt.model.experiment import Recording
 from rr_opt.recordings.readers import read_file
 from tests.recordings.read.test_damaged import c3d
 from tests.recordings.read.test_experiment import GAIT, HEAD, MARKERS, motion, plain, vicon
@@ -157,7 +158,9 @@ def test_netcdf(folder, capfd, data):
     from rr_opt.recordings.readers.netcdf import write_netcdf
 
     if not (folder / "good.nc").exists():
-        write_netcdf(folder / "good.nc", read_file(folder / "run.csv"))
+        good = read_file(folder / "run.csv")
+        assert isinstance(good, Recording)
+        write_netcdf(folder / "good.nc", good)
     content = (folder / "good.nc").read_bytes()
     _, content = data.draw(spoiled({"netcdf": content}))
     (folder / "run.nc").write_bytes(content)
