@@ -1,4 +1,4 @@
-"""This project: its engine's growing horizon, windows of 5 s first and whole recordings then."""
+"""This project: its engine, by multiple shooting and then by least squares over whole runs."""
 
 from __future__ import annotations
 
@@ -10,8 +10,7 @@ from rr_opt.machines.racer.racer import RollerRacer
 from rr_opt.model.experiment import CHANNELS, Experiment, Noise, Recording, Run
 from rr_opt.model.gait import SineGait
 from rr_opt.model.robot import Platform, Robot
-from rr_opt.sysid.candidate import joined, nominal, windows
-from rr_opt.sysid.least_squares import Problem, solve
+from rr_opt.sysid.estimation import fitted, initial, whole_runs
 from rr_opt.sysid.model import Quantity
 
 
@@ -23,10 +22,8 @@ def fit(case: Case, start: Array) -> Array:
         Quantity(name, "", value, value, False, true / BOX, BOX * true, value)
         for (name, value), true in zip(begin.items(), TRUE.tolist(), strict=True)
     )
-    pieces = windows(model, range(len(case.gaits)))
-    problem = Problem(model, pieces, (), quantities)
-    near = solve(problem, begin, nominal(model, pieces).starts)
-    found = joined(model, near).values
+    problem, states = initial(model, (), quantities, begin, range(len(case.gaits)))
+    found = whole_runs(fitted(problem, begin, states)).values
     return np.array([found[name] for name in PARAMETERS])
 
 

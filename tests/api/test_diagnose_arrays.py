@@ -26,7 +26,7 @@ def of_arrays(folder, **changes):
 
 
 def test_the_same_numbers_the_same_answer(folder, tmp_path):
-    read, made = (rr.diagnose(one, workers=1) for one in (folder, of_arrays(folder)))
+    read, made = (rr.diagnose(one) for one in (folder, of_arrays(folder)))
     assert (read.verdict, made.verdict) == ("consistent", "consistent")
     one, other = read.record(), made.record()
     assert [one["summary"], one["effects"]] == [other["summary"], other["effects"]]

@@ -46,7 +46,7 @@ PLANTED = [
     ("processes-in-batch", "rr_opt/design/planted.py", "import joblib"),
     ("processes-in-batch", "rr_opt/cli/planted.py", "from distributed import Client"),
     ("plain-model", "rr_opt/model/robot.py", "import casadi as ca"),
-    ("trial-apart", "rr_lab/trial/planted.py", "import rr_opt.sysid.verdict"),
+    ("trial-apart", "rr_lab/trial/planted.py", "import rr_opt.sysid.selection"),
     ("lab-apart", "rr_lab/rig.py", "import rr_opt.motion.steady_cycle"),
     ("lab-apart", "rr_lab/draw.py", "import rr_opt.files.lint"),
     ("engines-apart", "rr_lab/planar/planted.py", "import rr_lab.mujoco.plant"),

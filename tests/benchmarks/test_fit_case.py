@@ -10,22 +10,23 @@ from benchmarks.fit.referee import predicted
 from rr_opt.machines.racer.parameters import values_of
 from rr_opt.machines.racer.racer import RollerRacer
 from rr_opt.motion.floor_motion import floor_motion
-from rr_opt.sysid.model import Piece
+from rr_opt.sysid.model import Request
+from tests.sysid.made_up import whole
 
 
 def of_model(run, p):
     """What the model of the diagnosis predicts of a recording, (n, 4)."""
     model = RollerRacer(ours._experiment(case(), TRUE))
     given = model.nominal | dict(zip(PARAMETERS, p.tolist(), strict=True))
-    whole = Piece(run, 0, len(model.runs[run].t))
-    path = model.simulated.drive_path(whole, given, ())
+    segment = whole(model, run)
+    path = model.simulator.drive_path(segment, given, ())
     own = floor_motion()
     values = values_of(given, own.parameters)
     # The state holds z = v - g dphi: with z = 0, v is what dphi alone makes.
     x, y, psi, v = BEGINS[run]
     still = float(own.speeds([x, y, psi, 0.0], path.at[:2, 0], values)[0])
     start = np.array([x, y, psi, v - still])
-    return model.respond(whole, given, (), start).predicted
+    return model.predicted(Request(segment, given, start), ())
 
 
 @pytest.mark.parametrize("run", range(len(GAITS)))

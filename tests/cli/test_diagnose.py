@@ -6,7 +6,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rr_opt.batch.shared_work import SharedWork
 from rr_opt.model.gait import SineGait
 from rr_opt.motion.rollout import rollout
 from tests.cli.test_interrupt import PROGRAM, interrupted
@@ -14,7 +13,7 @@ from tests.robots import BENCHMARK
 from tests.sysid.bad_data.folder import HEAD
 
 GAITS = ((0.5, 1.0, 0.0), (0.7, 1.2, 0.1), (0.4, 0.8, -0.1))
-KEYS = {"verdict", "summary", "location", "effects", "candidates", "indistinguishable",
+KEYS = {"verdict", "summary", "location", "effects", "candidates", "remainder", "indistinguishable",
         "next_experiment", "fit", "doubts", "left_out", "version", "input_sha256"}  # fmt: skip
 
 
@@ -139,17 +138,13 @@ def test_wrong_folders_end_with_a_message(run, tables, tmp_path):
 
 def test_interrupted_it_exits_130(folder, tmp_path):
     code, stdout, stderr = interrupted(
-        PROGRAM, ["diagnose", folder, "--out", "res"], tmp_path, after="its parameters", delay=0.2
+        PROGRAM,
+        ["diagnose", folder, "--out", "res"],
+        tmp_path,
+        after="fitting the parameters",
+        delay=0.2,
     )
     assert code == 130, stderr
     assert "Traceback" not in stderr
     assert not stdout
     assert not (tmp_path / "res").exists()
-
-
-def test_shared_work_comes_in_order():
-    work = SharedWork()
-    try:
-        assert work(abs, [-3, 2, -1]) == [3, 2, 1]
-    finally:
-        work.close()

@@ -44,7 +44,7 @@ def test_it_sees_the_files_of_the_folder_alone(made, seen):
 def test_its_folder_is_named_alike_for_every_case(seen):
     assert Path(seen["cwd"]).name == "recordings"
     out = str(Path(seen["cwd"]).parent / "said")
-    assert seen["words"][1:] == [seen["cwd"], "--out", out, "--workers", "1"]
+    assert seen["words"][1:] == [seen["cwd"], "--out", out]
 
 
 def test_nothing_tells_kind_seed_number_or_answer(made, seen):

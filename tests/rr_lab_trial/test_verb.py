@@ -51,17 +51,6 @@ def test_planar_cases_need_no_mujoco(tmp_path, monkeypatch):
     assert ["engine", "planar"] in [told.split() for told in done.stdout.splitlines()]
 
 
-@pytest.mark.parametrize("workers", [1, 2])
-def test_shared_work_comes_in_order_with_any_number_of_processes(workers):
-    from rr_opt.batch.shared_work import SharedWork
-
-    work = SharedWork(workers)
-    try:
-        assert work(abs, [-3, 1, -2]) == [3, 1, 2]
-    finally:
-        work.close()
-
-
 def test_one_case_again_tells_what_was_hidden_and_what_was_said(tmp_path, monkeypatch):
     monkeypatch.setattr(one, "make", made_up)
     monkeypatch.setattr(one, "diagnose_apart", stub)

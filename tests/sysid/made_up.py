@@ -10,20 +10,12 @@ import numpy as np
 
 from rr_opt.array import Array
 from rr_opt.machines.racer.racer import RollerRacer
+from rr_opt.machines.racer.simulation import slips
 from rr_opt.model.experiment import CHANNELS, Experiment, Noise, Recording, Run, Start, Uncertainty
 from rr_opt.model.gait import SineGait
 from rr_opt.model.robot import Platform, Robot, Servo
-from rr_opt.sysid.candidate import (
-    Chosen,
-    Explanation,
-    explain,
-    joined,
-    nominal,
-    parameters,
-    windows,
-)
-from rr_opt.sysid.model import Piece
-from rr_opt.sysid.selection import Search
+from rr_opt.sysid.candidates import Candidate, first
+from rr_opt.sysid.model import Request, Segment
 
 ROBOT = Robot(
     Platform(0.5, 0.004, 0.15, 0.03, 0.05, 4e-6),
@@ -72,6 +64,27 @@ def _recording(name: str, t: Array, values: Array) -> Recording:
     )
 
 
+def whole(model: RollerRacer, run: int) -> Segment:
+    """All of a run."""
+    n = model.runs[run].t.size
+    return Segment(run, 0, n, n - 1)
+
+
+def predicted(
+    model: RollerRacer,
+    run: int,
+    values: Mapping[str, float],
+    effects: tuple[str, ...],
+    start: Array,
+) -> Array:
+    """What would be recorded (n, 4) of a whole run.
+
+    start  x, y, psi, z and the side speeds, which count only where the wheels may slip
+    """
+    state = start[: 6 if slips(effects) else 4]
+    return model.predicted(Request(whole(model, run), values, state), effects)
+
+
 def recorded(given: Experiment, predict: Callable[[int, Array], Array], seed: int) -> RollerRacer:
     """The experiment with predict(run, start) (n, 4) and noise in its recordings."""
     rng = np.random.default_rng(seed)
@@ -91,29 +104,9 @@ def with_effect(values: Mapping[str, float], effects: tuple[str, ...], **about) 
     seed = about.pop("seed", 1)
     given = experiment(**about)
     empty = RollerRacer(given)
-
-    def predict(k: int, start: Array) -> Array:
-        piece = Piece(k, 0, len(given.runs[k].recording.t))
-        return empty.respond(piece, values, effects, start).predicted
-
-    return recorded(given, predict, seed)
+    return recorded(given, lambda k, start: predicted(empty, k, values, effects, start), seed)
 
 
-def base_of(model: RollerRacer) -> Explanation:
-    """The parameters alone."""
-    fit = parameters(model, nominal(model, windows(model, range(len(model.runs)))))
-    return Explanation((), fit, joined(model, fit))
-
-
-def explained(model: RollerRacer, base: Explanation, *chosen: Chosen) -> Explanation:
-    """The parameters and effects."""
-    start = nominal(model, list(base.windows.starts))
-    fit = explain(model, chosen, start, base.windows)
-    return Explanation(chosen, fit, joined(model, fit))
-
-
-def search_of(model: RollerRacer, base: Explanation, *tried: Explanation) -> Search:
-    """A search that tried these."""
-    search = Search(model, nominal(model, list(base.windows.starts)), base, first=1.0)
-    search.tried = [base, *tried]
-    return search
+def base_of(model: RollerRacer) -> Candidate:
+    """The parameters alone, fitted to all runs."""
+    return first(model, range(len(model.runs)))

@@ -1,6 +1,6 @@
-"""A run's derivatives by the servo's faults and the clock are right to six per cent.
+"""A run's linearisation by the servo's faults and the clock is right to six per cent.
 
-Held against differences of whole predictions, from rest and running, where dphi jumps as well.
+Held against differences of whole simulations, from rest and running, where dphi jumps as well.
 """
 
 import numpy as np
@@ -9,8 +9,9 @@ import pytest
 from rr_opt.machines.racer.racer import RollerRacer
 from rr_opt.model.experiment import CHANNELS, Experiment, Noise, Recording, Run, Uncertainty
 from rr_opt.model.gait import SineGait
-from rr_opt.sysid.model import Piece
+from rr_opt.sysid.model import Request
 from tests.robots import BENCHMARK
+from tests.sysid.made_up import whole
 
 GAIT = SineGait(0.6, 1.0, 0.1)
 NOISE = Noise(1e-3, 3e-3)
@@ -36,23 +37,17 @@ def racer(start) -> RollerRacer:
 @pytest.mark.parametrize("name", FAULTS)
 def test_against_differences(name, start):
     model, effects, (value, step) = racer(start), (name.split(".")[0],), FAULTS[name]
-    piece, begin = Piece(0, 0, 301), np.array([0.0, 0.0, 0.3, 0.05])
-    found = model.respond(piece, {name: value}, effects, begin, (name,)).by_value[:, :, 0]
-    up, down = (
-        model.respond(piece, {name: value + way * step}, effects, begin).predicted
-        for way in (1, -1)
+    begin, segment = np.array([0.0, 0.0, 0.3, 0.05]), whole(model, 0)
+    (found,) = model.linearise([Request(segment, {name: value}, begin)], effects, (name,))
+    here, up, down = model.simulate(
+        [Request(segment, {name: value + way * step}, begin) for way in (0, 1, -1)], effects
     )
-    expected = (up - down) / (2 * step)
-    size = np.sqrt(np.mean(expected**2, axis=0))
-    off = np.sqrt(np.mean((found - expected) ** 2, axis=0))
-    assert np.all(off <= 0.06 * np.maximum(size, 0.1 * size.max()))
-
-
-def test_the_joint_swings_in_its_play_as_the_fitted_robot_would():
-    model, effects, width = racer("running"), ("servo_backlash",), {"servo_backlash.width": 0.05}
-    given = {**model.nominal, **width}
-    light, heavy = (
-        model.simulated.angle(0, {**given, "I2": share * given["I2"]}, effects)
-        for share in (0.5, 2.0)
-    )
-    assert np.abs(light - heavy).max() > 1e-3
+    slope = ((up.residuals - down.residuals) / (2 * step)).ravel()
+    k = begin.size
+    assert found.gram[k, k] == pytest.approx(slope @ slope, rel=0.1)
+    # Nothing of it is along anything else: the cosine between the two is that of six per cent.
+    r = here.residuals.ravel()
+    bound = 0.06 * np.linalg.norm(slope) * np.linalg.norm(r)
+    assert found.gram[k, -1] == pytest.approx(slope @ r, abs=bound)
+    end = (up.end - down.end) / (2 * step)
+    assert np.abs(found.end[:, k] - end).max() <= 0.06 * np.abs(end).max()

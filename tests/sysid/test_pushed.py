@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from rr_opt.machines.racer.observed import observed
-from rr_opt.machines.racer.unknown_input import respond
-from rr_opt.sysid.model import Piece
+from rr_opt.machines.racer.unknown_input import linearised_inputs
+from rr_opt.sysid.model import Request, Segment
 from tests.sysid.made_up import with_effect
 
-PIECE = Piece(1, 0, 300)
+SEGMENT = Segment(1, 0, 300, 299)
 
 
 def _pushes(name, along, nominal):
@@ -28,33 +28,33 @@ def _pushes(name, along, nominal):
 @pytest.mark.parametrize(
     "name", ["coulomb_friction.force1", "coulomb_friction.force2", "kappa1", "servo_offset.offset"]
 )
-def test_its_derivative_is_that_of_the_effect(name):
+def test_its_column_is_that_of_the_effect(name):
     model = with_effect({}, ())
-    start = model.start(PIECE)
+    request = Request(SEGMENT, {}, model.initial_state(SEGMENT, (), {}))
     effects = ("coulomb_friction", "servo_offset")
-    by_effect = model.respond(PIECE, {}, effects, start, (name,)).by_value
     # Where the path is not what was recorded, the pushes are not those along it.
-    at_rest = model.respond(PIECE, {}, (), start).predicted
-    model.runs[1].values[PIECE.span] = at_rest
-    along = observed(model, PIECE, {}, (), start)
+    data = model.runs[1]
+    data.values[SEGMENT.span] = model.predicted(request, ())
+    along = observed(model, request, ())
     pushes = _pushes(name, along, model.nominal)[None]
-    out = respond(model, PIECE, {}, (), start, (), pushes, np.zeros(1))
-    assert by_effect is not None
-    size = np.abs(by_effect[:, :3]).max(axis=0)
-    off = np.abs(out.by_push - by_effect)[:, :3].max(axis=0)
-    assert (off < 0.02 * size).all()
+    # Recordings that are off by a noise, so that the residual is seen too.
+    data.values[:] += 0.5 * data.sigma * np.sin(np.arange(data.values.size)).reshape(-1, 4)
+    model.simulator._seen.clear()
+    (linear,) = model.linearise([request], effects, (name,))
+    gram, end = linearised_inputs(model, request, (), (), pushes)
+    size = np.sqrt(np.diag(linear.gram))
+    assert np.abs(gram - linear.gram) / np.outer(size, size) == pytest.approx(0.0, abs=0.02)
+    assert end[:, -1] == pytest.approx(
+        linear.end[:, -1], abs=0.02 * np.abs(linear.end[:, -1]).max()
+    )
 
 
-def test_what_is_pushed_goes_where_the_derivative_says():
+def test_where_nothing_is_wanted_it_is_the_plain_linearisation():
     model = with_effect({}, ())
-    start = model.start(PIECE)
-    along = observed(model, PIECE, {}, (), start)
-    pushes = np.zeros((2, 7, along.t.size))
-    pushes[0, :2], pushes[1, 4] = 1.0, np.sin(along.t)
-    for amounts in np.diag([1e-5, 1e-4]):
-        there, back = (
-            respond(model, PIECE, {}, (), start, (), pushes, way * amounts) for way in (1, -1)
-        )
-        moved = (there.predicted - back.predicted) / 2
-        said = there.by_push @ amounts
-        assert np.abs(moved - said).max() < 0.01 * np.abs(said).max()
+    request = Request(SEGMENT, {}, model.initial_state(SEGMENT, (), {}))
+    names = ("m1", "kappa2")
+    (linear,) = model.linearise([request], (), names)
+    gram, end = linearised_inputs(model, request, (), names, np.zeros((0, 7, 300)))
+    size = np.sqrt(np.diag(linear.gram))
+    assert (gram - linear.gram) / np.outer(size, size) == pytest.approx(0.0, abs=1e-3)
+    assert end == pytest.approx(linear.end, abs=1e-3 * np.abs(linear.end).max())

@@ -3,11 +3,10 @@
 import numpy as np
 import pytest
 
-from rr_opt.machines.racer.proposals import of_slip
+from rr_opt.machines.racer.grip import slips
 from rr_opt.machines.racer.simulation import side_speeds
-from rr_opt.sysid.candidate import nominal, parameters, windows
-from rr_opt.sysid.model import Piece
-from tests.sysid.made_up import GAITS, ROBOT, with_effect
+from rr_opt.sysid.model import Request, Segment
+from tests.sysid.made_up import GAITS, ROBOT, base_of, with_effect
 
 SLIDES = {"lateral_slip.mu": 0.012}
 
@@ -41,27 +40,27 @@ def sliding():
     return with_effect(SLIDES, ("lateral_slip",))
 
 
-def test_a_piece_may_begin_while_the_wheels_slide(sliding):
-    piece = Piece(1, 40, 240)
-    start = sliding.start(piece)
-    response = sliding.respond(piece, SLIDES, ("lateral_slip",), start, ())
-    _, by_start = response.slopes
+def test_a_segment_may_begin_while_the_wheels_slide(sliding):
+    segment, effects = Segment(1, 40, 240, 240), ("lateral_slip",)
+    start = sliding.initial_state(segment, effects, SLIDES)
+    (linear,) = sliding.linearise([Request(segment, SLIDES, start)], effects, ())
     step = 1e-4
     for k in (4, 5):
-        moved = [
-            sliding.respond(piece, SLIDES, ("lateral_slip",), start + way * np.eye(6)[k]).predicted
-            for way in (-step, step)
-        ]
-        change = (moved[1] - moved[0]) / (2 * step)
-        assert np.abs(by_start[:, :, k] - change).max() < 0.1 * np.abs(change).max()
-        assert np.abs(change).max() > 0.01
+        up, down = sliding.simulate(
+            [Request(segment, SLIDES, start + way * step * np.eye(6)[k]) for way in (1, -1)],
+            effects,
+        )
+        change = (up.residuals - down.residuals) / (2 * step)
+        assert np.abs(change).max() > 1.0
+        assert np.sqrt(linear.gram[k, k]) == pytest.approx(np.linalg.norm(change), rel=0.1)
 
 
-def test_a_grip_is_found_behind_parameters_bent_to_imitate_it(sliding):
-    bent = parameters(sliding, nominal(sliding, windows(sliding, range(len(sliding.runs)))))
+def test_one_of_the_grips_to_begin_with_is_near_the_true_one(sliding):
+    bent = base_of(sliding).fit
     forms = sliding.catalogue["lateral_slip"].forms
-    (best,) = of_slip(sliding, "lateral_slip", len(forms) - 1, bent)
-    assert best.values["lateral_slip.mu"] == pytest.approx(SLIDES["lateral_slip.mu"], rel=0.3)
-    assert best.gain > 0.5 * (bent.cost - bent.count)
-    # What is left of that form once it is found is not looked for by itself.
-    assert of_slip(sliding, "lateral_slip", 1, bent) == []
+    guesses = slips(sliding, bent)
+    tried = [guess["lateral_slip.mu"] for _, guess in guesses if "lateral_slip.mu" in guess]
+    nearest = min(abs(np.log(mu / SLIDES["lateral_slip.mu"])) for mu in tried)
+    assert nearest < np.log(1.3)
+    for form, guess in guesses:
+        assert set(guess) == {q.name for q in forms[form].quantities}

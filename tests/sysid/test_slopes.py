@@ -71,19 +71,26 @@ def test_against_differences(name):
     made = predict(system, drive, start, p)
     found = slopes(system, drive, made, p, np.diag(scale), None)
 
-    def moved(by_start: np.ndarray, by_p: np.ndarray) -> np.ndarray:
-        ends = [
-            predict(system, drive, start + s * by_start, p + s * by_p).seen for s in (1e-5, -1e-5)
-        ]
-        return (ends[0] - ends[1]) / 2e-5
+    def moved(by_start: np.ndarray, by_p: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        up, down = (
+            predict(system, drive, start + s * by_start, p + s * by_p) for s in (1e-5, -1e-5)
+        )
+        last = (up.states[:, -1] - down.states[:, -1]) / 2e-5
+        return (up.seen - down.seen) / 2e-5, last
 
+    ends = []
     for k in range(start.size):
-        expected = moved(np.eye(start.size)[k], 0 * p)
+        expected, end = moved(np.eye(start.size)[k], 0 * p)
+        ends.append(end)
         np.testing.assert_allclose(
             found.by_start[:, :, k], expected, atol=close * np.abs(expected).max()
         )
     for k in range(p.size):
-        expected = moved(0 * start, np.diag(scale)[k])
+        expected, end = moved(0 * start, np.diag(scale)[k])
+        ends.append(end)
         size = np.abs(expected).max(axis=0)
         off = np.abs(found.by_parameter[:, :, k] - expected).max(axis=0)
         assert np.all(off <= close * np.maximum(size, 1e-3 * size.max()) + 1e-9)
+    last = np.column_stack(ends)
+    size = np.maximum(np.abs(last).max(axis=0), 0.1 * np.abs(last).max())
+    assert np.all(np.abs(found.end - last) <= close * size + 1e-9)

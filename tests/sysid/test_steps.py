@@ -9,8 +9,7 @@ from rr_opt.machines.racer.drive import steps_of
 from rr_opt.machines.racer.racer import RollerRacer
 from rr_opt.mechanics.drive import commanded
 from rr_opt.model.gait import SineGait
-from rr_opt.sysid.model import Piece
-from tests.sysid.made_up import experiment
+from tests.sysid.made_up import experiment, predicted
 
 VALUES = {
     "": {},
@@ -25,10 +24,9 @@ def test_as_at_200_a_second(effect, rate):
     paths = []
     for often in (rate, 200.0):
         model = RollerRacer(experiment(seconds=8.0, rate=often))
-        n = len(model.runs[1].t)
         effects = (effect,) if effect else ()
         start = np.array([0.0, 0.0, 0.3, 0.05, 0.0, 0.0])
-        paths.append(model.respond(Piece(1, 0, n), VALUES[effect], effects, start).predicted)
+        paths.append(predicted(model, 1, VALUES[effect], effects, start))
     fine = paths[1][:: int(200 / rate)]
     assert paths[0] == pytest.approx(fine, abs=5e-5)
 
@@ -42,8 +40,8 @@ def test_as_with_steps_of_half_a_millisecond(effect, monkeypatch):
             monkeypatch.setattr(racer_steps, "_LONGEST", longest)
             monkeypatch.setattr(racer_steps, "_FINE", longest)
         model = RollerRacer(experiment(seconds=20.0, rate=100.0))
-        piece, start = Piece(1, 0, len(model.runs[1].t)), np.array([0.0, 0.0, 0.3, 0.05, 0.0, 0.0])
-        paths.append(model.respond(piece, values, (effect,), start).predicted)
+        start = np.array([0.0, 0.0, 0.3, 0.05, 0.0, 0.0])
+        paths.append(predicted(model, 1, values, (effect,), start))
     assert paths[0] == pytest.approx(paths[1], abs=1e-4)
 
 

@@ -1,27 +1,55 @@
-"""The answer's first sentence tells whether values had to move for the model to explain."""
+"""The summary says what was found, what it is worth, what remains, and what to record next."""
 
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import replace
 
 import pytest
 
 from rr_opt.sysid.diagnose import summary_of
+from rr_opt.sysid.diagnosis import Remainder
+from tests.report.diagnosis.conftest import _experiment, _found
 
 
-@dataclass
-class Off:
-    """Stands for a level: by so much it is off, in sigma, with no recording held out."""
-
-    sigma: float
-    misfits = ()
-
-    def unseen(self):
-        return self.sigma
+@pytest.fixture(scope="module")
+def found():
+    return replace(_found(_experiment()), before=8.1, after=1.02)
 
 
-@pytest.mark.parametrize(("before", "says"), [(1.001, "as it is."), (8.0, "with values within")])
-def test_a_consistent_model_is_told_as_it_is_only_if_it_was_right_before(before, says):
-    levels: Any = Off(before), Off(1.0)
-    told = summary_of("consistent", (), *levels)
-    assert told.startswith("The model explains the recordings")
-    assert says in told.split(". ")[0] + "."
+@pytest.mark.parametrize(
+    ("verdict", "said"),
+    [
+        ("consistent", "The nominal model explains the recordings."),
+        ("parameters", "The model is right, but the value of coulomb friction is not."),
+        ("missing_physics", "The model leaves out coulomb friction (confidence 99%)."),
+        ("unexplained", "Something is left out, and no effect of the catalogue accounts for it."),
+    ],
+)
+def test_it_opens_with_the_verdict(found, verdict, said):
+    text = summary_of(replace(found, verdict=verdict))
+    assert text.startswith(f"{said} On recordings that were not fitted, the misfit fell from")
+    assert "from 8.10 to 1.02 sigma, where 1 is the noise." in text
+
+
+def test_what_remains_is_told_with_what_it_depends_on(found):
+    left = replace(found, remainder=Remainder("small", 0.4, 0.03, "a force along the wheels"))
+    assert "What remains is small (3% of the misfit): a force along the wheels." in summary_of(left)
+    assert "What remains" not in summary_of(found)
+    assert "What remains" not in summary_of(replace(left, verdict="consistent"))
+
+
+def test_the_next_recording_is_asked_for_where_something_is_open(found):
+    plan = found.next_experiment.sentence
+    assert summary_of(found).endswith(plan)
+    settled = replace(found, indistinguishable=())
+    assert plan not in summary_of(settled)
+    assert plan not in summary_of(replace(found, verdict="consistent"))
+
+
+def test_recordings_that_were_all_fitted_are_called_so(found):
+    final = tuple(replace(one, held_out=False) for one in found.final)
+    assert "On the recordings, which were all fitted, " in summary_of(replace(found, final=final))
+
+
+def test_its_worth_in_the_machines_own_terms(found):
+    assert "the place was 8 mm off; the misfit fell" in summary_of(
+        found, "the place was 8 mm off; "
+    )

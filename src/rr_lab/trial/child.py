@@ -99,7 +99,7 @@ def diagnose_apart(task: Task) -> Said:
 def _run(task: Task, top: Path) -> tuple[int, float, float, bool]:
     """Exit code, wall and CPU time in s, and whether the time was up."""
     recordings, late = top / RECORDINGS, threading.Event()
-    words = [*task.command, str(recordings), "--out", str(top / SAID), "--workers", "1"]
+    words = [*task.command, str(recordings), "--out", str(top / SAID)]
     began = time.perf_counter()
     with (top / "output.txt").open("wb") as output:
         process = subprocess.Popen(

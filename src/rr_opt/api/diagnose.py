@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
@@ -57,13 +56,11 @@ class ExplainedExperiment(Result, DiagnosisAnswer):
 
 
 def diagnose(
-    experiment: Experiment | str | Path, *, workers: int | None = None, progress: Progress = quiet
+    experiment: Experiment | str | Path, *, progress: Progress = quiet
 ) -> ExplainedExperiment:
     """What the simulation of a robot leaves out, how strong it is, and how sure that is.
 
     experiment  or its folder
-    workers     processes; None: two. A script that uses more than one keeps its own work under
-                `if __name__ == "__main__":`
 
     Raises InputError for an experiment that cannot be used, with all reasons, and
     NotConvergedError if no simulation comes near the recordings.
@@ -73,14 +70,10 @@ def diagnose(
     name, sha256 = identity(experiment)
     trial, left_out = usable(_cleaned(experiment))
     # Here and not above: a wrong input is reported before a second of imports.
-    from rr_opt.batch.shared_work import SharedWork
+    from rr_opt.machines.racer.diagnose import diagnose_racer
+    from rr_opt.machines.racer.racer import RollerRacer
 
-    with closing(SharedWork(workers)) as work:
-        from rr_opt.machines.racer.diagnose import diagnose_racer
-        from rr_opt.machines.racer.racer import RollerRacer
-        from rr_opt.sysid.diagnose import Steps
-
-        found = diagnose_racer(RollerRacer(trial), Steps(say=progress, each=work))
+    found = diagnose_racer(RollerRacer(trial), progress)
     if not (found.before < float("inf") and found.after < float("inf")):
         raise NotConvergedError(
             "The fits did not converge: a simulation left the range of numbers. Expected motion "

@@ -22,9 +22,6 @@ def diagnose(
     page: Annotated[
         bool, typer.Option("--page/--no-page", help="Draw figures and write report.html.")
     ] = True,
-    workers: Annotated[
-        int | None, typer.Option(help="Number of processes.", min=1, show_default="two")
-    ] = None,
 ) -> None:
     """Find out why recordings differ from the simulation: where, by which physics, and how sure.
 
@@ -36,6 +33,6 @@ def diagnose(
 
         experiment = library.read_experiment(source)
         folder = results_folder(out, f"{experiment.name}-diagnosis")
-        found = library.diagnose(experiment, workers=workers, progress=steps)
+        found = library.diagnose(experiment, progress=steps)
         files = found.save(folder, figures=page, progress=steps)
     show(found, files, json=json)

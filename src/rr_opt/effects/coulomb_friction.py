@@ -46,7 +46,7 @@ EFFECT = Effect(
         Parameter("force1", "N", (0.0, 10.0), 0.02, aliases=("F1",), typical_for=_viscous),
         Parameter("force2", "N", (0.0, 10.0), 0.02, aliases=("F2",), typical_for=_viscous),
         Parameter(
-            *("onset", "m/s", (2e-4, 0.01), 1e-3), neutral=SMOOTHING_SPEED, initial_guesses=(1.0,)
+            *("onset", "m/s", (2e-4, 0.05), 1e-3), neutral=SMOOTHING_SPEED, initial_guesses=(1.0,)
         ),
     ),
     sentence="Each wheel resists rolling with a force that does not depend on its speed.",

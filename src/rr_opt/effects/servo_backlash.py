@@ -3,7 +3,10 @@
 The servo moves the stops; the joint is up to half the play ahead of them or behind. Between them
 the servo exerts no torque and the mechanism itself moves the joint. At a stop it takes the stop's
 rate at once (plastic impact) and stays while the stop pushes: under inertia it then overshoots at
-the ends of the swing, whose amplitude grows by half the play. It starts in the middle of the play.
+the ends of the swing, whose amplitude grows by half the play. Dry friction in the joint holds it
+back instead: with enough of it the joint stays where a stop leaves it until the other stop comes,
+the play operator of control engineering, and its swing shrinks. It starts in the middle of the
+play.
 
 Integrated by Heun's method; an impact within a step is located by the parabola through the step.
 Between steps the joint's lead is a cubic. Periodic motion repeats as soon as z does, which is
@@ -33,6 +36,8 @@ _EXTRAPOLATIONS = 3
 """To the periodic z; the error falls like a power of the decay over one period."""
 _LOOK, _PAYS = 5, 50_000
 """Calls after which the compile cache is looked into; steps after which compiling pays."""
+_INERTIA = 1e-3
+"""Of the joint of a robot of which nothing is known, kg m2."""
 _MISSED = 2.0
 """As the fraction of a step at which a stop is hit: it is not."""
 
@@ -74,15 +79,15 @@ class _Play:
 
 
 def _actuate(command: Drive, values: Mapping[str, float], joint: FreeJoint | None = None) -> Drive:
-    half = values["width"] / 2
+    half, friction = values["width"] / 2, values.get("joint_friction", 0.0)
     if half <= 0:
         return command
     dt = command.period / _STEPS
     if command.rest:
         before = np.append(command.at(np.array([-1.0]))[:2, 0], 0.0)
-        play, _ = _integrated(command, half, joint, before, _FROM_REST)
+        play, _ = _integrated(command, half, friction, joint, before, _FROM_REST)
     else:
-        play = _periodic(command, half, joint)
+        play = _periodic(command, half, friction, joint)
     last = play.hit.size - _STEPS
 
     def at(t: Array) -> Array:
@@ -102,16 +107,16 @@ def _actuate(command: Drive, values: Mapping[str, float], joint: FreeJoint | Non
     return replace(command, at=at, jumps=np.union1d(own, others))
 
 
-def _periodic(command: Drive, half: float, joint: FreeJoint | None) -> _Play:
+def _periodic(command: Drive, half: float, friction: float, joint: FreeJoint | None) -> _Play:
     """Periodic motion: z at the ends of periods is extrapolated by Aitken's delta-squared."""
     before = np.append(command.at(np.zeros(1))[:2, 0], 0.0)
     for _ in range(_EXTRAPOLATIONS):
-        play, ends = _integrated(command, half, joint, before, _PERIODS)
+        play, ends = _integrated(command, half, friction, joint, before, _PERIODS)
         first, second = np.diff(ends[2, -3:])
         converges = 0 < second / first < 1 if first else False
         before = ends[:, -1]
         before[2] += second**2 / (first - second) if converges else 0.0
-    play, _ = _integrated(command, half, joint, before, _PERIODS)
+    play, _ = _integrated(command, half, friction, joint, before, _PERIODS)
     # The last period is closed: what is left to converge is spread over it.
     last = play.hit.size - _STEPS
     lead = play.lead.copy()
@@ -120,14 +125,19 @@ def _periodic(command: Drive, half: float, joint: FreeJoint | None) -> _Play:
 
 
 def _integrated(
-    command: Drive, half: float, joint: FreeJoint | None, before: Array, periods: int
+    command: Drive,
+    half: float,
+    friction: float,
+    joint: FreeJoint | None,
+    before: Array,
+    periods: int,
 ) -> tuple[_Play, Array]:
     """The play over some periods from phi, dphi and z before, and these at the end of each."""
     dt = command.period / _STEPS
     servo = command.at(dt * np.arange(periods * _STEPS + 1.0))[:2]
     swing, p = (joint.swing, joint.p) if joint else (_coasting(), ())
     n = periods * _STEPS
-    given = np.vstack([servo[:, :-1], servo[:, 1:], np.full((2, n), [[half], [dt]])])
+    given = np.vstack([servo[:, :-1], servo[:, 1:], np.full((3, n), [[half], [dt], [friction]])])
     path = _stepper(swing, n)(np.append(before, _MISSED), given, p)
     lead = np.column_stack([before[:2] - servo[:, 0], path[:2] - servo[:, 1:]])
     return _Play(dt, lead[0], lead[1], path[3]), path[:3, _STEPS - 1 :: _STEPS]
@@ -137,25 +147,29 @@ def _integrated(
 def _coasting() -> ca.Function:
     """The joint of a robot of which nothing is known: it keeps its rate."""
     inputs = [*(ca.SX.sym(name) for name in ("phi", "dphi", "z")), ca.SX.sym("p", 0)]
-    return ca.Function("coasting", inputs, [ca.SX(0), ca.SX(0)])
+    return ca.Function("coasting", inputs, [ca.SX(0), ca.SX(0), ca.SX(1 / _INERTIA)])
 
 
 @lru_cache
 def _stepper(swing: ca.Function, steps: int) -> OftenUsed:
     """The joint (phi, dphi, z) from step to step, and the fraction of the step at which it hits a
-    stop; given the servo's angle and rate at both ends, half the play, and the step."""
-    joint, given = ca.SX.sym("joint", 4), ca.SX.sym("given", 6)
+    stop; given the servo's angle and rate at both ends, half the play, the step, and friction."""
+    joint, given = ca.SX.sym("joint", 4), ca.SX.sym("given", 7)
     p = ca.SX.sym("p", swing.numel_in(3))
-    servo, servo_rate, stop, rate, half, h = ca.vertsplit(given)
+    servo, servo_rate, stop, rate, half, h, friction = ca.vertsplit(given)
 
     def slope(y: ca.SX) -> ca.SX:
-        ddphi, zdot = swing(y[0], y[1], y[2], p)
+        ddphi, zdot, _ = swing(y[0], y[1], y[2], p)
         return ca.vertcat(y[1], ddphi, zdot)
 
     start = joint[:3]
     k1 = slope(start)
     k2 = slope(start + h * k1)
     phi, dphi, z = ca.vertsplit(start + h / 2 * (k1 + k2))
+    # Friction takes from the rate what it can in the step, and holds what is at rest.
+    mobility = swing(joint[0], joint[1], joint[2], p)[2]
+    slowed = ca.sign(dphi) * ca.fmax(ca.fabs(dphi) - h * friction * mobility, 0.0)
+    phi, dphi = phi + h / 2 * (slowed - dphi), slowed
     stopped = ca.fabs(phi - stop) >= half
     side = half * ca.sign(phi - stop)
     # lead = a + u s + f s^2 after a fraction s of the step; a stop is hit where it equals `side`.
@@ -183,9 +197,11 @@ EFFECT = Effect(
             model_form_error=True,
             model_form_sigma=0.01,
         ),
+        Parameter("joint_friction", "N m", (0.0, 5.0), 0.05, initial_guesses=(0.3, 2.0)),
     ),
     sentence="There is play between the servo and the platform that it turns.",
     actuate=_actuate,
     backdrivable=True,
     differentiable=False,
+    forms=(("width",), ("width", "joint_friction")),
 )

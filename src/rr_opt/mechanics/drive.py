@@ -51,7 +51,7 @@ class Drive:
 class FreeJoint:
     """How the joint moves while the servo exerts no torque; see `motion.floor_motion.free_joint`.
 
-    swing  (phi, dphi, z, p) -> ddphi (rad/s2), zdot (m/s2)
+    swing  (phi, dphi, z, p) -> ddphi (rad/s2), zdot (m/s2), mobility (rad/s2 per N m)
     p      values of the robot's parameters, SI
     """
 

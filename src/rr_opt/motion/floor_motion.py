@@ -152,7 +152,8 @@ def _swing() -> ca.Function:
     p = ca.SX.sym("p", len(motion.parameters))
     state, drive = ca.vertcat(ca.SX.zeros(len(POSE)), z), ca.vertcat(phi, dphi)
     torque = motion.torque(state, drive, ddphi, p)
-    free = -ca.substitute(torque, ddphi, ca.SX(0)) / ca.jacobian(torque, ddphi)
+    mobility = 1 / ca.jacobian(torque, ddphi)
+    free = -ca.substitute(torque, ddphi, ca.SX(0)) * mobility
     zdot = motion.rates(state, drive, p)[len(POSE)]
-    out = ca.vertsplit(ca.cse(ca.vertcat(free, zdot)))
+    out = ca.vertsplit(ca.cse(ca.vertcat(free, zdot, mobility)))
     return ca.Function("swing", [phi, dphi, z, p], out)

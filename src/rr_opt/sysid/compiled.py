@@ -37,7 +37,7 @@ class _Run(ctypes.Structure):
             (name, ctypes.c_void_p)
             for name in (
                 *("inputs", "at", "p", "states", "seen", "value"),
-                *("moved_at", "moved", "data", "weight", "more", "gram"),
+                *("moved_at", "moved", "data", "weight", "more", "gram", "end"),
             )
         ),
     )
@@ -101,9 +101,9 @@ class Compiled:
             self._library.rr_predict(len(some), few, each)
         return made
 
-    def grams(self, runs: Sequence[Rows]) -> list[Array]:
+    def grams(self, runs: Sequence[Rows]) -> list[tuple[Array, Array]]:
         """J'J of each run, (n, n), with J = [d/dstart | d/dq | more | predicted - recorded] in
-        sigmas.
+        sigmas; and the derivatives of its last state (size, size + nq) by start and q.
 
         Raises ValueError if not all have as many q and further columns.
         """
@@ -118,9 +118,9 @@ class Compiled:
         moving = _moving(runs)
         n = self._size + nq + extras + 1
         drive = first.at.shape[0]
-        out = [np.empty((n, n)) for _ in runs]
+        out = [(np.empty((n, n)), np.empty((self._size, self._size + nq))) for _ in runs]
         held = []
-        for run, gram in zip(runs, out, strict=True):
+        for run, (gram, end) in zip(runs, out, strict=True):
             moved = {}
             if moving.size:
                 at, nodes = run.moved or (
@@ -142,6 +142,7 @@ class Compiled:
                     data=run.data,
                     weight=run.weight,
                     gram=gram,
+                    end=end,
                     **moved,
                 )
             )
@@ -177,7 +178,9 @@ class _Held:
             raise ValueError(f"Read a run of {steps} steps. Expected 1 or more.")
         self.arrays = {name: np.ascontiguousarray(one, float) for name, one in arrays.items()}
         # What is written to has to be the caller's own.
-        assert all(self.arrays[name] is arrays[name] for name in ("seen", "gram") if name in arrays)
+        assert all(
+            self.arrays[name] is arrays[name] for name in ("seen", "gram", "end") if name in arrays
+        )
         self.run = _Run(steps=steps, **{name: one.ctypes.data for name, one in self.arrays.items()})
 
 

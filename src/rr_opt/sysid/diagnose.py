@@ -1,305 +1,294 @@
-"""The whole diagnosis: is there a mismatch, is it values, where is it, what is it, how sure."""
+"""From recordings to a diagnosis: evaluate, search, weigh, and say how sure it is.
+
+    segments -> estimation -> selection -> intervals, remainder -> verdict
+
+The verdict is graded. Effects are named that the recordings' predictions of one another call for
+and that explain most of the misfit; what is left beside them is the remainder. Only where no effect
+is shown is the answer `unexplained`.
+"""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import TypeVar
+from functools import cached_property
 
-from rr_opt.sysid.candidate import (
-    FLOOR,
-    Explanation,
-    certain,
-    chance,
-    joined,
-    left_out,
-    misfit,
-    nominal,
-    parameters,
-    rms,
-    windows,
-)
-from rr_opt.sysid.diagnosis import Diagnosis, Finding, Mismatch, Tried
-from rr_opt.sysid.evaluation import Level, level_of, other_forms, together
-from rr_opt.sysid.least_squares import Fit, Problem, recorded, solve
+import numpy as np
+from scipy.stats import chi2
+
+from rr_opt.sysid.candidates import Candidate, Choice, weights
+from rr_opt.sysid.diagnosis import Diagnosis, Finding, Mismatch, Remainder, Tried, Verdict
+from rr_opt.sysid.evaluation import Evaluation, evaluation
+from rr_opt.sysid.intervals import estimates, named, released, wrong
 from rr_opt.sysid.model import Model
-from rr_opt.sysid.selection import Search
-from rr_opt.sysid.values import estimates, settled, wrong
-from rr_opt.sysid.verdict import LEFT, NEAR, confidence, finding, verdict_of
-
-_BETTER = 0.5
-"""Of the held-out misfit that the parameters alone leave, RMS, an effect has to leave less."""
-
-Say = Callable[[str], None]
-T = TypeVar("T")
+from rr_opt.sysid.selection import Selection
+from rr_opt.sysid.settings import SETTINGS
 
 
 @dataclass
-class Steps:
-    """Who hears of progress, how work is shared out, and how long each step took."""
+class Stopwatch:
+    """Tells what is being done, and remembers how long each step took, s."""
 
-    say: Say = lambda _: None
-    each: Callable[..., Iterable] = map
+    progress: Callable[[str], None] = lambda _: None
     seconds: dict[str, float] = field(default_factory=dict)
 
-    def timed(self, name: str, work: Callable[[], T]) -> T:
-        """Say it, do it, and note how long it took."""
-        self.say(name)
-        begun = time.perf_counter()
-        try:
-            return work()
-        finally:
-            self.seconds[name] = self.seconds.get(name, 0.0) + time.perf_counter() - begun
+    def __call__(self, step: str) -> _Timed:
+        """Time a step."""
+        self.progress(step)
+        return _Timed(self, step)
+
+
+@dataclass
+class _Timed:
+    watch: Stopwatch
+    step: str
+    began: float = 0.0
+
+    def __enter__(self) -> None:
+        self.began = time.perf_counter()
+
+    def __exit__(self, *_: object) -> None:
+        spent = time.perf_counter() - self.began
+        self.watch.seconds[self.step] = self.watch.seconds.get(self.step, 0.0) + spent
 
 
 @dataclass(frozen=True)
-class Found:
-    """What the steps of a diagnosis found.
+class Result:
+    """What the diagnosis rests on.
 
-    levels    the model as believed, with its parameters re-estimated, and with what is missing
-    together  with what is missing, fitted to all recordings, where those that were not fitted told
-              what the others left open
+    best      the candidate that was chosen, with values that are wrong released
+    nominal, refitted, final   as believed; with the parameters fitted; with what is missing
     """
 
-    model: Model
-    search: Search
-    best: Explanation
-    levels: tuple[Level, Level, Level]
-    steps: Steps
-    together: Level | None = None
+    selection: Selection
+    best: Candidate
+    nominal: Evaluation
+    refitted: Evaluation
+    final: Evaluation
+
+    @cached_property
+    def confidences(self) -> Mapping[str, float]:
+        """Of each effect: the weight of the candidates that have it, by how they predict
+        recordings; less where more is left in recordings that were not fitted than a small part of
+        the misfit, or than machines differ from such models, as then it may imitate something
+        else."""
+        tried = list(self.selection.tried.values())
+        info, left = self.selection.model.catalogue, max(self.final.excess, 1e-12)
+        form = sum(info[name].form_error for name in self.best.effects) * self.nominal.excess
+        first = max(self.refitted.excess, self.selection.base.excess)
+        small = SETTINGS.small * first**2
+        allowed = form**2 + small + (2 * SETTINGS.negligible) ** 2
+        sound = min(1.0, allowed / left**2) ** 2
+        own = list(zip(weights(tried), tried, strict=True))
+        return {
+            name: float(sound * sum(w for w, one in own if name in one.effects))
+            for name in self.best.effects
+        }
 
     @property
-    def rivals(self) -> list[Explanation]:
-        """The explanations without one of the accepted effects, the best first."""
-        own = set(self.best.names)
-        rivals = [one for one in self.search.tried if not own <= set(one.names)]
-        return sorted(rivals, key=lambda one: one.score)
+    def shown(self) -> tuple[Choice, ...]:
+        """The effects that are more likely missing than not."""
+        own = self.confidences
+        return tuple(c for c in self.best.choices if own[c.name] > SETTINGS.named)
+
+    @property
+    def complete(self) -> bool:
+        """Whether what the candidate leaves is no more than machines differ from such models."""
+        return self.selection.complete(self.best)
+
+    @property
+    def share(self) -> float:
+        """What is left of the nominal model's misfit beyond the noise (mean square), 0 to 1, in
+        recordings that were not fitted where there are any."""
+        before = max(self.nominal.excess, self.selection.base.excess)
+        after = max(self.final.excess, 0.0)
+        return float(np.clip((after / before) ** 2, 0.0, 1.0)) if before > 0 else 0.0
+
+    @property
+    def rivals(self) -> list[Candidate]:
+        """Candidates without one of the effects, the best first."""
+        own = set(self.best.effects)
+        others = [c for c in self.selection.tried.values() if not own <= set(c.effects)]
+        return sorted(others, key=lambda one: -one.elpd)
 
 
-def found(model: Model, steps: Steps) -> Found:
-    """Fit the model, its parameters, and what may be missing."""
-    fitted = [k for k, run in enumerate(model.runs) if not run.held_out]
-    held = [k for k, run in enumerate(model.runs) if run.held_out]
-    start = steps.timed(
-        "the model as it is believed to be", lambda: nominal(model, windows(model, fitted + held))
-    )
-    first = _of_runs(model, start, fitted)
-    level0 = steps.timed(
-        "against the recordings", lambda: level_of(model, joined(model, start), start)
-    )
-    believed = rms(misfit(_of_runs(model, level0.fit, fitted)))
-    base = steps.timed("its parameters", lambda: _base(model, first))
-    level1 = steps.timed("held-out recordings", lambda: level_of(model, base.whole, level0.fit))
-    search = Search(model, first, base, believed, steps.say, steps.each)
-    best = steps.timed("what is missing", search.run)
-    best, level2 = steps.timed(
-        "which values are wrong", lambda: _that_predicts(model, best, search.tried, level0.fit)
-    )
-    every = steps.timed("all recordings", lambda: _together(model, best, (level1, level2)))
-    return Found(model, search, best, (level0, level1, level2), steps, every)
+def identified(model: Model, watch: Stopwatch) -> Result:
+    """Search for what is missing."""
+    runs = [k for k, run in enumerate(model.runs) if not run.held_out]
+    with watch("fitting the parameters"):
+        selection = Selection(model, runs, watch.progress)
+    with watch("looking for what is missing"):
+        best = selection.run()
+    with watch("looking for wrong values"):
+        fit = best.fit
+        if selection.complete(best):
+            fit = released(fit)
+        best = Candidate(best.choices, fit)
+    with watch("predicting every recording"):
+        base = selection.base.fit
+        believed = {q.name: q.value for q in model.parameters}
+        levels = (
+            evaluation(base, believed),
+            evaluation(base, base.values),
+            evaluation(fit, fit.values),
+        )
+    return Result(selection, best, *levels)
 
 
-def _that_predicts(
-    model: Model, best: Explanation, tried: Sequence[Explanation], start: Fit
-) -> tuple[Explanation, Level]:
-    """The explanation and what it leaves; where that predicts badly, in the form of those that the
-    fitted recordings do not tell apart that predicts best."""
-
-    def told(one: Explanation) -> tuple[Explanation, Level]:
-        one = settled(model, _plainest(model, one))
-        return one, level_of(model, one.whole, start)
-
-    first = told(best)
-    if not any(run.held_out for run in model.runs) or rms(first[1].held() ** 2 - 1) <= LEFT:
-        return first
-    others = [told(one) for one in other_forms(best, tried)]
-    return min([first, *others], key=lambda pair: pair[1].held())
+def verdict_of(result: Result) -> Verdict:
+    """See above."""
+    if result.shown:
+        return "missing_physics"
+    if result.best.choices or not result.complete:
+        return "unexplained"
+    slight = result.selection.allowance(result.best)
+    if result.nominal.excess**2 > slight and wrong(result.best.fit):
+        return "parameters"
+    return "consistent"
 
 
-def _plainest(model: Model, best: Explanation) -> Explanation:
-    """The explanation, or its twin that is nearer to what was believed."""
-    fit = best.whole
-    twin = model.twin(fit.values)
-    if twin is None:
-        return best
-    problem = Problem(model, tuple(fit.starts), fit.effects, fit.quantities)
-    other = solve(problem, twin, fit.starts)
-    return replace(best, whole=other) if other.cost < fit.cost + 1.0 else best
+def findings(result: Result) -> tuple[Finding, ...]:
+    """The effects that are shown, strongest first."""
+    base = max(result.selection.base.excess, 1e-12) ** 2
+    out = []
+    for choice in result.shown:
+        rest = tuple(one for one in result.best.choices if one != choice)
+        without = result.selection.tried.get(rest, result.selection.base)
+        left = without.excess**2 if rest else base
+        removes = float(np.clip((left - result.best.excess**2) / base, 0.0, 1.0))
+        if not rest:
+            removes = 1.0 - result.share
+        values = named(result.best.fit, choice.name)
+        out.append(Finding(choice.name, result.confidences[choice.name], values, removes))
+    return tuple(sorted(out, key=lambda one: -one.removes))
 
 
-def _together(model: Model, best: Explanation, levels: tuple[Level, Level]) -> Level | None:
-    """The explanation fitted to all recordings, where those held out were predicted better with it
-    than without, but not well."""
-    before, after = (rms(level.held() ** 2 - 1) for level in levels)
-    if not best.chosen or not NEAR < after < _BETTER * before:
-        return None
-    if not any(run.held_out for run in model.runs):
-        return None
-    fit = together(model, best, levels[1].starts)
-    level = fit and level_of(model, fit, fit)
-    return level if level and level.held() ** 2 - 1 < LEFT**2 else None
+def remainder_of(result: Result) -> Remainder:
+    """What is left with the answer's effects."""
+    after = result.final.excess
+    share = result.share if result.best.choices else float(after > 0)
+    if after <= 2 * SETTINGS.negligible:
+        size = "none"
+    else:
+        size = "small" if share <= SETTINGS.small else "large"
+    return Remainder(size, after, share)
 
 
-def _base(model: Model, first: Fit) -> Explanation:
-    fit = parameters(model, first)
-    return Explanation((), fit, joined(model, fit))
-
-
-def _of_runs(model: Model, fit: Fit, runs: list[int]) -> Fit:
-    pieces = [piece for piece in fit.starts if piece.run in runs]
-    return replace(
-        fit,
-        starts={piece: fit.starts[piece] for piece in pieces},
-        normals={piece: fit.normals[piece] for piece in pieces},
-        cost=sum(fit.normals[piece].cost for piece in pieces),
-        count=recorded(model, pieces),
-    )
-
-
-def diagnose(model: Model, steps: Steps | None = None) -> Diagnosis:
-    """Diagnose a machine from its runs."""
-    return answer(found(model, steps or Steps()))
-
-
-def answer(it: Found, *, systematic: bool = False) -> Diagnosis:
-    """What was found as an answer; see `verdict_of`."""
-    model, search, best, levels, steps = it.model, it.search, it.best, it.levels, it.steps
-    level0, level1, level2 = levels
-    told = it.together or level2
-    best = replace(best, whole=told.fit)
-    held = tuple(certain(level.held() ** 2 - 1, level.count()) for level in (level0, level1, told))
-    intervals = estimates(model, best.whole, told.surplus())
-    moved = wrong(best.whole)
-    nominal_left = max(rms(misfit(level0.fit)), held[0])
-    apart = held[1], held[2]
-    verdict = verdict_of(
-        *(best, search.base, nominal_left, apart, model.inexact),
-        moved=bool(moved),
-        rough=search.rounds.rough(best),
-        systematic=systematic,
-    )
-    together = it.together if verdict == "missing_physics" else None
-    findings = _findings(it.best, search, intervals, (level1, level2), it.rivals)
+def answer(result: Result, watch: Stopwatch) -> Diagnosis:
+    """The result as a diagnosis; the machine adds where, what depends on it, what to do next."""
+    verdict, selection, best = verdict_of(result), result.selection, result.best
+    told = findings(result) if verdict == "missing_physics" else ()
+    intervals = estimates(best.fit)
     if verdict == "parameters":
-        findings = tuple(Finding(q.name, 1.0, {q.name: intervals[q.name]}, 1.0) for q in moved)
-    if verdict in ("consistent", "unexplained"):
-        findings = ()
-    channel = model.catalogue[best.names[0]].channel if findings and best.names else "none"
+        told = tuple(
+            Finding(q.name, 1.0, {q.name: intervals[q.name]}, 1.0) for q in wrong(best.fit)
+        )
+    base = selection.base.fit
+    used = len(base.problem.names)
+    misfit = sum(e.excess for e in base.evidences.values())
+    channel = selection.model.catalogue[told[0].name].channel if best.choices and told else "none"
+    levels = (result.nominal, result.refitted, result.final)
     return Diagnosis(
         verdict=verdict,
-        summary=summary_of(verdict, findings, level0, level2, together, apart=held_out_alone(it)),
-        mismatch=Mismatch(rms(search.base.misfit), chance(search.base.whole)),
+        summary="",
+        mismatch=Mismatch(
+            selection.base.excess,
+            float(chi2.sf(base.samples + misfit, max(base.samples - used, 1))),
+        ),
         channel=channel,
         where="",
         stages=(),
-        findings=findings,
-        parameters={q.name: intervals[q.name] for q in best.whole.quantities},
-        tried=tuple(
-            _tried(one, best if verdict != "unexplained" else None)
-            for one in sorted(search.tried, key=lambda e: e.score)
-        ),
-        indistinguishable=(),
+        findings=told,
+        parameters={q.name: intervals[q.name] for q in best.fit.problem.quantities},
+        tried=_tried(selection, best if verdict != "unexplained" else None),
+        indistinguishable=_alike(result) if told else (),
         next_experiment=None,
         residue=(),
-        nominal=level0.misfits,
-        refitted=level1.misfits,
-        final=level2.misfits,
-        before=level0.unseen(),
-        after=level2.unseen(),
-        values=dict(best.whole.values),
-        seconds=dict(steps.seconds),
-        converged=best.whole.converged,
-        together=together and together.held(),
+        nominal=levels[0].misfits,
+        refitted=levels[1].misfits,
+        final=levels[2].misfits,
+        before=levels[0].rms,
+        after=levels[2].rms,
+        values=dict(best.fit.values),
+        seconds=dict(watch.seconds),
+        converged=best.fit.converged,
+        remainder=remainder_of(result),
     )
 
 
-def _findings(
-    best: Explanation,
-    search: Search,
-    intervals: Mapping,
-    levels: tuple[Level, Level],
-    rivals: list[Explanation],
-) -> tuple[Finding, ...]:
-    before = max(levels[0].held() ** 2 - 1, 1e-12)
-    after = max(levels[1].held() ** 2 - 1, 0.0)
-    sure = confidence(best, rivals, max(rms(search.base.misfit), rms(before)))
-    out = []
-    for name in best.names:
-        rest = set(best.names) - {name}
-        without = [e for e in search.tried if set(e.names) == rest]
-        left = max(without[0].misfit, 0.0) if without else before
-        removes = min(max((left - max(best.misfit, 0.0)) / before, 0.0), 1.0) if without else 1.0
-        if len(best.names) == 1:
-            removes = min(max(1 - after / before, 0.0), 1.0)
-        out.append(finding(name, sure, intervals, removes))
-    return tuple(sorted(out, key=lambda f: -f.removes))
-
-
-def _tried(one: Explanation, accepted: Explanation | None) -> Tried:
-    return Tried(
-        one.names,
-        rms(one.misfit),
-        rms(left_out(one.whole)),
-        one.score,
-        {k: v for k, v in one.whole.values.items() if "." in k},
-        accepted is not None and one.chosen == accepted.chosen,
+def _tried(selection: Selection, accepted: Candidate | None) -> tuple[Tried, ...]:
+    """All candidates; the score is twice the log predictive density lost against the best."""
+    every = sorted(selection.tried.values(), key=lambda one: -one.elpd)
+    return tuple(
+        Tried(
+            one.effects,
+            one.excess if "simulated" in one.__dict__ else _roughly(one),
+            -2 * one.elpd,
+            {k: v for k, v in one.fit.values.items() if "." in k},
+            accepted is not None and one.choices == accepted.choices,
+        )
+        for one in every
     )
 
 
-def held_out_alone(it: Found) -> tuple[str, ...]:
-    """The held-out recordings in which alone something shows: those fitted are explained as they
-    are, so that nothing was looked for."""
-    base = it.search.base
-    if it.best.chosen or certain(base.misfit, base.whole.count) > FLOOR:
-        return ()
-    held = [one for one in it.levels[1].misfits if one.held_out]
-    return tuple(one.recording for one in held if one.rms**2 > 1 + LEFT**2)
+def _roughly(one: Candidate) -> float:
+    """What a candidate that was not simulated whole leaves with its process noise."""
+    return one.fit.excess
 
 
-def summary_of(
-    verdict: str,
-    findings: tuple[Finding, ...],
-    before: Level,
-    after: Level,
-    together: Level | None = None,
-    *,
-    apart: tuple[str, ...] = (),
-) -> str:
-    """The answer in two sentences, or three.
+def _alike(result: Result) -> tuple[tuple[str, ...], ...]:
+    """Sets of effects that predict the recordings about as well as the answer does."""
+    own = result.best
+    near = []
+    for one in result.rivals:
+        gain, error = own.advantage(one)
+        if gain < max(SETTINGS.evidence, SETTINGS.standard_errors * error) and one.effects:
+            near.append(tuple(one.effects))
+    groups = [tuple(dict.fromkeys((*own.effects, *one))) for one in near]
+    return tuple(dict.fromkeys(groups))
 
-    apart  the recordings that show alone what is left out
+
+def rival_of(result: Result) -> tuple[str, Candidate] | None:
+    """The candidate that comes next, of those that a recording may yet tell from the answer."""
+    for one in result.rivals[:1]:
+        gain, error = result.best.advantage(one)
+        if gain < max(4 * SETTINGS.evidence, error):
+            return " and ".join(one.effects) or "other parameters", one
+    return None
+
+
+def diagnose(model: Model, progress: Callable[[str], None] = lambda _: None) -> Diagnosis:
+    """Diagnose any machine from its runs; progress is told each step."""
+    watch = Stopwatch(progress)
+    found = answer(identified(model, watch), watch)
+    return replace(found, summary=summary_of(found))
+
+
+def summary_of(found: Diagnosis, worth: str = "") -> str:
+    """What was found, how sure, what it is worth, what remains, what to record next.
+
+    worth  what it is worth in the machine's own terms: `the place was 8 mm off and is 1 mm off; `
     """
-    held = any(one.held_out for one in after.misfits)
-    where = (
-        "On recordings that were not fitted"
-        if held
-        else "On each recording, predicted from the others,"
-        if len(after.misfits) > 1
-        else "On the one recording there is, which was fitted,"
-    )
-    numbers = (
-        f"{where} the simulation was {before.unseen():.2f} sigma off, "
-        f"and is {after.unseen():.2f} sigma off now; 1 is the noise."
-    )
-    names = " and ".join(one.name.replace("_", " ") for one in findings)
+    listed = " and ".join(one.name.replace("_", " ") for one in found.findings)
+    sure = ", ".join(f"{one.confidence:.0%}" for one in found.findings)
     opening = {
-        "consistent": "The model explains the recordings as it is."
-        if before.unseen() ** 2 - after.unseen() ** 2 < FLOOR**2
-        else "The model explains the recordings, with values within their stated uncertainty.",
-        "parameters": f"The model is right, but these values are not: {names}.",
-        "missing_physics": f"The model leaves out {names}.",
+        "consistent": "The nominal model explains the recordings.",
+        "parameters": f"The model is right, but the value of {listed} is not.",
+        "missing_physics": f"The model leaves out {listed} (confidence {sure}).",
         "unexplained": "Something is left out, and no effect of the catalogue accounts for it.",
-    }[verdict]
-    if together:
-        numbers += (
-            " The others do not tell all values; those given here fit all recordings, "
-            f"and leave {together.held():.2f} sigma."
-        )
-    if apart and verdict == "unexplained":
-        opening = (
-            f"Something is left out that shows in held-out recordings alone: {', '.join(apart)}. "
-            "Those that were fitted lack nothing, so nothing was looked for. Hold out others "
-            "instead, and diagnose again."
-        )
-    return f"{opening} {numbers}"
+    }[found.verdict]
+    held = any(one.held_out for one in found.final)
+    which = "recordings that were not fitted" if held else "the recordings, which were all fitted"
+    misfit = (
+        f"On {which}, {worth}the misfit fell from {found.before:.2f} to {found.after:.2f} sigma, "
+        "where 1 is the noise."
+    )
+    remainder, remains = found.remainder, ""
+    if found.verdict != "consistent" and remainder.size != "none":
+        depends = f": {remainder.depends_on}" if remainder.depends_on else ""
+        share = f"{remainder.share:.0%} of the misfit"
+        remains = f"What remains is {remainder.size} ({share}){depends}."
+    doubtful = found.verdict != "consistent" and (remains or found.indistinguishable)
+    plan = found.next_experiment.sentence if found.next_experiment and doubtful else ""
+    return " ".join(part for part in (opening, misfit, remains, plan) if part)

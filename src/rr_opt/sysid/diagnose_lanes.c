@@ -32,13 +32,14 @@
                            are not zero; the second at the beginning, middle and end of the steps
    data, weight (samples, NY)   what was recorded, and 1/sigma, 0 where nothing was
    more (samples, NY, extras)   further columns
-   gram (n, n)             the result: J'J over all samples, J = [d/dstart | d/dq | more | off] */
+   gram (n, n)             the result: J'J over all samples, J = [d/dstart | d/dq | more | off]
+   end (NX, NX + nq)       the derivatives of the last state by the start and by q */
 typedef struct {
   long long steps;
   const double *inputs, *at, *p;
   double *states, *seen;
   const double *value, *moved_at, *moved, *data, *weight, *more;
-  double* gram;
+  double *gram, *end;
 } Run;
 
 /* What is asked for: how many q, the entries of dp/dq (those of row i are first[i] .. first[i + 1],
@@ -400,6 +401,7 @@ int rr_grams(long long count, const Run* runs, long long each, long long nq, lon
         for (b = c; b < room.wide; ++b)
           gram[c * room.wide + b] = gram[b * room.wide + c] =
               room.S[c * room.wide - c * (c - 1) / 2 + b - c][l];
+      for (c = 0; c < NX * room.n; ++c) group.of[l]->end[c] = room.M[c][l];
     }
   }
   free(room.all);

@@ -54,14 +54,12 @@ class Finding:
 class Tried:
     """A set of effects that was fitted.
 
-    fit, left_out  misfit beyond the noise, RMS in sigma: of the fitted recordings, and of each of
-                   them predicted from the others
-    score          chi-square of data and knowledge with a price for each quantity; less is better
+    fit    what its simulation leaves beyond the noise, RMS in sigma
+    score  -2 log predictive density of the recordings, each left out once; less is better
     """
 
     effects: tuple[str, ...]
     fit: float
-    left_out: float
     score: float
     values: Mapping[str, float]
     accepted: bool
@@ -114,7 +112,7 @@ class Mismatch:
 class Misfit:
     """How far a recording is from a prediction: RMS in sigma by channel; 1 is the noise.
 
-    residuals  (n, channels) in sigma;  predicted  (n, channels);  t (n,) s
+    residuals  (n, channels) in sigma;  predicted, sigma  (n, channels);  t (n,) s
     """
 
     recording: str
@@ -124,6 +122,12 @@ class Misfit:
     t: Array
     predicted: Array
     residuals: Array
+    sigma: Array | float = 1.0
+
+    @property
+    def recorded(self) -> Array:
+        """What was recorded (n, channels)."""
+        return self.predicted - self.residuals * self.sigma
 
 
 @dataclass(frozen=True)
@@ -163,6 +167,23 @@ class Residue:
 
 
 @dataclass(frozen=True)
+class Remainder:
+    """What is left with the effects that were named.
+
+    rms         in sigma beyond the noise, of held-out recordings where there are any
+    share       of the first misfit beyond the noise (mean square), 0 to 1
+    depends_on  the channel it enters by and the variable it follows most, in words, if any
+    matters     what it is worth, in a sentence
+    """
+
+    size: Literal["none", "small", "large"]
+    rms: float
+    share: float
+    depends_on: str = ""
+    matters: str = ""
+
+
+@dataclass(frozen=True)
 class Diagnosis:
     """The answer and what it rests on.
 
@@ -170,8 +191,7 @@ class Diagnosis:
                                within what is known, with the accepted effects
     before, after              RMS over the held-out recordings in sigma, 1 is the noise
     values                     of all parameters and effects that the corrected robot has, SI
-    together                   RMS over the held-out recordings with values that fit them too, where
-                               the answer gives these, as the others do not tell all
+    remainder                  what is left with the accepted effects
     """
 
     verdict: Verdict
@@ -194,4 +214,4 @@ class Diagnosis:
     values: Mapping[str, float]
     seconds: Mapping[str, float]
     converged: bool = True
-    together: float | None = None
+    remainder: Remainder = Remainder("none", 0.0, 0.0)

@@ -1,8 +1,8 @@
-"""What the diagnosis needs of a machine: the protocol that a model answers.
+"""What system identification needs of a machine: the protocol that a model answers.
 
-A model has quantities (the parameters it always has, and those of its effects), runs that were
-recorded of it, and channels in which they were. It predicts a run, and says how the prediction
-changes with every quantity and with the state the run starts in.
+A model has runs that were recorded, quantities (the parameters it always has, and those of its
+effects), and a state that it steps. Runs are cut into segments, each with an initial state of its
+own, so that a fit never has to simulate for longer than the model can be trusted.
 """
 
 from __future__ import annotations
@@ -11,22 +11,27 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
+import numpy as np
+
 from rr_opt.array import Array
+from rr_opt.sysid.settings import SETTINGS
 
 if TYPE_CHECKING:
-    from rr_opt.sysid.least_squares import Fit
+    from rr_opt.sysid.candidates import Choice
+    from rr_opt.sysid.estimation import Fit
 
 
 @dataclass(frozen=True)
 class Quantity:
     """A number that a fit may change.
 
-    value       where it starts: a parameter's nominal value, an effect's first guess
+    value       its nominal value; an effect's neutral one
     scale       one standard deviation of what was known before, or the usual size of an effect
     known       whether `scale` is knowledge (a prior) or only a size
+    low, high   bounds
+    neutral     where an effect vanishes; for a parameter its nominal value
     free        known only to within a factor: another value is no surprise, but a finding
-    low, high   where it may lie
-    neutral     at which an effect vanishes; for a parameter its nominal value
+    form_error  by what share of its value models of the effect differ in it, one sigma
     """
 
     name: str
@@ -38,26 +43,35 @@ class Quantity:
     high: float
     neutral: float
     free: bool = False
+    form_error: float = 0.0
+
+    @property
+    def centre(self) -> float:
+        """The mean of its prior; an effect that vanishes at infinity is about its usual size."""
+        if self.known:
+            return self.value
+        return (
+            self.neutral if abs(self.neutral) <= SETTINGS.effect_prior * self.scale else self.scale
+        )
 
 
 @dataclass(frozen=True)
 class Form:
-    """Quantities of an effect that are looked for together, and from where.
-
-    starts  values by quantity; the fit begins at that which promises most. From where to look for
-            an effect that jumps, the model proposes
-    """
+    """Quantities of an effect that are fitted together, and initial guesses of them."""
 
     quantities: tuple[Quantity, ...]
-    starts: tuple[Mapping[str, float], ...]
+    guesses: tuple[Mapping[str, float], ...] = ({},)
 
 
 @dataclass(frozen=True)
-class Candidate:
+class EffectInfo:
     """An effect that may be missing from the nominal model.
 
-    channel   where it would show, in the words of the verdict
-    imitates  candidates with no more quantities that a form of this one comes close to
+    channel     where it would show
+    smooth      the prediction has derivatives by its quantities where it vanishes, so that a score
+                test can see it
+    upstream    it changes what drives the machine, which is recorded by itself
+    form_error  by how much, relative, machines differ from this model of the effect
     """
 
     name: str
@@ -65,25 +79,14 @@ class Candidate:
     channel: str
     sentence: str
     forms: tuple[Form, ...]
-    imitates: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True)
-class Proposal:
-    """From where to look for an effect that jumps.
-
-    gain   by how much it promises to lower the chi-square of a fit without it
-    doubt  of that fit; see `problem.doubt`
-    """
-
-    values: Mapping[str, float]
-    gain: float
-    doubt: float
+    smooth: bool = True
+    upstream: bool = False
+    form_error: float = 0.0
 
 
 @dataclass(frozen=True)
 class Data:
-    """One run as the fit sees it: t (n,) s; values, sigma (n, channels), NaN for no data."""
+    """One recorded run: t (n,) s; values, sigma (n, channels), NaN where there are no data."""
 
     name: str
     t: Array
@@ -91,155 +94,144 @@ class Data:
     sigma: Array
     held_out: bool
 
+    @property
+    def duration(self) -> float:
+        """Of the recording, s."""
+        return float(self.t[-1] - self.t[0])
+
 
 @dataclass(frozen=True)
-class Piece:
-    """The samples first <= k < last of a run, which is all of it or a part."""
+class Segment:
+    """A part of a run: its data are the samples first <= k < until, and it is simulated up to
+    sample `last`, where the next segment begins."""
 
     run: int
     first: int
+    until: int
     last: int
 
     @property
     def span(self) -> slice:
-        """As a slice."""
-        return slice(self.first, self.last)
+        """The samples over which it is simulated."""
+        return slice(self.first, self.last + 1)
+
+
+def segments(runs: Mapping[int, Data], length: float = np.inf) -> tuple[Segment, ...]:
+    """Runs, by their index, cut into equal parts of about `length` s."""
+    out = []
+    for run, data in runs.items():
+        parts = max(round(data.duration / length), 1)
+        edges = np.searchsorted(data.t, np.linspace(data.t[0], data.t[-1], parts + 1))
+        edges[-1] = data.t.size
+        for first, until in zip(edges[:-1].tolist(), edges[1:].tolist(), strict=True):
+            out.append(Segment(run, first, until, min(until, data.t.size - 1)))
+    return tuple(out)
 
 
 @dataclass(frozen=True)
-class Response:
-    """What a model predicts of a run, and its derivatives.
+class Request:
+    """A segment, and the values and the initial state with which it is simulated."""
 
-    predicted  (n, channels)
-    by_value   (n, channels, quantities) by those asked for
-    by_start   (n, channels, start) by the state at the start
-    """
+    segment: Segment
+    values: Mapping[str, float]
+    state: Array
 
-    predicted: Array
-    by_value: Array | None = None
-    by_start: Array | None = None
+
+@dataclass(frozen=True)
+class Simulation:
+    """What a segment's simulation leaves: residuals (n, channels) in sigma, 0 where there are no
+    data; the state at its end."""
+
+    residuals: Array
+    end: Array
 
     @property
-    def slopes(self) -> tuple[Array, Array]:
-        """by_value and by_start, which were asked for."""
-        if self.by_value is None or self.by_start is None:
-            raise ValueError("derivatives were not asked for")
-        return self.by_value, self.by_start
+    def cost(self) -> float:
+        """Sum of the squared residuals; inf where the simulation diverged."""
+        cost = float(np.vdot(self.residuals, self.residuals))
+        return cost if np.isfinite(cost) and np.isfinite(self.end).all() else np.inf
 
 
 @dataclass(frozen=True)
-class Asked:
-    """A piece of a run, and the values and the start with which it is to be predicted."""
+class Linearisation:
+    """gram  J'J with J = [by the state | by the quantities | residual], in sigmas
+    end   (size, size + quantities) of the state at the end, by the initial state and quantities"""
 
-    piece: Piece
-    values: Mapping[str, float]
-    start: Array
+    gram: Array
+    end: Array
 
 
 class Model(Protocol):
-    """A machine with a catalogue of what may be missing from its nominal model."""
+    """A machine with a catalogue of what may be missing from its nominal model.
+
+    channels        what is recorded, in order
+    runs            recorded
+    segment_length  s, over which the machine is simulated as well as it is known
+    parameters      of the nominal model, with what is known of each
+    catalogue       the effects it knows, by name
+    form_error      RMS in sigma by which machines of this kind differ from any model of them
+    """
 
     @property
-    def channels(self) -> tuple[str, ...]:
-        """What is recorded, in order."""
-        ...
-
+    def channels(self) -> tuple[str, ...]: ...  # noqa: D102
     @property
-    def runs(self) -> Sequence[Data]:
-        """The recorded runs."""
-        ...
-
+    def runs(self) -> Sequence[Data]: ...  # noqa: D102
     @property
-    def window(self) -> float:
-        """Seconds of the pieces in which a fit begins: so short that it has no wrong minima."""
-        ...
-
+    def segment_length(self) -> float: ...  # noqa: D102
     @property
-    def inexact(self) -> float:
-        """Misfit, RMS in sigma, by which machines of this kind differ from any model of them."""
-        ...
-
+    def parameters(self) -> tuple[Quantity, ...]: ...  # noqa: D102
     @property
-    def parameters(self) -> tuple[Quantity, ...]:
-        """Of the nominal model, with what is known of each."""
-        ...
-
+    def catalogue(self) -> Mapping[str, EffectInfo]: ...  # noqa: D102
     @property
-    def catalogue(self) -> Mapping[str, Candidate]:
-        """The effects it knows, by name."""
+    def form_error(self) -> float: ...  # noqa: D102
+
+    def initial_state(
+        self, segment: Segment, effects: tuple[str, ...], values: Mapping[str, float]
+    ) -> Array:
+        """A first guess of the state in which a segment begins."""
         ...
 
-    @property
-    def jumping(self) -> frozenset[str]:
-        """The effects that have no derivative where they vanish."""
+    def converted(
+        self, request: Request, before: tuple[str, ...], effects: tuple[str, ...]
+    ) -> Array:
+        """The state of a model with other effects that corresponds to this one."""
         ...
 
-    @property
-    def dear(self) -> frozenset[str]:
-        """Those of them that are dear to look for, and so only where nothing else will do."""
+    def state_scale(self, effects: tuple[str, ...]) -> Array:
+        """By how much process noise of strength 1 moves each state over a segment."""
         ...
 
-    @property
-    def placed(self) -> frozenset[str]:
-        """Those that are at some place, so that they can follow what is missing elsewhere."""
+    def state_prior(self, effects: tuple[str, ...]) -> Array:
+        """One sigma of each state that is known to be about 0; else inf."""
         ...
 
-    @property
-    def rough(self) -> frozenset[str]:
-        """Quantities of effects of which there are as many models as machines, none exact."""
+    def simulate(
+        self, requests: Sequence[Request], effects: tuple[str, ...]
+    ) -> Sequence[Simulation]:
+        """Simulate segments."""
         ...
 
-    @property
-    def vague(self) -> Mapping[str, float]:
-        """By what share of such a quantity's value those models differ in it, one sigma."""
+    def linearise(
+        self, requests: Sequence[Request], effects: tuple[str, ...], wanted: tuple[str, ...]
+    ) -> Sequence[Linearisation]:
+        """Linearise segments in their initial state and in the quantities named."""
         ...
 
-    def propose(self, name: str, form: int, fit: Fit) -> Sequence[Proposal]:
-        """From where to look for an effect that jumps, beside a fit without it."""
+    def predicted(self, request: Request, effects: tuple[str, ...]) -> Array:
+        """What would be recorded of a segment (n, channels)."""
         ...
 
-    def twin(self, values: Mapping[str, float]) -> Mapping[str, float] | None:
+    def upstream(self) -> Sequence[tuple[tuple[Choice, ...], Mapping[str, float]]]:
+        """Sets of effects of the drive, and their values, that explain its own recording; the
+        simplest first among equals. One empty set where the nominal drive does."""
+        ...
+
+    def proposals(
+        self, fit: Fit, complete: Sequence[str]
+    ) -> Sequence[tuple[Choice, Mapping[str, float]]]:
+        """Initial guesses of effects that a score test cannot see, beside a fit without them."""
+        ...
+
+    def equivalent(self, values: Mapping[str, float]) -> Mapping[str, float] | None:
         """Values that predict the same and are nearer to what was believed, if there are any."""
-        ...
-
-    def nameless(self, whole: Fit, windows: Fit) -> Fit | None:
-        """The parameters with a term of its own that has no name, over whole runs, from fits of
-        the parameters over whole runs and of the starts in windows; None if there is no such term.
-        """
-        ...
-
-    def start(self, piece: Piece) -> Array:
-        """A first guess of the state in which a piece of a run starts."""
-        ...
-
-    @property
-    def start_within(self) -> Array:
-        """One sigma of each number of a start of which it is known that it is about 0, or inf."""
-        ...
-
-    def respond(
-        self,
-        piece: Piece,
-        values: Mapping[str, float],
-        effects: tuple[str, ...],
-        start: Array,
-        wanted: tuple[str, ...] | None = None,
-    ) -> Response:
-        """Predict a piece of a run from its start; derivatives by `wanted`, if any."""
-        ...
-
-    def off(self, asked: Sequence[Asked], effects: tuple[str, ...]) -> Sequence[Array]:
-        """(predicted - recorded)/sigma (n, channels) of each piece, 0 where there are no data."""
-        ...
-
-    def grams(
-        self,
-        asked: Sequence[Asked],
-        effects: tuple[str, ...],
-        wanted: tuple[str, ...],
-        *,
-        stray: bool = False,
-    ) -> Sequence[Array]:
-        """J'J of each piece, J = [by the start | by `wanted` | off] in sigmas at all data; with
-        `stray` what no model has exactly, one sigma of it, is one more number of the start."""
         ...

@@ -1,111 +1,101 @@
-"""Rank what may be missing without fitting it: one linearised pass over all effects at once.
+"""Score tests: what each smooth effect would gain, from one linearised pass for all of them.
 
-At a fit without them, the derivatives by every effect's quantities at the value where it vanishes
-say what the best of each would gain, parameters and starts re-fitted with it. Of an effect that
-cannot be linearised there the model proposes from where to look for it, and what that promises.
+At a fit without an effect the likelihood's slope by the effect's quantities is its score. With the
+information matrix it says what a Newton step would gain, in likelihood, everything else refitted
+(Rao 1948), and where that step leads: a first guess. Only the few that promise most are fitted.
 """
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rr_opt.sysid.candidate import Chosen
-from rr_opt.sysid.least_squares import (
-    Fit,
-    Problem,
-    Quadratic,
-    bounded_step,
-    box,
-    doubt,
-    scaled,
-    total,
-)
-from rr_opt.sysid.model import Model
-
-LUCK = 25.0
-"""So much lower a chi-square is, by luck, where the best of many places was chosen; times doubt."""
+from rr_opt.array import Array
+from rr_opt.sysid.candidates import Choice
+from rr_opt.sysid.estimation import Fit, Linear, bounded_minimum
+from rr_opt.sysid.model import Request
 
 
 @dataclass(frozen=True)
-class Promise:
-    """What adding an effect would gain, in chi-square with what is known, linearised.
+class Score:
+    """What some effects promise beside a fit: -2 log likelihood gained less the price of their
+    quantities, and the values to begin with."""
 
-    begins  where to begin, if the effect jumps
-    luck    what the best of many places that are nothing would promise
-    """
-
-    chosen: Chosen
+    choices: tuple[Choice, ...]
     gain: float
-    begins: tuple[Mapping[str, float], ...] = ()
-    luck: float = 0.0
+    guess: Mapping[str, float]
 
 
-def linear(model: Model, chosen: Chosen) -> bool:
-    """Whether the effect can be linearised where it vanishes."""
-    return chosen.name not in model.jumping
+def scores(fit: Fit, most: int = 2) -> list[Score]:
+    """Of all smooth effects that the fit has not, and of all pairs of them; best first."""
+    model, problem = fit.problem.model, fit.problem
+    choices = [
+        Choice(name, form)
+        for name, info in model.catalogue.items()
+        if info.smooth and name not in fit.effects
+        for form in range(len(info.forms))
+    ]
+    names = tuple(dict.fromkeys(one.name for one in choices))
+    if not names:
+        return []
+    added = {
+        q.name: q for one in choices for q in model.catalogue[one.name].forms[one.form].quantities
+    }
+    quantities = (*problem.quantities, *added.values())
+    effects = tuple(sorted((*fit.effects, *names)))
+    values = {**fit.values, **{q.name: q.neutral for q in added.values()}}
+    states = {
+        one: model.converted(Request(one, values, state), fit.effects, effects)
+        for one, state in fit.states.items()
+    }
+    wide = replace(problem, effects=effects, quantities=quantities)
+    requests = wide.requests(values, states)
+    made = dict(zip(wide.segments, model.simulate(requests, effects), strict=True))
+    evidences = Linear.of(wide, values, states, made).evidences(problem.q)
+    H = np.diag(wide.prior) + sum(e.H for e in evidences.values())
+    g = wide.prior * wide.scaled(values) + sum(e.g for e in evidences.values())
+    test = _Test(H, g, wide.scaled(values), wide.box, len(problem.quantities), wide.prior)
+    where = {q.name: k for k, q in enumerate(quantities)}
+    base, out = test.gain([]), []
+    for some in (1, 2)[:most]:
+        for these in itertools.combinations(choices, some):
+            if len({one.name for one in these}) < some:
+                continue
+            own = [
+                where[q.name]
+                for one in these
+                for q in model.catalogue[one.name].forms[one.form].quantities
+            ]
+            gain, d = test.gain(own)
+            guess = {
+                quantities[k].name: values[quantities[k].name] + d[k] * quantities[k].scale
+                for k in own
+            }
+            out.append(Score(tuple(sorted(these)), gain - base[0], guess))
+    return sorted(out, key=lambda score: -score.gain)
 
 
 @dataclass(frozen=True)
-class Look:
-    """A look for an effect that jumps, in all its forms, beside a fit; dear for some."""
+class _Test:
+    H: Array
+    g: Array
+    u: Array
+    box: tuple[Array, Array]
+    fitted: int
+    prior: Array
 
-    model: Model
-    fit: Fit
-    name: str
-
-    def __call__(self) -> list[Promise]:
-        """What each form promises, if it is proposed."""
-        found = []
-        for form in range(len(self.model.catalogue[self.name].forms)):
-            proposals = self.model.propose(self.name, form, self.fit)
-            if proposals:
-                best = max(proposals, key=lambda proposal: proposal.gain)
-                begins = tuple(proposal.values for proposal in proposals)
-                luck = LUCK * best.doubt
-                found.append(Promise(Chosen(self.name, form), best.gain, begins, luck))
-        return found
-
-
-def looks(model: Model, fit: Fit, have: Sequence[Chosen], *, dear: bool) -> list[Look]:
-    """The looks for what jumps, beside a fit: of the dear ones, or of the others."""
-    names = {one.name for one in have}
-    return [
-        Look(model, fit, name)
-        for name in model.catalogue
-        if name in model.jumping and (name in model.dear) == dear and name not in names
-    ]
-
-
-def every(model: Model) -> list[Chosen]:
-    """Every effect in every form."""
-    return [
-        Chosen(name, form)
-        for name, candidate in model.catalogue.items()
-        for form in range(len(candidate.forms))
-    ]
-
-
-def screen(model: Model, fit: Fit, have: Sequence[Chosen]) -> list[Promise]:
-    """What each effect promises beside those already there."""
-    names = {one.name for one in have}
-    new = [one for one in every(model) if one.name not in names and linear(model, one)]
-    quantities = tuple(q for one in new for q in one.of(model).quantities)
-    own = (*fit.quantities, *quantities)
-    values = {q.name: q.neutral for q in quantities} | dict(fit.values)
-    effects = (*fit.effects, *dict.fromkeys(one.name for one in new))
-    problem = Problem(model, tuple(fit.starts), effects, own)
-    normals = problem.normals(values, fit.starts).values()
-    u, (low, high) = scaled(own, values), box(own)
-    whole = total(normals, doubt(fit.cost, fit.count) * problem.prior, u)
-    base = list(range(len(fit.quantities)))
-    place = {q.name: k for k, q in enumerate(own)}
-    promises = []
-    for one in new:
-        k = np.array(base + [place[q.name] for q in one.of(model).quantities])
-        some = Quadratic(0.0, whole.g[k], whole.H[np.ix_(k, k)])
-        d = bounded_step(some.H, some.g, 1e-9, u[k], low[k], high[k])
-        promises.append(Promise(one, -some.at(d)))
-    return sorted(promises, key=lambda promise: -promise.gain)
+    def gain(self, own: Sequence[int]) -> tuple[float, Array]:
+        """Of -2 log marginal likelihood with some further columns, and the step."""
+        keep = np.array([*range(self.fitted), *own], int)
+        d = np.zeros(self.u.size)
+        if not keep.size:
+            return 0.0, d
+        H, g = self.H[np.ix_(keep, keep)], self.g[keep]
+        low, high = (end[keep] - self.u[keep] for end in self.box)
+        d[keep] = bounded_minimum(H, g, low, high)
+        lowered = -float(2 * self.g @ d + d @ self.H @ d)
+        log = 2 * float(np.sum(np.log(np.diag(np.linalg.cholesky(H)))))
+        return lowered - log + float(np.sum(np.log(self.prior[keep]))), d

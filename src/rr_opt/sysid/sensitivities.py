@@ -39,10 +39,12 @@ class DriveSlopes:
 
 @dataclass(frozen=True)
 class Slopes:
-    """How what is seen changes, (samples, channels, ...), with p, and with the start."""
+    """How what is seen changes, (samples, channels, ...), with what is wanted, and with the start;
+    and how the last state does, (size, size + nw), with the start and with what is wanted."""
 
     by_parameter: Array
     by_start: Array
+    end: Array
 
 
 @dataclass(frozen=True)
@@ -120,7 +122,7 @@ def slopes(
         carried[k + 1, :, size:] += by.B[k]
     seen = by.by_state @ carried
     seen[:, :, size:] += by.by_wanted
-    return Slopes(seen[:, :, size:], seen[:, :, :size])
+    return Slopes(seen[:, :, size:], seen[:, :, :size], carried[-1])
 
 
 @dataclass(frozen=True)
@@ -260,8 +262,9 @@ class Sought:
     more: Array | None = None
 
 
-def grams(system: System, asked: Sequence[Sought]) -> list[Array]:
-    """J'J (n, n) of each run, without the samples where a prediction has left the numbers."""
+def grams(system: System, asked: Sequence[Sought]) -> list[tuple[Array, Array]]:
+    """J'J (n, n) of each run, without the samples where a prediction has left the numbers; and the
+    derivatives of its last state (size, size + nw) by the start and by what is wanted."""
     if not asked:
         return []
     code = code_of(system, 4 * sum(one.path.h.size for one in asked))
@@ -283,7 +286,7 @@ def _rows(one: Sought) -> Rows:
     )
 
 
-def _gram(system: System, one: Sought) -> Array:
+def _gram(system: System, one: Sought) -> tuple[Array, Array]:
     by = slopes(system, one.path, one.made, one.p, one.wanted, one.drive_by)
     off = one.made.seen - one.recorded.values
     weight = np.where(np.isfinite(off), one.recorded.weight, 0.0)
@@ -294,9 +297,10 @@ def _gram(system: System, one: Sought) -> Array:
         off[..., None],
     ]
     known = weight[:, :, None] > 0
-    return gram_of(
+    gram = gram_of(
         *(
             np.where(known, part, 0.0).reshape(weight.size, -1) * weight.reshape(-1, 1)
             for part in parts
         )
     )
+    return gram, by.end

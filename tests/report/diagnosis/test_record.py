@@ -61,5 +61,18 @@ def test_misfits_are_told_by_recording_and_channel(missing):
 def test_candidates_are_ranked(missing):
     ranked = record(missing)["candidates"]
     assert [one["score_above_best"] for one in ranked] == [0, 900, 2000]
-    assert ranked[1]["rms_beyond_noise_left_out"] is None
+    assert [one["rms_beyond_noise"] for one in ranked] == [0.02, None, 8.0]
     assert [one["accepted"] for one in ranked] == [True, False, False]
+
+
+def test_what_remains_is_told(missing, unexplained):
+    assert record(missing)["remainder"] == {
+        "size": "none",
+        "rms": 0.05,
+        "share": 0.01,
+        "depends_on": "",
+        "matters": "It places the robot to within 0.4 mm.",
+    }
+    left = record(unexplained)["remainder"]
+    assert (left["size"], left["share"]) == ("large", 0.97)
+    assert left["depends_on"] == "a force along the wheels that depends on the speed"

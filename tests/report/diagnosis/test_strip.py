@@ -9,7 +9,7 @@ from rr_opt.report.diagnosis.words import stage_words
 def test_a_stage_that_is_not_lit_but_sees_something_is_not_called_clear(missing):
     stages = list(missing.found.stages)
     stages[0] = replace(stages[0], p_value=1e-6, size=0.5)
-    assert stage_words(stages)[0] == "not clear"
+    assert stage_words(stages)[0] == "affected"
     # Certain and too small to matter, or large and by chance: neither counts.
     for p, size in ((1e-6, 0.05), (0.2, 0.5)):
         stages[0] = replace(stages[0], p_value=p, size=size)

@@ -43,3 +43,13 @@ def test_the_terminal_gets_the_verdict_first(every, verdict):
     assert text.startswith("verdict")
     assert verdict in text.splitlines()[0]
     assert "8.10 before, 1.00 after" in text
+
+
+def test_the_terminal_tells_what_remains(missing, unexplained):
+    def row(one):
+        return next(line for line in summary(one, []).splitlines() if line.startswith("remainder"))
+
+    assert row(missing).split() == ["remainder", "none"]
+    assert "large: 7.90 sigma beyond the noise, 97% of the misfit" in row(unexplained)
+    assert "depends on the speed" in summary(unexplained, [])
+    assert any(line.startswith("indistinguishable") for line in summary(missing, []).splitlines())

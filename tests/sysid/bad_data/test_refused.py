@@ -15,9 +15,8 @@ from rr_opt.model.gait import SineGait
 from rr_opt.outcome import InputError
 from rr_opt.recordings.experiment import read_experiment
 from rr_opt.recordings.usable import checked, usable
-from rr_opt.sysid.model import Piece
 from tests.sysid.bad_data.folder import GAITS, written
-from tests.sysid.made_up import experiment, recorded
+from tests.sysid.made_up import experiment, predicted, recorded
 
 DEGREES = 180 / np.pi
 
@@ -133,8 +132,7 @@ def test_no_fault_of_the_robot_is_refused(effect, values):
     strong = neutral | {f"{effect}.{name}": value for name, value in values.items()}
 
     def predict(run, start):
-        piece = Piece(run, 0, len(given.runs[run].recording.t))
-        return empty.respond(piece, strong, (effect,), start).predicted
+        return predicted(empty, run, strong, (effect,), start)
 
     made = replace(recorded(given, predict, 1).experiment, name=effect)
     trial, _ = usable(made)

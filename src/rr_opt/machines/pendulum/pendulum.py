@@ -2,7 +2,7 @@
 
     J th'' = tau - b th' - m l g sin th
 
-with viscous friction only; `pendulum_effects` lists what may be missing. It shares nothing with the
+with viscous friction only; `effects` lists what may be missing. It shares nothing with the
 Roller Racer but the protocol, and shows what of the diagnosis belongs to no machine in particular.
 """
 
@@ -12,7 +12,6 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from types import MappingProxyType
 
 import casadi as ca
 import numpy as np
@@ -20,10 +19,20 @@ import numpy as np
 from rr_opt.array import Array
 from rr_opt.machines.pendulum.effects import EXTRAS, Extra
 from rr_opt.model.experiment import Uncertainty
-from rr_opt.sysid.least_squares import Fit
-from rr_opt.sysid.model import Asked, Candidate, Data, Form, Piece, Proposal, Quantity, Response
-from rr_opt.sysid.sensitivities import DriveSlopes, Recorded, gram_of, slopes
-from rr_opt.sysid.shooting import DrivePath, System, predict
+from rr_opt.sysid.candidates import Choice
+from rr_opt.sysid.estimation import Fit
+from rr_opt.sysid.model import (
+    Data,
+    EffectInfo,
+    Form,
+    Linearisation,
+    Quantity,
+    Request,
+    Segment,
+    Simulation,
+)
+from rr_opt.sysid.sensitivities import DriveSlopes, Recorded, Sought, grams
+from rr_opt.sysid.shooting import DrivePath, Path, System, predict
 
 G = 9.81
 """m/s2."""
@@ -51,14 +60,10 @@ class Swing:
 
 
 class Pendulum:
-    """Recordings of a pendulum and its nominal J, ml, b; answers `diagnose.model.Model`."""
+    """Recordings of a pendulum and its nominal J, ml, b; answers `sysid.model.Model`."""
 
     channels = ("angle",)
-    inexact = 0.0
-    rough: frozenset[str] = frozenset()
-    vague: Mapping[str, float] = MappingProxyType({})
-    placed: frozenset[str] = frozenset()
-    jumping = dear = frozenset(name for name, extra in EXTRAS.items() if not extra.smooth)
+    form_error = 0.0
 
     def __init__(
         self,
@@ -76,93 +81,110 @@ class Pendulum:
             if name in uncertainty
         )
         # A period of small swings: in one, the way round has not yet parted from the way back.
-        self.window = 2 * math.pi * math.sqrt(self.nominal["J"] / (self.nominal["ml"] * G))
+        self.segment_length = 2 * math.pi * math.sqrt(self.nominal["J"] / (self.nominal["ml"] * G))
         torque = float(np.sqrt(np.mean(np.concatenate([s.torque for s in self.swings]) ** 2)))
         speeds = [float(np.nanmax(np.abs(_mean_speeds(s)))) for s in self.swings]
-        self.catalogue: Mapping[str, Candidate] = {
-            name: _candidate(extra, torque, max(*speeds, 1e-3)) for name, extra in EXTRAS.items()
+        self.catalogue: Mapping[str, EffectInfo] = {
+            name: _effect_info(extra, torque, max(*speeds, 1e-3)) for name, extra in EXTRAS.items()
         }
 
-    def propose(self, name: str, form: int, fit: Fit) -> Sequence[Proposal]:
-        """Where the effect's form says; a fit of a pendulum is cheap, so each is worth it."""
-        forms = self.catalogue[name].forms
-        return [Proposal(start, fit.cost, 1.0) for start in forms[form].starts]
+    def upstream(self) -> Sequence[tuple[tuple[Choice, ...], Mapping[str, float]]]:
+        """Nothing: the torque that drives it is taken as it was measured."""
+        return [((), {})]
 
-    def twin(self, values: Mapping[str, float]) -> None:
+    def proposals(
+        self, fit: Fit, complete: Sequence[str]
+    ) -> Sequence[tuple[Choice, Mapping[str, float]]]:
+        """Where the forms of effects without derivatives say."""
+        return [
+            (Choice(name), guess)
+            for name, info in self.catalogue.items()
+            if not info.smooth and name not in complete
+            for guess in info.forms[0].guesses
+        ]
+
+    def equivalent(self, values: Mapping[str, float]) -> None:
         """None: no two sets of values of a pendulum are alike."""
 
-    def nameless(self, whole: Fit, windows: Fit) -> None:
-        """None: it has no term without a name."""
-
-    def start(self, piece: Piece) -> Array:
+    def initial_state(
+        self, segment: Segment, effects: tuple[str, ...], values: Mapping[str, float]
+    ) -> Array:
         """Angle and speed (rad, rad/s) by a straight line through the first tenth of a second."""
-        data = self.runs[piece.run]
-        t, angle = data.t[piece.span], data.values[piece.span, 0]
+        data = self.runs[segment.run]
+        t, angle = data.t[segment.span], data.values[segment.span, 0]
         early = (t - t[0] <= 0.1) & np.isfinite(angle)
         slope, at = np.polyfit(t[early] - t[0], angle[early], 1)
         return np.array([at, slope])
 
-    @property
-    def start_within(self) -> Array:
+    def converted(
+        self, request: Request, before: tuple[str, ...], effects: tuple[str, ...]
+    ) -> Array:
+        """The same: no effect has a state of its own."""
+        return request.state
+
+    def state_scale(self, effects: tuple[str, ...]) -> Array:
+        """As much as the noise, and as much a second."""
+        return np.full(2, self.swings[0].sigma)
+
+    def state_prior(self, effects: tuple[str, ...]) -> Array:
         """Nothing is known."""
         return np.full(2, np.inf)
 
-    def respond(
-        self,
-        piece: Piece,
-        values: Mapping[str, float],
-        effects: tuple[str, ...],
-        start: Array,
-        wanted: tuple[str, ...] | None = None,
-    ) -> Response:
-        """Predict a piece of a run; see `diagnose.model.Model`."""
-        extras = tuple(extra for name, extra in EXTRAS.items() if name in effects)
-        system, names = _system(extras)
-        given = self.nominal | dict(values)
-        p = np.array([given[name] for name in names])
-        swing, t = self.swings[piece.run], self.runs[piece.run].t[piece.span]
-        late = sum(given[extra.quantity] for extra in extras if extra.delays)
-        path = _path(swing, t, late)
-        made = predict(system, path, start, p)
-        if wanted is None:
-            return Response(made.seen)
-        by = np.array([[float(own == name) for name in wanted] for own in names])
-        delays = [wanted.index(e.quantity) for e in extras if e.delays and e.quantity in wanted]
-        by_delay = _path_by_delay(swing, t, path, late, delays, len(wanted)) if delays else None
-        out = slopes(system, path, made, p, by, by_delay)
-        return Response(made.seen, out.by_parameter, out.by_start)
-
-    def off(self, asked: Sequence[Asked], effects: tuple[str, ...]) -> Sequence[Array]:
-        """(predicted - recorded)/sigma; see `diagnose.model.Model`."""
-        return [
-            self._recorded(one.piece).off(
-                self.respond(one.piece, one.values, effects, one.start).predicted
-            )
-            for one in asked
-        ]
-
-    def grams(
-        self,
-        asked: Sequence[Asked],
-        effects: tuple[str, ...],
-        wanted: tuple[str, ...],
-        *,
-        stray: bool = False,
-    ) -> Sequence[Array]:
-        """J'J of each piece. What a pendulum's model leaves out is not known beforehand: that
-        column is 0."""
+    def simulate(
+        self, requests: Sequence[Request], effects: tuple[str, ...]
+    ) -> Sequence[Simulation]:
+        """Simulate segments."""
         out = []
-        for one in asked:
-            made = self.respond(one.piece, one.values, effects, one.start, wanted)
-            recorded = self._recorded(one.piece)
-            by_value, by_start = (part[:, 0] * recorded.weight for part in made.slopes)
-            off = recorded.off(made.predicted)
-            out.append(gram_of(by_start, *[np.zeros_like(off)] * stray, by_value, off))
+        for one in requests:
+            made = self._simulated(one, effects)[-1]
+            out.append(Simulation(self._recorded(one.segment).off(made.seen), made.states[:, -1]))
         return out
 
-    def _recorded(self, piece: Piece) -> Recorded:
-        data = self.runs[piece.run]
-        return Recorded.of(data.values[piece.span], data.sigma[piece.span])
+    def linearise(
+        self, requests: Sequence[Request], effects: tuple[str, ...], wanted: tuple[str, ...]
+    ) -> Sequence[Linearisation]:
+        """Linearise segments."""
+        extras = _chosen(effects)
+        out = []
+        for one in requests:
+            system, names, p, path, late, made = self._simulated(one, effects)
+            by = np.array([[float(own == name) for name in wanted] for own in names])
+            by = by.reshape(len(names), len(wanted))
+            delays = [wanted.index(e.quantity) for e in extras if e.delays and e.quantity in wanted]
+            swing, t = self.swings[one.segment.run], self.runs[one.segment.run].t[one.segment.span]
+            moved = _path_by_delay(swing, t, path, late, delays, len(wanted)) if delays else None
+            sought = Sought(path, made, p, by, moved, self._recorded(one.segment))
+            ((gram, end),) = grams(system, [sought])
+            out.append(Linearisation(gram, end))
+        return out
+
+    def predicted(self, request: Request, effects: tuple[str, ...]) -> Array:
+        """What would be recorded of a segment (n, 1), rad."""
+        return self._simulated(request, effects)[-1].seen
+
+    def _simulated(
+        self, request: Request, effects: tuple[str, ...]
+    ) -> tuple[System, tuple[str, ...], Array, DrivePath, float, Path]:
+        """The system, its parameters' names and values, its drive, how late that is, its path."""
+        extras = _chosen(effects)
+        system, names = _system(extras)
+        given = self.nominal | dict(request.values)
+        p = np.array([given.get(name, 0.0) for name in names])
+        segment = request.segment
+        swing, t = self.swings[segment.run], self.runs[segment.run].t[segment.span]
+        late = sum(given.get(extra.quantity, 0.0) for extra in extras if extra.delays)
+        path = _path(swing, t, late)
+        return system, names, p, path, late, predict(system, path, request.state, p)
+
+    def _recorded(self, segment: Segment) -> Recorded:
+        data = self.runs[segment.run]
+        values = data.values[segment.span].copy()
+        values[segment.until - segment.first :] = np.nan
+        return Recorded.of(values, data.sigma[segment.span])
+
+
+def _chosen(effects: tuple[str, ...]) -> tuple[Extra, ...]:
+    return tuple(extra for name, extra in EXTRAS.items() if name in effects)
 
 
 def _data(swing: Swing) -> Data:
@@ -223,9 +245,11 @@ def _parameter(name: str, value: float, known: Uncertainty) -> Quantity:
     return Quantity(name, _UNITS[name], value, known.sigma, True, value / 3, 3 * value, value)
 
 
-def _candidate(extra: Extra, torque: float, speed: float) -> Candidate:
+def _effect_info(extra: Extra, torque: float, speed: float) -> EffectInfo:
     own = extra.constant
     size = own.size(torque, speed)
     quantity = Quantity(extra.quantity, own.unit, 0.0, size, False, own.low, own.high, 0.0)
     form = Form((quantity,), ({extra.quantity: extra.begin * size},))
-    return Candidate(extra.name, extra.family, extra.channel, extra.sentence, (form,))
+    return EffectInfo(
+        *(extra.name, extra.family, extra.channel, extra.sentence, (form,)), smooth=extra.smooth
+    )

@@ -91,15 +91,16 @@ def drive_path(drive: Drive, steps: Steps, late: float, *, mean: bool = False) -
 
 
 class Drives:
-    """The drives of runs, each kept until others were asked for."""
+    """The drives of runs, each kept until others were asked for.
 
-    def __init__(self, runs: Sequence[Run]) -> None:
+    A joint that is free at times moves as that of the nominal robot, whose inertia is known well
+    enough for that.
+    """
+
+    def __init__(self, runs: Sequence[Run], nominal: Mapping[str, float]) -> None:
         self._runs = runs
-        self._of = lru_cache(maxsize=64)(self._made)
-
-    def __reduce__(self) -> tuple:
-        """For another process: what is kept stays here."""
-        return Drives, (self._runs,)
+        self._joint = joint_of(nominal)
+        self._of = lru_cache(maxsize=256)(self._made)
 
     def of(self, run: int, given: Mapping[str, float], effects: tuple[str, ...]) -> Drive:
         """What the servo makes of the gait that it is told in a run."""
@@ -109,7 +110,7 @@ class Drives:
             if CATALOGUE[name].actuate
         )
         loose = any(CATALOGUE[name].backdrivable for name, _ in own)
-        return self._of(run, own, joint_of(given) if loose else None)
+        return self._of(run, own, self._joint if loose else None)
 
     def _made(
         self,

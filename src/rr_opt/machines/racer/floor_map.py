@@ -14,6 +14,7 @@ import itertools
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,9 +23,12 @@ from scipy.optimize import minimize
 from rr_opt.array import Array
 from rr_opt.effects.floor_patch import BORDER
 from rr_opt.machines.racer.observed import Along, observed
-from rr_opt.machines.racer.simulation import Racer
-from rr_opt.machines.racer.unknown_input import PUSHES, Linearised, Point, linearised
-from rr_opt.sysid.least_squares import Fit, Normal, total
+from rr_opt.machines.racer.unknown_input import PUSHES, linearised_inputs
+from rr_opt.sysid.estimation import Fit
+from rr_opt.sysid.settings import SETTINGS
+
+if TYPE_CHECKING:
+    from rr_opt.machines.racer.racer import RollerRacer
 
 _MOMENTS = 50
 """In each piece, at most."""
@@ -96,45 +100,43 @@ class FloorMap:
         return np.array([-more * (2 * slope + bend * more), 1.0 + more])
 
 
-def floor_map(model: Racer, fit: Fit) -> FloorMap:
-    """The map beside a fit, over the pieces it was fitted over."""
-    along = {
-        piece: observed(model, piece, fit.values, fit.effects, start)
-        for piece, start in fit.starts.items()
-    }
-    given = {**model.nominal, **fit.values}
+def floor_map(racer: RollerRacer, fit: Fit) -> FloorMap:
+    """The map beside a fit, over its segments, each with an initial state of its own."""
+    problem, values = fit.problem, fit.values
+    nq, given = len(problem.names), racer.simulator.given(values)
     k = np.repeat([given["kappa1"], given["kappa2"]], 2) / given["h"] ** 2
-    shortest = min(one.t.size for one in along.values())
-    count = max(min(shortest // _SAMPLES, _MOMENTS), 1)
-    pushes = {piece: _pushes(one, k, count) for piece, one in along.items()}
-    none = np.zeros((4 * count, 4 * count))
-    problem = linearised(
-        model, fit, Point(fit.values, fit.starts, np.zeros(4 * count)), pushes, [none]
-    )
-    sizes = [one.t.size for one in along.values()]
-    places = np.concatenate([one.places.transpose(1, 0, 2) for one in along.values()], axis=2)
+    requests = problem.requests(values, fit.states)
+    along = [observed(racer, one, fit.effects) for one in requests]
+    count = max(min(min(one.t.size for one in along) // _SAMPLES, _MOMENTS), 1)
+    size = requests[0].state.size
+    scale = np.ones(size + nq + 4 * count + 1)
+    scale[size : size + nq] = problem.scale
+    bends, onto, slopes = [], [], []
+    shared, g = np.diag(problem.prior), problem.prior * fit.u
+    for one, seen in zip(requests, along, strict=True):
+        pushes = _pushes(seen, k, count)
+        gram, _ = linearised_inputs(racer, one, fit.effects, problem.names, pushes)
+        evidence = fit.evidences[one.segment.run]
+        weight = 1 / (1 + max(evidence.excess, 0) / problem.correlation_times(one.segment.run))
+        gram = weight * gram * scale * scale[:, None]
+        S = gram[:size, :size]
+        reduced = gram[size:, size:] - gram[size:, :size] @ np.linalg.solve(S, gram[:size, size:])
+        shared, g = shared + reduced[:nq, :nq], g + reduced[:nq, -1]
+        bends.append(reduced[nq:-1, nq:-1])
+        onto.append(reduced[:nq, nq:-1])
+        slopes.append(reduced[nq:-1, -1])
+    # The pushes are each segment's own; the parameters, which all share, are fitted.
+    inverse = np.asarray(np.linalg.pinv(shared, hermitian=True), float)
+    across = np.hstack(onto)
+    sizes = [one.t.size for one in along]
     firsts = np.cumsum([0, *sizes[:-1]])
     begins = [first + _edges(n, count)[:-1] for first, n in zip(firsts, sizes, strict=True)]
-    return _reduced(problem, list(problem.normals.values()), places, np.concatenate(begins))
-
-
-def _reduced(
-    problem: Linearised, parts: Sequence[Normal], places: Array, begins: NDArray[np.int_]
-) -> FloorMap:
-    """The pushes are each piece's own; the parameters, which all pieces share, are fitted."""
-    n = problem.fitted
-    shared = total(parts, problem.prior, problem.u)
-    inverse = np.zeros((n, n))
-    if n:
-        inverse[:] = np.linalg.pinv(shared.H[:n, :n], hermitian=True)
-    onto = np.hstack([one.H[:n, n:] for one in parts])
-    slope = np.concatenate([one.g[n:] for one in parts])
     return FloorMap(
-        places,
-        begins,
-        slope - onto.T @ (inverse @ shared.g[:n]),
-        [one.H[n:, n:] for one in parts],
-        onto,
+        np.concatenate([one.places.transpose(1, 0, 2) for one in along], axis=2),
+        np.concatenate(begins),
+        np.concatenate(slopes) - across.T @ (inverse @ g),
+        bends,
+        across,
         inverse,
     )
 
@@ -243,7 +245,7 @@ def _circles(places: Array) -> Array:
     return np.array([(*at, size * r) for *at, r in itertools.product(x, y, _RADII)])
 
 
-def _floor_shapes_edges(places: Array) -> Array:
+def _edge_grid(places: Array) -> Array:
     out = []
     for normal in 2 * math.pi * np.arange(_DIRECTIONS) / _DIRECTIONS - math.pi:
         along = np.array([math.cos(normal), math.sin(normal)]) @ places
@@ -271,6 +273,18 @@ ROUND = Shape(
 
 STRAIGHT = Shape(
     depth=lambda of: lambda x, y: x * math.cos(of[0]) + y * math.sin(of[0]) - of[1],
-    grid=_floor_shapes_edges,
+    grid=_edge_grid,
     values=_edge_values,
 )
+
+
+def patches(racer: RollerRacer, fit: Fit) -> list[tuple[int, Mapping[str, float]]]:
+    """Patches that would gain most, by their form: round ones and straight edges; best first."""
+    floor = floor_map(racer, fit)
+    found = [
+        (gain, form, {f"floor_patch.{key}": value for key, value in values.items()})
+        for form, shape in enumerate((ROUND, STRAIGHT))
+        for gain, values in likely(floor, shape)
+        if gain > 2 * SETTINGS.evidence
+    ]
+    return [(form, values) for _, form, values in sorted(found, key=lambda one: -one[0])]

@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
 import casadi as ca
 import numpy as np
 from scipy.signal import savgol_filter
 
 from rr_opt.array import Array
-from rr_opt.machines.racer.parameters import values_of
-from rr_opt.machines.racer.simulation import Racer, driven, state_of
+from rr_opt.machines.racer.simulation import driven
 from rr_opt.motion.dynamics import assembled
-from rr_opt.sysid.model import Piece
-from rr_opt.sysid.shooting import predict
+from rr_opt.sysid.model import Request
+
+if TYPE_CHECKING:
+    from rr_opt.machines.racer.racer import RollerRacer
 
 _WINDOW = 0.5
 """What the prediction is off changes little over so long a time, s."""
@@ -50,19 +51,15 @@ class Along:
         return (self.u[::2] + self.u[1::2]) / 2
 
 
-def observed(
-    model: Racer, piece: Piece, values: Mapping[str, float], effects: tuple[str, ...], start: Array
-) -> Along:
+def observed(racer: RollerRacer, request: Request, effects: tuple[str, ...]) -> Along:
     """The motion that was recorded: the prediction, and the smooth part of what it is off."""
-    mechanical = model.simulated.every(effects)
-    system, motion = driven(mechanical)
-    given = {**model.nominal, **values}
-    p = values_of(given, motion.parameters)
-    data = model.runs[piece.run]
-    t = data.t[piece.span]
-    path = model.simulated.drive_path(piece, given, mechanical)
-    made = predict(system, path, state_of(mechanical, path, start, p), p)
-    pose, rate = _smooth(t, made.seen[:, :3], data.values[piece.span, :3])
+    simulator, segment = racer.simulator, request.segment
+    mechanical = simulator.every(effects)
+    _, motion = driven(mechanical)
+    data = racer.runs[segment.run]
+    t = data.t[segment.span]
+    ((path, made, p, _),) = simulator.paths([request], effects)
+    pose, rate = _smooth(t, made.seen[:, :3], data.values[segment.span, :3])
     states = made.states[:, :: path.each]
     _, s1, s2, w = np.array(motion.speeds.map(t.size)(states, path.at, p))
     phi, dphi = path.at[:2]

@@ -10,11 +10,11 @@ import numpy as np
 
 from rr_opt.array import Array
 from rr_opt.effects import CATALOGUE
-from rr_opt.effects.effect import Effect, OperatingRange, Parameter
+from rr_opt.effects.effect import Effect, OperatingRange, Parameter, Port
 from rr_opt.model.experiment import Experiment
 from rr_opt.model.parameters import PARAMETERS, Uncertainty, parameters_of
 from rr_opt.model.robot import EffectUse
-from rr_opt.sysid.model import Candidate, Form, Quantity
+from rr_opt.sysid.model import EffectInfo, Form, Quantity
 
 _CHANNELS = {
     "actuation": "actuation",
@@ -53,17 +53,24 @@ def uncertain(experiment: Experiment, setting: OperatingRange) -> tuple[Quantity
     return (*own, *(q for use in experiment.robot.physics for q in _present(use, setting)))
 
 
-def candidate(effect: Effect, setting: OperatingRange) -> Candidate:
+FORM_ERROR, ROUGH_FORM_ERROR = 0.02, 0.03
+"""By how much, relative, machines differ from the model of an effect, and of one that has no
+derivative where it vanishes: limits, play that knocks, contacts that slide, edges."""
+
+
+def effect_info(effect: Effect, setting: OperatingRange) -> EffectInfo:
     """An effect that may be missing."""
     forms = effect.forms or (tuple(q.name for q in effect.parameters),)
     own = {q.name: q for q in effect.parameters}
-    return Candidate(
+    return EffectInfo(
         effect.name,
         effect.family,
         _CHANNELS[effect.family],
         effect.sentence,
         tuple(_form(effect.name, [own[name] for name in form], setting) for form in forms),
-        effect.imitates,
+        smooth=effect.differentiable,
+        upstream=effect.port == Port.ACTUATION or effect.delay is not None,
+        form_error=FORM_ERROR if effect.differentiable else ROUGH_FORM_ERROR,
     )
 
 
@@ -127,6 +134,7 @@ def _form(effect: str, parameters: Sequence[Parameter], setting: OperatingRange)
         Quantity(
             *(f"{effect}.{q.name}", q.unit, q.neutral, size, False),
             *(max(q.bounds[0], q.fit_lower), _highest(q, setting), q.neutral),
+            form_error=q.model_form_sigma,
         )
         for q, size in zip(parameters, sizes, strict=True)
     )
@@ -134,12 +142,12 @@ def _form(effect: str, parameters: Sequence[Parameter], setting: OperatingRange)
         [size * trial for trial in q.initial_guesses] if q.neutral or q.bounds[0] == 0 else [0.0]
         for q, size in zip(parameters, sizes, strict=True)
     ]
-    starts = (
-        ()
-        if any(q.guess_from_data for q in parameters)
-        else tuple(
+    if any(q.guess_from_data for q in parameters):
+        return Form(quantities, ())
+    return Form(
+        quantities,
+        tuple(
             {q.name: value for q, value in zip(quantities, chosen, strict=True)}
             for chosen in itertools.product(*choices)
-        )
+        ),
     )
-    return Form(quantities, starts)

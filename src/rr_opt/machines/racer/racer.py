@@ -1,17 +1,9 @@
-"""The Roller Racer as a model that can be diagnosed.
-
-A term without a name for the corrected robot: rolling resistance as a curve of speed.
-
-Where no effect of the catalogue accounts for what is left, `rolling_force_curve` says what the
-wheels do at five speeds. It is fitted as an effect is, by simulation error over whole runs, beside
-the parameters; the speed of its last knot is that which the wheels seldom exceed.
-"""
+"""The Roller Racer as a model that can be identified; answers `sysid.model.Model`."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -19,64 +11,50 @@ import numpy as np
 from rr_opt.array import Array
 from rr_opt.effects import CATALOGUE
 from rr_opt.effects.effect import OperatingRange
-from rr_opt.effects.rolling_force_curve import EFFECT
-from rr_opt.machines.racer.observed import observed
-from rr_opt.machines.racer.parameters import ZERO_OFFSET, ZEROS, candidate, nominal, uncertain
-from rr_opt.machines.racer.proposals import of_patch, of_servo, of_slip
-from rr_opt.machines.racer.simulation import HELD, Racer, Simulated, side_speeds
+from rr_opt.machines.racer import floor_map, grip
+from rr_opt.machines.racer.actuation import actuation_sets
+from rr_opt.machines.racer.parameters import ZERO_OFFSET, ZEROS, effect_info, nominal, uncertain
+from rr_opt.machines.racer.simulation import Simulator, side_speeds, slips
 from rr_opt.model.experiment import CHANNELS, Experiment, Run
-from rr_opt.model.robot import Robot
-from rr_opt.sysid.candidate import joined
-from rr_opt.sysid.least_squares import Fit, Problem, solve
-from rr_opt.sysid.model import Asked, Candidate, Data, Piece, Proposal, Quantity, Response
-
-_FAST = 0.98
-"""Quantile of the wheels' speeds at which the curve ends."""
-
-
-def with_force_curve(model: Racer, robot: Robot, whole: Fit, windows: Fit) -> Fit:
-    """The parameters with the curve beside them, over whole runs.
-
-    whole    the parameters alone, over whole runs, say how fast the wheels are
-    windows  where it begins, as the parameters are not yet bent there
-    """
-    name = EFFECT.name
-    seen = [observed(model, p, whole.values, whole.effects, s) for p, s in whole.starts.items()]
-    speed = float(np.quantile(np.abs(np.concatenate([one.u.ravel() for one in seen])), _FAST))
-    size = (robot.k1 + robot.k2) / 2 * speed
-    curve = tuple(
-        # The speed is where the curve ends, and stays.
-        Quantity(f"{name}.{q.name}", q.unit, speed, speed, False, speed, speed, speed)
-        if q.name == "speed"
-        else Quantity(f"{name}.{q.name}", q.unit, 0.0, size, False, *q.bounds, q.neutral)
-        for q in EFFECT.parameters
-    )
-    quantities = (*model.parameters, *curve)
-    problem = Problem(model, tuple(windows.starts), (name,), quantities)
-    values = {q.name: q.value for q in quantities}
-    return joined(model, solve(problem, values, windows.starts))
-
+from rr_opt.sysid.candidates import Choice
+from rr_opt.sysid.estimation import Fit
+from rr_opt.sysid.model import (
+    Data,
+    EffectInfo,
+    Linearisation,
+    Quantity,
+    Request,
+    Segment,
+    Simulation,
+)
 
 SETTLING = 0.05
 """After a start from rest the motor saturates for some 20 ms; that much, s, is left out."""
 
 
-INEXACT = 5e-4
+FORM_ERROR = 5e-4
 """Of the way travelled, by which even a fine simulation of wheels that press on a floor is off."""
 
 
+_SETTLED = 0.02
+"""s, in which a side speed of a wheel that creeps is gone."""
+
+
 class RollerRacer:
-    """An experiment with a Roller Racer; answers `diagnose.model.Model`."""
+    """An experiment with a Roller Racer."""
 
     channels = CHANNELS
-    window = 5.0
+    segment_length = 5.0
 
     def __init__(self, experiment: Experiment, setting: OperatingRange | None = None) -> None:
         """setting: what was asked of the robot; left out, it is told from the runs."""
         self.experiment = experiment
         self._given = setting
         self.nominal = nominal(experiment)
-        self._mapped: tuple[Fit, tuple[Sequence[Proposal], Sequence[Proposal]]] | None = None
+
+    def beside(self, experiment: Experiment) -> RollerRacer:
+        """Another experiment with the same robot, and the same usual sizes of effects."""
+        return RollerRacer(experiment, self.setting)
 
     @property
     def runs(self) -> Sequence[Data]:
@@ -87,20 +65,19 @@ class RollerRacer:
     def _runs(self) -> Sequence[Data]:
         return [_data(run) for run in self.experiment.runs]
 
+    @property
+    def form_error(self) -> float:
+        """RMS in sigma over all channels by which robots of this kind differ from any model."""
+        return self._form_error
+
     @cached_property
-    def _inexact(self) -> float:
-        """Of the way travelled, the square of the channels' misfit averaged over all runs."""
+    def _form_error(self) -> float:
         squares = [
-            np.nanmean((INEXACT * _travelled(run)[:, None] / run.sigma[:, :2]) ** 2)
+            np.nanmean((FORM_ERROR * _travelled(run)[:, None] / run.sigma[:, :2]) ** 2)
             for run in self.runs
         ]
         # In x and y together as much as along the way, in psi and phi nothing.
         return float(np.sqrt(np.mean(squares) / len(CHANNELS)))
-
-    @property
-    def inexact(self) -> float:
-        """Misfit, RMS in sigma, by which robots of this kind differ from any model of them."""
-        return self._inexact
 
     @property
     def parameters(self) -> tuple[Quantity, ...]:
@@ -112,16 +89,16 @@ class RollerRacer:
         return uncertain(self.experiment, self.setting)
 
     @property
-    def catalogue(self) -> Mapping[str, Candidate]:
+    def catalogue(self) -> Mapping[str, EffectInfo]:
         """The effects of physics beyond the paper's model."""
         return self._catalogue
 
     @cached_property
-    def _catalogue(self) -> Mapping[str, Candidate]:
+    def _catalogue(self) -> Mapping[str, EffectInfo]:
         return {
-            name: candidate(effect, self.setting)
+            name: effect_info(effect, self.setting)
             for name, effect in CATALOGUE.items()
-            if name not in self.simulated.built_in and effect.candidate
+            if name not in self.simulator.built_in and effect.candidate
         }
 
     @property
@@ -143,48 +120,22 @@ class RollerRacer:
         speed = max(float(np.median(distances)), 1e-3)
         return OperatingRange(self.experiment.robot, fastest, speed, room)
 
-    @property
-    def jumping(self) -> frozenset[str]:
-        """The effects that have no derivative where they vanish."""
-        return frozenset(name for name, effect in CATALOGUE.items() if not effect.differentiable)
+    def upstream(self) -> Sequence[tuple[tuple[Choice, ...], Mapping[str, float]]]:
+        """Sets of effects of servo and clock that explain the recorded angle."""
+        return actuation_sets(self, [k for k, run in enumerate(self.runs) if not run.held_out])
 
-    @property
-    def dear(self) -> frozenset[str]:
-        """Those of them that are not the servo's."""
-        return frozenset(name for name in self.jumping if CATALOGUE[name].actuate is None)
+    def proposals(
+        self, fit: Fit, complete: Sequence[str]
+    ) -> Sequence[tuple[Choice, Mapping[str, float]]]:
+        """Where wheels may slip, and where another floor may be."""
+        out = []
+        if "lateral_slip" in self.catalogue and "lateral_slip" not in complete:
+            out += [(Choice("lateral_slip", k), guess) for k, guess in grip.slips(self, fit)]
+        if "floor_patch" in self.catalogue and "floor_patch" not in complete:
+            out += [(Choice("floor_patch", k), guess) for k, guess in floor_map.patches(self, fit)]
+        return out
 
-    @property
-    def placed(self) -> frozenset[str]:
-        """Those that are on a part of the floor."""
-        return frozenset(name for name in self.jumping if CATALOGUE[name].family == "floor")
-
-    @property
-    def rough(self) -> frozenset[str]:
-        """The quantities of effects of which there are as many models as machines."""
-        every = ((effect, q) for effect in CATALOGUE.values() for q in effect.parameters)
-        return frozenset(f"{effect.name}.{q.name}" for effect, q in every if q.model_form_error)
-
-    @property
-    def vague(self) -> Mapping[str, float]:
-        """How far such models differ in a quantity."""
-        every = ((effect, q) for effect in CATALOGUE.values() for q in effect.parameters)
-        return {
-            f"{effect.name}.{q.name}": q.model_form_sigma
-            for effect, q in every
-            if q.model_form_sigma
-        }
-
-    def propose(self, name: str, form: int, fit: Fit) -> Sequence[Proposal]:
-        """From where to look for an effect that jumps; see `racer_proposals`."""
-        if CATALOGUE[name].family == "floor":
-            if not self._mapped or self._mapped[0] is not fit:
-                self._mapped = fit, of_patch(self, fit)
-            return self._mapped[1][form]
-        if CATALOGUE[name].stiff:
-            return of_slip(self, name, form, fit)
-        return of_servo(self, name, self.catalogue[name].forms[form], fit)
-
-    def twin(self, values: Mapping[str, float]) -> Mapping[str, float] | None:
+    def equivalent(self, values: Mapping[str, float]) -> Mapping[str, float] | None:
         """The other way to see two halves of a floor: which is the usual, and which the patch.
 
         Or the same way, with an edge's direction in half a turn either way.
@@ -202,73 +153,74 @@ class RollerRacer:
         other = {"floor_patch.multiplier": 1 / factor, "floor_patch.normal": turned}
         return {**values, **other, **{name: factor * values[name] for name in own}}
 
-    def nameless(self, whole: Fit, windows: Fit) -> Fit:
-        """With rolling resistance as a curve of speed."""
-        return with_force_curve(self, self.experiment.robot, whole, windows)
-
-    def start(self, piece: Piece) -> Array:
+    def initial_state(
+        self, segment: Segment, effects: tuple[str, ...], values: Mapping[str, float]
+    ) -> Array:
         """x, y, psi as first recorded; for z, which swings less than v, the mean of v; side speeds
         as they look in the first moments."""
-        data = self.runs[piece.run]
-        t, values = data.t[piece.span], data.values[piece.span]
-        first = [column[np.isfinite(column)][0] for column in values.T[:3]]
+        data, run = self.runs[segment.run], self.experiment.runs[segment.run]
+        t, recorded = data.t[segment.span], data.values[segment.span]
+        first = [column[np.isfinite(column)][0] for column in recorded.T[:3]]
         # The mean speed along the axis over the first period is near enough to begin with.
-        run = self.experiment.runs[piece.run]
-        period = t - t[0] <= run.gait.period
-        seen = values[period & np.isfinite(values[:, :3]).all(axis=1)]
-        dx, dy = seen[-1, :2] - seen[0, :2]
-        heading = seen[:, 2].mean()
-        v = (dx * np.cos(heading) + dy * np.sin(heading)) / max(t[period][-1] - t[0], 1e-9)
-        return np.array([*first, v, *side_speeds(self.experiment.robot, run.gait, t, values)])
+        seen = recorded[(t - t[0] <= run.gait.period) & np.isfinite(recorded[:, :3]).all(axis=1)]
+        took = max(min(run.gait.period, t[-1] - t[0]), 1e-9)
+        dx, dy = seen[-1, :2] - seen[0, :2] if len(seen) else (0.0, 0.0)
+        heading = seen[:, 2].mean() if len(seen) else 0.0
+        v = (dx * np.cos(heading) + dy * np.sin(heading)) / took
+        plain = Request(segment, values, np.array([*first, v]))
+        state = self.simulator.converted(plain, (), effects)
+        if state.size > plain.state.size:
+            state[-2:] = side_speeds(self.experiment.robot, run.gait, t, recorded)
+        return state
 
-    @property
-    def start_within(self) -> Array:
-        """Side speeds of up to the robot's own."""
-        return np.array([*[np.inf] * HELD, *[self.setting.speed] * 2])
+    def converted(
+        self, request: Request, before: tuple[str, ...], effects: tuple[str, ...]
+    ) -> Array:
+        """The state with other effects."""
+        return self.simulator.converted(request, before, effects)
 
-    def respond(
-        self,
-        piece: Piece,
-        values: Mapping[str, float],
-        effects: tuple[str, ...],
-        start: Array,
-        wanted: tuple[str, ...] | None = None,
-    ) -> Response:
-        """Predict a piece of a run; see `diagnose.model.Model`."""
-        return self.simulated.respond(piece, values, effects, start, wanted)
-
-    def off(self, asked: Sequence[Asked], effects: tuple[str, ...]) -> Sequence[Array]:
-        """(predicted - recorded)/sigma; see `diagnose.model.Model`."""
-        return self.simulated.off(asked, effects)
-
-    def grams(
-        self,
-        asked: Sequence[Asked],
-        effects: tuple[str, ...],
-        wanted: tuple[str, ...],
-        *,
-        stray: bool = False,
-    ) -> Sequence[Array]:
-        """J'J of each piece; see `diagnose.model.Model`."""
-        return self.simulated.grams(asked, effects, wanted, self._stray if stray else None)
-
-    def _stray(self, predicted: Array) -> Array:
-        """The way from the start, too long or too short by as much as no model has exactly."""
-        out = np.zeros_like(predicted)
-        out[:, :2] = INEXACT * (predicted[:, :2] - predicted[0, :2])
-        return out
-
-    @property
-    def simulated(self) -> Simulated:
-        """Its runs, simulated."""
-        return self._simulated
+    def state_scale(self, effects: tuple[str, ...]) -> Array:
+        """As much as the noise; in speeds, as much as that makes in a second, or in the moment for
+        which a side speed lasts."""
+        place, heading = self._noise
+        sides = [place / _SETTLED] * 2 if slips(self.simulator.every(effects)) else []
+        return np.array([place, place, heading, place, *sides])
 
     @cached_property
-    def _simulated(self) -> Simulated:
+    def _noise(self) -> tuple[float, float]:
+        """Of the place, m, and of the heading, rad."""
+        place, heading = (float(np.nanmedian(self.runs[0].sigma[:, k])) for k in (0, 2))
+        return place, heading
+
+    def state_prior(self, effects: tuple[str, ...]) -> Array:
+        """Side speeds are about 0: what they do to the motion is of the order of the noise."""
+        scale = self.state_scale(effects)
+        return np.array([*[np.inf] * 4, *scale[4:]])
+
+    def simulate(
+        self, requests: Sequence[Request], effects: tuple[str, ...]
+    ) -> Sequence[Simulation]:
+        """Simulate segments."""
+        return self.simulator.simulate(requests, effects)
+
+    def linearise(
+        self, requests: Sequence[Request], effects: tuple[str, ...], wanted: tuple[str, ...]
+    ) -> Sequence[Linearisation]:
+        """Linearise segments."""
+        return self.simulator.linearise(requests, effects, wanted)
+
+    def predicted(self, request: Request, effects: tuple[str, ...]) -> Array:
+        """What would be recorded of a segment."""
+        ((_, made, _, _),) = self.simulator.paths([request], effects)
+        return made.seen
+
+    @cached_property
+    def simulator(self) -> Simulator:
+        """Of its runs."""
         given = frozenset(use.name for use in self.experiment.robot.physics)
         if any(name in self.experiment.uncertainty for name in ZEROS.values()):
             given |= {ZERO_OFFSET}
-        return Simulated(self.experiment.runs, self.runs, self.nominal, given)
+        return Simulator(self.experiment.runs, self.runs, self.nominal, given)
 
 
 def _travelled(data: Data) -> Array:
@@ -287,20 +239,3 @@ def _data(run: Run) -> Data:
         values[(recording.t >= 0) & (recording.t < SETTLING)] = np.nan
     sigma = np.column_stack([recording.sigma[name] for name in CHANNELS])
     return Data(run.name, recording.t, values, sigma, run.use == "holdout")
-
-
-def zeroed(racer: RollerRacer, fit: Fit) -> RollerRacer:
-    """The racer with exact zeros, and recordings of psi and phi less those of the fit."""
-    uncertainty = racer.experiment.uncertainty
-    off = {name: fit.values.get(name, 0.0) for name in ZEROS.values() if name in uncertainty}
-    if not off:
-        return racer
-    runs = []
-    for run in racer.experiment.runs:
-        values = dict(run.recording.values)
-        for name, zero in off.items():
-            channel = name.removesuffix("_zero")
-            values[channel] = values[channel] - zero
-        runs.append(replace(run, recording=replace(run.recording, values=values)))
-    exact = {name: known for name, known in uncertainty.items() if name not in off}
-    return RollerRacer(replace(racer.experiment, runs=tuple(runs), uncertainty=exact))

@@ -4,46 +4,31 @@ A push is a rolling force at a wheel, a side speed of an axle, or an error of th
 function of time: what it does to a recording is linear in it. Any function of speed, place or
 anything else is a function of time along the recorded path, so the motion answers to all of them
 in one pass, the same way as it answers to the servo's drive.
-
-The linearised problem of a fit with all terms that may be missing, and what some of them leave.
-
-The terms are functions of time along the recorded path, so that their size alone is unknown. What
-is nonlinear is how far they carry the robot: the problem is linearised again where the best set of
-terms leads.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
 import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import block_diag
 
 from rr_opt.array import Array
 from rr_opt.machines.racer.parameters import values_by, values_of
-from rr_opt.machines.racer.simulation import Racer, by_start_of, state_of, stiff_states, v_of_z_by
+from rr_opt.machines.racer.simulation import stiff_states
 from rr_opt.mechanics.kane import equations
 from rr_opt.mechanics.kinematics import Force, Frame, Mechanism
 from rr_opt.motion.dynamics import Assembly, assembled
 from rr_opt.motion.floor_motion import FloorMotion, solved
-from rr_opt.sysid.least_squares import (
-    Fit,
-    Normal,
-    bounded_step,
-    box,
-    doubt,
-    normal_of,
-    scaled,
-    total,
-    unscaled,
-)
-from rr_opt.sysid.model import Piece
+from rr_opt.sysid.model import Request
 from rr_opt.sysid.sensitivities import DriveSlopes, Hats, Linear, gram_of, linear
 from rr_opt.sysid.shooting import DrivePath, System, predict
+
+if TYPE_CHECKING:
+    from rr_opt.machines.racer.racer import RollerRacer
 
 PUSHES = ("wheel1l", "wheel1r", "wheel2l", "wheel2r", "side1", "side2", "angle")
 """Rolling force at each wheel (N), side speed of each axle (m/s), error of the angle (rad)."""
@@ -110,62 +95,50 @@ _ANGLE = 6
 """The row of PUSHES that is the servo's own."""
 
 
-@dataclass(frozen=True)
-class Pushed:
-    """A predicted run (n samples) and how it answers.
-
-    predicted (n, 4);  by_value (n, 4, wanted);  by_push (n, 4, pushes);  by_start (n, 4, 4)
-    """
-
-    predicted: Array
-    by_value: Array
-    by_push: Array
-    by_start: Array
-
-
-def respond(
-    model: Racer,
-    piece: Piece,
-    values: Mapping[str, float],
+def linearised_inputs(
+    racer: RollerRacer,
+    request: Request,
     effects: tuple[str, ...],
-    start: Array,
     wanted: tuple[str, ...],
-    pushes: Array,
-    amounts: Array,
-) -> Pushed:
-    """Predict a piece of a run; derivatives by `wanted`, by each push, and by the start.
+    inputs: Array,
+) -> tuple[Array, Array]:
+    """A segment linearised where none of the inputs acts, by further columns.
 
-    pushes  (k, 7, n), rows as PUSHES;  amounts  (k,) how much of each there is
+    inputs  (k, 7, n), rows as PUSHES
+
+    Returns J'J, J = [by the state | by `wanted` | by the inputs | residual] in sigmas, and the
+    derivatives of the last state by the same.
     """
-    mechanical = model.simulated.every(effects)
+    simulator, segment = racer.simulator, request.segment
+    mechanical = simulator.every(effects)
     system, motion = pushed_motion(mechanical)
-    given = {**model.nominal, **values}
+    given = simulator.given(request.values)
     names = motion.parameters[:-FURTHER]
     p = values_of(given, names)
-    t = model.runs[piece.run].t[piece.span]
-    path = model.simulated.drive_path(piece, given, mechanical)
-    drives = _drives(pushes, t)
+    t = racer.runs[segment.run].t[segment.span]
+    path = simulator.drive_path(segment, given, mechanical)
+    drives = _drives(inputs, t)
     moments = _moments(path, t)
-    pushed_path = _with_drives(path, np.tensordot(amounts, drives, 1), moments)
-    made = predict(system, pushed_path, state_of(mechanical, path, start, p), p)
-    by, own = (
-        values_by(given, names, wanted),
-        model.simulated.drive_slopes(piece, given, mechanical, wanted),
-    )
+    plain = _with_drives(path, np.zeros(drives.shape[1:]), moments)
+    made = predict(system, plain, request.state, p)
+    by = values_by(given, names, wanted)
+    own = simulator.drive_slopes(segment, given, mechanical, wanted)
     rows = len(path.at)
     hats = Hats(np.append(rows + np.arange(FURTHER), (0, 1)), _passed(moments, path.each))
-    how = linear(system, pushed_path, made, p, by, own and _widened(own), hats)
-    by_start, by_value, by_push = _carried(how, len(wanted), hats.rows, drives)
-    if motion.slips:
-        by_value = by_value + by_start[:, :, 3:4] * v_of_z_by(path, start, p, by, own)
-    return Pushed(made.seen, by_value, by_push, by_start_of(by_start, start))
+    how = linear(system, plain, made, p, by, own and _widened(own), hats)
+    seen, end = _carried(how, len(wanted), hats.rows, drives)
+    recorded = simulator.recorded(segment)
+    weight = recorded.weight.ravel()
+    columns = (seen.reshape(weight.size, -1) * weight[:, None])[weight > 0]
+    residual = recorded.off(made.seen).ravel()[weight > 0]
+    return gram_of(columns, residual), end
 
 
 def _carried(
     how: Linear, wanted: int, rows: NDArray[np.int_], drives: Array
-) -> tuple[Array, Array, Array]:
-    """Derivatives of what is seen, (n, channels, ...), by the start, by what is wanted, and by
-    pushes with DRIVES (k, 10, n)."""
+) -> tuple[Array, Array]:
+    """Derivatives of what is seen, (n, channels, ...), and of the last state, by the start, by what
+    is wanted, and by pushes with DRIVES (k, 10, n)."""
     samples, _, size = how.by_state.shape
     at = np.ascontiguousarray(drives.transpose(2, 1, 0))
     earlier, later = np.split(how.B[:, :, wanted:], 2, axis=2)
@@ -180,7 +153,7 @@ def _carried(
     seen = how.by_state @ carried
     seen[:, :, size:pushed] += how.by_wanted
     seen[:, :, pushed:] += how.by_drive[:, :, rows] @ at
-    return seen[:, :, :size], seen[:, :, size:pushed], seen[:, :, pushed:]
+    return seen, carried[-1]
 
 
 def _widened(own: DriveSlopes) -> DriveSlopes:
@@ -231,150 +204,3 @@ def _finely(drives: Array, moments: Array) -> Array:
     before = np.minimum(moments.astype(int), drives.shape[-1] - 2)
     beyond = moments - before
     return drives[..., before] * (1 - beyond) + drives[..., before + 1] * beyond
-
-
-Columns = NDArray[np.int_]
-
-_LARGEST, _ROUGHEST = 30.0, 3.0
-"""The functions, and their changes from knot to knot, in usual sizes, are about no larger."""
-
-
-@dataclass(frozen=True)
-class Linearised:
-    """The problem by the fit's quantities and, after them, all terms' columns, at u, scaled.
-
-    normals  by piece;  prior  weights of what is known, (n, n);  fitted  how many quantities;
-    count    values in the recordings
-    """
-
-    normals: Mapping[Piece, Normal]
-    u: Array
-    prior: Array
-    low: Array
-    high: Array
-    fitted: int
-    count: int
-
-    def left(self, columns: Columns) -> float:
-        """Misfit of the runs, each predicted from the others: mean square in sigma, less 1."""
-        every = list(self.normals.values())
-        left = 0.0
-        for n in every:
-            others = [other for other in every if other is not n] or every
-            left += n.at(self.step(others, columns))
-        return left / max(self.count - 4 * len(every), 1) - 1.0
-
-    def step(self, normals: Sequence[Normal], columns: Columns) -> Array:
-        """The best change (n,) with some columns free and the others at zero."""
-        own = self._own(columns)
-        d = np.zeros(self.u.size)
-        d[self.fitted :] = -self.u[self.fitted :]
-        d[own] = 0.0
-        whole = total(normals, self.prior, self.u)
-        g = whole.g + whole.H @ d
-        d[own] = bounded_step(
-            whole.H[np.ix_(own, own)], g[own], 1e-9, self.u[own], self.low[own], self.high[own]
-        )
-        return d
-
-    def cost(self, columns: Columns) -> float:
-        """Chi-square of all runs at the best change."""
-        d = self.step(list(self.normals.values()), columns)
-        return sum(n.at(d) for n in self.normals.values())
-
-    def curve(self, columns: Columns) -> tuple[Array, Array]:
-        """The columns' values and their covariance, from all runs."""
-        own, every = self._own(columns), list(self.normals.values())
-        d = self.step(every, columns)
-        wider = doubt(self.cost(columns), self.count)
-        H = total(every, self.prior, self.u).H[np.ix_(own, own)]
-        spread = np.asarray(wider * np.linalg.inv(H), float)
-        return (self.u + d)[columns], spread[self.fitted :, self.fitted :]
-
-    def _own(self, columns: Columns) -> Columns:
-        return np.concatenate([np.arange(self.fitted), columns])
-
-
-@dataclass(frozen=True)
-class Point:
-    """Where a problem is linearised: values, starts, and how much of each column there is."""
-
-    values: Mapping[str, float]
-    starts: Mapping[Piece, Array]
-    amounts: Array
-
-
-def linearised(
-    model: Racer,
-    fit: Fit,
-    point: Point,
-    pushes: Mapping[Piece, Array],
-    weights: Sequence[Array],
-    each: Callable[..., Iterable] = map,
-) -> Linearised:
-    """The problem at a point; the columns push (columns, 7, n) in each piece.
-
-    weights  of each term's columns, against being rough
-    """
-    tasks = [_OfPiece(model, fit, point, piece, pushes[piece]) for piece in point.starts]
-    done = list(each(_linearised, tasks))
-    normals = {task.piece: normal for task, (normal, _, _) in zip(tasks, done, strict=True)}
-    cost, count = sum(one[1] for one in done), sum(one[2] for one in done)
-    added = point.amounts.size
-    low, high = box(fit.quantities)
-    known = np.array([float(q.known) for q in fit.quantities])
-    return Linearised(
-        normals,
-        np.append(scaled(fit.quantities, point.values), point.amounts),
-        doubt(cost, count)
-        * np.asarray(block_diag(np.diag(known), *(_known(one) for one in weights))),
-        np.append(low, np.full(added, -np.inf)),
-        np.append(high, np.full(added, np.inf)),
-        len(fit.quantities),
-        count,
-    )
-
-
-@dataclass(frozen=True)
-class _OfPiece:
-    model: Racer
-    fit: Fit
-    point: Point
-    piece: Piece
-    pushes: Array
-
-
-def _linearised(one: _OfPiece) -> tuple[Normal, float, int]:
-    """A piece's problem, its chi-square and how many values it has."""
-    model, piece, quantities = one.model, one.piece, one.fit.quantities
-    names = tuple(q.name for q in quantities)
-    scale = np.array([q.scale for q in quantities])
-    within, start = model.start_within, one.point.starts[piece]
-    values, amounts = one.point.values, one.point.amounts
-    out = respond(model, piece, values, one.fit.effects, start, names, one.pushes, amounts)
-    data = model.runs[piece.run]
-    sigma = data.sigma[piece.span]
-    r = (out.predicted - data.values[piece.span]) / sigma
-    good = np.isfinite(r)
-    by_value, by_push, by_start = (
-        (part / sigma[:, :, None])[good] for part in (out.by_value, out.by_push, out.by_start)
-    )
-    gram = gram_of(by_start, by_value * scale, by_push, r[good])
-    normal = normal_of(gram, start / within, 1 / within)
-    return normal, float(r[good] @ r[good]), int(good.sum())
-
-
-def _known(weights: Array) -> Array:
-    """Weights of a term's columns, which are neither huge nor rough."""
-    return np.eye(len(weights)) / _LARGEST**2 + weights / _ROUGHEST**2
-
-
-def moved(fit: Fit, point: Point, problem: Linearised, columns: Columns) -> Point:
-    """Where the best set of columns leads."""
-    d = problem.step(list(problem.normals.values()), columns)
-    u = problem.u + d
-    starts = {
-        piece: point.starts[piece] + n.shift + n.follow @ d for piece, n in problem.normals.items()
-    }
-    values = dict(point.values) | unscaled(fit.quantities, u[: problem.fitted])
-    return Point(values, starts, u[problem.fitted :])

@@ -21,6 +21,7 @@ from rr_opt.report.diagnosis.words import (
     interval_text,
     number_text,
     parameter_words,
+    remainder_text,
     share_text,
     size_text,
     stage_words,
@@ -112,8 +113,7 @@ def diagnosis_document(one: DiagnosisAnswer, figures: Iterable[Figure] = ()) -> 
 _STATES = {
     "fault": ("fault", "✗ fault"),
     "clear": ("clear", "✓ clear"),
-    "not clear": ("unclear", "? not clear"),
-    "downstream of the fault": ("after", "downstream of the fault"),
+    "affected": ("after", "affected"),
 }
 
 
@@ -145,10 +145,11 @@ def chain_note(one: DiagnosisAnswer) -> str:
         return f"The stages were not tested one by one.{lit}"
     where = f"{one.where[0].upper()}{one.where[1:].removesuffix('.')}. " if one.where else ""
     if not one.guilty:
-        return f"{where or 'No stage has a fault that counts. '}{_SIGMA}"
-    named = one.found.verdict == "missing_physics"
-    lit = "the stage in which what was named acts" if named else "the first stage with a fault"
-    return f"{where}Lit: {lit}; a fault shows in the stages after it too. {_SIGMA}"
+        return f"{where or 'No channel has a fault that counts. '}{_SIGMA}"
+    return (
+        f"{where}Lit: where an unknown input would explain most of the misfit of the nominal "
+        f"model; the others follow the motion and are affected too. {_SIGMA}"
+    )
 
 
 _SIGMA = "σ: one standard deviation of the noise."
@@ -182,12 +183,11 @@ def candidates_table(one: DiagnosisAnswer) -> Table:
             candidate_words(each.effects),
             f"+{each.score - tried[0].score:.0f}",
             f"{each.fit:.2f} σ",
-            "–" if np.isnan(each.left_out) else f"{each.left_out:.2f} σ",
             Badge("accepted", "good") if each.accepted else "",
         ]
         for each in tried[:_MOST]
     ]
-    head = ["Effects", "Score over the best", "Misfit", "Misfit, left out", "Verdict"]
+    head = ["Effects", "Score over the best", "Misfit", "Verdict"]
     return table(head, rows, _CANDIDATES if rows else "")
 
 
@@ -285,8 +285,8 @@ def _recorded(run: Run) -> list[Cell]:
 
 _CANDIDATES = (
     "Each row was fitted to the fitted recordings, with the robot's parameters re-estimated. "
-    "Score: chi-square of data and knowledge and a price for each quantity; less is better. "
-    "Misfit: beyond the noise; left out: of each recording predicted from the others."
+    "Score: twice the log predictive density lost, each recording predicted from the others; less "
+    "is better. Misfit: what simulation leaves beyond the noise."
 )
 
 
@@ -321,6 +321,8 @@ def _open(one: DiagnosisAnswer) -> Iterator[str]:
     for group in found.indistinguishable:
         names = " from ".join(candidate_words([name]) for name in group)
         yield f"These recordings cannot distinguish {names}."
+    if found.verdict != "consistent":
+        yield f"Remainder: {remainder_text(found.remainder)}. {found.remainder.matters}"
     yield from (each.sentence for each in found.residue)
     if found.next_experiment is not None:
         yield found.next_experiment.sentence
@@ -337,13 +339,15 @@ def summary(one: DiagnosisAnswer, written: Sequence[Path]) -> str:
     rows += [row for finding in found.findings for row in _finding(finding, found.verdict)]
     rows += _misfit(one)
     rows += [
-        (f"stage {stage.name.replace('_', ' ')}", f"{word}, {size_text(stage)}")
+        (f"channel {stage.name.replace('_', ' ')}", f"{word}, {size_text(stage)}")
         for stage, word in zip(found.stages, stage_words(found.stages), strict=True)
     ]
     rows += [
         ("indistinguishable", " or ".join(name.replace("_", " ") for name in group))
         for group in found.indistinguishable
     ]
+    if found.verdict != "consistent":
+        rows.append(("remainder", remainder_text(found.remainder)))
     rows += [("left over", each.sentence) for each in found.residue]
     if one.loss is not None:
         rows.append(("lost speed", loss_line(one.loss)))
@@ -368,8 +372,6 @@ def _finding(finding: Finding, verdict: str) -> list[tuple[str, str]]:
 def _misfit(one: DiagnosisAnswer) -> list[tuple[str, str]]:
     found = one.found
     before, after = f"{found.before:.2f} before", f"{found.after:.2f} after"
-    if found.together is not None:
-        after += f" ({found.together:.2f} with values that fit all recordings)"
     return [("misfit", f"{before}, {after}, in units of the noise ({_proof(one)})")]
 
 

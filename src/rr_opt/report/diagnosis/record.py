@@ -8,16 +8,23 @@ from typing import Any
 
 from rr_opt.answers.diagnosis import DiagnosisAnswer, rms
 from rr_opt.report.diagnosis.loss import loss_record
-from rr_opt.sysid.diagnosis import Curve, Estimate, Finding, Misfit, Residue, Stage, Tried
+from rr_opt.sysid.diagnosis import (
+    Curve,
+    Estimate,
+    Finding,
+    Misfit,
+    Remainder,
+    Residue,
+    Stage,
+    Tried,
+)
 from rr_opt.version import __version__
 
 
 def fit_record(one: DiagnosisAnswer) -> dict[str, Any]:
     """Everything in units of the noise sigma.
 
-    Where none is held out, `heldout_rms_before` and `_after` are of the fitted recordings, each
-    predicted from the others, and `heldout_rms_parameters` is of the fitted ones as they are.
-    `heldout_rms_fitted_too` is null but where the values given fit the held-out ones too.
+    Where none is held out, the `heldout` ones are of the fitted recordings.
     """
     found = one.found
     levels = {"before": found.nominal, "parameters": found.refitted, "after": found.final}
@@ -27,7 +34,6 @@ def fit_record(one: DiagnosisAnswer) -> dict[str, Any]:
         "heldout_rms_before": number_of(found.before),
         "heldout_rms_parameters": number_of(rms(held["parameters"] or fitted["parameters"])),
         "heldout_rms_after": number_of(found.after),
-        "heldout_rms_fitted_too": number_of(found.together),
         "heldout_recordings": [m.recording for m in held["after"]],
         **{f"fitted_rms_{name}": number_of(rms(level)) for name, level in fitted.items()},
         "recordings": [
@@ -73,6 +79,7 @@ def record(one: DiagnosisAnswer) -> dict[str, Any]:
         },
         "effects": [_finding(each, found.verdict == "parameters") for each in found.findings],
         "candidates": _candidates(found.tried),
+        "remainder": _remainder(found.remainder),
         "indistinguishable": [list(group) for group in found.indistinguishable],
         "next_experiment": _next(one),
         "fit": fit_record(one),
@@ -124,6 +131,16 @@ def _finding(finding: Finding, of_robot: bool) -> dict[str, Any]:
     }
 
 
+def _remainder(one: Remainder) -> dict[str, Any]:
+    return {
+        "size": one.size,
+        "rms": number_of(one.rms),
+        "share": number_of(one.share),
+        "depends_on": one.depends_on,
+        "matters": one.matters,
+    }
+
+
 def _estimate(one: Estimate) -> dict[str, Any]:
     ends = [number_of(one.low), number_of(one.high)]
     return {"value": number_of(one.value), "ci95": ends, "unit": one.unit}
@@ -137,7 +154,6 @@ def _candidates(tried: Sequence[Tried]) -> list[dict[str, Any]]:
             "score": number_of(one.score),
             "score_above_best": number_of(one.score - best),
             "rms_beyond_noise": number_of(one.fit),
-            "rms_beyond_noise_left_out": number_of(one.left_out),
             "values": {name: number_of(value) for name, value in one.values.items()},
             "accepted": one.accepted,
         }

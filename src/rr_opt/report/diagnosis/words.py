@@ -6,9 +6,9 @@ import math
 from collections.abc import Iterable, Sequence
 
 from rr_opt.answers.quantities import number
-from rr_opt.machines.racer.stages.found import FALSE_ALARM, FLOOR
 from rr_opt.model.parameters import PARAMETERS
-from rr_opt.sysid.diagnosis import Diagnosis, Estimate, Finding, Stage
+from rr_opt.sysid.diagnosis import Diagnosis, Estimate, Finding, Remainder, Stage
+from rr_opt.sysid.settings import SETTINGS
 
 _NAMES = {
     "coulomb_friction": "Coulomb friction",
@@ -120,26 +120,30 @@ def _fixed(value: float, digits: int | None) -> str:
     return number(value, 3) if digits is None else f"{value:.{digits}f}"
 
 
+def remainder_text(one: Remainder) -> str:
+    """What is left: `small: 0.41 sigma beyond the noise, 3 % of the misfit; a force ...`."""
+    if one.size == "none":
+        return "none"
+    depends = f"; {one.depends_on}" if one.depends_on else ""
+    return (
+        f"{one.size}: {one.rms:.2f} sigma beyond the noise, {one.share:.0%} of the misfit{depends}"
+    )
+
+
 def share_text(finding: Finding) -> str:
     """The share of the mismatch that it explains."""
     return f"{100 * finding.removes:.0f} %"
 
 
 def stage_words(stages: Sequence[Stage]) -> list[str]:
-    """Of each stage `fault`, `clear`, `not clear` or, `downstream of the fault`.
-
-    Not clear is a stage that is not lit and sees something all the same.
-    """
-    first = next((k for k, stage in enumerate(stages) if stage.guilty), len(stages))
-    return [
-        "fault" if stage.guilty else "downstream of the fault" if k > first else _unlit(stage)
-        for k, stage in enumerate(stages)
-    ]
+    """Of each channel `fault`, where an unknown input would explain most; `affected`, where one
+    would explain some of the misfit too; or `clear`."""
+    return ["fault" if stage.guilty else _unlit(stage) for stage in stages]
 
 
 def _unlit(stage: Stage) -> str:
-    seen = stage.p_value < FALSE_ALARM and stage.size > FLOOR
-    return "not clear" if seen else "clear"
+    seen = stage.p_value < SETTINGS.false_alarm and stage.size > SETTINGS.negligible
+    return "affected" if seen else "clear"
 
 
 def size_text(stage: Stage) -> str:

@@ -107,6 +107,13 @@ _NAMES = {
 }
 
 
+def input_words(channel: str) -> str:
+    """What an unknown input of a channel is, with its unit."""
+    if channel == "actuation":
+        return "angle, rad"
+    return "side speed, m/s" if channel.startswith("constraint") else "force of a wheel, N"
+
+
 def curve(ax: Axes, one: Curve | Residue, label: str) -> Axes:
     """The mean in bins with its 95 % band; at zero there is no fault."""
     low, high = one.mean - _EVIDENCE_Z * one.error, one.mean + _EVIDENCE_Z * one.error
@@ -256,18 +263,14 @@ def _evidence(one: DiagnosisAnswer) -> tuple[Figure, str] | None:
         ax.remove()
     names = dict.fromkeys(name for name, *_ in curves)
     return made, (
-        f"Residual of the stage {' and '.join(names)}, mean in bins with a 95 % band. On the line "
-        "at zero there is no fault."
+        f"The unknown input ({' and '.join(names)}) that would explain most of the misfit of the "
+        "nominal model, with a 95 % band. On the line at zero there is none."
     )
 
 
 def _measured(stage: Stage) -> str:
     """What the curves of a stage show."""
-    if stage.channel == "actuation":
-        return "residual, σ"
-    if stage.channel == "measurement" or stage.channel.startswith("constraint"):
-        return "side speed, σ/s"
-    return "acceleration, σ/s²"
+    return input_words(stage.channel)
 
 
 def _paths(one: DiagnosisAnswer) -> tuple[Figure, str]:
@@ -325,7 +328,7 @@ def _residue(one: DiagnosisAnswer) -> tuple[Figure, str] | None:
         return None
     made = figure(WIDTH, 0.3 + 2.4 * len(some))
     for ax, each in zip(np.atleast_1d(made.subplots(len(some), 1)), some, strict=True):
-        curve(ax, each, f"{each.kind.replace('_', ' ')}, N")
+        curve(ax, each, input_words(each.kind))
     return made, " ".join(each.sentence for each in some)
 
 

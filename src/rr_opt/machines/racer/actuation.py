@@ -1,0 +1,183 @@
+"""What the joint's recorded angle says of the servo and of the clock, without any dynamics.
+
+The angle follows from the command and the servo alone, so every effect of the servo or the clock,
+and every pair of them, is fitted to it directly. A rate limit or a play has many minima over whole
+motions; in the angle they are plain.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import least_squares
+
+from rr_opt.array import Array
+from rr_opt.sysid.candidates import Choice
+from rr_opt.sysid.estimation import robust
+from rr_opt.sysid.model import Quantity
+from rr_opt.sysid.settings import SETTINGS
+
+if TYPE_CHECKING:
+    from rr_opt.machines.racer.racer import RollerRacer
+
+_SAMPLES = 6000
+"""Of all runs together: more say no more."""
+_TRIED = 14
+"""Initial values of an effect without derivatives, between next to nothing and a lot."""
+_PAIRED = 2
+"""Of the effects alone, how many are tried in pairs."""
+_SCANNED = 3
+"""Runs on which initial values are compared."""
+_OPEN = 4
+"""Sets that are handed on, at most."""
+
+
+@dataclass(frozen=True)
+class _Angle:
+    """The angle recorded in runs, and how likely sets of effects make it.
+
+    at  samples of each run that are looked at
+    """
+
+    racer: RollerRacer
+    at: Mapping[int, NDArray[np.intp]]
+
+    def residuals(self, values: Mapping[str, float], effects: tuple[str, ...]) -> dict[int, Array]:
+        """In sigma, of each run."""
+        out = {}
+        for run, k in self.at.items():
+            data = self.racer.runs[run]
+            phi = self.racer.simulator.angle(run, values, effects)[k]
+            out[run] = (phi - data.values[k, -1]) / data.sigma[k, -1]
+        return out
+
+    def score(self, residuals: Mapping[int, Array], quantities: int) -> float:
+        """-2 log likelihood with a price for each quantity (BIC, counting correlation times)."""
+        total, every = 0.0, 0.0
+        for run, r in residuals.items():
+            times = max(self.racer.runs[run].duration / SETTINGS.correlation_time, 1.0)
+            total += r.size + robust(float(r @ r) - r.size, times)
+            every += times
+        return total + quantities * math.log(every)
+
+    def explained(self, one: _Set) -> bool:
+        """Whether what a set leaves is nothing."""
+        samples = sum(k.size for k in self.at.values())
+        chance = 2 * math.sqrt(2 * samples)
+        return one.excess < max(SETTINGS.negligible**2 * samples, chance)
+
+    @cached_property
+    def scanned(self) -> _Angle:
+        """A few of the runs."""
+        return replace(self, at=dict([*self.at.items()][:_SCANNED]))
+
+
+@dataclass(frozen=True)
+class _Set:
+    choices: tuple[Choice, ...]
+    values: Mapping[str, float]
+    score: float
+    excess: float
+
+
+def actuation_sets(
+    racer: RollerRacer, runs: Sequence[int]
+) -> list[tuple[tuple[Choice, ...], Mapping[str, float]]]:
+    """Sets of effects that explain the recorded angle about equally well, the best first."""
+    seen = {run: np.flatnonzero(np.isfinite(racer.runs[run].values[:, -1])) for run in runs}
+    every = max(sum(k.size for k in seen.values()) // _SAMPLES, 1)
+    angle = _Angle(racer, {run: k[::every] for run, k in seen.items() if k.size})
+    free = tuple(q for q in racer.parameters if q.name == "phi_zero")
+    choices = [
+        Choice(name, form)
+        for name, info in racer.catalogue.items()
+        if info.upstream
+        for form in range(len(info.forms))
+    ]
+    none = _fitted(angle, racer, (), free, [{}])
+    if angle.explained(none):
+        return [((), {})]
+    alone = [_fitted(angle, racer, (one,), free, _guesses(racer, one)) for one in choices]
+    alone.sort(key=lambda one: one.score)
+    sets = [none, *alone]
+    # Where one effect leaves next to nothing, pairs are tried that cost next to nothing.
+    quick = angle.explained(alone[0])
+    names = list(dict.fromkeys(one.choices[0].name for one in alone))[:_PAIRED]
+    leading = [next(one for one in alone if one.choices[0].name == name) for name in names]
+    for one, other in itertools.product(leading, choices):
+        pair = tuple(sorted((one.choices[0], other)))
+        if other.name == one.choices[0].name or any(s.choices == pair for s in sets):
+            continue
+        if quick and not all(racer.catalogue[choice.name].smooth for choice in pair):
+            continue
+        guesses = [{**one.values, **guess} for guess in _guesses(racer, other)]
+        sets.append(_fitted(angle, racer, pair, free, guesses))
+    sets.sort(key=lambda one: one.score)
+    open_ = [one for one in sets if one.score < sets[0].score + 2 * SETTINGS.evidence]
+    # What one effect does, a pair with it does too: the pair has to pay.
+    plain = [
+        one
+        for one in open_
+        if not any(
+            {c.name for c in less.choices} < {c.name for c in one.choices}
+            and less.score < one.score + 2 * SETTINGS.evidence
+            for less in open_
+        )
+    ]
+    return [(one.choices, one.values) for one in plain[:_OPEN]]
+
+
+def _guesses(racer: RollerRacer, choice: Choice) -> list[dict[str, float]]:
+    form = racer.catalogue[choice.name].forms[choice.form]
+    if racer.catalogue[choice.name].smooth:
+        return [dict(form.guesses[0])]
+    # The first quantity decides where the minima are; the others begin where a fit would.
+    q = form.quantities[0]
+    sizes = np.geomspace(0.25, 1.0, _TRIED) if q.neutral else np.geomspace(0.05, 5.0, _TRIED)
+    values = np.clip(q.scale * sizes, q.low, q.high).tolist()
+    return [{**guess, q.name: value} for value in values for guess in form.guesses]
+
+
+def _fitted(
+    angle: _Angle,
+    racer: RollerRacer,
+    choices: tuple[Choice, ...],
+    free: tuple[Quantity, ...],
+    guesses: Sequence[Mapping[str, float]],
+) -> _Set:
+    own = [q for one in choices for q in racer.catalogue[one.name].forms[one.form].quantities]
+    quantities = [*free, *own]
+    effects = tuple(one.name for one in choices)
+    scale = np.array([q.scale for q in quantities])
+
+    def left(u: Array, of: _Angle = angle) -> Array:
+        values = dict(zip((q.name for q in quantities), (u * scale).tolist(), strict=True))
+        known = [u[k] - q.centre / q.scale for k, q in enumerate(free)]
+        return np.concatenate([*of.residuals(values, effects).values(), known])
+
+    def poor(u: Array) -> float:
+        return float(np.sum(left(u, angle.scanned) ** 2))
+
+    starts = [
+        np.array([guess.get(q.name, q.value) for q in quantities]) / scale for guess in guesses
+    ]
+    u = min(starts, key=poor) if len(starts) > 1 else starts[0]
+    if quantities:
+        low, high = (
+            np.array([getattr(q, end) for q in quantities]) / scale for end in ("low", "high")
+        )
+        u = least_squares(
+            left, np.clip(u, low, high), bounds=(low, high + 1e-12), diff_step=1e-4, max_nfev=12
+        ).x
+    values = dict(zip((q.name for q in quantities), (u * scale).tolist(), strict=True))
+    residuals = angle.residuals(values, effects)
+    excess = sum(float(r @ r) - r.size for r in residuals.values())
+    own_values = {q.name: values[q.name] for q in own}
+    return _Set(choices, own_values, angle.score(residuals, len(own)), excess)

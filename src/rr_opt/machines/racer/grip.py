@@ -1,0 +1,75 @@
+"""What grip the wheels would need not to slip: where to look for wheels that do.
+
+Wheels that slide do so where the side force over the load is largest, so a friction coefficient
+lies below the largest that was needed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+import casadi as ca
+import numpy as np
+
+from rr_opt.effects.lateral_slip import wheel_loads
+from rr_opt.machines.racer.parameters import values_of
+from rr_opt.machines.racer.simulation import driven
+from rr_opt.mechanics.kane import equations
+from rr_opt.mechanics.kinematics import ROBOT_PARAMETERS
+from rr_opt.motion.dynamics import assembled
+from rr_opt.sysid.estimation import Fit
+
+if TYPE_CHECKING:
+    from rr_opt.machines.racer.racer import RollerRacer
+
+_FRACTIONS = (0.97, 0.9, 0.8, 0.65, 0.45, 0.25)
+"""Of the largest grip needed, that are tried: just grazed, to hardly any."""
+
+
+@lru_cache
+def _needed() -> ca.Function:
+    """(v, phi, dphi, vdot, ddphi, p) -> side force over load of both axles (2,)."""
+    assembly = assembled((), for_prediction=True)
+    robot = assembly.mechanism
+    kane = equations(robot)
+    loads = wheel_loads(robot.parameters)
+    held = ca.vertcat(robot.speeds[1:3], kane.udot[1:3])
+    sides = ca.substitute(kane.needed[1:3], held, ca.SX.zeros(4))
+    grip = ca.vertcat(sides[0] / (2 * loads[1]), sides[1] / (2 * loads[2]))
+    inputs = [robot.speeds[0], robot.phi, robot.speeds[3], kane.udot[0], kane.udot[3], assembly.p]
+    return ca.Function("grip_needed", inputs, [grip])
+
+
+def grip_needed(racer: RollerRacer, fit: Fit) -> float:
+    """The largest side force over load of an axle that does not slip, over all recordings."""
+    simulator = racer.simulator
+    _, motion = driven(simulator.every(fit.effects))
+    given = simulator.given(fit.values)
+    plain = values_of(given, ROBOT_PARAMETERS)
+    worst = 0.0
+    for request in fit.problem.requests(fit.values, fit.states):
+        t = racer.runs[request.segment.run].t[request.segment.span]
+        if t.size < 3:
+            continue
+        ((path, made, p, _),) = simulator.paths([request], fit.effects)
+        v = np.array(motion.speeds.map(t.size)(made.states[:, :: path.each], path.at, p))[0]
+        phi, dphi = path.at[:2]
+        rates = np.gradient(v, t), np.gradient(dphi, t)
+        grip = _needed().map(t.size)(v, phi, dphi, *rates, plain)
+        # A single sample, as where the servo's rate jumps, is not what the wheels feel.
+        worst = max(worst, float(np.nanquantile(np.abs(np.array(grip)), 0.99)))
+    return worst
+
+
+def slips(racer: RollerRacer, fit: Fit) -> Sequence[tuple[int, Mapping[str, float]]]:
+    """Values to begin with, by the form of `lateral_slip`."""
+    forms = racer.catalogue["lateral_slip"].forms
+    (creep,) = forms[0].quantities
+    most = grip_needed(racer, fit)
+    creeping = [(0, {creep.name: size * creep.scale}) for size in (0.3, 3.0)]
+    gradual = {creep.name: 0.3 * creep.scale}
+    mu = "lateral_slip.mu"
+    sliding = [(1, {**gradual, mu: part * most}) for part in _FRACTIONS]
+    return [*creeping, *sliding]

@@ -1,0 +1,153 @@
+"""Candidate models: sets of effects, each with its fit and with how well it predicts."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from rr_opt.array import Array
+from rr_opt.sysid import estimation
+from rr_opt.sysid.estimation import Fit, Problem
+from rr_opt.sysid.model import Model, Quantity, Request, Segment, segments
+from rr_opt.sysid.settings import SETTINGS
+
+
+@dataclass(frozen=True, order=True)
+class Choice:
+    """An effect, in one of its forms."""
+
+    name: str
+    form: int = 0
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """The nominal model with some effects beside it, fitted."""
+
+    choices: tuple[Choice, ...]
+    fit: Fit
+
+    @property
+    def effects(self) -> tuple[str, ...]:
+        """Their names."""
+        return tuple(choice.name for choice in self.choices)
+
+    @property
+    def predictive(self) -> Mapping[int, float]:
+        """Log density of each run as predicted from the others."""
+        return self.fit.predictive
+
+    @property
+    def elpd(self) -> float:
+        """Sum of the log predictive densities (Vehtari, Gelman and Gabry 2017), runs left out."""
+        return sum(self.predictive.values())
+
+    @cached_property
+    def simulated(self) -> Fit:
+        """The quantities fitted by least squares over whole runs."""
+        return estimation.whole_runs(self.fit)
+
+    @property
+    def excess(self) -> float:
+        """What simulation of whole runs leaves beyond the noise, RMS in sigma."""
+        return self.simulated.excess
+
+    def advantage(self, other: Candidate) -> tuple[float, float]:
+        """By how many nats it predicts the recordings better, and the standard error of that."""
+        gains = np.array([p - other.predictive[run] for run, p in self.predictive.items()])
+        spread = float(np.std(gains, ddof=1)) if gains.size > 1 else math.inf
+        return float(gains.sum()), math.sqrt(gains.size) * spread
+
+    def predicts_better(self, other: Candidate) -> bool:
+        """Whether the evidence from prediction is enough to prefer it."""
+        gain, error = self.advantage(other)
+        return gain > max(SETTINGS.evidence, SETTINGS.standard_errors * error)
+
+
+def quantities_of(model: Model, choices: Sequence[Choice]) -> tuple[Quantity, ...]:
+    """The parameters and the effects' quantities."""
+    own = [q for one in choices for q in model.catalogue[one.name].forms[one.form].quantities]
+    return (*model.parameters, *own)
+
+
+def first(model: Model, runs: Iterable[int], length: float | None = None) -> Candidate:
+    """The nominal model, its parameters fitted."""
+    values = {q.name: q.value for q in model.parameters}
+    problem, states = estimation.initial(model, (), model.parameters, values, runs, length)
+    return Candidate((), estimation.fitted(problem, values, states))
+
+
+def fitted(
+    model: Model, choices: Sequence[Choice], parent: Fit, guesses: Sequence[Mapping[str, float]]
+) -> Candidate:
+    """A set of effects, fitted beside a fit without them.
+
+    guesses  of the new quantities; each is taken a few steps, the best to the end. The parameters
+             begin as in the parent's fit and, as what is missing may have bent them, as believed
+    """
+    ordered = tuple(sorted(choices))
+    names = tuple(one.name for one in ordered)
+    quantities = quantities_of(model, ordered)
+    problem = Problem(
+        model, names, quantities, parent.problem.segments, parent.problem.values, parent.problem.q
+    )
+    plain = {q.name: q.centre for q in quantities}
+    kept = {k: v for k, v in parent.values.items() if k in plain}
+    unbent = {**kept, **{q.name: q.centre for q in model.parameters}}
+    begun = [{**plain, **own, **guess} for guess in guesses for own in (kept, unbent)]
+    some = _tested(problem, parent)
+    trials = []
+    for values in begun:
+        states = _converted(model, parent, names, values)
+        part = {one: states[one] for one in some.segments}
+        fit = estimation.solve(some, values, part, SETTINGS.trial_steps)
+        trials.append((fit.deviance, fit, states))
+    _, best, states = min(trials, key=lambda trial: trial[0])
+    return Candidate(ordered, estimation.fitted(problem, best.values, {**states, **best.states}))
+
+
+def _tested(problem: Problem, parent: Fit) -> Problem:
+    """The problem of the few runs that the parent explains worst."""
+    worst = sorted(problem.by_run, key=lambda run: -parent.evidences[run].excess)
+    runs = worst[: SETTINGS.trial_runs]
+    return replace(problem, segments=tuple(s for s in problem.segments if s.run in runs))
+
+
+def _converted(
+    model: Model, parent: Fit, effects: tuple[str, ...], values: Mapping[str, float]
+) -> dict[Segment, Array]:
+    return {
+        one: model.converted(Request(one, values, state), parent.effects, effects)
+        for one, state in parent.states.items()
+    }
+
+
+def evaluated(candidate: Fit, runs: Iterable[int], values: Mapping[str, float]) -> Fit:
+    """Runs predicted whole with these values: their initial states alone are fitted."""
+    problem = candidate.problem
+    cut = segments({run: problem.model.runs[run] for run in runs})
+    single = replace(problem, quantities=(), segments=cut, values=dict(values), robust=False)
+    begun = {s.run: state for s, state in candidate.states.items() if s.first == 0}
+    states = {
+        one: begun[one.run]
+        if one.run in begun
+        else problem.model.initial_state(one, problem.effects, values)
+        for one in cut
+    }
+    return estimation.solve(single, values, states)
+
+
+def weights(candidates: Sequence[Candidate], draws: int = 2000) -> Array:
+    """Pseudo-BMA+ weights (Yao, Vehtari, Simpson and Gelman 2018): how often each would predict
+    best if other recordings like these had been made, by the Bayesian bootstrap over them."""
+    runs = list(candidates[0].predictive)
+    densities = np.array([[one.predictive[run] for run in runs] for one in candidates])
+    shares = np.random.default_rng(0).dirichlet(np.ones(len(runs)), draws) * len(runs)
+    totals = shares @ densities.T
+    totals -= totals.max(axis=1, keepdims=True)
+    odds = np.exp(totals)
+    return np.mean(odds / odds.sum(axis=1, keepdims=True), axis=0)

@@ -1,0 +1,543 @@
+r"""Estimation by multiple shooting, with process noise.
+
+A run is cut into segments, each with an initial state of its own. Where one segment ends and the
+next begins the states may differ by process noise of strength q (in units of `Model.state_scale`):
+
+    E_r = sum of squared residuals of run r + sum over gaps |end_k - start_k+1|^2/(q scale)^2
+
+With q = 0 this is single shooting; with q large the segments are independent. A model that is
+right is best with next to none; one that lacks something needs as much as what it lacks. q is
+estimated by the marginal likelihood (Laplace's approximation), so that a wrong model is not asked
+to predict for longer than it can, and the parameters of a run are not bent by it.
+
+The initial states are eliminated by a Schur complement, run by run. What a model lacks is not
+independent from sample to sample: a run's misfit beyond its noise counts as
+
+    loss = n + K log(1 + (E - n)/K),
+
+K the number of correlation times in the run's channels, n its degrees of
+freedom: the marginal of a variance
+of model error that is estimated from the run itself. Where the fit is good this is E.
+
+References: Bock (1983) for multiple shooting; Kristensen, Madsen, Jorgensen (2004) for process
+noise in grey-box models; Kennedy and O'Hagan (2001) for model error.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+from scipy.linalg import cho_factor, cho_solve, cholesky, solve_triangular
+from scipy.optimize import lsq_linear
+
+from rr_opt.array import Array
+from rr_opt.sysid.model import Model, Quantity, Request, Segment, Simulation, segments
+from rr_opt.sysid.settings import SETTINGS
+
+States = Mapping[Segment, Array]
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """-2 log of a run's marginal likelihood, about where it was linearised.
+
+    loss(d) = value + 2 g'd + d'Hd in the scaled quantities, the states eliminated
+
+    samples   with data, less the states
+    excess    E - samples
+    log       of the states' determinants and the process noise's densities
+    shift     of the stacked initial states to their best;  follow  how that moves with d
+    """
+
+    samples: int
+    excess: float
+    value: float
+    log: float
+    g: Array
+    H: Array
+    shift: Array
+    follow: Array
+
+    def at(self, d: Array) -> float:
+        """The loss after a change d."""
+        return float(self.value + 2 * self.g @ d + d @ self.H @ d)
+
+
+def robust(excess: float, correlation_times: float) -> float:
+    """The part of a run's loss that is beyond its degrees of freedom."""
+    if excess <= 0:
+        return excess
+    return correlation_times * math.log1p(excess / correlation_times)
+
+
+def bounded_minimum(H: Array, g: Array, low: Array, high: Array) -> Array:
+    """The d within bounds that minimises 2 g'd + d'Hd."""
+    L = cholesky(H, lower=True)
+    d = -cho_solve((L, True), g)
+    if (d >= low).all() and (d <= high).all():
+        return d
+    low, high = np.minimum(low, 0.0), np.maximum(high, 0.0)
+    wide = high > low
+    out = np.zeros_like(g)
+    if wide.any():
+        L = cholesky(H[np.ix_(wide, wide)], lower=True)
+        right = -solve_triangular(L, g[wide], lower=True)
+        out[wide] = lsq_linear(L.T, right, (low[wide], high[wide]), method="bvls").x
+    return out
+
+
+@dataclass(frozen=True)
+class Problem:
+    """What is fitted, to which segments.
+
+    values  of everything that is not fitted
+    q       strength of the process noise
+    loss    robust, or least squares
+    """
+
+    model: Model
+    effects: tuple[str, ...]
+    quantities: tuple[Quantity, ...]
+    segments: tuple[Segment, ...]
+    values: Mapping[str, float] = field(default_factory=dict)
+    q: float = SETTINGS.most_process_noise
+    robust: bool = True
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """Of the quantities."""
+        return tuple(q.name for q in self.quantities)
+
+    @cached_property
+    def scale(self) -> Array:
+        """Of the quantities."""
+        return np.array([q.scale for q in self.quantities])
+
+    @cached_property
+    def centre(self) -> Array:
+        """Of the quantities' prior."""
+        return np.array([q.centre for q in self.quantities])
+
+    @cached_property
+    def prior(self) -> Array:
+        """Precision of the scaled quantities."""
+        wide = SETTINGS.effect_prior**-2
+        return np.array([1.0 if q.known else wide for q in self.quantities])
+
+    @cached_property
+    def box(self) -> tuple[Array, Array]:
+        """Bounds of the scaled quantities."""
+        low, high = (
+            np.array([getattr(q, end) for q in self.quantities]) for end in ("low", "high")
+        )
+        return (low - self.centre) / self.scale, (high - self.centre) / self.scale
+
+    @cached_property
+    def by_run(self) -> Mapping[int, tuple[Segment, ...]]:
+        """The segments of each run, in order."""
+        out: dict[int, tuple[Segment, ...]] = {}
+        for one in self.segments:
+            out[one.run] = (*out.get(one.run, ()), one)
+        return out
+
+    def scaled(self, values: Mapping[str, float]) -> Array:
+        """The quantities as multiples of their scales from the prior's centre."""
+        own = np.array([values[name] for name in self.names])
+        return (own - self.centre) / self.scale if own.size else np.zeros(0)
+
+    def valued(self, u: Array) -> dict[str, float]:
+        """Every value."""
+        own = self.centre + self.scale * u
+        return {**self.values, **dict(zip(self.names, own.tolist(), strict=True))}
+
+    def requests(self, values: Mapping[str, float], states: States) -> list[Request]:
+        """All segments."""
+        return [Request(one, values, states[one]) for one in self.segments]
+
+    def correlation_times(self, run: int) -> float:
+        """In all channels of a run."""
+        data = self.model.runs[run]
+        return len(self.model.channels) * max(data.duration / SETTINGS.correlation_time, 1.0)
+
+    def samples(self, run: int) -> int:
+        """With data, of the run's segments."""
+        values = self.model.runs[run].values
+        return sum(int(np.isfinite(values[s.first : s.until]).sum()) for s in self.by_run[run])
+
+    def degrees(self, run: int) -> int:
+        """Of freedom: a run's samples less what its initial states take."""
+        states = self.model.state_scale(self.effects).size * len(self.by_run[run])
+        return max(self.samples(run) - states, 1)
+
+    def loss(self, run: int, misfit: float) -> float:
+        """Of a run with misfit E."""
+        if not self.robust or not np.isfinite(misfit):
+            return misfit
+        n = self.degrees(run)
+        return n + robust(misfit - n, self.correlation_times(run))
+
+    def misfits(self, made: Mapping[Segment, Simulation], states: States) -> dict[int, float]:
+        """E of each run."""
+        weak = 1 / self.model.state_prior(self.effects)
+        tight = 1 / (self.q * self.model.state_scale(self.effects))
+        out = {}
+        for run, parts in self.by_run.items():
+            total = sum(made[one].cost + float(np.sum((weak * states[one]) ** 2)) for one in parts)
+            if np.isfinite(total):
+                for one, after in itertools.pairwise(parts):
+                    total += float(np.sum((tight * (made[one].end - states[after])) ** 2))
+            out[run] = total
+        return out
+
+    def cost(self, misfits: Mapping[int, float], u: Array) -> float:
+        """The sum of all losses, and of the prior's."""
+        return sum(self.loss(r, e) for r, e in misfits.items()) + float(self.prior @ u**2)
+
+
+@dataclass(frozen=True)
+class Linear:
+    """Segments' linearisations, so that other strengths of process noise cost nothing."""
+
+    problem: Problem
+    made: Mapping[Segment, Simulation]
+    parts: Mapping[Segment, tuple[Array, Array]]
+    states: States
+
+    @classmethod
+    def of(cls, problem: Problem, values: Mapping[str, float], states: States, made) -> Linear:
+        """At a point that was simulated."""
+        requests = problem.requests(values, states)
+        every = problem.model.linearise(requests, problem.effects, problem.names)
+        size = requests[0].state.size
+        scale = np.ones(size + len(problem.names) + 1)
+        scale[size:-1] = problem.scale
+        parts = {
+            one: (linear.gram * scale * scale[:, None], linear.end * scale[:-1])
+            for one, linear in zip(problem.segments, every, strict=True)
+        }
+        return cls(problem, made, parts, states)
+
+    def evidence(self, run: int, q: float) -> Evidence:
+        """A run's, with process noise of strength q."""
+        problem, parts = self.problem, self.problem.by_run[run]
+        model = problem.model
+        scale, known = (model.state_scale(problem.effects), model.state_prior(problem.effects))
+        size, tight, prior = scale.size, 1 / (q * scale), 1 / known**2
+        # Of the quantities, and of whatever else was linearised in.
+        nq = self.parts[parts[0]][1].shape[1] - size
+        own = size * len(parts)
+        H, g, value = np.zeros((own + nq, own + nq)), np.zeros(own + nq), 0.0
+        shared = np.arange(own, own + nq)
+        for k, one in enumerate(parts):
+            gram, end = self.parts[one]
+            here = np.append(np.arange(k * size, (k + 1) * size), shared)
+            H[np.ix_(here, here)] += gram[:-1, :-1]
+            g[here] += gram[:-1, -1]
+            value += gram[-1, -1]
+            at = here[:size]
+            H[at, at] += prior
+            g[at] += prior * self.states[one]
+            value += float(prior @ self.states[one] ** 2)
+            if k + 1 < len(parts):
+                gap = tight * (self.made[one].end - self.states[parts[k + 1]])
+                by = np.hstack([tight[:, None] * end, -np.diag(tight)])
+                both = np.concatenate([here, np.arange((k + 1) * size, (k + 2) * size)])
+                H[np.ix_(both, both)] += by.T @ by
+                g[both] += by.T @ gap
+                value += float(gap @ gap)
+        # In the states' own scales, as their units differ.
+        units = np.tile(scale, len(parts))
+        S = H[:own, :own] * units * units[:, None]
+        S[np.diag_indices(own)] += 1e-12 * np.trace(S) / own
+        factor = cho_factor(S, lower=True)
+        across = units[:, None] * H[:own, own:]
+        follow = -cho_solve(factor, across)
+        shift = -cho_solve(factor, units * g[:own])
+        misfit = value + float(units * g[:own] @ shift)
+        log = 2 * float(np.sum(np.log(np.diag(factor[0]))))
+        log += 2 * size * (len(parts) - 1) * math.log(q)
+        proper = np.isfinite(known)
+        log += len(parts) * 2 * float(np.sum(np.log(known[proper] / scale[proper])))
+        n, weight = problem.degrees(run), 1.0
+        excess = misfit - n
+        if problem.robust:
+            weight = 1 / (1 + max(excess / problem.correlation_times(run), 0.0))
+        return Evidence(
+            *(n, excess, problem.loss(run, misfit), log),
+            weight * (g[own:] + follow.T @ (units * g[:own])),
+            weight * (H[own:, own:] + across.T @ follow),
+            units * shift,
+            units[:, None] * follow,
+        )
+
+    def evidences(self, q: float) -> dict[int, Evidence]:
+        """Those of all runs."""
+        return {run: self.evidence(run, q) for run in self.problem.by_run}
+
+    def moved(
+        self, evidences: Mapping[int, Evidence], d: Array, share: float = 1.0
+    ) -> dict[Segment, Array]:
+        """The states that are best after a change d of the quantities, or a share of the way."""
+        out = {}
+        for run, parts in self.problem.by_run.items():
+            e = evidences[run]
+            change = (share * e.shift + e.follow @ d).reshape(len(parts), -1)
+            out |= {one: self.states[one] + c for one, c in zip(parts, change, strict=True)}
+        return out
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A problem's solution.
+
+    values     of everything
+    states     initial, of each segment
+    evidences  of each run, at the solution
+    """
+
+    problem: Problem
+    values: Mapping[str, float]
+    states: States
+    linear: Linear
+    evidences: Mapping[int, Evidence]
+    converged: bool = True
+
+    @property
+    def effects(self) -> tuple[str, ...]:
+        """That were fitted."""
+        return self.problem.effects
+
+    @cached_property
+    def u(self) -> Array:
+        """The scaled quantities."""
+        return self.problem.scaled(self.values)
+
+    @cached_property
+    def deviance(self) -> float:
+        """-2 log of the marginal likelihood of all runs."""
+        H, _, value = self.information()
+        return value + self._volume(H)
+
+    def _volume(self, H: Array) -> float:
+        if not self.u.size:
+            return 0.0
+        return _log_det(H) - float(np.sum(np.log(self.problem.prior)))
+
+    def _without(self, run: int) -> float:
+        """The deviance of the others, at their own best."""
+        H, g, value = self.information([r for r in self.evidences if r != run])
+        if not self.u.size:
+            return value
+        low, high = self.problem.box
+        d = bounded_minimum(H, g, low - self.u, high - self.u)
+        return value + float(2 * g @ d + d @ H @ d) + self._volume(H)
+
+    def information(self, runs: Iterable[int] | None = None) -> tuple[Array, Array, float]:
+        """H, g and value of the runs with the prior: of value + 2 g'd + d'Hd."""
+        problem, some = self.problem, [*self.evidences] if runs is None else [*runs]
+        H, g = np.diag(problem.prior), problem.prior * self.u
+        value = float(problem.prior @ self.u**2)
+        for run in some:
+            e = self.evidences[run]
+            H, g, value = H + e.H, g + e.g, value + e.value + e.log
+        return H, g, value
+
+    @cached_property
+    def predictive(self) -> Mapping[int, float]:
+        """Log density of each run as the others predict it."""
+        return {run: (self._without(run) - self.deviance) / 2 for run in self.evidences}
+
+    @property
+    def samples(self) -> int:
+        """With data, less the states."""
+        return sum(e.samples for e in self.evidences.values())
+
+    @property
+    def excess(self) -> float:
+        """Misfit beyond the noise, RMS in sigma."""
+        beyond = sum(e.excess for e in self.evidences.values())
+        return math.sqrt(max(beyond + len(self.problem.names), 0.0) / max(self.samples, 1))
+
+
+def _log_det(H: Array) -> float:
+    return 2 * float(np.sum(np.log(np.diag(cholesky(H, lower=True)))))
+
+
+def solve(
+    problem: Problem,
+    values: Mapping[str, float],
+    states: States,
+    steps: int = SETTINGS.steps,
+    tolerance: float = SETTINGS.tolerance,
+) -> Fit:
+    """The best values and states, by Gauss-Newton steps within the quantities' bounds and a
+    trust region."""
+    low, high = problem.box
+    u = np.clip(problem.scaled(values), low, high)
+    here = _Point.of(problem, u, states)
+    radius, converged = SETTINGS.stride, False
+    linear = here.linear()
+    evidences = linear.evidences(problem.q)
+    for _ in range(steps):
+        H, g, _ = _summed(problem, evidences, here.u)
+        better, share = None, 1.0
+        for _ in range(6):
+            d = _step(H, g, radius, here.u, problem.box)
+            longest = float(np.abs(d).max(initial=0.0))
+            after = _after(problem, linear, evidences, here, d, share)
+            if after.cost < here.cost:
+                better = after
+                radius = min(max(radius, 3 * longest), SETTINGS.stride)
+                break
+            radius, share = 0.3 * longest, 0.3 * share
+        if better is None:
+            converged = True
+            break
+        gain, here = here.cost - better.cost, better
+        linear = here.linear()
+        evidences = linear.evidences(problem.q)
+        if gain < tolerance:
+            converged = True
+            break
+    return Fit(problem, problem.valued(here.u), here.states, linear, evidences, converged)
+
+
+def _summed(
+    problem: Problem, evidences: Mapping[int, Evidence], u: Array
+) -> tuple[Array, Array, float]:
+    H, g = np.diag(problem.prior), problem.prior * u
+    for e in evidences.values():
+        H, g = H + e.H, g + e.g
+    return H, g, 0.0
+
+
+def _step(H: Array, g: Array, radius: float, u: Array, box: tuple[Array, Array]) -> Array:
+    if not u.size:
+        return u
+    low, high = box
+    return bounded_minimum(H, g, np.maximum(low - u, -radius), np.minimum(high - u, radius))
+
+
+@dataclass(frozen=True)
+class _Point:
+    problem: Problem
+    u: Array
+    states: States
+    made: Mapping[Segment, Simulation]
+    cost: float
+
+    @classmethod
+    def of(cls, problem: Problem, u: Array, states: States) -> _Point:
+        requests = problem.requests(problem.valued(u), states)
+        made = dict(
+            zip(problem.segments, problem.model.simulate(requests, problem.effects), strict=True)
+        )
+        cost = problem.cost(problem.misfits(made, states), u)
+        return cls(problem, u, states, made, cost if np.isfinite(cost) else np.inf)
+
+    def linear(self) -> Linear:
+        return Linear.of(self.problem, self.problem.valued(self.u), self.states, self.made)
+
+
+def _after(
+    problem: Problem,
+    linear: Linear,
+    evidences: Mapping[int, Evidence],
+    here: _Point,
+    d: Array,
+    share: float,
+) -> _Point:
+    """After a step; where the segments' ends bend away from the linearisation, so that the gaps
+    would outweigh everything, the states follow them."""
+    states = linear.moved(evidences, d, share)
+    after = _Point.of(problem, here.u + d, states)
+    if after.cost < here.cost or all(len(p) == 1 for p in problem.by_run.values()):
+        return after
+    values, joined = problem.valued(here.u + d), {}
+    longest = max(len(parts) for parts in problem.by_run.values())
+    for k in range(longest):
+        now = [parts[k] for parts in problem.by_run.values() if len(parts) > k]
+        joined |= {one: joined.get(one, states[one]) for one in now}
+        requests = [Request(one, values, joined[one]) for one in now]
+        made = problem.model.simulate(requests, problem.effects)
+        for one, result in zip(now, made, strict=True):
+            parts = problem.by_run[one.run]
+            if k + 1 < len(parts):
+                following = parts[k + 1]
+                end = linear.made[one].end + linear.parts[one][1] @ np.append(
+                    states[one] - linear.states[one], d
+                )
+                gap = end - states[following]
+                joined[following] = result.end - gap
+    other = _Point.of(problem, here.u + d, joined)
+    return min(after, other, key=lambda point: point.cost)
+
+
+def grid() -> list[float]:
+    """Strengths of process noise, half decades."""
+    first, last = SETTINGS.least_process_noise, SETTINGS.most_process_noise
+    count = round(2 * math.log10(last / first))
+    return [first * 10 ** (k / 2) for k in range(count + 1)]
+
+
+def most_likely(fit: Fit) -> float:
+    """The strength of process noise with the highest marginal likelihood, at the fit's values."""
+
+    def deviance(q: float) -> float:
+        return sum(e.value + e.log for e in fit.linear.evidences(q).values())
+
+    return min(grid(), key=deviance)
+
+
+def fitted(
+    problem: Problem, values: Mapping[str, float], states: States, steps: int = SETTINGS.steps
+) -> Fit:
+    """The problem's solution with the most likely process noise.
+
+    First with that of the guess, then as long as less of it makes the recordings likelier.
+    """
+    if all(len(parts) == 1 for parts in problem.by_run.values()):
+        return solve(problem, values, states, steps)
+    fit = solve(problem, values, states, SETTINGS.trial_steps)
+    for _ in range(3):
+        q = most_likely(fit)
+        if q == fit.problem.q and fit.converged:
+            break
+        fit = solve(replace(problem, q=q), fit.values, fit.states, steps)
+    smaller = [q for q in grid() if q < fit.problem.q]
+    for q in reversed(smaller):
+        lower = solve(replace(problem, q=q), fit.values, fit.states, SETTINGS.descent_steps)
+        if lower.deviance >= fit.deviance:
+            break
+        fit = lower
+    return fit
+
+
+def initial(
+    model: Model,
+    effects: tuple[str, ...],
+    quantities: tuple[Quantity, ...],
+    values: Mapping[str, float],
+    runs: Iterable[int],
+    length: float | None = None,
+) -> tuple[Problem, dict[Segment, Array]]:
+    """The problem of some runs, and states to begin with."""
+    cut = segments({r: model.runs[r] for r in runs}, length or model.segment_length)
+    problem = Problem(model, effects, quantities, cut, values)
+    return problem, {one: model.initial_state(one, effects, values) for one in cut}
+
+
+def whole_runs(fit: Fit) -> Fit:
+    """The same quantities by least squares over whole runs: what the model predicts unaided."""
+    problem = fit.problem
+    cut = segments({r: problem.model.runs[r] for r in problem.by_run})
+    states = {one: fit.states[problem.by_run[one.run][0]] for one in cut}
+    single = replace(problem, segments=cut, robust=False)
+    # What is left has to be known to a fraction of what would be negligible.
+    enough = 0.1 * SETTINGS.negligible**2 * fit.samples
+    return solve(single, fit.values, states, tolerance=enough)

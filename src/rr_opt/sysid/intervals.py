@@ -1,0 +1,112 @@
+"""How sure fitted values are, and which of the believed ones are wrong.
+
+The information H that the likelihood has is one estimate of the scores' covariance; how the scores
+of recordings scatter is another, which does not rest on the model being right (Huber 1967, White
+1982). With few recordings the second is uncertain itself, so that both are averaged, each counted
+as many times as there are recordings:
+
+    V = H^-1 (P + (B_model + B_recordings)/2) H^-1,    P the prior's precision.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+from scipy.stats import norm
+
+from rr_opt.array import Array
+from rr_opt.sysid.diagnosis import Estimate
+from rr_opt.sysid.estimation import Fit, fitted
+from rr_opt.sysid.model import Quantity
+from rr_opt.sysid.settings import SETTINGS
+
+_Z = float(norm.isf(0.025))
+
+
+def covariance(fit: Fit) -> Array:
+    """Of the scaled quantities (nq, nq); see above."""
+    every = list(fit.evidences.values())
+    prior = np.diag(fit.problem.prior)
+    model = sum((e.H for e in every), np.zeros_like(prior))
+    C = np.linalg.pinv(prior + model, hermitian=True)
+    scores = np.array([e.g for e in every])
+    if len(scores) > 1:
+        off = scores - scores.mean(axis=0)
+        model = (model + off.T @ off * len(scores) / (len(scores) - 1)) / 2
+    return np.asarray(C @ (prior + model) @ C, float)
+
+
+def estimates(fit: Fit) -> dict[str, Estimate]:
+    """Every fitted quantity with its 95 % interval."""
+    spread = np.sqrt(np.maximum(np.diag(covariance(fit)), 0.0))
+    out = {}
+    for q, s in zip(fit.problem.quantities, spread, strict=True):
+        value = float(fit.values[q.name])
+        half = _Z * math.hypot(float(s) * q.scale, q.form_error * value)
+        half = half if math.isfinite(half) else math.inf
+        out[q.name] = Estimate(value, max(value - half, q.low), min(value + half, q.high), q.unit)
+    return out
+
+
+def surprises(fit: Fit) -> Array:
+    """How far each quantity is from what was believed, as a standard normal if all is well.
+
+    The rest says u/(1 - s^2) of a parameter with u, s its value and standard deviation in prior
+    standard deviations; of that u/sqrt(1 - s^2) is the deleted residual. Of a value that was known
+    only to within a factor it is the distance in its own standard deviations.
+    """
+    quantities = fit.problem.quantities
+    if not quantities:
+        return np.zeros(0)
+    H, _, _ = fit.information()
+    s = np.sqrt(np.clip(np.diag(np.linalg.pinv(H, hermitian=True)), 1e-300, None))
+    usual = np.sqrt(np.maximum(1 - np.minimum(s, 1.0) ** 2, 1e-300))
+    own = np.array([q.free for q in quantities])
+    seen = s < SETTINGS.identifiable
+    scale = np.where(
+        own, np.sqrt(np.maximum(np.diag(covariance(fit)), 1e-300)), np.where(seen, usual, np.inf)
+    )
+    return np.where([q.known for q in quantities], fit.u / scale, 0.0)
+
+
+def limit(fit: Fit) -> float:
+    """Beyond which a surprise is one, all of them looked at together."""
+    known = sum(q.known for q in fit.problem.quantities)
+    return float(norm.isf(SETTINGS.false_alarm / (2 * max(known, 1))))
+
+
+def wrong(fit: Fit) -> list[Quantity]:
+    """The parameters whose values are not what was believed."""
+    over = np.abs(surprises(fit)) > limit(fit)
+    return [q for q, off in zip(fit.problem.quantities, over, strict=True) if off]
+
+
+def released(fit: Fit) -> Fit:
+    """With nothing believed any more of the values that are certainly wrong, one after the other:
+    many small surprises are likelier than a large one, so each draws others with it."""
+    for _ in range(SETTINGS.most_released):
+        held = np.array([not q.free for q in fit.problem.quantities], bool)
+        size = np.abs(surprises(fit)) * held
+        if not size.size or size.max() <= limit(fit):
+            break
+        worst = int(np.argmax(size))
+        quantities = tuple(
+            replace(q, scale=q.scale * SETTINGS.release, free=True) if k == worst else q
+            for k, q in enumerate(fit.problem.quantities)
+        )
+        problem = replace(fit.problem, quantities=quantities)
+        fit = fitted(problem, fit.values, fit.states)
+    return fit
+
+
+def named(fit: Fit, prefix: str) -> Mapping[str, Estimate]:
+    """The estimates of an effect's quantities, by their own names."""
+    start = f"{prefix}."
+    return {
+        name.removeprefix(start): one
+        for name, one in estimates(fit).items()
+        if name.startswith(start)
+    }

@@ -1,0 +1,126 @@
+"""What a fit leaves: where it enters, and what it depends on.
+
+An unknown input, a force or a motion that the model lacks, is tried as a few functions of one
+variable at a time. A score test says how much likelier each makes the recordings; nothing has to
+be fitted.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.stats import chi2
+
+from rr_opt.array import Array
+from rr_opt.sysid.diagnosis import Curve
+from rr_opt.sysid.estimation import Fit, Linear, bounded_minimum
+from rr_opt.sysid.model import Linearisation, Segment
+from rr_opt.sysid.settings import SETTINGS
+
+
+@dataclass(frozen=True)
+class Term:
+    """An unknown input in a channel as functions of a variable.
+
+    columns  of the linearisation that are its own, counted behind the quantities
+    unit     of the variable;  at (k,) where the input is shown;  shapes (k, columns) there, so that
+             amounts times shapes is the input
+    """
+
+    channel: str
+    variable: str
+    columns: tuple[int, ...]
+    unit: str
+    at: Array
+    shapes: Array
+
+
+@dataclass(frozen=True)
+class Dependence:
+    """What a term explains.
+
+    gain   of the log likelihood ratio statistic (twice the log), chi-square with as many degrees of
+           freedom as the term has functions if nothing is missing
+    share  of the loss beyond the noise, 0 to 1, that goes with it
+    curve  the input as a function of the variable
+    """
+
+    term: Term
+    gain: float
+    share: float
+    curve: Curve
+
+    @property
+    def channel(self) -> str:
+        """Where it enters."""
+        return self.term.channel
+
+    @property
+    def variable(self) -> str:
+        """What it is a function of."""
+        return self.term.variable
+
+    @property
+    def degrees(self) -> int:
+        """Of freedom."""
+        return len(self.term.columns)
+
+    @property
+    def p_value(self) -> float:
+        """Chance of so large a gain where nothing is missing."""
+        return float(chi2.sf(max(self.gain, 0.0), self.degrees))
+
+
+def dependences(
+    fit: Fit, terms: Sequence[Term], parts: Mapping[Segment, Linearisation]
+) -> list[Dependence]:
+    """What each term explains beside the fit; most first."""
+    problem = fit.problem
+    nq = len(problem.names)
+    size = next(iter(fit.states.values())).size
+    columns = next(iter(parts.values())).end.shape[1] - size - nq
+    scale = np.ones(size + nq + columns + 1)
+    scale[size : size + nq] = problem.scale
+    wide = Linear(
+        problem,
+        fit.linear.made,
+        {
+            one: (part.gram * scale * scale[:, None], part.end * scale[:-1])
+            for one, part in parts.items()
+        },
+        fit.states,
+    )
+    evidences = wide.evidences(problem.q)
+    H = sum(e.H for e in evidences.values())
+    g = sum(e.g for e in evidences.values())
+    prior = np.append(problem.prior, np.full(columns, SETTINGS.effect_prior**-2))
+    H = H + np.diag(prior)
+    g = g + np.append(problem.prior * fit.u, np.zeros(columns))
+    plain = np.arange(nq, dtype=np.intp)
+    beyond = max(sum(e.value - e.samples for e in fit.evidences.values()), 1.0)
+    low, high = (
+        np.append(end - fit.u, np.full(columns, far))
+        for end, far in zip(problem.box, (-np.inf, np.inf), strict=True)
+    )
+
+    def best(keep: NDArray[np.intp]) -> tuple[float, Array]:
+        # Within the quantities' bounds: what one would gain beyond its own is not explained.
+        own = H[np.ix_(keep, keep)]
+        d = bounded_minimum(own, g[keep], low[keep], high[keep])
+        return -float(2 * g[keep] @ d + d @ own @ d), d
+
+    base = best(plain)[0] if nq else 0.0
+    out = []
+    for term in terms:
+        keep = np.append(plain, nq + np.array(term.columns)).astype(np.intp)
+        inverse = np.linalg.inv(H[np.ix_(keep, keep)])
+        gain, d = best(keep)
+        gain -= base
+        spread = np.einsum("ki,ij,kj->k", term.shapes, inverse[nq:, nq:], term.shapes)
+        error = np.sqrt(np.maximum(spread, 0.0))
+        curve = Curve(term.variable, term.unit, term.at, term.shapes @ d[nq:], error)
+        out.append(Dependence(term, gain, float(np.clip(gain / beyond, 0, 1)), curve))
+    return sorted(out, key=lambda one: one.degrees - one.gain)

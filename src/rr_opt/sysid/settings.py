@@ -1,0 +1,61 @@
+"""Every number of the identification that was chosen, and why.
+
+`docs/diagnosis-method.md` shows what changes when each is halved or doubled.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Settings:
+    """correlation_time      s; errors of a model are taken as independent after this long: about
+                          the period of a gait
+    effect_prior          an effect's quantities are expected within so many of their usual sizes
+    least_process_noise   of the grid, half decades: less is as good as none
+    most_process_noise    of the grid: segments are as good as independent
+    stride                in scales; a step in a quantity is no longer
+    tolerance             of the deviance, nats, at which a fit has converged
+    trial_runs            those explained worst, on which initial guesses are tried
+    trial_steps           Gauss-Newton steps for an initial guess before the best is taken further
+    steps                 at most, for a fit
+    descent_steps         at most, for a fit with less process noise
+    negligible            RMS in sigma beyond the noise: what remains is nothing
+    small                 share of the first excess misfit: what remains is small
+    most_effects          that are looked for at once
+    singles, pairs        candidates of a score test that are fitted
+    evidence              nats by which an effect has to improve the predictions of recordings
+    named                 confidence above which an effect is named
+    false_alarm           chance that any value is called wrong where all are right
+    identifiable          standard deviation over that believed, above which data say nothing
+    most_released         values that may be wrong at once
+    release               by how many of its sigmas a wrong value is then uncertain
+    standard_errors       and by so many standard errors over recordings
+    """
+
+    correlation_time: float = 1.0
+    effect_prior: float = 10.0
+    least_process_noise: float = 0.02
+    most_process_noise: float = 1e3
+    stride: float = 3.0
+    tolerance: float = 0.05
+    trial_runs: int = 2
+    trial_steps: int = 4
+    steps: int = 15
+    descent_steps: int = 8
+    negligible: float = 0.1
+    small: float = 0.01
+    most_effects: int = 3
+    singles: int = 4
+    pairs: int = 3
+    evidence: float = 5.0
+    standard_errors: float = 0.5
+    named: float = 0.5
+    false_alarm: float = 0.01
+    identifiable: float = 0.999
+    most_released: int = 4
+    release: float = 30.0
+
+
+SETTINGS = Settings()

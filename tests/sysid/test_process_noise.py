@@ -1,0 +1,61 @@
+"""With next to no process noise segments are one run; with a lot of it they are independent."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rr_opt.sysid.estimation import fitted, initial, solve
+from rr_opt.sysid.settings import SETTINGS
+from tests.sysid.linear_model import LinearModel, stacked
+
+VALUES = {"a": 0.1, "b": 0.2}
+
+
+def estimate(problem, states):
+    fit = solve(problem, VALUES, states, 30)
+    return np.array([fit.values["a"], fit.values["b"]])
+
+
+@pytest.fixture(scope="module")
+def model():
+    return LinearModel(disturbed=0.05)
+
+
+def cut(model, q, length=None):
+    problem, states = initial(model, (), model.parameters, VALUES, [0, 1, 2], length)
+    return replace(problem, q=q, robust=False), states
+
+
+def test_with_little_it_is_single_shooting():
+    free = LinearModel(disturbed=0.05, prior=(np.inf, np.inf))
+    single = estimate(*cut(free, 1.0, 1e9))
+    assert estimate(*cut(free, 1e-3)) == pytest.approx(single, rel=1e-4)
+    assert estimate(*cut(free, 10.0)) != pytest.approx(single, rel=1e-2)
+
+
+def test_with_a_lot_segments_are_independent(model):
+    problem, states = cut(model, 1e9)
+    found = estimate(problem, states)
+    parts = []
+    for one in problem.segments:
+        alone = replace(problem, segments=(one,))
+        parts.append(stacked(alone, [one.run], states, VALUES))
+    # Each with states of its own, which are projected out of its part.
+    rows, right = [np.diag(problem.prior**0.5)], [-(problem.prior**0.5) * problem.scaled(VALUES)]
+    for r, J in parts:
+        X, Q = J[:, :2], J[:, 2:]
+        out = np.eye(len(r)) - X @ np.linalg.pinv(X)
+        rows.append(out @ Q)
+        right.append(-out @ r)
+    d, *_ = np.linalg.lstsq(np.vstack(rows), np.concatenate(right), rcond=None)
+    expected = np.array([*VALUES.values()]) + d * problem.scale
+    assert found == pytest.approx(expected, rel=1e-5)
+
+
+@pytest.mark.parametrize(("disturbed", "low", "high"), [(0.0, 0.0, 0.5), (0.3, 1.0, 100.0)])
+def test_the_likeliest_is_none_for_a_right_model_and_some_for_a_wrong_one(disturbed, low, high):
+    wrong = LinearModel(disturbed=disturbed)
+    problem, states = initial(wrong, (), wrong.parameters, VALUES, [0, 1, 2])
+    q = fitted(replace(problem, robust=False), VALUES, states).problem.q
+    assert max(low, SETTINGS.least_process_noise) <= q <= high

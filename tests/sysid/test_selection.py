@@ -1,0 +1,43 @@
+"""An effect that is put into the robot is the one that the search names."""
+
+import pytest
+
+from rr_opt.model.gait import SineGait
+from rr_opt.sysid.selection import Selection
+from tests.sysid.made_up import with_effect
+
+HIDDEN = {
+    "coulomb_friction": {"force1": 0.005, "force2": 0.003},
+    "left_right_drag": {"asymmetry1": 0.8, "asymmetry2": -0.3},
+    "floor_tilt": {"tilt_x": 0.004, "tilt_y": 0.002},
+    "marker_offset": {"dx": 0.01, "dy": 0.006},
+    "servo_lag": {"tau": 0.03},
+}
+"""Their usual sizes, about."""
+
+DRAG = {"kappa1": 1.2e-5, "kappa2": 1.2e-5}
+"""Three times what is believed, so that a share of it shows in so short recordings."""
+
+UNLIKE = (
+    (SineGait(0.3, 0.7), "running"),
+    (SineGait(1.0, 2.8, 0.2), "running"),
+    (SineGait(0.5, 0.8, -0.25), "running"),
+    (SineGait(0.9, 1.4), "rest"),
+)
+"""Slow and fast: at one speed, any drag is like any other."""
+
+
+@pytest.mark.parametrize("effect", HIDDEN)
+def test_named(effect):
+    values = {f"{effect}.{name}": value for name, value in HIDDEN[effect].items()}
+    drag = DRAG if effect == "left_right_drag" else {}
+    model = with_effect({**values, **drag}, (effect,), gaits=UNLIKE)
+    best = Selection(model, range(len(model.runs))).run()
+    assert best.effects == (effect,)
+    for name, value in values.items():
+        assert best.fit.values[name] == pytest.approx(value, rel=0.3)
+
+
+def test_nothing_is_named_where_nothing_is_missing():
+    model = with_effect({}, (), gaits=UNLIKE)
+    assert Selection(model, range(len(model.runs))).run().effects == ()
