@@ -1,7 +1,5 @@
 """The engines that drive a rig, by name, and a recording made by one of them.
 
-The engines that drive a rig, by name.
-
 They share what is hidden, the command as the servo's faults shape it, and the capture system; no
 equation of motion and no contact.
 """

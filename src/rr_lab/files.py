@@ -79,7 +79,7 @@ def folder_of(
 ) -> Iterator[tuple[str, bytes]]:
     """Names and contents of the files of a case, each made when it is asked for.
 
-    `progress` is told of each recording before it is made. Raises InputError if a package that the
+    `progress` is called before each recording. Raises InputError if a package that the
     form needs is missing.
     """
     for n, plan in enumerate(case.plans):
@@ -141,7 +141,7 @@ def _effects(case: Case) -> list[dict[str, Any]]:
 
 
 def _effect(robot: Robot, use: EffectUse) -> dict[str, Any]:
-    """One effect: its parameters as the catalogue has them, and apart from them what it has not."""
+    """One effect: the parameters of the catalogue, and apart from them the laboratory's own."""
     effect = effect_named(use.name)
     what = effect.what if effect.named else f"{effect.name}: {effect.what}"
     realisation = effect.realisation if effect.named else effect.name

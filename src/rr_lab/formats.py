@@ -99,7 +99,7 @@ SUBJECT = "Racer"
 
 
 def vicon_text(seen: Seen) -> str:
-    """The section `Trajectories`: its rate, names, columns and units, then a row a frame, in mm.
+    """The section `Trajectories`: rate, names, columns and units, then a row for each frame, in mm.
 
     Frames count from 1; a marker that was not seen leaves its cells empty.
     """

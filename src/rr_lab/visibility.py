@@ -1,8 +1,8 @@
 """How visible hidden effects are, by the laboratory's own runs, and how strong they have to be.
 
-A run of the case is held against the same run of the nominal robot, both without noise, after the
-initial state has been fitted: place, heading, and the speed with which the run begins. What is left
-is measured in standard deviations of the noise.
+A run of the case is compared with the same run of the nominal robot, both without noise, after the
+initial state has been fitted: place, heading and initial speed. The difference is in standard
+deviations of the noise.
 """
 
 from __future__ import annotations

@@ -29,19 +29,12 @@ from rr_opt.version import __version__
 if TYPE_CHECKING:
     from rr_opt.api.diagnose import ExplainedExperiment as ExplainedExperiment
     from rr_opt.api.diagnose import diagnose as diagnose
-    from rr_opt.api.drive import DrivenCircle as DrivenCircle
-    from rr_opt.api.drive import ExportedGait as ExportedGait
-    from rr_opt.api.drive import SimulatedMotion as SimulatedMotion
     from rr_opt.api.drive import circle as circle
     from rr_opt.api.drive import export as export
     from rr_opt.api.drive import simulate as simulate
-    from rr_opt.api.fastest import FastestGait as FastestGait
-    from rr_opt.api.fastest import FastestShapes as FastestShapes
-    from rr_opt.api.fastest import FastestTurn as FastestTurn
     from rr_opt.api.fastest import maximize_speed as maximize_speed
     from rr_opt.api.fastest import shapes as shapes
     from rr_opt.api.fastest import turn as turn
-    from rr_opt.api.inspect import InspectedRecordings as InspectedRecordings
     from rr_opt.api.inspect import inspect as inspect
     from rr_opt.api.lint import lint as lint
     from rr_opt.api.load import InputWarning as InputWarning
@@ -52,11 +45,8 @@ if TYPE_CHECKING:
     from rr_opt.api.load import load_robot as load_robot
     from rr_opt.api.load import prototype as prototype
     from rr_opt.api.load import shipped as shipped
-    from rr_opt.api.study import SolvedStudy as SolvedStudy
     from rr_opt.api.study import load_study as load_study
     from rr_opt.api.study import study as study
-    from rr_opt.api.survey import Sweep as Sweep
-    from rr_opt.api.survey import TurnChart as TurnChart
     from rr_opt.api.survey import sweep as sweep
     from rr_opt.api.survey import turn_chart as turn_chart
     from rr_opt.api.template import init as init
@@ -80,17 +70,27 @@ if TYPE_CHECKING:
     from rr_opt.outcome import InputError as InputError
     from rr_opt.outcome import NotConvergedError as NotConvergedError
     from rr_opt.outcome import Status as Status
+    from rr_opt.report.fastest import FastestGait as FastestGait
+    from rr_opt.report.inspection import InspectedRecordings as InspectedRecordings
+    from rr_opt.report.motion import DrivenCircle as DrivenCircle
+    from rr_opt.report.motion import SimulatedMotion as SimulatedMotion
+    from rr_opt.report.setpoints import ExportedGait as ExportedGait
+    from rr_opt.report.shapes import FastestShapes as FastestShapes
+    from rr_opt.report.study import SolvedStudy as SolvedStudy
+    from rr_opt.report.sweep import Sweep as Sweep
+    from rr_opt.report.turn import FastestTurn as FastestTurn
+    from rr_opt.report.turn_chart import TurnChart as TurnChart
 
 _HOMES = {
     "api.diagnose": "ExplainedExperiment diagnose",
-    "api.drive": "DrivenCircle ExportedGait SimulatedMotion circle export simulate",
-    "api.fastest": "FastestGait FastestShapes FastestTurn maximize_speed shapes turn",
-    "api.inspect": "InspectedRecordings inspect",
+    "api.drive": "circle export simulate",
+    "api.fastest": "maximize_speed shapes turn",
+    "api.inspect": "inspect",
     "api.lint": "lint",
     "api.load": "InputWarning RobotWithGait load load_experiment load_gait load_robot prototype "
     "shipped",
-    "api.study": "SolvedStudy load_study study",
-    "api.survey": "Sweep TurnChart sweep turn_chart",
+    "api.study": "load_study study",
+    "api.survey": "sweep turn_chart",
     "api.template": "init",
     "files.schemas": "schema",
     "model.experiment": "Experiment Noise Recording Run",
@@ -98,6 +98,15 @@ _HOMES = {
     "model.problem": "GaitBounds Limits Problem RatioChoice",
     "model.robot": "EffectUse Platform Robot Servo",
     "outcome": "InputError NotConvergedError Status",
+    "report.fastest": "FastestGait",
+    "report.inspection": "InspectedRecordings",
+    "report.motion": "DrivenCircle SimulatedMotion",
+    "report.setpoints": "ExportedGait",
+    "report.shapes": "FastestShapes",
+    "report.study": "SolvedStudy",
+    "report.sweep": "Sweep",
+    "report.turn": "FastestTurn",
+    "report.turn_chart": "TurnChart",
 }
 """Public names by the module that has them."""
 _MODULE_OF = {name: module for module, names in _HOMES.items() for name in names.split()}

@@ -1,4 +1,4 @@
-"""How error messages quote what was read, and name the known word that was probably meant."""
+"""How messages quote what was read, list names, and guess the known word that was meant."""
 
 from __future__ import annotations
 
@@ -60,3 +60,8 @@ def unknown_word(word: str, known: Sequence[str], kind: str) -> str:
 def one_of(words: Sequence[str]) -> str:
     """The words as a message offers them."""
     return f"one of: {', '.join(words)}" if len(words) > 1 else f"`{words[0]}`"
+
+
+def listed(names: Sequence[str]) -> str:
+    """`rate`, `rate and torque`, `angle, rate and torque`."""
+    return " and ".join(filter(None, [", ".join(names[:-1]), names[-1]]))

@@ -13,6 +13,11 @@ class Status(StrEnum):
     NOT_CONVERGED = "not_converged"
 
     @property
+    def words(self) -> str:
+        """`not converged`."""
+        return self.value.replace("_", " ")
+
+    @property
     def exit_code(self) -> int:
         """What the shell gets."""
         return {"optimal": 0, "infeasible": 3, "not_converged": 4}[self.value]

@@ -145,6 +145,14 @@ class Hypothesis:
     fit: Fit
 
     @property
+    def at_edge(self) -> bool:
+        """Some unknown ended on a side of the box."""
+        return any(
+            min(abs(self.fit.values[name] - end) for end in ends) < 1e-3 * (ends[1] - ends[0])
+            for name, ends in BOX.items()
+        )
+
+    @property
     def p(self) -> float:
         """The share of random sets that leave a larger chi-square."""
         return float((_random_chi2(len(ROWS) - self.fit.free) > self.fit.chi2).mean())
@@ -162,6 +170,11 @@ class Unloaded:
     low: float
     high: float
     reached: tuple[float, ...]
+
+    @property
+    def excluded(self) -> list[float]:
+        """The other printed ratios."""
+        return [ratio for ratio in RATIOS if ratio not in self.reached]
 
 
 @dataclass(frozen=True)

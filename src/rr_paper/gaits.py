@@ -13,15 +13,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rr_opt.answers.speed import SpeedAnswer, evidence
+from rr_opt.api.fastest import maximize_speed
 from rr_opt.array import Array
-from rr_opt.design.maximize_speed import maximize_speed
 from rr_opt.model.gait import SineGait
 from rr_opt.model.problem import GaitBounds, Interval, Problem
 from rr_opt.model.robot import Robot
 from rr_opt.motion.circle import Circle, circle_of
 from rr_opt.motion.rollout import Trajectory, rollout
 from rr_opt.motion.steady_cycle import steady_cycle as simulated_cycle
+from rr_opt.outcome import Status
+from rr_opt.report.fastest import FastestGait
 from rr_opt.verify.speeds import speeds
 from rr_opt.verify.turn_chart import RadiusClaim, SignClaim, radius_claim, sign_claim, turn_map
 from rr_paper.consistency import Hypothesis
@@ -47,6 +48,11 @@ class ServoDemand:
     where: str
     amplitude: float
     period: float
+
+    @property
+    def of_table3(self) -> bool:
+        """Whether it is a run of Table 3."""
+        return self.where.startswith("Table 3")
 
     @property
     def rpm(self) -> float:
@@ -113,6 +119,11 @@ class PeriodRatio:
     other: float
     other_low: float
     other_high: float
+
+    @property
+    def model_inside(self) -> bool:
+        """Whether the model's own ratio is within the interval of the mean column."""
+        return self.low <= self.model <= self.high
 
 
 @dataclass(frozen=True)
@@ -229,9 +240,14 @@ class BestAmplitude:
     own: tuple[tuple[float, Peak], ...]
     fitted: tuple[tuple[str, Peak], ...]
     robots: tuple[PeakStatistics, ...]
-    limited: SpeedAnswer
-    unlimited: SpeedAnswer
+    limited: FastestGait
+    unlimited: FastestGait
     allowed: float = RATE_LIMIT / (2 * math.pi)
+
+    @property
+    def confirmed(self) -> bool:
+        """Whether simulation and sweep agree with the optimiser on both optima."""
+        return all(one.status is Status.OPTIMAL for one in (self.limited, self.unlimited))
 
 
 def audit_best_amplitude(
@@ -251,9 +267,8 @@ def audit_best_amplitude(
     loaded = ABOUT_P.build(robot, FIGURE_5.ratio[0])
     limits = replace(NO_LIMITS, angle=ANGLE_LIMIT, rate=RATE_LIMIT)
     box = GaitBounds(Interval(0.05, FIGURE_5.amplitude[1]), Interval(*FIGURE_5.period))
-    optima = (maximize_speed(Problem(loaded, these, box)) for these in (limits, NO_LIMITS))
     limited, unlimited = (
-        SpeedAnswer("", "", optimum, *evidence(optimum, lambda _: None)) for optimum in optima
+        maximize_speed(Problem(loaded, these, box)) for these in (limits, NO_LIMITS)
     )
     return BestAmplitude(own, tuple(fitted), robots, limited, unlimited)
 

@@ -143,6 +143,11 @@ class Sensitivity:
     least: float
     largest: float
 
+    @property
+    def swing(self) -> float:
+        """Least speed over largest."""
+        return self.least / self.largest
+
 
 def sensitivities(robot: Robot, row: Row) -> tuple[Sensitivity, ...]:
     """Of each unknown of the robot alone, at the gait of a row of Table 3."""

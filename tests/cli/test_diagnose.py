@@ -81,11 +81,11 @@ def test_json_alone_and_no_page(run, folder, tmp_path):
 
 
 def test_fits_that_end_nowhere(run, folder, monkeypatch, tmp_path):
-    from rr_opt.machines.racer import diagnose as module
+    from rr_opt.sysid import diagnose as module
     from tests.report.diagnosis.conftest import _experiment, _found
 
     found = replace(_found(_experiment()), after=float("nan"))
-    monkeypatch.setattr(module, "diagnose_racer", lambda *_: found)
+    monkeypatch.setattr(module, "diagnose", lambda *_: found)
     done = run("diagnose", folder, "--out", "res")
     assert done.exit_code == 4
     assert "did not converge" in done.stderr

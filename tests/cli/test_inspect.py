@@ -22,8 +22,11 @@ recordings:
 
 
 def write_plain(path, seed=0, lag=0.0):
+    """The motion, all of it late against the command."""
     moved, rng = motion(), np.random.default_rng(seed)
-    columns = [moved.t, moved.x, moved.y, moved.psi, GAIT.angle(np.maximum(moved.t - lag, 0))]
+    t = moved.t[moved.t < moved.t[-1] + lag]
+    columns = [t, *(np.interp(t - lag, moved.t, one) for one in (moved.x, moved.y, moved.psi))]
+    columns.append(GAIT.angle(np.maximum(t - lag, 0)))
     noise = (0, 1e-3, 1e-3, 3e-3, 3e-3)
     columns = [one + rng.normal(0, 1, len(one)) * size for one, size in zip(columns, noise,
                strict=True)]  # fmt: skip

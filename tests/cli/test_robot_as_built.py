@@ -4,8 +4,8 @@ import json
 
 import pytest
 
-from rr_opt.answers.corrected_robot import robot_record
 from rr_opt.files.problem_file import read_problem
+from rr_opt.files.record import robot_record
 
 GAIT = "gait: {amplitude: [0.1, 1.0], period: 1 s}\n"
 

@@ -6,10 +6,10 @@ import json
 import numpy as np
 import pytest
 
-from rr_opt.answers.corrected_robot import robot_record
-from rr_opt.answers.quantities import number, speed_text
 from rr_opt.files.gait_record import gait_record
 from rr_opt.files.problem_file import read_problem
+from rr_opt.files.record import robot_record
+from rr_opt.formatting import number, speed_text
 from rr_opt.model.problem import Limits
 from rr_opt.verify.replay import replay
 from tests.motion.gaits import EVERY, FREE

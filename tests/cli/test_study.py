@@ -61,7 +61,7 @@ def test_again_is_from_the_journal_alone(study, tmp_path):
     text = (tmp_path / "res" / "study.csv").read_text()
     done = study(SMALL, "--no-figures")
     assert done.exit_code == 0
-    assert "4 of 4 rows are there" in done.stderr
+    assert "4 of 4 rows were solved in an earlier run" in done.stderr
     assert (tmp_path / "res" / "journal.jsonl").read_bytes() == before
     assert (tmp_path / "res" / "study.csv").read_text() == text
 

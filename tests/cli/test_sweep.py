@@ -31,7 +31,7 @@ def test_every_gait_is_a_row_and_the_best_of_the_grid_is_among_them(swept, tmp_p
 
 def test_only_whole_files_are_left(swept, tmp_path):
     names = {path.name for path in (tmp_path / "res").iterdir()}
-    assert names == {"sweep.json", "sweep.csv", "sweep.svg"}
+    assert names == {"report.html", "sweep.json", "sweep.csv", "sweep.svg"}
 
 
 def test_no_allowed_gait_exits_3(run, impossible):

@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 
 from rr_opt.files.issue import InvalidFileError
-from rr_opt.files.yaml_text import LARGEST, parse_yaml
+from rr_opt.files.source import read_document
+from rr_opt.files.yaml_text import parse_yaml
 
 REFUSED = {
     "h: 1\nh: 2\n": "f:2: h: Read this key again; it is on line 1. Keep one.",
@@ -44,9 +45,10 @@ def test_other_encodings_are_refused_with_the_line():
         parse_yaml("a: 1".encode("utf-16"), "f")
 
 
-def test_a_large_file_is_refused():
+def test_a_large_file_is_refused(tmp_path):
+    (tmp_path / "f").write_bytes(b"#" * 1_000_001)
     with pytest.raises(InvalidFileError, match="larger than 1 MB"):
-        parse_yaml(b"#" * (LARGEST + 1), "f")
+        read_document(tmp_path / "f")
 
 
 def test_nested_aliases_do_not_expand():

@@ -2,16 +2,16 @@
 
 import pytest
 
-from rr_opt.answers.speed import SpeedAnswer
 from rr_opt.design.maximize_speed import maximize_speed
 from rr_opt.files.problem_file import read_problem
 from rr_opt.model.problem import GaitBounds, Interval, Problem
+from rr_opt.report.fastest import FastestGait
 from rr_opt.verify.replay import replay
 from rr_opt.verify.sweep import SweepCheck
 
 
 @pytest.fixture(scope="session")
-def answer() -> SpeedAnswer:
+def answer() -> FastestGait:
     shipped = read_problem(None)
     gait = GaitBounds(Interval(0.1, 1.2), Interval(0.8, 1.6), Interval(0.0, 0.0))
     problem = Problem(shipped.robot, shipped.limits, gait)
@@ -21,4 +21,4 @@ def answer() -> SpeedAnswer:
     best = optimum.best
     seen = replay(optimum.robot, best.gait, problem.limits, best.speed)
     sweep = SweepCheck(100, 0.99 * best.speed, best.gait, None, 0.01, best.speed, 0.0)
-    return SpeedAnswer("small", "0" * 64, optimum, seen, sweep)
+    return FastestGait("small", "0" * 64, optimum, seen, sweep)

@@ -6,8 +6,8 @@ from matplotlib.figure import Figure
 
 from rr_opt.motion.rollout import repeated
 from rr_opt.report.figures.cycle import cycle
+from rr_opt.report.figures.fastest import draw, gains, prices
 from rr_opt.report.figures.path import along_travel, instants, path
-from rr_opt.report.figures.speed import draw, gains, prices
 from rr_opt.report.figures.speed_map import MapData, allowed, speed_map
 
 

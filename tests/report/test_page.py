@@ -5,14 +5,13 @@ from dataclasses import replace
 from html.parser import HTMLParser
 
 from rr_opt.report.document import Figure
-from rr_opt.report.speed import speed_document
 from rr_opt.report.webpage import page as page_of
 
 FIGURE = Figure("path", "Path", "<svg/>", "the path")
 
 
 def page(answer):
-    return page_of(speed_document(answer, [FIGURE]))
+    return page_of(answer.document([FIGURE]))
 
 
 def test_the_verdict_comes_first(answer):

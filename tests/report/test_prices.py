@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import pytest
 
-from rr_opt.answers.speed import SpeedAnswer
 from rr_opt.design.maximize_speed import maximize_speed
 from rr_opt.model.problem import Interval, RatioChoice
+from rr_opt.report.fastest import FastestGait
 
 
 def speed(problem):
@@ -31,7 +31,7 @@ def test_price_of_the_inertia_ratio_is_per_unit_of_the_ratio(answer, by):
     def with_most(high):
         return replace(problem, inertia_ratio=RatioChoice(Interval(0.13, high), by=by))
 
-    row = SpeedAnswer("", "", maximize_speed(with_most(0.2))).bounds["inertia_ratio"]
+    row = FastestGait("", "", maximize_speed(with_most(0.2))).bounds["inertia_ratio"]
     assert row.active == "high"
     step = 2e-4
     slope = (speed(with_most(0.2 + step)) - speed(with_most(0.2 - step))) / (2 * step)

@@ -2,7 +2,7 @@
 
 import pytest
 
-from rr_opt.answers.quantities import QUANTITIES, number, pace_text, speed_text
+from rr_opt.formatting import QUANTITIES, number, pace_text, speed_text
 
 
 @pytest.mark.parametrize(

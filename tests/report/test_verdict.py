@@ -1,12 +1,10 @@
-"""An optimum is told as one only while every check confirms it."""
+"""An optimum is reported as one only while every check confirms it."""
 
 from dataclasses import replace
 
 import pytest
 
 from rr_opt.outcome import Status
-from rr_opt.report.result import result
-from rr_opt.report.speed import summary
 
 
 def failed(answer, **changes):
@@ -40,8 +38,8 @@ def test_a_failed_check_takes_the_verdict(answer, change, word):
     assert doubtful.status is Status.NOT_CONVERGED
     assert doubtful.status.exit_code == 4
     assert doubtful.message.startswith(f"The optimum was not confirmed. {word}")
-    assert result(doubtful)["status"] == "not_converged"
-    assert "FAILED" in summary(doubtful, [])
+    assert doubtful.record()["status"] == "not_converged"
+    assert "FAILED" in doubtful.summary()
 
 
 @pytest.mark.parametrize("change", [{"error": 5e-7}, {"excess": 5e-5}, {"gap": -5e-5}])
@@ -53,9 +51,9 @@ def test_not_a_number_is_not_a_passed_check(answer):
     assert failed(answer, gap=float("nan")).status is Status.NOT_CONVERGED
 
 
-def test_ties_are_told_as_ties(answer):
+def test_ties_are_reported_as_ties(answer):
     optimum = answer.optimum
     twice = replace(optimum, optima=(*optimum.optima[:1], *optimum.optima[:1]))
     tied = replace(answer, optimum=twice)
     assert "a tie" in tied.message
-    assert result(tied)["solver"]["ties"] == 1
+    assert tied.record()["solver"]["ties"] == 1

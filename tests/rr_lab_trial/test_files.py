@@ -1,13 +1,12 @@
-"""The files of a trial tell the same counts, and lead to the page of every miss."""
+"""The files of a trial have the same counts, and lead to the page of every miss."""
 
 import csv
 import json
 
 import pytest
 
-from rr_lab.report.trial import document, write_proof
+from rr_lab.report.trial import Proof
 from rr_lab.trial.trial import Opened
-from rr_opt.report.text import terminal
 from tests.rr_lab_trial.made_up import case, said, single, truth
 
 DRAG, SLIP = "quadratic_drag", "lateral_slip"
@@ -34,38 +33,38 @@ MISSES = {"002": "report.html", "004": "output.txt", "006": "report.html"}
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     place = tmp_path_factory.mktemp("proof")
-    write_proof(OPENED, place)
+    Proof(OPENED).save(place)
     return place
 
 
 def test_the_record(folder):
-    told = json.loads((folder / "proof.json").read_text())
-    assert told["seed"] == "5eed"
-    assert told["measures"]["single"]["count"] == 1
-    assert told["measures"]["single"]["total"] == 2
-    assert told["measures"]["false_claims"]["fraction"] == 0.5
-    assert told["coverage"]["all"]["count"] == 1
-    assert told["not_made"] == {"008": "MuJoCo gave up."}
-    rows, columns = told["confusion"]["rows"], told["confusion"]["columns"]
-    counts = told["confusion"]["counts"]
+    record = json.loads((folder / "proof.json").read_text())
+    assert record["seed"] == "5eed"
+    assert record["measures"]["single"]["count"] == 1
+    assert record["measures"]["single"]["total"] == 2
+    assert record["measures"]["false_claims"]["fraction"] == 0.5
+    assert record["coverage"]["all"]["count"] == 1
+    assert record["not_made"] == {"008": "MuJoCo gave up."}
+    rows, columns = record["confusion"]["rows"], record["confusion"]["columns"]
+    counts = record["confusion"]["counts"]
     assert counts[rows.index(DRAG)][columns.index("no answer")] == 1
 
 
 def test_every_miss_is_listed_with_its_page(folder):
-    told = json.loads((folder / "proof.json").read_text())["misses"]
+    record = json.loads((folder / "proof.json").read_text())["misses"]
     pages = {case: f"said/{case}/{name}" for case, name in MISSES.items()}
-    assert {miss["case"]: miss["page"] for miss in told} == pages
+    assert {miss["case"]: miss["page"] for miss in record} == pages
     text, html = ((folder / name).read_text() for name in ("README.md", "report.html"))
     for number, page in pages.items():
         assert f"\n| {number}  |" in text
         assert page in html
 
 
-def test_each_engine_is_counted_and_told(folder):
-    told = json.loads((folder / "proof.json").read_text())
-    assert told["engines"]["planar"]["false_claims"]["count"] == 1
-    assert told["engines"]["mujoco"]["false_claims"]["count"] == 0
-    assert told["misses"][0]["engine"] == "planar"
+def test_each_engine_is_counted(folder):
+    record = json.loads((folder / "proof.json").read_text())
+    assert record["engines"]["planar"]["false_claims"]["count"] == 1
+    assert record["engines"]["mujoco"]["false_claims"]["count"] == 0
+    assert record["misses"][0]["engine"] == "planar"
     with (folder / "cases.csv").open(newline="") as file:
         rows = [row["engine"] for row in csv.DictReader(file)]
     assert rows == ["mujoco", "planar", *["mujoco"] * 5]
@@ -85,13 +84,13 @@ def test_the_table_has_a_row_a_case(folder):
 
 def test_the_summary_defines_what_it_counts(folder):
     text = (folder / "README.md").read_text()
-    assert terminal(document(OPENED)).startswith(text[2:20])
+    assert Proof(OPENED).summary().startswith(text[2:20])
     assert text.startswith("# Blind trial: 1 of 2 single effects named, 1 of 2 nulls with a false")
     assert "50 % (1 to 99)" in text
     assert "verdict is not `consistent`" in text
     assert "![Diagnosis against truth](confusion.svg)" in text
 
 
-def test_a_trial_of_one_kind_is_told_too(tmp_path):
-    write_proof(Opened("5eed", "c0de", "1.2.3", (single(DRAG, None),), {}, (1.0,)), tmp_path)
+def test_a_trial_of_one_kind(tmp_path):
+    Proof(Opened("5eed", "c0de", "1.2.3", (single(DRAG, None),), {}, (1.0,))).save(tmp_path)
     assert "0 of 1 single effects named" in (tmp_path / "README.md").read_text()

@@ -5,7 +5,7 @@ import math
 from rr_opt.outcome import Status
 from rr_paper.equation3 import CORRECTED
 from rr_paper.publication import ANGLE_LIMIT
-from rr_paper.report.audit_gaits import findings
+from rr_paper.report.audit import findings
 
 
 def test_signs(found):
@@ -63,6 +63,6 @@ def test_turning(found):
 def test_every_number_is_one(found):
     for section in findings(found):
         assert "nan" not in " ".join(section.sentences)
-        for row in section.rows:
-            assert len(row) == len(section.head)
+        for row in section.table.rows:
+            assert len(row) == len(section.table.head)
             assert not any(isinstance(cell, float) and math.isnan(cell) for cell in row)

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from rr_opt.answers.quantities import number
+from rr_opt.formatting import number
 from rr_paper.equation3 import CORRECTED, PRINTED
 from rr_paper.prototype import ABOUT_P
 

@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 from rr_opt.cli.main import app
 from rr_paper import reproduction
 from rr_paper.publication import TABLE_2, TABLE_3
-from rr_paper.report.reproduction import FIGURES
+from rr_paper.report.reproduction import CAPTIONS
 
 
 @pytest.fixture
@@ -27,16 +27,16 @@ def run(found, monkeypatch, tmp_path):
 def test_the_folder(run, tmp_path):
     done = run("--out", "res", "--json", mujoco=None)
     assert done.exit_code == 0, done.stderr
-    told = json.loads(done.stdout)
-    assert told == json.loads((tmp_path / "res" / "reproduce.json").read_text())
-    assert told["mujoco_speed"] is None
+    record = json.loads(done.stdout)
+    assert record == json.loads((tmp_path / "res" / "reproduce.json").read_text())
+    assert record["mujoco_speed"] is None
     assert "MuJoCo is not installed" in done.stderr
     names = {path.name for path in (tmp_path / "res").iterdir()}
-    assert {"report.html", "audit.md", "tables.csv", *(f"{one}.svg" for one in FIGURES)} <= names
+    assert {"report.html", "audit.md", "tables.csv", *(f"{one}.svg" for one in CAPTIONS)} <= names
     assert {f"figure{n}.csv" for n in (3, 4, 5, 6)} <= names
-    assert {f"audit-{key}.csv" for key in told["sections"] if key != "columns"} <= names
+    assert {f"audit-{key}.csv" for key in record["sections"] if key != "columns"} <= names
     page = (tmp_path / "res" / "report.html").read_text()
-    assert page.count("data:image/svg+xml") == len(FIGURES)
+    assert page.count("data:image/svg+xml") == len(CAPTIONS)
 
 
 def test_the_tables_are_the_printed_ones(run, tmp_path):
@@ -52,9 +52,9 @@ def test_the_tables_are_the_printed_ones(run, tmp_path):
 
 def test_mujoco_drives_as_the_corrected_equation(run, found):
     pytest.importorskip("mujoco")
-    told = json.loads(run("--no-figures", "--json").stdout)
-    assert told["mujoco_speed"] == pytest.approx(found.start.steady, rel=1e-3)
-    assert "MuJoCo" in " ".join(told["sections"]["signs"]["sentences"])
+    record = json.loads(run("--no-figures", "--json").stdout)
+    assert record["mujoco_speed"] == pytest.approx(found.start.steady, rel=1e-3)
+    assert "MuJoCo" in " ".join(record["sections"]["signs"]["sentences"])
 
 
 def test_without_mujoco_there_is_no_speed(found, monkeypatch):

@@ -7,10 +7,10 @@ import pytest
 from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure
 
-from rr_opt.answers.study import StudyAnswer
 from rr_opt.outcome import Status
-from rr_opt.report.figures.active_limits import areas
-from rr_opt.report.figures.study import grid_of, shown, speed, study_map
+from rr_opt.report.figures.study import active_areas, speed, study_map
+from rr_opt.report.figures.study_axes import grid_of, scale_of
+from rr_opt.report.study import SolvedStudy
 
 ENDLESS = "problem: {gait: {period: 1 s, amplitude: [0.1, 1]}}\nvary:\n"
 
@@ -27,7 +27,7 @@ def result_of(study_of, solved):
             faster = replace(one.optimum, speed=0.01 * (1 + case))
             rows[case] = replace(one, optimum=faster)
         rows[len(rows) - 1] = replace(one, status=Status.INFEASIBLE, optimum=None)
-        return StudyAnswer(study, tuple(rows.values()))
+        return SolvedStudy(study, tuple(rows.values()))
 
     return made
 
@@ -37,10 +37,10 @@ def axes():
 
 
 def test_named_ticks_in_order_of_size(study_of):
-    axis = shown(study_of(ENDLESS + "  limits.rate: [.inf, 20 rpm, 10 rpm]\n").axes[0])
+    axis = scale_of(study_of(ENDLESS + "  limits.rate: [.inf, 20 rpm, 10 rpm]\n").axes[0])
     assert [axis.texts[step] for step in axis.order] == ["10 rpm", "20 rpm", "no limit"]
     ax = axes()
-    axis.scale(ax)
+    axis.apply(ax)
     ticks = dict(
         zip(ax.get_xticks(), [one.get_text() for one in ax.get_xticklabels()], strict=True)
     )
@@ -70,7 +70,7 @@ def test_lines_of_equal_speed_only_on_scales_with_cells_enough(result_of, rates,
     assert any(isinstance(one, ContourSet) for one in ax.get_children()) == contours
 
 
-@pytest.mark.parametrize("draw", [study_map, areas])
+@pytest.mark.parametrize("draw", [study_map, active_areas])
 def test_a_cell_without_optimum_lets_the_hatched_ground_be_seen(result_of, draw):
     result = result_of("  limits.rate: [1, 2]\n  limits.torque: [0.1, .inf]\n")
     ax = axes()
@@ -87,8 +87,8 @@ def test_the_note_on_what_is_left_out_stands_outside_the_axes(result_of):
     ax = axes()
     speed(ax, result, 0)
     ax.figure.canvas.draw()
-    told = [
+    notes = [
         one for one in ax.findobj() if hasattr(one, "get_text") and "left out" in one.get_text()
     ]
-    assert [one.get_text() for one in told] == ["1 case without an optimum is left out"]
-    assert told[0].get_window_extent().y0 >= ax.get_window_extent().y1
+    assert [one.get_text() for one in notes] == ["1 case without an optimum is left out"]
+    assert notes[0].get_window_extent().y0 >= ax.get_window_extent().y1

@@ -28,7 +28,7 @@ class LinearModel:
     """x' = A x + (a u1, b u2), y = C x; answers `sysid.model.Model`."""
 
     channels = ("y1", "y2")
-    segment_length = 1.0
+    segment_length = correlation_time = 1.0
     form_error = 0.0
     catalogue: Mapping[str, EffectInfo] = MappingProxyType({})
     parameters = (

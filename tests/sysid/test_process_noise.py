@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rr_opt.sysid.estimation import fitted, initial, solve
+from rr_opt.sysid.estimation import fitted, initial, root, solve
 from rr_opt.sysid.settings import SETTINGS
 from tests.sysid.linear_model import LinearModel, stacked
 
@@ -59,3 +59,19 @@ def test_the_likeliest_is_none_for_a_right_model_and_some_for_a_wrong_one(distur
     problem, states = initial(wrong, (), wrong.parameters, VALUES, [0, 1, 2])
     q = fitted(replace(problem, robust=False), VALUES, states).problem.q
     assert max(low, SETTINGS.least_process_noise) <= q <= high
+
+
+def test_a_run_that_is_pushed_twice_as_hard_has_twice_the_noise():
+    pushed = LinearModel(disturbed=0.05)
+    pushed.runs = [replace(run, pushed=2.0) for run in pushed.runs]
+    plain = LinearModel(disturbed=0.05)
+    assert estimate(*cut(pushed, 0.5)) == pytest.approx(estimate(*cut(plain, 1.0)), rel=1e-9)
+    assert estimate(*cut(pushed, 1.0)) != pytest.approx(estimate(*cut(plain, 1.0)), rel=1e-3)
+
+
+def test_the_factor_of_a_matrix_that_rounding_made_indefinite():
+    Q = np.linalg.qr(np.random.default_rng(0).normal(size=(4, 4)))[0]
+    sizes = np.array([1e12, 1e6, 1.0, -1e-3])
+    H = Q @ np.diag(sizes) @ Q.T
+    L = root(H)
+    assert np.abs(L @ L.T - H).max() < 1e-5 * np.abs(H).max()

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import pytest
 
-from rr_opt.sysid.diagnose import summary_of
 from rr_opt.sysid.diagnosis import Remainder
+from rr_opt.sysid.summary import summary_of
 from tests.report.diagnosis.conftest import _experiment, _found
 
 

@@ -7,8 +7,8 @@ from typing import Any
 
 from rr_lab.case import Plan
 from rr_lab.effects import effect_named
-from rr_opt.answers.quantities import QUANTITIES
 from rr_opt.api.arguments import read_arguments
+from rr_opt.formatting import QUANTITIES
 from rr_opt.model.experiment import Noise
 from rr_opt.model.gait import SineGait
 from rr_opt.model.robot import EffectUse, Robot
@@ -51,16 +51,16 @@ def read_runs(texts: Iterable[str], seconds: float) -> tuple[Plan, ...]:
     return tuple(plans)
 
 
-def beyond_reach(robot: Robot, plans: Iterable[Plan]) -> list[str]:
+def beyond_reach(robot: Robot, plans: Iterable[Plan]) -> tuple[str, ...]:
     """A warning for each run that turns the joint further than its servo can."""
     angle, limit = QUANTITIES["angle"], robot.servo.angle_limit
-    return [
+    return tuple(
         f"{plan.name} goes to {angle.both(plan.gait.peak_angle)}, and the servo's limit "
         f"is {angle.both(limit)}. It is recorded as if the servo could. Plain numbers are radians: "
         "write `30 deg` for degrees."
         for plan in plans
         if plan.gait.peak_angle > limit
-    ]
+    )
 
 
 def read_effects(texts: Iterable[str]) -> tuple[EffectUse, ...]:

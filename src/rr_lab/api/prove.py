@@ -2,59 +2,46 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import closing
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 from rr_lab.engines import ENGINES
 from rr_lab.mujoco.plant import engine as mujoco
 from rr_lab.random_case import KINDS
-from rr_lab.trial.case import Case
+from rr_lab.report.trial import Proof, ProvedCase
 from rr_lab.trial.child import one_case
 from rr_lab.trial.lots import draw_lot, read_kinds, read_seed, seed_of_commit
-from rr_lab.trial.trial import PACKAGE, Drawn, Opened, drawn_of, tidy, whole_trial
+from rr_lab.trial.trial import PACKAGE, Drawn, drawn_of, whole_trial
 from rr_opt.batch.run import pool_of, run
-from rr_opt.report.archive import folder_for_results, strict_json, write_bytes
+from rr_opt.report.archive import folder_for_results, write_bytes
+from rr_opt.report.result import Result
 
 Progress = Callable[[str], None]
 
 
-@dataclass(frozen=True)
-class Proof:
-    """A trial of some cases, with the files written; opened is None if they were only made."""
+@dataclass(frozen=True, repr=False)
+class MadeCases(Result):
+    """Cases that were made and sealed, to be diagnosed later."""
 
     folder: Path
     cases: int
-    opened: Opened | None
-    files: tuple[Path, ...]
 
-    def text(self, *, json: bool) -> str:
-        """The scores for a terminal, or the content of proof.json."""
-        if self.opened is None:
-            cases, answers = self.folder / "cases", self.folder / "answers"
-            return f"{self.cases} cases in {cases}, their answers in {answers}\n"
-        from rr_lab.report.trial import document, record
-        from rr_opt.report.text import terminal
+    def record(self, files: Sequence[Path] = ()) -> dict[str, Any]:  # noqa: ARG002
+        """As plain data."""
+        return {"status": "made", "cases": self.cases, "folder": str(self.folder)}
 
-        if json:
-            return strict_json(record(self.opened))
-        return terminal(document(self.opened), self.files)
+    def summary(self, files: Sequence[Path] = ()) -> str:  # noqa: ARG002
+        """Where they are."""
+        cases, answers = self.folder / "cases", self.folder / "answers"
+        return f"{self.cases} cases in {cases}, their answers in {answers}\n"
 
-
-@dataclass(frozen=True)
-class ProvedCase:
-    """One case, with what was hidden in it and what the diagnosis said."""
-
-    case: Case
-    folder: Path
-
-    def text(self, *, json: bool) -> str:
-        """Both for a terminal, or as JSON."""
-        from rr_lab.report.trial import case_record, case_text
-
-        return strict_json(case_record(self.case)) if json else case_text(self.case, self.folder)
+    def save(self, *_: Any, **__: Any) -> list[Path]:
+        """The files are there already."""
+        return []
 
 
 def prove(
@@ -67,7 +54,7 @@ def prove(
     restart: bool = False,
     make_only: bool = False,
     progress: Progress = lambda _: None,
-) -> Proof:
+) -> Proof | MadeCases:
     """Make and seal cases, diagnose each blind, then open and score them.
 
     An interrupted trial resumes when the same is asked for again. Raises InputError if the folder
@@ -86,13 +73,7 @@ def prove(
             restart=restart,
             make_only=make_only,
         )
-    if opened is None:
-        return Proof(folder, cases, None, ())
-    from rr_lab.report.trial import write_proof
-
-    written = write_proof(opened, folder)
-    tidy(folder, [case.id for case in opened.cases if not case.missed])
-    return Proof(folder, cases, opened, tuple(written))
+    return Proof(opened) if opened else MadeCases(folder, cases)
 
 
 def prove_case(

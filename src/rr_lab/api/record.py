@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
+from rr_lab.api.arguments import beyond_reach
 from rr_lab.case import Case, Delivery, Plan, stream
 from rr_lab.engines import Engine
 from rr_lab.files import WRITTEN, folder_of, seal_of, sealed_text
@@ -18,14 +19,15 @@ from rr_opt.model.experiment import Noise
 from rr_opt.model.robot import EffectUse
 from rr_opt.outcome import InputError
 from rr_opt.report.archive import file_for_result, folder_for_results, write_bytes, write_text
+from rr_opt.report.result import Result
 
 HASH = "answer.sha256"
 """In the folder: the answer's SHA-256, as sha256sum writes and checks it."""
 
 
-@dataclass(frozen=True)
-class Written:
-    """What was written; digest is that of the sealed answer, "" without one."""
+@dataclass(frozen=True, repr=False)
+class Recorded(Result):
+    """A case that was written; digest is that of the sealed answer, "" without one."""
 
     case: Case
     folder: Path
@@ -34,13 +36,16 @@ class Written:
     digest: str
 
     @property
-    def record(self) -> dict[str, Any]:
+    def warnings(self) -> tuple[str, ...]:
+        """Which runs turn the joint further than its servo can."""
+        return beyond_reach(self.case.nominal, self.case.plans)
+
+    def record(self, files: Sequence[Path] = ()) -> dict[str, Any]:  # noqa: ARG002
         """As plain data."""
         data = {"folder": str(self.folder), "files": list(self.files)}
         return {**data, "seal": str(self.seal), "sha256": self.digest} if self.seal else data
 
-    @property
-    def summary(self) -> str:
+    def summary(self, files: Sequence[Path] = ()) -> str:  # noqa: ARG002
         """For a person."""
         text = f"{self.folder}: {len(self.case.plans)} recordings, {len(self.files)} files\n"
         if self.seal is None:
@@ -52,7 +57,7 @@ def require_apart(folder: Path, seal: Path | None) -> None:
     """Raise InputError if the answer could not be written, or would lie among the recordings."""
     if seal is not None and file_for_result(seal).resolve().is_relative_to(folder.resolve()):
         raise InputError(
-            f"The seal {seal} lies in the folder of the recordings. Expected it apart from them. "
+            f"The seal {seal} lies in the folder of the recordings. Expected a place outside it. "
             "Give another place with --seal."
         )
 
@@ -69,7 +74,7 @@ def require_own(folder: Path) -> None:
 
 def write_case(
     case: Case, folder: Path, seal: Path | None, delivery: Delivery, progress: Callable[[str], None]
-) -> Written:
+) -> Recorded:
     """Write the folder, and the answer if there is a place for it."""
     files = []
     for name, content in folder_of(case, delivery, progress):
@@ -82,7 +87,7 @@ def write_case(
         write_text(seal, text)
         write_text(folder / HASH, f"{digest}  {seal.name}\n")
         files.append(HASH)
-    return Written(case, folder, tuple(files), seal, digest)
+    return Recorded(case, folder, tuple(files), seal, digest)
 
 
 def record(
@@ -103,7 +108,7 @@ def record(
     servo_log: bool = False,
     torque: bool = False,
     progress: Callable[[str], None] = lambda _: None,
-) -> Written:
+) -> Recorded:
     """Record a virtual robot into an experiment folder.
 
     robot          a robot file; None: the paper's prototype, or with `hide` a random one
@@ -114,7 +119,7 @@ def record(
     missing        fraction of lost samples
     servo_log      add the servo's log, on its own clock; torque: add the servo's torque
 
-    Raises InputError for what does not go together, and for a folder with somebody's recordings.
+    Raises InputError for what does not go together, and for a folder with other recordings.
     """
     if hide and (effects or seal is None):
         raise InputError(

@@ -7,7 +7,8 @@ from typing import Annotated, Literal
 
 import typer
 
-from rr_opt.cli.options import out_option
+from rr_opt.cli.options import Scheduler, Workers, out_option
+from rr_opt.cli.show import show
 from rr_opt.cli.steps import Steps
 
 
@@ -36,12 +37,8 @@ def prove(
         ),
     ] = None,
     out: Annotated[Path | None, out_option("out/proof")] = None,
-    workers: Annotated[
-        int | None, typer.Option(help="Number of processes.", min=1, show_default="one per core")
-    ] = None,
-    scheduler: Annotated[
-        str | None, typer.Option(help="Work on a dask cluster: tcp://HOST:PORT of its scheduler.")
-    ] = None,
+    workers: Workers = None,
+    scheduler: Scheduler = None,
     case: Annotated[
         int | None,
         typer.Option(
@@ -78,9 +75,9 @@ def prove(
             resumed=case is not None,
         )
         if case is not None:
-            text = library.prove_case(folder, drawn, case, progress=steps).text(json=json)
+            found = library.prove_case(folder, drawn, case, progress=steps)
         else:
-            text = library.prove(
+            found = library.prove(
                 folder,
                 drawn,
                 cases,
@@ -89,5 +86,6 @@ def prove(
                 restart=restart,
                 make_only=make_only,
                 progress=steps,
-            ).text(json=json)
-    typer.echo(text, nl=False)
+            )
+        files = found.save(folder, progress=steps)
+    show(found, files, json=json)

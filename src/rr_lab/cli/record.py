@@ -7,7 +7,8 @@ from typing import Annotated, Literal
 
 import typer
 
-from rr_opt.cli.options import out_option, place, read_options, warn
+from rr_opt.cli.options import Summary, out_option, place, read_options
+from rr_opt.cli.show import show
 from rr_opt.cli.steps import Steps
 
 
@@ -84,18 +85,15 @@ def record(
     ] = False,
     torque: Annotated[bool, typer.Option("--torque", help="Add the servo's torque (csv).")] = False,
     out: Annotated[Path | None, out_option("out/recorded")] = None,
-    json: Annotated[
-        bool, typer.Option("--json", help="Print only a machine-readable summary on stdout.")
-    ] = False,
+    json: Summary = False,
 ) -> None:
     """Record a virtual robot.
 
     Writes an experiment folder: experiment.yaml, and a recording for each run.
     """
     with Steps() as steps:
-        from rr_lab.api.arguments import beyond_reach, read_effects, read_noise, read_runs
+        from rr_lab.api.arguments import read_effects, read_noise, read_runs
         from rr_lab.api.record import record as made
-        from rr_opt.report.archive import strict_json
 
         long = read_options(seconds=seconds)["seconds"]
         written = made(
@@ -116,5 +114,4 @@ def record(
             torque=torque,
             progress=steps,
         )
-    warn(beyond_reach(written.case.nominal, written.case.plans))
-    typer.echo(strict_json(written.record) if json else written.summary, nl=False)
+    show(written, json=json)

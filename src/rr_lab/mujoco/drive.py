@@ -74,6 +74,6 @@ def _run(plant: Plant, outing: Outing, angle: Array, t: NDArray[Any], course: Co
 
 
 def _placed(seen: Array) -> Array:
-    """x, y, heading (n, 3) of what the sensors tell of a platform: its place and what is ahead."""
+    """x, y, heading (n, 3) from what the sensors see of a platform: place and forward axis."""
     heading = list(map(math.atan2, seen[:, 4].tolist(), seen[:, 3].tolist()))
     return np.column_stack([seen[:, :2], np.unwrap(heading)])

@@ -1,9 +1,7 @@
 """A rig as a compiled MuJoCo model with its state, stepped.
 
-Many steps of a plant at once.
-
-MuJoCo takes them by itself, from a table of controls. Only where something acts on the robot that
-it cannot be told beforehand, a law of the wheels or a push, is each step taken from here.
+MuJoCo takes many steps at once, from a table of controls. Only where something acts on the robot
+that is not known beforehand, a law of the wheels or a push, is each step taken from here.
 """
 
 from __future__ import annotations
@@ -43,8 +41,8 @@ def engine() -> Any:
 
 @cache
 def _stop_clock(mujoco: Any) -> None:
-    """Keep MuJoCo from timing the parts of each step, which nobody reads: with a model as small as
-    this, to look at the clock so often takes a sixth of the time."""
+    """Keep MuJoCo from timing the parts of each step: with a model as small as this, reading the
+    clock takes a sixth of the time."""
     try:
         # MuJoCo has no clock unless it is given one. Its Python package gives it one and only ever
         # puts another in its place, so the library is asked where it is kept.

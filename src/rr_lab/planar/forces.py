@@ -1,7 +1,5 @@
 """What acts on a rig in the plane: bearings, loads, the motor, stops, and what bends or pushes.
 
-An instant of a step: what is guessed of its end, and what acts by the guess.
-
 A step ends where its forces say, and they depend on where it ends. So its end is guessed, forces
 are written as straight lines through the guess, and the end that these give is the next guess.
 

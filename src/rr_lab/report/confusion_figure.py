@@ -33,7 +33,7 @@ def draw(opened: Opened) -> str:
 
 
 def matrix(ax: Axes, counted: Confusion) -> None:
-    """A square a count; where it is right its shade is the share of its row."""
+    """A square for each count; right ones are shaded by their share of the row."""
     totals = {
         row: sum(counted.counts.get((row, col), 0) for col in counted.columns)
         for row in counted.rows
@@ -65,7 +65,7 @@ def _cell(ax: Axes, x: int, y: int, count: int, total: int, *, right: bool) -> N
         Rectangle((x + 0.04, y + 0.04), 0.92, 0.92, facecolor=PAPER, edgecolor=FAINT, lw=0.6)
     )
     if count:
-        # A miss is seen at once, however rare it is.
+        # A miss stands out, however rare it is.
         shade = 0.25 + 0.75 * share if right else 1.0
         ax.add_patch(
             Rectangle((x + 0.04, y + 0.04), 0.92, 0.92, facecolor=colour, alpha=shade, lw=0)

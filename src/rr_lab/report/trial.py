@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 from rr_lab.trial import statistics
 from rr_lab.trial.case import Case
@@ -12,11 +13,11 @@ from rr_lab.trial.confusion import DEFINITION as CONFUSION
 from rr_lab.trial.confusion import confusion
 from rr_lab.trial.measures import BREAKDOWN, breakdown, by_engine, measures, side_by_side
 from rr_lab.trial.statistics import Rate, rate
-from rr_lab.trial.trial import Opened
-from rr_opt.answers.quantities import number
-from rr_opt.report.archive import remove, write_json, write_text
+from rr_lab.trial.trial import Opened, tidy
+from rr_opt.formatting import number
 from rr_opt.report.document import (
     Block,
+    Captions,
     Document,
     Fact,
     Facts,
@@ -28,10 +29,8 @@ from rr_opt.report.document import (
     csv_text,
     table,
 )
-from rr_opt.report.text import columns, markdown
-from rr_opt.report.webpage import PAGE, page
-
-RECORD, TABLE, SUMMARY, FIGURE = "proof.json", "cases.csv", "README.md", "confusion"
+from rr_opt.report.result import Progress, Result, quiet
+from rr_opt.report.text import columns
 
 ISOLATION = (
     "The laboratory drew and sealed every case before the first was diagnosed. Each was diagnosed "
@@ -161,16 +160,74 @@ def headline(opened: Opened) -> str:
     return "Blind trial: " + (", ".join(parts) or f"{len(opened.misses)} misses")
 
 
-def document(opened: Opened, drawn: str = "", *, linked: bool = False) -> Document:
-    """The whole report.
+@dataclass(frozen=True, repr=False)
+class Proof(Result):
+    """The outcome of a trial, in its folder."""
 
-    drawn   the figure as SVG; without it there is none
-    linked  whether the misses lead to their reports, which are kept beside the page
-    """
+    RECORD, MARKDOWN, OTHERS = "proof.json", "README.md", ("cases.csv",)
+    CAPTIONS: ClassVar[Captions] = {
+        "confusion": ("Diagnosis against truth", "Diagnosis against truth", CONFUSION)
+    }
+
+    opened: Opened
+
+    def document(self, figures: Sequence[Figure] = ()) -> Document:
+        """The counts, and every miss."""
+        return proof_document(self.opened, figures)
+
+    def record(self, files: Sequence[Path] = ()) -> dict[str, Any]:  # noqa: ARG002
+        """The content of proof.json."""
+        return proof_record(self.opened)
+
+    def _tables(self) -> dict[str, str]:
+        return {"cases.csv": cases_csv(self.opened)}
+
+    def _drawn(self) -> dict[str, str]:
+        from rr_lab.report.confusion_figure import draw  # matplotlib takes a second
+
+        return {"confusion": draw(self.opened)}
+
+    def save(
+        self, path: str | Path, *, figures: bool = True, progress: Progress = quiet
+    ) -> list[Path]:
+        """Write the outcome to the trial's folder, and remove what the seed makes again."""
+        written = super().save(path, figures=figures, progress=progress)
+        tidy(Path(path), [case.id for case in self.opened.cases if not case.missed])
+        return written
+
+    def _write_page(self, folder: Path, document: Document, written: Sequence[Path]) -> list[Path]:
+        """On the page alone the misses lead to their reports: these are not published."""
+        linked = proof_document(self.opened, document.figures, linked=True)
+        return super()._write_page(folder, linked, written)
+
+
+@dataclass(frozen=True, repr=False)
+class ProvedCase(Result):
+    """One case, with what was hidden in it and what the diagnosis said; its files are in folder."""
+
+    case: Case
+    folder: Path
+
+    def record(self, files: Sequence[Path] = ()) -> dict[str, Any]:  # noqa: ARG002
+        """Both as plain data."""
+        return case_record(self.case)
+
+    def summary(self, files: Sequence[Path] = ()) -> str:  # noqa: ARG002
+        """Both for a terminal."""
+        return case_text(self.case, self.folder)
+
+    def save(self, *_: Any, **__: Any) -> list[Path]:
+        """The files are there already."""
+        return []
+
+
+def proof_document(
+    opened: Opened, figures: Sequence[Figure] = (), *, linked: bool = False
+) -> Document:
+    """The whole report; linked: the misses lead to their reports, which are beside the page."""
     cases = opened.cases
     every = [one for one in measures(cases) if one.rate.total]
     key = tuple(Fact(one.title, rate_text(one.rate)) for one in every if one.name in _KEY)
-    figure = Figure(FIGURE, "Diagnosis against truth", drawn, "Diagnosis against truth", CONFUSION)
     counts = table(
         ("what", "count", SHARE, "what is counted"),
         [(one.title, *_cells(one.rate), one.definition) for one in every],
@@ -189,7 +246,7 @@ def document(opened: Opened, drawn: str = "", *, linked: bool = False) -> Docume
     ]
     sections = (
         Section("", (Facts(key, key=True),)),
-        Section("", (Gallery((figure,) if drawn else (), wide=True),)),
+        Section("", (Gallery(tuple(figures), wide=True),)),
         Section("Counts", (counts,), brief=False),
         _section("By engine", ENGINES, engines),
         _section(
@@ -268,7 +325,7 @@ def _misses(opened: Opened, linked: bool) -> Table:
     )  # fmt: skip
 
 
-def record(opened: Opened) -> dict[str, Any]:
+def proof_record(opened: Opened) -> dict[str, Any]:
     """The content of `proof.json`."""
     cases = opened.cases
     counted, every = confusion(cases), statistics.intervals(cases)
@@ -326,7 +383,7 @@ def record(opened: Opened) -> dict[str, Any]:
 
 
 def cases_csv(opened: Opened) -> str:
-    """A row a case; where there are two effects, sigma is that of the less visible one."""
+    """A row for each case; where there are two effects, sigma is that of the less visible one."""
     rows = [_row(case) for case in opened.cases]
     head = (
         "case", "kind", "engine", "strength", "nominal_off", "hidden", "visible_sigma",
@@ -346,18 +403,3 @@ def _row(case: Case) -> tuple[Any, ...]:
         claim.before if claim else None, claim.refitted if claim else None,
         claim.after if claim else None, case.wall, case.cpu, truth.disturbance,
     )  # fmt: skip
-
-
-def write_proof(opened: Opened, folder: Path) -> list[Path]:
-    """Write everything; returns the files in the order to name them."""
-    from rr_lab.report.confusion_figure import draw  # matplotlib takes a second
-
-    remove(folder, (RECORD, TABLE, SUMMARY, PAGE, f"{FIGURE}.svg"))
-    drawn = draw(opened)
-    return [
-        write_text(folder / PAGE, page(document(opened, drawn, linked=True))),
-        write_text(folder / SUMMARY, markdown(document(opened, drawn))),
-        write_json(folder / RECORD, record(opened)),
-        write_text(folder / TABLE, cases_csv(opened)),
-        write_text(folder / f"{FIGURE}.svg", drawn),
-    ]

@@ -1,1 +1,1 @@
-"""The blind trial: sealed cases of the laboratory, diagnosed by a program of its own, scored."""
+"""The blind trial: sealed cases of the laboratory, diagnosed by a separate program, and scored."""

@@ -96,7 +96,7 @@ class Named:
 class Claim:
     """verdict    consistent, parameters, missing_physics or unexplained
     named       strongest first
-    groups      names that the recordings cannot tell apart
+    groups      names that the recordings cannot distinguish
     before, refitted, after  held-out misfit, RMS in sigma, 1 is the noise: as believed, with the
                 parameters alone, with all that was found; None where it is unknown
     p_values    by the test's name
@@ -178,8 +178,8 @@ class Case:
 
     @property
     def found(self) -> tuple[str, ...]:
-        """The hidden names that were named, themselves or by one that the diagnosis says cannot be
-        told from it."""
+        """The hidden names that were named, themselves or by one that the diagnosis calls
+        indistinguishable from it."""
         claim = self.claim
         if claim is None:
             return ()

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 from rr_lab.engines import ENGINES
 from rr_lab.trial.case import FLOOR, SURE, Case
@@ -10,168 +11,185 @@ from rr_lab.trial.lots import STRENGTHS
 from rr_lab.trial.statistics import COVERAGE, Measure, Rate, intervals, rate
 
 
-def singles(cases: Sequence[Case]) -> list[Measure]:
-    """Of cases with one effect."""
-    seen = [case for case in cases if case.scored]
-    hidden = [case for case in cases if not case.scored]
-    by_strength = [
-        Measure(
-            f"single_{name}",
-            f"... {name}",
-            f"Of the same, those whose effect makes {low:g} to {high:g} sigma of difference before "
-            "the re-fit, which names it.",
-            rate(case.outcome == "right" for case in seen if case.truth.strength == name),
-        )
-        for name, (low, high) in STRENGTHS.items()
-    ]
-    return [
-        Measure(
-            "single",
-            "single effects named",
-            f"Of the cases with one effect that stays visible ({FLOOR:g} sigma or more) after the "
-            "nominal parameters are re-fitted, those with the verdict `missing_physics` that name "
-            "it, or one that the diagnosis calls indistinguishable from it, and nothing else.",
-            rate(case.outcome == "right" for case in seen),
-        ),
-        *by_strength,
-        Measure(
-            "single_exact",
-            "... by its own name",
-            "Of the same, those that name the effect itself and nothing else.",
-            rate(case.outcome == "right" and _exact(case) for case in seen),
-        ),
-        Measure(
-            "single_invisible",
-            "invisible, no wrong name",
-            f"Of the cases with one effect that leaves less than {FLOOR:g} sigma after the re-fit, "
-            "those that answer and do not name another one.",
-            rate(not case.missed for case in hidden),
-        ),
-    ]
+@dataclass(frozen=True)
+class Count:
+    """A count: of the cases that `among` picks, those for which `counted` holds.
+
+    name   short, for scripts; title: for people
+    """
+
+    name: str
+    title: str
+    definition: str
+    among: Callable[[Case], bool]
+    counted: Callable[[Case], bool]
+
+    def of(self, cases: Sequence[Case]) -> Measure:
+        """Among these cases."""
+        counted = rate(self.counted(case) for case in cases if self.among(case))
+        return Measure(self.name, self.title, self.definition, counted)
 
 
-def pairs(cases: Sequence[Case]) -> list[Measure]:
-    """Of cases with two effects."""
-    seen = [case for case in cases if case.scored]
-    return [
-        Measure(
-            "pair_both",
-            "pairs, both named",
-            "Of the cases with two effects that both stay visible, those with the verdict "
-            "`missing_physics` that name both and nothing else.",
-            rate(case.outcome == "right" for case in seen),
+def _kind(kind: str, *, visible: bool | None = None) -> Callable[[Case], bool]:
+    """Cases of a kind, whose effects stay visible or do not, if that is asked for."""
+    return lambda case: case.truth.kind == kind and (visible is None or case.scored == visible)
+
+
+def _right(case: Case) -> bool:
+    return case.outcome == "right"
+
+
+def _false_claim(case: Case) -> bool:
+    return case.outcome == "false claim"
+
+
+def _nulls(name: str, off: float, words: str) -> Count:
+    return Count(
+        f"false_claims_{name}",
+        f"... nominal values {words.partition(',')[0]}",
+        f"Of the same, those whose nominal values are {words}.",
+        lambda case: case.truth.kind == "null" and case.truth.spread == off,
+        _false_claim,
+    )
+
+
+def _single(name: str, low: float, high: float) -> Count:
+    return Count(
+        f"single_{name}",
+        f"... {name}",
+        f"Of the same, those whose effect makes {low:g} to {high:g} sigma of difference before "
+        "the re-fit, which names it.",
+        lambda case: _kind("single", visible=True)(case) and case.truth.strength == name,
+        _right,
+    )
+
+
+def _all_named(case: Case) -> bool:
+    complete = len(case.found) == len(case.truth.names)
+    return _right(case) and complete and not case.extra
+
+
+COUNTS = (
+    Count(
+        "false_claims",
+        "nulls with a false claim",
+        "Of the cases with nothing hidden, those whose verdict is not `consistent`; no answer is "
+        "no claim.",
+        _kind("null"),
+        _false_claim,
+    ),
+    _nulls("exact", 0.0, "true"),
+    _nulls("off", 1.0, "off by chance, each as far as its uncertainty says"),
+    Count(
+        "single",
+        "single effects named",
+        f"Of the cases with one effect that stays visible ({FLOOR:g} sigma or more) after the "
+        "nominal parameters are re-fitted, those with the verdict `missing_physics` that name it, "
+        "or one that the diagnosis calls indistinguishable from it, and nothing else.",
+        _kind("single", visible=True),
+        _right,
+    ),
+    *(_single(name, *ends) for name, ends in STRENGTHS.items()),
+    Count(
+        "single_exact",
+        "... by its own name",
+        "Of the same, those that name the effect itself and nothing else.",
+        _kind("single", visible=True),
+        lambda case: (
+            _right(case) and case.claim is not None and case.claim.names == case.truth.names
         ),
-        Measure(
-            "pair_one",
-            "... at least one named",
-            "Of the same, those that name at least one of the two, under any verdict.",
-            rate(bool(case.found) for case in seen),
-        ),
-        Measure(
-            "pair_wrong",
-            "... with a wrong name",
-            "Of the same, those that name anything that is not hidden.",
-            rate(bool(case.extra) for case in seen),
-        ),
-    ]
-
-
-def _exact(case: Case) -> bool:
-    return case.claim is not None and case.claim.names == case.truth.names
-
-
-_NOMINAL = (
-    ("exact", 0.0, "true", ""),
-    ("off", 1.0, "off by chance", ", each as far as its uncertainty says"),
+    ),
+    Count(
+        "single_invisible",
+        "invisible, no wrong name",
+        f"Of the cases with one effect that leaves less than {FLOOR:g} sigma after the re-fit, "
+        "those that answer and do not name another one.",
+        _kind("single", visible=False),
+        lambda case: not case.missed,
+    ),
+    Count(
+        "pair_both",
+        "pairs, both named",
+        "Of the cases with two effects that both stay visible, those with the verdict "
+        "`missing_physics` that name both and nothing else.",
+        _kind("pair", visible=True),
+        _right,
+    ),
+    Count(
+        "pair_one",
+        "... at least one named",
+        "Of the same, those that name at least one of the two, under any verdict.",
+        _kind("pair", visible=True),
+        lambda case: bool(case.found),
+    ),
+    Count(
+        "pair_wrong",
+        "... with a wrong name",
+        "Of the same, those that name anything that is not hidden.",
+        _kind("pair", visible=True),
+        lambda case: bool(case.extra),
+    ),
+    Count(
+        "parameters",
+        "wrong values recognised",
+        "Of the cases with one or two wrong nominal values, those with the verdict `parameters`, "
+        "whichever it names.",
+        _kind("parameters"),
+        _right,
+    ),
+    Count(
+        "parameters_named",
+        "... and every one named",
+        "Of the same, those that name every wrong value, or one that the diagnosis calls "
+        "indistinguishable from it, and no other.",
+        _kind("parameters"),
+        _all_named,
+    ),
+    Count(
+        "outside",
+        "outside the catalogue, recognised",
+        "Of the cases with an effect that no name exists for and that stays visible, those with "
+        f"the verdict `unexplained` and no name of a confidence above {SURE:g}.",
+        _kind("outside", visible=True),
+        _right,
+    ),
+    Count(
+        "outside_named",
+        "... named with confidence",
+        f"Of the same, those with a name of a confidence above {SURE:g}, under any verdict.",
+        _kind("outside", visible=True),
+        lambda case: case.outcome == "named with confidence",
+    ),
+    Count(
+        "disturbed_false_claims",
+        "disturbed nulls with a false claim",
+        "Of the cases with disturbed recordings and nothing hidden, those whose verdict is not "
+        "`consistent`.",
+        lambda case: case.truth.kind == "disturbed" and not case.truth.hidden,
+        _false_claim,
+    ),
+    Count(
+        "disturbed_single",
+        "disturbed, single effects named",
+        "Of the cases with disturbed recordings and one effect that stays visible, those that name "
+        "it and nothing else, as above.",
+        lambda case: _kind("disturbed", visible=True)(case) and bool(case.truth.hidden),
+        _right,
+    ),
+    Count(
+        "no_answer",
+        "no answer",
+        "Of all cases, those whose diagnosis crashed, took too long or ended with an error; each "
+        "counts as a miss above as well.",
+        lambda _: True,
+        lambda case: case.claim is None,
+    ),
 )
 
 
 def measures(cases: Sequence[Case]) -> list[Measure]:
     """All counts, in the order to show them."""
-    nulls = [case for case in cases if case.truth.kind == "null"]
-    wrong = [case for case in cases if case.truth.kind == "parameters"]
-    return [
-        Measure(
-            "false_claims",
-            "nulls with a false claim",
-            "Of the cases with nothing hidden, those whose verdict is not `consistent`; no answer "
-            "is no claim.",
-            rate(case.outcome == "false claim" for case in nulls),
-        ),
-        *(
-            Measure(
-                f"false_claims_{name}",
-                f"... nominal values {words}",
-                f"Of the same, those whose nominal values are {words}{more}.",
-                rate(case.outcome == "false claim" for case in nulls if case.truth.spread == off),
-            )
-            for name, off, words, more in _NOMINAL
-        ),
-        *singles([case for case in cases if case.truth.kind == "single"]),
-        *pairs([case for case in cases if case.truth.kind == "pair"]),
-        Measure(
-            "parameters",
-            "wrong values recognised",
-            "Of the cases with one or two wrong nominal values, those with the verdict "
-            "`parameters`, whichever it names.",
-            rate(case.outcome == "right" for case in wrong),
-        ),
-        Measure(
-            "parameters_named",
-            "... and every one named",
-            "Of the same, those that name every wrong value, or one that the diagnosis says cannot "
-            "be told from it, and no other.",
-            rate(_all_named(case) for case in wrong),
-        ),
-        *_outside([case for case in cases if case.truth.kind == "outside"]),
-        *_disturbed([case for case in cases if case.truth.kind == "disturbed"]),
-        Measure(
-            "no_answer",
-            "no answer",
-            "Of all cases, those whose diagnosis crashed, took too long or ended with an error; "
-            "each counts as a miss above as well.",
-            rate(case.claim is None for case in cases),
-        ),
-    ]
-
-
-def _outside(cases: Sequence[Case]) -> list[Measure]:
-    seen = [case for case in cases if case.scored]
-    return [
-        Measure(
-            "outside",
-            "outside the catalogue, recognised",
-            "Of the cases with an effect that no name exists for and that stays visible, those "
-            f"with the verdict `unexplained` and no name of a confidence above {SURE:g}.",
-            rate(case.outcome == "right" for case in seen),
-        ),
-        Measure(
-            "outside_named",
-            "... named with confidence",
-            f"Of the same, those with a name of a confidence above {SURE:g}, under any verdict.",
-            rate(case.outcome == "named with confidence" for case in seen),
-        ),
-    ]
-
-
-def _disturbed(cases: Sequence[Case]) -> list[Measure]:
-    nulls = [case for case in cases if not case.truth.hidden]
-    return [
-        Measure(
-            "disturbed_false_claims",
-            "disturbed nulls with a false claim",
-            "Of the cases with disturbed recordings and nothing hidden, those whose verdict is not "
-            "`consistent`.",
-            rate(case.outcome == "false claim" for case in nulls),
-        ),
-        Measure(
-            "disturbed_single",
-            "disturbed, single effects named",
-            "Of the cases with disturbed recordings and one effect that stays visible, those that "
-            "name it and nothing else, as above.",
-            rate(case.outcome == "right" for case in cases if case.truth.hidden and case.scored),
-        ),
-    ]
+    return [count.of(cases) for count in COUNTS]
 
 
 BREAKDOWN = (
@@ -202,11 +220,6 @@ def breakdown(cases: Sequence[Case]) -> dict[str, dict[str, Rate]]:
         what: {key: rate(flags) for key, flags in sorted(by_key.items())}
         for what, by_key in right.items()
     }
-
-
-def _all_named(case: Case) -> bool:
-    complete = len(case.found) == len(case.truth.names)
-    return case.outcome == "right" and complete and not case.extra
 
 
 def by_engine(cases: Sequence[Case]) -> dict[str, list[Measure]]:

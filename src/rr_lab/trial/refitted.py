@@ -39,7 +39,7 @@ FARTHEST = 3.0
 """Sigma, by which a parameter may be moved."""
 
 STEP, DIRECTIONS = 5e-3, 1e-2
-"""s, of the integration: in the runs that are held against each other, and for derivatives."""
+"""s, of the integration: in the runs that are compared, and for derivatives."""
 
 FINEST = 1e-3
 """s, the shortest step of nominal runs."""
@@ -102,7 +102,7 @@ class Refit:
         their box."""
         rows, sides = [np.eye(len(at))], [-at]
         for (ref, seen), slopes in zip(pairs, self.slopes, strict=True):
-            # What the start of the run can make is nobody's: it is taken out of both sides.
+            # What the initial state can explain is taken out of both sides.
             start = np.linalg.qr(_starts(ref))[0]
             off = ((seen - ref.path) / ref.sigma).ravel()
             turned = slopes.reshape(off.size, -1)

@@ -148,7 +148,7 @@ HELD_OUT = (
     "RMS misfit of recordings that took no part in the fit, in units of the noise sigma: "
     "of the nominal model, with its parameters re-fitted, and with all effects found."
 )
-TIME = "Time of one diagnosis with its page, one process a case, s."
+TIME = "Time of one diagnosis with its page, one process for each case, s."
 
 
 @dataclass(frozen=True)

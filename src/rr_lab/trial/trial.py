@@ -1,8 +1,8 @@
 """A trial from its seed to its opened answers: every case is sealed before the first is diagnosed.
 
-Two journals keep what is finished, `made.jsonl` and `said.jsonl`, a line a case: a trial that was
-interrupted resumes from them. In the trial's folder `answers/ID.json` has what is hidden,
-`cases/ID/` the recordings, `said/ID/` what the diagnosis wrote.
+Two journals, `made.jsonl` and `said.jsonl`, keep a line for each finished case, from which an
+interrupted trial resumes. In the trial's folder `answers/ID.json` has what is hidden, `cases/ID/`
+the recordings, `said/ID/` what the diagnosis wrote.
 """
 
 from __future__ import annotations

@@ -1,13 +1,11 @@
-"""The robot with what a diagnosis found in it, its file, and the gait that its servo makes."""
+"""The robot with what a diagnosis found in it, and the gait that its servo makes."""
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, replace
+from dataclasses import replace
 from types import MappingProxyType
-from typing import Any
 
 import numpy as np
 
@@ -19,37 +17,6 @@ from rr_opt.model.parameters import PARAMETERS, with_parameters
 from rr_opt.model.robot import EffectUse, Robot, Servo
 from rr_opt.motion.floor_motion import free_joint
 from rr_opt.sysid.diagnosis import Diagnosis
-
-
-def robot_record(robot: Robot) -> dict[str, Any]:
-    """The robot in SI under the keys of a robot file; an endless limit is null."""
-    return {
-        "name": robot.name,
-        "platform1": asdict(robot.platform1),
-        "platform2": asdict(robot.platform2),
-        "h": robot.h,
-        "servo": {key: finite(value) for key, value in asdict(robot.servo).items()},
-        "physics": [{"name": use.name, **use.values} for use in robot.physics],
-        "provenance": _nested(dict(robot.provenance)),
-    }
-
-
-def finite(value: float) -> float | None:
-    """The value, or None (null in JSON) if it is infinite or not a number."""
-    return float(value) if math.isfinite(value) else None
-
-
-def _nested(flat: dict[str, str]) -> dict[str, Any]:
-    """`{"servo.rate_limit": text}` as mappings in mappings."""
-    nested: dict[str, Any] = {}
-    for path, text in flat.items():
-        *sections, key = path.split(".")
-        place = nested
-        for section in sections:
-            place = place.setdefault(section, {})
-        place[key] = text
-    return nested
-
 
 _HARMONICS = 24
 """The n-th of an angle whose rate jumps falls as 1/n^2: what is left out moves the speed by less
@@ -97,24 +64,6 @@ def corrected_robot(experiment: Experiment, found: Diagnosis) -> Robot:
     )
 
 
-def robot_yaml(robot: Robot, title: str) -> str:
-    """The robot as the text of a robot file; title: a comment on its first line."""
-    record = robot_record(robot)
-    lines = [f"# {line}" for line in title.splitlines()]
-    for key, value in record.items():
-        if key in ("physics", "provenance"):
-            continue
-        given = {k: math.inf if v is None else v for k, v in value.items()} if key == "servo" else (
-            value
-        )  # fmt: skip
-        lines.append(f"{key}: {_flow(given)}")
-    if record["physics"]:
-        lines += ["physics:", *(f"  - {_flow(one)}" for one in record["physics"])]
-    if record["provenance"]:
-        lines += ["provenance:", *_block(record["provenance"], "  ")]
-    return "\n".join(lines) + "\n"
-
-
 def _servo(servo: Servo, fitted: Mapping[str, float]) -> Servo:
     """The servo, no faster than it was seen to be: gaits are then sought that it can make."""
     seen = fitted.get("servo_rate_limit.rate_limit", math.inf)
@@ -156,25 +105,3 @@ def _key(name: str) -> str:
 
 def _rounded(value: float) -> float:
     return float(f"{value:.{_DIGITS}g}")
-
-
-def _block(mapping: Mapping[str, Any], indent: str) -> list[str]:
-    lines: list[str] = []
-    for key, value in mapping.items():
-        if isinstance(value, Mapping):
-            lines += [f"{indent}{key}:", *_block(value, f"{indent}  ")]
-        else:
-            lines.append(f"{indent}{key}: {_flow(value)}")
-    return lines
-
-
-def _flow(value: Any) -> str:
-    """A value in one line, as both versions of YAML read it: a number has a point."""
-    if isinstance(value, Mapping):
-        return "{" + ", ".join(f"{key}: {_flow(inner)}" for key, inner in value.items()) + "}"
-    if isinstance(value, str):
-        return json.dumps(value, ensure_ascii=False)
-    if math.isinf(value):
-        return ".inf" if value > 0 else "-.inf"
-    mantissa, e, power = repr(float(value)).partition("e")
-    return f"{mantissa if '.' in mantissa else mantissa + '.0'}{e}{power}"

@@ -14,11 +14,11 @@ from functools import cached_property
 
 import numpy as np
 
-from rr_opt.answers.answer import Answer, listed
 from rr_opt.answers.corrected_robot import corrected_robot, servo_made
 from rr_opt.effects import CATALOGUE
 from rr_opt.effects.effect import Port
 from rr_opt.files.problem_file import read_problem
+from rr_opt.messages import listed
 from rr_opt.model.experiment import Experiment
 from rr_opt.model.gait import Gait
 from rr_opt.model.problem import Limits, Problem
@@ -112,8 +112,8 @@ _PREDICTS = 1.2
 """An empirical term accounts for what is missing if it leaves no more than this, in sigma."""
 
 
-@dataclass(frozen=True)
-class DiagnosisAnswer(Answer):
+@dataclass(frozen=True, repr=False)
+class DiagnosisAnswer:
     """The diagnosis of an experiment.
 
     name, sha256  of the input

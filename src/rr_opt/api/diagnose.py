@@ -12,14 +12,16 @@ import numpy as np
 
 from rr_opt.answers.diagnosis import DiagnosisAnswer
 from rr_opt.api.identity import identity
-from rr_opt.api.result import Plots, Progress, Result, quiet
-from rr_opt.model.experiment import Experiment, Noise, Run
+from rr_opt.model.experiment import Experiment, Run
 from rr_opt.outcome import NotConvergedError
+from rr_opt.recordings.clock_fit import at_commanded_rate
 from rr_opt.recordings.experiment import read_experiment
 from rr_opt.recordings.usable import usable
+from rr_opt.report.archive import folder_for_results
+from rr_opt.report.result import Plots, Progress, Result, quiet
 
 
-class ExplainedExperiment(Result, DiagnosisAnswer):
+class ExplainedExperiment(DiagnosisAnswer, Result):
     """The diagnosis of an experiment.
 
     verdict          `consistent`, `parameters`, `missing_physics` or `unexplained`
@@ -49,10 +51,15 @@ class ExplainedExperiment(Result, DiagnosisAnswer):
 
         return Plots(draw(self)[0])
 
-    def _write(self, folder: Path, figures: bool, progress: Progress) -> list[Path]:
+    def save(
+        self, path: str | Path, *, figures: bool = True, progress: Progress = quiet
+    ) -> list[Path]:
+        """Write diagnosis.json, robot-corrected.yaml, the figures and the page."""
         from rr_opt.report.diagnosis.document import write_diagnosis
 
-        return write_diagnosis(self, folder, page=figures, progress=progress)
+        return write_diagnosis(
+            self, folder_for_results(Path(path)), page=figures, progress=progress
+        )
 
 
 def diagnose(
@@ -69,11 +76,12 @@ def diagnose(
         experiment = read_experiment(experiment)
     name, sha256 = identity(experiment)
     trial, left_out = usable(_cleaned(experiment))
+    trial = at_commanded_rate(trial)
     # Here and not above: a wrong input is reported before a second of imports.
-    from rr_opt.machines.racer.diagnose import diagnose_racer
     from rr_opt.machines.racer.racer import RollerRacer
+    from rr_opt.sysid.diagnose import diagnose as identify
 
-    found = diagnose_racer(RollerRacer(trial), progress)
+    found = identify(RollerRacer(trial), progress)
     if not (found.before < float("inf") and found.after < float("inf")):
         raise NotConvergedError(
             "The fits did not converge: a simulation left the range of numbers. Expected motion "
@@ -85,19 +93,16 @@ def diagnose(
 
 def _cleaned(experiment: Experiment) -> Experiment:
     """With recordings that were made from arrays treated as those of files are."""
-    runs = tuple(
-        run if run.recording.source else _as_read(run, experiment.noise) for run in experiment.runs
-    )
-    return replace(experiment, runs=runs)
+    from rr_opt.recordings.inspection import Circumstances, inspect
 
+    def as_read(run: Run) -> Run:
+        sigma = {
+            channel: np.where(np.isfinite(known), known, experiment.noise.of(channel))
+            for channel, known in run.recording.sigma.items()
+        }
+        stated = replace(run.recording, sigma=MappingProxyType(sigma))
+        known = Circumstances(robot=experiment.robot, gait=run.gait, start=run.start)
+        return replace(run, recording=inspect(stated, None, known).recording)
 
-def _as_read(run: Run, noise: Noise) -> Run:
-    from rr_opt.recordings.cleaning import clean
-
-    sigma = {
-        channel: np.where(np.isfinite(known), known, noise.of(channel))
-        for channel, known in run.recording.sigma.items()
-    }
-    made = clean(replace(run.recording, sigma=MappingProxyType(sigma)))
-    doubts = (*run.recording.doubts, *made.doubts)
-    return replace(run, recording=replace(made.recording, doubts=doubts))
+    runs = (run if run.recording.source else as_read(run) for run in experiment.runs)
+    return replace(experiment, runs=tuple(runs))

@@ -2,79 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import NoReturn
 
-from rr_opt.api.result import Plots, Progress, Result, quiet
 from rr_opt.files.experiment_file import read_plan
 from rr_opt.files.source import fingerprint
 from rr_opt.model.experiment import Start
 from rr_opt.model.gait import Gait
 from rr_opt.outcome import InputError
 from rr_opt.recordings.experiment import inspect_experiment, is_experiment
-from rr_opt.recordings.inspection import Inspection, inspect_file
-from rr_opt.report.archive import file_for_result, folder_for_results
-
-
-@dataclass(frozen=True, repr=False)
-class InspectedRecordings(Result):
-    """Recordings as they were found.
-
-    recordings  one each, with `recording` (values, sigma and flags by channel), `doubts`, the
-                markers' fit and the clock against the command
-    """
-
-    name: str
-    sha256: str
-    recordings: tuple[Inspection, ...]
-
-    def record(self, files: Sequence[Path] = ()) -> dict[str, Any]:
-        """The content of inspection.json."""
-        from rr_opt.report.inspect.record import record
-
-        return record(self.name, self.sha256, self.recordings)
-
-    def summary(self, files: Sequence[Path] = ()) -> str:
-        """Samples, noise, gaps and doubts as text."""
-        from rr_opt.report.inspect.document import summary
-
-        return summary(self.recordings, files)
-
-    def plot(self) -> Plots:
-        """Channels, path and noise; of several recordings each name begins with the file's."""
-        from rr_opt.report.figures.inspection import draw
-
-        several = len(self.recordings) > 1
-        return Plots(
-            {
-                f"{Path(one.name).stem}-{name}" if several else name: svg
-                for one in self.recordings
-                for name, svg in draw(one).items()
-            }
-        )
-
-    def save(
-        self,
-        path: str | Path,
-        *,
-        figures: bool = True,
-        progress: Progress = quiet,
-        netcdf: str | Path | None = None,
-    ) -> list[Path]:
-        """Write inspection.json and the page; netcdf: a file for the one recording."""
-        from rr_opt.report.inspect.document import write_inspection, write_recording
-
-        folder = folder_for_results(Path(path))
-        if netcdf is not None:
-            file_for_result(Path(netcdf))
-        written = write_inspection(
-            self.name, self.sha256, self.recordings, folder, figures=figures, progress=progress
-        )
-        if netcdf is not None:
-            written.append(write_recording(Path(netcdf), self.recordings[0]))
-        return written
+from rr_opt.recordings.inspection import inspect_file
+from rr_opt.report.archive import file_for_result
+from rr_opt.report.inspection import InspectedRecordings
+from rr_opt.report.result import Progress, quiet
 
 
 def inspect(

@@ -10,7 +10,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from rr_opt.answers.quantities import with_unit
 from rr_opt.api.arguments import read_arguments
 from rr_opt.files.gait_record import gait_from
 from rr_opt.files.issue import InvalidFileError
@@ -19,6 +18,7 @@ from rr_opt.files.problem_file import kind_of, name_of, read_problem
 from rr_opt.files.robot_file import read_robot, robot_from
 from rr_opt.files.source import read_document
 from rr_opt.files.yaml_text import Document
+from rr_opt.formatting import with_unit
 from rr_opt.messages import shown
 from rr_opt.model.ballast import inertia_ratio, load_count, with_inertia_ratio, with_load_count
 from rr_opt.model.experiment import Experiment
@@ -106,7 +106,7 @@ def load_gait(
     A result.json has its own gait, of whatever shape. Of a problem the values that it fixes are
     taken, and the others are those of the paper's run with T = 1 s, brought within the bounds.
     amplitude (rad), period (s) and offset (rad), numbers or text with a unit, go before what the
-    file says. Raises InputError for a file that holds no robot or problem.
+    file says. Raises InputError for a file without a robot or problem.
     """
     values = read_arguments({"amplitude": amplitude, "period": period, "offset": offset})
     source = _source(None if path is None else Path(path), values)
@@ -207,21 +207,21 @@ def _doubts(
         name for name in units if name not in given and not (bounds and getattr(bounds, name).fixed)
     ]
     shape = bounds.shape if bounds else "sine"
-    told = []
+    notes = []
     if defaults:
         values = [f"{name} {with_unit(getattr(gait, name), units[name])}" for name in defaults]
-        told.append(
+        notes.append(
             f"No {' and '.join(defaults)} given. The default is driven, {' and '.join(values)} "
             f"after the paper's run, and not the optimum of {of}."
         )
     if shape != "sine":
-        told.append(f"The problem asks for a `{shape}` gait, and a sine is driven.")
-    if not told:
+        notes.append(f"The problem asks for a `{shape}` gait, and a sine is driven.")
+    if not notes:
         return ()
     command = shlex.join(["rr-opt", "maximize-speed", *([] if path is None else [str(path)])])
     result = Path("out") / name_of(path) / "result.json"
     choice = ", or --amplitude and --period" if defaults else ""
-    return (" ".join([*told, f"Run `{command}` first and give {result}{choice}."]),)
+    return (" ".join([*notes, f"Run `{command}` first and give {result}{choice}."]),)
 
 
 def _require_problem(folder: Path) -> None:

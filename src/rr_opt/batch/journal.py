@@ -15,6 +15,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Generic, Self, TypeVar
 
+from rr_opt.files.gate import require_regular
 from rr_opt.outcome import InputError
 
 _CHANGES = {
@@ -50,10 +51,12 @@ class Journal(Generic[Row]):
         cases    how many there are, if that is known
         restart  discard the rows of earlier runs
 
-        Raises InputError if the journal is of another batch, is damaged, or is in use.
+        Raises InputError if the journal is of another batch, is damaged, is in use, or is no
+        regular file.
         """
         self._path, self._read, self._cases = path, read, cases
         self.rows: dict[int, Row] = {}
+        require_regular(path)
         path.parent.mkdir(parents=True, exist_ok=True)
         self._file = path.open("a+b")
         try:

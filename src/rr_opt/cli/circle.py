@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
-
-import typer
-
-from rr_opt.cli.options import Amplitude, Driven, Offset, Period, read_gait, read_options
+from rr_opt.cli.options import Amplitude, Driven, Offset, Period, Summary, read_gait, read_options
 from rr_opt.cli.show import show
 from rr_opt.cli.steps import Steps
 
@@ -17,9 +13,7 @@ def circle(
     amplitude: Amplitude = None,
     period: Period = None,
     offset: Offset = None,
-    json: Annotated[
-        bool, typer.Option("--json", help="Print only a machine-readable record on stdout.")
-    ] = False,
+    json: Summary = False,
 ) -> None:
     """Compute the circle of a gait: radius, centre, speed, time for a full turn.
 

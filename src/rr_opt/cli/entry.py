@@ -25,21 +25,21 @@ def main() -> None:
         app()
     except SystemExit as end:
         if interrupt.seen() and end.code != 0:
-            _end(told=end.code == EXIT_INTERRUPTED)
+            _end(silent=end.code == EXIT_INTERRUPTED)
         interrupt.ignore()
         raise
     except BaseException:
         if interrupt.seen():
-            _end(told=False)
+            _end(silent=False)
         raise
 
 
-def _end(*, told: bool) -> None:
+def _end(*, silent: bool) -> None:
     """End here and now: libraries that are half loaded complain when they are tidied up."""
     import sys
 
     interrupt.ignore()
-    if not told:
+    if not silent:
         print(interrupt.MESSAGE, file=sys.stderr)  # noqa: T201 - typer may not be there
     sys.stderr.flush()
     sys.stdout.flush()

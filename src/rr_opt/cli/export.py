@@ -51,8 +51,9 @@ def export(
         gait = {"amplitude": amplitude, "period": period, "offset": offset}
         driven = read_gait(source, read_options(**gait, rate=rate))
         from rr_opt.api import drive
+        from rr_opt.report.setpoints import setpoints_file
 
-        file = drive.setpoints_file(out, result_name(source), kind)
+        file = setpoints_file(out, result_name(source), kind)
         points = drive.export(
             driven, format=kind, rate=rate, keep_period=keep_period, progress=steps
         )

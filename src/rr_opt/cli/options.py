@@ -66,7 +66,7 @@ Workers = Annotated[
     int | None, typer.Option(help="Number of processes.", min=1, show_default="one per core")
 ]
 Scheduler = Annotated[
-    str | None, typer.Option(help="Solve on a dask cluster: tcp://HOST:PORT of its scheduler.")
+    str | None, typer.Option(help="Work on a dask cluster: tcp://HOST:PORT of its scheduler.")
 ]
 
 

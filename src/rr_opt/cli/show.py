@@ -12,7 +12,7 @@ from rr_opt.cli.options import warn
 from rr_opt.outcome import Status
 
 if TYPE_CHECKING:
-    from rr_opt.api.result import Result
+    from rr_opt.report.result import Result
 
 
 def show(result: Result, files: Sequence[Path] = (), *, json: bool) -> None:

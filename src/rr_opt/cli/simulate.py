@@ -50,8 +50,9 @@ def simulate(
         driven = read_gait(source, read_options(**gait, seconds=seconds, rate=rate))
         folder = results_folder(out, f"{result_name(source)}-motion")
         from rr_opt.api import drive
+        from rr_opt.report.motion import check_files
 
-        drive.check_files(kind, animate)
+        check_files(kind, animate)
         motion = drive.simulate(driven, None, seconds, start=start, rate=rate, progress=steps)
         files = motion.save(folder, format=kind, film=animate, progress=steps)
     show(motion, files, json=json)

@@ -33,9 +33,10 @@ def study(
     """
     with Steps() as steps:
         from rr_opt.api import study as library
+        from rr_opt.report.study import check_files
 
         asked = library.load_study(study)
-        library.check_files(netcdf=netcdf)
+        check_files(netcdf=netcdf)
         folder = results_folder(out, asked.name)
         options = {"workers": workers, "scheduler": scheduler, "cold": cold, "restart": restart}
         solved = library.study(asked, folder=folder, **options, progress=steps)

@@ -54,8 +54,7 @@ class Parameter:
                       or multiples of that magnitude if neutral is not zero. Several where a fit
                       from the first may end in a local minimum or on a plateau
     guess_from_data   a place on the floor: only the recordings say where a fit should start
-    model_form_error  real machines follow different laws here, of which this is one
-    model_form_sigma  by which they differ in its value, 1 sigma, relative
+    model_form_sigma  by which real machines differ in its value, 1 sigma, relative
     fit_lower         a fit goes no lower: there the effect turns into another
     fit_upper         a fit goes no higher, for a given operating range
     """
@@ -69,7 +68,6 @@ class Parameter:
     typical_for: Callable[[OperatingRange], float] | None = None
     initial_guesses: tuple[float, ...] = (0.05,)
     guess_from_data: bool = False
-    model_form_error: bool = False
     model_form_sigma: float = 0.0
     fit_lower: float = -math.inf
     fit_upper: Callable[[OperatingRange], float] | None = None
@@ -116,7 +114,8 @@ class Effect:
     candidate           a diagnosis may propose it; not so a curve fit without a physical meaning,
                         nor what the experiment states of itself
     forms               which parameters are fitted together; without any, all of them
-    imitates            simpler effects that one of its forms comes close to
+    form_error          by how much, relative, what machines do differs from this model of it: more
+                        for contacts and stops, whose laws are many
     """
 
     name: str
@@ -134,4 +133,4 @@ class Effect:
     differentiable: bool = True
     candidate: bool = True
     forms: tuple[tuple[str, ...], ...] = ()
-    imitates: tuple[str, ...] = ()
+    form_error: float = 0.02

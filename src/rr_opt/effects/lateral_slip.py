@@ -95,14 +95,9 @@ EFFECT = Effect(
             *("mu", "dimensionless", (0.001, 10.0), 0.1),
             neutral=10.0,
             initial_guesses=tuple(15.0 * 0.73**k for k in range(22)),
-            model_form_error=True,
             model_form_sigma=0.03,
         ),
-        Parameter(
-            *("mu_ratio", "dimensionless", (0.0, 1.0), 1.0),
-            initial_guesses=(1.0,),
-            model_form_error=True,
-        ),
+        Parameter(*("mu_ratio", "dimensionless", (0.0, 1.0), 1.0), initial_guesses=(1.0,)),
     ),
     sentence="The wheels slip sideways under load.",
     enter=_enter,
@@ -113,4 +108,5 @@ EFFECT = Effect(
         ("creep_compliance", "mu", "mu_ratio"),
     ),
     differentiable=False,
+    form_error=0.05,
 )

@@ -34,4 +34,6 @@ EFFECT = Effect(
     ),
     sentence="The wheels resist rolling with a force that grows with the square of the speed.",
     enter=_enter,
+    # Air drags at the bodies and not at the wheels.
+    form_error=0.05,
 )

@@ -6,7 +6,8 @@ rate at once (plastic impact) and stays while the stop pushes: under inertia it 
 the ends of the swing, whose amplitude grows by half the play. Dry friction in the joint holds it
 back instead: with enough of it the joint stays where a stop leaves it until the other stop comes,
 the play operator of control engineering, and its swing shrinks. It starts in the middle of the
-play.
+play. A gear that gives is twisted by what the servo has to exert, so that the joint is past a stop
+by as much as the stop pushes; its own oscillation is faster than the gait and left out.
 
 Integrated by Heun's method; an impact within a step is located by the parabola through the step.
 Between steps the joint's lead is a cubic. Periodic motion repeats as soon as z does, which is
@@ -30,16 +31,23 @@ from rr_opt.mechanics.drive import Drive, FreeJoint
 
 _STEPS = 240
 """Per period."""
-_PERIODS, _FROM_REST = 3, 30
+_PERIODS, _FROM_REST = 2, 30
 """Periods integrated for periodic motion, and from rest."""
-_EXTRAPOLATIONS = 3
-"""To the periodic z; the error falls like a power of the decay over one period."""
+_EXTRAPOLATIONS, _CLOSED = 3, 1e-6
+"""Extrapolations to the periodic z at most, whose error falls like a power of the decay over a
+period; and the change of z over a period, m/s, that is none."""
 _LOOK, _PAYS = 5, 50_000
 """Calls after which the compile cache is looked into; steps after which compiling pays."""
 _INERTIA = 1e-3
 """Of the joint of a robot of which nothing is known, kg m2."""
+_RIGID = 1e-9
+"""Compliance of a gear that does not give, rad/(N m)."""
 _MISSED = 2.0
 """As the fraction of a step at which a stop is hit: it is not."""
+
+
+_Gear = tuple[float, float, float]
+"""Half the play, rad; dry friction in the joint, N m; compliance, rad/(N m)."""
 
 
 @dataclass(frozen=True)
@@ -80,14 +88,15 @@ class _Play:
 
 def _actuate(command: Drive, values: Mapping[str, float], joint: FreeJoint | None = None) -> Drive:
     half, friction = values["width"] / 2, values.get("joint_friction", 0.0)
+    gear = half, friction, values.get("compliance", 0.0)
     if half <= 0:
         return command
     dt = command.period / _STEPS
     if command.rest:
         before = np.append(command.at(np.array([-1.0]))[:2, 0], 0.0)
-        play, _ = _integrated(command, half, friction, joint, before, _FROM_REST)
+        play, _ = _integrated(command, gear, joint, before, _FROM_REST)
     else:
-        play = _periodic(command, half, friction, joint)
+        play = _periodic(command, gear, joint)
     last = play.hit.size - _STEPS
 
     def at(t: Array) -> Array:
@@ -107,16 +116,18 @@ def _actuate(command: Drive, values: Mapping[str, float], joint: FreeJoint | Non
     return replace(command, at=at, jumps=np.union1d(own, others))
 
 
-def _periodic(command: Drive, half: float, friction: float, joint: FreeJoint | None) -> _Play:
+def _periodic(command: Drive, gear: _Gear, joint: FreeJoint | None) -> _Play:
     """Periodic motion: z at the ends of periods is extrapolated by Aitken's delta-squared."""
     before = np.append(command.at(np.zeros(1))[:2, 0], 0.0)
+    play, ends = _integrated(command, gear, joint, before, _PERIODS)
     for _ in range(_EXTRAPOLATIONS):
-        play, ends = _integrated(command, half, friction, joint, before, _PERIODS)
-        first, second = np.diff(ends[2, -3:])
-        converges = 0 < second / first < 1 if first else False
+        first, second = np.diff([before[2], *ends[2]])
+        if abs(second) <= _CLOSED:
+            break
         before = ends[:, -1]
+        converges = 0 < second / first < 1 if first else False
         before[2] += second**2 / (first - second) if converges else 0.0
-    play, _ = _integrated(command, half, friction, joint, before, _PERIODS)
+        play, ends = _integrated(command, gear, joint, before, _PERIODS)
     # The last period is closed: what is left to converge is spread over it.
     last = play.hit.size - _STEPS
     lead = play.lead.copy()
@@ -125,19 +136,14 @@ def _periodic(command: Drive, half: float, friction: float, joint: FreeJoint | N
 
 
 def _integrated(
-    command: Drive,
-    half: float,
-    friction: float,
-    joint: FreeJoint | None,
-    before: Array,
-    periods: int,
+    command: Drive, gear: _Gear, joint: FreeJoint | None, before: Array, periods: int
 ) -> tuple[_Play, Array]:
     """The play over some periods from phi, dphi and z before, and these at the end of each."""
     dt = command.period / _STEPS
     servo = command.at(dt * np.arange(periods * _STEPS + 1.0))[:2]
     swing, p = (joint.swing, joint.p) if joint else (_coasting(), ())
     n = periods * _STEPS
-    given = np.vstack([servo[:, :-1], servo[:, 1:], np.full((3, n), [[half], [dt], [friction]])])
+    given = np.vstack([servo[:, :-1], servo[:, 1:], np.full((4, n), [[dt], *([x] for x in gear)])])
     path = _stepper(swing, n)(np.append(before, _MISSED), given, p)
     lead = np.column_stack([before[:2] - servo[:, 0], path[:2] - servo[:, 1:]])
     return _Play(dt, lead[0], lead[1], path[3]), path[:3, _STEPS - 1 :: _STEPS]
@@ -153,10 +159,10 @@ def _coasting() -> ca.Function:
 @lru_cache
 def _stepper(swing: ca.Function, steps: int) -> OftenUsed:
     """The joint (phi, dphi, z) from step to step, and the fraction of the step at which it hits a
-    stop; given the servo's angle and rate at both ends, half the play, the step, and friction."""
-    joint, given = ca.SX.sym("joint", 4), ca.SX.sym("given", 7)
+    stop; given the servo's angle and rate at both ends, the step, and the gear."""
+    joint, given = ca.SX.sym("joint", 4), ca.SX.sym("given", 8)
     p = ca.SX.sym("p", swing.numel_in(3))
-    servo, servo_rate, stop, rate, half, h, friction = ca.vertsplit(given)
+    servo, servo_rate, stop, rate, h, half, friction, compliance = ca.vertsplit(given)
 
     def slope(y: ca.SX) -> ca.SX:
         ddphi, zdot, _ = swing(y[0], y[1], y[2], p)
@@ -170,7 +176,6 @@ def _stepper(swing: ca.Function, steps: int) -> OftenUsed:
     mobility = swing(joint[0], joint[1], joint[2], p)[2]
     slowed = ca.sign(dphi) * ca.fmax(ca.fabs(dphi) - h * friction * mobility, 0.0)
     phi, dphi = phi + h / 2 * (slowed - dphi), slowed
-    stopped = ca.fabs(phi - stop) >= half
     side = half * ca.sign(phi - stop)
     # lead = a + u s + f s^2 after a fraction s of the step; a stop is hit where it equals `side`.
     a, u = joint[0] - servo, h * (joint[1] - servo_rate)
@@ -179,9 +184,26 @@ def _stepper(swing: ca.Function, steps: int) -> OftenUsed:
     toward = u * ca.sign(side) + root
     fraction = 2 * ca.fabs(side - a) / ca.fmax(toward, 1e-300)
     was_stopped = ca.fabs(a) >= (1 - 1e-9) * half
-    impact = ca.logic_and(stopped, ca.logic_not(was_stopped))
+    impact = ca.logic_and(ca.fabs(phi - stop) >= half, ca.logic_not(was_stopped))
     hit = ca.if_else(impact, ca.fmin(fraction, 1.0), _MISSED)
-    end = ca.vertcat(ca.if_else(stopped, stop + side, phi), ca.if_else(stopped, rate, dphi), z, hit)
+    # What the stop has to exert against where the joint is twists the gear by as much as it gives.
+    # Until then the joint swings on it, critically damped, for what is left of the step.
+    outward = ca.sign(side)
+    free, _, _ = swing(stop + side, rate, z, p)
+    push = outward * ((free - (rate - servo_rate) / h) / mobility - friction * ca.sign(rate))
+    twist = compliance * push
+    left = ca.if_else(impact, h * (1 - hit), h)
+    past = ca.if_else(impact, 0.0, ca.fmax(ca.fabs(a) - half, 0.0))
+    speed = ca.if_else(impact, outward * (u + 2 * f * hit), ca.fabs(u) * ca.sign(u * outward)) / h
+    omega = ca.sqrt(mobility / (compliance + _RIGID))
+    decay, bend = ca.exp(-omega * left), speed + omega * (past - twist)
+    past = twist + (past - twist + bend * left) * decay
+    speed = (speed - omega * bend * left) * decay
+    held = ca.logic_and(was_stopped, ca.logic_or(push > 0, past > 0))
+    stopped = ca.logic_or(impact, held)
+    past = ca.fmax(past, 0.0)
+    at_stop = ca.vertcat(stop + side + outward * past, rate + outward * speed)
+    end = ca.vertcat(ca.if_else(stopped, at_stop, ca.vertcat(phi, dphi)), z, hit)
     step = ca.Function("play_step", [joint, given, p], [ca.cse(end)])
     return OftenUsed(step.mapaccum(steps), _LOOK, max(_PAYS // steps, _LOOK + 1))
 
@@ -192,16 +214,15 @@ EFFECT = Effect(
     port=Port.ACTUATION,
     parameters=(
         Parameter(
-            *("width", "rad", (0.0, 0.5), 0.02),
-            initial_guesses=(0.5,),
-            model_form_error=True,
-            model_form_sigma=0.01,
+            *("width", "rad", (0.0, 0.5), 0.02), initial_guesses=(0.5,), model_form_sigma=0.01
         ),
         Parameter("joint_friction", "N m", (0.0, 5.0), 0.05, initial_guesses=(0.3, 2.0)),
+        Parameter("compliance", "rad/(N m)", (0.0, 2.0), 0.05, initial_guesses=(0.3,)),
     ),
     sentence="There is play between the servo and the platform that it turns.",
     actuate=_actuate,
     backdrivable=True,
     differentiable=False,
-    forms=(("width",), ("width", "joint_friction")),
+    form_error=0.05,
+    forms=(("width",), ("width", "joint_friction"), ("width", "joint_friction", "compliance")),
 )

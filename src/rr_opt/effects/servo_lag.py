@@ -78,6 +78,4 @@ EFFECT = Effect(
     sentence="The servo follows its command late, and with a smaller swing.",
     actuate=_actuate,
     forms=(("tau",), ("tau", "beta")),
-    # With beta = tau^2/2 the swing is that of the command, and only late.
-    imitates=("clock_offset",),
 )

@@ -15,6 +15,7 @@ from rr_opt.files.experiment_model import (
 from rr_opt.files.experiment_plan import ExperimentPlan, PlannedRun, layout_from
 from rr_opt.files.fields import validate
 from rr_opt.files.gait_record import gait_from
+from rr_opt.files.gate import unreadable
 from rr_opt.files.issue import InvalidFileError, Issue, has_errors
 from rr_opt.files.problem_file import kind_of
 from rr_opt.files.robot_file import robot_from
@@ -86,30 +87,13 @@ def _run(document: Document, file: Path) -> tuple[PlannedRun | None, list[Issue]
     issues += found
     for key in ("file", "servo_log"):
         name = document.data.get(key)
-        why = _unusable(file.parent / name) if isinstance(name, str) else ""
+        why = unreadable(file.parent / name) if isinstance(name, str) else ""
         if why:
             issues.append(document.issue("error", (key,), f"Read {shown(name)}. {why}"))
     if model is None or gait is None or issues:
         return None, issues
     log = None if model.servo_log is None else file.parent / model.servo_log
     return PlannedRun(file.parent / model.file, gait, model.use, model.start, log), issues
-
-
-def usable(file: Path, name: str) -> bool:
-    """Whether a name, relative to an experiment file, is that of a file."""
-    return not _unusable(file.parent / name)
-
-
-def _unusable(path: Path) -> str:
-    try:
-        if path.is_file():
-            return ""
-        return "This is a folder. Expected a file." if path.is_dir() else _MISSING
-    except (OSError, ValueError):
-        return _MISSING
-
-
-_MISSING = "There is no such file. Check its name and folder."
 
 
 def _gait(document: Document, file: Path) -> tuple[Gait | None, list[Issue]]:
@@ -203,7 +187,8 @@ def named_files(path: Path) -> list[Path]:
         for entry in (entries if isinstance(entries, list) else [])
         if isinstance(entry, dict)
     ]
-    return [file.parent / name for name in names if isinstance(name, str) and usable(file, name)]
+    files = [file.parent / name for name in names if isinstance(name, str)]
+    return [one for one in files if not unreadable(one)]
 
 
 def plan_from(document: Document, file: Path) -> tuple[ExperimentPlan | None, list[Issue]]:

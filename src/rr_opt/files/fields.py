@@ -125,6 +125,19 @@ def described(one: dataclasses.Field[Any], reader: Reader | None) -> Any:
 
 Model = TypeVar("Model", bound=BaseModel)
 
+
+def another_file(model: type[BaseModel], document: Document) -> list[Issue]:
+    """An issue if a whole file has none of the model's keys: whatever it holds is not quoted."""
+    known, keys = list(model.model_fields), document.data
+    if document.prefix or len(keys) < 2 or any(nearest(key, known) for key in keys):
+        return []
+    message = (
+        f"Read {len(keys)} keys, and none that is known. Expected {one_of(known)}. "
+        "Is this the right file?"
+    )
+    return [document.issue("error", (), message)]
+
+
 _EXPECTED = {
     "model_type": "keys with values under it",
     "model_attributes_type": "keys with values under it",
@@ -135,18 +148,9 @@ _EXPECTED = {
 
 
 def validate(model: type[Model], document: Document) -> tuple[Model | None, list[Issue]]:
-    """The document as a model, or None and every issue found.
-
-    Of a whole file that has none of the model's keys, nothing is quoted: another file was named.
-    """
-    known = list(model.model_fields)
-    keys = document.data
-    if not document.prefix and len(keys) > 1 and not any(nearest(key, known) for key in keys):
-        message = (
-            f"Read {len(keys)} keys, and none that is known. Expected {one_of(known)}. "
-            "Is this the right file?"
-        )
-        return None, [document.issue("error", (), message)]
+    """The document as a model, or None and every issue found."""
+    if wrong := another_file(model, document):
+        return None, wrong
     try:
         return model.model_validate(document.data), []
     except ValidationError as error:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
-from rr_opt.files.fields import validate
+from rr_opt.files.fields import another_file, validate
 from rr_opt.files.issue import InvalidFileError, Issue, Level, has_errors
 from rr_opt.files.problem_model import OWN_SHAPE, ProblemModel
 from rr_opt.files.robot_file import RobotModel, robot_from
@@ -136,6 +136,8 @@ def problem_sources(path: str | Path | None) -> Sources:
         raise InvalidFileError([result_issue(document)])
     if kind == "study":
         raise InvalidFileError([study_issue(document)])
+    if wrong := another_file(RobotModel if kind == "robot" else ProblemModel, document):
+        raise InvalidFileError(wrong)
     if kind == "robot":
         return _shipped_problem_with(document, file)
     if isinstance(document.data.get("robot"), dict):

@@ -8,8 +8,8 @@ from collections.abc import Iterable
 from importlib.resources import files
 from pathlib import Path
 
-from rr_opt.files.issue import InvalidFileError, Issue
-from rr_opt.files.yaml_text import LARGEST, Document, parse_yaml
+from rr_opt.files.gate import LONG, read_content
+from rr_opt.files.yaml_text import Document, parse_yaml
 
 _MARKS = ("status", "input_sha256")
 """Keys that every result has and no input."""
@@ -51,24 +51,10 @@ def fingerprint(paths: Iterable[Path]) -> str:
     """
     digest = hashlib.sha256()
     for path in paths:
-        content = read_content(path, None)
+        content = read_content(path, LONG)
         digest.update(f"{len(content)}\n".encode())
         digest.update(content)
     return digest.hexdigest()
-
-
-def read_content(path: Path, most: int | None = LARGEST + 1) -> bytes:
-    """So many bytes of a file; None: all of them. Raises InvalidFileError."""
-    try:
-        with path.open("rb") as file:
-            return file.read(most)
-    except FileNotFoundError:
-        why = "There is no such file. Check its name and folder."
-    except IsADirectoryError:
-        why = "This is a folder. Expected a file."
-    except (OSError, ValueError) as error:
-        why = f"The file cannot be read: {getattr(error, 'strerror', None) or error}."
-    raise InvalidFileError([Issue("error", "", why, None, str(path))])
 
 
 def problem_path(path: Path) -> Path:

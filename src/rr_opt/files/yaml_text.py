@@ -69,8 +69,6 @@ class Document:
         return Issue(level, path_text(whole), message, line, self.file)
 
 
-LARGEST = 1_000_000
-"""Largest file read, bytes."""
 DEEPEST = 20
 MOST_VALUES = 10_000
 
@@ -88,8 +86,6 @@ def parse_yaml(content: bytes, file: str) -> Document:
 
     Raises InvalidFileError, naming `file`, with everything that was found wrong.
     """
-    if len(content) > LARGEST:
-        refuse(file, f"The file is larger than {LARGEST / 1e6:g} MB. Expected a short YAML file.")
     try:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError as error:

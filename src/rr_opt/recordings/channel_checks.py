@@ -1,4 +1,4 @@
-"""What is odd about single channels and about the motion, whatever was to be recorded."""
+"""What is odd about single channels, whatever was to be recorded."""
 
 from __future__ import annotations
 
@@ -10,56 +10,15 @@ from rr_opt.array import Array
 from rr_opt.model.experiment import Flag, Recording
 from rr_opt.recordings.gaps import Gap, Jump
 from rr_opt.recordings.noise import NoiseEstimate
-from rr_opt.recordings.time_axis import time_step
 from rr_opt.recordings.warnings import Notice, counted, notice, size_text
 
-_ROOM, _NO_ROOM = 50.0, 1e5
-"""No floor on which a small robot is recorded is as long in m, nor in mm."""
-_NO_ANGLE = 1000.0
-"""No servo turns so far in rad, nor in degrees."""
-_SLOWEST = 0.5
-"""Capture systems sample more often than every so many seconds."""
-_LATEST = 1e6
-"""Nor do they begin so many seconds, eleven days, after the command did."""
-
-
-def unit_notices(recording: Recording) -> tuple[Notice, ...]:
-    """What looks like another unit. Nothing is converted: the experimenter has to say."""
-    return (*_of_time(recording), *_of_place(recording), *_of_angles(recording))
-
-
-def _of_time(recording: Recording) -> Iterator[Notice]:
-    if len(recording) and abs(recording.t[0]) > _LATEST:
-        yield notice("units.calendar", start=recording.t[0])
-        return
-    step = time_step(recording.t)
-    if step < _SLOWEST or len(recording) < 3:
-        return
-    if abs(step - 1) < 1e-6:
-        yield notice("units.frames")
-    else:
-        yield notice("units.milliseconds" if step < 1000 * _SLOWEST else "units.time", step=step)
-
-
-def _of_place(recording: Recording) -> Iterator[Notice]:
-    ranges = [_range(recording.data(channel)) for channel in ("x", "y")]
-    if max(ranges) > _NO_ROOM:
-        yield notice("units.place", widest=max(ranges))
-    elif max(ranges) > _ROOM:
-        yield notice("units.millimetres", ranges=" and ".join(f"{size:.4g}" for size in ranges))
-
-
-def _of_angles(recording: Recording) -> Iterator[Notice]:
-    phi = np.abs(recording.data("phi"))
-    largest = float(np.nanmax(phi)) if np.isfinite(phi).any() else 0.0
-    if largest > 2 * np.pi:
-        yield notice("units.angle" if largest > _NO_ANGLE else "units.degrees", largest=largest)
-
-
-def _range(values: Array) -> float:
-    return float(np.nanmax(values) - np.nanmin(values)) if np.isfinite(values).any() else 0.0
-
-
+_KEYS = {
+    "x": "noise.position",
+    "y": "noise.position",
+    "psi": "noise.angle",
+    "phi": "noise.angle",
+    "torque": "noise.torque",
+}
 _MANY, _FEW = 1.25, 0.8
 """Times the stated noise from which on the estimate contradicts it."""
 _COLOURED, _ALTERNATING, _CHANCE = 1.2, 0.85, 1e-4
@@ -76,13 +35,11 @@ def channel_notices(
     found: Mapping[str, Sequence[Jump]],
     stated: Mapping[str, Array],
 ) -> Iterator[Notice]:
-    """Of the motion, the channels one by one, the jumps and the gaps.
+    """Of the channels one by one, the jumps and the gaps.
 
     steps: in which the values of a channel come, in its unit; stated: sigma as the file has it.
     """
     usual = {channel: float(np.median(stated[channel])) for channel in recording.channels}
-    yield from _of_servo(recording, noise["phi"], usual["phi"])
-    yield from _of_path(recording)
     for channel, step in steps.items():
         if step > np.nan_to_num(usual[channel]):
             yield notice("steps.channel", channel=channel, step=size_text(channel, step))
@@ -110,6 +67,7 @@ def _of_noise(
         "noise": size_text(channel, noise.sigma),
         "stated": size_text(channel, stated),
         "whose": "the markers' residuals lead to" if by_fit else "are stated",
+        "remedy": "" if by_fit else f"Correct `{_KEYS[channel]}` if it is not meant so.",
     }
     if times > _MANY:
         yield notice("noise.large", **sizes)
@@ -183,42 +141,3 @@ def _of_gaps(holes: Sequence[Gap]) -> Iterator[Notice]:
             longest=1e3 * max(gap.length for gap in short),
             lost=sum(gap.samples for gap in short),
         )
-
-
-_HARDLY = 0.02
-"""A path shorter than this tells little about friction, m."""
-_SAMPLES = 10
-_STILL = 6.0
-"""A range, of 98 % of the samples, within so many standard deviations is noise; Gaussian noise has
-4.7."""
-
-
-def _of_servo(recording: Recording, noise: NoiseEstimate, stated: float) -> Iterator[Notice]:
-    phi = recording.data("phi")
-    phi = phi[np.isfinite(phi)]
-    if len(phi) < _SAMPLES:
-        yield notice("motion.few", what="phi", count=_samples(len(phi), recording))
-        return
-    sigma = np.nan_to_num([noise.sigma, stated]).max()
-    low, high = np.percentile(phi, (1, 99))
-    if high - low <= _STILL * sigma:
-        yield notice("motion.servo", range=high - low)
-
-
-def _of_path(recording: Recording) -> Iterator[Notice]:
-    x, y = recording.data("x"), recording.data("y")
-    both = np.isfinite(x) & np.isfinite(y)
-    count = int(both.sum())
-    if count < _SAMPLES:
-        yield notice("motion.few", what="The joint's place", count=_samples(count, recording))
-        return
-    x, y = x[both], y[both]
-    far = float(np.hypot(x - x[0], y - y[0]).max())
-    if far < _HARDLY:
-        yield notice("motion.robot", far=1e3 * far)
-
-
-def _samples(count: int, recording: Recording) -> str:
-    if not count:
-        return "no data at all"
-    return f"{count} samples that are taken as data, of {len(recording)}"

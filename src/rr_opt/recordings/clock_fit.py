@@ -15,15 +15,17 @@ Econometrica 55, 1987, pp. 703-708), so that what is left may be coloured.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.optimize import least_squares
 
 from rr_opt.array import Array
+from rr_opt.model.experiment import Experiment
 from rr_opt.model.gait import Gait
-from rr_opt.recordings.warnings import Notice, notice
+from rr_opt.recordings.warnings import notice
 
 Reference = Callable[[Array], tuple[Array, Array]]
 """The reference and its rate at times (m,), rad and rad/s; NaN where it is not known."""
@@ -164,70 +166,39 @@ def _best_shift(t: Array, phi: Array, reference: Reference, shifts: Array) -> fl
     return float(shifts[int(np.argmax(alike))])
 
 
-_LATE = 1e-3
-"""An offset smaller than this matters to nobody, s."""
-_SURE = 3.0
-_RUNS_OFF = 1e-5
-_LESS = 0.01
-_BIASED = 2e-3
-_HALF = 0.05
-"""Periods."""
+RUNS_OFF = 1e-5
+"""A drift smaller than this matters to nobody, s per s."""
+_CERTAIN = 5.0
+"""Standard errors of the drift, over recordings too, from which on times are corrected."""
 
 
-def command_notices(
-    fit: ClockFit | None, *, from_rest: bool, period: float, clock_known: bool = False
-) -> Iterator[Notice]:
-    """Of phi against its command, whose period is in s.
+def at_commanded_rate(experiment: Experiment) -> Experiment:
+    """The experiment with its recordings' times multiplied so that phi has the command's period.
 
-    clock_known: a servo's log has told the clock's part.
+    A servo, however it errs, keeps its command's period, so that a recorder's clock which runs
+    fast or slow shows, to some millionths. One recorder is assumed for all runs.
     """
-    if fit is None:
-        yield notice("command.still")
-        return
-    if abs(abs(fit.offset) / period - 0.5) < _HALF:
-        yield notice("command.sign")
-        return
-    if fit.scale <= 0.1:
-        yield notice("command.other", scale=fit.scale)
-        return
-    if abs(fit.offset) > max(_LATE, _SURE * fit.sigma[0]):
-        low, high = sorted(1e3 * abs(end) for end in fit.interval(0))
-        why = _why_late(fit, from_rest=from_rest, clock_known=clock_known)
-        way, size = "lags" if fit.offset < 0 else "leads", 1e3 * abs(fit.offset)
-        yield notice("clock.offset", way=way, size=size, low=low, high=high, why=why)
-    if abs(fit.drift) > max(_RUNS_OFF, _SURE * fit.sigma[1]):
-        low, high = (1e6 * end for end in fit.interval(1))
-        yield notice("clock.drift", drift=1e6 * fit.drift, low=low, high=high)
-    if abs(fit.scale - 1) > max(_LESS, _SURE * fit.sigma[2]):
-        half, why = 1.96 * fit.sigma[2], _why(fit.scale)
-        yield notice("command.scale", scale=fit.scale, half=half, why=why)
-    if abs(fit.bias) > max(_BIASED, _SURE * fit.sigma[3]):
-        yield notice("command.bias", bias=1e3 * fit.bias, degrees=np.degrees(fit.bias))
-
-
-def start_notices(first: float, period: float) -> Iterator[Notice]:
-    """Of a recording that begins at a time, s, although the robot started from rest at t = 0."""
-    if first >= period / 4:
-        yield notice("clock.start", first=first)
-
-
-def _why(scale: float) -> str:
-    if abs(np.radians(scale) - 1) < 0.2:
-        return "degrees for radians?"
-    if scale < 1:
-        return "a lag or backlash makes it less; a clock would not."
-    return "play with inertia makes it more; a clock would not."
-
-
-def _why_late(fit: ClockFit, *, from_rest: bool, clock_known: bool) -> str:
-    if fit.offset > 0:
-        return "a clock that is off, as no servo moves before it is told"
-    if clock_known:
-        return "a servo that is late, as its log has told what the clocks are off by"
-    both = "a servo that is late, or a clock that is off."
-    if from_rest:
-        return (
-            f"{both} The start from rest is part of the fit, but only a model of the servo can "
-            "tell one from the other"
+    drifts, sigmas = [], []
+    for run in experiment.runs:
+        recording, rest = run.recording, run.start == "rest"
+        fit = against_command(recording.t, recording.data("phi"), run.gait, from_rest=rest)
+        if fit is not None:
+            drifts.append(fit.drift)
+            sigmas.append(fit.sigma[1])
+    if not drifts:
+        return experiment
+    weights = np.array(sigmas) ** -2.0
+    drift = float(np.average(drifts, weights=weights))
+    scatter = float(np.average((np.array(drifts) - drift) ** 2, weights=weights))
+    error = math.sqrt(1 / weights.sum() + scatter / len(drifts))
+    if abs(drift) < max(RUNS_OFF, _CERTAIN * error):
+        return experiment
+    said = notice("clock.rate", drift=1e2 * drift)
+    runs = []
+    for run in experiment.runs:
+        recording = run.recording
+        recording = replace(
+            recording, t=recording.t * (1 + drift), doubts=(*recording.doubts, said)
         )
-    return f"{both} This recording cannot tell one from the other: they are one thing in it"
+        runs.append(replace(run, recording=recording))
+    return replace(experiment, runs=tuple(runs))

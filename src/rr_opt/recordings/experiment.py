@@ -16,6 +16,7 @@ from rr_opt.outcome import InputError
 from rr_opt.recordings.inspection import Circumstances, Inspection, inspected
 from rr_opt.recordings.readers import ReadOptions, read_file
 from rr_opt.recordings.readers.netcdf import commanded_gait
+from rr_opt.recordings.usable import stops
 
 Progress = Callable[[str], object]
 
@@ -46,6 +47,7 @@ def read_experiment(folder: str | Path) -> Experiment:
 def experiment_of(folder: str | Path) -> tuple[Experiment | None, list[Issue]]:
     """The same (None if an issue is an error), and all issues, doubts as warnings.
 
+    Doubts that keep a recording from being diagnosed stay with it, for `usable.checked`.
     A file that cannot be read is an issue too; nothing is raised.
     """
     try:
@@ -59,7 +61,8 @@ def experiment_of(folder: str | Path) -> tuple[Experiment | None, list[Issue]]:
         if found is not None:
             recording = found.recording
             file = recording.source.get("file", recording.name)
-            issues += [Issue("warning", "", doubt, None, file) for doubt in recording.doubts]
+            told = [one for one in recording.doubts if not stops(one)]
+            issues += [Issue("warning", "", one, None, file) for one in told]
             runs.append(Run(recording, planned.gait, planned.use, planned.start))
     if has_errors(issues):
         return None, issues
@@ -93,7 +96,14 @@ def _inspected(
     estimate: the places of markers that the plan does not give.
     """
     options = ReadOptions(plan.noise, plan.counts, plan.columns)
-    known = Circumstances(plan.markers, options, planned.gait, planned.start, planned.servo_log)
+    known = Circumstances(
+        robot=plan.robot,
+        layout=plan.markers,
+        options=options,
+        gait=planned.gait,
+        start=planned.start,
+        servo_log=planned.servo_log,
+    )
     try:
         found = inspected(planned.file, known, estimate=estimate)
         return found, _other_command(plan, number, planned, found.recording.t)

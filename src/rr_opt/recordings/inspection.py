@@ -13,22 +13,27 @@ from rr_opt.files.source import read_document
 from rr_opt.messages import shown
 from rr_opt.model.experiment import Layout, Recording, Start
 from rr_opt.model.gait import Gait
+from rr_opt.model.robot import Robot
 from rr_opt.outcome import InputError
 from rr_opt.recordings.cleaning import Cleaned, clean
-from rr_opt.recordings.clock_fit import ClockFit, against_command, command_notices, start_notices
+from rr_opt.recordings.clock_fit import ClockFit
 from rr_opt.recordings.markers.pose import MarkerFit, fit_markers
+from rr_opt.recordings.nuisances import nuisances
+from rr_opt.recordings.nuisances.evidence import Evidence
 from rr_opt.recordings.readers import MarkerData, ReadOptions, ServoLog, read_file
 from rr_opt.recordings.servo_clock import Synchrony, synchronised
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Circumstances:
     """What is known of a recording beside its file; all of it may be unknown.
 
+    robot    as its builder believes it to be
     layout   of the markers; None: estimated from the recording
     options  with which its files are read
     """
 
+    robot: Robot | None = None
     layout: Layout | None = None
     options: ReadOptions = field(default_factory=ReadOptions)
     gait: Gait | None = None
@@ -56,7 +61,7 @@ class Inspection:
 
     @property
     def recording(self) -> Recording:
-        """With all flags set, and all doubts but those of its command."""
+        """With all flags set, and all doubts."""
         return self.cleaned.recording
 
     @property
@@ -78,7 +83,9 @@ def inspect_file(
     layout: a YAML file with the markers' places; servo_log, gait and start: where they are known.
     """
     places = read_layout(layout) if layout else None
-    found = inspected(path, Circumstances(places, ReadOptions(), gait, start, servo_log))
+    found = inspected(
+        path, Circumstances(layout=places, gait=gait, start=start, servo_log=servo_log)
+    )
     if places is not None and found.markers is None:
         refuse(
             str(layout),
@@ -140,27 +147,23 @@ def inspect(read: Recording | MarkerData, log: ServoLog | None, known: Circumsta
         recording = markers.recording
     else:
         recording = read
-    doubts = recording.doubts
     if log is not None:
         synchrony = synchronised(recording, log, known.gait, known.start)
-        recording = synchrony.recording
-        doubts += (*log.doubts, *synchrony.doubts)
+        doubts = (*recording.doubts, *log.doubts, *synchrony.doubts)
+        recording = replace(synchrony.recording, doubts=doubts)
         if markers is not None:
             markers = replace(markers, recording=recording)
     cleaned = clean(recording)
-    doubts += cleaned.doubts
+    evidence = Evidence(
+        cleaned.recording, known.robot, known.gait, known.start,
+        clock_known=synchrony is not None and synchrony.shift is not None,
+        framed=markers is None or known.layout is not None,
+    )  # fmt: skip
+    doubts = (*recording.doubts, *cleaned.doubts)
+    if not any(one.level == "error" for one in cleaned.doubts):
+        doubts += nuisances(evidence)
     cleaned = replace(cleaned, recording=replace(cleaned.recording, doubts=doubts))
-    command = None
-    if known.gait is not None:
-        rest, period = known.start == "rest", known.gait.period
-        t, phi = cleaned.recording.t, cleaned.recording.data("phi")
-        command = against_command(t, phi, known.gait, from_rest=rest)
-        shifted = synchrony is not None and synchrony.shift is not None
-        doubts += tuple(
-            command_notices(command, from_rest=rest, period=period, clock_known=shifted)
-        )
-        doubts += tuple(start_notices(float(t[0]), period)) if rest else ()
-    return Inspection(cleaned, markers, known.gait, command, synchrony, doubts)
+    return Inspection(cleaned, markers, known.gait, evidence.command, synchrony, doubts)
 
 
 def layout_for(data: MarkerData, stated: Layout) -> Layout:

@@ -133,23 +133,9 @@ TABLE: dict[str, Entry] = {
         "The heading turns by {psi:.4g} in a period, and phi by {phi:.3g}. Expected radians for "
         "both: is psi in degrees?"
     ),
-    "units.sideways": _error(
-        "The joint moves sideways {ratio:.3g} times as far as the turns of platform 1 take it. "
-        "Expected metres: are these {unit}?"
-    ),
-    "units.frame": _error(
-        "Place and heading do not go together: the joint moves sideways by {left:.3g} mm at a time "
-        "as no turn of platform 1 takes it. Expected less, and with {meant} it is {best:.3g} mm.",
-        "Correct the frame, or the columns.",
-    ),
     "units.phi": _error(
-        "phi ranges over {moved:.3g} in a period, and the gait over {commanded:.3g} rad. Expected "
-        "about the same: is one of them in degrees, or did the servo not follow?"
-    ),
-    "units.sign": _error(
-        "The heading swings with phi. Expected it to swing against phi: both are positive "
-        "counter-clockwise, seen from above.",
-        "Correct the sign of one of them.",
+        "phi moves {times:.3g} times as far as the gait. Expected about as far: is one of them in "
+        "degrees, or did the servo not follow?"
     ),
     # The markers.
     "layout.estimated": _warning(
@@ -202,15 +188,15 @@ TABLE: dict[str, Entry] = {
     ),
     "noise.few": _warning("{channel} has too few samples in a row to tell its noise."),
     "noise.zero": _warning("{channel} has no noise at all: is it computed, or constant?"),
-    "noise.large": _warning("The noise of {channel} is {noise}, and {stated} {whose}."),
+    "noise.large": _warning(
+        "The noise of {channel} is {noise}, and {stated} {whose}. Every difference larger than "
+        "what is stated counts as a mismatch.",
+        "{remedy}",
+    ),
     "noise.small": _warning(
         "The noise of {channel} at the highest frequencies is {noise}, less than the {stated} that "
-        "{whose}. {why}"
-    ),
-    "noise.stated": _warning(
-        "The noise of {channel} is stated as {stated}, and its values scatter by {noise} from one "
-        "to the next. {why}",
-        "Correct `{key}` if it is not meant so.",
+        "{whose}. {why} What is smaller than that is not found.",
+        "{remedy}",
     ),
     "colour.filtered": _warning(
         "The noise of {channel} is not white: at half the frequency it is {colour:.3g} times as "
@@ -235,18 +221,14 @@ TABLE: dict[str, Entry] = {
         "{count} of up to {longest:.0f} ms, {lost} samples: bridged in figures, not in the data."
     ),
     # The motion, and what cannot be diagnosed.
-    "motion.few": _warning("{what} has {count}."),
-    "motion.servo": _warning(
-        "phi does not move: it stays within {range:.2g} rad. Expected a wiggle of the servo."
-    ),
     "motion.robot": _warning(
         "This robot hardly moves: the joint never is more than {far:.2g} mm from where it began. "
         "Such a recording says little about friction or inertia."
     ),
     "useless.empty": _warning("There are no data of {channel}. Expected x, y, psi and phi."),
     "useless.short": _warning(
-        "Read {seconds:.3g} s of a gait with a period of {period:.3g} s, and {count} values of "
-        "{channel}: too short to tell. Expected at least {periods:g} periods and {least} values."
+        "Read {seconds:.3g} s, and {count} values of {channel}: too short to tell. Expected at "
+        "least {periods:g} periods of the gait and {least} values."
     ),
     "useless.gap": _warning(
         "Read no {channel} for {gap:.3g} s. Expected gaps of at most {most:g} s.",
@@ -258,7 +240,8 @@ TABLE: dict[str, Entry] = {
         "Correct `noise.angle` if that is not the noise.",
     ),
     "useless.servo": _warning(
-        "The servo does not move: too still to tell. Expected it to follow its command."
+        "phi does not move: it stays within {moved:.2g} rad, too still to tell. Expected the servo "
+        "to follow its command."
     ),
     "useless.robot": _warning("The robot does not move: too still to tell. Expected it to drive."),
     "useless.copy": _warning(
@@ -266,12 +249,46 @@ TABLE: dict[str, Entry] = {
         "no evidence.",
         "Record one to hold out.",
     ),
+    # Nuisances.
+    "frame.wrong": _error(
+        "Place and angles contradict wheels that roll: by {left:.3g} times their noise as they "
+        "are, and by {best:.3g} times if {meant}. Expected one floor frame, psi the heading from P "
+        "towards axle 1, and all angles counter-clockwise seen from above.",
+        "Correct the columns.",
+    ),
+    "late.phi": _warning(
+        "Some channels are late against the others: {told}. Wheels that roll tie them together at "
+        "every instant. Expected all channels of a row to be of one instant.",
+        "Shift them, if the capture is to blame, or export them anew.",
+    ),
+    "late.place": _warning(
+        "Some channels are late against the others: {told}. Wheels that roll tie them together at "
+        "every instant; wheels that creep sideways do so less. Expected all channels of a row to "
+        "be of one instant.",
+        "Shift them, if the capture is to blame.",
+    ),
+    "clock.change": _error(
+        "The clock changes at t = {t:.4g} s: phi repeats every {before:.3g} s before, and every "
+        "{after:.3g} s after. Expected seconds throughout.",
+        "Cut the recording there, or correct its times.",
+    ),
+    "push.robot": _warning(
+        "The robot was pushed, or lifted, at t = {t:.4g} s, where x = {x:.3g} m and y = {y:.3g} m: "
+        "it moved {far:.2g} mm as its wheels do not roll.",
+        "Cut the recording there.",
+    ),
+    "push.surge": _warning(
+        "The robot was pushed, or held, at t = {t:.4g} s, where x = {x:.3g} m and y = {y:.3g} m: "
+        "it drove {far:.2g} mm more or less than in the periods before and after.",
+        "Cut the recording there.",
+    ),
+    "start.running": _warning(
+        "The robot is said to start from rest, and it drives from the first row on as it does "
+        "later, when its periods begin with {later:.3g} mm/s. Expected it to stand at t = 0.",
+        "Write `start: running`, or cut the recording where the command begins.",
+    ),
     # The command and the clocks.
     "command.still": _warning("phi cannot be matched with its command: it does not move."),
-    "command.sign": _warning(
-        "phi is half a period off its command, or it has the other sign. Left is positive: phi "
-        "grows as platform 2 turns counter-clockwise against platform 1, seen from above."
-    ),
     "command.other": _warning(
         "phi does not follow its command: {scale:.2g} of its amplitude. Another gait, degrees, or "
         "the wrong file?"
@@ -289,15 +306,8 @@ TABLE: dict[str, Entry] = {
         "Correct `gait`, or name the right file.",
     ),
     "command.half": _warning(
-        "phi is {late:.2g} s off its command, of a period of {period:.3g} s. Is t = 0 where the "
-        "command begins, and phi positive to the left?"
-    ),
-    "command.late": _warning(
-        "phi is {late:.2g} s off its command, of a period of {period:.3g} s. Is t = 0 where the "
-        "command begins, and phi positive to the left?"
-    ),
-    "command.size": _warning(
-        "phi moves {times:.2g} times as far as commanded. Is `amplitude` the one that was driven?"
+        "phi is half a period off its command, {late:.2g} s of {period:.3g} s. Is t = 0 where the "
+        "command begins, and is phi positive to the left?"
     ),
     "command.signs": _error(
         "phi is half a period off its command in every recording. Expected phi positive where "
@@ -315,6 +325,10 @@ TABLE: dict[str, Entry] = {
     "clock.drift": _warning(
         "The command's clock gains {drift:.3g} us a second on the recording's (95 %: {low:.3g} to "
         "{high:.3g})."
+    ),
+    "clock.rate": _warning(
+        "phi's period differs from its command's by {drift:+.3g} %, as where the recorder's clock "
+        "runs wrong. Times are corrected by that."
     ),
     "clock.shifted": _note(
         "By the servo's log the command's clock is ahead of the recording's by {shift}, and gains "

@@ -9,13 +9,13 @@ from __future__ import annotations
 
 import json
 import os
-import stat
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
+from rr_opt.files.gate import require_regular
 from rr_opt.outcome import InputError
 
 
@@ -31,30 +31,9 @@ def file_for_result(file: Path) -> Path:
     """The file, whose folder is made when it is written. Raises InputError if it cannot be."""
     if file.is_dir() and not file.is_symlink():
         raise InputError(f"{file} is a folder. Expected a file. Name one in it with --out.")
-    _require_regular(file)
+    require_regular(file)
     _writable(file, file.parent)
     return file
-
-
-def _require_regular(path: Path) -> None:
-    """Raise InputError for what exists and is not a regular file."""
-    try:
-        mode = path.lstat().st_mode
-    except OSError:
-        return
-    if stat.S_ISREG(mode):
-        return
-    kinds = {
-        stat.S_IFLNK: "a symbolic link",
-        stat.S_IFDIR: "a folder",
-        stat.S_IFIFO: "a pipe",
-        stat.S_IFSOCK: "a socket",
-    }
-    kind = kinds.get(stat.S_IFMT(mode), "a device")
-    raise InputError(
-        f"{path} is {kind}. Expected a regular file, which is replaced, or a new name. "
-        "Give another place with --out."
-    )
 
 
 def _writable(asked: Path, folder: Path) -> Path:
@@ -83,7 +62,7 @@ def whole(path: Path) -> Iterator[Path]:
     Missing folders are made, and removed again if nothing is written to them. Raises InputError
     if `path` is neither a regular file nor a new name.
     """
-    _require_regular(path)
+    require_regular(path)
     made = [place for place in (path.parent, *path.parent.parents) if not place.exists()]
     temporary: Path | None = None
     try:
@@ -134,6 +113,6 @@ def remove(folder: Path, names: Iterable[str]) -> None:
     """
     paths = [folder / name for name in names]
     for path in paths:
-        _require_regular(path)
+        require_regular(path)
     for path in paths:
         path.unlink(missing_ok=True)

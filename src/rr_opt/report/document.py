@@ -10,11 +10,12 @@ from __future__ import annotations
 import csv
 import io
 import math
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any, Literal
 
-from rr_opt.answers.quantities import number
+from rr_opt.formatting import number
+from rr_opt.version import __version__
 
 Tone = Literal["good", "bad", "note", "warn", "quiet"]
 
@@ -40,80 +41,44 @@ Cell = str | float | bool | Badge | Link | None
 
 
 @dataclass(frozen=True)
-class Column:
-    """A column of a table, for scripts by name and unit, for people by title and `shown`.
-
-    unit     SI; "1" for plain numbers, empty for text
-    shown    the unit for people, and how many of it are one SI unit; the SI unit if None
-    digits   significant digits for people
-    meaning  a phrase for files that carry one
-    """
-
-    name: str
-    unit: str = ""
-    title: str = ""
-    shown: tuple[str, float] | None = None
-    digits: int = 4
-    meaning: str = ""
-
-    @property
-    def heading(self) -> str:
-        """The title, with the unit for people."""
-        unit = self.shown[0] if self.shown else self.unit
-        title = self.title or self.name
-        return f"{title}, {unit}" if unit not in ("", "1") else title
-
-    def text(self, cell: Cell) -> str:
-        """A cell for people: a number in the unit of the heading, a dash for nothing."""
-        if cell is None:
-            return "–"
-        if isinstance(cell, bool):
-            return "yes" if cell else "no"
-        if isinstance(cell, int | float):
-            return number(cell * (self.shown[1] if self.shown else 1.0), self.digits)
-        return cell if isinstance(cell, str) else cell.text
-
-
-@dataclass(frozen=True)
 class Table:
-    """Columns and rows, with a note below."""
+    """Rows of cells below a heading for each column, with a note below them."""
 
-    columns: tuple[Column, ...]
+    head: tuple[str, ...]
     rows: tuple[tuple[Cell, ...], ...]
     note: str = ""
 
     @property
     def records(self) -> list[dict[str, Any]]:
-        """A dictionary for each row, by the names of the columns; infinity and NaN are None."""
-        names = [column.name for column in self.columns]
-        return [dict(zip(names, map(_finite, row), strict=True)) for row in self.rows]
+        """A dictionary for each row, by the headings; infinity and NaN are None."""
+        return [dict(zip(self.head, map(_finite, row), strict=True)) for row in self.rows]
 
     def csv(self, digits: int = 12) -> str:
-        """The table for scripts: names, then rows, with empty cells where there is nothing."""
-        return csv_text([column.name for column in self.columns], self.rows, digits)
-
-    def select(self, names: Iterable[str], rows: Iterable[int] | None = None) -> Table:
-        """The columns of these names, and the rows of these numbers; all rows if None."""
-        all_names = [column.name for column in self.columns]
-        places = [all_names.index(name) for name in names]
-        chosen = self.rows if rows is None else [self.rows[k] for k in rows]
-        return replace(
-            self,
-            columns=tuple(self.columns[k] for k in places),
-            rows=tuple(tuple(row[k] for k in places) for row in chosen),
-        )
+        """The table for scripts: headings, then rows, with empty cells where there is nothing."""
+        return csv_text(self.head, self.rows, digits)
 
     def __bool__(self) -> bool:
         return bool(self.rows)
 
 
-def table(head: Sequence[str], rows: Iterable[Sequence[Cell]], note: str = "") -> Table:
-    """A table for people alone, by its headings."""
-    return Table(tuple(Column(title) for title in head), tuple(map(tuple, rows)), note)
+def table(head: Iterable[str], rows: Iterable[Sequence[Cell]], note: str = "") -> Table:
+    """A table of any sequences."""
+    return Table(tuple(head), tuple(map(tuple, rows)), note)
+
+
+def cell_text(cell: Cell) -> str:
+    """A cell for people: a number to four digits, a dash for nothing."""
+    if cell is None:
+        return "–"
+    if isinstance(cell, bool):
+        return "yes" if cell else "no"
+    if isinstance(cell, int | float):
+        return number(cell)
+    return cell if isinstance(cell, str) else cell.text
 
 
 def csv_text(names: Sequence[str], rows: Iterable[Sequence[Any]], digits: int = 9) -> str:
-    """Rows as CSV under a header row: numbers with so many digits, nothing for None and NaN."""
+    """Rows as CSV under a header row: numbers to `digits` digits, nothing for None and NaN."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(names)
@@ -224,6 +189,19 @@ class Figure:
     caption: str = ""
 
 
+Captions = Mapping[str, tuple[str, str, str]]
+"""Title, alternative text and caption of figures by name."""
+
+
+def captioned(captions: Captions, drawn: Mapping[str, str]) -> tuple[Figure, ...]:
+    """The figures that were drawn (SVG texts by name), in the order of the captions."""
+    return tuple(
+        Figure(name, title, drawn[name], alt, caption)
+        for name, (title, alt, caption) in captions.items()
+        if name in drawn
+    )
+
+
 @dataclass(frozen=True)
 class Gallery:
     """Figures that flow in two columns where there is room; one below the other if `wide`."""
@@ -277,3 +255,8 @@ class Document:
             if isinstance(block, Gallery)
             for figure in block.items
         )
+
+
+def versions(sha256: str) -> tuple[str, str]:
+    """The footer of a report on an input with this fingerprint."""
+    return f"rr-opt {__version__}", f"input SHA-256 `{sha256}`"

@@ -1,136 +1,168 @@
-"""result.json: the answer for scripts. All numbers are SI, and null stands for `none`."""
+"""What every result can do: say how it ended, and be printed, drawn and saved."""
 
 from __future__ import annotations
 
-from dataclasses import asdict
-from typing import Any
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, ClassVar
 
-from rr_opt.answers.corrected_robot import finite, robot_record
-from rr_opt.answers.speed import SpeedAnswer
-from rr_opt.design.solve import Candidate
-from rr_opt.files.gait_record import gait_record
-from rr_opt.model.ballast import load_count
-from rr_opt.version import __version__
+from rr_opt.outcome import Status
+from rr_opt.report.archive import folder_for_results, remove, write_json, write_text
+from rr_opt.report.document import Captions, Document, Figure, captioned
+from rr_opt.report.text import markdown, terminal
+from rr_opt.report.webpage import PAGE, write_page
 
-UNITS = {
-    "angle": "rad",
-    "rate": "rad/s",
-    "torque": "N m",
-    "singularity": "m",
-    "amplitude": "rad",
-    "period": "s",
-    "offset": "rad",
-    "inertia_ratio": "1",
-    "speed": "m/s",
-    "speed_as_built": "m/s, of the fastest gait of the robot with its inertia ratio unchanged",
-    "dx": "m",
-    "dy": "m",
-    "dpsi": "rad",
-    "radius": "m",
-    "shadow_price": "m/s of |speed| per SI unit by which the limit or bound is raised",
-    "gap": "(|speed| - |sweep_best|)/|speed|",
-    "sweep_error": "|speed by the sweep's model - speed|/|speed|",
-    "replay_error": "|replay speed - speed|/|speed|",
-    "limit_excess": "largest (value - limit)/limit over the replayed cycle",
-}
+Progress = Callable[[str], None]
+"""Called with every step, such as `start 3 of 8`."""
 
 
-def result(answer: SpeedAnswer) -> dict[str, Any]:
-    """The content of result.json; the same keys whatever the outcome."""
-    optimum, best = answer.optimum, answer.optimum.best
-    record: dict[str, Any] = {
-        "status": answer.status.value,
-        "message": answer.message,
-        "warnings": list(answer.warnings),
-        "problem": answer.name,
-        "gait": gait_record(best.gait) if best else None,
-        "inertia_ratio": optimum.ratio,
-        "speed": best.speed if best else None,
-        "speed_as_built": answer.as_built,
-        "cycle": _cycle(answer),
-        "limits": _limits(answer),
-        "bounds": _bounds(answer),
-        "check": _check(answer),
-        "solver": {
-            "starts": optimum.starts,
-            "iterations": optimum.iterations,
-            "intervals": optimum.intervals,
-            "distinct_optima": [_optimum(answer, one) for one in optimum.optima],
-            "ties": len(optimum.ties),
-            "failures": list(optimum.failures),
-        },
-        "robot": robot_record(optimum.robot or optimum.problem.robot),
-        "loads": _loads(answer),
-        "units": UNITS,
-        "version": __version__,
-        "input_sha256": answer.sha256,
-    }
-    return record
+def quiet(_: str) -> None:
+    """Progress that is not shown."""
 
 
-def _cycle(answer: SpeedAnswer) -> dict[str, Any] | None:
-    if answer.replay is None:
-        return None
-    cycle = answer.replay.steady.cycle
-    return {
-        "dx": cycle.dx,
-        "dy": cycle.dy,
-        "dpsi": cycle.dpsi,
-        "radius": cycle.radius if turns(answer) else None,
-    }
+class Svg(str):
+    """A figure as SVG text, which a notebook shows."""
+
+    __slots__ = ()
+
+    def _repr_svg_(self) -> str:
+        return self[self.find("<svg") :]
+
+    def __repr__(self) -> str:
+        return f"<Svg, {len(self)} characters>"
 
 
-def turns(answer: SpeedAnswer) -> bool:
-    """Whether the robot goes round a circle: a radius of many kilometres is a straight line."""
-    return answer.replay is not None and abs(answer.replay.steady.cycle.dpsi) > 1e-7
+class Plots(Mapping[str, Svg]):
+    """Figures by name. A notebook shows them all."""
+
+    def __init__(self, figures: Mapping[str, str]):
+        self._figures = {name: Svg(svg) for name, svg in figures.items()}
+
+    def __getitem__(self, name: str) -> Svg:
+        return self._figures[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._figures)
+
+    def __len__(self) -> int:
+        return len(self._figures)
+
+    def __repr__(self) -> str:
+        return f"Plots({', '.join(self._figures)})"
+
+    def _repr_html_(self) -> str:
+        return "\n".join(f"<div>{svg._repr_svg_()}</div>" for svg in self.values())
+
+    def save(self, folder: str | Path) -> list[Path]:
+        """Write NAME.svg for each; returns the files."""
+        return [write_text(Path(folder) / f"{name}.svg", svg) for name, svg in self.items()]
 
 
-def _limits(answer: SpeedAnswer) -> list[dict[str, Any]]:
-    return [
-        {
-            "name": row.name,
-            "value": finite(row.value),
-            "limit": finite(row.limit),
-            "unit": UNITS[row.name],
-            "active": row.active if answer.replay else None,
-            "shadow_price": finite(row.shadow_price),
-        }
-        for row in answer.limits.values()
-    ]
+@dataclass(frozen=True)
+class Check:
+    """One check of a result: whether it passed, and its finding in a sentence."""
+
+    passed: bool
+    sentence: str
 
 
-def _bounds(answer: SpeedAnswer) -> list[dict[str, Any]]:
-    return [asdict(row) for row in answer.bounds.values()]
+class Result:
+    """What was found, with the evidence for it.
 
+    status    how the work ended: `OPTIMAL`, `INFEASIBLE` or `NOT_CONVERGED`
+    message   the outcome in a sentence or two
+    checks    the independent checks, each with `passed` and a `sentence`
+    warnings  sentences on what the result leaves out, or what to beware of
+    """
 
-def _check(answer: SpeedAnswer) -> dict[str, Any] | None:
-    replay, sweep = answer.replay, answer.sweep
-    if replay is None or sweep is None:
-        return None
-    return {
-        "sweep_points": sweep.points,
-        "sweep_best": finite(sweep.best_speed),
-        "sweep_gait": gait_record(sweep.best_gait) if sweep.best_gait else None,
-        "gap": finite(sweep.gap),
-        "sweep_error": finite(sweep.error),
-        "replay_error": finite(replay.error),
-        "replay_speed": replay.speed,
-        "limit_excess": finite(replay.excess),
-    }
+    RECORD: ClassVar[str] = ""
+    OTHERS: ClassVar[tuple[str, ...]] = ()
+    MARKDOWN: ClassVar[str] = ""
+    CAPTIONS: ClassVar[Captions] = {}
+    # Names of files: the record, other data, and the report as Markdown, where there is one. The
+    # figures have captions by name.
 
+    @property
+    def status(self) -> Status:
+        """OPTIMAL, unless the kind of result has another way to end."""
+        return Status.OPTIMAL
 
-def _optimum(answer: SpeedAnswer, one: Candidate) -> dict[str, Any]:
-    return {
-        "speed": one.speed,
-        "gait": gait_record(one.gait),
-        "inertia_ratio": answer.ratio_of(one),
-    }
+    @property
+    def message(self) -> str:
+        """Empty for a result that is all numbers."""
+        return ""
 
+    @property
+    def checks(self) -> list[Check]:
+        """Empty where there is nothing to check."""
+        return []
 
-def _loads(answer: SpeedAnswer) -> float | None:
-    """How many loads the robot carries, where loads realise the inertia ratio."""
-    optimum, choice = answer.optimum, answer.optimum.problem.inertia_ratio
-    if choice is None or choice.by != "loads" or optimum.ratio is None:
-        return None
-    count = load_count(optimum.problem.robot, optimum.ratio, choice.about, choice.loads)
-    return round(count) if choice.loads.whole else count
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Empty where there is nothing to beware of."""
+        return ()
+
+    def record(self, files: Sequence[Path] = ()) -> dict[str, Any]:
+        """The result as plain data, SI: the content of the JSON file."""
+        raise NotImplementedError
+
+    def document(self, figures: Sequence[Figure] = ()) -> Document:
+        """The result as a report, from which the page and the text are made."""
+        raise NotImplementedError
+
+    def summary(self, files: Sequence[Path] = ()) -> str:
+        """The result as text, with the names of its files."""
+        return terminal(self.document(), files)
+
+    def plot(self) -> Plots:
+        """The figures; empty if there is nothing to draw."""
+        return Plots({figure.name: figure.svg for figure in self._figures()})
+
+    def save(
+        self, path: str | Path, *, figures: bool = True, progress: Progress = quiet
+    ) -> list[Path]:
+        """Write the result with its figures and page to the folder `path`; returns the files.
+
+        Files that an earlier result left there under the same names are replaced. Raises
+        InputError if the folder cannot be written to.
+        """
+        folder = folder_for_results(Path(path))
+        names = (
+            PAGE,
+            self.RECORD,
+            self.MARKDOWN,
+            *self.OTHERS,
+            *map("{}.svg".format, self.CAPTIONS),
+        )
+        remove(folder, filter(None, names))
+        if figures:
+            progress("figures")
+        document = self.document(self._figures(progress) if figures else ())
+        written = [write_json(folder / self.RECORD, self.record())]
+        if self.MARKDOWN:
+            written.append(write_text(folder / self.MARKDOWN, markdown(document)))
+        written += [write_text(folder / name, text) for name, text in self._tables().items()]
+        return self._write_page(folder, document, written) if figures else written
+
+    def _tables(self) -> Mapping[str, str]:
+        """The text files beside the record, by name."""
+        return {}
+
+    def _drawn(self) -> Mapping[str, str]:
+        """The figures as SVG texts by name."""
+        return {}
+
+    def _figures(self, progress: Progress = quiet) -> tuple[Figure, ...]:
+        """The figures with their captions."""
+        return captioned(self.CAPTIONS, self._drawn())
+
+    def _write_page(self, folder: Path, document: Document, written: Sequence[Path]) -> list[Path]:
+        """Write the page and the figures; returns these and what was `written` before."""
+        return write_page(folder, document, written)
+
+    def __str__(self) -> str:
+        return self.summary()
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__}: {self.message or self.status.value}>"

@@ -1,48 +1,154 @@
-"""Set points as a file, and in some lines of text."""
+"""A gait as set points for a controller, what they cost in speed, and their file."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
-from rr_opt.answers.motion import Format, SetPointsAnswer
-from rr_opt.answers.quantities import number, speed_text, with_unit
-from rr_opt.files.gait_record import gait_record
-from rr_opt.motion.setpoints import CENTRE, COUNT, Cost, SetPoints
-from rr_opt.report.document import Fact, csv_text
+from rr_opt.files.record import plain
+from rr_opt.formatting import QUANTITIES, number, speed_text, with_unit
+from rr_opt.model.problem import LARGEST_EXCESS
+from rr_opt.motion.setpoints import CENTRE, COUNT, Cost, SetPoints, interpolated
+from rr_opt.report.archive import file_for_result, write_text
+from rr_opt.report.document import Document, Fact, Figure, Section, csv_text
 from rr_opt.report.gait import gait_facts
-from rr_opt.report.text import facts_text
+from rr_opt.report.motion import GaitResult
+from rr_opt.report.result import Progress, quiet
 from rr_opt.version import __version__
+
+Format = Literal["csv", "c-header", "servo"]
 
 ENDINGS: dict[Format, str] = {"csv": "-angles.csv", "c-header": ".h", "servo": "-counts.csv"}
 """What the name of a file ends with, unless the user gives another name."""
 
-_PER_LINE = 6
+MODEL = (
+    "Between set points the servo is taken to move at constant speed, and to be at each when the "
+    "next one is sent. Its lag is not counted."
+)
+
+_NOTHING = 1e-6
+"""A change so small, relative, is that of an optimiser's last digits."""
+
+_STEPS = {
+    "period": "by the changed period",
+    "holding": "by moving straight from one set point to the next",
+    "rounding": f"by rounding to counts of {1e3 * COUNT:.2f} mrad",
+}
 
 
-def text_of(points: SetPoints, kind: Format) -> str:
-    """The content of the file. Raises InputError for an angle beyond the servo's counts."""
-    return {"csv": _csv, "c-header": _c_header, "servo": _counts}[kind](points)
+@dataclass(frozen=True, repr=False)
+class ExportedGait(GaitResult):
+    """A gait as set points: `points` has them as arrays, `cost` what they lose in speed."""
+
+    points: SetPoints
+    cost: Cost
+    format: Format
+
+    @property
+    def text(self) -> str:
+        """The content of the file for the controller."""
+        return text_of(self.points, self.format)
+
+    @property
+    def beyond_servo(self) -> tuple[str, ...]:
+        """A sentence if the servo is too slow for the steps between set points."""
+        angles = self.points.rounded if self.format == "servo" else self.points.angles
+        needed = interpolated(angles, self.points.rate).peak_rate
+        limit, both = self.robot.servo.rate_limit, QUANTITIES["rate"].both
+        if needed <= limit * (1 + LARGEST_EXCESS):
+            return ()
+        return (
+            f"A step between set points needs {both(needed)}, and the servo's rate limit is "
+            f"{both(limit)}. The cost in speed is computed as if the servo could.",
+        )
+
+    def record(self, files: Sequence[Path] = ()) -> dict[str, Any]:
+        """Rate, period, the speed lost (negative) or gained by each step, SI, and the file."""
+        points, cost = self.points, self.cost
+        record = {
+            "gait": points.gait,
+            "status": self.source_status,
+            "format": self.format,
+            "rate": points.rate,
+            "points": len(points.angles),
+            "period": points.played.period,
+            "speed": cost.nominal,
+            "speed_left": cost.final,
+            "cost": {"period": 0.0, "holding": 0.0, "rounding": None, **cost.steps},
+            "model": MODEL,
+            "file": str(files[0]) if files else None,
+            "version": __version__,
+        }
+        return plain(record)
+
+    def document(self, figures: Sequence[Figure] = ()) -> Document:
+        """The gait, its set points, and the speed before and after."""
+        facts = super().document()
+        return replace(facts, sections=(*facts.sections, Section("", (MODEL,))))
+
+    def _facts(self) -> Iterator[Fact]:
+        points, cost = self.points, self.cost
+        rate = f"{with_unit(points.rate, '', 6)} a second, one every {number(1e3 / points.rate)} ms"
+        yield from gait_facts(points.gait)
+        yield Fact("set points", f"{len(points.angles)} a period, {rate}")
+        yield Fact("  period", _period_text(points))
+        yield Fact("speed", f"{speed_text(cost.nominal)}, of the gait itself")
+        for name, change in cost.steps.items():
+            yield Fact(f"  {name}", f"{_change_text(change, cost.nominal)} {_STEPS[name]}")
+        total = _change_text(sum(cost.steps.values()), cost.nominal)
+        yield Fact("  left", f"{speed_text(cost.final)}, {total}")
+
+    def save(
+        self, path: str | Path, *, figures: bool = True, progress: Progress = quiet
+    ) -> list[Path]:
+        """Write the file for the controller."""
+        return [write_text(file_for_result(Path(path)), self.text)]
 
 
-def _csv(points: SetPoints) -> str:
-    """A row a set point: t (s), phi (rad), phi_deg (degrees)."""
-    rows = zip(
-        _times(points), points.angles.tolist(), np.degrees(points.angles).tolist(), strict=True
+def setpoints_file(path: Path | None, name: str, format: Format) -> Path:
+    """The file of set points: `path`, or out/NAME-... Raises InputError if it cannot be written."""
+    return file_for_result(path or Path("out") / f"{name}{ENDINGS[format]}")
+
+
+def _period_text(points: SetPoints) -> str:
+    asked, played = points.gait.period, points.played.period
+    if math.isclose(asked, played, rel_tol=_NOTHING):
+        return f"{with_unit(asked, 's')}, as asked"
+    return (
+        f"{with_unit(played, 's', 6)}, changed from {with_unit(asked, 's', 6)} "
+        f"({100 * (played / asked - 1):+.2f} %), a whole number of set points"
     )
-    return csv_text(("t", "phi", "phi_deg"), rows)
 
 
-def _counts(points: SetPoints) -> str:
-    """A row a set point: t (s) and the count, 512 where phi is 0."""
-    return csv_text(("t", "count"), zip(_times(points), points.counts.tolist(), strict=True))
+def _change_text(change: float, nominal: float) -> str:
+    """`-0.36 mm/s (-0.28 %)`: a change of a speed."""
+    if abs(change) <= _NOTHING * abs(nominal):
+        return "0 mm/s"
+    share = f" ({100 * change / abs(nominal):+.2f} %)" if nominal else ""
+    return f"{'+' if change > 0 else ''}{number(1e3 * change, 3)} mm/s{share}"
 
 
-def _times(points: SetPoints) -> list[float]:
-    return (np.arange(len(points.angles)) / points.rate).tolist()
+def text_of(points: SetPoints, format: Format) -> str:
+    """The content of the file: a row for each set point, t (s) with phi (rad), phi_deg (degrees) or
+    the count, 512 where phi is 0; or an array for C.
+
+    Raises InputError for an angle beyond the servo's counts.
+    """
+    times = (np.arange(len(points.angles)) / points.rate).tolist()
+    if format == "csv":
+        angles = points.angles.tolist(), np.degrees(points.angles).tolist()
+        return csv_text(("t", "phi", "phi_deg"), zip(times, *angles, strict=True))
+    if format == "servo":
+        return csv_text(("t", "count"), zip(times, points.counts.tolist(), strict=True))
+    return _c_header(points)
+
+
+_PER_LINE = 6
 
 
 def _c_header(points: SetPoints) -> str:
@@ -74,75 +180,3 @@ def _c_float(value: float) -> str:
     """A float literal of C; rounding to nothing has no sign."""
     text = f"{0.0 if math.isclose(value, 0.0, abs_tol=1e-12) else value:.9g}"
     return (text if any(mark in text for mark in ".e") else f"{text}.0") + "f"
-
-
-MODEL = (
-    "Between set points the servo is taken to move at constant speed, and to be at each when the "
-    "next one is sent. Its lag is not counted."
-)
-
-_NOTHING = 1e-6
-"""A change so small, relative, is that of an optimiser's last digits."""
-
-_WORDS = {
-    "period": "by the changed period",
-    "holding": "by moving straight from one set point to the next",
-    "rounding": f"by rounding to counts of {1e3 * COUNT:.2f} mrad",
-}
-
-
-def setpoints_summary(answer: SetPointsAnswer, file: Path | None) -> str:
-    """The gait, its set points, the speed before and after, and the file."""
-    points, cost = answer.points, answer.cost
-    text = facts_text(
-        *gait_facts(points.gait),
-        Fact("set points", f"{len(points.angles)} a period, {_rate_text(points)}"),
-        Fact("  period", _period_text(points)),
-        Fact("speed", f"{speed_text(cost.nominal)}, of the gait itself"),
-        *(Fact(f"  {name}", f"{_change(cost, name)} {_WORDS[name]}") for name in cost.steps),
-        Fact("  left", f"{speed_text(cost.final)}, {_change(cost)}"),
-        *((Fact("file", str(file)),) if file else ()),
-    )
-    return f"{text}\n{MODEL}\n"
-
-
-def setpoints_record(answer: SetPointsAnswer, file: Path | None) -> dict[str, Any]:
-    """The same for scripts, SI; `cost` is the speed lost (negative) or gained by each step."""
-    points, cost = answer.points, answer.cost
-    return {
-        "gait": gait_record(points.gait),
-        "status": answer.source_status,
-        "format": answer.format,
-        "rate": points.rate,
-        "points": len(points.angles),
-        "period": points.played.period,
-        "speed": cost.nominal,
-        "speed_left": cost.final,
-        "cost": {"period": 0.0, "holding": 0.0, "rounding": None, **cost.steps},
-        "model": MODEL,
-        "file": str(file) if file else None,
-        "version": __version__,
-    }
-
-
-def _rate_text(points: SetPoints) -> str:
-    return f"{with_unit(points.rate, '', 6)} a second, one every {number(1e3 / points.rate)} ms"
-
-
-def _period_text(points: SetPoints) -> str:
-    asked, played = points.gait.period, points.played.period
-    if math.isclose(asked, played, rel_tol=_NOTHING):
-        return f"{with_unit(asked, 's')}, as asked"
-    return (
-        f"{with_unit(played, 's', 6)}, changed from {with_unit(asked, 's', 6)} "
-        f"({100 * (played / asked - 1):+.2f} %), a whole number of set points"
-    )
-
-
-def _change(cost: Cost, name: str | None = None) -> str:
-    """`-0.36 mm/s (-0.28 %)`: of one step, or of all together."""
-    change = cost.steps[name] if name else sum(cost.steps.values())
-    if abs(change) <= _NOTHING * abs(cost.nominal):
-        return "0 mm/s"
-    share = f" ({100 * change / abs(cost.nominal):+.2f} %)" if cost.nominal else ""
-    return f"{'+' if change > 0 else ''}{number(1e3 * change, 3)} mm/s{share}"

@@ -11,20 +11,15 @@ from rr_opt.report.document import (
     Chain,
     Checks,
     Document,
-    Fact,
     Facts,
     Gallery,
     Link,
     Section,
     Table,
+    cell_text,
 )
 
 _WIDTH = 100
-
-
-def facts_text(*facts: Fact) -> str:
-    """Facts below one another, with a newline at their end."""
-    return "\n".join(_lines(Facts(facts))) + "\n"
 
 
 def terminal(document: Document, files: Iterable[Path] = ()) -> str:
@@ -62,14 +57,7 @@ def _lines(block: Block) -> list[str]:
 
 
 def _cells(block: Table) -> list[list[str]]:
-    head = [column.heading for column in block.columns]
-    return [
-        head,
-        *(
-            [column.text(cell) for column, cell in zip(block.columns, row, strict=True)]
-            for row in block.rows
-        ),
-    ]
+    return [list(block.head), *([cell_text(cell) for cell in row] for row in block.rows)]
 
 
 def columns(rows: Sequence[Sequence[str]]) -> list[str]:

@@ -8,7 +8,7 @@ from typing import Any
 
 from rr_opt.motion.rollout import Trajectory
 from rr_opt.outcome import InputError
-from rr_opt.report.archive import whole, write_text
+from rr_opt.report.archive import whole
 from rr_opt.report.document import csv_text
 from rr_opt.version import __version__
 
@@ -23,11 +23,11 @@ _COLUMNS = {
 }
 
 
-def write_csv(path: Path, trajectory: Trajectory) -> Path:
-    """Write t,x,y,psi,phi,v,torque in SI units under a header row."""
+def trajectory_csv(trajectory: Trajectory) -> str:
+    """t,x,y,psi,phi,v,torque in SI units under a header row."""
     names = [field.name for field in fields(Trajectory)]
     columns = (getattr(trajectory, name).tolist() for name in names)
-    return write_text(path, csv_text(names, zip(*columns, strict=True)))
+    return csv_text(names, zip(*columns, strict=True))
 
 
 def netcdf_writer() -> Any:
@@ -53,6 +53,11 @@ def write_netcdf(path: Path, trajectory: Trajectory) -> Path:
     )
     for name, (unit, meaning) in _COLUMNS.items():
         data[name].attrs.update(units=unit, long_name=meaning)
+    return write_dataset(path, data)
+
+
+def write_dataset(path: Path, data: Any) -> Path:
+    """Write a dataset of xarray, whole."""
     with whole(path) as temporary:
         data.to_netcdf(temporary, engine="h5netcdf")
     return path

@@ -1,23 +1,24 @@
-"""The fastest turn, and the circle of a gait: as documents and as records."""
+"""The fastest turn: a fastest gait with the arc it drives and the check of its circle."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from rr_opt.answers.corrected_robot import finite
-from rr_opt.answers.motion import CircleAnswer
-from rr_opt.answers.quantities import number, with_unit
-from rr_opt.answers.turn import TurnAnswer, side
-from rr_opt.files.gait_record import gait_record
-from rr_opt.motion.circle import Circle
-from rr_opt.report.document import Fact, Facts, Section
-from rr_opt.report.gait import gait_facts, speed_fact
-from rr_opt.report.result import result
-from rr_opt.report.speed import speed_document, write_speed
-from rr_opt.report.text import facts_text, terminal
+from rr_opt.design.turn import Arc
+from rr_opt.design.turn_target import Target
+from rr_opt.files.record import plain
+from rr_opt.formatting import direction_text, number, side_text, with_unit
+from rr_opt.model.problem import ANY
+from rr_opt.outcome import Status
+from rr_opt.report.document import Document, Fact, Facts, Figure, Section
+from rr_opt.report.fastest import FastestGait
+from rr_opt.report.fastest_page import fastest_document
+from rr_opt.report.result import Check
+from rr_opt.verify.replay import LARGEST, PERIODS, CircleCheck
 
 UNITS = {
     "heading": "rad, positive to the left",
@@ -29,159 +30,148 @@ UNITS = {
 }
 
 
-def turn_summary(answer: TurnAnswer, files: Iterable[Path]) -> str:
-    """The report of a fastest gait, with its arc, as text for a terminal."""
-    return terminal(speed_document(answer, turn=_section(answer)), files)
+@dataclass(frozen=True, repr=False)
+class FastestTurn(FastestGait):
+    """The fastest gait that makes a turn: as FastestGait, and
+
+    target   what was asked
+    opened   whether the problem fixed the offset, which a turn needs, and it was freed
+    arc      heading, curvature, time and length of the turn; None where there is no gait
+    circle   whether the robot stays on the circle, and comes to it from rest; None likewise
+    """
+
+    target: Target = field(default_factory=Target)
+    opened: bool = False
+    arc: Arc | None = None
+    circle: CircleCheck | None = None
+
+    @property
+    def radius(self) -> float | None:
+        """Of the circle, m, positive, inf for a straight line; None if there is no gait."""
+        if self.arc is None:
+            return None
+        return abs(1 / self.arc.curvature) if self.arc.curvature else math.inf
+
+    @property
+    def turn_prices(self) -> dict[str, float]:
+        """Shadow prices of what was asked of the turn, m/s of |speed| per SI unit."""
+        best, turn = self.optimum.best, self.problem.turn
+        if best is None or turn is None:
+            return {}
+        names = ("curvature", "yaw_rate", "heading")
+        return {name: best.prices[name] for name in names if getattr(turn, name) != ANY}
+
+    @property
+    def checks(self) -> list[Check]:
+        """Those of any fastest gait, and the circle's."""
+        return super().checks + (_circle_checks(self.circle) if self.circle else [])
+
+    @property
+    def headline(self) -> str:
+        """The result in a phrase; empty if nothing was confirmed."""
+        arc = self.arc
+        if arc is None or self.radius is None or self.status is not Status.OPTIMAL:
+            return ""
+        return (
+            f"The fastest turn found goes {direction_text(arc.speed)} and to the "
+            f"{side_text(arc.curvature)} round {with_unit(self.radius, 'm')} at "
+            f"{1e3 * abs(arc.speed):.1f} mm/s"
+        )
+
+    @property
+    def _subject(self) -> str:
+        arc = self.arc
+        if arc is None or self.radius is None:
+            return super()._subject
+        return (
+            f"The fastest turn found goes {direction_text(arc.speed)} and to the "
+            f"{side_text(arc.curvature)}, round a circle of radius {with_unit(self.radius, 'm')},"
+        )
+
+    @property
+    def remarks(self) -> list[str]:
+        """What else there is to know of the gait, in sentences."""
+        if not self.opened or self.arc is None:
+            return super().remarks
+        bounds = self.problem.gait.offset
+        return [
+            *super().remarks,
+            "The problem fixes the offset, and a turn needs one: it was freed to all that the "
+            f"limits allow, {number(bounds.low)} to {number(bounds.high)} rad.",
+        ]
+
+    def document(self, figures: Sequence[Figure] = ()) -> Document:
+        """The report of a fastest gait, with its arc."""
+        facts = _facts(self, self.arc) if self.arc else ()
+        return fastest_document(self, figures, Section("Turn", (Facts(tuple(facts)),)))
+
+    def record(self, files: Sequence[Path] = ()) -> dict[str, Any]:
+        """The content of result.json: that of any fastest gait, and `turn`."""
+        record, target, circle = super().record(), self.target, self.circle
+        turn = {
+            "asked": {
+                "heading": target.heading,
+                "radius": target.radius,
+                "within": target.within,
+                "length": target.length,
+                "cycles": "whole" if target.whole else "any",
+            },
+            "offset_opened": self.opened,
+            "arc": self.arc and {**plain(self.arc), "radius": self.radius},
+            "prices": self.turn_prices,
+            "circle_check": circle
+            and {
+                "ends": circle.ends,
+                "mean": circle.mean,
+                "rest": circle.rest,
+                "rest_periods": circle.periods,
+                "time_constant": circle.transient.constant,
+                "distance_lost": circle.transient.lost,
+                "delay": circle.transient.delay,
+            },
+        }
+        return record | {"turn": plain(turn), "units": {**record["units"], **UNITS}}
 
 
-def write_turn(
-    answer: TurnAnswer, folder: Path, *, figures: bool, progress: Callable[[str], None]
-) -> list[Path]:
-    """Write everything; returns the files in the order to name them."""
-    record = turn_result(answer)
-    return write_speed(answer, folder, record, _section(answer), figures, progress)
-
-
-def turn_result(answer: TurnAnswer) -> dict[str, Any]:
-    """The content of result.json: that of any fastest gait, and `turn`."""
-    record, target = result(answer), answer.target
-    record["turn"] = {
-        "asked": {
-            "heading": target.heading,
-            "radius": target.radius,
-            "within": target.within,
-            "length": target.length,
-            "cycles": "whole" if target.whole else "any",
-        },
-        "offset_opened": answer.opened,
-        "arc": _arc(answer),
-        "prices": answer.turn_prices,
-        "circle_check": _circle_check(answer),
-    }
-    return record | {"units": {**record["units"], **UNITS}}
-
-
-def _section(answer: TurnAnswer) -> Section:
-    """The arc, or the full circle, and what a slightly easier turn would gain."""
-    arc = answer.arc
-    if arc is None:
-        return Section("Turn", ())
-    name = "circle" if answer.target.heading is None else "arc"
-    degrees = abs(math.degrees(arc.heading))
-    facts = (
-        Fact(name, f"{number(degrees)} deg to the {side(arc.heading)}"),
-        Fact("radius", with_unit(answer.radius or math.inf, "m")),
-        Fact("time", with_unit(arc.time, "s"), f"{number(arc.periods, 6)} periods, steady motion"),
-        Fact("length", f"{with_unit(arc.length, 'm')} along the mean circle"),
-        Fact("yaw rate", f"{number(math.degrees(arc.yaw_rate))} deg/s"),
-        *_prices(answer),
-    )
-    return Section("Turn", (Facts(facts),))
-
-
-def _prices(answer: TurnAnswer) -> list[Fact]:
-    words = {
-        "curvature": "a radius 1 % wider",
-        "yaw_rate": "a yaw rate 1 % lower",
-        "heading": "a heading per period 1 % less",
-    }
-    facts: list[Fact] = []
-    arc = answer.arc
-    if arc is None:
-        return facts
-    for name, price in answer.turn_prices.items():
-        value = arc.heading / arc.periods if name == "heading" else getattr(arc, name)
-        gain = -0.01 * value * price
-        if abs(gain) > 1e-9:
-            facts.append(Fact("price", f"{1e3 * gain:+.3g} mm/s for {words[name]}"))
-    return facts
-
-
-def _arc(answer: TurnAnswer) -> dict[str, Any] | None:
-    arc = answer.arc
-    if arc is None:
-        return None
-    return {
-        "heading": arc.heading,
-        "radius": finite(answer.radius or math.inf),
-        "curvature": arc.curvature,
-        "yaw_rate": arc.yaw_rate,
-        "speed": arc.speed,
-        "length": arc.length,
-        "time": arc.time,
-        "periods": arc.periods,
-    }
-
-
-def _circle_check(answer: TurnAnswer) -> dict[str, Any] | None:
-    circle = answer.circle
-    if circle is None:
-        return None
+def _circle_checks(circle: CircleCheck) -> list[Check]:
+    """Whether P stays on the circle, and whether a start from rest converges to it."""
+    tail = f"(at most {LARGEST:.0e} allowed)."
     start = circle.transient
-    return {
-        "ends": circle.ends,
-        "mean": circle.mean,
-        "rest": circle.rest,
-        "rest_periods": circle.periods,
-        "time_constant": start.constant,
-        "distance_lost": start.lost,
-        "delay": start.delay,
-    }
-
-
-def circle_summary(answer: CircleAnswer) -> str:
-    """The gait, its circle, and how a start from rest converges to it."""
-    circle, start = answer.circle, answer.transient
     ahead = "behind" if start.lost >= 0 else "ahead of"
-    return facts_text(
-        *gait_facts(answer.gait),
-        speed_fact(circle.speed),
-        *_circle_facts(circle),
-        Fact(
-            "from rest",
-            f"the deviation falls to 1/e in {with_unit(start.constant, 's')}, by "
-            f"{number(100 * (1 - start.factor), 3)} % a period",
-        ),
-        Fact(
-            "lost",
-            f"{with_unit(abs(start.lost), 'm')} {ahead} a robot that is steady from the start, "
-            f"{with_unit(abs(start.delay), 's')}",
-        ),
-    )
-
-
-def _circle_facts(circle: Circle) -> list[Fact]:
-    if circle.centre is None:
-        return [Fact("circle", f"straight: it turns by {circle.heading:.1e} rad a period")]
-    x, y = (with_unit(value, "m") for value in circle.centre)
-    degrees, rate = (number(math.degrees(one)) for one in (circle.heading, circle.yaw_rate))
-    periods = f"{number(circle.periods_round, 6)} periods"
     return [
-        Fact("circle", f"radius {with_unit(circle.radius, 'm')}", f"to the {side(circle.heading)}"),
-        Fact("curvature", f"{number(circle.curvature)} 1/m"),
-        Fact("centre", f"x = {x}, y = {y} in platform 1's axes at phase 0, P at the origin"),
-        Fact("heading", f"{degrees} deg a period", f"{rate} deg/s"),
-        Fact("full turn", with_unit(circle.time_round, "s"), periods),
+        Check(
+            max(circle.ends, circle.mean) <= LARGEST,
+            f"{PERIODS} periods by CVODES: P stays within {circle.ends:.1e} of the radius of "
+            f"where the circle has it, and the mean circle's radius differs by {circle.mean:.1e} "
+            f"{tail}",
+        ),
+        Check(
+            circle.rest <= LARGEST,
+            f"From rest, after {circle.periods} periods by CVODES: the radius differs by "
+            f"{circle.rest:.1e} {tail} The deviation falls to 1/e in "
+            f"{with_unit(start.constant, 's')}, and the robot stays "
+            f"{with_unit(abs(start.lost), 'm')} {ahead} one that is steady from the start.",
+        ),
     ]
 
 
-def circle_record(answer: CircleAnswer) -> dict[str, Any]:
-    """The same for scripts, SI; null for what a straight gait does not have."""
-    circle, start = answer.circle, answer.transient
-    return {
-        "gait": gait_record(answer.gait),
-        "speed": circle.speed,
-        "curvature": circle.curvature,
-        "radius": finite(circle.radius),
-        "centre": list(circle.centre) if circle.centre else None,
-        "heading_per_period": circle.heading,
-        "yaw_rate": circle.yaw_rate,
-        "time_for_full_turn": finite(circle.time_round),
-        "periods_for_full_turn": finite(circle.periods_round),
-        "from_rest": {
-            "time_constant": start.constant,
-            "factor_per_period": start.factor,
-            "distance_lost": start.lost,
-            "delay": start.delay,
-        },
+def _facts(turn: FastestTurn, arc: Arc) -> Iterator[Fact]:
+    """The arc, or the full circle, and what a slightly easier turn would gain."""
+    name = "circle" if turn.target.heading is None else "arc"
+    degrees = abs(math.degrees(arc.heading))
+    yield Fact(name, f"{number(degrees)} deg to the {side_text(arc.heading)}")
+    yield Fact("radius", with_unit(turn.radius or math.inf, "m"))
+    periods = f"{number(arc.periods, 6)} periods, steady motion"
+    yield Fact("time", with_unit(arc.time, "s"), periods)
+    yield Fact("length", f"{with_unit(arc.length, 'm')} along the mean circle")
+    yield Fact("yaw rate", f"{number(math.degrees(arc.yaw_rate))} deg/s")
+    asked = {
+        "curvature": (arc.curvature, "a radius 1 % wider"),
+        "yaw_rate": (arc.yaw_rate, "a yaw rate 1 % lower"),
+        "heading": (arc.heading / arc.periods, "a heading per period 1 % less"),
     }
+    for name, price in turn.turn_prices.items():
+        value, words = asked[name]
+        gain = -0.01 * value * price
+        if abs(gain) > 1e-9:
+            yield Fact("price", f"{1e3 * gain:+.3g} mm/s for {words}")

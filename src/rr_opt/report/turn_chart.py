@@ -1,45 +1,164 @@
-"""The turning chart of a robot: what was found, as text, as a record and as a table."""
+"""The turning chart of a robot: its circles, the tightest of them, and the paper's claim."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
-from rr_opt.answers.corrected_robot import finite
-from rr_opt.answers.quantities import number, with_unit
-from rr_opt.answers.turn_chart import TurnChartAnswer, sine_text
-from rr_opt.files.gait_record import gait_record
-from rr_opt.report.archive import remove, write_json, write_text
-from rr_opt.report.document import Document, Fact, Facts, Section, csv_text
-from rr_opt.report.gait import speed_fact
-from rr_opt.report.text import terminal
-from rr_opt.verify.turn_chart import RadiusClaim, SignClaim, TurnMap
+from rr_opt.files.record import plain
+from rr_opt.formatting import number, with_unit
+from rr_opt.model.gait import SineGait
+from rr_opt.model.problem import Problem
+from rr_opt.outcome import Status
+from rr_opt.report.document import (
+    Captions,
+    Document,
+    Fact,
+    Facts,
+    Figure,
+    Gallery,
+    Section,
+    csv_text,
+    versions,
+)
+from rr_opt.report.gait import ignored_effects, speed_fact
+from rr_opt.report.result import Result
+from rr_opt.verify.turn_chart import RadiusClaim, SignClaim, Tightest, TurnMap
 from rr_opt.version import __version__
 
-_NAMES = ("turn-chart.json", "turn-chart.csv", "turn-chart.svg")
-_COLUMNS = (
+_SPIN = 1e-4
+"""A smaller radius, m, is that of a robot that turns on the spot."""
+_AGREED = 1e-3
+"""Two searches agree if they differ by no more, relative."""
+
+COLUMNS = (
     "amplitude", "period", "offset", "curvature", "speed", "heading_per_period", "peak_torque",
     "keeps_limits",
 )  # fmt: skip
 
 
-def chart_summary(chart: TurnChartAnswer, files: list[Path]) -> str:
-    """The chart as text for a terminal."""
-    tight = chart.tight
-    sections: tuple[Section, ...] = ()
-    if tight:
-        circle = f"{with_unit(tight.radius, 'm')} by {sine_text(tight.gait)}"
-        facts = (Fact("tightest", circle), speed_fact(tight.speed))
-        sections = (
-            Section("", (Facts(facts),)),
-            Section("The sign of the offset sets the side", (_sign_facts(chart.sign),)),
-            Section("A larger offset makes a smaller radius", (_radius_facts(chart.radius),)),
+@dataclass(frozen=True, repr=False)
+class TurnChart(Result):
+    """The circles that a robot can drive.
+
+    seen          the map drawn and written, as arrays
+    tight         the tightest circle within the limits; None if no gait respects them
+    sign, radius  the paper's claim on the offset, tested on a finer map
+    """
+
+    RECORD = "turn-chart.json"
+    OTHERS = ("turn-chart.csv",)
+    CAPTIONS: ClassVar[Captions] = {
+        "turn-chart": (
+            "Radius over offset",
+            "Radius over offset, a panel for each period and a line for each amplitude",
+            "Solid lines turn to the left, dashed ones to the right; a line ends where a limit is "
+            "exceeded.",
         )
-    title = chart.message if tight else chart.status.value
-    return terminal(Document(chart.name, "turn chart", title, "", sections), files)
+    }
+
+    name: str
+    sha256: str
+    problem: Problem
+    seen: TurnMap
+    tight: Tightest | None
+    sign: SignClaim
+    radius: RadiusClaim
+
+    @property
+    def status(self) -> Status:
+        """INFEASIBLE if no gait respects every limit."""
+        return Status.OPTIMAL if self.tight else Status.INFEASIBLE
+
+    @property
+    def message(self) -> str:
+        """The outcome in a sentence."""
+        if self.tight is None:
+            return "None of the gaits tried turns and respects every limit. Widen the bounds."
+        radius, error = self.tight.radius, self.tight.error
+        if radius < _SPIN:
+            return (
+                "The robot can turn on the spot: where its speed passes through 0 the circles "
+                f"become arbitrarily tight, next to {_sine(self.tight.gait)}."
+            )
+        text = (
+            f"The tightest circle found within the limits has a radius of {with_unit(radius, 'm')}"
+        )
+        if error > _AGREED * radius:
+            return f"{text}. Two searches differ by {error:.1e} m: there may be a tighter one."
+        return f"{text}, and two searches agree on it to {max(error, 1e-9):.1e} m."
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Which effects of the robot the chart ignores, and whether it shows one side only."""
+        one_sided = () if self.seen.two_sided else (
+            "The robot's two sides differ. The chart shows offsets of 0 and more only.",
+        )  # fmt: skip
+        return (*ignored_effects(self.problem.robot), *one_sided)
+
+    def record(self, files: Sequence[Path] = ()) -> dict[str, Any]:
+        """The content of turn-chart.json."""
+        sign = {"holds": self.sign.holds, "holds_each_way": self.sign.holds_each_way}
+        record = {
+            "status": "charted" if self.tight else self.status.value,
+            "message": self.message,
+            "problem": self.name,
+            "tightest": self.tight,
+            "sign_claim": sign | plain(self.sign),
+            "radius_claim": {"holds": self.radius.holds, **plain(self.radius)},
+            "version": __version__,
+            "input_sha256": self.sha256,
+        }
+        return plain(record)
+
+    def _tables(self) -> dict[str, str]:
+        """A row for each gait, SI, offsets of both signs, or of one if the robot's two sides
+        differ; empty where there is no steady cycle within the limits on the angle."""
+        seen = self.seen
+        alpha, T, phi0 = np.meshgrid(seen.amplitude, seen.period, seen.offset, indexing="ij")
+        arrays = (alpha, T, phi0, seen.curvature, seen.speed, seen.heading, seen.peak_torque)
+        parts = [*arrays, seen.keeps.astype(int)]
+        # phi0 and -phi0 are mirror images: what turns has the other sign there.
+        left = slice(None, 0, -1) if seen.two_sided else slice(0, 0)
+        mirror = [-part if i in (2, 3, 5) else part for i, part in enumerate(parts)]
+        both = [
+            np.concatenate([there[..., left], here], axis=-1).ravel() + 0
+            for here, there in zip(parts, mirror, strict=True)
+        ]
+        rows = zip(*(part.tolist() for part in both), strict=True)
+        return {"turn-chart.csv": csv_text(COLUMNS, rows)}
+
+    def document(self, figures: Sequence[Figure] = ()) -> Document:
+        """The tightest circle, and the paper's claim on the offset."""
+        tight = self.tight
+        facts: tuple[Section, ...] = ()
+        if tight:
+            circle = f"{with_unit(tight.radius, 'm')} by {_sine(tight.gait)}"
+            tightest = Facts((Fact("tightest", circle), speed_fact(tight.speed)))
+            facts = (
+                Section("", (tightest,)),
+                Section("The sign of the offset sets the side", (_sign_facts(self.sign),)),
+                Section("A larger offset makes a smaller radius", (_radius_facts(self.radius),)),
+            )
+        return Document(
+            self.name,
+            "turn chart",
+            self.message if tight else "No gait that turns respects every limit",
+            "" if tight else self.message,
+            (*facts, Section("", (Gallery(tuple(figures)),), brief=False)),
+            good=tight is not None,
+            footer=versions(self.sha256),
+        )
+
+    def _drawn(self) -> dict[str, str]:
+        from rr_opt.report.figures.turn_chart import draw
+
+        return {"turn-chart": draw(self.seen, self.tight)}
 
 
 def _sign_facts(claim: SignClaim) -> Facts:
@@ -48,15 +167,14 @@ def _sign_facts(claim: SignClaim) -> Facts:
         if claim.holds
         else f"fails: {claim.rarer} of {claim.gaits} gaits turn to the other side"
     )
+    forward = f"{claim.forward_left} left, {claim.forward_right} right at offsets above 0"
     facts = [
         Fact("verdict", verdict),
-        Fact(
-            "forward", f"{claim.forward_left} left, {claim.forward_right} right at offsets above 0"
-        ),
+        Fact("forward", forward),
         Fact("backward", f"{claim.backward_left} left, {claim.backward_right} right"),
     ]
     if claim.exception:
-        facts.append(Fact("first at", sine_text(claim.exception)))
+        facts.append(Fact("first at", _sine(claim.exception)))
     return Facts(tuple(facts))
 
 
@@ -72,73 +190,15 @@ def _radius_facts(claim: RadiusClaim) -> Facts:
     return Facts(
         (
             Fact("verdict", f"fails on {claim.growing} of {curves}"),
-            Fact("first at", sine_text(claim.first)),
-            Fact("worst", f"the radius {most}, by {sine_text(claim.worst)}"),
+            Fact("first at", _sine(claim.first)),
+            Fact("worst", f"the radius {most}, by {_sine(claim.worst)}"),
         )
     )
 
 
-def chart_record(chart: TurnChartAnswer) -> dict[str, Any]:
-    """The content of turn-chart.json, SI."""
-    tight, sign, radius = chart.tight, chart.sign, chart.radius
-    return {
-        "status": "charted" if tight else chart.status.value,
-        "message": chart.message,
-        "problem": chart.name,
-        "tightest": {
-            "radius": tight.radius,
-            "error": finite(tight.error),
-            "gait": gait_record(tight.gait),
-            "speed": tight.speed,
-        }
-        if tight
-        else None,
-        "sign_claim": {
-            "holds": sign.holds,
-            "holds_each_way": sign.holds_each_way,
-            "gaits": sign.gaits,
-            "forward_left": sign.forward_left,
-            "forward_right": sign.forward_right,
-            "backward_left": sign.backward_left,
-            "backward_right": sign.backward_right,
-            "exception": gait_record(sign.exception) if sign.exception else None,
-        },
-        "radius_claim": {
-            "holds": radius.holds,
-            "curves": radius.curves,
-            "growing": radius.growing,
-            "first": gait_record(radius.first) if radius.first else None,
-            "factor": finite(radius.factor),
-            "worst": gait_record(radius.worst) if radius.worst else None,
-        },
-        "version": __version__,
-        "input_sha256": chart.sha256,
-    }
-
-
-def write_chart(chart: TurnChartAnswer, folder: Path) -> list[Path]:
-    """Write everything; what an earlier run left is removed before."""
-    from rr_opt.report.figures.turn_chart import draw
-
-    remove(folder, _NAMES)
-    return [
-        write_json(folder / _NAMES[0], chart_record(chart)),
-        write_text(folder / _NAMES[1], _csv(chart.seen)),
-        write_text(folder / _NAMES[2], draw(chart.seen, chart.tight)),
-    ]
-
-
-def _csv(seen: TurnMap) -> str:
-    """A row a gait, SI, offsets of both signs, or of one if the robot's two sides differ; empty
-    where there is no steady cycle within the limits on the angle."""
-    alpha, T, phi0 = np.meshgrid(seen.amplitude, seen.period, seen.offset, indexing="ij")
-    arrays = (alpha, T, phi0, seen.curvature, seen.speed, seen.heading, seen.peak_torque)
-    parts = [*arrays, seen.keeps.astype(int)]
-    # phi0 and -phi0 are mirror images: what turns has the other sign there.
-    left = slice(None, 0, -1) if seen.two_sided else slice(0, 0)
-    mirror = [-part if i in (2, 3, 5) else part for i, part in enumerate(parts)]
-    both = [
-        np.concatenate([there[..., left], here], axis=-1).ravel() + 0
-        for here, there in zip(parts, mirror, strict=True)
-    ]
-    return csv_text(_COLUMNS, zip(*(part.tolist() for part in both), strict=True))
+def _sine(gait: SineGait) -> str:
+    """`amplitude 0.5 rad, period 1 s, offset 0.1 rad`."""
+    return (
+        f"amplitude {with_unit(gait.amplitude, 'rad')}, period {with_unit(gait.period, 's')}, "
+        f"offset {with_unit(gait.offset, 'rad')}"
+    )

@@ -20,6 +20,7 @@ from rr_opt.report.document import (
     Gallery,
     Link,
     Table,
+    cell_text,
 )
 
 if TYPE_CHECKING:
@@ -54,7 +55,12 @@ def _template() -> Template:
         lstrip_blocks=True,
         undefined=StrictUndefined,
     )
-    environment.filters |= {"code": _code, "data_uri": _data_uri, "kind": _kind}
+    environment.filters |= {
+        "code": _code,
+        "cell_text": cell_text,
+        "data_uri": _data_uri,
+        "kind": _kind,
+    }
     environment.tests |= {
         "badge": lambda cell: isinstance(cell, Badge),
         "link": lambda cell: isinstance(cell, Link),

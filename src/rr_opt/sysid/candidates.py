@@ -24,7 +24,7 @@ class Choice:
     form: int = 0
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Candidate:
     """The nominal model with some effects beside it, fitted."""
 
@@ -62,6 +62,11 @@ class Candidate:
         spread = float(np.std(gains, ddof=1)) if gains.size > 1 else math.inf
         return float(gains.sum()), math.sqrt(gains.size) * spread
 
+    def accounts(self, other: Candidate) -> float:
+        """The share that it accounts for of what simulation of whole runs with another one leaves
+        beyond the noise (mean square)."""
+        return 1 - self.excess**2 / max(other.excess**2, 1e-12)
+
     def predicts_better(self, other: Candidate) -> bool:
         """Whether the evidence from prediction is enough to prefer it."""
         gain, error = self.advantage(other)
@@ -82,12 +87,17 @@ def first(model: Model, runs: Iterable[int], length: float | None = None) -> Can
 
 
 def fitted(
-    model: Model, choices: Sequence[Choice], parent: Fit, guesses: Sequence[Mapping[str, float]]
+    model: Model,
+    choices: Sequence[Choice],
+    parent: Fit,
+    guesses: Sequence[Mapping[str, float]],
+    enough: float = math.inf,
 ) -> Candidate:
     """A set of effects, fitted beside a fit without them.
 
-    guesses  of the new quantities; each is taken a few steps, the best to the end. The parameters
-             begin as in the parent's fit and, as what is missing may have bent them, as believed
+    guesses  of the new quantities. The parameters begin as in the parent's fit and, as what is
+             missing may have bent them, as believed. By successive halving the best is taken on
+    enough   deviance, well above which the fit need not be taken to its end
     """
     ordered = tuple(sorted(choices))
     names = tuple(one.name for one in ordered)
@@ -99,15 +109,40 @@ def fitted(
     kept = {k: v for k, v in parent.values.items() if k in plain}
     unbent = {**kept, **{q.name: q.centre for q in model.parameters}}
     begun = [{**plain, **own, **guess} for guess in guesses for own in (kept, unbent)]
-    some = _tested(problem, parent)
-    trials = []
-    for values in begun:
+    unlike = [values for k, values in enumerate(begun) if values not in begun[:k]]
+    some, trials = _tested(problem, parent), []
+    for values in unlike:
         states = _converted(model, parent, names, values)
         part = {one: states[one] for one in some.segments}
-        fit = estimation.solve(some, values, part, SETTINGS.trial_steps)
-        trials.append((fit.deviance, fit, states))
-    _, best, states = min(trials, key=lambda trial: trial[0])
-    return Candidate(ordered, estimation.fitted(problem, best.values, {**states, **best.states}))
+        trials.append((estimation.solve(some, values, part, 0), states))
+    for steps in SETTINGS.trial_steps:
+        trials.sort(key=lambda trial: trial[0].deviance)
+        trials = [
+            (estimation.solve(some, fit.values, fit.states, steps), states)
+            for fit, states in trials[: max(len(trials) // 2, 1)]
+        ]
+    best, states = min(trials, key=lambda trial: trial[0].deviance)
+    begun_with = {**states, **best.states}
+    return Candidate(ordered, estimation.fitted(problem, best.values, begun_with, enough=enough))
+
+
+def refitted(candidate: Candidate, runs: Iterable[int]) -> Candidate:
+    """The candidate fitted to other runs."""
+    fit = candidate.fit
+    problem, states = estimation.initial(
+        fit.problem.model, fit.effects, fit.problem.quantities, fit.values, runs
+    )
+    states = {one: fit.states.get(one, state) for one, state in states.items()}
+    problem = replace(problem, q=fit.problem.q)
+    return Candidate(candidate.choices, estimation.fitted(problem, fit.values, states))
+
+
+def polished(candidate: Candidate) -> Candidate:
+    """The candidate fitted again with least process noise from where whole runs are simulated
+    best."""
+    fit, whole = candidate.fit, candidate.simulated
+    problem = replace(fit.problem, q=SETTINGS.least_process_noise)
+    return Candidate(candidate.choices, estimation.fitted(problem, whole.values, fit.states))
 
 
 def _tested(problem: Problem, parent: Fit) -> Problem:

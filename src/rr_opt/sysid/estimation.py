@@ -32,7 +32,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
-from scipy.linalg import cho_factor, cho_solve, cholesky, solve_triangular
+from scipy.linalg import LinAlgError, cho_factor, cho_solve, cholesky, solve_triangular
 from scipy.optimize import lsq_linear
 
 from rr_opt.array import Array
@@ -48,13 +48,13 @@ class Evidence:
 
     loss(d) = value + 2 g'd + d'Hd in the scaled quantities, the states eliminated
 
-    samples   with data, less the states
+    samples   independent ones with data, less the states
     excess    E - samples
     log       of the states' determinants and the process noise's densities
     shift     of the stacked initial states to their best;  follow  how that moves with d
     """
 
-    samples: int
+    samples: float
     excess: float
     value: float
     log: float
@@ -75,17 +75,27 @@ def robust(excess: float, correlation_times: float) -> float:
     return correlation_times * math.log1p(excess / correlation_times)
 
 
+def root(H: Array) -> Array:
+    """The Cholesky factor (lower) of an information matrix, which elimination may have left a
+    little indefinite by rounding where the motion is unstable."""
+    for ridge in (0.0, 1e-12, 1e-9, 1e-6):
+        try:
+            return cholesky(H + ridge * np.diag(np.abs(np.diag(H))), lower=True)
+        except LinAlgError:
+            continue
+    return cholesky(H + np.diag(np.abs(H).sum(axis=1)), lower=True)
+
+
 def bounded_minimum(H: Array, g: Array, low: Array, high: Array) -> Array:
     """The d within bounds that minimises 2 g'd + d'Hd."""
-    L = cholesky(H, lower=True)
-    d = -cho_solve((L, True), g)
+    d = -cho_solve((root(H), True), g)
     if (d >= low).all() and (d <= high).all():
         return d
     low, high = np.minimum(low, 0.0), np.maximum(high, 0.0)
     wide = high > low
     out = np.zeros_like(g)
     if wide.any():
-        L = cholesky(H[np.ix_(wide, wide)], lower=True)
+        L = root(H[np.ix_(wide, wide)])
         right = -solve_triangular(L, g[wide], lower=True)
         out[wide] = lsq_linear(L.T, right, (low[wide], high[wide]), method="bvls").x
     return out
@@ -162,17 +172,17 @@ class Problem:
     def correlation_times(self, run: int) -> float:
         """In all channels of a run."""
         data = self.model.runs[run]
-        return len(self.model.channels) * max(data.duration / SETTINGS.correlation_time, 1.0)
+        return len(self.model.channels) * max(data.duration / self.model.correlation_time, 1.0)
 
-    def samples(self, run: int) -> int:
-        """With data, of the run's segments."""
-        values = self.model.runs[run].values
-        return sum(int(np.isfinite(values[s.first : s.until]).sum()) for s in self.by_run[run])
+    def samples(self, run: int) -> float:
+        """Independent ones with data, of the run's segments."""
+        data = self.model.runs[run]
+        return sum(data.worth(slice(s.first, s.until)) for s in self.by_run[run])
 
-    def degrees(self, run: int) -> int:
+    def degrees(self, run: int) -> float:
         """Of freedom: a run's samples less what its initial states take."""
         states = self.model.state_scale(self.effects).size * len(self.by_run[run])
-        return max(self.samples(run) - states, 1)
+        return max(self.samples(run) - states, 1.0)
 
     def loss(self, run: int, misfit: float) -> float:
         """Of a run with misfit E."""
@@ -184,9 +194,10 @@ class Problem:
     def misfits(self, made: Mapping[Segment, Simulation], states: States) -> dict[int, float]:
         """E of each run."""
         weak = 1 / self.model.state_prior(self.effects)
-        tight = 1 / (self.q * self.model.state_scale(self.effects))
+        scale = self.model.state_scale(self.effects)
         out = {}
         for run, parts in self.by_run.items():
+            tight = 1 / (self.q * self.model.runs[run].pushed * scale)
             total = sum(made[one].cost + float(np.sum((weak * states[one]) ** 2)) for one in parts)
             if np.isfinite(total):
                 for one, after in itertools.pairwise(parts):
@@ -226,7 +237,8 @@ class Linear:
         """A run's, with process noise of strength q."""
         problem, parts = self.problem, self.problem.by_run[run]
         model = problem.model
-        scale, known = (model.state_scale(problem.effects), model.state_prior(problem.effects))
+        scale, known = model.state_scale(problem.effects), model.state_prior(problem.effects)
+        q = q * model.runs[run].pushed
         size, tight, prior = scale.size, 1 / (q * scale), 1 / known**2
         # Of the quantities, and of whatever else was linearised in.
         nq = self.parts[parts[0]][1].shape[1] - size
@@ -353,8 +365,8 @@ class Fit:
         return {run: (self._without(run) - self.deviance) / 2 for run in self.evidences}
 
     @property
-    def samples(self) -> int:
-        """With data, less the states."""
+    def samples(self) -> float:
+        """Independent ones with data, less the states."""
         return sum(e.samples for e in self.evidences.values())
 
     @property
@@ -365,7 +377,7 @@ class Fit:
 
 
 def _log_det(H: Array) -> float:
-    return 2 * float(np.sum(np.log(np.diag(cholesky(H, lower=True)))))
+    return 2 * float(np.sum(np.log(np.diag(root(H)))))
 
 
 def solve(
@@ -495,18 +507,24 @@ def most_likely(fit: Fit) -> float:
 
 
 def fitted(
-    problem: Problem, values: Mapping[str, float], states: States, steps: int = SETTINGS.steps
+    problem: Problem,
+    values: Mapping[str, float],
+    states: States,
+    steps: int = SETTINGS.steps,
+    enough: float = math.inf,
 ) -> Fit:
     """The problem's solution with the most likely process noise.
 
     First with that of the guess, then as long as less of it makes the recordings likelier.
+
+    enough  deviance, well above which the fit need not be taken to its end
     """
     if all(len(parts) == 1 for parts in problem.by_run.values()):
         return solve(problem, values, states, steps)
-    fit = solve(problem, values, states, SETTINGS.trial_steps)
+    fit = solve(problem, values, states, SETTINGS.first_steps)
     for _ in range(3):
         q = most_likely(fit)
-        if q == fit.problem.q and fit.converged:
+        if q == fit.problem.q and (fit.converged or fit.deviance > enough + SETTINGS.hopeless):
             break
         fit = solve(replace(problem, q=q), fit.values, fit.states, steps)
     smaller = [q for q in grid() if q < fit.problem.q]

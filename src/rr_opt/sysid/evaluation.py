@@ -7,9 +7,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.stats import chi2
 
-from rr_opt.sysid.candidates import evaluated
-from rr_opt.sysid.diagnosis import Misfit
+from rr_opt.sysid.candidates import Candidate, evaluated
+from rr_opt.sysid.diagnosis import Misfit, Mismatch
 from rr_opt.sysid.estimation import Fit
 from rr_opt.sysid.model import Request
 
@@ -37,6 +38,14 @@ def rms(misfits: Sequence[Misfit]) -> float:
     """In sigma, of all values."""
     every = np.concatenate([one.residuals.ravel() for one in misfits])
     return float(np.sqrt(np.nanmean(every**2)))
+
+
+def mismatch(base: Candidate) -> Mismatch:
+    """Whether the nominal model with its parameters fitted leaves more than noise."""
+    fit = base.fit
+    misfit = fit.samples + sum(e.excess for e in fit.evidences.values())
+    degrees = max(fit.samples - len(fit.problem.names), 1)
+    return Mismatch(base.excess, float(chi2.sf(misfit, degrees)))
 
 
 def evaluation(fit: Fit, values: Mapping[str, float]) -> Evaluation:

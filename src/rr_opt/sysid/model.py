@@ -18,7 +18,10 @@ from rr_opt.sysid.settings import SETTINGS
 
 if TYPE_CHECKING:
     from rr_opt.sysid.candidates import Choice
+    from rr_opt.sysid.diagnosis import Misfit, NextExperiment
     from rr_opt.sysid.estimation import Fit
+    from rr_opt.sysid.noise import Noise
+    from rr_opt.sysid.remainder import Term
 
 
 @dataclass(frozen=True)
@@ -81,18 +84,33 @@ class EffectInfo:
     forms: tuple[Form, ...]
     smooth: bool = True
     upstream: bool = False
-    form_error: float = 0.0
+    form_error: float = 0.02
 
 
 @dataclass(frozen=True)
 class Data:
-    """One recorded run: t (n,) s; values, sigma (n, channels), NaN where there are no data."""
+    """One recorded run: t (n,) s; values, sigma (n, channels), NaN where there are no data.
+
+    pushed  how strong process noise is in it, relative to other runs
+    correlation  (channels,) samples that are worth one with independent noise
+    """
 
     name: str
     t: Array
     values: Array
     sigma: Array
     held_out: bool
+    pushed: float = 1.0
+    correlation: Array | float = 1.0
+
+    @property
+    def weighted_sigma(self) -> Array:
+        """(n, channels) with which the samples, taken as independent, weigh what they are worth."""
+        return self.sigma * np.sqrt(self.correlation)
+
+    def worth(self, span: slice) -> float:
+        """Of the samples with data: as many independent ones."""
+        return float(np.sum(np.isfinite(self.values[span]).sum(axis=0) / self.correlation))
 
     @property
     def duration(self) -> float:
@@ -167,9 +185,11 @@ class Model(Protocol):
     channels        what is recorded, in order
     runs            recorded
     segment_length  s, over which the machine is simulated as well as it is known
+    correlation_time  s, after which errors of the model are independent
     parameters      of the nominal model, with what is known of each
     catalogue       the effects it knows, by name
     form_error      RMS in sigma by which machines of this kind differ from any model of them
+    inputs          channels by which an unknown input may enter, and each input in words
     """
 
     @property
@@ -179,11 +199,15 @@ class Model(Protocol):
     @property
     def segment_length(self) -> float: ...  # noqa: D102
     @property
+    def correlation_time(self) -> float: ...  # noqa: D102
+    @property
     def parameters(self) -> tuple[Quantity, ...]: ...  # noqa: D102
     @property
     def catalogue(self) -> Mapping[str, EffectInfo]: ...  # noqa: D102
     @property
     def form_error(self) -> float: ...  # noqa: D102
+    @property
+    def inputs(self) -> Mapping[str, str]: ...  # noqa: D102
 
     def initial_state(
         self, segment: Segment, effects: tuple[str, ...], values: Mapping[str, float]
@@ -232,6 +256,29 @@ class Model(Protocol):
         """Initial guesses of effects that a score test cannot see, beside a fit without them."""
         ...
 
+    def with_noise(self, noise: Sequence[Noise]) -> Model:
+        """The same machine and runs with other noise in each channel."""
+        ...
+
+    def unknown_inputs(self, fit: Fit) -> tuple[Sequence[Term], Mapping[Segment, Linearisation]]:
+        """What may push the machine that a fit lacks, as functions of what it may depend on; and
+        the fit's segments linearised in the quantities and in these functions."""
+        ...
+
     def equivalent(self, values: Mapping[str, float]) -> Mapping[str, float] | None:
         """Values that predict the same and are nearer to what was believed, if there are any."""
+        ...
+
+    def next_experiment(self, best: Fit, rival: tuple[str, Fit] | None) -> NextExperiment | None:
+        """The recording that would tell the answer from its rival, the candidate that comes next,
+        with its name; or that would narrow most the value known worst."""
+        ...
+
+    def worth(self, before: Sequence[Misfit], after: Sequence[Misfit]) -> str:
+        """What the answer is worth in the machine's own terms, as the beginning of a sentence: `the
+        simulated place was 8 mm off and is 1 mm off now; `."""
+        ...
+
+    def accuracy(self, misfits: Sequence[Misfit]) -> str:
+        """How well the corrected model predicts, in the machine's own terms, as a sentence."""
         ...

@@ -20,6 +20,9 @@ from rr_opt.sysid.estimation import Fit, Linear, bounded_minimum
 from rr_opt.sysid.model import Linearisation, Segment
 from rr_opt.sysid.settings import SETTINGS
 
+CONSTANT = "nothing"
+"""The variable of an input that is constant."""
+
 
 @dataclass(frozen=True)
 class Term:
@@ -69,6 +72,16 @@ class Dependence:
         return len(self.term.columns)
 
     @property
+    def surplus(self) -> float:
+        """Gain beyond what noise hardly ever gains; 0 if there is none."""
+        return max(self.gain - float(chi2.isf(SETTINGS.certain, self.degrees)), 0.0)
+
+    @property
+    def certain(self) -> bool:
+        """Whether noise would hardly ever gain as much."""
+        return self.surplus > 0
+
+    @property
     def p_value(self) -> float:
         """Chance of so large a gain where nothing is missing."""
         return float(chi2.sf(max(self.gain, 0.0), self.degrees))
@@ -78,6 +91,8 @@ def dependences(
     fit: Fit, terms: Sequence[Term], parts: Mapping[Segment, Linearisation]
 ) -> list[Dependence]:
     """What each term explains beside the fit; most first."""
+    if not terms:
+        return []
     problem = fit.problem
     nq = len(problem.names)
     size = next(iter(fit.states.values())).size

@@ -15,7 +15,7 @@ import numpy as np
 
 from rr_opt.array import Array
 from rr_opt.sysid.candidates import Choice
-from rr_opt.sysid.estimation import Fit, Linear, bounded_minimum
+from rr_opt.sysid.estimation import Fit, Linear, bounded_minimum, root
 from rr_opt.sysid.model import Request
 
 
@@ -97,5 +97,5 @@ class _Test:
         low, high = (end[keep] - self.u[keep] for end in self.box)
         d[keep] = bounded_minimum(H, g, low, high)
         lowered = -float(2 * self.g @ d + d @ self.H @ d)
-        log = 2 * float(np.sum(np.log(np.diag(np.linalg.cholesky(H)))))
+        log = 2 * float(np.sum(np.log(np.diag(root(H)))))
         return lowered - log + float(np.sum(np.log(self.prior[keep]))), d

@@ -12,7 +12,7 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from rr_opt.sysid.candidates import Candidate, Choice, first, fitted
+from rr_opt.sysid.candidates import Candidate, Choice, first, fitted, polished
 from rr_opt.sysid.model import Model
 from rr_opt.sysid.score_test import scores
 from rr_opt.sysid.settings import SETTINGS
@@ -32,6 +32,7 @@ class Selection:
     runs: Sequence[int]
     progress: Progress = lambda _: None
     tried: dict[tuple[Choice, ...], Candidate] = field(default_factory=dict)
+    _upstream: Sequence[tuple[tuple[Choice, ...], Mapping[str, float]]] = ()
 
     def __post_init__(self) -> None:
         self.progress("fitting the parameters")
@@ -40,32 +41,33 @@ class Selection:
     def run(self) -> Candidate:
         """Search; the candidate that was chosen."""
         self._drive()
-        while len(self.best.choices) < SETTINGS.most_effects and not self.complete(self.best):
-            before = self.best
-            self._forward()
-            self._backward()
-            if self.best is before:
-                break
-        else:
-            self._backward()
+        seen: list[Candidate] = []
+        while self.best not in seen and not self.complete(self.best):
+            seen.append(self.best)
+            if len(self.best.choices) < SETTINGS.most_effects:
+                self._forward()
+            self._backward(self._better)
         self._refine()
+        self._substitute()
+        self._polish()
+        self._backward(self.needed)
+        self.best = self._simplest()
         return self.best
 
-    def allowance(self, candidate: Candidate) -> float:
-        """Mean square in sigma that its simulation may leave and still be complete: what is
-        negligible, what machines differ from such models, and what noise leaves by chance."""
-        info = self.model.catalogue
-        rough = sum(info[name].form_error for name in candidate.effects) * self.base.excess
-        chance = 2 * math.sqrt(2 / max(candidate.fit.samples, 1))
-        return max(SETTINGS.negligible, self.model.form_error) ** 2 + rough**2 + chance
-
     def complete(self, candidate: Candidate) -> bool:
-        """Whether what it leaves is nothing."""
-        return candidate.excess**2 <= self.allowance(candidate)
+        """Whether its simulation leaves nothing: no more than is negligible, beside an effect as
+        much as is none, and than noise leaves by chance."""
+        chance = 2 * math.sqrt(2 / max(candidate.fit.samples, 1))
+        least = SETTINGS.none if candidate.choices else SETTINGS.negligible
+        return candidate.excess**2 <= least**2 + chance
 
-    def better(self, candidate: Candidate, other: Candidate) -> bool:
-        """Whether a larger candidate is preferred to one that it extends."""
+    def _better(self, candidate: Candidate, other: Candidate) -> bool:
+        """Whether a larger candidate predicts better than one that leaves something."""
         return candidate.predicts_better(other) and not self.complete(other)
+
+    def needed(self, candidate: Candidate, other: Candidate) -> bool:
+        """Whether it also accounts for most of what the other leaves."""
+        return self._better(candidate, other) and candidate.accounts(other) > SETTINGS.accounted
 
     def fitted(
         self,
@@ -77,34 +79,39 @@ class Selection:
         key = tuple(sorted(choices))
         if key not in self.tried:
             self.progress("fitting " + (" and ".join(c.name for c in key) or "the parameters"))
-            self.tried[key] = fitted(self.model, key, (parent or self.best).fit, guesses)
+            enough = min(one.fit.deviance for one in self.tried.values())
+            self.tried[key] = fitted(self.model, key, (parent or self.best).fit, guesses, enough)
         return self.tried[key]
 
     def _drive(self) -> None:
         self.progress("looking at the drive")
-        sets = [one for one in self.model.upstream() if one[0]]
-        for choices, values in sets:
+        self._upstream = [one for one in self.model.upstream() if one[0]]
+        for choices, values in self._upstream:
             one = self.fitted(choices, [values], self.base)
             if one.predicts_better(self.best) and len(one.choices) >= len(self.best.choices):
                 self.best = one
 
     def _forward(self) -> None:
-        """A step; alternatives are sought until one leaves nothing at all, as what is within the
-        tolerance may be an imitation of what would."""
+        """A step; alternatives are sought until one is settled."""
         self.progress("testing what may be missing")
         found = [*self._scored()]
-        if not self._exact(found):
+        if not self._settled(found):
             found += self._extended()
-        if not self._exact(found):
+        if not self._settled(found):
             self.progress("looking where effects without derivatives may be")
             found += self._proposed()
         best = max(found, key=lambda one: one.elpd, default=None)
-        if best and self.better(best, self.best):
+        if best and best.predicts_better(self.best):
             self.best = best
 
-    def _exact(self, found: Sequence[Candidate]) -> bool:
+    def _settled(self, found: Sequence[Candidate]) -> bool:
+        """Whether one leaves nothing and predicts better than all others of other effects, as what
+        is not may be an imitation of something that was not tried yet."""
         best = max(found, key=lambda one: one.elpd, default=None)
-        return best is not None and self.complete(best) and best.excess <= 2 * SETTINGS.negligible
+        if best is None or not self.complete(best):
+            return False
+        others = [one for one in found if one.effects != best.effects]
+        return all(best.predicts_better(one) for one in (self.best, *others))
 
     def _scored(self) -> Iterator[Candidate]:
         parent = self.best
@@ -127,13 +134,19 @@ class Selection:
         """Each effect in a fuller form."""
         parent = self.best
         for choice in parent.choices:
-            for form, own in self._forms(choice, fuller=True):
-                guesses = [
-                    {**{q: parent.fit.values[q] for q in own}, **_more(guess, own)}
-                    for guess in self.model.catalogue[choice.name].forms[form].guesses
-                ]
-                rest = [c for c in parent.choices if c is not choice]
-                yield self.fitted((*rest, Choice(choice.name, form)), guesses, parent)
+            rest = [c for c in parent.choices if c is not choice]
+            forms = [*self._forms(choice, fuller=True)]
+            if not forms:
+                continue
+            others = tuple(c.name for c in rest)
+            proposed = self.model.proposals(parent.fit, others)
+            for form, own in forms:
+                fuller = Choice(choice.name, form)
+                guesses = [guess for one, guess in proposed if one == fuller]
+                guesses = guesses or self.model.catalogue[choice.name].forms[form].guesses
+                known = {q: parent.fit.values[q] for q in own}
+                more = [{**known, **_more(guess, own)} for guess in guesses]
+                yield self.fitted((*rest, fuller), more, parent)
 
     def _proposed(self) -> Iterator[Candidate]:
         parent = self.best
@@ -150,10 +163,49 @@ class Selection:
         fuller = [one for one in self._extended() if one.predicts_better(self.best)]
         self.best = max([self.best, *fuller], key=lambda one: one.elpd)
 
-    def _backward(self) -> None:
-        """Drop effects, or parts of them, that predictions do without."""
+    def _substitute(self) -> None:
+        """Beside the rest of the answer, what else explains the drive's own recording."""
+        every = {choice for choices, _ in self._upstream for choice in choices}
+        rest = [choice for choice in self.best.choices if choice not in every]
+        if len(rest) < len(self.best.choices):
+            others = [self.fitted((*rest, *some), [values]) for some, values in self._upstream]
+            self.best = max((self.best, *others), key=lambda one: one.elpd)
+
+    def _polish(self) -> None:
+        """Fit sets that leave nothing, and are not larger than the best, once more from where whole
+        runs are simulated best: a fit in segments may have stopped in a kink of an effect without
+        derivatives."""
+        for key, one in [*self.tried.items()]:
+            near = 0 < self.best.elpd - one.elpd < SETTINGS.hopeless
+            if near and len(key) <= len(self.best.choices) and self.complete(one):
+                again = polished(one)
+                if again.elpd > one.elpd:
+                    self.tried[key] = again
+                if again.elpd > self.best.elpd:
+                    self.best = again
+
+    def alike(self) -> list[Candidate]:
+        """The candidates that predict about as well as the best."""
+        return [
+            one
+            for one in self.tried.values()
+            if one.choices
+            and not self.best.predicts_better(one)
+            and (one.effects == self.best.effects or not self.needed(self.best, one))
+        ]
+
+    def _simplest(self) -> Candidate:
+        """Of the candidates that predict about as well as the best, the one with the fewest
+        quantities."""
+        alike = [one for one in self.alike() if self.complete(one) or one is self.best]
+        return min(
+            (self.best, *alike), key=lambda one: (len(one.fit.problem.quantities), -one.elpd)
+        )
+
+    def _backward(self, needed: Callable[[Candidate, Candidate], bool]) -> None:
+        """Drop effects, or parts of them, that are not needed."""
         while self.best.choices:
-            smaller = [one for one in self._fewer(self.best) if not self.better(self.best, one)]
+            smaller = [one for one in self._fewer(self.best) if not needed(self.best, one)]
             smaller += [
                 one for one in self._simpler(self.best) if not self.best.predicts_better(one)
             ]

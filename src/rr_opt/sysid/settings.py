@@ -18,11 +18,25 @@ class Settings:
     stride                in scales; a step in a quantity is no longer
     tolerance             of the deviance, nats, at which a fit has converged
     trial_runs            those explained worst, on which initial guesses are tried
-    trial_steps           Gauss-Newton steps for an initial guess before the best is taken further
+    trial_steps           Gauss-Newton steps of the better half of the guesses, of the better half
+                          of those, and so on
+    first_steps           of a fit, before the process noise is estimated
+    hopeless              of the deviance; a fit so far above another one is not taken to its end
     steps                 at most, for a fit
     descent_steps         at most, for a fit with less process noise
-    negligible            RMS in sigma beyond the noise: what remains is nothing
+    negligible            RMS in sigma beyond the noise that the nominal model may leave
+    none                  the same beside an effect, from which machines differ
     small                 share of the first excess misfit: what remains is small
+    accounted             share of what is left without an effect that it has to account for
+    slow                  Hz; what moves slower may be the machine, what is faster is noise
+    imitated              in units of an effect's form error: share of what an unknown input
+                          explains that is left with the effects, at which they are as likely an
+                          imitation as not
+    unpredicted           in units of an effect's form error: share of the misfit in recordings that
+                          were not fitted, that is left with the effects, with the same meaning
+    misstated             relative; a level of the noise that differs by more is not as stated
+    correlated            as many samples worth one are more than white noise has by chance
+    certain               chance of so much by noise, below which an unknown input is there
     most_effects          that are looked for at once
     singles, pairs        candidates of a score test that are fitted
     evidence              nats by which an effect has to improve the predictions of recordings
@@ -41,11 +55,21 @@ class Settings:
     stride: float = 3.0
     tolerance: float = 0.05
     trial_runs: int = 2
-    trial_steps: int = 4
+    trial_steps: tuple[int, ...] = (1, 3)
+    first_steps: int = 4
+    hopeless: float = 200.0
     steps: int = 15
     descent_steps: int = 8
     negligible: float = 0.1
+    none: float = 0.2
     small: float = 0.01
+    accounted: float = 0.5
+    slow: float = 2.0
+    imitated: float = 10.0
+    unpredicted: float = 7.5
+    misstated: float = 0.1
+    correlated: float = 1.5
+    certain: float = 1e-6
     most_effects: int = 3
     singles: int = 4
     pairs: int = 3

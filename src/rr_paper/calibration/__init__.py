@@ -1,1 +1,1 @@
-"""The paper's prototype estimated from its nine measured averages, and models held against them."""
+"""The paper's prototype estimated from its nine measured averages, and models compared on them."""

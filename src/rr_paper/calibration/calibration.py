@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
 
 import numpy as np
-from scipy.stats import chi2
 
 from rr_opt.array import Array
 from rr_opt.files.problem_file import read_problem
+from rr_opt.report.document import Document, Figure
+from rr_opt.report.result import Result
 from rr_paper.calibration.comparison import Assessment, assess
 from rr_paper.calibration.fit import Effort, Estimator, Fit, estimator
 from rr_paper.calibration.intervals import Coverage, Posterior, Profile, coverage, profiles, sample
@@ -17,6 +20,8 @@ from rr_paper.calibration.likelihood import Data, measured
 from rr_paper.calibration.models import DRY, MODELS, READINGS, VISCOUS, Model, Reading
 from rr_paper.calibration.unknowns import UNKNOWNS, Unknown, shares
 from rr_paper.publication import COLUMNS, Column
+from rr_paper.report.calibration import CAPTIONS, document
+from rr_paper.report.calibration_record import record, tables
 
 _CHEAP = Effort(log2_size=15, slices=12, values=25, starts=2, steps=20, sets=200)
 _MEDIUM = Effort(log2_size=13, slices=8, values=0, starts=0, steps=15, sets=0)
@@ -35,8 +40,6 @@ _PINNED = 0.25
 
 ASSUMED = ("a1", "a2", "b", "k")
 """The unknowns for which the shipped robot file assumes a value."""
-JOINT_LEVEL = float(chi2.ppf(0.95, len(ASSUMED)))
-"""9.49: how far the deviance of all four together may rise, if there were many data."""
 
 
 def effort(model: Model) -> Effort:
@@ -91,14 +94,22 @@ class Interval:
             return "not identifiable"
         return "pinned down" if self.share < _PINNED else "narrowed"
 
+    def profile_text(self, profile: Profile) -> str:
+        """A profile's interval; `open` where the box ends it."""
+        below, above = profile.low <= 0, profile.high >= 1
+        if below and above:
+            return "whole box"
+        open_side = " (open below)" if below else " (open above)" if above else ""
+        return self.unknown.span(profile.ends(self.unknown)) + open_side
+
     def contains(self, value: float) -> bool:
         """Whether a value is in the posterior's interval and in the profile's by Student's t."""
         both = (self.posterior, self.profile.ends(self.unknown))
         return all(low - 1e-12 <= value <= high + 1e-12 for low, high in both)
 
 
-@dataclass(frozen=True)
-class Calibration:
+@dataclass(frozen=True, repr=False)
+class Calibration(Result):
     """What the nine rows say.
 
     assessments      by model and column
@@ -109,12 +120,34 @@ class Calibration:
     alternatives     other readings of J20/J10
     """
 
+    RECORD, CAPTIONS = "calibration.json", CAPTIONS
+    OTHERS = (
+        *("intervals.csv", "models.csv", "predictions.csv", "profiles.csv", "posterior.csv"),
+        *("readings.csv", "coverage.csv"),
+    )
+
     assessments: Mapping[tuple[str, Column], Assessment]
     posterior: Mapping[Column, Posterior]
     normal_profiles: Mapping[Column, tuple[Profile, ...]]
     shipped: Mapping[Column, Shipped]
     coverage: Coverage
     alternatives: tuple[Alternative, ...]
+
+    def document(self, figures: Sequence[Figure] = ()) -> Document:
+        """Intervals, models, and what follows."""
+        return document(self, figures)
+
+    def record(self, files: Sequence[Path] = ()) -> dict[str, Any]:  # noqa: ARG002
+        """The content of calibration.json."""
+        return record(self)
+
+    def _tables(self) -> dict[str, str]:
+        return tables(self)
+
+    def _drawn(self) -> dict[str, str]:
+        from rr_paper.report.calibration_figures import draw
+
+        return draw(self)
 
     def intervals(self) -> list[Interval]:
         """Of every unknown of the viscous model, for each column."""
@@ -133,6 +166,17 @@ class Calibration:
                     )
                 )
         return found
+
+    def shipped_outside(self, column: Column) -> list[str]:
+        """Symbols of the unknowns for which the shipped robot's value is outside its interval."""
+        values = shipped_values()
+        return [
+            one.unknown.symbol
+            for one in self.intervals()
+            if one.column == column
+            and one.unknown.name in values
+            and not one.contains(values[one.unknown.name])
+        ]
 
     def draws(self, column: Column, name: str) -> Array:
         """Of one unknown of the viscous model, as shares of its box."""

@@ -50,6 +50,10 @@ class AICc:
             return None
         return self.deviance + 2 * self.unknowns + self.correction
 
+    def __str__(self) -> str:
+        """To a tenth; `undefined` where there are too few rows."""
+        return "undefined" if self.value is None else f"{self.value:.1f}"
+
 
 @dataclass(frozen=True)
 class Bootstrap:

@@ -139,6 +139,8 @@ def _split_rhat(points: Array) -> float:
 
 LEVEL = float(chi2.ppf(0.95, 1))
 """3.84."""
+JOINT_LEVEL = float(chi2.ppf(0.95, 4))
+"""9.49: how far the deviance of four unknowns together may rise, if there were many data."""
 
 _ROUNDS = 3
 """How often the results are tried as starts at the neighbouring values."""

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rr_opt.array import Array
+from rr_opt.formatting import number
 
 
 @dataclass(frozen=True)
@@ -48,6 +49,16 @@ class Unknown:
     def shown(self, value: ArrayLike) -> Array:
         """The value in `shown_unit`."""
         return self.scale * np.asarray(value, float)
+
+    def span(self, ends: tuple[float, float], digits: int = 2) -> str:
+        """`-28 to 5 mm`; ends in SI."""
+        low, high = (number(float(self.shown(end)), digits) for end in ends)
+        return f"{low} to {high} {self.shown_unit}"
+
+    @property
+    def box(self) -> str:
+        """The box as text."""
+        return self.span((self.low, self.high))
 
 
 _ALL = (

@@ -5,9 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
-from rr_opt.cli.options import json_option, out_option
+from rr_opt.cli.options import json_option, out_option, results_folder
+from rr_opt.cli.show import show
 from rr_opt.cli.steps import Steps
 
 
@@ -22,17 +21,9 @@ def calibrate(
     """
     with Steps() as steps:
         steps("starting")
-        from rr_opt.report.archive import folder_for_results, strict_json
-
-        folder = folder_for_results(out or Path("out") / "calibration")
-        from rr_opt.report.text import terminal
+        folder = results_folder(out, "calibration")
         from rr_paper.calibration.calibration import calibrate as compute
-        from rr_paper.report.calibration import document, record, write_calibration
 
         found = compute(steps)
-        steps("files")
-        written = write_calibration(found, folder)
-    if json:
-        typer.echo(strict_json(record(found)), nl=False)
-    else:
-        typer.echo(terminal(document(found, {}), written), nl=False)
+        files = found.save(folder, progress=steps)
+    show(found, files, json=json)

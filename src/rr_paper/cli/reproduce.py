@@ -5,9 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
-from rr_opt.cli.options import Figures, json_option, out_option
+from rr_opt.cli.options import Figures, json_option, out_option, results_folder
+from rr_opt.cli.show import show
 from rr_opt.cli.steps import Steps
 
 
@@ -23,24 +22,10 @@ def reproduce(
     with Steps() as steps:
         steps("reading")
         from rr_opt.api.load import shipped
-        from rr_opt.report.archive import folder_for_results, strict_json
 
-        problem = shipped()
-        folder = folder_for_results(out or Path("out") / "paper")
-        from rr_opt.report.text import terminal
-        from rr_paper.report.reproduction import document, record, write_reproduction
-        from rr_paper.reproduction import reproduce as compute
+        problem, folder = shipped(), results_folder(out, "paper")
+        from rr_paper import reproduction
 
-        found = compute(problem, steps)
-        steps("files")
-        written = write_reproduction(found, problem.sha256, folder, figures=figures)
-    if found.mujoco is None:
-        typer.echo(
-            "MuJoCo is not installed, so it could not be used as a further check of the signs of "
-            "equation (3). Install it with `pip install 'rr-opt[lab]'`.",
-            err=True,
-        )
-    if json:
-        typer.echo(strict_json(record(found, problem.sha256)), nl=False)
-    else:
-        typer.echo(terminal(document(found, problem.sha256, {}), written), nl=False)
+        found = reproduction.reproduce(problem, steps)
+        files = found.save(folder, figures=figures, progress=steps)
+    show(found, files, json=json)

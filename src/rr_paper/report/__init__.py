@@ -1,1 +1,1 @@
-"""What the reproduction and the calibration tell."""
+"""The reproduction and the calibration as documents, records and figures."""

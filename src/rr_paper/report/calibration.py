@@ -1,52 +1,27 @@
-"""The calibration as a document, as calibration.json and as CSV files."""
+"""The calibration as a document."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from pathlib import Path
-from typing import Any
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-import numpy as np
-
-from rr_opt.answers.quantities import number
-from rr_opt.report.archive import remove, write_json, write_text
-from rr_opt.report.document import (
-    Badge,
-    Document,
-    Figure,
-    Gallery,
-    Section,
-    Table,
-    Tone,
-    csv_text,
-    table,
-)
-from rr_opt.report.webpage import PAGE, write_page
+from rr_opt.formatting import number
+from rr_opt.report.document import Badge, Document, Figure, Gallery, Section, Table, Tone, table
+from rr_opt.report.prose import prose
 from rr_opt.version import __version__
-from rr_paper.calibration.calibration import Calibration
-from rr_paper.calibration.comparison import Assessment
-from rr_paper.calibration.likelihood import measured
+from rr_paper.calibration.intervals import JOINT_LEVEL
 from rr_paper.calibration.models import DRY, MODELS, READINGS, VISCOUS
-from rr_paper.calibration.unknowns import UNKNOWNS, values
-from rr_paper.publication import CITATION, COLUMNS, ROWS, T_POINT, Row
-from rr_paper.report.conclusions import (
-    IF_MEASURED,
-    SHORT,
-    aicc_text,
-    box,
-    conclusions,
-    profile_span,
-    shipped_text,
-    span,
-    valley,
-    verdict,
-)
+from rr_paper.calibration.unknowns import UNKNOWNS
+from rr_paper.publication import CITATION, COLUMNS, T_POINT, Column
 
-RECORD = "calibration.json"
-_LOG = ", flat in its logarithm"
+if TYPE_CHECKING:
+    from rr_paper.calibration.calibration import Calibration
+
+_SHORT: dict[Column, str] = {"mean": "first column", "other": "v_exp"}
 _TONES: dict[str, Tone] = {"pinned down": "good", "narrowed": "note", "not identifiable": "warn"}
 
-FIGURES = {
+CAPTIONS = {
     "unknowns": (
         "What the nine averages say about each unknown",
         "A histogram of the posterior and profile likelihoods for each unknown.",
@@ -67,32 +42,61 @@ FIGURES = {
         "interval should contain the truth in 95 of 100; the band is sampling error.",
     ),
 }
-"""Title, alternative text and caption of each."""
 
 
-def document(found: Calibration, figures: Mapping[str, str]) -> Document:
-    """The page and the text for a terminal; figures: SVG texts by name, or none."""
+@dataclass(frozen=True)
+class Conclusions:
+    """The comparison in a headline, what follows from it, what the rows determine instead of single
+    values, and whether the shipped robot's values are inside."""
+
+    verdict: str
+    follows: tuple[str, ...]
+    valleys: tuple[str, ...]
+    shipped: tuple[str, ...]
+
+
+def conclusions(found: Calibration) -> Conclusions:
+    """What the numbers say."""
+    left_out = {key: one.left_out_deviance for key, one in found.assessments.items()}
+    helps = all(left_out[DRY, column] < left_out[VISCOUS, column] for column in COLUMNS)
+    verdict = (
+        "Viscous friction alone fits badly, dry friction helps; nine averages prove neither"
+        if helps
+        else "The nine averages cannot distinguish the models"
+    )
+    texts = prose(
+        "rr_paper.report",
+        "calibration.md",
+        found=found,
+        unknowns=UNKNOWNS,
+        readings=READINGS,
+        joint_level=JOINT_LEVEL,
+    )
+    parts = (texts[key].paragraphs for key in ("conclusions", "valleys", "shipped"))
+    return Conclusions(verdict, *parts)
+
+
+def document(found: Calibration, figures: Sequence[Figure]) -> Document:
+    """The page and the text for a terminal."""
+    drawn = {figure.name: figure for figure in figures}
+    said = conclusions(found)
 
     def gallery(name: str) -> Section:
-        title, alt, caption = FIGURES[name]
-        shown = (Figure(name, title, figures[name], alt, caption),) if figures else ()
-        return Section("", (Gallery(shown, wide=True),))
+        return Section("", (Gallery((drawn[name],) if drawn else (), wide=True),))
 
-    valleys = (f"{IF_MEASURED[c].capitalize()}: {valley(found, c)}" for c in COLUMNS)
-    shipped = (shipped_text(found, column) for column in COLUMNS)
     return Document(
         "",
         "calibration of the paper's prototype",
-        verdict(found),
+        said.verdict,
         f"Estimated from the nine measured averages of {CITATION}. Each interval there comes from "
         f"three runs: half its width is {T_POINT:.2f} standard errors, and a row follows Student's "
         "t with 2 degrees of freedom, not the normal distribution.",
         (
             gallery("unknowns"),
-            Section("95 % intervals, viscous friction", (_interval_table(found), *valleys)),
+            Section("95 % intervals, viscous friction", (_interval_table(found), *said.valleys)),
             gallery("predictions"),
             Section("Models", (_model_table(found),)),
-            Section("What follows, and what does not", (*conclusions(found), *shipped)),
+            Section("What follows, and what does not", (*said.follows, *said.shipped)),
             gallery("coverage"),
             Section("The boxes, and the reasons for them", (_box_table(),), brief=False),
             Section("Other readings of J20/J10", (_reading_table(found),), brief=False),
@@ -107,9 +111,9 @@ def _interval_table(found: Calibration) -> Table:
     return table(
         head,
         [
-            (one.unknown.symbol, SHORT[one.column], box(one.unknown),
-             span(one.unknown, one.posterior), profile_span(one, one.profile),
-             profile_span(one, one.normal), Badge(one.verdict, _TONES[one.verdict]))
+            (one.unknown.symbol, _SHORT[one.column], one.unknown.box,
+             one.unknown.span(one.posterior), one.profile_text(one.profile),
+             one.profile_text(one.normal), Badge(one.verdict, _TONES[one.verdict]))
             for one in found.intervals()
         ],
     )  # fmt: skip
@@ -121,9 +125,9 @@ def _model_table(found: Calibration) -> Table:
     return table(
         head,
         [
-            (one.model.words, SHORT[column], len(one.model.unknowns),
+            (one.model.words, _SHORT[column], len(one.model.unknowns),
              f"{one.student.deviance:.1f}", f"{one.normal.deviance:.1f}", one.aicc.freedom,
-             aicc_text(one.aicc), f"{one.left_out_deviance:.0f}", aicc_text(one.aicc_table3))
+             str(one.aicc), f"{one.left_out_deviance:.0f}", str(one.aicc_table3))
             for (_, column), one in found.assessments.items()
         ],
     )  # fmt: skip
@@ -133,11 +137,7 @@ def _box_table() -> Table:
     return table(
         ("Unknown", "Box", "Why"),
         [
-            (
-                f"{one.symbol}: {one.words}",
-                box(one) + (", flat in its logarithm" * one.log),
-                one.why,
-            )
+            (f"{one.symbol}: {one.words}", one.box + (", flat in its logarithm" * one.log), one.why)
             for one in UNKNOWNS.values()
         ],
     )
@@ -165,7 +165,7 @@ def _reading_table(found: Calibration) -> Table:
 
 def _sampling(found: Calibration) -> tuple[str, str]:
     samples = ", ".join(
-        f"{len(one.points)} draws with split R-hat {one.rhat:.2f} ({SHORT[column]})"
+        f"{len(one.points)} draws with split R-hat {one.rhat:.2f} ({_SHORT[column]})"
         for column, one in found.posterior.items()
     )
     needed = ", ".join(number(float(rise), 2) for rise in found.coverage.needed)
@@ -174,209 +174,3 @@ def _sampling(found: Calibration) -> tuple[str, str]:
         f"Rises of the deviance that 95 % of the truths of {found.coverage.sets} simulated data "
         f"sets stay below, in the order of the unknowns: {needed}",
     )
-
-
-def write_calibration(found: Calibration, folder: Path) -> list[Path]:
-    """Write everything, after removing the files of an earlier run; returns the files."""
-    # Here and not above, so that matplotlib is loaded only now.
-    from rr_paper.report.calibration_figures import draw
-
-    texts = tables(found)
-    remove(folder, (RECORD, PAGE, *texts, *(f"{name}.svg" for name in FIGURES)))
-    written = [write_json(folder / RECORD, record(found))]
-    written += [write_text(folder / name, text) for name, text in texts.items()]
-    return write_page(folder, document(found, draw(found)), written)
-
-
-_DRAWS = 1000
-"""Draws of each posterior that are written."""
-
-
-def record(found: Calibration) -> dict[str, Any]:
-    """The content of calibration.json."""
-    covered = found.coverage
-    return {
-        "verdict": verdict(found),
-        "conclusions": conclusions(found),
-        "t_of_the_intervals": T_POINT,
-        "reading": READINGS[0].words,
-        "unknowns": [
-            {"name": one.name, "unit": one.unit, "box": [one.low, one.high],
-             "flat_in": "logarithm" if one.log else "value", "why": one.why}
-            for one in UNKNOWNS.values()
-        ],
-        "intervals": [
-            {"unknown": one.unknown.name, "column": one.column, "posterior": list(one.posterior),
-             "median": one.median, "profile_student": list(one.profile.ends(one.unknown)),
-             "profile_normal": list(one.normal.ends(one.unknown)), "share_of_box": one.share,
-             "verdict": one.verdict}
-            for one in found.intervals()
-        ],
-        "models": [
-            {"model": name, "column": column, "words": one.model.words, "best": _best(one),
-             **_scores(one),
-             "profiles": {
-                 unknown: list(profile.ends(UNKNOWNS[unknown]))
-                 for unknown, profile in zip(one.model.profiled, one.profiles, strict=True)
-             },
-             "made": {"sets": one.bootstrap.sets, "as_bad": one.bootstrap.as_bad,
-                      "gaining_as_much": one.bootstrap.gaining} if one.bootstrap else None}
-            for (name, column), one in found.assessments.items()
-        ],
-        "posterior": {
-            column: {"draws": len(one.points), "split_rhat": one.rhat,
-                     "library_effective_points": one.library_weight}
-            for column, one in found.posterior.items()
-        },
-        "shipped": {
-            column: {"values": one.values, "rise": one.rise, "amplitude": one.amplitude}
-            for column, one in found.shipped.items()
-        },
-        "coverage": {
-            "sets": covered.sets,
-            "unknowns": list(MODELS[VISCOUS].unknowns),
-            "posterior": covered.posterior.tolist(),
-            "profile_student": covered.profile["student"].tolist(),
-            "profile_normal": covered.profile["normal"].tolist(),
-            "rise_needed": covered.needed.tolist(),
-        },
-        "readings": [
-            {"reading": one.reading.words, "model": one.model.name, "column": one.column,
-             "deviance": one.student.deviance,
-             "shipped_rise": one.shipped.rise if one.shipped else None}
-            for one in found.alternatives
-        ],
-        "version": __version__,
-    }  # fmt: skip
-
-
-def _best(one: Assessment) -> dict[str, float]:
-    """The unknowns of the best fit, SI."""
-    best = values(one.model.unknowns, one.student.point[None])
-    return {name: float(value[0]) for name, value in best.items()}
-
-
-def _scores(one: Assessment) -> dict[str, float | None]:
-    return {
-        "deviance": one.student.deviance,
-        "chi_square": one.normal.deviance,
-        "degrees_of_freedom": one.aicc.freedom,
-        "aicc": one.aicc.value,
-        "aicc_normal": one.aicc_normal.value,
-        "table3_deviance": one.table3.deviance,
-        "table3_aicc": one.aicc_table3.value,
-        "left_out_deviance": one.left_out_deviance,
-    }
-
-
-_Rows = list[dict[str, Any]]
-
-
-def tables(found: Calibration) -> dict[str, str]:
-    """File name -> CSV text."""
-    rows: dict[str, _Rows] = {
-        "intervals.csv": _interval_rows(found),
-        "models.csv": _model_rows(found),
-        "predictions.csv": _prediction_rows(found),
-        "profiles.csv": _profile_rows(found),
-        "posterior.csv": _posterior_rows(found),
-        "readings.csv": [
-            {"about": one.reading.about, "by": one.reading.by,
-             "spread": one.reading.spread if one.reading.by == "loads" else None,
-             "model": one.model.name, "column": one.column, "deviance": one.student.deviance}
-            for one in found.alternatives
-        ],
-        "coverage.csv": [
-            {"unknown": name, "sets": found.coverage.sets,
-             "posterior": found.coverage.posterior[i],
-             "profile_student": found.coverage.profile["student"][i],
-             "profile_normal": found.coverage.profile["normal"][i],
-             "rise_needed": found.coverage.needed[i]}
-            for i, name in enumerate(MODELS[VISCOUS].unknowns)
-        ],
-    }  # fmt: skip
-    return {
-        name: csv_text(list(here[0]), (list(row.values()) for row in here), digits=6)
-        for name, here in rows.items()
-    }
-
-
-def _interval_rows(found: Calibration) -> _Rows:
-    return [
-        {"unknown": one.unknown.name, "unit": one.unknown.unit, "column": one.column,
-         **_ends("box", (one.unknown.low, one.unknown.high)),
-         "posterior_low": one.posterior[0], "posterior_median": one.median,
-         "posterior_high": one.posterior[1],
-         **_ends("profile", one.profile.ends(one.unknown)),
-         **_ends("profile_normal", one.normal.ends(one.unknown)),
-         "share_of_box": one.share, "verdict": one.verdict}
-        for one in found.intervals()
-    ]  # fmt: skip
-
-
-def _ends(name: str, interval: tuple[float, float]) -> dict[str, float]:
-    return {f"{name}_low": interval[0], f"{name}_high": interval[1]}
-
-
-def _model_rows(found: Calibration) -> _Rows:
-    rows = []
-    for (name, column), one in found.assessments.items():
-        boot, best = one.bootstrap, _best(one)
-        rows.append(
-            {"model": name, "column": column, "unknowns": len(one.model.unknowns), **_scores(one),
-             "sets_made": boot.sets if boot else None,
-             "sets_as_bad": boot.as_bad if boot else None,
-             "sets_gaining_as_much": boot.gaining if boot else None,
-             **{f"best_{unknown}": best.get(unknown) for unknown in UNKNOWNS}}
-        )  # fmt: skip
-    return rows
-
-
-def _prediction_rows(found: Calibration) -> _Rows:
-    rows = []
-    for (name, column), one in found.assessments.items():
-        data = measured(column)
-        z = one.student.z(data)
-        for i, row in enumerate(ROWS):
-            rows.append(
-                {"model": name, "column": column, "row": _label(row), "ratio": row.ratio,
-                 "period": row.period, "amplitude": row.amplitude, "measured": data.speed[i],
-                 "half_width": row.half_width, "standard_error": data.error[i],
-                 "predicted": one.student.speeds[i], "z": z[i], "z_left_out": one.left_out[i]}
-            )  # fmt: skip
-    return rows
-
-
-def _label(row: Row) -> str:
-    if row.amplitude is None:
-        return f"Table 2, ratio {row.ratio:g}"
-    return f"Table 3, T = {row.period:g} s, α = {row.amplitude:g}"
-
-
-def _profile_rows(found: Calibration) -> _Rows:
-    rows = []
-    for (name, column), one in found.assessments.items():
-        profiles = {"student": one.profiles}
-        if name == VISCOUS:
-            profiles["normal"] = found.normal_profiles[column]
-        for law, of in profiles.items():
-            for unknown, profile in zip(one.model.profiled, of, strict=True):
-                at = UNKNOWNS[unknown].value(profile.grid)
-                rows += [
-                    {"model": name, "column": column, "law": law, "unknown": unknown, "value": x,
-                     "rise": rise}
-                    for x, rise in zip(at, profile.rise, strict=True)
-                ]  # fmt: skip
-    return rows
-
-
-def _posterior_rows(found: Calibration) -> _Rows:
-    rows = []
-    for column, sample in found.posterior.items():
-        chosen = np.linspace(0, len(sample.points) - 1, _DRAWS).astype(int)
-        at = values(MODELS[VISCOUS].unknowns, sample.points[chosen])
-        at["deviance"] = sample.deviance[chosen]
-        rows += [
-            {"column": column, **{name: of[i] for name, of in at.items()}} for i in range(_DRAWS)
-        ]
-    return rows

@@ -20,8 +20,8 @@ from rr_opt.report.figures.style import (
     styled,
     svg,
 )
-from rr_paper.calibration.calibration import Calibration, Coverage, Interval, shipped_values
-from rr_paper.calibration.intervals import LEVEL
+from rr_paper.calibration.calibration import Calibration, Interval, shipped_values
+from rr_paper.calibration.intervals import LEVEL, Coverage
 from rr_paper.calibration.likelihood import measured
 from rr_paper.calibration.models import MODELS, VISCOUS
 from rr_paper.calibration.unknowns import UNKNOWNS

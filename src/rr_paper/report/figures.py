@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -11,8 +12,8 @@ from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
 
-from rr_opt.answers.quantities import number
 from rr_opt.array import Array
+from rr_opt.formatting import number
 from rr_opt.report.figures.path import along_travel
 from rr_opt.report.figures.style import (
     BACKWARD,
@@ -34,9 +35,11 @@ from rr_paper.consistency import QUESTIONS, Consistency, Question
 from rr_paper.equation3 import CORRECTED, PRINTED
 from rr_paper.gaits import PeriodLaw, Turning
 from rr_paper.publication import ANGLE_LIMIT, RATE_LIMIT, Row
-from rr_paper.reproduction import Reproduction
 from rr_paper.signs import Comparison
 from rr_paper.tables import AMPLITUDES, RecomputedRow, SpeedSurface, Start, Tables
+
+if TYPE_CHECKING:
+    from rr_paper.reproduction import Reproduction
 
 _THREE = (FORWARD, PLATFORM1, BACKWARD)
 """Colours of three rows or circles."""

@@ -1,27 +1,21 @@
-"""The reproduction as a document, a record and CSV files."""
+"""The reproduction as a document, and its curves as CSV."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from pathlib import Path
-from typing import Any
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rr_opt.report.archive import remove, write_json, write_text
-from rr_opt.report.document import Document, Figure, Gallery, Section, csv_text
-from rr_opt.report.text import markdown
-from rr_opt.report.webpage import PAGE, write_page
-from rr_opt.version import __version__
+from rr_opt.report.document import Document, Figure, Gallery, Section, csv_text, versions
 from rr_paper.publication import CITATION, RATE_LIMIT
-from rr_paper.report.audit import Finding
-from rr_paper.report.audit_gaits import findings
-from rr_paper.reproduction import Reproduction
+from rr_paper.report.audit import findings
 from rr_paper.tables import SpeedSurface
 
-AUDIT, RECORD = "audit.md", "reproduce.json"
+if TYPE_CHECKING:
+    from rr_paper.reproduction import Reproduction
 
-FIGURES = {
+CAPTIONS = {
     "figure3": (
         "Beside Fig. 3: a start from rest",
         "The path of the joint from rest, and the average speed rising to its steady value.",
@@ -62,23 +56,20 @@ FIGURES = {
         "p by Student's t of three runs. No definition of J20/J10 stands out.",
     ),
 }
-"""Title, alternative text and caption of each."""
 
 
-def document(found: Reproduction, sha256: str, figures: Mapping[str, str]) -> Document:
-    """The page, its Markdown and the text for a terminal; figures: SVG texts by name, or none."""
-    rows = found.tables.rows
-    audit = {
+def document(found: Reproduction, figures: Sequence[Figure]) -> Document:
+    """The page, its Markdown and the text for a terminal."""
+    rows, audit = found.tables.rows, findings(found)
+    drawn = {figure.name: figure for figure in figures}
+    sections = {
         one.key: Section(one.title, (one.finding, *one.sentences, one.table), brief=False)
-        for one in findings(found)
+        for one in audit
     }
 
     def gallery(*names: str, wide: bool = False) -> Section:
-        shown = []
-        for name in names if figures else ():
-            title, alt, caption = FIGURES[name]
-            shown.append(Figure(name, title, figures[name], alt, caption))
-        return Section("", (Gallery(tuple(shown), wide),), brief=False)
+        shown = tuple(drawn[name] for name in names if name in drawn)
+        return Section("", (Gallery(shown, wide),), brief=False)
 
     return Document(
         "",
@@ -88,37 +79,15 @@ def document(found: Reproduction, sha256: str, figures: Mapping[str, str]) -> Do
         f"{sum(one.within_mean for one in rows)} of {len(rows)} measured averages the model's "
         "speed is within their interval; Table 2's amplitude and the friction were fitted to them.",
         (
-            Section("Findings", tuple(f"{one.title}. {one.finding}" for one in findings(found))),
-            audit.pop("columns"),
+            Section("Findings", tuple(f"{one.title}. {one.finding}" for one in audit)),
+            sections.pop("columns"),
             gallery("figure4", "figure5", wide=True),
             gallery("figure3", "signs", "figure6", "period"),
             gallery("readings"),
-            *audit.values(),
+            *sections.values(),
         ),
-        footer=(CITATION, f"rr-opt {__version__}", f"input SHA-256 `{sha256}`"),
+        footer=(CITATION, *versions(found.sha256)),
     )
-
-
-def record(found: Reproduction, sha256: str) -> dict[str, Any]:
-    """The content of reproduce.json: the tables of the audit, in the units of their heads."""
-    return {
-        "status": "reproduced",
-        "message": document(found, sha256, {}).lead,
-        "paper": CITATION,
-        "mujoco_speed": found.mujoco,
-        "sections": {one.key: _section_record(one) for one in findings(found)},
-        "version": __version__,
-        "input_sha256": sha256,
-    }
-
-
-def _section_record(one: Finding) -> dict[str, Any]:
-    return {
-        "title": one.title,
-        "finding": one.finding,
-        "sentences": list(one.sentences),
-        "rows": one.table.records,
-    }
 
 
 def curves(found: Reproduction) -> dict[str, str]:
@@ -157,30 +126,3 @@ def _surface(surface: SpeedSurface, every: int) -> str:
         for i in range(0, len(surface.amplitude), 5)
     ]  # fmt: skip
     return csv_text(head, rows)
-
-
-def write_reproduction(
-    found: Reproduction, sha256: str, folder: Path, *, figures: bool
-) -> list[Path]:
-    """Write everything, after removing the files of an earlier run; returns the files.
-
-    The table of each finding goes to a CSV file; that of the columns holds Tables 2 and 3.
-    """
-    texts = curves(found)
-    for one in findings(found):
-        name = "tables.csv" if one.key == "columns" else f"audit-{one.key}.csv"
-        texts[name] = one.table.csv(digits=9)
-    remove(folder, (PAGE, AUDIT, RECORD, *texts, *(f"{name}.svg" for name in FIGURES)))
-    drawn: dict[str, str] = {}
-    if figures:
-        # Here and not above, so that matplotlib is not loaded without figures.
-        from rr_paper.report.figures import draw
-
-        drawn = draw(found)
-    page = document(found, sha256, drawn)
-    written = [
-        write_text(folder / AUDIT, markdown(page)),
-        write_json(folder / RECORD, record(found, sha256)),
-        *(write_text(folder / name, text) for name, text in texts.items()),
-    ]
-    return write_page(folder, page, written) if figures else written

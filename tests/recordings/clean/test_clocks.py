@@ -4,14 +4,24 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
+from rr_opt.model.experiment import Recording
 from rr_opt.model.gait import SineGait
-from rr_opt.recordings.clock_fit import against_command, command_notices, start_notices
+from rr_opt.recordings.clock_fit import against_command
+from rr_opt.recordings.nuisances import command
+from rr_opt.recordings.nuisances.evidence import Evidence
 from rr_opt.recordings.readers.servo_log import ServoLog
 from rr_opt.recordings.servo_clock import against_log, log_notices
 
 GAIT = SineGait(0.7, 1.1, 0.1)
 T = np.arange(0, 30, 0.01)
 COUNT = np.radians(300) / 1024
+
+
+def notices(phi):
+    """Of an angle against its command."""
+    still = np.zeros(len(T))
+    given = Evidence(Recording.of(T, x=still, y=still, psi=still, phi=phi), None, GAIT)
+    return list(command.LOOK(given))
 
 
 @pytest.mark.parametrize("memory", [0.0, 0.7])
@@ -75,14 +85,14 @@ def test_a_motion_that_only_repeats_leaves_whole_periods_open_and_the_longest_ov
 def test_a_lag_is_told_in_milliseconds_and_said_to_be_one_thing_with_a_clock():
     rng = np.random.default_rng(4)
     phi = GAIT.angle(T - 0.038) + rng.normal(0, 3e-3, len(T))
-    (doubt,) = command_notices(against_command(T, phi, GAIT), from_rest=False, period=GAIT.period)
+    (doubt,) = notices(phi)
     assert "phi lags its command by 38" in doubt
     assert "one thing" in doubt
 
 
 def test_a_lead_is_the_clock_s():
     phi = GAIT.angle(T + 0.02) + np.random.default_rng(6).normal(0, 3e-3, len(T))
-    (doubt,) = command_notices(against_command(T, phi, GAIT), from_rest=False, period=GAIT.period)
+    (doubt,) = notices(phi)
     assert "phi leads its command by 20" in doubt
     assert "servo that is late" not in doubt
 
@@ -90,12 +100,9 @@ def test_a_lead_is_the_clock_s():
 def test_no_lag_is_told_where_there_is_none_and_degrees_are_recognised():
     rng = np.random.default_rng(5)
     phi = GAIT.angle(T) + rng.normal(0, 3e-3, len(T))
-    fit = against_command(T, phi, GAIT)
-    assert not list(command_notices(fit, from_rest=False, period=GAIT.period))
-    told = command_notices(
-        against_command(T, np.degrees(phi), GAIT), from_rest=False, period=GAIT.period
-    )
-    assert any("degrees for radians" in doubt for doubt in told)
+    assert not notices(phi)
+    (doubt,) = notices(np.degrees(phi))
+    assert "one of them in degrees" in doubt
 
 
 def test_what_does_not_move_has_no_clock():
@@ -105,11 +112,5 @@ def test_what_does_not_move_has_no_clock():
 
 def test_a_sign_the_other_way_round_is_half_a_period():
     phi = 0.2 - GAIT.angle(T) + np.random.default_rng(7).normal(0, 3e-3, len(T))
-    fit = against_command(T, phi, GAIT)
-    (doubt,) = command_notices(fit, from_rest=False, period=GAIT.period)
-    assert "the other sign" in doubt
-
-
-def test_a_start_from_rest_that_was_missed_is_told():
-    assert not list(start_notices(0.01, 1.0))
-    assert "begins at t = 50 s" in next(start_notices(50.0, 1.0))
+    (doubt,) = notices(phi)
+    assert "half a period off its command" in doubt

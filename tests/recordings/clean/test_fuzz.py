@@ -14,8 +14,7 @@ from rr_opt.recordings.inspection import Circumstances, inspect
 from rr_opt.recordings.markers.pose import fit_markers
 from rr_opt.recordings.readers.marker_rows import MarkerData
 from rr_opt.report.archive import strict_json
-from rr_opt.report.inspect.document import summary
-from rr_opt.report.inspect.record import record
+from rr_opt.report.inspection import InspectedRecordings
 from tests.recordings.clean.world import LAYOUT
 
 SHAPES = ("wiggle", "constant", "zero", "steps", "noise", "nan", "one value", "alternating", "huge")
@@ -68,8 +67,9 @@ def test_any_recording_is_inspected(given_recording):
     for name in CHANNELS:
         missing = np.isnan(given_recording.values[name])
         assert ((made.flags[name] & Flag.MISSING) > 0).tolist() == missing.tolist()
-    strict_json(record("fuzz", "", [found]))
-    assert summary([found], [])
+    inspected = InspectedRecordings("fuzz", "", (found,))
+    strict_json(inspected.record())
+    assert inspected.summary()
 
 
 @st.composite
@@ -104,8 +104,8 @@ def test_any_marker_file_is_a_recording_or_an_error_that_says_why(data, known, s
         assert (np.isnan(made.values[name]) == ((made.flags[name] & Flag.MISSING) > 0)).all()
         assert (made.sigma[name] > 0).all()
     if len(made) > 1 and not (known and set(LAYOUT.platform2).isdisjoint(data.labels)):
-        found = inspect(data, None, Circumstances(LAYOUT if known else None))
-        strict_json(record("fuzz", "", [found]))
+        found = inspect(data, None, Circumstances(layout=LAYOUT if known else None))
+        strict_json(InspectedRecordings("fuzz", "", (found,)).record())
 
 
 def test_markers_that_all_stand_in_one_point_are_no_robot():

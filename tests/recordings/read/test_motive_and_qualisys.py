@@ -98,7 +98,7 @@ def test_a_robot_seen_by_motive_with_y_up(write):
             cells += [f"{1000 * seen.imag:.4f}", "50", f"{1000 * seen.real:.4f}"]
         head.append(",".join(cells))
     places = [{n: p[1:] for n, p in PLACES.items() if p[0] == one} for one in (1, 2)]
-    found = inspected(write("\n".join(head) + "\n"), Circumstances(Layout(*places, up="y")))
+    found = inspected(write("\n".join(head) + "\n"), Circumstances(layout=Layout(*places, up="y")))
     for name, true in zip(("x", "y", "psi", "phi"), moved[1:], strict=True):
         np.testing.assert_allclose(found.recording.values[name], true, atol=2e-4)
 

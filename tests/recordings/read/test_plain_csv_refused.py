@@ -74,5 +74,5 @@ def test_no_file(tmp_path):
 def test_a_pipe_is_not_waited_for(tmp_path):
     os = pytest.importorskip("os")
     os.mkfifo(tmp_path / "pipe")
-    with pytest.raises(InvalidFileError, match="no regular file"):
+    with pytest.raises(InvalidFileError, match="This is a pipe"):
         read_file(tmp_path / "pipe")

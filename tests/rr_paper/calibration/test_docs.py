@@ -52,7 +52,7 @@ def test_the_models():
     assert told
     assert [int(number) for number in told.groups()] == pytest.approx(left, abs=0.6)
     made = [model["viscous", column]["made"]["as_bad"] for column in ("mean", "other")]
-    assert f"itself {made[0]} fit it as badly" in DOCS
+    assert f"itself, {made[0]} fit it as badly" in DOCS
     assert f"it is {made[1]} of 200" in DOCS
 
 
@@ -61,7 +61,7 @@ def test_the_coverage():
     for kind, told in (
         ("posterior", r"contained the truth in (\d+) to (\d+) %"),
         ("profile_student", r"the profile's in (\d+) to (\d+) %"),
-        ("profile_normal", r"by the normal law in (\d+) to (\d+) %"),
+        ("profile_normal", r"by the normal distribution in (\d+) to (\d+) %"),
     ):
         found = re.search(told, DOCS)
         assert found, kind
@@ -80,7 +80,7 @@ def test_every_shipped_value_lies_inside():
                 assert low - 1e-9 <= shipped[name] <= high + 1e-9, (name, kind)
 
 
-def test_the_shipped_file_tells_the_intervals():
+def test_the_shipped_file_states_the_intervals():
     told = read_problem(None).robot.provenance
     for key, name in (("platform2.a", "a2"), ("platform1.kappa", "k"), ("platform2.kappa", "k")):
         ends = [BY_NAME[name, column]["posterior"] for column in ("mean", "other")]

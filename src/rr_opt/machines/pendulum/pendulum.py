@@ -10,8 +10,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
+from types import MappingProxyType
 
 import casadi as ca
 import numpy as np
@@ -20,6 +21,7 @@ from rr_opt.array import Array
 from rr_opt.machines.pendulum.effects import EXTRAS, Extra
 from rr_opt.model.experiment import Uncertainty
 from rr_opt.sysid.candidates import Choice
+from rr_opt.sysid.diagnosis import Misfit
 from rr_opt.sysid.estimation import Fit
 from rr_opt.sysid.model import (
     Data,
@@ -31,7 +33,10 @@ from rr_opt.sysid.model import (
     Segment,
     Simulation,
 )
+from rr_opt.sysid.noise import Noise
+from rr_opt.sysid.remainder import Term
 from rr_opt.sysid.sensitivities import DriveSlopes, Recorded, Sought, grams
+from rr_opt.sysid.settings import SETTINGS
 from rr_opt.sysid.shooting import DrivePath, Path, System, predict
 
 G = 9.81
@@ -63,6 +68,7 @@ class Pendulum:
     """Recordings of a pendulum and its nominal J, ml, b; answers `sysid.model.Model`."""
 
     channels = ("angle",)
+    inputs: Mapping[str, str] = MappingProxyType({})
     form_error = 0.0
 
     def __init__(
@@ -72,7 +78,7 @@ class Pendulum:
         uncertainty: Mapping[str, Uncertainty],
     ) -> None:
         """nominal: J (kg m2), ml (kg m), b (N m s). What `uncertainty` does not name is exact."""
-        self.swings = tuple(swings)
+        self.swings, self._uncertainty = tuple(swings), uncertainty
         self.nominal = {name: nominal[name] for name in _UNITS}
         self.runs: Sequence[Data] = [_data(swing) for swing in self.swings]
         self.parameters: tuple[Quantity, ...] = tuple(
@@ -80,6 +86,7 @@ class Pendulum:
             for name in _UNITS
             if name in uncertainty
         )
+        self.correlation_time = SETTINGS.correlation_time
         # A period of small swings: in one, the way round has not yet parted from the way back.
         self.segment_length = 2 * math.pi * math.sqrt(self.nominal["J"] / (self.nominal["ml"] * G))
         torque = float(np.sqrt(np.mean(np.concatenate([s.torque for s in self.swings]) ** 2)))
@@ -102,6 +109,26 @@ class Pendulum:
             if not info.smooth and name not in complete
             for guess in info.forms[0].guesses
         ]
+
+    def with_noise(self, noise: Sequence[Noise]) -> Pendulum:
+        """The same swings with other noise."""
+        swings = [replace(one, sigma=one.sigma * noise[0].level) for one in self.swings]
+        return Pendulum(swings, self.nominal, self._uncertainty)
+
+    def unknown_inputs(self, fit: Fit) -> tuple[Sequence[Term], Mapping[Segment, Linearisation]]:
+        """Not looked for."""
+        return (), {}
+
+    def next_experiment(self, best: Fit, rival: tuple[str, Fit] | None) -> None:
+        """Not looked for."""
+
+    def worth(self, before: Sequence[Misfit], after: Sequence[Misfit]) -> str:
+        """Left to the misfit."""
+        return ""
+
+    def accuracy(self, misfits: Sequence[Misfit]) -> str:
+        """Left to the misfit."""
+        return ""
 
     def equivalent(self, values: Mapping[str, float]) -> None:
         """None: no two sets of values of a pendulum are alike."""
@@ -180,7 +207,7 @@ class Pendulum:
         data = self.runs[segment.run]
         values = data.values[segment.span].copy()
         values[segment.until - segment.first :] = np.nan
-        return Recorded.of(values, data.sigma[segment.span])
+        return Recorded.of(values, data.weighted_sigma[segment.span])
 
 
 def _chosen(effects: tuple[str, ...]) -> tuple[Extra, ...]:

@@ -55,21 +55,30 @@ class _Angle:
         for run, k in self.at.items():
             data = self.racer.runs[run]
             phi = self.racer.simulator.angle(run, values, effects)[k]
-            out[run] = (phi - data.values[k, -1]) / data.sigma[k, -1]
+            out[run] = (phi - data.values[k, -1]) / data.weighted_sigma[k, -1]
         return out
+
+    def samples(self, run: int) -> float:
+        """Independent ones of a run."""
+        return self.at[run].size / float(np.broadcast_to(self.racer.runs[run].correlation, 4)[-1])
+
+    def excess(self, residuals: Mapping[int, Array]) -> float:
+        """Misfit beyond the noise."""
+        return sum(float(r @ r) - self.samples(run) for run, r in residuals.items())
 
     def score(self, residuals: Mapping[int, Array], quantities: int) -> float:
         """-2 log likelihood with a price for each quantity (BIC, counting correlation times)."""
         total, every = 0.0, 0.0
         for run, r in residuals.items():
             times = max(self.racer.runs[run].duration / SETTINGS.correlation_time, 1.0)
-            total += r.size + robust(float(r @ r) - r.size, times)
+            n = self.samples(run)
+            total += n + robust(float(r @ r) - n, times)
             every += times
         return total + quantities * math.log(every)
 
     def explained(self, one: _Set) -> bool:
         """Whether what a set leaves is nothing."""
-        samples = sum(k.size for k in self.at.values())
+        samples = sum(self.samples(run) for run in self.at)
         chance = 2 * math.sqrt(2 * samples)
         return one.excess < max(SETTINGS.negligible**2 * samples, chance)
 
@@ -178,6 +187,6 @@ def _fitted(
         ).x
     values = dict(zip((q.name for q in quantities), (u * scale).tolist(), strict=True))
     residuals = angle.residuals(values, effects)
-    excess = sum(float(r @ r) - r.size for r in residuals.values())
+    excess = angle.excess(residuals)
     own_values = {q.name: values[q.name] for q in own}
     return _Set(choices, own_values, angle.score(residuals, len(own)), excess)

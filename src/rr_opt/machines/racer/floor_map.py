@@ -119,8 +119,10 @@ def floor_map(racer: RollerRacer, fit: Fit) -> FloorMap:
         evidence = fit.evidences[one.segment.run]
         weight = 1 / (1 + max(evidence.excess, 0) / problem.correlation_times(one.segment.run))
         gram = weight * gram * scale * scale[:, None]
-        S = gram[:size, :size]
-        reduced = gram[size:, size:] - gram[size:, :size] @ np.linalg.solve(S, gram[:size, size:])
+        if not np.isfinite(gram).all():  # A motion that diverged says nothing.
+            gram = np.zeros_like(gram)
+        inner = np.linalg.pinv(gram[:size, :size], hermitian=True)
+        reduced = gram[size:, size:] - gram[size:, :size] @ inner @ gram[:size, size:]
         shared, g = shared + reduced[:nq, :nq], g + reduced[:nq, -1]
         bends.append(reduced[nq:-1, nq:-1])
         onto.append(reduced[:nq, nq:-1])

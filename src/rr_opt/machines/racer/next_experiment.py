@@ -26,9 +26,9 @@ from rr_opt.sysid.model import Request, Segment, Simulation
 if TYPE_CHECKING:
     from rr_opt.machines.racer.racer import RollerRacer
 
-_AMPLITUDES = (0.25, 0.4, 0.6, 0.8, 1.0, 1.3)
-_PERIODS = (0.6, 0.8, 1.0, 1.4, 2.0, 2.8)
-_OFFSETS = (0.0, 0.15, 0.3, 0.5)
+_AMPLITUDES = (0.25, 0.45, 0.7, 1.0, 1.3)
+_PERIODS = (0.6, 0.9, 1.3, 1.9, 2.8)
+_OFFSETS = (0.0, 0.2, 0.45)
 _STARTS: tuple[Start, Start] = ("rest", "running")
 _HEADINGS = (0.0, math.pi / 2)
 CLEARANCE = 0.25
@@ -54,10 +54,10 @@ def next_experiment(
     plans = _plans(racer)
     if not plans:
         return None
-    planned = _planned(racer, best, plans)
+    planned, begun = _planned(racer, best, plans)
     if rival is not None:
         name, fit = rival
-        apart = _separations(racer, planned, best, fit)
+        apart = _separations(planned, fit)
         k = int(np.argmax(apart))
         if apart[k] > _TOLD_APART:
             gait = plans[k].gait
@@ -67,7 +67,7 @@ def next_experiment(
                 f"refitting, {_names(best)} and {name} differ in it by {apart[k]:.1f} sigma."
             )
             return _answer(plans[k], (_names(best), name), float(apart[k]), sentence)
-    known = _narrowed(racer, planned, best)
+    known = _narrowed(planned, best, begun)
     if known is None:
         return None
     k, quantity, factor, apart = known
@@ -121,8 +121,11 @@ def _plans(racer: RollerRacer) -> list[_Plan]:
     return out
 
 
-def _planned(racer: RollerRacer, best: Fit, plans: Sequence[_Plan]) -> RollerRacer:
-    """The racer with the plans' recordings, as the best candidate predicts them."""
+def _planned(
+    racer: RollerRacer, best: Fit, plans: Sequence[_Plan]
+) -> tuple[RollerRacer, Mapping[Segment, Array]]:
+    """The racer with the plans' recordings, as the best candidate predicts them, and the initial
+    states."""
     noise = racer.experiment.noise
     times = [np.arange(0.0, plan.seconds, 1 / _RATE) for plan in plans]
 
@@ -148,7 +151,8 @@ def _planned(racer: RollerRacer, best: Fit, plans: Sequence[_Plan]) -> RollerRac
         for one, plan in zip(_whole(times), plans, strict=True)
     ]
     every = empty.simulator.paths(requests, best.effects)
-    return made([path.seen for _, path, _, _ in every])
+    states = {one.segment: one.state for one in requests}
+    return made([path.seen for _, path, _, _ in every]), states
 
 
 def _whole(times: Sequence[Array]) -> list[Segment]:
@@ -167,20 +171,23 @@ def _begun(
 
 
 def _linearised(
-    planned: RollerRacer, fit: Fit
+    planned: RollerRacer, fit: Fit, begun: Mapping[Segment, Array] | None = None
 ) -> tuple[Problem, Mapping[int, tuple[Array, float, Array]]]:
-    """H, g and value of every plan for the fit's quantities, its initial state eliminated."""
+    """H, g and value of every plan for the fit's quantities, its initial state eliminated.
+
+    begun  the initial states, where the plans are the fit's own predictions
+    """
     cut = _whole([run.t for run in planned.runs])
     problem = replace(fit.problem, model=planned, segments=tuple(cut), robust=False)
     values = dict(fit.values)
-    states = {one: planned.initial_state(one, problem.effects, values) for one in problem.segments}
+    states = begun or {one: planned.initial_state(one, problem.effects, values) for one in cut}
 
     def made_from(begun: Mapping[Segment, Array]) -> Mapping[Segment, Simulation]:
         requests = problem.requests(values, begun)
         return dict(zip(cut, planned.simulate(requests, problem.effects), strict=True))
 
     made = made_from(states)
-    for _ in range(_STATE_STEPS):
+    for _ in range(0 if begun else _STATE_STEPS):
         linear = Linear.of(problem, values, states, made)
         moved = linear.moved(linear.evidences(problem.q), np.zeros(len(problem.names)))
         after = made_from(moved)
@@ -191,9 +198,8 @@ def _linearised(
     return problem, {run: (e.H, e.excess + e.samples, e.g) for run, e in evidences.items()}
 
 
-def _separations(racer: RollerRacer, planned: RollerRacer, best: Fit, rival: Fit) -> Array:
+def _separations(planned: RollerRacer, rival: Fit) -> Array:
     """RMS in sigma that the rival leaves of each plan's recording after refitting, linearised."""
-    del racer, best
     problem, plans = _linearised(planned, rival)
     H0, _, _ = rival.information()
     low, high = problem.box
@@ -209,14 +215,13 @@ def _separations(racer: RollerRacer, planned: RollerRacer, best: Fit, rival: Fit
 
 
 def _narrowed(
-    racer: RollerRacer, planned: RollerRacer, best: Fit
+    planned: RollerRacer, best: Fit, begun: Mapping[Segment, Array]
 ) -> tuple[int, str, float, float] | None:
     """The plan that narrows most the value known worst, that value, by how much, and the size of
     what it shows, RMS in sigma."""
-    del racer
     if not best.u.size:
         return None
-    _, plans = _linearised(planned, best)
+    _, plans = _linearised(planned, best, begun)
     H0, _, _ = best.information()
     before = np.sqrt(np.diag(np.linalg.inv(H0)))
     quantities = best.problem.quantities

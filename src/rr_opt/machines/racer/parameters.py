@@ -53,11 +53,6 @@ def uncertain(experiment: Experiment, setting: OperatingRange) -> tuple[Quantity
     return (*own, *(q for use in experiment.robot.physics for q in _present(use, setting)))
 
 
-FORM_ERROR, ROUGH_FORM_ERROR = 0.02, 0.03
-"""By how much, relative, machines differ from the model of an effect, and of one that has no
-derivative where it vanishes: limits, play that knocks, contacts that slide, edges."""
-
-
 def effect_info(effect: Effect, setting: OperatingRange) -> EffectInfo:
     """An effect that may be missing."""
     forms = effect.forms or (tuple(q.name for q in effect.parameters),)
@@ -70,7 +65,7 @@ def effect_info(effect: Effect, setting: OperatingRange) -> EffectInfo:
         tuple(_form(effect.name, [own[name] for name in form], setting) for form in forms),
         smooth=effect.differentiable,
         upstream=effect.port == Port.ACTUATION or effect.delay is not None,
-        form_error=FORM_ERROR if effect.differentiable else ROUGH_FORM_ERROR,
+        form_error=effect.form_error,
     )
 
 

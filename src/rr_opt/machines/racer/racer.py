@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from functools import cached_property
+from types import MappingProxyType
 
 import numpy as np
 
@@ -13,10 +14,13 @@ from rr_opt.effects import CATALOGUE
 from rr_opt.effects.effect import OperatingRange
 from rr_opt.machines.racer import floor_map, grip
 from rr_opt.machines.racer.actuation import actuation_sets
+from rr_opt.machines.racer.next_experiment import next_experiment
 from rr_opt.machines.racer.parameters import ZERO_OFFSET, ZEROS, effect_info, nominal, uncertain
 from rr_opt.machines.racer.simulation import Simulator, side_speeds, slips
+from rr_opt.machines.racer.unknown_terms import unknown_terms
 from rr_opt.model.experiment import CHANNELS, Experiment, Run
 from rr_opt.sysid.candidates import Choice
+from rr_opt.sysid.diagnosis import Misfit, NextExperiment
 from rr_opt.sysid.estimation import Fit
 from rr_opt.sysid.model import (
     Data,
@@ -27,12 +31,15 @@ from rr_opt.sysid.model import (
     Segment,
     Simulation,
 )
+from rr_opt.sysid.noise import Noise
+from rr_opt.sysid.remainder import Term
+from rr_opt.sysid.settings import SETTINGS
 
 SETTLING = 0.05
 """After a start from rest the motor saturates for some 20 ms; that much, s, is left out."""
 
 
-FORM_ERROR = 5e-4
+FORM_ERROR = 1e-4
 """Of the way travelled, by which even a fine simulation of wheels that press on a floor is off."""
 
 
@@ -44,17 +51,40 @@ class RollerRacer:
     """An experiment with a Roller Racer."""
 
     channels = CHANNELS
+    inputs: Mapping[str, str] = MappingProxyType(
+        {
+            "rolling": "a force along the wheels",
+            "yaw": "a moment that turns the robot",
+            "constraint_axle1": "a side speed of axle 1",
+            "constraint_axle2": "a side speed of axle 2",
+            "actuation": "an error of the joint's angle",
+        }
+    )
     segment_length = 5.0
+    correlation_time = SETTINGS.correlation_time
 
-    def __init__(self, experiment: Experiment, setting: OperatingRange | None = None) -> None:
-        """setting: what was asked of the robot; left out, it is told from the runs."""
+    def __init__(
+        self,
+        experiment: Experiment,
+        setting: OperatingRange | None = None,
+        noise: Sequence[Noise] = (Noise(),) * len(CHANNELS),
+    ) -> None:
+        """The model of an experiment.
+
+        setting  what was asked of the robot; left out, it is seen from the runs
+        noise    of each channel, against what the experiment states
+        """
         self.experiment = experiment
-        self._given = setting
+        self._given, self._noise = setting, noise
         self.nominal = nominal(experiment)
+
+    def with_noise(self, noise: Sequence[Noise]) -> RollerRacer:
+        """The same with other noise."""
+        return RollerRacer(self.experiment, self._given, noise)
 
     def beside(self, experiment: Experiment) -> RollerRacer:
         """Another experiment with the same robot, and the same usual sizes of effects."""
-        return RollerRacer(experiment, self.setting)
+        return RollerRacer(experiment, self.setting, self._noise)
 
     @property
     def runs(self) -> Sequence[Data]:
@@ -63,7 +93,7 @@ class RollerRacer:
 
     @cached_property
     def _runs(self) -> Sequence[Data]:
-        return [_data(run) for run in self.experiment.runs]
+        return [_data(run, self._noise) for run in self.experiment.runs]
 
     @property
     def form_error(self) -> float:
@@ -135,6 +165,10 @@ class RollerRacer:
             out += [(Choice("floor_patch", k), guess) for k, guess in floor_map.patches(self, fit)]
         return out
 
+    def unknown_inputs(self, fit: Fit) -> tuple[Sequence[Term], Mapping[Segment, Linearisation]]:
+        """Forces along the wheels, a moment, side speeds of the axles, errors of the angle."""
+        return unknown_terms(self, fit)
+
     def equivalent(self, values: Mapping[str, float]) -> Mapping[str, float] | None:
         """The other way to see two halves of a floor: which is the usual, and which the patch.
 
@@ -152,6 +186,21 @@ class RollerRacer:
         turned = math.remainder(normal + math.pi, math.tau)
         other = {"floor_patch.multiplier": 1 / factor, "floor_patch.normal": turned}
         return {**values, **other, **{name: factor * values[name] for name in own}}
+
+    def next_experiment(self, best: Fit, rival: tuple[str, Fit] | None) -> NextExperiment | None:
+        """The gait that would tell most."""
+        return next_experiment(self, best, rival)
+
+    def worth(self, before: Sequence[Misfit], after: Sequence[Misfit]) -> str:
+        """By how much the simulated place is off."""
+        return (
+            f"the simulated place was {_off(before):.1f} mm off (RMS beyond the noise) and is "
+            f"{_off(after):.1f} mm off now; "
+        )
+
+    def accuracy(self, misfits: Sequence[Misfit]) -> str:
+        """The same, of the corrected simulation."""
+        return f"The corrected simulation places the robot to within {_off(misfits):.1f} mm (RMS)."
 
     def initial_state(
         self, segment: Segment, effects: tuple[str, ...], values: Mapping[str, float]
@@ -182,13 +231,13 @@ class RollerRacer:
     def state_scale(self, effects: tuple[str, ...]) -> Array:
         """As much as the noise; in speeds, as much as that makes in a second, or in the moment for
         which a side speed lasts."""
-        place, heading = self._noise
+        place, heading = self._stated
         sides = [place / _SETTLED] * 2 if slips(self.simulator.every(effects)) else []
         return np.array([place, place, heading, place, *sides])
 
     @cached_property
-    def _noise(self) -> tuple[float, float]:
-        """Of the place, m, and of the heading, rad."""
+    def _stated(self) -> tuple[float, float]:
+        """The noise of the place, m, and of the heading, rad."""
         place, heading = (float(np.nanmedian(self.runs[0].sigma[:, k])) for k in (0, 2))
         return place, heading
 
@@ -232,10 +281,25 @@ def _travelled(data: Data) -> Array:
     return np.interp(data.t, at, way)
 
 
-def _data(run: Run) -> Data:
+def _data(run: Run, noise: Sequence[Noise]) -> Data:
     recording = run.recording
     values = np.column_stack([recording.data(name) for name in CHANNELS])
     if run.start == "rest":
         values[(recording.t >= 0) & (recording.t < SETTLING)] = np.nan
     sigma = np.column_stack([recording.sigma[name] for name in CHANNELS])
-    return Data(run.name, recording.t, values, sigma, run.use == "holdout")
+    sigma = sigma * [one.level for one in noise]
+    correlation = np.array([one.correlation for one in noise])
+    held_out = run.use == "holdout"
+    return Data(run.name, recording.t, values, sigma, held_out, correlation=correlation)
+
+
+def _off(misfits: Sequence[Misfit]) -> float:
+    """RMS distance, mm, of the simulated from the recorded place, less the noise; of held-out
+    recordings if there are any."""
+    some = [one for one in misfits if one.held_out] or list(misfits)
+    squares = []
+    for one in some:
+        off = np.sum((one.predicted[:, :2] - one.recorded[:, :2]) ** 2, axis=1)
+        noise = np.broadcast_to(one.sigma, one.predicted.shape)[:, :2]
+        squares.append(off - np.sum(noise**2, axis=1))
+    return 1e3 * float(np.sqrt(max(np.nanmean(np.concatenate(squares)), 0.0)))

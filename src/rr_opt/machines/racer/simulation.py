@@ -143,7 +143,7 @@ class Simulator:
             data = self._data[segment.run]
             values = data.values[segment.span].copy()
             values[segment.until - segment.first :] = np.nan
-            self._seen[segment] = Recorded.of(values, data.sigma[segment.span])
+            self._seen[segment] = Recorded.of(values, data.weighted_sigma[segment.span])
         return self._seen[segment]
 
     def simulate(

@@ -18,7 +18,7 @@ from rr_opt.machines.racer.observed import Along, observed
 from rr_opt.machines.racer.unknown_input import PUSHES, linearised_inputs
 from rr_opt.sysid.estimation import Fit
 from rr_opt.sysid.model import Linearisation, Segment
-from rr_opt.sysid.remainder import Term
+from rr_opt.sysid.remainder import CONSTANT, Term
 
 if TYPE_CHECKING:
     from rr_opt.machines.racer.racer import RollerRacer
@@ -31,9 +31,6 @@ CHANNELS: Mapping[str, tuple[float, ...]] = {
     "actuation": (0, 0, 0, 0, 0, 0, 1),
 }
 """What of PUSHES each channel moves; rolling forces along the wheels' directions."""
-
-CONSTANT = "nothing"
-"""The variable of an input that is constant."""
 
 _SIDE, _ANGLE = 0.02, 0.02
 """Usual sizes: of a side speed, as a share of the robot's; of an error of the angle, rad."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import NoReturn
 
+from rr_opt.files.gate import LONG, read_content
 from rr_opt.files.issue import refuse
 from rr_opt.messages import shown
 from rr_opt.model.experiment import Recording
@@ -20,14 +21,7 @@ from rr_opt.recordings.readers import (
 )
 from rr_opt.recordings.readers.marker_rows import MarkerData
 from rr_opt.recordings.readers.servo_log import ServoLog
-from rr_opt.recordings.readers.text import (
-    Reader,
-    ReadOptions,
-    Text,
-    decode,
-    find_header,
-    read_bytes,
-)
+from rr_opt.recordings.readers.text import Reader, ReadOptions, Text, decode, find_header
 
 __all__ = ["READERS", "MarkerData", "ReadOptions", "ServoLog", "read_file"]
 
@@ -53,7 +47,9 @@ def read_file(
     that the format needs is not installed.
     """
     file, options = str(path), options or ReadOptions()
-    content = read_bytes(Path(path))
+    content = read_content(Path(path), LONG)
+    if not content.strip():
+        refuse(file, "The file is empty. Expected a recording. Export it once more.")
     for reader in READERS:
         if reader.binary and reader.sniff(content):
             return reader.read(file, content, options)
@@ -68,8 +64,9 @@ def read_file(
 def _refuse(text: Text) -> NoReturn:
     """Raise InvalidFileError for a file of no known kind."""
     header = find_header(text)
-    first = text.lines[header.at] if header else ""
     names = header.names if header else ()
+    # A line without columns is not quoted: the file may be any file.
+    first = shown(text.lines[header.at]) if header and len(names) > 1 else "a line without columns"
     advice = "Check that it is a recording."
     if "endheader" in "\n".join(text.lines[:20]).casefold():
         advice = "It looks like a table of OpenSim: export C3D or TRC instead."
@@ -78,7 +75,7 @@ def _refuse(text: Text) -> NoReturn:
     formats = ", ".join(reader.format for reader in READERS[:-2])
     refuse(
         text.file,
-        f"Read {shown(first)}. Expected a header row such as `t,x,y,psi,phi` or `t,goal,present`, "
+        f"Read {first}. Expected a header row such as `t,x,y,psi,phi` or `t,goal,present`, "
         f"or one of: {formats}. {advice}",
         header.at + 1 if header else 1,
     )

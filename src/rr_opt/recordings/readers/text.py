@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import codecs
 import io
-import stat
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -74,24 +72,6 @@ class Text:
     encoding: str
     lines: list[str]
     ended: bool
-
-
-def read_bytes(path: Path) -> bytes:
-    """The content of a file. Raises InvalidFileError if there is none that could be read."""
-    try:
-        # A pipe or a device may never end.
-        if not stat.S_ISREG(path.stat().st_mode):
-            what = "a folder" if path.is_dir() else "no regular file"
-            refuse(str(path), f"This is {what}. Expected the file of a recording. Name the file.")
-        content = path.read_bytes()
-    except FileNotFoundError:
-        refuse(str(path), "There is no such file. Check its name and folder.")
-    except (OSError, ValueError) as error:
-        why = getattr(error, "strerror", None) or error
-        refuse(str(path), f"The file cannot be read: {why}. Check its name and permissions.")
-    if not content.strip():
-        refuse(str(path), "The file is empty. Expected a recording. Export it once more.")
-    return content
 
 
 def decode(content: bytes, file: str) -> Text:

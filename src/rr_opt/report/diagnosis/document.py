@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
-from rr_opt.answers.corrected_robot import robot_yaml
 from rr_opt.answers.diagnosis import DiagnosisAnswer, Loss, LossUnknown
-from rr_opt.answers.quantities import number, with_unit
+from rr_opt.files.record import robot_yaml
+from rr_opt.formatting import number, with_unit
 from rr_opt.model.experiment import Run
 from rr_opt.model.parameters import Uncertainty, parameters_of
 from rr_opt.report.archive import remove, write_json, write_text

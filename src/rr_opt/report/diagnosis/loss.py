@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from rr_opt.answers.diagnosis import Loss, LossUnknown
-from rr_opt.answers.quantities import number, with_unit
+from rr_opt.formatting import number, with_unit
 from rr_opt.model.gait import Gait
 
 _NONE = 5e-4

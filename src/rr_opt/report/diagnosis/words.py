@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 
-from rr_opt.answers.quantities import number
+from rr_opt.formatting import number
 from rr_opt.model.parameters import PARAMETERS
 from rr_opt.sysid.diagnosis import Diagnosis, Estimate, Finding, Remainder, Stage
 from rr_opt.sysid.settings import SETTINGS

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
-from rr_opt.answers.quantities import number
+from rr_opt.formatting import number
 from rr_opt.model.problem import Limits
 from rr_opt.model.robot import Robot
 from rr_opt.motion.rollout import Trajectory
@@ -29,8 +29,8 @@ def cycle(axes: Sequence[Axes], steady: SteadyCycle, limits: Limits) -> Sequence
     axes[2].axhline(mean, color=colour_of(steady.speed), lw=1.3, ls=(0, (5, 2)))
     axes[2].set_ylabel("v, m/s")
     axes[2].margins(y=0.25)
-    told = f"mean of v {mean:+.4f} m/s, of P on its way {steady.speed:+.4f} m/s"
-    note(axes[2], told, color=colour_of(steady.speed))
+    means = f"mean of v {mean:+.4f} m/s, of P along its path {steady.speed:+.4f} m/s"
+    note(axes[2], means, color=colour_of(steady.speed))
     against_limit(axes[3], t, steady.torque, limits.torque, "τ, N m")
     axes[3].set_xlabel("time, s")
     for ax in axes:
@@ -40,7 +40,7 @@ def cycle(axes: Sequence[Axes], steady: SteadyCycle, limits: Limits) -> Sequence
 
 
 def against_limit(ax: Axes, t: ArrayLike, values: ArrayLike, limit: float, label: str) -> Axes:
-    """A quantity over time with its limit; a limit far away is given in words instead."""
+    """A quantity over time with its limit; a limit far away is only named."""
     values = np.asarray(values, float)
     ax.plot(t, values, color=FORWARD)
     ax.set_ylabel(label)

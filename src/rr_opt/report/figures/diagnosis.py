@@ -12,8 +12,8 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 from numpy.typing import NDArray
 
 from rr_opt.answers.diagnosis import DiagnosisAnswer, Loss
-from rr_opt.answers.quantities import number
 from rr_opt.array import Array
+from rr_opt.formatting import number
 from rr_opt.model.experiment import CHANNELS as SEEN
 from rr_opt.model.experiment import Recording
 from rr_opt.report.diagnosis.loss import gait_words, loss_sentences, pace

@@ -7,7 +7,6 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
-from numpy.typing import NDArray
 
 from rr_opt.array import Array
 from rr_opt.model.experiment import Flag, Recording
@@ -28,6 +27,7 @@ from rr_opt.report.figures.style import (
     PLATFORM2,
     figure,
     note,
+    panel,
     styled,
     svg,
 )
@@ -40,25 +40,18 @@ _PLACES = re.compile(r'\b(?:d|x|y)="[^"]*"')
 def thinned(t: Array, y: Array, most: int = _MOST) -> tuple[Array, Array]:
     """t and y (n,) with at most about `most` points: the least and the largest of every piece.
 
-    A piece that holds NaN gets one too, so that a gap stays one.
+    A piece with NaN keeps one, so that a gap stays a gap.
     """
-    n = len(y)
-    if n <= most:
+    if len(y) <= most:
         return t, y
-    pieces = most // 2
-    size = -(-n // pieces)
-    rows = np.arange(n)
-    padded = np.full(pieces * size, np.nan)
-    padded[:n] = y
-    table = padded.reshape(pieces, size)
-    inside = np.isfinite(table)
-    low = np.where(inside, table, np.inf).argmin(axis=1) + np.arange(pieces) * size
-    high = np.where(inside, table, -np.inf).argmax(axis=1) + np.arange(pieces) * size
-    holes = np.flatnonzero((~inside).any(axis=1)) * size
-    first_hole = holes + (~inside[holes // size]).argmax(axis=1)
-    kept = np.unique(np.concatenate([low, high, first_hole[first_hole < n]]))
-    kept = kept[kept < n]
-    return t[rows[kept]], y[rows[kept]]
+    kept: set[int] = set()
+    for piece in np.array_split(np.arange(len(y)), most // 2):
+        known, holes = piece[np.isfinite(y[piece])], piece[np.isnan(y[piece])]
+        if len(known):
+            kept |= {int(known[y[known].argmin()]), int(known[y[known].argmax()])}
+        kept |= set(holes[:1].tolist())
+    rows = sorted(kept)
+    return t[rows], y[rows]
 
 
 def small(svg: str) -> str:
@@ -72,7 +65,7 @@ _MOST_GAPS = 200
 
 
 def channels(axes: Sequence[Axes], recording: Recording, holes: Sequence[Gap]) -> None:
-    """One axes a channel; a shaded band is a gap, a cross a flagged sample.
+    """One axes for each channel; a shaded band is a gap, a cross a flagged sample.
 
     Short gaps are bridged by thin lines, in the drawing only.
     """
@@ -109,7 +102,7 @@ def _flags(ax: Axes, recording: Recording, channel: str) -> None:
 
 
 def _limits(ax: Axes, y: np.ndarray) -> None:
-    """The data fill the axes; an outlier far away is cut off, not they flattened."""
+    """The data fill the axes; an outlier far away is cut off."""
     known = y[np.isfinite(y)]
     if len(known) and np.ptp(known) > 0:
         room = 0.15 * float(np.ptp(known))
@@ -121,13 +114,11 @@ _DOT = 2e-4
 """Half the length of a dot, in periods."""
 
 
-def folded(
-    ax: Axes, t: NDArray[np.float64], phi: NDArray[np.float64], gait: Gait, fit: ClockFit | None
-) -> Axes:
+def folded(ax: Axes, t: Array, phi: Array, gait: Gait, fit: ClockFit | None) -> None:
     """Every sample of phi, rad, at its phase of the period, over the command as a line."""
     known = np.flatnonzero(np.isfinite(phi))
     known = known[:: max(1, len(known) // _POINTS)]
-    # One path of dashes as short as dots: a marker each makes a file several times as large.
+    # One path of dashes as short as dots: with markers the file is several times as large.
     dash = gait.period * _DOT
     phase = t[known] % gait.period
     x = np.stack([phase - dash, phase + dash, np.full(len(known), np.nan)], 1).ravel()
@@ -141,20 +132,18 @@ def folded(
     ax.set_xlabel("phase of the command, s")
     ax.set_ylabel("φ, rad")
     ax.legend(loc="upper right", ncols=2)
-    return ax
 
 
-def difference(ax: Axes, t: NDArray[np.float64], phi: NDArray[np.float64], gait: Gait) -> Axes:
+def difference(ax: Axes, t: Array, phi: Array, gait: Gait) -> None:
     """phi less its command, mrad, over time."""
     ax.plot(*thinned(t, 1e3 * (phi - gait.angle(t))), color=INK, lw=0.7)
     ax.axhline(0, color=FORWARD, lw=1.2)
     ax.set_xlim(t[0], t[-1])
     ax.set_xlabel("time, s")
     ax.set_ylabel("φ − command, mrad")
-    return ax
 
 
-def noise(ax: Axes, found: Mapping[str, NoiseEstimate], stated: Mapping[str, float]) -> Axes:
+def noise(ax: Axes, found: Mapping[str, NoiseEstimate], stated: Mapping[str, float]) -> None:
     """The estimate over the stated value, with its 95 % interval; 1 where nothing was stated.
 
     Beside it the noise at half the frequency, which is the same if the noise is white.
@@ -179,13 +168,12 @@ def noise(ax: Axes, found: Mapping[str, NoiseEstimate], stated: Mapping[str, flo
     ax.set_xlabel("noise, in units of the stated one")
     if names:
         ax.legend(loc="lower left", facecolor="white", labelcolor=GREY)
-    return ax
 
 
 _ARROWS = 6
 
 
-def path(ax: Axes, recording: Recording) -> Axes:
+def path(ax: Axes, recording: Recording) -> None:
     """P, m, with a dot where it starts, and arrows of platform 1's heading, towards its axle."""
     x, y, psi = (recording.data(channel) for channel in ("x", "y", "psi"))
     step = max(1, len(x) // 4000)
@@ -205,14 +193,13 @@ def path(ax: Axes, recording: Recording) -> Axes:
     ax.margins(0.1)
     ax.set_xlabel("x, m")
     ax.set_ylabel("y, m")
-    return ax
 
 
 _CUT = 8.0
 """Times the noise at which the axis ends, if something is beyond."""
 
 
-def over_time(ax: Axes, fit: MarkerFit) -> Axes:
+def over_time(ax: Axes, fit: MarkerFit) -> None:
     """Root mean square residual of each frame, mm; put right and left out frames marked below."""
     t = fit.recording.t
     ax.plot(*thinned(t, 1e3 * fit.residual), color=INK, lw=0.7)
@@ -235,10 +222,9 @@ def over_time(ax: Axes, fit: MarkerFit) -> Axes:
     ax.set_xlim(t[0], t[-1])
     ax.set_xlabel("time, s")
     ax.set_ylabel("residual, mm")
-    return ax
 
 
-def by_marker(ax: Axes, fit: MarkerFit) -> Axes:
+def by_marker(ax: Axes, fit: MarkerFit) -> None:
     """Root mean square residual of each marker, mm."""
     colours = [(PLATFORM1, PLATFORM2)[where] for where in fit.bodies.platform]
     rows = np.arange(len(fit.whose))
@@ -247,36 +233,33 @@ def by_marker(ax: Axes, fit: MarkerFit) -> Axes:
     ax.invert_yaxis()
     ax.grid(visible=False, axis="y")
     ax.set_xlabel("residual, mm")
-    return ax
 
 
 def draw(found: Inspection) -> dict[str, str]:
     """SVG texts by name: `path`, `channels`, `noise`, and `command` and `rigid` where they are."""
-    drawn: dict[str, str] = {}
-    recording = found.recording
+    recording, gait, markers = found.recording, found.gait, found.markers
+    stated = {name: float(np.median(recording.sigma[name])) for name in recording.channels}
+    count = len(recording.channels)
     with styled():
-        one = figure(6.6, 4.8)
-        path(one.subplots(), recording)
-        drawn["path"] = svg(one)
-        one = figure(7.6, 1.55 * len(recording.channels) + 0.5)
-        axes = one.subplots(len(recording.channels), 1, sharex=True)
-        channels(list(np.atleast_1d(axes)), recording, found.cleaned.gaps)
-        one.align_ylabels()
-        drawn["channels"] = svg(one)
-        one = figure(6.6, 3.4)
-        stated = {name: float(np.median(recording.sigma[name])) for name in recording.channels}
-        noise(one.subplots(), found.cleaned.noise, stated)
-        drawn["noise"] = svg(one)
-        if found.gait is not None:
+        over = figure(7.6, 1.55 * count + 0.5)
+        axes = np.ravel(over.subplots(count, 1, sharex=True))
+        channels(list(axes), recording, found.cleaned.gaps)
+        over.align_ylabels()
+        drawn = {
+            "path": panel(6.6, 4.8, lambda ax: path(ax, recording)),
+            "channels": svg(over),
+            "noise": panel(6.6, 3.4, lambda ax: noise(ax, found.cleaned.noise, stated)),
+        }
+        if gait is not None:
             one = figure(7.6, 5.2)
             above, below = one.subplots(2, 1, height_ratios=[1.4, 1])
-            folded(above, recording.t, recording.data("phi"), found.gait, found.command)
-            difference(below, recording.t, recording.data("phi"), found.gait)
+            folded(above, recording.t, recording.data("phi"), gait, found.command)
+            difference(below, recording.t, recording.data("phi"), gait)
             drawn["command"] = svg(one)
-        if found.markers is not None:
+        if markers is not None:
             one = figure(7.6, 4.8)
             above, below = one.subplots(2, 1)
-            over_time(above, found.markers)
-            by_marker(below, found.markers)
+            over_time(above, markers)
+            by_marker(below, markers)
             drawn["rigid"] = svg(one)
     return {name: small(text) for name, text in drawn.items()}

@@ -8,29 +8,32 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.colors import TwoSlopeNorm
 from matplotlib.patheffects import withStroke
-from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
-from rr_opt.answers.quantities import number
 from rr_opt.array import Array
+from rr_opt.formatting import number
 from rr_opt.model.gait import SineGait
 from rr_opt.model.problem import GaitBounds, Interval, Problem
 from rr_opt.model.robot import Robot
 from rr_opt.report.figures.style import (
+    DASHED,
     GREY,
+    GROUND,
     INK,
     LIMIT,
-    OPTIMUM,
     PAPER,
     SIGNED,
+    STAR,
     figure,
+    hatched,
+    signed,
+    speed_bar,
     styled,
     svg,
 )
 from rr_opt.verify.evaluate import Evaluated, Found
-from rr_opt.verify.sweep import speed_map as speed_map_speed_map
+from rr_opt.verify.sweep import speed_map as evaluated_map
 
 
 @dataclass(frozen=True)
@@ -52,18 +55,14 @@ def map_data(problem: Problem, robot: Robot, best: SineGait) -> MapData:
 
     A quantity that the problem fixes is shown from half to one and a half times its value.
     """
-    shown = replace(
-        problem,
-        gait=GaitBounds(
-            _opened(problem.gait.amplitude), _opened(problem.gait.period), problem.gait.offset
-        ),
-    )
-    found = speed_map_speed_map(shown, robot, best.offset)
+
+    def opened(box: Interval) -> Interval:
+        return Interval(0.5 * box.low, 1.5 * box.high) if box.fixed else box
+
+    gait = problem.gait
+    bounds = GaitBounds(opened(gait.amplitude), opened(gait.period), gait.offset)
+    found = evaluated_map(replace(problem, gait=bounds), robot, best.offset)
     return MapData(found.periods, found.amplitudes, found.speed.T, found.peak_torque.T)
-
-
-def _opened(box: Interval) -> Interval:
-    return Interval(0.5 * box.low, 1.5 * box.high) if box.fixed else box
 
 
 def reach(problem: Problem, robot: Robot, offset: float) -> dict[str, float]:
@@ -74,23 +73,92 @@ def reach(problem: Problem, robot: Robot, offset: float) -> dict[str, float]:
     return {"singularity": edge - abs(offset), "angle": problem.limits.angle - abs(offset)}
 
 
-def limit_lines(ax: Axes, data: MapData, problem: Problem, robot: Robot, offset: float) -> None:
+def allowed(data: MapData, problem: Problem, robot: Robot, offset: float) -> NDArray[np.bool_]:
+    """Which gaits of the map respect every limit, (A, T)."""
+    amplitude, period = data.amplitude[:, None], data.period[None, :]
+    inside = amplitude <= min(reach(problem, robot, offset).values())
+    inside = inside & (2 * math.pi * amplitude <= problem.limits.rate * period)
+    with np.errstate(invalid="ignore"):
+        return inside & (data.torque <= problem.limits.torque)
+
+
+def speed_map(
+    ax: Axes,
+    data: MapData,
+    problem: Problem,
+    robot: Robot,
+    best: SineGait,
+    *,
+    others: Sequence[SineGait] = (),
+) -> Axes:
+    """Filled contours of the speed where all limits are respected; hatched where one is not.
+
+    best is marked with a star, others with rings.
+    """
+    inside = allowed(data, problem, robot, best.offset)
+    kept = 1e3 * data.speed[inside]
+    low, high = (min(kept.min(), 0.0), max(kept.max(), 0.0)) if kept.size else (-1.0, 1.0)
+    top = max(-low, high, 1e-9)
+    levels = np.linspace(low if low < 0 else -1e-3 * top, high if high > 0 else 1e-3 * top, 31)
+    hatched(ax)
+    # Colours beyond a limit are covered below, so the speed is only clipped there: a contour
+    # that ended at the limit's line would end in steps.
+    shown = np.clip(1e3 * data.speed, low, high)
+    fill = ax.contourf(
+        data.period, data.amplitude, shown, levels=levels, cmap=SIGNED, norm=signed(top), zorder=1
+    )
+    # Each band gets an edge of its own colour: else thin white seams show between them.
+    fill.set(edgecolor="face", linewidth=0.5)
+    _cover(ax, data, problem, robot, best.offset)
+    speed_bar(ax, fill)
+    _limit_lines(ax, data, problem, robot, best.offset)
+    for one in others:
+        ax.plot(one.period, one.amplitude, "o", ms=9, mfc="none", mec=INK, mew=1.4, zorder=6)
+    ax.plot(best.period, best.amplitude, ms=19, mew=1.2, zorder=7, label="optimum", **STAR)
+    ax.set_xlim(data.period[0], data.period[-1])
+    ax.set_ylim(data.amplitude[0], data.amplitude[-1])
+    ax.grid(visible=False)
+    _label(ax)
+    return ax
+
+
+def _label(ax: Axes) -> None:
+    ax.set_xlabel("period T, s")
+    ax.set_ylabel("amplitude α, rad")
+
+
+def _cover(ax: Axes, data: MapData, problem: Problem, robot: Robot, offset: float) -> None:
+    """Hatched grey over every gait that exceeds a limit."""
+    amplitude, period = data.amplitude[:, None], data.period[None, :]
+    most = min(reach(problem, robot, offset).values())
+    excess = np.maximum(amplitude - most, amplitude - problem.limits.rate * period / 2 / math.pi)
+    span = data.amplitude[-1]
+    torque = np.where(np.isfinite(data.torque), data.torque, 2 * problem.limits.torque)
+    if math.isfinite(problem.limits.torque):
+        excess = np.maximum(excess, span * (torque / problem.limits.torque - 1))
+    excess = np.clip(excess, -span, span)
+    ax.contourf(
+        data.period, data.amplitude, excess, levels=[0.0, 2 * span], colors=[GROUND],
+        hatches=["////"], zorder=2,
+    )  # fmt: skip
+
+
+def _limit_lines(ax: Axes, data: MapData, problem: Problem, robot: Robot, offset: float) -> None:
     """The edges of what is allowed, each with its name."""
     period, limits = data.period, problem.limits
     bottom, top = data.amplitude[0], data.amplitude[-1]
     if math.isfinite(limits.rate):
         _rate_line(ax, data, limits.rate)
     lines = reach(problem, robot, offset)
+    texts = {
+        "singularity": f"S1 = {number(1e3 * limits.singularity, 3)} mm: singular posture near",
+        "angle": f"|φ| = {number(limits.angle, 3)} rad",
+    }
     for name, line in lines.items():
         if line < top:
             ax.axhline(line, color=LIMIT, lw=1.4, zorder=3)
-            text = (
-                f"S1 = {number(1e3 * limits.singularity, 3)} mm: singular posture near"
-                if name == "singularity"
-                else f"|φ| = {number(limits.angle, 3)} rad"
-            )
             place = period[0] + 0.97 * (period[-1] - period[0])
-            _name(ax, place, line + 0.015 * (top - bottom), text, ha="right", va="bottom")
+            _name(ax, place, line + 0.015 * (top - bottom), texts[name], ha="right", va="bottom")
     _torque_line(ax, data, limits.torque, min(lines.values()))
 
 
@@ -116,11 +184,10 @@ def _torque_line(ax: Axes, data: MapData, limit: float, most: float) -> None:
         return
     drawn = ax.contour(
         data.period, data.amplitude[rows], torque, levels=[limit], colors=[LIMIT],
-        linewidths=1.4, linestyles=[(0, (4, 2))], zorder=3,
+        linewidths=1.4, linestyles=[DASHED], zorder=3,
     )  # fmt: skip
-    line = max(
-        (np.asarray(one) for one in drawn.get_paths()[0].to_polygons(closed_only=False)), key=len
-    )
+    lines = drawn.get_paths()[0].to_polygons(closed_only=False)
+    line = max((np.asarray(one) for one in lines), key=len)
     x, y = line[len(line) // 2]
     _name(ax, float(x), float(y), f" torque {number(limit, 3)} N m", ha="left")
 
@@ -130,128 +197,35 @@ def _name(ax: Axes, x: float, y: float, text: str, *, ha: str, va: str = "center
     ax.text(x, y, text + " ", color=LIMIT, fontsize=9, ha=ha, va=va, zorder=5, path_effects=halo)
 
 
-def allowed(data: MapData, problem: Problem, robot: Robot, offset: float) -> NDArray[np.bool_]:
-    """Which gaits of the map keep every limit, (A, T)."""
-    amplitude, period = data.amplitude[:, None], data.period[None, :]
-    inside = amplitude <= min(reach(problem, robot, offset).values())
-    inside = inside & (2 * math.pi * amplitude <= problem.limits.rate * period)
-    with np.errstate(invalid="ignore"):
-        return inside & (data.torque <= problem.limits.torque)
+_MANY = 2000
 
 
-def speed_map(
-    ax: Axes,
-    data: MapData,
-    problem: Problem,
-    robot: Robot,
-    best: SineGait,
-    *,
-    others: Sequence[SineGait] = (),
-) -> Axes:
-    """Filled contours of the speed where all limits are kept; hatched where one is broken.
-
-    best is marked with a star, others with rings.
-    """
-    inside = allowed(data, problem, robot, best.offset)
-    kept = 1e3 * data.speed[inside]
-    low, high = (min(kept.min(), 0.0), max(kept.max(), 0.0)) if kept.size else (-1.0, 1.0)
-    top = max(-low, high, 1e-9)
-    levels = np.linspace(low if low < 0 else -1e-3 * top, high if high > 0 else 1e-3 * top, 31)
-
-    ax.set_facecolor("#eceff2")
-    ax.fill_between(
-        data.period, 0, 1, transform=ax.get_xaxis_transform(), facecolor="none", hatch="////",
-        edgecolor=(0, 0, 0, 0), zorder=0,
-    )  # fmt: skip
-    # Colours beyond a limit are covered below, so the speed is only clipped there: a contour
-    # that ended at the limit's line would end in steps.
-    shown = np.clip(1e3 * data.speed, low, high)
-    norm = TwoSlopeNorm(0.0, -top, top)
-    fill = ax.contourf(
-        data.period, data.amplitude, shown, levels=levels, cmap=SIGNED, norm=norm, zorder=1
-    )
-    # Each band gets an edge of its own colour: else thin white seams show between them.
-    fill.set(edgecolor="face", linewidth=0.5)
-    _cover(ax, data, problem, robot, best.offset)
-    bar = ax.figure.colorbar(fill, ax=ax, pad=0.02, aspect=26, ticks=MaxNLocator(7))
-    bar.set_label("mean speed, mm/s  (+ forward, − backward)")
-    bar.outline.set_visible(False)  # type: ignore[operator]
-    limit_lines(ax, data, problem, robot, best.offset)
-    for one in others:
-        ax.plot(one.period, one.amplitude, "o", ms=9, mfc="none", mec=INK, mew=1.4, zorder=6)
-    ax.plot(
-        best.period, best.amplitude, "*", ms=19, mfc=OPTIMUM, mec=INK, mew=1.2, zorder=7,
-        clip_on=False, label="optimum",
-    )  # fmt: skip
-    ax.set_xlim(data.period[0], data.period[-1])
-    ax.set_ylim(data.amplitude[0], data.amplitude[-1])
-    ax.grid(False)
-    ax.set_xlabel("period T, s")
-    ax.set_ylabel("amplitude α, rad")
-    return ax
-
-
-def _cover(ax: Axes, data: MapData, problem: Problem, robot: Robot, offset: float) -> None:
-    """Hatched grey over every gait that breaks a limit."""
-    amplitude, period = data.amplitude[:, None], data.period[None, :]
-    most = min(reach(problem, robot, offset).values())
-    excess = np.maximum(amplitude - most, amplitude - problem.limits.rate * period / 2 / math.pi)
-    span = data.amplitude[-1]
-    torque = np.where(np.isfinite(data.torque), data.torque, 2 * problem.limits.torque)
-    if math.isfinite(problem.limits.torque):
-        excess = np.maximum(excess, span * (torque / problem.limits.torque - 1))
-    excess = np.clip(excess, -span, span)
-    ax.contourf(
-        data.period, data.amplitude, excess, levels=[0.0, 2 * span], colors=["#eceff2"],
-        hatches=["////"], zorder=2,
-    )  # fmt: skip
-
-
-def sweep(ax: Axes, found: Evaluated, best: Found | None) -> Axes:
-    """A dot a gait that keeps every limit, the fastest on top; a faint cross any other.
+def draw(found: Evaluated, best: Found | None) -> str:
+    """A sweep: a dot for each gait that respects every limit, the fastest on top; a faint cross for
+    any other. Many dots become one picture inside the SVG, to keep it small.
 
     Gaits of several offsets and inertia ratios share a place: what is seen is the fastest.
     """
     amplitude, period = found.decisions[:2]
     speed, kept = 1e3 * found.speed, found.feasible
-    ax.plot(period[~kept], amplitude[~kept], "x", color=GREY, ms=2.5, mew=0.5, alpha=0.3)
     order = np.flatnonzero(kept)
     order = order[np.argsort(np.abs(speed[order]))]
     top = float(np.abs(speed[order[-1]])) if len(order) else 1.0
-    dots = ax.scatter(
-        period[order],
-        amplitude[order],
-        c=speed[order],
-        cmap=SIGNED,
-        norm=TwoSlopeNorm(0.0, -top, top),
-        s=26,
-        edgecolors=GREY,
-        linewidths=0.25,
-        zorder=3,
-    )
-    bar = ax.figure.colorbar(dots, ax=ax, pad=0.02, aspect=26, ticks=MaxNLocator(7))
-    bar.set_label("mean speed, mm/s  (+ forward, − backward)")
-    seen = speed[order]
-    bar.ax.set_ylim(min(seen.min(initial=0.0), -1e-9), max(seen.max(initial=0.0), 1e-9))
-    bar.outline.set_visible(False)  # type: ignore[operator]
-    if best:
-        star = {"ms": 19, "mfc": OPTIMUM, "mec": INK, "mew": 1.2}
-        ax.plot(best.gait.period, best.gait.amplitude, "*", zorder=5, clip_on=False, **star)
-    ax.set_title(f"{len(speed)} gaits: dots keep every limit, crosses do not", weight="normal")
-    ax.set_xlabel("period T, s")
-    ax.set_ylabel("amplitude α, rad")
-    return ax
-
-
-_MANY = 2000
-
-
-def draw(found: Evaluated, best: Found | None) -> str:
-    """Draw the sweep. Many dots become one picture inside the SVG, to keep it small."""
     with styled():
         drawn = figure(6.8, 4.8)
         drawn.set_dpi(160)
-        ax = sweep(drawn.add_subplot(), found, best)
-        for part in (*ax.collections, *ax.lines[:1]):
-            part.set_rasterized(len(found.speed) > _MANY)
+        ax = drawn.add_subplot()
+        ax.plot(period[~kept], amplitude[~kept], "x", color=GREY, ms=2.5, mew=0.5, alpha=0.3)
+        dots = ax.scatter(
+            period[order], amplitude[order], c=speed[order], cmap=SIGNED, norm=signed(top), s=26,
+            edgecolors=GREY, linewidths=0.25, zorder=3,
+        )  # fmt: skip
+        for part in (*ax.collections, *ax.lines):
+            part.set_rasterized(len(speed) > _MANY)
+        ends = speed[order].min(initial=0.0), speed[order].max(initial=0.0)
+        speed_bar(ax, dots).set_ylim(min(ends[0], -1e-9), max(ends[1], 1e-9))
+        if best:
+            ax.plot(best.gait.period, best.gait.amplitude, ms=19, mew=1.2, zorder=5, **STAR)
+        ax.set_title(f"{len(speed)} gaits: dots keep every limit, crosses do not", weight="normal")
+        _label(ax)
         return svg(drawn)

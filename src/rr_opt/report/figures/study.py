@@ -1,185 +1,93 @@
-"""Speed over what a study varies: lines, maps, and what speed costs."""
+"""The figures of a study: speed over what is varied, active limits, and what speed costs."""
 
 from __future__ import annotations
 
 import itertools
+from collections import Counter
 from collections.abc import Iterator
-from dataclasses import dataclass
-from typing import Any
+from functools import partial
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.colors import LinearSegmentedColormap, LogNorm, Normalize, TwoSlopeNorm
-from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullLocator
-from numpy.typing import NDArray
+from matplotlib.colors import LinearSegmentedColormap, ListedColormap, LogNorm, Normalize
+from matplotlib.patches import Patch
+from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
-from rr_opt.answers.quantities import number
-from rr_opt.answers.study import StudyAnswer, front, unit_of, value_text
-from rr_opt.array import Array
-from rr_opt.files.study_axes import Axis
-from rr_opt.report.figures.style import BACKWARD, FORWARD, GREY, INK, LIMIT, OPTIMUM, PAPER, SIGNED
+from rr_opt.formatting import counted
+from rr_opt.report.figures.study_axes import Grid, Scale, grid_of, scale_of
+from rr_opt.report.figures.style import (
+    BACKWARD,
+    FAINT,
+    FORWARD,
+    GREY,
+    HATCHED,
+    INK,
+    LIMIT,
+    OPTIMUM,
+    PAPER,
+    SIGNED,
+    STAR,
+    colour_of,
+    figure,
+    hatched,
+    lanes,
+    panel,
+    signed,
+    speed_bar,
+    styled,
+    svg,
+)
+from rr_opt.report.study import SolvedStudy
+from rr_opt.report.study_page import front
 
-_EVEN = 0.05
-_WIDEST = 60
-"""Letters of names that fit side by side under a figure."""
-
-
-@dataclass(frozen=True)
-class Shown:
-    """steps in the unit that people think in, and how they are called; factor: how many of that
-    unit are one SI unit; log: on a logarithmic scale.
-
-    ordered: steps are numbers with a place on a scale. If one is none, or is infinite, they are
-    named and stand one beside the other, at 1, 2, 3 ..: the finite ones by size, infinity last.
-    """
-
-    label: str
-    unit: str
-    steps: Array
-    texts: tuple[str, ...]
-    factor: float
-    ordered: bool
-    log: bool
-
-    @property
-    def order(self) -> list[int]:
-        """The steps from the smallest to the largest."""
-        return [int(step) for step in np.argsort(self.steps, kind="stable")]
-
-    def scale(self, ax: Axes, which: str = "x") -> None:
-        """Label the axis of a figure and set its scale."""
-        getattr(ax, f"set_{which}label")(self.label)
-        if self.log:
-            getattr(ax, f"set_{which}scale")("log")
-            _plain_ticks(ax, which, self.steps)
-        if not self.ordered:
-            slant = which == "x" and sum(map(len, self.texts)) > _WIDEST
-            style = {"rotation": 30, "ha": "right", "rotation_mode": "anchor"} if slant else {}
-            getattr(ax, f"set_{which}ticks")(self.steps, self.texts, **style)
+_COSTS = (("peak_torque", "largest servo torque, N m"), ("energy_per_metre", "energy, J/m"))
 
 
-def shown(axis: Axis) -> Shown:
-    """How to show an axis; keys that are taken in step are shown by the first."""
-    line = next((line for line in axis.lines if line.numbers is not None), axis.lines[0])
-    unit, factor = unit_of(line.key)
-    more = f" and {len(axis.lines) - 1} more" if len(axis.lines) > 1 else ""
-    numbers = line.numbers
-    if numbers is None or not np.isfinite(numbers).all():
-        values = line.values if numbers is None else numbers
-        texts = tuple(value_text(line.key, value, 3) for value in values)
-        rank = np.arange(len(texts)) if numbers is None else np.argsort(np.argsort(numbers))
-        places = np.asarray(1 + rank, float)
-        return Shown(f"{line.key.name}{more}", "", places, texts, 1.0, False, False)
-    steps = factor * np.array(numbers)
-    texts = tuple(value_text(line.key, value, 3) for value in numbers)
-    label = f"{line.key.name}{more}" + (f", {unit}" if unit else "")
-    return Shown(label, unit, steps, texts, factor, True, _even_in_log(steps))
-
-
-def _even_in_log(steps: Array) -> bool:
-    ordered = np.sort(steps)
-    if len(ordered) < 3 or ordered[0] <= 0 or ordered[-1] < 2 * ordered[0]:
-        return False
-    ratios, gaps = np.diff(np.log(ordered)), np.diff(ordered)
-    return bool(np.ptp(ratios) < _EVEN * ratios.mean() and np.ptp(gaps) > _EVEN * gaps.mean())
-
-
-def _plain_ticks(ax: Axes, which: str, steps: Array) -> None:
-    """Ticks at the steps themselves, at most six of them: powers of ten alone are too few."""
-    ordered = np.sort(steps)
-    chosen = ordered[np.unique(np.linspace(0, len(ordered) - 1, 6).round().astype(int))]
-    getattr(ax, f"set_{which}ticks")(chosen, [number(step, 2) for step in chosen])
-    getattr(ax, f"set_{which}ticks")([], minor=True)
-
-
-_GROUND = "#eceff2"
-HATCHED: dict[str, Any] = {"facecolor": _GROUND, "edgecolor": "#b4bdc6", "hatch": "////", "lw": 0}
-"""How what has no optimum looks."""
-
-
-@dataclass(frozen=True)
-class Grid:
-    """cases (Y, X): of those that share a place, that with the fastest optimum."""
-
-    x: Shown
-    y: Shown
-    cases: NDArray[np.int_]
-    hidden: int
-
-    @property
-    def borders(self) -> tuple[Array, Array]:
-        """Where the cells of the map begin and end along x and y."""
-        return tuple(edges(axis.steps[axis.order], log=axis.log) for axis in (self.x, self.y))  # type: ignore[return-value]
-
-    @property
-    def centres(self) -> tuple[Array, Array]:
-        """The steps along x and y."""
-        return self.x.steps[self.x.order], self.y.steps[self.y.order]
-
-    def frame(self, ax: Axes) -> None:
-        """Labels, scales and limits."""
-        self.x.scale(ax, "x")
-        self.y.scale(ax, "y")
-        (left, right), (low, high) = ((part[0], part[-1]) for part in self.borders)
-        ax.set_xlim(left, right)
-        ax.set_ylim(low, high)
-        ax.grid(visible=False)
-
-
-def grid_of(result: StudyAnswer) -> Grid | None:
-    """The map over the two longest axes; None if the study has only one."""
-    shape = result.study.shape
-    if len(shape) < 2:
-        return None
-    first, second = sorted(np.argsort([-n for n in shape], kind="stable")[:2])
-    x, y = (shown(result.study.axes[at]) for at in (first, second))
-    cases = np.arange(len(result.rows)).reshape(shape)
-    cases = np.moveaxis(cases, (second, first), (0, 1)).reshape(shape[second], shape[first], -1)
-    speed = np.nan_to_num(result.speed, nan=-1.0)
-    best = np.take_along_axis(cases, speed[cases].argmax(axis=2)[:, :, None], axis=2)[:, :, 0]
-    return Grid(x, y, best[np.ix_(y.order, x.order)], cases.shape[2] - 1)
-
-
-def hatched(ax: Axes) -> None:
-    """Hatch the ground of a map, to be seen where no cell is drawn: there is no optimum."""
-    ax.set_facecolor(_GROUND)
-    ax.fill_between([0, 1], 0, 1, transform=ax.transAxes, zorder=0, **HATCHED)
-
-
-def edges(steps: Array, *, log: bool = False) -> Array:
-    """Borders halfway between steps, and as far beyond the first and the last."""
-    if len(steps) == 1:
-        return steps[0] + np.array([-0.5, 0.5])
-    placed = np.log(steps) if log else steps
-    middle = (placed[:-1] + placed[1:]) / 2
-    ends = [2 * placed[0] - middle[0], *middle, 2 * placed[-1] - middle[-1]]
-    return np.exp(ends) if log else np.array(ends)
+def draw(result: SolvedStudy) -> dict[str, str]:
+    """Draw all figures that the study has something to show in; none without an optimum."""
+    if result.fastest is None:
+        return {}
+    axes = [at for at, n in enumerate(result.study.shape) if n > 1] or [0]
+    ordered = [at for at in axes if scale_of(result.study.axes[at]).ordered] or axes[:1]
+    with styled():
+        speeds = figure(6.3, 3.9 * len(ordered))
+        for ax, along in zip(np.ravel(speeds.subplots(len(ordered), 1)), ordered, strict=True):
+            speed(ax, result, along)
+        costs = figure(6.3, 6.6)
+        for ax, (name, label) in zip(costs.subplots(2, 1), _COSTS, strict=True):
+            pareto(ax, result, name, label)
+        drawn = {"speed": svg(speeds), "pareto": svg(costs)}
+    grid = grid_of(result)
+    if grid is None:
+        count = len({name for row in result.rows if row.optimum for name in row.optimum.held})
+        return drawn | {
+            "held": panel(6.3, 1.1 + 0.42 * count, partial(active_lanes, result=result))
+        }
+    return drawn | {
+        "held": panel(6.3, 5.6, partial(active_areas, result=result, grid=grid)),
+        "map": panel(6.3, 4.6, partial(study_map, result=result, grid=grid)),
+    }
 
 
 _LEAST_CELLS = 4
 """Along each axis, for lines of equal speed."""
 
 
-def study_map(ax: Axes, result: StudyAnswer, grid: Grid) -> Axes:
-    """A cell a case, the colour its signed speed; lines part branches; the star is the fastest.
-    Hatched: no optimum."""
+def study_map(ax: Axes, result: SolvedStudy, grid: Grid) -> Axes:
+    """A cell for each case, the colour its signed speed; lines part branches; the star is the
+    fastest. Hatched: no optimum."""
     speed = 1e3 * result.values("speed")[grid.cases]
     top = float(np.nanmax(np.abs(speed), initial=1e-9))
     hatched(ax)
-    cells = ax.pcolormesh(*grid.borders, speed, cmap=SIGNED, norm=TwoSlopeNorm(0.0, -top, top),
-                          zorder=1)  # fmt: skip
+    cells = ax.pcolormesh(*grid.borders, speed, cmap=SIGNED, norm=signed(top), zorder=1)
     cells.set_edgecolor("face")
-    bar = ax.figure.colorbar(cells, ax=ax, pad=0.02, aspect=26, ticks=MaxNLocator(7))
-    bar.set_label("mean speed, mm/s  (+ forward, − backward)")
-    bar.outline.set_visible(False)  # type: ignore[operator]
-    bar.ax.set_ylim(
-        min(np.nanmin(speed, initial=0.0), 0.0), max(np.nanmax(speed, initial=0.0), 0.0)
-    )
+    ends = np.nanmin(speed, initial=0.0), np.nanmax(speed, initial=0.0)
+    speed_bar(ax, cells).set_ylim(min(ends[0], 0.0), max(ends[1], 0.0))
     _contours(ax, np.abs(speed), grid)
     _parting(ax, result, grid)
     row, column = np.unravel_index(np.nanargmax(np.abs(speed)), speed.shape)
     x, y = grid.centres
-    ax.plot(x[column], y[row], "*", ms=17, mfc=OPTIMUM, mec=INK, mew=1.1, zorder=5)
+    ax.plot(x[column], y[row], ms=17, mew=1.1, zorder=5, **STAR)
     grid.frame(ax)
     return ax
 
@@ -194,7 +102,7 @@ def _contours(ax: Axes, speed: np.ndarray, grid: Grid) -> None:
         text.set_bbox({"facecolor": PAPER, "edgecolor": "none", "alpha": 0.6, "pad": 0.8})
 
 
-def _parting(ax: Axes, result: StudyAnswer, grid: Grid) -> None:
+def _parting(ax: Axes, result: SolvedStudy, grid: Grid) -> None:
     """Lines between cells of different branches."""
     branch = np.array([one or 0 for one in result.branches])[grid.cases]
     x, y = grid.borders
@@ -204,9 +112,9 @@ def _parting(ax: Axes, result: StudyAnswer, grid: Grid) -> None:
         ax.plot(x[column : column + 2], [y[row + 1]] * 2, color=INK, lw=2, zorder=4)
 
 
-def pareto(ax: Axes, result: StudyAnswer, name: str, label: str) -> Axes:
-    """A dot a case, blue forward and orange backward; ringed, on the line: no other case is both
-    faster and cheaper. name: the number of the optimum that is the cost."""
+def pareto(ax: Axes, result: SolvedStudy, name: str, label: str) -> Axes:
+    """A dot for each case, blue forward and orange backward; ringed, on the line: no other case is
+    both faster and cheaper. name: the number of the optimum that is the cost."""
     cost, speed = result.values(name), 1e3 * result.speed
     forward = result.values("speed") > 0
     for way, colour, word in ((forward, FORWARD, "forward"), (~forward, BACKWARD, "backward")):
@@ -239,48 +147,41 @@ _PRICED = 0.22
 """Half the length of a shadow price's tangent, in gaps between steps."""
 
 
-def speed(ax: Axes, result: StudyAnswer, along: int) -> Axes:
+def speed(ax: Axes, result: SolvedStudy, along: int) -> Axes:
     """|speed| over the axis `along`. A line is broken where the branch changes; triangles point
     up for forward, down for backward; a short tangent is the limit's shadow price."""
-    axes = [shown(axis) for axis in result.study.axes]
-    mine = axes[along]
-    others = [at for at in range(len(axes)) if at != along]
-    colours = _Colours(axes[others[0]] if others else None)
-    worst = 0
+    axes = [scale_of(axis) for axis in result.study.axes]
+    mine, others = axes[along], [scale for at, scale in enumerate(axes) if at != along]
+    x, left_out = mine.steps[mine.order], 0
     for fixed, cases in _lines(result, along, mine.order):
-        x = mine.steps[mine.order]
         y = 1e3 * result.speed[cases]
-        colour = colours.of(fixed[0]) if others else None
-        _line(ax, x, y, [result.branches[case] for case in cases], colour or GREY)
+        colour = _colour(others[0], fixed[0]) if others else None
+        _broken(ax, x, y, [result.branches[case] for case in cases], colour or GREY)
         for at, case in enumerate(cases):
             optimum = result.rows[case].optimum
             if optimum is None:
-                worst += 1
+                left_out += 1
                 continue
-            forward = optimum.speed > 0
-            way = FORWARD if forward else BACKWARD
-            ax.plot(x[at], y[at], "^" if forward else "v", ms=6, color=colour or way, mec="white",
-                    mew=0.6, zorder=4)  # fmt: skip
+            mark = "^" if optimum.speed > 0 else "v"
+            ax.plot(x[at], y[at], mark, ms=6, color=colour or colour_of(optimum.speed),
+                    mec="white", mew=0.6, zorder=4)  # fmt: skip
         if not others and mine.ordered:
             _tangents(ax, result, cases, mine)
-    if worst:
-        words = (
-            "1 case without an optimum is"
-            if worst == 1
-            else f"{worst} cases without an optimum are"
-        )
+    if left_out:
+        words = f"{counted(left_out, 'case')} without an optimum {'is' if left_out == 1 else 'are'}"
         # Above the axes: within them it would lie over curves.
         ax.set_title(f"{words} left out", loc="right", fontsize=9.0, fontweight="normal",
                      color=GREY)  # fmt: skip
-    mine.scale(ax)
+    mine.apply(ax)
     ax.set_ylim(0, 1.06e3 * np.nanmax(result.speed))
     ax.set_ylabel("speed, mm/s")
-    colours.explain(ax)
+    if others:
+        _explain(ax, others[0])
     return ax
 
 
 def _lines(
-    result: StudyAnswer, along: int, order: list[int]
+    result: SolvedStudy, along: int, order: list[int]
 ) -> Iterator[tuple[tuple[int, ...], list[int]]]:
     """For each combination of the other axes: its steps there, and its cases in order."""
     grid = np.arange(len(result.rows)).reshape(result.study.shape)
@@ -289,20 +190,21 @@ def _lines(
         yield fixed, [int(case) for case in moved[fixed][order]]
 
 
-def _line(ax: Axes, x: np.ndarray, y: np.ndarray, branch: list[int | None], colour: str) -> None:
+def _broken(ax: Axes, x: np.ndarray, y: np.ndarray, branch: list[int | None], colour: str) -> None:
+    """A line through the points, dotted between branches."""
     for at in range(len(x) - 1):
         joined = branch[at] == branch[at + 1]
-        style = {"ls": "-", "lw": 1.6} if joined else {"ls": ":", "lw": 1.0}
-        ax.plot(x[at : at + 2], y[at : at + 2], color=colour, zorder=3, **style)  # type: ignore[arg-type]
+        ax.plot(x[at : at + 2], y[at : at + 2], color=colour, zorder=3, ls="-" if joined else ":",
+                lw=1.6 if joined else 1.0)  # fmt: skip
 
 
-def _tangents(ax: Axes, result: StudyAnswer, cases: list[int], mine: Shown) -> None:
-    """What the shadow price of the varied limit foretells, at each case."""
+def _tangents(ax: Axes, result: SolvedStudy, cases: list[int], mine: Scale) -> None:
+    """What the shadow price of the varied limit predicts, at each case."""
     (axis,) = result.study.axes
     name = axis.lines[0].key.name.removeprefix("limits.")
     x = mine.steps[mine.order]
     half = _PRICED * np.diff(x).mean() if len(x) > 1 else 0.0
-    drawn = False
+    label: str | None = "shadow price"
     for at, case in enumerate(cases):
         optimum = result.rows[case].optimum
         price = optimum.prices.get(name) if optimum else None
@@ -310,39 +212,82 @@ def _tangents(ax: Axes, result: StudyAnswer, cases: list[int], mine: Shown) -> N
             continue
         slope, y = 1e3 * price / mine.factor, 1e3 * abs(optimum.speed)
         ax.plot([x[at] - half, x[at] + half], [y - slope * half, y + slope * half], color=LIMIT,
-                lw=2.6, solid_capstyle="round", zorder=3.5,
-                label=None if drawn else "shadow price")  # fmt: skip
-        drawn = True
-    if drawn:
+                lw=2.6, solid_capstyle="round", zorder=3.5, label=label)  # fmt: skip
+        label = None
+    if label is None:
         ax.legend(loc="best")
 
 
-class _Colours:
-    """A colour for each step of the first of the other axes, and what tells them."""
+def _colour(scale: Scale, step: int) -> str:
+    """The colour of a step of another axis."""
+    steps = scale.steps
+    if scale.ordered:
+        norm = (LogNorm if scale.log else Normalize)(float(steps.min()), float(steps.max()))
+        return FAMILY(float(norm(steps[step])))  # type: ignore[return-value]
+    return FAMILY((steps[step] - 1) / max(len(steps) - 1, 1))  # type: ignore[return-value]
 
-    def __init__(self, axis: Shown | None):
-        self._axis = axis
-        self._norm = None
-        if axis is not None and axis.ordered:
-            kind = LogNorm if axis.log else Normalize
-            self._norm = kind(float(axis.steps.min()), float(axis.steps.max()))
 
-    def of(self, step: int) -> str:
-        if self._axis is None:
-            return INK
-        if self._norm is not None:
-            return FAMILY(float(self._norm(self._axis.steps[step])))  # type: ignore[return-value]
-        return FAMILY((self._axis.steps[step] - 1) / max(len(self._axis.steps) - 1, 1))  # type: ignore[return-value]
+def _explain(ax: Axes, scale: Scale) -> None:
+    """A legend of the colours."""
+    steps = scale.order[::-1]
+    if len(steps) > _MOST_NAMED:
+        chosen = np.unique(np.linspace(0, len(steps) - 1, _MOST_NAMED).round().astype(int))
+        steps = [steps[at] for at in chosen]
+    for step in steps:
+        ax.plot([], [], color=_colour(scale, step), label=scale.texts[step])
+    title = scale.label.split(",")[0]
+    ax.legend(title=title, loc="center left", bbox_to_anchor=(1.0, 0.5), alignment="left")
 
-    def explain(self, ax: Axes) -> None:
-        axis = self._axis
-        if axis is None:
-            return
-        steps = axis.order[::-1]
-        if len(steps) > _MOST_NAMED:
-            chosen = np.unique(np.linspace(0, len(steps) - 1, _MOST_NAMED).round().astype(int))
-            steps = [steps[at] for at in chosen]
-        for step in steps:
-            ax.plot([], [], color=self.of(step), label=axis.texts[step])
-        title = axis.label.split(",")[0]
-        ax.legend(title=title, loc="center left", bbox_to_anchor=(1.0, 0.5), alignment="left")
+
+_COLOURS = ("#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#f0e442", "#5b2a86")
+_OTHERS = "#9aa5b1"
+
+
+def _words(held: tuple[str, ...]) -> str:
+    """What limits an optimum, in words."""
+    return " + ".join(name.replace("inertia_ratio", "J20/J10") for name in held) or "nothing"
+
+
+def active_lanes(ax: Axes, result: SolvedStudy) -> Axes:
+    """A lane for each limit and bound, filled where it is active, over the only axis."""
+    scale = scale_of(result.study.axes[0])
+    rows = [result.rows[step].optimum for step in scale.order]
+    names = [n for n, _ in Counter(n for one in rows if one for n in one.held).most_common()]
+    borders = scale.edges
+    for lane, name in enumerate(names):
+        for at, one in enumerate(rows):
+            on = one is not None and name in one.held
+            ax.fill_between(borders[at : at + 2], lane - 0.38, lane + 0.38, lw=0,
+                            color=_COLOURS[lane % len(_COLOURS)] if on else FAINT,
+                            alpha=1.0 if on else 0.5)  # fmt: skip
+    lanes(ax, [_words((name,)) for name in names])
+    ax.set_xlim(borders[0], borders[-1])
+    ax.grid(visible=False)
+    scale.apply(ax)
+    return ax
+
+
+def active_areas(ax: Axes, result: SolvedStudy, grid: Grid) -> Axes:
+    """Each case in the colour of what limits it; the rarest share a grey. Hatched: no optimum."""
+    sets = [None if one.optimum is None else _words(one.optimum.held) for one in result.rows]
+    seen = Counter(sets[case] for case in grid.cases.ravel())
+    seen.pop(None, None)
+    named = [name for name, _ in seen.most_common(len(_COLOURS))]
+    index = np.full(grid.cases.shape, np.nan)
+    for at, case in np.ndenumerate(grid.cases):
+        if sets[case] is not None:
+            index[at] = named.index(sets[case]) if sets[case] in named else len(named)
+    colours = [*_COLOURS[: len(named)], _OTHERS]
+    hatched(ax)
+    ax.pcolormesh(*grid.borders, index, cmap=ListedColormap(colours), vmin=-0.5,
+                  vmax=len(named) + 0.5, edgecolors="white", linewidth=0.4, zorder=1)  # fmt: skip
+    grid.frame(ax)
+    handles = [
+        Patch(color=colour, label=name) for colour, name in zip(colours, named, strict=False)
+    ]
+    if len(seen) > len(named):
+        handles.append(Patch(color=_OTHERS, label="others"))
+    if np.isnan(index).any():
+        handles.append(Patch(**HATCHED, label="no optimum"))
+    ax.figure.legend(handles=handles, loc="outside lower left", labelcolor=INK)  # type: ignore[union-attr]
+    return ax

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
 import matplotlib as mpl
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.colors import LinearSegmentedColormap
+from matplotlib.colors import LinearSegmentedColormap, TwoSlopeNorm
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 INK, GREY, FAINT, PAPER = "#1f2933", "#66727f", "#d5dbe1", "#ffffff"
 FORWARD, BACKWARD = "#0072b2", "#d55e00"
@@ -78,9 +79,54 @@ def svg(drawn: Figure) -> str:
     return text.getvalue()
 
 
+def panel(width: float, height: float, fill: Callable[[Axes], object]) -> str:
+    """A figure of one axes, inches, that `fill` draws on, as SVG text."""
+    with styled():
+        drawn = figure(width, height)
+        fill(drawn.add_subplot())
+        return svg(drawn)
+
+
 def colour_of(speed: float) -> str:
     """The colour of a signed speed's direction."""
     return FORWARD if speed >= 0 else BACKWARD
+
+
+DASHED = (0, (4, 2))
+"""The line of a limit."""
+STAR: dict[str, Any] = {"ls": "", "marker": "*", "mfc": OPTIMUM, "mec": INK, "clip_on": False}
+"""The mark of an optimum."""
+GROUND = "#eceff2"
+HATCHED: dict[str, Any] = {"facecolor": GROUND, "edgecolor": "#b4bdc6", "hatch": "////", "lw": 0}
+"""How what is not allowed, or has no optimum, looks."""
+
+
+def hatched(ax: Axes) -> None:
+    """Hatch the ground of a map, to be seen where nothing is drawn over it."""
+    ax.set_facecolor(GROUND)
+    ax.fill_between([0, 1], 0, 1, transform=ax.transAxes, zorder=0, **HATCHED)
+
+
+def signed(top: float) -> TwoSlopeNorm:
+    """The norm of signed speeds up to `top` either way."""
+    return TwoSlopeNorm(0.0, -top, top)
+
+
+def speed_bar(ax: Axes, mapped: Any, words: str = "+ forward, − backward") -> Axes:
+    """The colour bar of signed speeds, mm/s; its axes."""
+    bar = ax.figure.colorbar(mapped, ax=ax, pad=0.02, aspect=26, ticks=MaxNLocator(7))
+    bar.set_label(f"mean speed, mm/s  ({words})")
+    bar.outline.set_visible(False)  # type: ignore[operator]
+    return bar.ax
+
+
+def lanes(ax: Axes, names: Sequence[str], pad: float = 0.0) -> None:
+    """A lane for each name along y, the first on top; pad: of the names, points."""
+    ax.set_yticks(range(len(names)), names)
+    ax.set_ylim(len(names) - 0.4, -0.6)
+    ax.grid(axis="y", visible=False)
+    ax.spines["left"].set_visible(False)
+    ax.tick_params(axis="y", length=0, **({"pad": pad} if pad else {}))
 
 
 def note(ax: Axes, text: str, x: float = 0.985, y: float = 0.96, **style: object) -> None:

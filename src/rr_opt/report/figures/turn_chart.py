@@ -1,4 +1,4 @@
-"""Radius over offset: a panel a period, a line an amplitude."""
+"""Radius over offset: a panel for each period, a line for each amplitude."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from rr_opt.answers.quantities import with_unit
+from rr_opt.formatting import with_unit
 from rr_opt.report.figures.style import LIMIT, figure, note, styled, svg
 from rr_opt.verify.turn_chart import Tightest, TurnMap
 
@@ -34,7 +34,7 @@ def turn_chart(seen: TurnMap, tight: Tightest | None) -> Figure:
         _panel(ax, seen, j)
         if tight:
             ax.axhline(tight.radius, color=LIMIT, lw=1.0)
-    note(axes[0, 0], "full: to the left, broken: to the right")
+    note(axes[0, 0], "solid: to the left, dashed: to the right")
     if tight:
         note(axes[0, 0], f"tightest: {with_unit(tight.radius, 'm')}", y=0.1, color=LIMIT)
     for ax in axes[-1]:
@@ -47,7 +47,7 @@ def turn_chart(seen: TurnMap, tight: Tightest | None) -> Figure:
 
 
 def _panel(ax: Axes, seen: TurnMap, j: int) -> None:
-    """Full lines turn left, broken ones right; blank where a limit is broken."""
+    """Solid lines turn left, dashed ones right; blank where a limit is exceeded."""
     colours = mpl.colormaps["viridis"](np.linspace(0.0, 0.85, len(seen.amplitude)))
     curvature = seen.curvature[:, j]
     kept = seen.keeps[:, j] & (np.abs(curvature) > 1 / _WIDEST)

@@ -1,23 +1,21 @@
-"""An inspection as a document, as text for a terminal, and as a folder."""
+"""The report of recordings that were inspected."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import replace
-from pathlib import Path
+from collections.abc import Iterator, Sequence
+from pathlib import PurePath
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rr_opt.answers.quantities import number, with_unit
-from rr_opt.model.experiment import Flag
+from rr_opt.formatting import counted, number, with_unit
+from rr_opt.model.experiment import Flag, Recording
 from rr_opt.recordings.inspection import Inspection
 from rr_opt.recordings.time_axis import time_step
 from rr_opt.recordings.warnings import size_text
-from rr_opt.report.archive import remove, whole, write_json, write_text
 from rr_opt.report.document import (
     Badge,
-    Cell,
     Document,
     Fact,
     Facts,
@@ -26,44 +24,71 @@ from rr_opt.report.document import (
     Section,
     Table,
     table,
+    versions,
     warnings,
 )
-from rr_opt.report.inspect.record import path_record, record
-from rr_opt.report.text import terminal
-from rr_opt.report.webpage import PAGE, page
-from rr_opt.version import __version__
+
+if TYPE_CHECKING:
+    from rr_opt.report.inspection import InspectedRecordings
+
+CAPTIONS = {
+    "path": (
+        "The joint's path",
+        "The recorded path seen from above",
+        "P seen from above. Arrows: platform 1's heading.",
+    ),
+    "noise": (
+        "Noise",
+        "Noise of each channel against the stated noise",
+        "From sixth differences, with a 95 % interval, against the stated noise. White noise is "
+        "the same at half the frequency; behind a low-pass filter it is larger there.",
+    ),
+    "rigid": (
+        "Markers on rigid platforms",
+        "Residuals of the markers by frame and by marker",
+        "Residuals of a fit of two rigid platforms joined at P: by frame, and by marker.",
+    ),
+    "channels": (
+        "Channels",
+        "Every channel over time, with gaps and flagged samples",
+        "What is taken as data. Bands: gaps; gaps of up to 0.1 s are bridged by a thin line, in "
+        "this figure only. Crosses: flagged samples, those within the axes.",
+    ),
+    "command": (
+        "phi against its command",
+        "The angle over the phase of its command, and the difference over time",
+        "Above: samples at their phase of the period. Below: the difference over time.",
+    ),
+}
 
 
-def inspection_document(
-    name: str, sha256: str, found: Sequence[Inspection], figures: Sequence[Sequence[Figure]] = ()
-) -> Document:
-    """The report of recordings; figures: of each recording."""
+def inspection_document(result: InspectedRecordings, figures: Sequence[Figure] = ()) -> Document:
+    """Every recording with its warnings and figures."""
+    found = result.recordings
     several, count = len(found) > 1, sum(len(one.doubts) for one in found)
     what = f"{len(found)} recordings" if several else "A recording"
     sections = [Section("Recordings", (_table(found),), brief=False)] if several else []
-    for place, one in enumerate(found):
+    for one in found:
         doubts = warnings(one.doubts) if one.doubts else "No warnings."
+        own = (f for f in figures if not several or f.name.rpartition("-")[0] == stem_of(one))
         sections.append(Section(one.name, (Facts(tuple(_facts(one))), doubts)))
-        if figures:
-            sections.append(Section("", (Gallery(tuple(figures[place])),), brief=False))
+        sections.append(Section("", (Gallery(tuple(own)),), brief=False))
     return Document(
-        name=name,
+        name=result.name,
         kind="recordings",
-        title=f"{what} with {count} warning{'s' if count != 1 else ''}"
-        if count
-        else f"{what} without warnings",
+        title=f"{what} with {counted(count, 'warning')}" if count else f"{what} without warnings",
         lead="Read each warning before the recording is used. Nothing was filled in or dropped."
         if count
         else "Nothing looks wrong in what was read.",
         good=not count,
         sections=tuple(sections),
-        footer=(f"rr-opt {__version__}", f"input SHA-256 `{sha256}`"),
+        footer=versions(result.sha256),
     )
 
 
-def summary(found: Sequence[Inspection], written: Sequence[Path]) -> str:
-    """Every recording with its warnings, then the files."""
-    return terminal(inspection_document("", "", found), written)
+def stem_of(one: Inspection) -> str:
+    """The name of a recording's file, without its ending."""
+    return PurePath(one.name).stem
 
 
 def _facts(found: Inspection) -> Iterator[Fact]:
@@ -104,9 +129,23 @@ def _facts(found: Inspection) -> Iterator[Fact]:
         )
 
 
+def travelled(recording: Recording) -> dict[str, float | None]:
+    """How far and how fast the joint went: net, m, m/s, and the turn of platform 1, rad."""
+    x, y, psi = (recording.data(channel) for channel in ("x", "y", "psi"))
+    both = np.flatnonzero(np.isfinite(x) & np.isfinite(y))
+    headed = np.flatnonzero(np.isfinite(psi))
+    if len(both) < 2:
+        return {"net": None, "speed": None, "turn": None}
+    first, last = both[0], both[-1]
+    net = math.hypot(x[last] - x[first], y[last] - y[first])
+    time = float(recording.t[last] - recording.t[first])
+    turn = float(psi[headed[-1]] - psi[headed[0]]) if len(headed) else None
+    return {"net": net, "speed": net / time if time > 0 else None, "turn": turn}
+
+
 def _path_text(found: Inspection) -> str:
     """How far, how fast, and how much it turned."""
-    path = path_record(found.recording)
+    path = travelled(found.recording)
     if path["net"] is None:
         return "no data"
     turned = "" if path["turn"] is None else f", turned by {math.degrees(path['turn']):+.1f} deg"
@@ -131,7 +170,7 @@ def _noise_text(found: Inspection, channel: str) -> str:
 def _flagged_text(found: Inspection) -> str:
     """How many samples of which channels are not taken as data, and why."""
     recording = found.recording
-    told = []
+    texts = []
     for channel in recording.channels:
         flags = recording.flags[channel]
         counts = [
@@ -140,13 +179,13 @@ def _flagged_text(found: Inspection) -> str:
             if (flags & flag).any()
         ]
         if counts:
-            told.append(f"{channel}: {', '.join(counts)}")
-    return "; ".join(told) or "nothing"
+            texts.append(f"{channel}: {', '.join(counts)}")
+    return "; ".join(texts) or "nothing"
 
 
 def _table(found: Sequence[Inspection]) -> Table:
     head = ["Recording", "Samples", "Length", "Noise of x", "Noise of phi", "Warnings"]
-    rows: list[list[Cell]] = []
+    rows = []
     for one in found:
         noise, t, count = one.cleaned.noise, one.recording.t, len(one.doubts)
         rows.append(
@@ -160,77 +199,3 @@ def _table(found: Sequence[Inspection]) -> Table:
             ]
         )
     return table(head, rows)
-
-
-_FIGURES = {
-    "path": (
-        "The joint's path",
-        "The recorded path seen from above",
-        "P seen from above. Arrows: platform 1's heading.",
-    ),
-    "noise": (
-        "Noise",
-        "Noise of each channel against the stated noise",
-        "From sixth differences, with a 95 % interval, against the stated noise. White noise is "
-        "the same at half the frequency; behind a low-pass filter it is larger there.",
-    ),
-    "rigid": (
-        "Markers on rigid platforms",
-        "Residuals of the markers by frame and by marker",
-        "Residuals of a fit of two rigid platforms joined at P: by frame, and by marker.",
-    ),
-    "channels": (
-        "Channels",
-        "Every channel over time, with gaps and flagged samples",
-        "What is taken as data. Bands: gaps; gaps of up to 0.1 s are bridged by a thin line, in "
-        "this figure only. Crosses: flagged samples, those within the axes.",
-    ),
-    "command": (
-        "phi against its command",
-        "The angle over the phase of its command, and the difference over time",
-        "Above: samples at their phase of the period. Below: the difference over time.",
-    ),
-}
-
-RECORD = "inspection.json"
-
-
-def write_inspection(
-    name: str,
-    sha256: str,
-    found: Sequence[Inspection],
-    folder: Path,
-    *,
-    figures: bool,
-    progress: Callable[[str], object],
-) -> list[Path]:
-    """Write everything; returns the files in the order to name them."""
-    remove(folder, (RECORD, PAGE))
-    written = [write_json(folder / RECORD, record(name, sha256, found))]
-    if not figures:
-        return written
-    # Here and not above: without figures matplotlib need not be loaded.
-    from rr_opt.report.figures.inspection import draw
-
-    figures_of = []
-    for place, one in enumerate(found, 1):
-        progress(f"figures {place} of {len(found)}")
-        drawn, prefix = draw(one), f"{one.name}: " if len(found) > 1 else ""
-        figures_of.append(
-            [
-                Figure(key, f"{prefix}{title}", drawn[key], alt, caption)
-                for key, (title, alt, caption) in _FIGURES.items()
-                if key in drawn
-            ]
-        )
-    document = inspection_document(name, sha256, found, figures_of)
-    return [write_text(folder / PAGE, page(document)), *written]
-
-
-def write_recording(path: Path, found: Inspection) -> Path:
-    """Write the cleaned recording to a netCDF file, whole. Raises InputError without the extra."""
-    from rr_opt.recordings.readers.netcdf import write_netcdf
-
-    with whole(path) as temporary:
-        write_netcdf(temporary, replace(found.recording, doubts=found.doubts), found.gait)
-    return path

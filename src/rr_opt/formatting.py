@@ -1,4 +1,4 @@
-"""How quantities are written for people: the SI value, and the unit they think in."""
+"""How numbers and quantities are written for people: the SI value, and the unit they think in."""
 
 from __future__ import annotations
 
@@ -8,13 +8,9 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Quantity:
-    """A kind of quantity: its symbol, SI unit, and a second unit with its worth per SI unit.
-
-    `price_unit` is the second unit if prices are best given per that unit, else the SI unit.
-    """
+    """A quantity in reports: its name, SI unit, and a second unit with its worth per SI unit."""
 
     words: str
-    symbol: str
     unit: str
     other: str = ""
     factor: float = 1.0
@@ -33,16 +29,17 @@ class Quantity:
         return f"{first} ({with_unit(value * self.factor, self.other)})" if self.other else first
 
 
+_DEGREES = 180 / math.pi
+
 QUANTITIES = {
-    "angle": Quantity("largest joint angle", "|φ|", "rad", "deg", 180 / math.pi),
-    "rate": Quantity("largest joint rate", "|dφ/dt|", "rad/s", "rpm", 30 / math.pi),
-    "torque": Quantity("largest servo torque", "|τ|", "N m"),
-    "singularity": Quantity("least S1 = c1 cos φ + c2", "S1", "m", "mm", 1e3),
-    "amplitude": Quantity("amplitude", "α", "rad", "deg", 180 / math.pi),
-    "period": Quantity("period", "T", "s"),
-    "offset": Quantity("offset", "φ0", "rad", "deg", 180 / math.pi),
-    "inertia_ratio": Quantity("inertia ratio J20/J10", "J20/J10", ""),
-    "loads": Quantity("number of loads", "loads", ""),
+    "angle": Quantity("largest joint angle", "rad", "deg", _DEGREES),
+    "rate": Quantity("largest joint rate", "rad/s", "rpm", 30 / math.pi),
+    "torque": Quantity("largest servo torque", "N m"),
+    "singularity": Quantity("least S1 = c1 cos φ + c2", "m", "mm", 1e3),
+    "amplitude": Quantity("amplitude", "rad", "deg", _DEGREES),
+    "period": Quantity("period", "s"),
+    "offset": Quantity("offset", "rad", "deg", _DEGREES),
+    "inertia_ratio": Quantity("inertia ratio J20/J10", ""),
 }
 """By the name under which a limit or a decision stands in files and results."""
 
@@ -53,7 +50,7 @@ _CRAWLING = 1e-3
 
 
 def number(value: float, digits: int = 4) -> str:
-    """A number with so many significant digits, without an exponent where it is readable.
+    """A number with `digits` significant digits, without an exponent where it is readable.
 
     Anything smaller than what is reported here is rounding error.
     """
@@ -74,6 +71,11 @@ def with_unit(value: float, unit: str, digits: int = 4) -> str:
     return f"{number(value, digits)} {unit}".strip()
 
 
+def counted(count: int, singular: str, plural: str = "") -> str:
+    """`1 iteration`, `2 iterations`; plural: where it is not the singular with an s."""
+    return f"{count} {singular if count == 1 else plural or f'{singular}s'}"
+
+
 def speed_text(speed: float) -> str:
     """A signed speed in m/s and mm/s, `-0.12896 m/s (-129.0 mm/s)`, or `+0.0738 mm/s`."""
     if abs(speed) < _CRAWLING:
@@ -91,6 +93,11 @@ def pace_text(speed: float) -> str:
 def direction_text(speed: float) -> str:
     """Which way a signed speed goes."""
     return "forward" if speed > 0 else "backward"
+
+
+def side_text(value: float) -> str:
+    """Which way a positive or negative turn goes."""
+    return "left" if value > 0 else "right"
 
 
 def price_text(name: str, price: float) -> str:

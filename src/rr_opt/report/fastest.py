@@ -1,82 +1,55 @@
-"""The fastest gait with the evidence for it: its limits and bounds, the replay and the sweep."""
+"""The fastest gait of a problem, with the evidence that it is one."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, Literal
+from pathlib import Path
+from typing import Any
 
-from rr_opt.answers.answer import Answer, Check, ignored_effects, listed
-from rr_opt.answers.quantities import direction_text, pace_text
 from rr_opt.design.decisions import ballast_interval
 from rr_opt.design.maximize_speed import Optimum
 from rr_opt.design.solve import Candidate
+from rr_opt.formatting import direction_text, pace_text
+from rr_opt.messages import listed
 from rr_opt.model.ballast import inertia_ratio, with_load_count
 from rr_opt.model.gait import Gait
-from rr_opt.model.problem import LARGEST_EXCESS, Interval, Problem, RatioChoice
+from rr_opt.model.problem import LARGEST_EXCESS, Problem
 from rr_opt.model.robot import Robot
 from rr_opt.motion.dynamics import ignored_in_steady_cycle
+from rr_opt.motion.rollout import one_period
 from rr_opt.outcome import Status
-from rr_opt.verify.replay import Replay, replay
-from rr_opt.verify.sweep import TOLERATED, SweepCheck, SweepResult, check_optimum
-
-ACTIVE = 1e-4
-"""A limit is active when the gait comes this near to it, relative to the limit."""
+from rr_opt.report.document import Document, Figure
+from rr_opt.report.fastest_page import CAPTIONS, fastest_document
+from rr_opt.report.fastest_record import fastest_record
+from rr_opt.report.gait import ignored_effects
+from rr_opt.report.limits import LIMIT_NAMES, BoundRow, LimitRow, bound_rows, limit_row
+from rr_opt.report.result import Check, Result
+from rr_opt.report.trajectory_file import trajectory_csv
+from rr_opt.verify.replay import Replay
+from rr_opt.verify.sweep import TOLERATED, SweepCheck
 
 LARGEST_REPLAY_ERROR = 1e-6
 """Of the replayed speed, relative: the optimiser's mesh is refined until it is well below this."""
 
-LIMIT_NAMES = ("angle", "rate", "torque", "singularity")
 
+@dataclass(frozen=True, repr=False)
+class FastestGait(Result):
+    """The fastest gait of a problem, with the evidence for it.
 
-@dataclass(frozen=True)
-class LimitRow:
-    """A limit, and how near the gait comes to it.
-
-    limit         SI; inf if there is none
-    value         the extreme over the replayed cycle, SI; NaN if there is no gait
-    active        whether the limit constrains the optimum
-    shadow_price  m/s of |speed| gained per SI unit by which the limit is raised; 0 if inactive,
-                  NaN if there is no gait
-    """
-
-    name: str
-    limit: float
-    value: float = math.nan
-    active: bool = False
-    shadow_price: float = math.nan
-
-
-@dataclass(frozen=True)
-class BoundRow:
-    """A decision of the problem within its bounds.
-
-    active        which bound constrains it, if one does
-    shadow_price  m/s of |speed| per unit by which that bound moves up, 0 if neither is active;
-                  None where no price exists: a fixed decision, or a whole number of loads
-    """
-
-    name: str
-    value: float
-    low: float
-    high: float
-    active: Literal["low", "high", "fixed"] | None
-    shadow_price: float | None
-
-
-@dataclass(frozen=True)
-class SpeedAnswer(Answer):
-    """The fastest gait of a problem.
-
-    name           of the problem
-    sha256         fingerprint of its files
+    name, sha256   of the problem: its name, and the fingerprint of its files
     optimum        as the optimiser left it
-    replay, sweep  the evidence; None where there is no optimum to check
+    replay, sweep  the motion simulated by CVODES, and the comparison with a plain sweep; None
+                   where there is no optimum to check
     as_built       speed of the fastest gait of the robot as it is, m/s, where the optimum has
                    another inertia ratio; None elsewhere, and if that robot has no such gait
     """
+
+    RECORD = "result.json"
+    OTHERS = ("trajectory.csv",)
+    CAPTIONS = CAPTIONS
 
     name: str
     sha256: str
@@ -115,37 +88,22 @@ class SpeedAnswer(Answer):
         """Whether the optimum has another inertia ratio than the robot as it is."""
         return self.robot.platform2 != self.problem.robot.platform2
 
+    @property
+    def turns(self) -> bool:
+        """Whether the robot goes round a circle: a radius of many kilometres is a straight line."""
+        return self.replay is not None and abs(self.replay.steady.cycle.dpsi) > 1e-7
+
     @cached_property
     def limits(self) -> dict[str, LimitRow]:
-        """Each limit by name, in the order of the problem file."""
-        return {name: self._limit(name) for name in LIMIT_NAMES}
+        """By name (angle, rate, torque, singularity), each with `limit`, `value`, `active` and
+        `shadow_price`, SI."""
+        return {name: limit_row(name, self.optimum, self.replay) for name in LIMIT_NAMES}
 
     @cached_property
     def bounds(self) -> dict[str, BoundRow]:
-        """Amplitude, period, offset, and the inertia ratio if it is a decision; empty without a
-        gait."""
-        best, problem = self.optimum.best, self.problem
-        if best is None or self.optimum.ratio is None:
-            return {}
-        gait = problem.gait
-        rows = {
-            name: _bound(
-                name, getattr(best.gait, name), getattr(gait, name), best.bound_prices[name]
-            )
-            for name in ("amplitude", "period", "offset")
-        }
-        if gait.shape != "sine":
-            rows["amplitude"] = _swing(
-                rows["amplitude"], best.bound_prices["amplitude"], best.speed
-            )
-        choice = problem.inertia_ratio
-        if choice:
-            whole = choice.by == "loads" and choice.loads.whole
-            price = best.bound_prices["ballast"] * _share_per_ratio(problem, choice)
-            rows["inertia_ratio"] = _bound(
-                "inertia_ratio", self.optimum.ratio, choice.bounds, None if whole else price
-            )
-        return rows
+        """The same of amplitude, period, offset, and the inertia ratio if it is a decision; empty
+        without a gait."""
+        return bound_rows(self.optimum)
 
     def ratio_of(self, candidate: Candidate) -> float:
         """J20/J10 of one of the optima, in the problem's definition."""
@@ -213,11 +171,14 @@ class SpeedAnswer(Answer):
         failed = [check.sentence for check in self.checks if not check.passed]
         if failed:
             return "The optimum was not confirmed. " + " ".join(failed)
-        best = self.optimum.best
-        if best is None:
+        if self.speed is None:
             return self.optimum.message
-        first = f"{self._subject} at {pace_text(best.speed)}, and every check confirms it."
+        first = f"{self._subject} at {pace_text(self.speed)}, and every check confirms it."
         return " ".join([first, *self.remarks])
+
+    @property
+    def _subject(self) -> str:
+        return f"The fastest gait found drives {direction_text(self.speed or 0.0)}"
 
     @property
     def remarks(self) -> list[str]:
@@ -236,7 +197,11 @@ class SpeedAnswer(Answer):
         if sine:
             gain = 100 * (abs(best.speed) / sine - 1)
             texts.append(f"That is {gain:.1f} % faster than the fastest sine.")
-        texts += self._servo_note(best.gait)
+        if beyond := self._beyond_servo(best.gait):
+            texts.append(
+                "But the problem allows more than the robot's servo: the gait exceeds its "
+                f"{listed(beyond)} limit."
+            )
         if self.sweep and math.isnan(self.sweep.error):
             texts.append("The sweep's own model cannot represent this shape and does not check it.")
         if self.optimum.sideways:
@@ -246,31 +211,10 @@ class SpeedAnswer(Answer):
             )
         return texts
 
-    @property
-    def warnings(self) -> tuple[str, ...]:
-        """Which effects of the robot the optimum ignores."""
-        return ignored_effects(self.problem.robot)
-
-    @property
-    def _subject(self) -> str:
-        return f"The fastest gait found drives {direction_text(self.speed or 0.0)}"
-
-    def _limit(self, name: str) -> LimitRow:
-        best, limit = self.optimum.best, getattr(self.problem.limits, name)
-        if self.replay is None or best is None:
-            return LimitRow(name, limit)
-        value, price = self.replay.reached[name], best.prices[name]
-        slack = value - limit if name == "singularity" else limit - value
-        active = bool(math.isfinite(limit) and slack <= ACTIVE * abs(limit))
-        if self.problem.gait.shape != "sine":
-            # Its peaks may stay short of a limit that the program holds somewhat tighter.
-            active |= _matters(price, limit, best.speed)
-        return LimitRow(name, limit, value, active, price if active else 0.0)
-
-    def _servo_note(self, gait: Gait) -> list[str]:
-        """What the problem's limits allow beyond the servo of the robot file."""
+    def _beyond_servo(self, gait: Gait) -> list[str]:
+        """Which limits of the robot file's servo the gait exceeds."""
         servo, needed = self.problem.robot.servo, self.replay.reached if self.replay else {}
-        beyond = [
+        return [
             name
             for name, value, able in (
                 ("angle", gait.peak_angle, servo.angle_limit),
@@ -279,71 +223,30 @@ class SpeedAnswer(Answer):
             )
             if value > able * (1 + LARGEST_EXCESS)
         ]
-        if not beyond:
-            return []
-        return [
-            "But the problem allows more than the robot's servo: the gait exceeds its "
-            f"{listed(beyond)} limit."
-        ]
 
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Which effects of the robot the optimum ignores."""
+        return ignored_effects(self.problem.robot)
 
-def evidence(
-    optimum: Optimum, progress: Callable[[str], Any], swept: SweepResult | None = None
-) -> tuple[Replay | None, SweepCheck | None]:
-    """The replay of an optimum and the sweep against it; None and None if there is no optimum.
+    def document(self, figures: Sequence[Figure] = ()) -> Document:
+        """Gait, speed, checks, limits, bounds, local optima and robot."""
+        return fastest_document(self, figures)
 
-    swept  a sweep of the whole problem, where that is done already
-    """
-    best, robot, ratio = optimum.best, optimum.robot, optimum.ratio
-    if best is None or robot is None or ratio is None:
-        return None, None
-    progress("replay by CVODES")
-    replayed = replay(robot, best.gait, optimum.problem.limits, best.speed)
-    progress("check against a sweep")
-    check = check_optimum(optimum.problem, best.gait, ratio, best.speed, everywhere=swept)
-    return replayed, check
+    def record(self, files: Sequence[Path] = ()) -> dict[str, Any]:
+        """The content of result.json; the same keys whatever the outcome."""
+        return fastest_record(self)
 
+    def _tables(self) -> dict[str, str]:
+        if self.replay is None:
+            return {}
+        return {"trajectory.csv": trajectory_csv(one_period(self.replay.steady))}
 
-def _bound(name: str, value: float, box: Interval, price: float | None) -> BoundRow:
-    if box.fixed:
-        return BoundRow(name, value, box.low, box.high, "fixed", None)
-    near = ACTIVE * min(box.high - box.low, max(abs(box.low), abs(box.high)))
-    side: Literal["low", "high"] | None = None
-    if value - box.low <= near:
-        side = "low"
-    elif box.high - value <= near:
-        side = "high"
-    return BoundRow(name, value, box.low, box.high, side, price if side else 0.0)
+    def _drawn(self) -> dict[str, str]:
+        # Here and not above: without figures matplotlib need not be loaded.
+        from rr_opt.report.figures.fastest import draw
 
-
-def _matters(price: float, limit: float, speed: float) -> bool:
-    """Whether dropping the limit would change the speed by more than solvers leave behind."""
-    return math.isfinite(limit) and abs(price * limit) > ACTIVE * abs(speed)
-
-
-def _swing(row: BoundRow, price: float, speed: float) -> BoundRow:
-    """The row of the amplitude of a gait that is no sine: the lower bound is on its first
-    harmonic and the upper one on its swing, so the price shows which is active."""
-    if row.active == "fixed":
-        return row
-    side: Literal["low", "high"] = "high" if price > 0 else "low"
-    edge = row.high if price > 0 else row.low
-    active = side if _matters(price, edge, speed) else None
-    return replace(row, active=active, shadow_price=price)
-
-
-def _share_per_ratio(problem: Problem, choice: RatioChoice) -> float:
-    """How far the ballast's share of its range moves per unit of J20/J10, at the upper bound."""
-    robot, high = problem.robot, choice.bounds.high
-
-    def amount(ratio: float) -> float:
-        fixed = RatioChoice(Interval(ratio, ratio), choice.about, choice.by, choice.loads)
-        return ballast_interval(robot, fixed).high
-
-    span = ballast_interval(robot, choice)
-    if span.fixed:
-        return 0.0
-    return (amount(high) - amount(high * (1 - 1e-6))) / (high * 1e-6) / (span.high - span.low)
+        return draw(self)
 
 
 def _sweep_sentence(sweep: SweepCheck, shape: str) -> str:

@@ -1,0 +1,36 @@
+"""The catalogue of nuisances: what goes wrong between a motion and its recording, by name.
+
+A nuisance is one module here with LOOK: a function that takes the Evidence of a recording and gives
+notices. Wheels that roll tie place, heading and joint angle together at every instant, whatever the
+forces are, and the command ties the angle to the clock. So a nuisance shows in the kinematics, and
+an effect of the robot's physics, which obeys them or nearly so, does not pass for one.
+"""
+
+from __future__ import annotations
+
+from rr_opt.recordings.nuisances import clock, command, enough, frame, late, push, start, units
+from rr_opt.recordings.nuisances.evidence import Evidence, Look
+from rr_opt.recordings.warnings import Notice
+
+CATALOGUE: tuple[Look, ...] = (
+    enough.LOOK,
+    units.LOOK,
+    clock.LOOK,
+    frame.LOOK,
+    late.LOOK,
+    frame.TWICE,
+    command.LOOK,
+    push.LOOK,
+    start.LOOK,
+)
+"""Asked in this order until one finds what makes the others mean nothing."""
+
+
+def nuisances(evidence: Evidence) -> tuple[Notice, ...]:
+    """What is found in a recording that moves."""
+    found: list[Notice] = []
+    for look in CATALOGUE:
+        found += look(evidence)
+        if any(one.level == "error" or one.kind == "useless" for one in found):
+            break
+    return tuple(found)

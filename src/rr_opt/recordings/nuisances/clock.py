@@ -1,0 +1,73 @@
+"""A clock whose rate changes while the robot drives on as before."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from rr_opt.array import Array
+from rr_opt.recordings.nuisances.evidence import Evidence
+from rr_opt.recordings.nuisances.periods import dominant, explained
+from rr_opt.recordings.warnings import Notice, notice
+
+_LENGTHS = (3.0, 2.0)
+"""Of a window, in periods: the first tells slow periods, the second has more windows."""
+_LEAST = 0.1
+"""By which part of itself a period changes, at least."""
+_STEADY = 0.05
+_FEWEST = 3
+"""Windows to either side of the change."""
+_SINE = 0.75
+"""Of phi's variance in a window that a sine explains, where the angle is that of a gait."""
+
+
+def _look(given: Evidence) -> Iterator[Notice]:
+    t, phi = given.t, given.motion[3]
+    usual = given.gait.period if given.gait else dominant(t, phi)[0]
+    for length in _LENGTHS if usual > 0 else ():
+        starts = np.arange(t[0], t[-1] - length * usual, max(usual / 4, (t[-1] - t[0]) / 400))
+        pieces = [(t >= one) & (t <= one + length * usual) for one in starts]
+        found = [dominant(t[one], phi[one]) if one.any() else (np.nan, 0.0) for one in pieces]
+        periods = np.array([period if share > _SINE else np.nan for period, share in found])
+        if at := _change(np.log(periods)):
+            before, after = (float(np.nanmedian(one)) for one in (periods[:at], periods[at:]))
+            when = _moment(t, phi, before, after, starts[at - 1])
+            yield notice("clock.change", t=when, before=before, after=after)
+            return
+
+
+def _change(size: Array) -> int:
+    """Where values (n,) step from one steady level to another; 0 if they do not."""
+    best, place = np.inf, 0
+    for at in range(_FEWEST, len(size) - _FEWEST + 1):
+        sides = size[:at], size[at:]
+        if any(np.isfinite(one).sum() < _FEWEST for one in sides):
+            continue
+        levels = [float(np.nanmedian(one)) for one in sides]
+        left = [
+            float(np.nanmean(np.abs(one - level))) for one, level in zip(sides, levels, strict=True)
+        ]
+        off = left[0] * at + left[1] * (len(size) - at)
+        if abs(levels[1] - levels[0]) > _LEAST and max(left) < _STEADY and off < best:
+            best, place = off, at
+    return place
+
+
+def _moment(t: Array, phi: Array, before: float, after: float, first: float) -> float:
+    """When, from about a time on, the period changes, s: two sines are then nearest to phi."""
+    last = first + max(_LENGTHS) * before + 2 * after
+    near = np.isfinite(phi) & (t > first - before) & (t < last)
+    t, phi = t[near], phi[near]
+    tries = np.linspace(t[0] + before / 2, t[-1] - after / 2, 100)
+    left = [
+        sum(
+            (1 - explained(t[side], phi[side], period)) * float(np.var(phi[side])) * side.sum()
+            for side, period in ((t <= one, before), (t > one, after))
+        )
+        for one in tries
+    ]
+    return float(tries[int(np.argmin(left))])
+
+
+LOOK = _look

@@ -1,0 +1,197 @@
+"""What nuisances are judged by: the channels, and how far they are from wheels that roll.
+
+Over a stride the joint P moves by (dx, dy), the heading psi by dpsi and phi by dphi. Without side
+slip, with the mean headings h and h2 = h + phi,
+
+    axle 1:  -sin(h) dx + cos(h) dy + c1 dpsi = 0
+    axle 2:  -sin(h2) dx + cos(h2) dy - c2 (dpsi + dphi) = 0
+
+hold whatever forces act. Both are linear in the noise, so what is left of them has a known size.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TypeVar
+
+import numpy as np
+from scipy.special import ndtri
+
+from rr_opt.array import Array
+from rr_opt.model.experiment import CHANNELS, Recording, Start
+from rr_opt.model.gait import Gait
+from rr_opt.model.robot import Robot
+from rr_opt.recordings.clock_fit import ClockFit, against_command
+from rr_opt.recordings.noise import noise_of
+from rr_opt.recordings.time_axis import time_step
+from rr_opt.recordings.warnings import Notice
+
+Motion = tuple[Array, Array, Array, Array]
+"""x, y, psi and phi (n,), NaN where there are no data."""
+
+_SHARE, _STRIDE = 0.1, 0.1
+"""A stride in periods of the gait, and in s where no gait is known."""
+_SHORTEST, _LONGEST = 1e-3, 1.0
+"""Between which c1 and c2 lie where no robot is known, m."""
+_BULK = 0.8
+_WITHIN = float(ndtri((1 + _BULK) / 2))
+"""Standard deviations that hold this share of a normal distribution."""
+_MOST = 20_000
+"""Strides that are looked at, spread over the recording."""
+
+
+@dataclass(frozen=True)
+class Slip:
+    """What is left of both axles' constraints (n - stride,), m, and what noise leaves of them, m.
+
+    along  how far axle 1 rolls, m
+    """
+
+    first: Array
+    second: Array
+    noise: tuple[float, float]
+    along: Array
+
+    @property
+    def size(self) -> float:
+        """Root mean square, in noise; what is off for a moment counts as three times the usual."""
+        squares = []
+        for row, noise in zip((self.first, self.second), self.noise, strict=True):
+            usual = float(np.nanpercentile(np.abs(row), 100 * _BULK)) / _WITHIN
+            squares.append(float(np.nanmean(np.minimum(row**2, 9 * usual**2))) / noise**2)
+        return float(np.sqrt(np.mean(squares)))
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """A cleaned recording, and what is known of how it was made; None: not known.
+
+    clock_known  a servo's log has told what the recording's clock is off by
+    framed       the zeros of psi and phi, and which platform is the first, are those of the robot
+    """
+
+    recording: Recording
+    robot: Robot | None = None
+    gait: Gait | None = None
+    start: Start = "running"
+    clock_known: bool = False
+    framed: bool = True
+
+    @cached_property
+    def t(self) -> Array:
+        """Times (n,), s."""
+        return self.recording.t
+
+    @cached_property
+    def step(self) -> float:
+        """The usual one of time, s."""
+        return time_step(self.t)
+
+    @cached_property
+    def motion(self) -> Motion:
+        """What is taken as data."""
+        x, y, psi, phi = (self.recording.data(name) for name in CHANNELS)
+        return x, y, psi, phi
+
+    @cached_property
+    def sigma(self) -> Array:
+        """Noise of the four channels: as stated, or as they scatter if that is more."""
+        stated = [float(np.nanmedian(self.recording.sigma[name])) for name in CHANNELS]
+        seen = [noise_of(values).sigma for values in self.motion]
+        return np.fmax(np.fmax(stated, seen), 1e-9)
+
+    @cached_property
+    def command(self) -> ClockFit | None:
+        """phi against its command; None without a gait, or if they cannot be matched."""
+        if self.gait is None:
+            return None
+        rest = self.start == "rest"
+        return against_command(self.t, self.motion[3], self.gait, from_rest=rest)
+
+    @cached_property
+    def stride(self) -> int:
+        """Samples of a stride."""
+        seconds = self.gait.period * _SHARE if self.gait else _STRIDE
+        return int(np.clip(round(seconds / self.step), 1, max(1, len(self.t) // 20)))
+
+    @cached_property
+    def slip(self) -> Slip:
+        """Of the recording as it is."""
+        return self.slip_of(self.motion)
+
+    def slip_of(self, motion: Iterable[Array], every: int = 1, scale: float = 1.0) -> Slip:
+        """Of a motion that may have been, of every so many strides.
+
+        scale: of x and y, and so of their noise, in the motion against the recording.
+        """
+        x, y, psi, phi = motion
+        S, k = self.stride, every
+        dx, dy, dpsi, dphi = ((one[S:] - one[:-S])[::k] for one in (x, y, psi, phi))
+        h, turn = ((one[S:] + one[:-S])[::k] / 2 for one in (psi, phi))
+        side1, along = np.cos(h) * dy - np.sin(h) * dx, np.cos(h) * dx + np.sin(h) * dy
+        side2 = np.cos(h + turn) * dy - np.sin(h + turn) * dx
+        dpsi2 = -(dpsi + dphi)
+        c1, c2 = self._length(0, side1, dpsi), self._length(1, side2, dpsi2)
+        sx, _, spsi, sphi = self.sigma * (scale, scale, 1.0, 1.0)
+        noise = np.hypot(sx, c1 * spsi), np.hypot(sx, c2 * np.hypot(spsi, sphi))
+        first, second = (float(np.sqrt(2) * one) for one in noise)
+        return Slip(side1 + c1 * dpsi, side2 + c2 * dpsi2, (first, second), along)
+
+    @cached_property
+    def sideways(self) -> float:
+        """How far a turn of platform 1 takes the joint sideways, m per rad: c1, if all is right."""
+        x, y, psi, _ = self.motion
+        S = self.stride
+        dx, dy, dpsi = (one[S:] - one[:-S] for one in (x, y, psi))
+        h = (psi[S:] + psi[:-S]) / 2
+        return _lever(np.cos(h) * dy - np.sin(h) * dx, dpsi)
+
+    def _length(self, axle: int, side: Array, turned: Array) -> float:
+        """c1 or c2, m: the robot's, else the one that fits best."""
+        if self.robot is not None:
+            return (self.robot.platform1, self.robot.platform2)[axle].c
+        return float(np.clip(_lever(side, turned), _SHORTEST, _LONGEST))
+
+    def explains(self, motion: Iterable[Array], scale: float = 1.0) -> float:
+        """The slip of another motion, in noise, if it explains the recording; else infinity.
+
+        Its wheels have to roll, or to slip by a fraction of what they do as recorded.
+        """
+        if not self.framed or self.slip.size < ROLLING:
+            return np.inf
+        every = max(1, len(self.t) // _MOST)
+        now, then = self.slip.size, self.slip_of(motion, every, scale).size
+        rolls = then < CLEAN and now > ROLLING * then
+        sure = self._likelier(now, then) > _SURE
+        return then if sure and (rolls or now > _FAR * then) else np.inf
+
+    def likely(self, left: Mapping[Name, float]) -> list[Name]:
+        """Those that explain a recording about as well as the best, by the slip they leave."""
+        best = min(left.values(), default=np.inf)
+        if not np.isfinite(best):
+            return []
+        return [name for name, one in left.items() if self._likelier(one, best) < _UNSURE]
+
+    def _likelier(self, now: float, then: float) -> float:
+        """By how much of log likelihood a smaller slip is likelier; strides are independent."""
+        return len(self.t) / self.stride * float(np.log(max(now, 1e-9) / max(then, 1e-9)))
+
+
+def _lever(side: Array, turned: Array) -> float:
+    """The c of side + c turned = 0, by least squares."""
+    known = np.isfinite(side) & np.isfinite(turned)
+    swings = float(turned[known] @ turned[known])
+    return -float(side[known] @ turned[known]) / swings if swings > 0 else 0.0
+
+
+ROLLING, CLEAN, _FAR = 1.1, 1.3, 3.0
+"""Slip that wheels leave that roll, in noise; with some uncertainty of c; and times as much slip as
+there is in a motion that is right, where wheels slide."""
+_SURE, _UNSURE = 15.0, 5.0
+"""Log likelihood by which another motion must be likelier, and by which it may not be."""
+
+Name = TypeVar("Name")
+
+Look = Callable[[Evidence], Iterable[Notice]]

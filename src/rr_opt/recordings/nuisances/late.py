@@ -1,0 +1,73 @@
+"""A channel that is late: it was filtered, buffered or stamped apart from the others."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from rr_opt.array import Array
+from rr_opt.recordings.nuisances.evidence import ROLLING, Evidence, Motion
+from rr_opt.recordings.warnings import Notice, notice
+
+_PARTS = {"x and y": (0, 1), "psi": (2,), "phi": (3,)}
+_FARTHEST, _TRIES = 0.25, 41
+"""How late a channel may be, in periods or s, and how many delays begin the search."""
+_SHORTEST, _UNSURE = 0.01, 0.02
+"""Delays that matter, s; the second where something else may explain a part of them: c1 and c2
+that are not known, or wheels that creep sideways, which shows at both axles alike."""
+
+
+def _look(given: Evidence) -> Iterator[Notice]:
+    if given.slip.size < ROLLING:
+        return
+    found = {name: _best(given, columns) for name, columns in _PARTS.items()}
+    likely = given.likely({name: left for name, (left, _) in found.items()})
+    # Only the second axle's constraint knows phi.
+    sure = "phi" in likely and given.robot is not None
+    told = [
+        f"{name} by {1e3 * found[name][1]:+.3g} ms"
+        for name in likely
+        if abs(found[name][1]) > (_SHORTEST if sure else _UNSURE)
+    ]
+    if told:
+        code = "late.phi" if "phi" in likely else "late.place"
+        yield notice(code, told=", or ".join(told))
+
+
+def _best(given: Evidence, columns: tuple[int, ...]) -> tuple[float, float]:
+    """What is left if some channels are late, in noise, and by how much they are, s."""
+    most = _FARTHEST * (given.gait.period if given.gait else 1.0) / given.step
+
+    def left(steps: float) -> float:
+        return given.slip_of(_earlier(given, columns, steps * given.step)).size
+
+    # By whole steps: in between, the noise is smoothed, which looks like a better fit.
+    coarse = np.unique(np.round(np.linspace(-most, most, _TRIES)))
+    best = float(coarse[int(np.argmin([left(one) for one in coarse]))])
+    apart = max(1.0, float(np.ceil(2 * most / _TRIES)))
+    fine = best + np.arange(-apart, apart + 1)
+    sizes = np.array([left(one) for one in fine])
+    at = int(np.clip(np.argmin(sizes), 1, len(fine) - 2))
+    low, middle, high = sizes[at - 1 : at + 2] ** 2
+    bend = low - 2 * middle + high
+    late = given.step * (fine[at] + (0.5 * (low - high) / bend if bend > 0 else 0.0))
+    return given.explains(_earlier(given, columns, given.step * fine[at])), float(late)
+
+
+def _earlier(given: Evidence, columns: tuple[int, ...], late: float) -> Motion:
+    moved = [
+        _at(given.t + late, given.t, one) if column in columns else one
+        for column, one in enumerate(given.motion)
+    ]
+    return moved[0], moved[1], moved[2], moved[3]
+
+
+def _at(u: Array, t: Array, y: Array) -> Array:
+    """y (n,), seen at t, at the times u; NaN where it is not known."""
+    known = np.isfinite(y)
+    whole = np.interp(u, t, known.astype(float), left=0.0, right=0.0) > 0.999
+    return np.where(whole, np.interp(u, t, np.where(known, y, 0.0)), np.nan)
+
+
+LOOK = _look

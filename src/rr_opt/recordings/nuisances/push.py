@@ -1,0 +1,82 @@
+"""A push: the robot moves, for a moment, as its wheels cannot roll, or surges and is slow again."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from rr_opt.array import Array
+from rr_opt.recordings.gaps import bridged
+from rr_opt.recordings.nuisances.evidence import CLEAN, Evidence
+from rr_opt.recordings.warnings import Notice, notice
+
+_WINDOW = 0.5
+"""A push is over within this, s."""
+_UNSEEN = 0.2
+"""Gaps that are bridged, s."""
+_FAR = (0.02, 0.06)
+"""How far a push takes the robot across its wheels, and along them, m. Wheels that slide make 1 cm
+of the first, and a tilted floor 4 cm of the second."""
+_RARE = 10.0
+"""Times the usual size over the recording."""
+_MOST = 3
+"""Of one recording that are told."""
+
+
+def _look(given: Evidence) -> Iterator[Notice]:
+    width = max(1, round(_WINDOW / given.step))
+    if not given.framed or len(given.t) < 4 * width:
+        return
+    # A push may come while nothing is seen for a moment.
+    slip = given.slip_of([bridged(given.t, one, _UNSEEN) for one in given.motion])
+    across = [_moved(row / given.stride, width) for row in (slip.first, slip.second)]
+    far = np.hypot(*across)
+    pushes, code = _events(far, _FAR[0], width), "push.robot"
+    if not pushes and given.gait is not None and given.slip.size < CLEAN:
+        along = np.abs(_moved(_surge(given, slip.along) / given.stride, width))
+        far, pushes, code = along, _events(along, _FAR[1], width), "push.surge"
+    for at in pushes[:_MOST]:
+        row = min(at + (width + given.stride) // 2, len(given.t) - 1)
+        x, y = (float(one[np.isfinite(one)][_nearest(one, row)]) for one in given.motion[:2])
+        yield notice(code, t=given.t[row], x=x, y=y, far=1e3 * far[at])
+
+
+def _nearest(y: Array, row: int) -> int:
+    return int(np.abs(np.flatnonzero(np.isfinite(y)) - row).argmin())
+
+
+def _moved(each: Array, width: int) -> Array:
+    """The sum over every window, without what is usual, m."""
+    total = np.concatenate([[0.0], np.cumsum(np.nan_to_num(each))])
+    sums = total[width:] - total[:-width]
+    return sums - np.median(sums)
+
+
+def _surge(given: Evidence, along: Array) -> Array:
+    """What axle 1 rolls farther than at the same phase of the periods before and after, m."""
+    period = round(given.gait.period / given.step) if given.gait else 0
+    if not 0 < 2 * period < len(along):
+        return np.zeros_like(along)
+    padded = np.concatenate([np.full(2 * period, np.nan), along, np.full(2 * period, np.nan)])
+    at = 2 * period + np.arange(len(along))
+    near = np.stack([padded[at + k * period] for k in (-2, -1, 1, 2)])
+    order = np.sort(near, axis=0)  # NaN last
+    count = np.isfinite(near).sum(axis=0)
+    usual = np.where(count == 4, (order[1] + order[2]) / 2, np.where(count == 3, order[1], along))
+    return along - usual
+
+
+def _events(far: Array, least: float, width: int) -> list[int]:
+    """The rows at which it is farthest, of windows apart."""
+    usual = 1.4826 * float(np.median(far))
+    found: list[int] = []
+    for at in np.argsort(-far, kind="stable")[: len(far) // 4].tolist():
+        if far[at] < max(least, _RARE * usual):
+            break
+        if all(abs(at - other) > 2 * width for other in found):
+            found.append(at)
+    return sorted(found)
+
+
+LOOK = _look

@@ -1,0 +1,91 @@
+"""Numbers in another unit, which no robot makes, or not this one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from rr_opt.array import Array
+from rr_opt.model.experiment import Recording
+from rr_opt.recordings.nuisances.evidence import Evidence
+from rr_opt.recordings.time_axis import time_step
+from rr_opt.recordings.warnings import Notice, notice
+
+_ROOM, _NO_ROOM = 50.0, 1e5
+"""No floor on which a small robot is recorded is as long in m, nor in mm."""
+_NO_ANGLE = 1000.0
+"""No servo turns so far in rad, nor in degrees."""
+_SLOWEST = 0.5
+"""Capture systems sample more often than every so many seconds."""
+_LATEST = 1e6
+"""Nor do they begin so many seconds, eleven days, after the command did."""
+
+
+def unit_notices(recording: Recording) -> tuple[Notice, ...]:
+    """What looks like another unit. Nothing is converted: the experimenter has to say."""
+    return (*_of_time(recording), *_of_place(recording), *_of_angles(recording))
+
+
+def _of_time(recording: Recording) -> Iterator[Notice]:
+    if len(recording) and abs(recording.t[0]) > _LATEST:
+        yield notice("units.calendar", start=recording.t[0])
+        return
+    step = time_step(recording.t)
+    if step < _SLOWEST or len(recording) < 3:
+        return
+    if abs(step - 1) < 1e-6:
+        yield notice("units.frames")
+    else:
+        yield notice("units.milliseconds" if step < 1000 * _SLOWEST else "units.time", step=step)
+
+
+def _of_place(recording: Recording) -> Iterator[Notice]:
+    ranges = [_range(recording.data(channel)) for channel in ("x", "y")]
+    if max(ranges) > _NO_ROOM:
+        yield notice("units.place", widest=max(ranges))
+    elif max(ranges) > _ROOM:
+        yield notice("units.millimetres", ranges=" and ".join(f"{size:.4g}" for size in ranges))
+
+
+def _of_angles(recording: Recording) -> Iterator[Notice]:
+    phi = np.abs(recording.data("phi"))
+    largest = float(np.nanmax(phi)) if np.isfinite(phi).any() else 0.0
+    if largest > 2 * np.pi:
+        yield notice("units.angle" if largest > _NO_ANGLE else "units.degrees", largest=largest)
+
+
+def _range(values: Array) -> float:
+    return float(np.nanmax(values) - np.nanmin(values)) if np.isfinite(values).any() else 0.0
+
+
+_LENGTHS = 5.0
+"""No robot drives so many of its own lengths in a period."""
+_HEADING = 6.0
+"""Nor does its heading swing so many times as far as phi: in degrees it is 57 times too far."""
+
+
+def _look(given: Evidence) -> Iterator[Notice]:
+    if given.gait is None or given.robot is None:
+        return
+    x, y, psi, phi = (_swing(given.t, one, given.gait.period) for one in given.motion)
+    length = given.robot.platform1.c + given.robot.platform2.c
+    if max(x, y) > _LENGTHS * length:
+        yield notice("units.length", driven=max(x, y), length=length)
+    if psi > _HEADING * phi > 0:
+        yield notice("units.heading", psi=psi, phi=phi)
+
+
+def _swing(t: Array, y: Array, period: float) -> float:
+    """How far y ranges within a period, the median over the recording; outliers left out."""
+    begins = np.flatnonzero(np.diff(np.floor((t - t[0]) / period)) > 0) + 1
+    ranges = []
+    for piece in np.split(y, begins):
+        inside = piece[np.isfinite(piece)]
+        if len(inside) > 3:
+            low, high = np.percentile(inside, (2, 98))
+            ranges.append(high - low)
+    return float(np.median(ranges)) if ranges else 0.0
+
+
+LOOK = _look

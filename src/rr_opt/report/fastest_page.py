@@ -1,0 +1,261 @@
+"""The report of a fastest gait."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING
+
+from rr_opt.formatting import QUANTITIES, counted, number, price_text, speed_text, with_unit
+from rr_opt.messages import listed
+from rr_opt.model.ballast import inertia_ratio
+from rr_opt.model.parameters import PARAMETERS, parameters_of
+from rr_opt.model.robot import Robot
+from rr_opt.outcome import Status
+from rr_opt.report.document import (
+    Badge,
+    Document,
+    Fact,
+    Facts,
+    Figure,
+    Gallery,
+    Section,
+    Table,
+    Tone,
+    checks,
+    table,
+    versions,
+)
+from rr_opt.report.gait import gait_facts, speed_fact
+from rr_opt.verify.replay import Replay
+
+if TYPE_CHECKING:
+    from rr_opt.report.fastest import FastestGait
+
+CAPTIONS = {
+    "speed-map": (
+        "Mean speed over period and amplitude",
+        "Map of the mean speed, the region within the limits, and the optimum",
+        "At the optimum's offset and inertia ratio. Hatched: a limit is exceeded. "
+        "The star is the optimum; rings are other local optima with the same offset and ratio.",
+    ),
+    "prices": (
+        "What the limits cost",
+        "The speed that relaxing each limit or bound by one per cent would gain",
+        "From the shadow prices.",
+    ),
+    "path": (
+        "The path in steady state",
+        "Path of the joint seen from above, with the robot drawn at a few instants",
+        "P's path with the robot at a few instants, darker later. "
+        "Platform 1 is green, platform 2 amber.",
+    ),
+    "cycle": (
+        "One steady period",
+        "Angle, rate, speed and torque over one period, with their limits",
+        "Simulated by CVODES.",
+    ),
+}
+
+_TITLES = {
+    Status.OPTIMAL: "The robot does not move",
+    Status.INFEASIBLE: "No gait respects all limits",
+    Status.NOT_CONVERGED: "No confirmed optimum",
+}
+
+
+def fastest_document(
+    result: FastestGait, figures: Iterable[Figure] = (), turn: Section | None = None
+) -> Document:
+    """The report of a fastest gait; turn: a section that leads the others."""
+    choice, solved = result.problem.inertia_ratio, result.gait is not None
+    chosen = "platform2.I" if choice and choice.by == "inertia" and solved else ""
+    good = result.status is Status.OPTIMAL
+    lead = " ".join(["Every check confirms it.", *result.remarks, limited_by(result)])
+    return Document(
+        name=result.name,
+        kind="fastest gait",
+        title=result.headline or _TITLES[result.status],
+        lead=lead if good else result.message,
+        good=good,
+        sections=(
+            Section("", (Facts(tuple(_facts(result)), key=True),)),
+            *([turn] if turn else []),
+            Section("Checks", (checks((one.passed, one.sentence) for one in result.checks),)),
+            Section("", (Gallery(tuple(figures)),), brief=False),
+            Section("Limits", (_limits(result),), brief=solved),
+            Section("Decisions and their bounds", (_bounds(result),)),
+            Section("Local optima", (_optima(result),)),
+            Section("Robot", (_robot(result.robot, chosen),), brief=False),
+            Section("Solver", (_solver(result),), brief=solved),
+        ),
+        footer=versions(result.sha256),
+    )
+
+
+def limited_by(result: FastestGait) -> str:
+    """`It is limited by the rate limit and the lower bound of the period.`"""
+    if result.replay is None:
+        return ""
+    active = [
+        "the singularity margin" if row.name == "singularity" else f"the {row.name} limit"
+        for row in result.limits.values()
+        if row.active
+    ]
+    active += [
+        f"the {'lower' if row.active == 'low' else 'upper'} bound of the "
+        f"{QUANTITIES[row.name].words}"
+        for row in result.bounds.values()
+        if row.active in ("low", "high")
+    ]
+    if not active:
+        return "No limit or bound is active: it is an interior optimum."
+    return f"It is limited by {listed(active)}."
+
+
+def _facts(result: FastestGait) -> Iterator[Fact]:
+    if result.speed is None or result.gait is None or result.replay is None:
+        return
+    yield speed_fact(result.speed)
+    if result.rebuilt and result.as_built is not None:
+        yield Fact("as built", speed_text(result.as_built), "at best, with I2 unchanged")
+    yield from gait_facts(result.gait)
+    yield _ratio(result)
+    yield _cycle(result.replay, turning=result.turns)
+
+
+def _ratio(result: FastestGait) -> Fact:
+    """J20/J10, about which point, and how it is realised."""
+    choice, built = result.problem.inertia_ratio, result.problem.robot
+    about = choice.about if choice else "joint"
+    ratio = number(result.inertia_ratio or 0.0)
+    where = f"about {'the joint P' if about == 'joint' else 'the centres of mass'}"
+    if choice is None or not result.rebuilt:
+        return Fact("J20/J10", ratio, f"{where}, the robot as it is")
+    means = ", by loads on platform 2" if choice.by == "loads" else ""
+    return Fact(
+        "J20/J10",
+        ratio,
+        f"{where}{means}: I2 {built.platform2.I:.4g} -> {result.robot.platform2.I:.4g} kg m2 "
+        f"(ratio {number(inertia_ratio(built, about))} -> {ratio})",
+    )
+
+
+def _cycle(replay: Replay, *, turning: bool) -> Fact:
+    """What one period does: a step along a line or round a circle."""
+    cycle = replay.steady.cycle
+    step = f"{1e3 * math.hypot(cycle.dx, cycle.dy):.1f} mm a period"
+    if not turning:
+        return Fact("cycle", step, "straight")
+    return Fact(
+        "cycle",
+        step,
+        f"round a circle of radius {with_unit(cycle.radius, 'm')}, "
+        f"turning {math.degrees(cycle.dpsi):+.3g} deg a period",
+    )
+
+
+def _limits(result: FastestGait) -> Table:
+    """Each limit: what is reached, what is allowed, and its shadow price."""
+    kinds = [(QUANTITIES[row.name], row) for row in result.limits.values()]
+    if result.replay is None:
+        return table(["Limit", "Allowed"], [[k.words, k.both(row.limit)] for k, row in kinds])
+    return table(
+        ["Limit", "Reached", "Allowed", "State", "Shadow price"],
+        [
+            [
+                kind.words,
+                kind.both(row.value),
+                kind.both(row.limit),
+                Badge("active", "good") if row.active else Badge("not active"),
+                price_text(row.name, row.shadow_price) if row.active else None,
+            ]
+            for kind, row in kinds
+        ],
+    )
+
+
+def _bounds(result: FastestGait) -> Table:
+    """Each decision, its range, and the shadow price of its active bound."""
+    states = {
+        "low": Badge("at lower bound", "good"),
+        "high": Badge("at upper bound", "good"),
+        "fixed": Badge("fixed"),
+        None: Badge("inside"),
+    }
+    rows = []
+    for row in result.bounds.values():
+        kind, fixed = QUANTITIES[row.name], row.active == "fixed"
+        span = "fixed" if fixed else f"{number(row.low)} to {with_unit(row.high, kind.unit)}"
+        price = None
+        if row.active in ("low", "high") and row.shadow_price is not None:
+            price = price_text(row.name, row.shadow_price)
+        rows.append([kind.words, kind.both(row.value), span, states[row.active], price])
+    return table(["Decision", "Value", "Range", "State", "Shadow price"], rows)
+
+
+def _optima(result: FastestGait) -> Table:
+    """All local optima; nothing if there is one only."""
+    optimum = result.optimum
+    ties = {id(one) for one in optimum.ties}
+    rows = [
+        [
+            f"{1e3 * one.speed:+.2f} mm/s",
+            with_unit(one.gait.amplitude, "rad"),
+            with_unit(one.gait.period, "s"),
+            with_unit(one.gait.offset, "rad"),
+            number(result.ratio_of(one)),
+            "the optimum" if one is optimum.best else "a tie" if id(one) in ties else "",
+        ]
+        for one in optimum.optima
+    ]
+    head = ["Speed", "Amplitude", "Period", "Offset", "J20/J10", "Remark"]
+    return table(head, rows if len(rows) > 1 else [])
+
+
+_SHOWN = {"m": ("mm", 1e3), "kg m^2": ("kg m²", 1.0)}
+"""SI unit -> the unit shown, and how many of it are one SI unit."""
+_SERVO = {"angle_limit": "angle", "rate_limit": "rate", "torque_limit": "torque"}
+_ORIGINS: dict[str, Tone] = {"measured": "good", "fitted": "note", "assumed": "warn"}
+
+
+def _robot(robot: Robot, chosen: str) -> Table:
+    """Every parameter of the robot, its value, and whether it was measured, fitted or assumed.
+
+    chosen: key path of a value that the optimiser chose.
+    """
+    rows = []
+    for path, words, value in _parameters(robot):
+        text = robot.provenance.get(path, "")
+        origin = next((one for one in _ORIGINS if text.startswith(one)), "")
+        badge = Badge(origin or "not stated", _ORIGINS.get(origin, "quiet"))
+        source = text.removeprefix(origin).lstrip(": ")
+        if path == chosen:
+            badge, source = Badge("chosen", "note"), "by the optimiser"
+        # A number stays on one line with its unit.
+        rows.append([path, words, value.replace(" ", "\N{NO-BREAK SPACE}"), badge, source])
+    return table(["Key", "Parameter", "Value", "Origin", "Source"], rows)
+
+
+def _parameters(robot: Robot) -> Iterator[tuple[str, str, str]]:
+    for name, value in parameters_of(robot).items():
+        parameter = PARAMETERS[name]
+        unit, factor = _SHOWN.get(parameter.unit, (parameter.unit, 1.0))
+        yield ".".join(parameter.key), parameter.words, with_unit(value * factor, unit)
+    for key, name in _SERVO.items():
+        kind = QUANTITIES[name]
+        yield f"servo.{key}", kind.words, kind.both(getattr(robot.servo, key))
+    for use in robot.physics:
+        for parameter, value in use.values.items():
+            yield f"physics.{use.name}.{parameter}", "effect beyond the paper", number(value)
+
+
+def _solver(result: FastestGait) -> str:
+    optimum, guesses = result.optimum, ("initial guess", "initial guesses")
+    text = (
+        f"{counted(optimum.starts, *guesses)}, {counted(optimum.iterations, 'iteration')}, "
+        f"{optimum.intervals} intervals a period, "
+        f"{counted(len(optimum.optima), 'distinct optimum', 'distinct optima')}."
+    )
+    failed = len(optimum.failures)
+    return f"{text} {counted(failed, *guesses)} led to no optimum." if failed else text

@@ -1,0 +1,116 @@
+"""The figures of a fastest gait, as SVG text by name: among them what each limit costs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from matplotlib.axes import Axes
+
+from rr_opt.formatting import QUANTITIES, number
+from rr_opt.model.gait import SineGait
+from rr_opt.motion.rollout import repeated
+from rr_opt.report.fastest import FastestGait
+from rr_opt.report.figures.cycle import cycle
+from rr_opt.report.figures.path import along_travel, cycles_to_show, path
+from rr_opt.report.figures.speed_map import map_data, speed_map
+from rr_opt.report.figures.style import FORWARD, GREY, INK, figure, lanes, panel, styled, svg
+from rr_opt.report.limits import BoundRow, LimitRow
+from rr_opt.verify.replay import Replay
+
+
+def draw(result: FastestGait) -> dict[str, str]:
+    """Draw all figures; none if there is no optimum to show."""
+    replay, gait = result.replay, result.gait
+    if replay is None or gait is None:
+        return {}
+    lines = gains(result.limits.values(), result.bounds.values())
+    drawn = {
+        "path": _path(result, replay),
+        "cycle": _cycle(result, replay),
+        "prices": panel(6.3, 0.9 + 0.42 * len(lines), lambda ax: prices(ax, lines)),
+    }
+    # The map is one of sines.
+    return {"speed-map": _speed_map(result, gait), **drawn} if isinstance(gait, SineGait) else drawn
+
+
+def _speed_map(result: FastestGait, gait: SineGait) -> str:
+    best, *rest = result.optimum.optima
+    others = [
+        one.gait
+        for one in rest
+        if isinstance(one.gait, SineGait)
+        and math.isclose(one.gait.offset, gait.offset, abs_tol=1e-3)
+        and math.isclose(one.share, best.share, abs_tol=1e-2)
+    ]
+    problem, robot = result.problem, result.robot
+    data = map_data(problem, robot, gait)
+    return panel(6.3, 4.6, lambda ax: speed_map(ax, data, problem, robot, gait, others=others))
+
+
+def _path(result: FastestGait, replay: Replay) -> str:
+    robot, steady = result.robot, replay.steady
+    motion = repeated(steady, cycles_to_show(robot, steady.cycle))
+    straight = abs(steady.cycle.dpsi) < 1e-6
+    shown, height = (along_travel(motion), 3.0) if straight else (motion, 5.0)
+    return panel(6.3, height, lambda ax: path(ax, robot, shown, steady.speed, steady.gait.period))
+
+
+def _cycle(result: FastestGait, replay: Replay) -> str:
+    with styled():
+        drawn = figure(6.3, 6.4)
+        cycle(list(drawn.subplots(4, 1, sharex=True)), replay.steady, result.problem.limits)
+        return svg(drawn)
+
+
+@dataclass(frozen=True)
+class Gain:
+    """One line of the figure: mm/s gained by relaxing something by 1 %, and what it is."""
+
+    label: str
+    gain: float
+    remark: str = ""
+
+
+def gains(limits: Iterable[LimitRow], bounds: Iterable[BoundRow]) -> list[Gain]:
+    """The lines, the largest gain first; inactive limits follow with how much of them is used."""
+    active, idle = [], []
+    for row in limits:
+        if row.active:
+            way = -1 if row.name == "singularity" else 1
+            active.append(Gain(f"limit: {row.name}", 10 * way * row.shadow_price * row.limit))
+        elif math.isfinite(row.limit):
+            idle.append(Gain(f"limit: {row.name}", 0.0, _use(row)))
+    for row in bounds:
+        if row.active in ("low", "high") and row.shadow_price is not None:
+            low = row.active == "low"
+            gain = 10 * row.shadow_price * abs(row.low if low else row.high) * (-1 if low else 1)
+            name = QUANTITIES[row.name].words.replace("inertia ratio ", "")
+            active.append(Gain(f"{'least' if low else 'largest'} {name}", gain))
+    return sorted(active, key=lambda one: -one.gain) + idle
+
+
+def _use(row: LimitRow) -> str:
+    unit, factor = QUANTITIES[row.name].common
+    if row.name == "singularity":
+        least, value = number(row.limit * factor, 3), number(row.value * factor, 3)
+        return f"not active: {value} {unit} kept, {least} asked"
+    return f"not active: {100 * row.value / row.limit:.0f} % used"
+
+
+def prices(ax: Axes, lines: Sequence[Gain]) -> Axes:
+    """A lollipop for each line, the first on top."""
+    reach = max([one.gain for one in lines] + [1e-9])
+    for place, one in enumerate(lines):
+        ax.plot([0, one.gain], [place, place], color=FORWARD, lw=3, solid_capstyle="butt")
+        idle = bool(one.remark)
+        colour = GREY if idle else FORWARD
+        ax.plot(one.gain, place, "o", ms=6 if idle else 9, color=colour, clip_on=False, zorder=4)
+        text = one.remark or f"{one.gain:+.3g} mm/s"
+        at = max(one.gain, 0.0) + 0.035 * reach
+        ax.text(at, place, text, va="center", color=GREY if idle else INK, fontsize=9.5)
+    lanes(ax, [one.label for one in lines], pad=9)
+    ax.set_xlim(min(0.0, *(one.gain for one in lines)), 1.35 * reach)
+    ax.set_xlabel("speed gained by relaxing it by 1 %, mm/s")
+    return ax

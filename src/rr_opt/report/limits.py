@@ -1,0 +1,127 @@
+"""How near an optimum comes to each limit and bound, and what it would gain by more."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Literal
+
+from rr_opt.design.decisions import ballast_interval
+from rr_opt.design.maximize_speed import Optimum
+from rr_opt.model.problem import Interval, Problem, RatioChoice
+from rr_opt.verify.replay import Replay
+
+ACTIVE = 1e-4
+"""A limit is active when the gait comes this near to it, relative to the limit."""
+
+LIMIT_NAMES = ("angle", "rate", "torque", "singularity")
+
+
+@dataclass(frozen=True)
+class LimitRow:
+    """A limit, and how near the gait comes to it.
+
+    limit         SI; inf if there is none
+    value         the extreme over the replayed cycle, SI; NaN if there is no gait
+    active        whether the limit constrains the optimum
+    shadow_price  m/s of |speed| gained per SI unit by which the limit is raised; 0 if inactive,
+                  NaN if there is no gait
+    """
+
+    name: str
+    limit: float
+    value: float = math.nan
+    active: bool = False
+    shadow_price: float = math.nan
+
+
+@dataclass(frozen=True)
+class BoundRow:
+    """A decision of the problem within its bounds.
+
+    active        which bound constrains it, if one does
+    shadow_price  m/s of |speed| per unit by which that bound moves up, 0 if neither is active;
+                  None where no price exists: a fixed decision, or a whole number of loads
+    """
+
+    name: str
+    value: float
+    low: float
+    high: float
+    active: Literal["low", "high", "fixed"] | None
+    shadow_price: float | None
+
+
+def limit_row(name: str, optimum: Optimum, replay: Replay | None) -> LimitRow:
+    """A limit by name."""
+    best, limit = optimum.best, getattr(optimum.problem.limits, name)
+    if replay is None or best is None:
+        return LimitRow(name, limit)
+    value, price = replay.reached[name], best.prices[name]
+    slack = value - limit if name == "singularity" else limit - value
+    active = bool(math.isfinite(limit) and slack <= ACTIVE * abs(limit))
+    if optimum.problem.gait.shape != "sine":
+        # Its peaks may stay short of the limit, which the optimiser tightens somewhat.
+        active |= _matters(price, limit, best.speed)
+    return LimitRow(name, limit, value, active, price if active else 0.0)
+
+
+def bound_rows(optimum: Optimum) -> dict[str, BoundRow]:
+    """Amplitude, period, offset, the inertia ratio if it is a decision; empty without a gait."""
+    best, gait, choice = optimum.best, optimum.problem.gait, optimum.problem.inertia_ratio
+    if best is None or optimum.ratio is None:
+        return {}
+    prices = best.bound_prices
+    rows = {
+        name: _bound(name, getattr(best.gait, name), getattr(gait, name), prices[name])
+        for name in ("amplitude", "period", "offset")
+    }
+    if gait.shape != "sine":
+        rows["amplitude"] = _swing(rows["amplitude"], prices["amplitude"], best.speed)
+    if choice:
+        whole = choice.by == "loads" and choice.loads.whole
+        price = None if whole else prices["ballast"] * _share_per_ratio(optimum.problem, choice)
+        rows["inertia_ratio"] = _bound("inertia_ratio", optimum.ratio, choice.bounds, price)
+    return rows
+
+
+def _bound(name: str, value: float, box: Interval, price: float | None) -> BoundRow:
+    if box.fixed:
+        return BoundRow(name, value, box.low, box.high, "fixed", None)
+    near = ACTIVE * min(box.high - box.low, max(abs(box.low), abs(box.high)))
+    side: Literal["low", "high"] | None = None
+    if value - box.low <= near:
+        side = "low"
+    elif box.high - value <= near:
+        side = "high"
+    return BoundRow(name, value, box.low, box.high, side, price if side else 0.0)
+
+
+def _matters(price: float, limit: float, speed: float) -> bool:
+    """Whether dropping the limit would change the speed by more than solvers leave behind."""
+    return math.isfinite(limit) and abs(price * limit) > ACTIVE * abs(speed)
+
+
+def _swing(row: BoundRow, price: float, speed: float) -> BoundRow:
+    """The row of the amplitude of a gait that is no sine: the lower bound is on its first
+    harmonic and the upper one on its swing, so the price shows which is active."""
+    if row.active == "fixed":
+        return row
+    side: Literal["low", "high"] = "high" if price > 0 else "low"
+    edge = row.high if price > 0 else row.low
+    active = side if _matters(price, edge, speed) else None
+    return replace(row, active=active, shadow_price=price)
+
+
+def _share_per_ratio(problem: Problem, choice: RatioChoice) -> float:
+    """How far the ballast's share of its range moves per unit of J20/J10, at the upper bound."""
+    robot, high = problem.robot, choice.bounds.high
+
+    def amount(ratio: float) -> float:
+        fixed = RatioChoice(Interval(ratio, ratio), choice.about, choice.by, choice.loads)
+        return ballast_interval(robot, fixed).high
+
+    span = ballast_interval(robot, choice)
+    if span.fixed:
+        return 0.0
+    return (amount(high) - amount(high * (1 - 1e-6))) / (high * 1e-6) / (span.high - span.low)

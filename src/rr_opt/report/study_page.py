@@ -1,0 +1,177 @@
+"""The report of a study."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rr_opt.array import Array
+from rr_opt.formatting import direction_text, number, speed_text, with_unit
+from rr_opt.outcome import Status
+from rr_opt.report.document import (
+    Badge,
+    Document,
+    Fact,
+    Facts,
+    Figure,
+    Gallery,
+    Section,
+    Table,
+    table,
+    versions,
+)
+
+if TYPE_CHECKING:
+    from rr_opt.report.study import SolvedStudy
+
+CAPTIONS = {
+    "speed": (
+        "Speed over what was varied",
+        "Best speed of each case over the first input, a line for each value of the others",
+        "A line for each combination of the other inputs. Triangles point up for forward and "
+        "down for backward. Dotted: the optimum jumps to another branch.",
+    ),
+    "held": (
+        "Active limits and bounds",
+        "Which limits and bounds are active in each case",
+        "The limits and bounds that limit the best gait. Hatched on a map: no optimum.",
+    ),
+    "map": (
+        "Speed over two inputs",
+        "Map of the best speed over two of the inputs",
+        "A cell for each case; thick lines separate branches, the star is the fastest. "
+        "Hatched: no optimum. If more than two keys were varied, a cell shows the fastest of "
+        "its cases.",
+    ),
+    "pareto": (
+        "What speed costs",
+        "Speed of every case against peak torque and against energy per metre, with the fronts",
+        "Each dot is a case. No case is both faster and cheaper than one on the front. Energy "
+        "is the servo's positive work per metre of path; what it brakes is not given back.",
+    ),
+}
+
+COSTS = ("peak_torque", "energy_per_metre")
+_MOST_ROWS = 300
+
+
+def front(cost: Array, speed: Array) -> list[int]:
+    """The cases that no other one beats in both: less cost and more speed; cheapest first."""
+    best, kept = -np.inf, []
+    for case in np.lexsort((-speed, cost)):
+        if np.isfinite(cost[case]) and speed[case] > best:
+            kept.append(int(case))
+            best = speed[case]
+    return kept
+
+
+def study_document(result: SolvedStudy, figures: Iterable[Figure] = ()) -> Document:
+    """What was found, in figures and tables."""
+    speed, cases = 1e3 * result.speed, len(result.rows)
+    good = result.fastest is not None
+    title = f"None of {cases} cases has an optimum"
+    if good:
+        title = f"{cases} cases, from {np.nanmin(speed):.1f} to {np.nanmax(speed):.1f} mm/s"
+    shown = min(cases, _MOST_ROWS)
+    return Document(
+        name=result.study.name,
+        kind="study",
+        title=title,
+        lead=" ".join([result.message, *result.warnings]),
+        good=good,
+        sections=(
+            Section("", (Facts(_key_facts(result), key=True),), brief=False),
+            Section("", (Facts(tuple(_facts(result))),)),
+            Section("", (Gallery(tuple(figures)),), brief=False),
+            Section("Fastest for their cost", (_front_table(result),), brief=False),
+            Section("Cases without an optimum", (_failures(result),), brief=False),
+            Section(
+                "All cases" if shown == cases else f"The first {shown} cases",
+                (_cases_table(result, range(shown)),),
+                brief=False,
+            ),
+        ),
+        footer=(
+            "Each optimum was checked against its limits and a fine simulation; `rr-opt "
+            "maximize-speed` checks a case against a sweep too.",
+            *versions(result.study.sha256),
+        ),
+    )
+
+
+def _facts(result: SolvedStudy) -> Iterator[Fact]:
+    rows, shape = result.rows, " x ".join(map(str, result.study.shape))
+    ended = ", ".join(f"{count} {status.words}" for status, count in result.counts.items() if count)
+    started = Counter(row.started for row in rows)
+    yield Fact("cases", f"{shape} = {len(rows)}", ended)
+    yield Fact("branches", str(len({one for one in result.branches if one})))
+    yield Fact("solved from", ", ".join(f"{n} {how}" for how, n in started.items()))
+    best = result.fastest
+    optimum = rows[best].optimum if best is not None else None
+    if best is None or optimum is None:
+        return
+    gait = f"{with_unit(optimum.amplitude, 'rad')}, {with_unit(optimum.period, 's')}"
+    yield Fact("fastest", speed_text(optimum.speed), result.inputs_text(best))
+    yield Fact("", gait, f"limited by {', '.join(optimum.held) or 'nothing'}")
+    least = int(np.nanargmin(result.values("cost_of_transport")))
+    cheap = rows[least].optimum
+    if cheap:
+        text = f"{number(cheap.energy_per_metre)} J/m, {1e3 * abs(cheap.speed):.1f} mm/s"
+        yield Fact("least energy", text, result.inputs_text(least))
+
+
+def _key_facts(result: SolvedStudy) -> tuple[Fact, ...]:
+    counts, least = result.counts, result.values("cost_of_transport")
+    cold = sum(row.started != "warm" for row in result.rows)
+    cost = "–" if np.isnan(least).all() else number(float(np.nanmin(least)), 3)
+    return (
+        Fact(f"of {len(result.rows)} cases have an optimum", str(counts[Status.OPTIMAL])),
+        Fact("have no feasible gait", str(counts[Status.INFEASIBLE])),
+        Fact("did not converge", str(counts[Status.NOT_CONVERGED])),
+        Fact("branches of optima", str(len({one for one in result.branches if one}))),
+        Fact("cases checked from cold starts", str(cold)),
+        Fact("least cost of transport", cost),
+    )
+
+
+def _front_table(result: SolvedStudy) -> Table:
+    """The cases that are on a front, the fastest first."""
+    fronts = [front(result.values(name), result.speed) for name in COSTS]
+    cases = sorted({case for found in fronts for case in found}, key=lambda k: -result.speed[k])
+    return _cases_table(result, cases[:20])
+
+
+def _failures(result: SolvedStudy) -> Table:
+    rows = [
+        [result.inputs_text(case), Badge(row.status.words), row.message]
+        for case, row in enumerate(result.rows)
+        if row.optimum is None
+    ]
+    return table(["Case", "Status", "Why"], rows[:_MOST_ROWS])
+
+
+def _cases_table(result: SolvedStudy, cases: Iterable[int]) -> Table:
+    head = ["Case", "Speed", "Amplitude", "Period", "Torque", "Energy", "Limited by", "Branch"]
+    rows = []
+    for case in cases:
+        row = result.rows[case]
+        one = row.optimum
+        if one is None:
+            rows.append([result.inputs_text(case), *[None] * 5, row.status.words, None])
+            continue
+        rows.append(
+            [
+                result.inputs_text(case),
+                f"{1e3 * abs(one.speed):.1f} mm/s {direction_text(one.speed)}",
+                with_unit(one.amplitude, "rad", 3),
+                with_unit(one.period, "s", 3),
+                with_unit(one.peak_torque, "N m", 3),
+                with_unit(one.energy_per_metre, "J/m", 3),
+                ", ".join(one.held) or "nothing",
+                str(result.branches[case]),
+            ]
+        )
+    return table(head, rows)

@@ -1,0 +1,134 @@
+"""The table of a study: a column for each quantity, a row for each case; CSV and netCDF."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from operator import attrgetter
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rr_opt.design.study.row import Optimum, Row
+from rr_opt.formatting import direction_text
+from rr_opt.report.document import csv_text
+from rr_opt.report.trajectory_file import netcdf_writer, write_dataset
+from rr_opt.version import __version__
+
+if TYPE_CHECKING:
+    from rr_opt.report.study import SolvedStudy
+
+_OF_OPTIMUM = (
+    ("speed", "m/s", "mean speed along the path, positive along platform 1"),
+    ("amplitude", "rad", "largest |phi - offset|"),
+    ("period", "s", "period of the gait"),
+    ("offset", "rad", "mean of phi"),
+    ("ratio", "1", "J20/J10"),
+    ("cycle_length", "m", "path per period"),
+    ("turn", "rad", "heading gained per period"),
+    ("radius", "m", "of the circle; empty if straight"),
+    ("peak_angle", "rad", "largest |phi|"),
+    ("peak_rate", "rad/s", "largest |dphi/dt|"),
+    ("peak_torque", "N m", "largest |torque| of the servo"),
+    ("least_s1", "m", "smallest S1 = c1 cos phi + c2"),
+    ("energy_per_metre", "J/m", "positive work of the servo per metre of path, none given back"),
+    ("net_energy_per_metre", "J/m", "net work of the servo per metre: what friction takes"),
+    ("cost_of_transport", "1", "energy_per_metre over the weight"),
+)
+_LIMITS = (("angle", "rad"), ("rate", "rad/s"), ("torque", "N m"), ("singularity", "m"))
+_BOUNDS = (("amplitude", "rad"), ("period", "s"), ("offset", "rad"), ("inertia_ratio", ""))
+
+
+@dataclass(frozen=True)
+class Column:
+    """A quantity of every case: its SI unit ("1" for plain numbers, empty for text), a phrase that
+    says what it is, and a cell for each case, None where the case has no such thing."""
+
+    name: str
+    unit: str
+    meaning: str
+    cells: Sequence[Any]
+
+
+def study_columns(result: SolvedStudy) -> list[Column]:
+    """All of them, in order."""
+    rows = result.rows
+    inputs = [result.study.inputs(case) for case in range(len(rows))]
+
+    def of_rows(name: str, unit: str, meaning: str, cell: Callable[[Row], Any]) -> Column:
+        return Column(name, unit, meaning, [cell(row) for row in rows])
+
+    def of_optima(name: str, unit: str, meaning: str, cell: Callable[[Optimum], Any]) -> Column:
+        return of_rows(name, unit, meaning, lambda row: row.optimum and cell(row.optimum))
+
+    def price(name: str, unit: str, what: str, prices: Callable[[Optimum], Any]) -> Column:
+        per, meaning = f"m/s per {unit}" if unit else "m/s", f"speed gained per unit of the {what}"
+        # What is not active costs nothing.
+        return of_optima(f"price_{name}", per, meaning, lambda one: prices(one).get(name, 0.0))
+
+    def expected(end: int, word: str) -> Column:
+        meaning = f"{word} |speed| that the neighbours let expect"
+        cell = lambda row: row.expected and row.expected[end]  # noqa: E731
+        return of_rows(f"expected_{word}", "m/s", meaning, cell)
+
+    branch = "family of optima that it belongs to"
+    warm = "from cold initial guesses, or from neighbours' optima: warm"
+    return [
+        Column("case", "1", "number of the case", range(len(rows))),
+        *(
+            Column(
+                line.key.name,
+                "" if line.numbers is None else line.key.unit or "1",
+                "varied",
+                [one[line.key.name] for one in inputs],
+            )
+            for axis in result.study.axes
+            for line in axis.lines
+        ),
+        of_rows("status", "", "how the case ended", lambda row: row.status.value),
+        Column("branch", "1", branch, result.branches),
+        of_rows("started", "", warm, lambda row: row.started),
+        of_optima("drives", "", "which way", lambda one: direction_text(one.speed)),
+        *(of_optima(*described, attrgetter(described[0])) for described in _OF_OPTIMUM),
+        of_optima("held_by", "", "active limits and bounds", lambda one: "; ".join(one.held)),
+        *(price(*named, "limit", attrgetter("prices")) for named in _LIMITS),
+        *(price(*named, "active bound", attrgetter("bound_prices")) for named in _BOUNDS),
+        expected(0, "least"),
+        expected(1, "most"),
+        of_rows("seconds", "s", "of CPU spent on the case", attrgetter("seconds")),
+        of_rows("message", "", "the outcome in words", attrgetter("message")),
+    ]
+
+
+def study_csv(result: SolvedStudy) -> str:
+    """A row for each case below the names."""
+    columns = study_columns(result)
+    rows = zip(*(column.cells for column in columns), strict=True)
+    return csv_text([column.name for column in columns], rows, digits=12)
+
+
+def write_netcdf(path: Path, result: SolvedStudy) -> Path:
+    """Write every column over the axes of the study, with units and meanings."""
+    study = result.study
+    names = [axis.lines[0].key.name for axis in study.axes]
+    inputs = {line.key.name for axis in study.axes for line in axis.lines}
+    data = netcdf_writer().Dataset(attrs={"title": study.name, "source": f"rr-opt {__version__}"})
+    for name, axis in zip(names, study.axes, strict=True):
+        for line in axis.lines:
+            steps = line.numbers or [str(value) for value in line.values]
+            data = data.assign_coords({line.key.name: (name, np.array(steps))})
+            data[line.key.name].attrs.update(units=line.key.unit or "1")
+    for column in study_columns(result):
+        if column.name not in inputs:
+            data[column.name] = (names, _array(column).reshape(study.shape))
+            units = {"units": column.unit} if column.unit else {}
+            data[column.name].attrs.update(long_name=column.meaning, **units)
+    return write_dataset(path, data)
+
+
+def _array(column: Column) -> np.ndarray:
+    if not column.unit:
+        return np.array([cell or "" for cell in column.cells], object)
+    return np.array([math.nan if cell is None else cell for cell in column.cells], float)

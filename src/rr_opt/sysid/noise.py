@@ -1,0 +1,119 @@
+"""The noise of recordings, as the data show it: its level, and how it is correlated in time.
+
+What a capture system states is the level of white noise. Filters, markers that are tracked from
+frame to frame and wrong data sheets make it another one, and what counts for slow motion is the
+spectrum at low frequencies: samples that repeat one another say less.
+
+The residuals of a fit hold the noise and what the model lacks. The latter is slow, or repeats with
+the gait, and so stands in a few lines of the spectrum. The noise's spectrum is therefore estimated
+by medians over neighbouring frequencies and over runs, which lines do not move, and extrapolated
+to low frequencies as that of an exponentially correlated process, 1/S = (1 + f^2/f0^2)/S0.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rr_opt.array import Array
+from rr_opt.sysid.estimation import Fit
+from rr_opt.sysid.settings import SETTINGS
+
+_BINS = 48
+"""Of the spectrum above the slow band, as wide as their frequency is high."""
+
+_NEAR = 3.0
+"""Times the slow band's edge, up to which the spectrum is extrapolated from."""
+
+
+@dataclass(frozen=True)
+class Noise:
+    """The noise of a channel.
+
+    level        standard deviation, in units of that stated
+    correlation  its power at low frequencies over that of white noise of this level: as many
+                 samples are worth one independent one
+    """
+
+    level: float = 1.0
+    correlation: float = 1.0
+
+    @property
+    def unlike_stated(self) -> bool:
+        """Whether it is surely not white noise of the level stated."""
+        return (
+            abs(math.log(self.level)) > SETTINGS.misstated or self.correlation > SETTINGS.correlated
+        )
+
+
+def noise_in(fit: Fit) -> list[Noise]:
+    """That of each channel, from what a fit leaves."""
+    problem = fit.problem
+    runs = {
+        run: np.concatenate(
+            [fit.linear.made[one].residuals[: one.until - one.first] for one in parts]
+        )
+        for run, parts in problem.by_run.items()
+    }
+    steps = [float(np.median(np.diff(problem.model.runs[run].t))) for run in runs]
+    return [
+        _levelled([left[:, k] for left in runs.values()], steps)
+        for k in range(len(problem.model.channels))
+    ]
+
+
+def _levelled(residuals: Sequence[Array], steps: Sequence[float]) -> Noise:
+    """The noise in residuals, at their own level where the spectrum may be that far off."""
+    noise = noise_of(residuals, steps)
+    every = np.concatenate(residuals)
+    rms = float(np.sqrt(np.mean(every[every != 0] ** 2))) if every.any() else noise.level
+    far = 1 + SETTINGS.misstated
+    return replace(noise, level=min(max(rms, noise.level / far), noise.level * far))
+
+
+def noise_of(residuals: Sequence[Array], steps: Sequence[float]) -> Noise:
+    """The noise in residuals (n,) of runs, in the units stated, 0 where there are no data.
+
+    steps  between the samples of each, s
+    """
+    fastest = 0.5 / max(steps)
+    if fastest < _NEAR * SETTINGS.slow:
+        return Noise()
+    edges = np.geomspace(SETTINGS.slow, fastest, _BINS + 1)
+    density: list[list[float]] = [[] for _ in range(_BINS)]
+    for r, step in zip(residuals, steps, strict=True):
+        window = np.hanning(r.size) * (r != 0)
+        weight = float(window @ window)
+        if weight <= 0:
+            continue
+        power = np.abs(np.fft.rfft(window * r)) ** 2 / weight
+        at = np.digitize(np.fft.rfftfreq(r.size, step), edges) - 1
+        for k in np.unique(at[(at >= 0) & (at < _BINS)]):
+            # The median of an exponential distribution, small samples' too.
+            few = np.sort(power[at == k])
+            mean = float(np.median(few)) / _median(few.size)
+            density[k].append(mean)
+    seen = np.array([np.median(one) if one else np.nan for one in density])
+    middle, width = np.sqrt(edges[1:] * edges[:-1]), np.diff(edges)
+    known = np.isfinite(seen)
+    if known.sum() < _BINS // 2:
+        return Noise()
+    near = known & (middle < _NEAR * SETTINGS.slow)
+    edge = float(np.median(seen[near]))
+    through = np.polyfit(middle[near] ** 2, edge / seen[near], 1)[1]
+    slow = edge / float(np.clip(through, 0.5, 1.0))
+    total = slow * SETTINGS.slow + float(np.sum((seen * width)[known])) / known.mean()
+    variance = total / fastest
+    return Noise(math.sqrt(variance), max(slow / variance, 1.0))
+
+
+def _median(n: int) -> float:
+    """Of n values that are exponentially distributed with mean 1, on average."""
+    return (
+        float(np.sum(1 / np.arange((n + 1) // 2, n + 1)))
+        if n % 2
+        else ((_median(n - 1) + _median(n + 1)) / 2 if n > 2 else 1.0)
+    )

@@ -1,0 +1,34 @@
+"""The diagnosis in a paragraph."""
+
+from __future__ import annotations
+
+from rr_opt.sysid.diagnosis import Diagnosis
+
+
+def summary_of(found: Diagnosis, worth: str = "") -> str:
+    """What was found, how sure, what it is worth, what remains, what to record next.
+
+    worth  what it is worth in the machine's own terms: `the place was 8 mm off and is 1 mm off; `
+    """
+    listed = " and ".join(one.name.replace("_", " ") for one in found.findings)
+    sure = ", ".join(f"{one.confidence:.0%}" for one in found.findings)
+    opening = {
+        "consistent": "The nominal model explains the recordings.",
+        "parameters": f"The model is right, but the value of {listed} is not.",
+        "missing_physics": f"The model leaves out {listed} (confidence {sure}).",
+        "unexplained": "Something is left out, and no effect of the catalogue accounts for it.",
+    }[found.verdict]
+    held = any(one.held_out for one in found.final)
+    which = "recordings that were not fitted" if held else "the recordings, which were all fitted"
+    misfit = (
+        f"On {which}, {worth}the misfit fell from {found.before:.2f} to {found.after:.2f} sigma, "
+        "where 1 is the noise."
+    )
+    remainder, remains = found.remainder, ""
+    if found.verdict != "consistent" and remainder.size != "none":
+        depends = f": {remainder.depends_on}" if remainder.depends_on else ""
+        share = f"{remainder.share:.0%} of the misfit"
+        remains = f"What remains is {remainder.size} ({share}){depends}."
+    doubtful = found.verdict != "consistent" and (remains or found.indistinguishable)
+    plan = found.next_experiment.sentence if found.next_experiment and doubtful else ""
+    return " ".join(part for part in (opening, misfit, remains, plan) if part)

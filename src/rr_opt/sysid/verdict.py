@@ -1,0 +1,203 @@
+"""What a search amounts to: which effects are shown, how sure that is, and what is left.
+
+The verdict is graded. Effects are named that the recordings' predictions of one another call for
+and that leave no more than an imitation would not; what is left beside them is the remainder. Only
+where no effect is shown is the answer `unexplained`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from rr_opt.sysid.candidates import Candidate, Choice, weights
+from rr_opt.sysid.diagnosis import Finding, Remainder, Tried, Verdict
+from rr_opt.sysid.evaluation import Evaluation
+from rr_opt.sysid.intervals import estimates, named, wrong
+from rr_opt.sysid.remainder import Dependence
+from rr_opt.sysid.selection import Selection
+from rr_opt.sysid.settings import SETTINGS
+
+
+@dataclass(frozen=True)
+class Result:
+    """What the diagnosis rests on.
+
+    best      the candidate that was chosen, with values that are wrong released
+    everywhere  the same fitted to all recordings, also those that are held out
+    nominal, refitted, final   as believed; with the parameters fitted; with what is missing
+    before, after, left  what unknown inputs would explain beside the nominal model, beside the
+                     answer, and beside the answer fitted to all recordings
+    """
+
+    selection: Selection
+    best: Candidate
+    everywhere: Candidate
+    nominal: Evaluation
+    refitted: Evaluation
+    final: Evaluation
+    before: Sequence[Dependence]
+    after: Sequence[Dependence]
+    left: Sequence[Dependence]
+
+    @cached_property
+    def confidences(self) -> Mapping[str, float]:
+        """Of each effect: the weight of the candidates that have it, by how they predict
+        recordings, times the likelihood that it imitates nothing else."""
+        tried = list(self.selection.tried.values())
+        own = list(zip(weights(tried), tried, strict=True))
+        return {
+            name: float(self.sound * sum(w for w, one in own if name in one.effects))
+            for name in self.best.effects
+        }
+
+    @cached_property
+    def sound(self) -> float:
+        """How likely the answer's effects are no imitation of something else.
+
+        An imitation leaves some of what an unknown input explained beside the nominal model, the
+        more effects it takes the less; and some of the misfit in recordings that were not fitted.
+        But so do machines that differ from models of an effect.
+        """
+        gain = self.selection.base.fit.deviance - self.best.fit.deviance
+        before, after = (
+            max((one.surplus for one in found), default=0.0) for found in (self.before, self.after)
+        )
+        imitated = len(self.best.choices) * after / max(before, gain / 4, 1e-12)
+        left = max(self.final.excess**2 - SETTINGS.none**2, 0.0)
+        unpredicted = left / max(self.refitted.excess**2, 1e-12)
+        info = self.selection.model.catalogue
+        form = max((info[name].form_error for name in self.best.effects), default=math.inf)
+        doubt = max(imitated / SETTINGS.imitated, unpredicted / SETTINGS.unpredicted) / form
+        return 1 / (1 + doubt**4)
+
+    @property
+    def shown(self) -> tuple[Choice, ...]:
+        """The effects that are missing with more likelihood than not: each, or another one of those
+        that cannot be told from it."""
+        tried, alike = list(self.selection.tried.values()), self.selection.alike()
+        own = list(zip(weights(tried), tried, strict=True))
+        return tuple(
+            c
+            for c in self.best.choices
+            if self.sound * sum(w for w, one in own if c.name in one.effects or one in alike)
+            > SETTINGS.named
+        )
+
+    @property
+    def explained(self) -> bool:
+        """Whether what the answer leaves, if it is fitted to all recordings, is no more than
+        machines differ from their models; or is as noise that is a little larger than stated,
+        which follows nothing."""
+        both = (self.best, self.everywhere)
+        slight = self.selection.model.form_error
+        if all(self.selection.complete(one) or one.excess <= slight for one in both):
+            return True
+        most = max(one.excess for one in both)
+        noisier = (1 + SETTINGS.misstated) ** 2 - 1
+        return most**2 <= noisier and not any(one.certain for one in self.left)
+
+    @property
+    def share(self) -> float:
+        """What is left of the nominal model's misfit beyond the noise (mean square), 0 to 1, in
+        recordings that were not fitted where there are any."""
+        before = max(self.nominal.excess, self.selection.base.excess)
+        after = max(self.final.excess, 0.0)
+        return float(np.clip((after / before) ** 2, 0.0, 1.0)) if before > 0 else 0.0
+
+    @property
+    def rivals(self) -> list[Candidate]:
+        """Candidates without one of the effects, the best first."""
+        own = set(self.best.effects)
+        others = [c for c in self.selection.tried.values() if not own <= set(c.effects)]
+        return sorted(others, key=lambda one: -one.elpd)
+
+
+def verdict_of(result: Result) -> Verdict:
+    """Whether effects are shown, and if not, whether the nominal model is enough."""
+    if result.shown:
+        return "missing_physics"
+    if result.best.choices or not result.explained:
+        return "unexplained"
+    slight = max(SETTINGS.negligible, result.selection.model.form_error)
+    if result.nominal.excess > slight and wrong(result.best.fit):
+        return "parameters"
+    return "consistent"
+
+
+def findings(result: Result) -> tuple[Finding, ...]:
+    """The effects that are shown, strongest first."""
+    base = max(result.selection.base.excess, 1e-12) ** 2
+    out = []
+    for choice in result.shown:
+        rest = tuple(one for one in result.best.choices if one != choice)
+        without = result.selection.tried.get(rest, result.selection.base)
+        left = without.excess**2 if rest else base
+        removes = float(np.clip((left - result.best.excess**2) / base, 0.0, 1.0))
+        if not rest:
+            removes = 1.0 - result.share
+        values = named(result.best.fit, choice.name)
+        out.append(Finding(choice.name, result.confidences[choice.name], values, removes))
+    return tuple(sorted(out, key=lambda one: -one.removes))
+
+
+def wrong_values(result: Result) -> tuple[Finding, ...]:
+    """The parameters that are not what they were believed to be."""
+    intervals = estimates(result.best.fit)
+    return tuple(
+        Finding(q.name, 1.0, {q.name: intervals[q.name]}, 1.0) for q in wrong(result.best.fit)
+    )
+
+
+def remainder_of(result: Result) -> Remainder:
+    """What is left with the answer's effects."""
+    after = result.final.excess
+    share = result.share if result.best.choices else float(after > 0)
+    large = "small" if share <= SETTINGS.small else "large"
+    size = "none" if after <= SETTINGS.none else large
+    return Remainder(size, after, share)
+
+
+def tried(selection: Selection, accepted: Candidate | None) -> tuple[Tried, ...]:
+    """All candidates; the score is twice the log predictive density lost against the best."""
+    every = sorted(selection.tried.values(), key=lambda one: -one.elpd)
+    return tuple(
+        Tried(
+            one.effects,
+            one.excess if "simulated" in one.__dict__ else _roughly(one),
+            -2 * one.elpd,
+            {k: v for k, v in one.fit.values.items() if "." in k},
+            accepted is not None and one.choices == accepted.choices,
+        )
+        for one in every
+    )
+
+
+def _roughly(one: Candidate) -> float:
+    """What a candidate that was not simulated whole leaves with its process noise."""
+    return one.fit.excess
+
+
+def alike(result: Result) -> tuple[tuple[str, ...], ...]:
+    """Sets of effects that predict the recordings about as well as the answer does."""
+    own = result.best
+    near = []
+    for one in result.rivals:
+        gain, error = own.advantage(one)
+        if gain < max(SETTINGS.evidence, SETTINGS.standard_errors * error) and one.effects:
+            near.append(tuple(one.effects))
+    groups = [tuple(dict.fromkeys((*own.effects, *one))) for one in near]
+    return tuple(dict.fromkeys(groups))
+
+
+def rival_of(result: Result) -> tuple[str, Candidate] | None:
+    """The candidate that comes next, of those that a recording may yet tell from the answer."""
+    for one in result.rivals[:1]:
+        gain, error = result.best.advantage(one)
+        if gain < max(4 * SETTINGS.evidence, error):
+            return " and ".join(one.effects) or "other parameters", one
+    return None

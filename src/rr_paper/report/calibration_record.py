@@ -1,0 +1,214 @@
+"""calibration.json, and the CSV files beside it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rr_opt.files.record import plain
+from rr_opt.report.document import csv_text
+from rr_opt.version import __version__
+from rr_paper.calibration.comparison import Assessment
+from rr_paper.calibration.likelihood import measured
+from rr_paper.calibration.models import MODELS, READINGS, VISCOUS
+from rr_paper.calibration.unknowns import UNKNOWNS, values
+from rr_paper.publication import ROWS, T_POINT, Row
+from rr_paper.report.calibration import conclusions
+
+if TYPE_CHECKING:
+    from rr_paper.calibration.calibration import Calibration
+
+_DRAWS = 1000
+"""Draws of each posterior that are written."""
+
+
+def record(found: Calibration) -> dict[str, Any]:
+    """The content of calibration.json."""
+    covered = found.coverage
+    record = {
+        "verdict": conclusions(found).verdict,
+        "conclusions": conclusions(found).follows,
+        "t_of_the_intervals": T_POINT,
+        "reading": READINGS[0].words,
+        "unknowns": [
+            {"name": one.name, "unit": one.unit, "box": [one.low, one.high],
+             "flat_in": "logarithm" if one.log else "value", "why": one.why}
+            for one in UNKNOWNS.values()
+        ],
+        "intervals": [
+            {"unknown": one.unknown.name, "column": one.column, "posterior": one.posterior,
+             "median": one.median, "profile_student": one.profile.ends(one.unknown),
+             "profile_normal": one.normal.ends(one.unknown), "share_of_box": one.share,
+             "verdict": one.verdict}
+            for one in found.intervals()
+        ],
+        "models": [
+            {"model": name, "column": column, "words": one.model.words, "best": _best(one),
+             **_scores(one),
+             "profiles": {
+                 unknown: profile.ends(UNKNOWNS[unknown])
+                 for unknown, profile in zip(one.model.profiled, one.profiles, strict=True)
+             },
+             "made": {"sets": one.bootstrap.sets, "as_bad": one.bootstrap.as_bad,
+                      "gaining_as_much": one.bootstrap.gaining} if one.bootstrap else None}
+            for (name, column), one in found.assessments.items()
+        ],
+        "posterior": {
+            column: {"draws": len(one.points), "split_rhat": one.rhat,
+                     "library_effective_points": one.library_weight}
+            for column, one in found.posterior.items()
+        },
+        "shipped": {
+            column: {"values": one.values, "rise": one.rise, "amplitude": one.amplitude}
+            for column, one in found.shipped.items()
+        },
+        "coverage": {
+            "sets": covered.sets,
+            "unknowns": MODELS[VISCOUS].unknowns,
+            "posterior": covered.posterior,
+            "profile_student": covered.profile["student"],
+            "profile_normal": covered.profile["normal"],
+            "rise_needed": covered.needed,
+        },
+        "readings": [
+            {"reading": one.reading.words, "model": one.model.name, "column": one.column,
+             "deviance": one.student.deviance,
+             "shipped_rise": one.shipped.rise if one.shipped else None}
+            for one in found.alternatives
+        ],
+        "version": __version__,
+    }  # fmt: skip
+    return plain(record)
+
+
+def _best(one: Assessment) -> dict[str, float]:
+    """The unknowns of the best fit, SI."""
+    best = values(one.model.unknowns, one.student.point[None])
+    return {name: float(value[0]) for name, value in best.items()}
+
+
+def _scores(one: Assessment) -> dict[str, float | None]:
+    return {
+        "deviance": one.student.deviance,
+        "chi_square": one.normal.deviance,
+        "degrees_of_freedom": one.aicc.freedom,
+        "aicc": one.aicc.value,
+        "aicc_normal": one.aicc_normal.value,
+        "table3_deviance": one.table3.deviance,
+        "table3_aicc": one.aicc_table3.value,
+        "left_out_deviance": one.left_out_deviance,
+    }
+
+
+_Rows = list[dict[str, Any]]
+
+
+def tables(found: Calibration) -> dict[str, str]:
+    """File name -> CSV text."""
+    rows: dict[str, _Rows] = {
+        "intervals.csv": _interval_rows(found),
+        "models.csv": _model_rows(found),
+        "predictions.csv": _prediction_rows(found),
+        "profiles.csv": _profile_rows(found),
+        "posterior.csv": _posterior_rows(found),
+        "readings.csv": [
+            {"about": one.reading.about, "by": one.reading.by,
+             "spread": one.reading.spread if one.reading.by == "loads" else None,
+             "model": one.model.name, "column": one.column, "deviance": one.student.deviance}
+            for one in found.alternatives
+        ],
+        "coverage.csv": [
+            {"unknown": name, "sets": found.coverage.sets,
+             "posterior": found.coverage.posterior[i],
+             "profile_student": found.coverage.profile["student"][i],
+             "profile_normal": found.coverage.profile["normal"][i],
+             "rise_needed": found.coverage.needed[i]}
+            for i, name in enumerate(MODELS[VISCOUS].unknowns)
+        ],
+    }  # fmt: skip
+    return {
+        name: csv_text(list(here[0]), (list(row.values()) for row in here), digits=6)
+        for name, here in rows.items()
+    }
+
+
+def _interval_rows(found: Calibration) -> _Rows:
+    return [
+        {"unknown": one.unknown.name, "unit": one.unknown.unit, "column": one.column,
+         **_ends("box", (one.unknown.low, one.unknown.high)),
+         "posterior_low": one.posterior[0], "posterior_median": one.median,
+         "posterior_high": one.posterior[1],
+         **_ends("profile", one.profile.ends(one.unknown)),
+         **_ends("profile_normal", one.normal.ends(one.unknown)),
+         "share_of_box": one.share, "verdict": one.verdict}
+        for one in found.intervals()
+    ]  # fmt: skip
+
+
+def _ends(name: str, interval: tuple[float, float]) -> dict[str, float]:
+    return {f"{name}_low": interval[0], f"{name}_high": interval[1]}
+
+
+def _model_rows(found: Calibration) -> _Rows:
+    rows = []
+    for (name, column), one in found.assessments.items():
+        boot, best = one.bootstrap, _best(one)
+        rows.append(
+            {"model": name, "column": column, "unknowns": len(one.model.unknowns), **_scores(one),
+             "sets_made": boot.sets if boot else None,
+             "sets_as_bad": boot.as_bad if boot else None,
+             "sets_gaining_as_much": boot.gaining if boot else None,
+             **{f"best_{unknown}": best.get(unknown) for unknown in UNKNOWNS}}
+        )  # fmt: skip
+    return rows
+
+
+def _prediction_rows(found: Calibration) -> _Rows:
+    rows = []
+    for (name, column), one in found.assessments.items():
+        data = measured(column)
+        z = one.student.z(data)
+        for i, row in enumerate(ROWS):
+            rows.append(
+                {"model": name, "column": column, "row": _label(row), "ratio": row.ratio,
+                 "period": row.period, "amplitude": row.amplitude, "measured": data.speed[i],
+                 "half_width": row.half_width, "standard_error": data.error[i],
+                 "predicted": one.student.speeds[i], "z": z[i], "z_left_out": one.left_out[i]}
+            )  # fmt: skip
+    return rows
+
+
+def _label(row: Row) -> str:
+    if row.amplitude is None:
+        return f"Table 2, ratio {row.ratio:g}"
+    return f"Table 3, T = {row.period:g} s, α = {row.amplitude:g}"
+
+
+def _profile_rows(found: Calibration) -> _Rows:
+    rows = []
+    for (name, column), one in found.assessments.items():
+        profiles = {"student": one.profiles}
+        if name == VISCOUS:
+            profiles["normal"] = found.normal_profiles[column]
+        for law, of in profiles.items():
+            for unknown, profile in zip(one.model.profiled, of, strict=True):
+                at = UNKNOWNS[unknown].value(profile.grid)
+                rows += [
+                    {"model": name, "column": column, "law": law, "unknown": unknown, "value": x,
+                     "rise": rise}
+                    for x, rise in zip(at, profile.rise, strict=True)
+                ]  # fmt: skip
+    return rows
+
+
+def _posterior_rows(found: Calibration) -> _Rows:
+    rows = []
+    for column, sample in found.posterior.items():
+        chosen = np.linspace(0, len(sample.points) - 1, _DRAWS).astype(int)
+        at = values(MODELS[VISCOUS].unknowns, sample.points[chosen])
+        at["deviance"] = sample.deviance[chosen]
+        rows += [
+            {"column": column, **{name: of[i] for name, of in at.items()}} for i in range(_DRAWS)
+        ]
+    return rows

@@ -1,0 +1,149 @@
+"""Each nuisance is told by its name, with its time, place and size; a right recording has none."""
+
+import re
+
+import numpy as np
+import pytest
+
+from rr_opt.model.gait import SineGait
+from tests.recordings.nuisances.spoilt import GAIT, recording, told
+
+
+def exchanged(v):
+    v["x"], v["y"] = v["y"], v["x"]
+
+
+def platforms(v):
+    v["psi"], v["phi"] = v["psi"] + v["phi"] + np.pi, -v["phi"]
+
+
+def scaled(**factors):
+    def change(v):
+        for name, factor in factors.items():
+            v[name] = factor * v[name]
+
+    return change
+
+
+def moved(**steps):
+    def change(v):
+        for name, step in steps.items():
+            v[name] = v[name] + step
+
+    return change
+
+
+FRAMES = {
+    "x and y are exchanged": exchanged,
+    "x is mirrored": scaled(x=-1),
+    "y is mirrored": scaled(y=-1),
+    "psi has the other sign": scaled(psi=-1),
+    "phi has the other sign": scaled(phi=-1),
+    "psi is off by 180 deg": moved(psi=np.pi),
+    "psi is off by 90 deg": moved(psi=np.pi / 2),
+    "psi is off by -90 deg": moved(psi=-np.pi / 2),
+    "phi is off by 180 deg": moved(phi=np.pi),
+    "platforms 1 and 2 are exchanged": platforms,
+    "x and y are 0.02 times too large": scaled(x=0.02, y=0.02),
+}
+
+
+@pytest.mark.parametrize("turned", [0.0, 1.3, 2.6, -2.0])
+@pytest.mark.parametrize("start", ["running", "rest"])
+def test_a_right_recording_has_none(turned, start):
+    assert told(recording(turned=turned, start=start), start=start)[0] == set()
+
+
+@pytest.mark.parametrize("turned", [0.0, 1.3])
+@pytest.mark.parametrize("name", FRAMES)
+def test_a_wrong_frame(name, turned):
+    codes, text = told(recording(turned=turned, change=FRAMES[name]))
+    assert codes - {"motion.robot"} == {"frame.wrong"}
+    assert f"if {name}. Expected" in re.sub(r"0\.0(2\d+|19\d+)", "0.02", text)
+
+
+def test_two_wrongs():
+    def change(v):
+        FRAMES["y is mirrored"](v)
+        FRAMES["phi is off by 180 deg"](v)
+
+    assert "y is mirrored and phi is off by 180 deg" in told(recording(change=change))[1]
+
+
+def test_without_a_robot_its_lengths_are_fitted():
+    for name in ("y is mirrored", "psi is off by 180 deg", "phi is off by 180 deg"):
+        assert f"if {name}" in told(recording(change=FRAMES[name]), robot=None, gait=None)[1]
+
+
+@pytest.mark.parametrize("late", [0.05, 0.03, -0.05])
+@pytest.mark.parametrize("name", ["phi", "psi", "x and y"])
+def test_a_channel_that_is_late(name, late):
+    def change(v):
+        for one in name.split(" and "):
+            v[one] = np.interp(v["t"] - late, v["t"], v[one])
+
+    codes, text = told(recording(change=change))
+    assert codes & {"late.phi", "late.place"} == {"late.phi" if name == "phi" else "late.place"}
+    size = float(re.search(rf"others: {name} by ([-+.\d]+) ms\.", text)[1])
+    assert abs(size - 1e3 * late) < 4
+
+
+@pytest.mark.parametrize("times", [0.5, 2.0, 1.15])
+def test_a_clock_that_changes_its_rate(times):
+    def change(v):
+        v["t"] = np.where(v["t"] < 10, v["t"], 10 + times * (v["t"] - 10))
+
+    codes, text = told(recording(change=change))
+    assert codes == {"clock.change"}
+    at, before, after = (float(one) for one in re.findall(r"[\d.]+(?= s\b)", text))
+    assert abs(at - 10) < GAIT.period / 2
+    assert abs(before / GAIT.period - 1) < 0.03
+    assert abs(after / (times * GAIT.period) - 1) < 0.05
+
+
+@pytest.mark.parametrize("seconds", [0.0, 0.2, 0.5])
+@pytest.mark.parametrize("direction", np.arange(4) * np.pi / 2)
+def test_a_push(seconds, direction):
+    far, start = 0.1, 8.0
+
+    def change(v):
+        part = np.clip((v["t"] - start) / (seconds or 1e-9), 0, 1)
+        v["x"] = v["x"] + far * np.cos(direction) * part
+        v["y"] = v["y"] + far * np.sin(direction) * part
+
+    spoilt = recording(change=change)
+    codes, text = told(spoilt)
+    assert codes in ({"push.robot"}, {"push.surge"})
+    t, x, y = map(
+        float, re.search(r"t = ([\d.]+) s, where x = ([-\d.]+) m and y = ([-\d.]+)", text).groups()
+    )
+    assert abs(t - start - seconds / 2) < 0.5
+    at = int(np.searchsorted(spoilt.t, t))
+    assert np.hypot(x - spoilt.values["x"][at], y - spoilt.values["y"][at]) < 0.02
+
+
+def test_a_start_from_rest_of_a_robot_that_drives():
+    assert told(recording(), start="rest")[0] == {"start.running"}
+    assert told(recording(start="rest"), start="rest")[0] == set()
+
+
+@pytest.mark.parametrize("factor", [0.5, 2.0, 1.2])
+def test_another_period(factor):
+    other = SineGait(GAIT.amplitude, factor * GAIT.period, GAIT.offset)
+    codes, text = told(recording(), gait=other)
+    assert "command.period" in codes
+    assert f"phi repeats every {GAIT.period:.3g} s" in text
+
+
+def test_a_mirrored_robot_is_half_a_period_off_its_command():
+    codes, _ = told(recording(change=scaled(y=-1, psi=-1, phi=-1)))
+    assert codes == {"command.half"}
+
+
+def test_angles_in_degrees_and_lengths_in_millimetres():
+    for change, said in (
+        (scaled(psi=180 / np.pi), "is psi in degrees?"),
+        (scaled(x=1e3, y=1e3), "are these millimetres"),
+        (scaled(x=0.01, y=0.01), "x and y are 0.00"),
+    ):
+        assert said in told(recording(change=change))[1]
