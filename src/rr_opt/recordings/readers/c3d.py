@@ -12,88 +12,97 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import prod
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rr_opt.files.issue import refuse
-from rr_opt.recordings.readers.marker_rows import MarkerData, MarkerRows, marker_data
+from rr_opt.recordings.readers.marker_rows import MarkerData, marker_data
 from rr_opt.recordings.readers.text import Reader, ReadOptions
 from rr_opt.recordings.warnings import Notice, notice
 
 INTEL, DEC, MIPS = 84, 85, 86
 """The processors whose numbers a file may hold, as byte 4 of the parameters names them."""
-
+_BLOCK = 512
+_LAST_COUNT = 65535
+"""The largest frame number that the header can hold."""
 _TYPES = {-1: "S1", 1: "i1", 2: "i2", 4: "f4"}
 _MOST_ENTRIES = 5000
 
-Values = tuple[float, ...] | tuple[str, ...]
+Parameters = Mapping[str, tuple[Any, ...]]
+"""Numbers or texts by `GROUP:NAME`."""
 
 
-def numbers(content: bytes, kind: str, count: int, start: int, processor: int) -> NDArray:
-    """`count` numbers of a numpy kind (`i2`, `u2`, `f4`, ...) in a processor's form, from a byte.
+@dataclass(frozen=True)
+class Bytes:
+    """The content of a file, and the processor in whose form its numbers are."""
 
-    Raises ValueError if the content ends before.
-    """
-    if start < 0 or count < 0 or start + count * np.dtype(kind).itemsize > len(content):
-        raise ValueError("it ends before its parameters do")
-    if kind == "f4" and processor == DEC:
-        # A VAX float is an IEEE float times four, its 16-bit halves the other way round.
-        halves = np.frombuffer(content, "<u2", 2 * count, start).reshape(-1, 2)
-        return np.ascontiguousarray(halves[:, ::-1]).view("<f4")[:, 0] / np.float32(4)
-    order = ">" if processor == MIPS else "<"
-    return np.frombuffer(content, f"{order}{kind}", count, start)
+    content: bytes
+    processor: int
+
+    def numbers(self, kind: str, count: int, start: int) -> NDArray:
+        """`count` numbers of a numpy kind (`i2`, `u2`, `f4`, ...), from a byte.
+
+        Raises ValueError if the content ends before.
+        """
+        if min(start, count) < 0 or start + count * np.dtype(kind).itemsize > len(self.content):
+            raise ValueError("it ends before its parameters do")
+        if kind == "f4" and self.processor == DEC:
+            # A VAX float is an IEEE float times four, its 16-bit halves the other way round.
+            halves = np.frombuffer(self.content, "<u2", 2 * count, start).reshape(-1, 2)
+            return np.ascontiguousarray(halves[:, ::-1]).view("<f4")[:, 0] / np.float32(4)
+        order = ">" if self.processor == MIPS else "<"
+        return np.frombuffer(self.content, f"{order}{kind}", count, start)
+
+    def integers(self, kind: str, count: int, start: int) -> list[int]:
+        """The same as a list of integers."""
+        return self.numbers(kind, count, start).tolist()
+
+    def text(self, start: int, length: int) -> str:
+        """A text without the blanks about it. Raises ValueError if the content ends before."""
+        if start + length > len(self.content):
+            raise ValueError("a text beyond its end")
+        return self.content[start : start + length].decode("latin-1").strip(" \0")
 
 
-def read_parameters(content: bytes, start: int, processor: int) -> Mapping[str, Values]:
-    """All parameters, by `GROUP:NAME`, of the section that starts at a byte.
+def read_parameters(file: Bytes, start: int) -> Parameters:
+    """All parameters of the section that starts at a byte.
 
     Raises ValueError for a chain that leaves the file.
     """
     groups: dict[int, str] = {}
-    found: list[tuple[int, str, Values]] = []
+    found: list[tuple[int, str, tuple[Any, ...]]] = []
     at = start + 4
     for _ in range(_MOST_ENTRIES):
-        length, group = (int(one) for one in numbers(content, "i1", 2, at, processor))
-        name_end = at + 2 + abs(length)
+        length, group = file.integers("i1", 2, at)
         if length == 0 or group == 0:
             break
-        name = content[at + 2 : name_end].decode("latin-1").strip().upper()
-        step = int(numbers(content, "i2", 1, name_end, processor)[0])
+        end = at + 2 + abs(length)
+        name = file.text(at + 2, abs(length)).strip().upper()
+        (step,) = file.integers("i2", 1, end)
         if group < 0:
             groups[-group] = name
         else:
-            found.append((group, name, _values(content, name_end + 2, processor)))
+            found.append((group, name, _values(file, end + 2)))
         if step <= 0:
             break
-        at = name_end + step
+        at = end + step
     return {f"{groups.get(group, '')}:{name}": values for group, name, values in found}
 
 
-def _values(content: bytes, at: int, processor: int) -> Values:
+def _values(file: Bytes, at: int) -> tuple[Any, ...]:
     """What a parameter holds: numbers, or texts along its first dimension."""
-    kind, dimensions = (int(one) for one in numbers(content, "i1", 2, at, processor))
-    sizes = [int(one) for one in numbers(content, "u1", max(dimensions, 0), at + 2, processor)]
+    kind, dimensions = file.integers("i1", 2, at)
+    sizes = file.integers("u1", max(dimensions, 0), at + 2)
     first = at + 2 + len(sizes)
     if kind not in _TYPES:
         raise ValueError(f"a parameter of the type {kind}")
     if kind != -1:
-        return tuple(
-            float(one) for one in numbers(content, _TYPES[kind], prod(sizes), first, processor)
-        )
-    width = sizes[0] if sizes else 1
-    count = prod(sizes[1:])
-    if first + width * count > len(content):
-        raise ValueError("a text beyond its end")
-    return tuple(
-        content[first + width * n : first + width * (n + 1)].decode("latin-1").strip(" \0")
-        for n in range(count)
-    )
-
-
-BLOCK = 512
-_LAST_COUNT = 65535
-"""The largest frame number that the header can hold."""
+        return tuple(file.numbers(_TYPES[kind], prod(sizes), first).astype(float).tolist())
+    width, count = sizes[0] if sizes else 1, prod(sizes[1:])
+    file.text(first, width * count)
+    return tuple(file.text(first + width * n, width) for n in range(count))
 
 
 @dataclass(frozen=True)
@@ -105,7 +114,6 @@ class Header:
     start            the byte at which the frames begin; rate: of the frames, Hz
     """
 
-    processor: int
     points: int
     analogs: int
     first: int
@@ -115,42 +123,35 @@ class Header:
     rate: float
 
     @property
-    def kind(self) -> str:
-        """How the numbers of a frame are stored."""
-        return "f4" if self.scale < 0 else "i2"
-
-    @property
     def frame_bytes(self) -> int:
         """How many bytes a frame takes."""
         return (4 * self.points + self.analogs) * (4 if self.scale < 0 else 2)
 
 
-def read_header(content: bytes) -> Header:
+def read_header(content: bytes) -> tuple[Bytes, Header]:
     """Raises ValueError."""
-    at = BLOCK * (content[0] - 1) + 3
+    at = _BLOCK * (content[0] - 1) + 3
     if at >= len(content) or content[at] not in (INTEL, DEC, MIPS):
         raise ValueError("it names no kind of processor")
-    processor = content[at]
-    points, analogs, first, last = (int(one) for one in numbers(content, "u2", 4, 2, processor))
-    scale = float(numbers(content, "f4", 1, 12, processor)[0])
-    start = int(numbers(content, "u2", 1, 16, processor)[0])
-    rate = float(numbers(content, "f4", 1, 20, processor)[0])
+    file = Bytes(content, content[at])
+    scale, rate = (float(file.numbers("f4", 1, place)[0]) for place in (12, 20))
+    (start,) = file.integers("u2", 1, 16)
     if not np.isfinite(scale) or scale == 0:
         raise ValueError(f"its scale is {scale:g}")
     if start < 2:
         raise ValueError("it does not say where its frames begin")
-    return Header(processor, points, analogs, first, last, scale, BLOCK * (start - 1), rate)
+    return file, Header(*file.integers("u2", 4, 2), scale, _BLOCK * (start - 1), rate)
 
 
 def frame_count(
-    content: bytes, header: Header, parameters: Mapping[str, Values], file: str
+    content: bytes, header: Header, parameters: Parameters, file: str
 ) -> tuple[int, list[Notice]]:
     """How many frames there are, and what is odd about their number. Raises InvalidFileError."""
     end = parameters.get("TRIAL:ACTUAL_END_FIELD", ())
     last = header.last
     if last == _LAST_COUNT and len(end) == 2:
         # Two 16-bit words, the low one first; both are stored with a sign.
-        last = sum((int(word) % 65536) << shift for word, shift in zip(end, (0, 16), strict=True))
+        last = int(end[0]) % 65536 + (int(end[1]) % 65536 << 16)
     stated = last - header.first + 1
     room = len(content) - header.start
     there = room // header.frame_bytes if header.points else 0
@@ -160,7 +161,7 @@ def frame_count(
             f"The file states {header.points} markers in {stated} frames, and has {max(there, 0)} "
             "frames. It is damaged or not whole: export it once more.",
         )
-    if last == _LAST_COUNT and room >= stated * header.frame_bytes + BLOCK:
+    if last == _LAST_COUNT and room >= stated * header.frame_bytes + _BLOCK:
         # The last block is filled up with zeros, which are no frames.
         count = max(len(content.rstrip(b"\0")) - header.start, 0)
         count = -(-count // header.frame_bytes)
@@ -169,14 +170,15 @@ def frame_count(
 
 
 def points_of(
-    content: bytes, header: Header, count: int, kept: list[int]
+    file: Bytes, header: Header, count: int, kept: list[int]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Positions (n, k, 3) and residuals (n, k), below 0 where a marker was not seen."""
     width = 4 * header.points + header.analogs
-    available = min(count * width, (len(content) - header.start) // (header.frame_bytes // width))
-    flat = numbers(content, header.kind, available, header.start, header.processor)
-    if available < count * width:
-        flat = np.concatenate([flat, np.zeros(count * width - available, flat.dtype)])
+    room = (len(file.content) - header.start) // (header.frame_bytes // width)
+    kind = "f4" if header.scale < 0 else "i2"
+    flat = file.numbers(kind, min(count * width, room), header.start)
+    # The zeros that fill the last block may be cut off.
+    flat = np.pad(flat, (0, count * width - len(flat)))
     read = flat.reshape(count, width)[:, : 4 * header.points].reshape(count, header.points, 4)
     with np.errstate(invalid="ignore"):  # damaged bytes may be signalling NaNs
         chosen = read[:, kept].astype(float)
@@ -184,8 +186,7 @@ def points_of(
     # The fourth number is a whole one: its low byte the residual, above it which cameras saw it.
     low = np.clip(last, -1, 65535).astype(np.int64) & 0xFF
     residual = np.where(last < 0, -1.0, low * abs(header.scale))
-    positions = chosen[:, :, :3] * (header.scale if header.scale > 0 else 1.0)
-    return positions, residual
+    return chosen[:, :, :3] * (header.scale if header.scale > 0 else 1.0), residual
 
 
 _KEY = 0x50
@@ -202,8 +203,8 @@ def sniff(content: bytes) -> bool:
 def read(file: str, content: bytes, _: ReadOptions) -> MarkerData:
     """The markers of a C3D file. A residual below 0 is a marker that was not seen."""
     try:
-        header = read_header(content)
-        parameters = read_parameters(content, BLOCK * (content[0] - 1), header.processor)
+        whole, header = read_header(content)
+        parameters = read_parameters(whole, _BLOCK * (content[0] - 1))
     except ValueError as error:
         refuse(file, f"The C3D file is damaged or not whole: {error}. Export it once more.")
     count, doubts = frame_count(content, header, parameters, file)
@@ -214,7 +215,7 @@ def read(file: str, content: bytes, _: ReadOptions) -> MarkerData:
         doubts.append(notice("file.points", count=len(labels) - len(kept)))
     if not kept:
         refuse(file, "The C3D file has no markers. Expected at least one. Export the trajectories.")
-    positions, residual = points_of(content, header, count, kept)
+    positions, residual = points_of(whole, header, count, kept)
     endless = np.isinf(positions).any(axis=2)
     if endless.any():
         doubts.append(notice("marker.infinite", count=endless.sum()))
@@ -223,33 +224,29 @@ def read(file: str, content: bytes, _: ReadOptions) -> MarkerData:
     made_up = residual == 0
     if made_up.any() and (residual > 0).any():
         doubts.append(notice("marker.filled", count=made_up.sum()))
-    rate = _number(parameters, "POINT:RATE", header.rate)
+    rate = next(iter(parameters.get("POINT:RATE", ())), header.rate)
     frame = header.first + np.arange(count, dtype=np.int64)
     unit = parameters.get("POINT:UNITS", ())
-    rows = MarkerRows(
+    return marker_data(
+        {"file": file, "format": "C3D"},
         frame=frame,
+        lines=frame,
         t=None,
-        rate=rate,
-        labels=tuple(labels[at] for at in kept),
+        rate=rate if isinstance(rate, float) else header.rate,
+        labels=[labels[at] for at in kept],
         positions=positions,
         unit=str(unit[0]) if unit else "",
         unit_place=("the parameter POINT:UNITS", None),
-        lines=frame,
         residual=residual,
+        doubts=doubts,
     )
-    return marker_data(rows, {"file": file, "format": "C3D"}, doubts)
 
 
-def _labels(parameters: Mapping[str, Values], count: int) -> list[str]:
+def _labels(parameters: Parameters, count: int) -> list[str]:
     """The names of all points: LABELS holds 255 at most, LABELS2 the next ones."""
     keys = ["POINT:LABELS", *(f"POINT:LABELS{n}" for n in range(2, 300))]
     labels = [str(one) for key in keys for one in parameters.get(key, ())]
     return (labels + [""] * count)[:count]
-
-
-def _number(parameters: Mapping[str, Values], name: str, default: float) -> float:
-    values = parameters.get(name, ())
-    return float(values[0]) if values and isinstance(values[0], float) else default
 
 
 READER = Reader("C3D", sniff, read, binary=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -14,13 +15,14 @@ from numpy.typing import NDArray
 from rr_opt.array import Array
 from rr_opt.files.issue import refuse
 from rr_opt.messages import shown
+from rr_opt.recordings.readers.text import Table
 from rr_opt.recordings.time_axis import check_rate, in_order, rate_of, time_notices
 from rr_opt.recordings.warnings import Notice, notice
 
 
 @dataclass(frozen=True)
 class MarkerData:
-    """Where k markers were seen at n times, in the capture system's frame, third axis up.
+    """Where k markers were seen at n times, in the capture system's frame.
 
     name       of the file
     t          (n,), s, increasing, on the capture's clock; 0 is where the file's own clock has it
@@ -29,6 +31,7 @@ class MarkerData:
     positions  (n, k, 3), m; NaN where a marker was not seen
     rate       frames per second, Hz, as the file states it; else as the times have it
     residual   (n, k), m, of the capture's own triangulation, NaN where unknown; None: not told
+    up         the axis that points up where nobody says otherwise
     source     where it came from: file, format, unit, encoding; plain text by name
     doubts     sentences on what looked wrong and what was made of it
     """
@@ -40,6 +43,7 @@ class MarkerData:
     positions: Array
     rate: float
     residual: Array | None = None
+    up: str = "z"
     source: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
     doubts: tuple[str, ...] = ()
 
@@ -48,18 +52,63 @@ class MarkerData:
 
 
 _METRES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "dm": 0.1, "in": 0.0254, "inches": 0.0254}
-_METRES |= {
-    "millimeters": 1e-3,
-    "millimetres": 1e-3,
-    "centimeters": 1e-2,
-    "meters": 1.0,
-    "metres": 1.0,
-}
+_METRES |= {"millimeters": 1e-3, "millimetres": 1e-3, "centimeters": 1e-2}
+_METRES |= {"meters": 1.0, "metres": 1.0}
 
 
-@dataclass(frozen=True)
-class MarkerRows:
-    """Markers as a file has them.
+def rate_in(cell: str, said: str, file: str, line: int | None = None) -> float:
+    """The rate that a cell of a header states, Hz; said: which cell, for the message.
+
+    Raises InvalidFileError for what is no rate.
+    """
+    try:
+        rate = float(cell.replace(",", "."))
+    except ValueError:
+        rate = math.nan
+    if not 0 < rate < math.inf:
+        refuse(file, f"Read {shown(cell)} {said}. Expected the rate in Hz. Correct it.", line)
+    return rate
+
+
+def frames_of(table: Table, column: int, file: str, header: int) -> NDArray[np.int64]:
+    """The frames' numbers (n,), in a column of a table whose header ends in a line.
+
+    Raises InvalidFileError for a table without rows, and for what is no number of a frame.
+    """
+    if not len(table.values):
+        refuse(file, "The file has no rows. Export the whole recording.", header)
+    frames = table.values[:, column]
+    wrong = np.flatnonzero(~(np.abs(frames) < 2**53) | (frames != np.round(frames)))
+    if len(wrong):
+        read = "nothing" if np.isnan(frames[wrong[0]]) else f"{frames[wrong[0]]:g}"
+        message = f"Read {read} as the number of a frame. Expected a whole number. Correct it."
+        refuse(file, message, int(table.lines[wrong[0]]))
+    return frames.astype(np.int64)
+
+
+def count_notice(stated: str, frames: NDArray[np.int64]) -> list[Notice]:
+    """One, where a header states another number of frames."""
+    if not stated.isdecimal() or int(stated) == len(frames):
+        return []
+    return [notice("file.frames", stated=int(stated), count=len(frames))]
+
+
+def marker_data(
+    source: Mapping[str, str],
+    *,
+    frame: NDArray[np.int64],
+    lines: NDArray[np.int64],
+    t: Array | None,
+    rate: float,
+    labels: Sequence[str],
+    positions: Array,
+    unit: str,
+    unit_place: tuple[str, int | None],
+    residual: Array | None = None,
+    up: str = "z",
+    doubts: Sequence[Notice] = (),
+) -> MarkerData:
+    """The markers of a file in order of time, in metres, under clean names.
 
     frame      (n,), lines (n,) numbers of the rows in the file (of frames, if it has no lines)
     t          (n,), s, on the file's clock; None: frame 1 is at 0, and frames come at the rate
@@ -67,40 +116,29 @@ class MarkerRows:
     labels     (k,), as written
     positions  (n, k, 3), in `unit`
     unit_place what states the unit, and in which line
-    """
-
-    frame: NDArray[np.int64]
-    t: Array | None
-    rate: float
-    labels: tuple[str, ...]
-    positions: Array
-    unit: str
-    unit_place: tuple[str, int | None]
-    lines: NDArray[np.int64]
-    residual: Array | None = None
-
-
-def marker_data(
-    rows: MarkerRows, source: Mapping[str, str], doubts: Sequence[Notice] = ()
-) -> MarkerData:
-    """The markers in order of time, in metres, under clean names.
 
     Exact zeros are missing markers. Of frames that stand there twice and say different things no
     position is kept. Raises InvalidFileError if the unit is not one of length, or the rate not one
     of a recording.
     """
     file = source["file"]
-    check_rate(rows.rate, file)
-    labels, subject, told = clean_labels(rows.labels)
+    check_rate(rate, file)
+    clean, subject, told = clean_labels(labels)
     doubts = [*doubts, *told]
-    scale, told = _scale(rows, file)
-    doubts += told
-    t = (rows.frame - 1) / rows.rate if rows.t is None else rows.t
-    order = in_order(t, rows.positions, rows.lines)
+    if not unit:
+        doubts.append(notice("file.unit"))
+    elif unit.casefold() not in _METRES:
+        place, line = unit_place
+        message = f"Read the unit {shown(unit)}. Expected mm, cm, m or in. Correct {place}."
+        refuse(file, message, line)
+    scale = _METRES[unit.casefold() or "mm"]
+    times = (frame - 1) / rate if t is None else t
+    order = in_order(times, positions, lines)
     if not len(order.rows):
-        first = int(rows.lines[0]) if len(rows.lines) else None
+        first = int(lines[0]) if len(lines) else None
         refuse(file, "Read no row with a time. Expected one in each. Export it once more.", first)
-    positions = rows.positions[order.rows] * scale
+    times, frame = times[order.rows], frame[order.rows]
+    positions = positions[order.rows] * scale
     origin = (positions == 0).all(axis=2)
     if origin.any():
         doubts.append(notice("marker.origin", count=origin.sum()))
@@ -108,47 +146,32 @@ def marker_data(
     positions[order.unsure] = np.nan
     # A position is there as a whole, or not at all.
     positions[np.isnan(positions).any(axis=2)] = np.nan
-    never = [one for one, seen in zip(labels, _seen(positions), strict=True) if not seen]
-    if never:
-        doubts.append(notice("marker.never", names=", ".join(never)))
-    t = t[order.rows]
-    rate = rows.rate
+    seen = np.isfinite(positions[:, :, 0]).any(axis=0)
+    if not seen.all():
+        names = ", ".join(one for one, known in zip(clean, seen, strict=True) if not known)
+        doubts.append(notice("marker.never", names=names))
     doubts += order.doubts
-    if len(t) > 1:
-        measured = rate_of(t, file)
-        rate = rate if rows.t is None else measured
-        doubts += time_notices(t, measured, rows.rate if rows.t is not None else None)
-    if len(t) and rows.frame[order.rows][0] != 1 and rows.t is None:
-        doubts.append(notice("time.first", frame=rows.frame[order.rows][0], start=t[0]))
-    clock = "t = 0 at frame 1" if rows.t is None else "the file's own times"
-    extra = {"subject": subject} if subject else {}
-    told_unit = {"unit": rows.unit or "mm (assumed)", "rate": f"{rate:.6g} Hz", "clock": clock}
+    if len(times) > 1:
+        measured = rate_of(times, file)
+        doubts += time_notices(times, measured, None if t is None else rate)
+        rate = rate if t is None else measured
+    if frame[0] != 1 and t is None:
+        doubts.append(notice("time.first", frame=frame[0], start=times[0]))
+    clock = "t = 0 at frame 1" if t is None else "the file's own times"
+    found = {"unit": unit or "mm (assumed)", "rate": f"{rate:.6g} Hz", "clock": clock}
+    found |= {"subject": subject} if subject else {}
     return MarkerData(
         name=Path(file).name,
-        t=t,
-        frame=rows.frame[order.rows],
-        labels=labels,
+        t=times,
+        frame=frame,
+        labels=clean,
         positions=positions,
         rate=rate,
-        residual=None if rows.residual is None else rows.residual[order.rows] * scale,
-        source=MappingProxyType({**source, **told_unit, **extra}),
+        residual=None if residual is None else residual[order.rows] * scale,
+        up=up,
+        source=MappingProxyType({**source, **found}),
         doubts=tuple(doubts),
     )
-
-
-def _seen(positions: Array) -> NDArray[np.bool_]:
-    return np.isfinite(positions[:, :, 0]).sum(axis=0) > 0
-
-
-def _scale(rows: MarkerRows, file: str) -> tuple[float, list[Notice]]:
-    """Metres in one unit."""
-    if not rows.unit:
-        return 1e-3, [notice("file.unit")]
-    if rows.unit.casefold() not in _METRES:
-        place, line = rows.unit_place
-        message = f"Read the unit {shown(rows.unit)}. Expected mm, cm, m or in. Correct {place}."
-        refuse(file, message, line)
-    return _METRES[rows.unit.casefold()], []
 
 
 def clean_labels(written: Sequence[str]) -> tuple[tuple[str, ...], str, list[Notice]]:

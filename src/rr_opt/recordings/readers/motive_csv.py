@@ -8,13 +8,11 @@ Motive's y axis points up unless it was told otherwise: `up: y`.
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from rr_opt.files.issue import refuse
 from rr_opt.messages import shown
-from rr_opt.recordings.readers.marker_rows import MarkerData, MarkerRows, marker_data
+from rr_opt.recordings.readers.marker_rows import MarkerData, frames_of, marker_data, rate_in
 from rr_opt.recordings.readers.text import Reader, ReadOptions, Text, cells_of, read_table
 from rr_opt.recordings.warnings import notice
 
@@ -40,12 +38,12 @@ def read(file: str, text: Text, _: ReadOptions) -> MarkerData:
             "Export it once more.",
             min(len(header), _HEADER),
         )
-    width = len(header[last])
+    axes = header[last]
+    width = len(axes)
     padded = [[*cells, *[""] * width][:width] for cells in header[1:last]]
     kinds = next((cells for cells in padded if {"Marker", "Rigid Body"} & set(cells)), [""] * width)
     named = padded.index(kinds) + 1 if kinds in padded else 0
     measures = next((cells for cells in padded if "Position" in cells), [""] * width)
-    axes = header[last]
     places = [
         at
         for at in range(2, width - 2)
@@ -59,55 +57,29 @@ def read(file: str, text: Text, _: ReadOptions) -> MarkerData:
             "rigid bodies do not say where the joint is. Export the markers.",
             last + 1,
         )
-    names = [padded[named][at] for at in places]
-    columns = [f"{axis} {name}".strip() for axis, name in zip(axes, padded[named], strict=True)]
-    # A time code is no number.
-    lines = text.lines
-    skipped = [at for at, axis in enumerate(axes) if axis == "TimeCode"]
-    if skipped:
-        lines = [_without(line, skipped) if at > last else line for at, line in enumerate(lines)]
-        columns = [one for at, one in enumerate(columns) if at not in skipped]
-        places = [at - sum(one < at for one in skipped) for at in places]
-    whole = Text(text.file, text.encoding, lines, text.ended)
-    table = read_table(whole, last + 1, len(lines), ",", columns)
-    if not len(table.values):
-        refuse(file, "The file has no rows. Export the whole recording.", last + 1)
-    frames = table.values[:, 0]
-    wrong = np.flatnonzero(~(np.abs(frames) < 2**53))
-    if len(wrong):
-        line = int(table.lines[wrong[0]])
-        refuse(file, "Read no number of a frame. Expected one in column 1.", line)
-    rows = MarkerRows(
-        frame=np.round(frames).astype(np.int64),
+    columns = [
+        None if axis == "TimeCode" else f"{axis} {name}".strip()
+        for axis, name in zip(axes, padded[named], strict=True)
+    ]
+    table = read_table(text, last + 1, len(text.lines), ",", columns)
+    doubts = list(table.doubts)
+    others = [one for one in dict.fromkeys(kinds[2:]) if one not in ("", "Marker")]
+    if others:
+        doubts.append(notice("file.columns", names=shown(", ".join(others))))
+    rate = stated.get("Export Frame Rate") or stated.get("Capture Frame Rate", "")
+    return marker_data(
+        {"file": file, "format": READER.format, "encoding": text.encoding},
+        frame=frames_of(table, 0, file, last + 1),
+        lines=table.lines,
         t=table.values[:, 1],
-        rate=_rate(file, stated),
-        labels=tuple(names),
+        rate=rate_in(rate, "as the frame rate", file, 1),
+        labels=[padded[named][at] for at in places],
         positions=np.stack([table.values[:, at : at + 3] for at in places], axis=1),
         unit=stated.get("Length Units", ""),
         unit_place=("`Length Units`", 1),
-        lines=table.lines,
+        up="y",
+        doubts=doubts,
     )
-    others = [one for one in dict.fromkeys(kinds[2:]) if one not in ("", "Marker")]
-    doubts = list(table.doubts)
-    if others:
-        doubts.append(notice("file.columns", names=shown(", ".join(others))))
-    source = {"file": file, "format": READER.format, "encoding": text.encoding}
-    return marker_data(rows, source, doubts)
-
-
-def _without(line: str, skipped: list[int]) -> str:
-    return ",".join(cell for at, cell in enumerate(line.split(",")) if at not in skipped)
-
-
-def _rate(file: str, stated: dict[str, str]) -> float:
-    cell = stated.get("Export Frame Rate") or stated.get("Capture Frame Rate", "")
-    try:
-        rate = float(cell)
-    except ValueError:
-        rate = math.nan
-    if not 0 < rate < math.inf:
-        refuse(file, f"Read {shown(cell)} as the frame rate. Expected it in Hz. Correct it.", 1)
-    return rate
 
 
 READER = Reader("OptiTrack Motive CSV", sniff, read)

@@ -18,7 +18,7 @@ import numpy as np
 from rr_opt.files.gait_record import gait_from, gait_record
 from rr_opt.files.issue import InvalidFileError, refuse
 from rr_opt.files.yaml_text import Document
-from rr_opt.model.experiment import CHANNELS, Flag, Noise, Recording
+from rr_opt.model.experiment import CHANNELS, UNITS, Flag, Noise, Recording
 from rr_opt.model.gait import Gait
 from rr_opt.outcome import InputError
 from rr_opt.recordings.readers.text import Reader, ReadOptions
@@ -64,7 +64,6 @@ def from_json(data: xarray.Dataset, name: str, kind: type, file: str) -> Any:
     return found if isinstance(found, kind) else kind()
 
 
-_UNITS = {"x": "m", "y": "m", "psi": "rad", "phi": "rad", "torque": "N m"}
 _MEANINGS = {
     "x": "joint P along the floor's x axis",
     "y": "joint P along the floor's y axis",
@@ -83,16 +82,20 @@ def to_dataset(recording: Recording, gait: Gait | None = None) -> xarray.Dataset
         coords={"t": ("t", recording.t, {"units": "s", "long_name": "time on the command's clock"})}
     )
     for name in recording.channels:
-        unit = {"units": _UNITS[name]}
-        beside = {"ancillary_variables": f"{name}_sigma {name}_flag"}
-        meaning = {"long_name": _MEANINGS[name]}
-        data[name] = ("t", recording.values[name], {**unit, **meaning, **beside})
+        unit = {"units": UNITS[name]}
+        meaning = {"long_name": _MEANINGS[name], "ancillary_variables": f"{name}_sigma {name}_flag"}
         sigma = {"long_name": f"standard deviation of the noise of {name}"}
-        data[f"{name}_sigma"] = ("t", recording.sigma[name], {**unit, **sigma})
-        data[f"{name}_flag"] = ("t", recording.flags[name], _flag_attributes(name))
+        flag = {
+            "long_name": f"why a value of {name} is not data; 0: it is",
+            "flag_masks": np.array([flag.value for flag in Flag], np.uint8),
+            "flag_meanings": " ".join(str(flag.name).lower() for flag in Flag),
+        }
+        data[name] = ("t", recording.values[name], unit | meaning)
+        data[f"{name}_sigma"] = ("t", recording.sigma[name], unit | sigma)
+        data[f"{name}_flag"] = ("t", recording.flags[name], flag)
     if gait is not None:
-        told = {"units": "rad", "long_name": "commanded angle"}
-        data["command"] = ("t", gait.angle(recording.t), told)
+        meaning = {"units": "rad", "long_name": "commanded angle"}
+        data["command"] = ("t", gait.angle(recording.t), meaning)
         data.attrs["gait"] = json.dumps(gait_record(gait))
     data.attrs |= {
         "Conventions": "CF-1.11",
@@ -120,21 +123,17 @@ def from_dataset(data: xarray.Dataset, file: str, noise: Noise | None = None) ->
     channels = [*CHANNELS, *(["torque"] if "torque" in data else [])]
     values, sigma, flags = {}, {}, {}
     for name in channels:
-        values[name] = numbers_of(data, name, _UNITS[name], file)
+        values[name] = numbers_of(data, name, UNITS[name], file)
         missing = np.isnan(values[name])
         if f"{name}_sigma" in data:
-            sigma[name] = numbers_of(data, f"{name}_sigma", _UNITS[name], file)
+            sigma[name] = numbers_of(data, f"{name}_sigma", UNITS[name], file)
         else:
             sigma[name] = np.full(len(t), noise.of(name) if noise else np.nan)
         flags[name] = np.where(missing, Flag.MISSING, 0).astype(np.uint8)
         if f"{name}_flag" in data:
             flags[name] |= numbers_of(data, f"{name}_flag", "1", file).astype(np.uint8)
-    known = {
-        "t",
-        "command",
-        *(f"{one}{end}" for one in channels for end in ("", "_sigma", "_flag")),
-    }
-    others = [str(name) for name in data.variables if name not in known]
+    known = [f"{one}{end}" for one in channels for end in ("", "_sigma", "_flag")]
+    others = [str(name) for name in data.variables if name not in ("t", "command", *known)]
     doubts = from_json(data, "doubts", list, file)
     doubts += [notice("file.variables", names=", ".join(others))] if others else []
     source = {"file": file, "format": "netCDF"}
@@ -173,14 +172,6 @@ def library() -> Any:
             "Run `pip install 'rr-opt[netcdf]'`, or use CSV."
         ) from None
     return xarray
-
-
-def _flag_attributes(name: str) -> dict[str, Any]:
-    return {
-        "long_name": f"why a value of {name} is not data; 0: it is",
-        "flag_masks": np.array([flag.value for flag in Flag], np.uint8),
-        "flag_meanings": " ".join(str(flag.name).lower() for flag in Flag),
-    }
 
 
 SIGNATURE = b"\x89HDF\r\n\x1a\n"

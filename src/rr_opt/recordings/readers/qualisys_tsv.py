@@ -6,15 +6,18 @@ there if the export was told to write them; else frames come at `FREQUENCY`.
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from rr_opt.files.issue import refuse
 from rr_opt.messages import shown
-from rr_opt.recordings.readers.marker_rows import MarkerData, MarkerRows, marker_data
+from rr_opt.recordings.readers.marker_rows import (
+    MarkerData,
+    count_notice,
+    frames_of,
+    marker_data,
+    rate_in,
+)
 from rr_opt.recordings.readers.text import Reader, ReadOptions, Text, cells_of, read_table
-from rr_opt.recordings.warnings import notice
 
 
 def sniff(text: Text, _: ReadOptions) -> bool:
@@ -48,41 +51,23 @@ def read(file: str, text: Text, _: ReadOptions) -> MarkerData:
     )
     columns = ["Frame", "Time"] * timed + [f"{axis} of {name}" for name in names for axis in "XYZ"]
     table = read_table(text, first, len(text.lines), "\t", columns)
-    count = len(table.values)
-    if not count:
-        refuse(file, "The file has no rows. Export the whole recording.", len(text.lines))
-    frames = table.values[:, 0] if timed else np.arange(1.0, count + 1)
-    wrong = np.flatnonzero(~(np.abs(frames) < 2**53))
-    if len(wrong):
-        line = int(table.lines[wrong[0]])
-        refuse(file, "Read no number of a frame. Expected one in column 1.", line)
-    rows = MarkerRows(
-        frame=np.round(frames).astype(np.int64),
+    frame = (
+        frames_of(table, 0, file, len(text.lines))
+        if timed or not len(table.values)
+        else np.arange(1, len(table.values) + 1)
+    )
+    return marker_data(
+        {"file": file, "format": READER.format, "encoding": text.encoding},
+        frame=frame,
+        lines=table.lines,
         t=table.values[:, 1] if timed else None,
-        rate=_rate(file, stated),
-        labels=tuple(names),
-        positions=table.values[:, 2 * timed :].reshape(count, len(names), 3),
+        rate=rate_in("".join(stated.get("FREQUENCY", [])), "as FREQUENCY", file),
+        labels=names,
+        positions=table.values[:, 2 * timed :].reshape(len(frame), len(names), 3),
         unit="mm",
         unit_place=("the export", None),
-        lines=table.lines,
+        doubts=[*table.doubts, *count_notice("".join(stated.get("NO_OF_FRAMES", [])), frame)],
     )
-    doubts = list(table.doubts)
-    said = "".join(stated.get("NO_OF_FRAMES", []))
-    if said.isdecimal() and int(said) != count:
-        doubts.append(notice("file.frames", stated=int(said), count=count))
-    source = {"file": file, "format": READER.format, "encoding": text.encoding}
-    return marker_data(rows, source, doubts)
-
-
-def _rate(file: str, stated: dict[str, list[str]]) -> float:
-    cell = "".join(stated.get("FREQUENCY", []))
-    try:
-        rate = float(cell.replace(",", "."))
-    except ValueError:
-        rate = math.nan
-    if not 0 < rate < math.inf:
-        refuse(file, f"Read {shown(cell)} as FREQUENCY. Expected the rate in Hz. Correct it.")
-    return rate
 
 
 READER = Reader("Qualisys TSV", sniff, read)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import codecs
-import io
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -156,10 +155,6 @@ def find_header(text: Text) -> Header | None:
     return None
 
 
-_TABLE_BLOCK = 20_000
-"""Rows converted at once: no more than a few of their copies are in memory together."""
-
-
 @dataclass(frozen=True)
 class Table:
     """values (n, columns), NaN where a cell is empty; lines (n,), the rows' numbers in the file."""
@@ -169,44 +164,49 @@ class Table:
     doubts: tuple[Notice, ...]
 
 
-@dataclass
-class _Reading:
-    """A table being read: what its rows looked like, and what is wrong with them."""
-
-    separator: str
-    names: Sequence[str]
-    wrong: list[tuple[int, str]] = field(default_factory=list)
-    short: list[int] = field(default_factory=list)
-
-
-def read_table(text: Text, first: int, last: int, separator: str, names: Sequence[str]) -> Table:
-    """The rows in text.lines[first:last], whose columns have these names.
+def read_table(
+    text: Text, first: int, last: int, separator: str, names: Sequence[str | None]
+) -> Table:
+    """The rows in text.lines[first:last], whose columns have these names; None: not a number.
 
     Cells are empty (missing), or numbers with a decimal point; with another separator than the
     comma, a decimal comma will do. Rows that hold nothing are passed over. Cells missing at a
     row's end are empty; what stands beyond the last column has to be. Raises InvalidFileError with
     line and column of every cell that is not a number.
     """
-    reading = _Reading(separator, names)
-    blank = separator + " \t"
+    blank, width = separator + " \t", len(names)
     rows = [at for at in range(first, last) if text.lines[at].strip(blank)]
     cut = bool(rows) and not text.ended and rows[-1] == len(text.lines) - 1
-    cut = cut and text.lines[rows[-1]].count(separator) < len(names) - 1
+    cut = cut and text.lines[rows[-1]].count(separator) < width - 1
     doubts = [notice("file.cut", line=rows.pop() + 1)] if cut else []
-    blocks = [
-        _block(reading, [text.lines[at] for at in rows[start : start + _TABLE_BLOCK]], rows[start:])
-        for start in range(0, len(rows), _TABLE_BLOCK)
-    ]
-    if reading.wrong:
-        refuse_all(text.file, reading.wrong)
-    values = np.concatenate(blocks) if blocks else np.empty((0, len(names)))
+    values = np.full((len(rows), width), np.nan)
+    wrong: list[tuple[int, str]] = []
+    short: list[int] = []
+    for row, at in enumerate(rows):
+        line = text.lines[at]
+        cells = (line if separator == "," else line.replace(",", ".")).split(separator)
+        if len(cells) < width:
+            short.append(at + 1)
+            cells += [""] * (width - len(cells))
+        elif any(map(str.strip, cells[width:])):
+            message = f"Read {len(cells)} cells. Expected {width}, as the header has. Check them."
+            wrong.append((at + 1, message))
+        try:
+            if "_" in line or not line.isascii():
+                raise ValueError
+            values[row] = [float(cell) if cell else np.nan for cell in cells[:width]]
+        except ValueError:
+            numbers, messages = _one_by_one(cells, names)
+            values[row] = numbers
+            wrong += [(at + 1, message) for message in messages]
+    if wrong:
+        refuse_all(text.file, wrong)
+    if short:
+        doubts.append(notice("file.short", rows=_rows_text(short)))
     lines = np.array(rows, np.int64) + 1
-    if reading.short:
-        doubts.append(notice("file.short", rows=_rows_text(reading.short)))
     endless = np.isinf(values)
     if endless.any():
-        where = lines[endless.any(axis=1)].tolist()
-        doubts.append(notice("file.infinite", rows=_rows_text(where)))
+        doubts.append(notice("file.infinite", rows=_rows_text(lines[endless.any(axis=1)].tolist())))
         values[endless] = np.nan
     return Table(values, lines, tuple(doubts))
 
@@ -217,57 +217,22 @@ def _rows_text(lines: Sequence[int]) -> str:
     return f"{len(lines)} lines, the first of them {lines[0]}, have"
 
 
-def _block(reading: _Reading, lines: list[str], rows: list[int]) -> Array:
-    """The numbers of some lines, whose indices in the file `rows` begins with."""
-    separator, width = reading.separator, len(reading.names)
-    if separator != ",":
-        lines = [line.replace(",", ".") for line in lines]
-    counts = [line.count(separator) for line in lines]
-    for at, count in enumerate(counts):
-        if count < width - 1:
-            reading.short.append(rows[at] + 1)
-            lines[at] += separator * (width - 1 - count)
-        elif count > width - 1:
-            beyond = lines[at].split(separator)[width:]
-            if any(cell.strip() for cell in beyond):
-                message = (
-                    f"Read {count + 1} cells. Expected {width}, as the header has. Check them."
-                )
-                reading.wrong.append((rows[at] + 1, message))
-            lines[at] = separator.join(lines[at].split(separator)[:width])
-    whole = "\n".join(lines)
-    for empty, filled in (
-        (f"{separator}{separator}", f"{separator}nan{separator}"),
-        (f"{separator}{separator}", f"{separator}nan{separator}"),
-        (f"\n{separator}", f"\nnan{separator}"),
-        (f"{separator}\n", f"{separator}nan\n"),
-    ):
-        whole = whole.replace(empty, filled)
-    whole = f"{'nan' * whole.startswith(separator)}{whole}{'nan' * whole.endswith(separator)}"
-    try:
-        return np.loadtxt(io.StringIO(whole), delimiter=separator, comments=None, ndmin=2)
-    except ValueError:
-        return _one_by_one(reading, lines, rows)
-
-
-def _one_by_one(reading: _Reading, lines: list[str], rows: list[int]) -> Array:
-    """The same cell by cell, noting each that is not a number."""
-    values = np.full((len(lines), len(reading.names)), np.nan)
-    for at, line in enumerate(lines):
-        for column, cell in enumerate(line.split(reading.separator)):
-            number = cell.strip().strip('"').strip()
-            if not number:
-                continue
-            try:
-                if "_" in number or not number.isascii():
-                    raise ValueError
-                values[at, column] = float(number)
-            except ValueError:
-                name = reading.names[column]
-                called = f"column {column + 1}" + (f" ({name})" if name else "")
-                message = (
-                    f"Read {shown(number)} in {called}. Expected a number, or nothing where none "
-                    "was measured. Correct it, or empty the cell."
-                )
-                reading.wrong.append((rows[at] + 1, message))
-    return values
+def _one_by_one(cells: Sequence[str], names: Sequence[str | None]) -> tuple[list[float], list[str]]:
+    """The numbers of a row that holds quotes or blanks, and a message for each cell without one."""
+    numbers, messages = [], []
+    for column, (cell, name) in enumerate(zip(cells, names, strict=False), 1):
+        number = cell.strip().strip('"').strip()
+        numbers.append(np.nan)
+        if not number or name is None:
+            continue
+        try:
+            if "_" in number or not number.isascii():
+                raise ValueError
+            numbers[-1] = float(number)
+        except ValueError:
+            called = f"column {column}" + (f" ({name})" if name else "")
+            messages.append(
+                f"Read {shown(number)} in {called}. Expected a number, or nothing where none "
+                "was measured. Correct it, or empty the cell."
+            )
+    return numbers, messages

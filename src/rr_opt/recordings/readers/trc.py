@@ -7,14 +7,16 @@ X1, Y1, Z1, X2 and so on. Rows follow, as a rule after a blank line.
 
 from __future__ import annotations
 
-import math
-
-import numpy as np
-
 from rr_opt.files.issue import refuse
 from rr_opt.messages import shown
-from rr_opt.recordings.readers.marker_rows import MarkerData, MarkerRows, marker_data
-from rr_opt.recordings.readers.text import (  # fmt: skip
+from rr_opt.recordings.readers.marker_rows import (
+    MarkerData,
+    count_notice,
+    frames_of,
+    marker_data,
+    rate_in,
+)
+from rr_opt.recordings.readers.text import (
     Reader,
     ReadOptions,
     Text,
@@ -52,28 +54,19 @@ def read(file: str, text: Text, _: ReadOptions) -> MarkerData:
     names, doubts = _names(text, head, stated, separator)
     columns = ["Frame#", "Time", *(f"{axis} of {one}" for one in names for axis in "XYZ")]
     table = read_table(text, 5, len(text.lines), separator, columns)
-    if not len(table.values):
-        refuse(text.file, "The file has no rows. Export the whole recording.", 5)
-    frames = table.values[:, 0]
-    whole = np.isfinite(frames) & (np.abs(frames) < 2**53)
-    if not whole.all():
-        line = int(table.lines[np.flatnonzero(~whole)[0]])
-        refuse(text.file, "Read no number of a frame. Expected one in column 1.", line)
-    rows = MarkerRows(
-        frame=np.round(frames).astype(np.int64),
+    frame = frames_of(table, 0, file, 5)
+    return marker_data(
+        {"file": file, "format": "TRC", "encoding": text.encoding},
+        frame=frame,
+        lines=table.lines,
         t=table.values[:, 1],
-        rate=_rate(text, stated),
-        labels=tuple(names),
-        positions=table.values[:, 2:].reshape(len(frames), len(names), 3),
+        rate=rate_in(stated.get("datarate", ""), "as DataRate", file, 3),
+        labels=names,
+        positions=table.values[:, 2:].reshape(len(frame), len(names), 3),
         unit=stated.get("units", ""),
         unit_place=("`Units`", 3),
-        lines=table.lines,
+        doubts=[*table.doubts, *doubts, *count_notice(stated.get("numframes", ""), frame)],
     )
-    said = stated.get("numframes", "")
-    if said.isdecimal() and int(said) != len(frames):
-        doubts.append(notice("file.frames", stated=int(said), count=len(frames)))
-    source = {"file": file, "format": "TRC", "encoding": text.encoding}
-    return marker_data(rows, source, [*table.doubts, *doubts])
 
 
 def _stated(text: Text) -> dict[str, str]:
@@ -81,22 +74,6 @@ def _stated(text: Text) -> dict[str, str]:
     separator = separator_of(text.lines[1])
     keys = [cell.casefold() for cell in cells_of(text.lines[1], separator)]
     return dict(zip(keys, cells_of(text.lines[2], separator), strict=False))
-
-
-def _rate(text: Text, stated: dict[str, str]) -> float:
-    cell = stated.get("datarate", "")
-    try:
-        rate = float(cell.replace(",", "."))
-    except ValueError:
-        rate = math.nan
-    if not 0 < rate < math.inf:
-        refuse(
-            text.file,
-            f"Read {shown(cell)} as DataRate. Expected the rate in Hz in line 3, under the name in "
-            "line 2. Correct it.",
-            3,
-        )
-    return rate
 
 
 def _names(

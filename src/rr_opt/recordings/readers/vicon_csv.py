@@ -6,7 +6,6 @@ columns; `Frame,Sub Frame,X,Y,Z,...`; the units. It ends with a blank line.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -14,8 +13,8 @@ import numpy as np
 
 from rr_opt.files.issue import refuse
 from rr_opt.messages import shown
-from rr_opt.recordings.readers.marker_rows import MarkerData, MarkerRows, marker_data
-from rr_opt.recordings.readers.text import (  # fmt: skip
+from rr_opt.recordings.readers.marker_rows import MarkerData, frames_of, marker_data, rate_in
+from rr_opt.recordings.readers.text import (
     Reader,
     ReadOptions,
     Text,
@@ -76,24 +75,8 @@ def read_head(text: Text, start: int) -> Head:
             start + 5,
         )
     markers = tuple((names[at] if at < len(names) else "", at) for at in places)
-    rate = _rate(text, rate_line, separator, start + 2)
+    rate = rate_in(cells_of(rate_line, separator)[0], "in column 1", text.file, start + 2)
     return Head(separator, rate, tuple(roles), markers, found.pop(), start + 5)
-
-
-def _rate(text: Text, line: str, separator: str, number: int) -> float:
-    cell = cells_of(line, separator)[0]
-    try:
-        rate = float(cell.replace(",", "."))
-    except ValueError:
-        rate = math.nan
-    if not 0 < rate < math.inf:
-        refuse(
-            text.file,
-            f"Read {shown(cell)} in column 1. Expected the rate of the section, in Hz. "
-            "Export it once more.",
-            number,
-        )
-    return rate
 
 
 _TITLE = "trajectories"
@@ -119,30 +102,18 @@ def read(file: str, text: Text, _: ReadOptions) -> MarkerData:
     last = _end(text, head.first_row, head.separator)
     names = [f"{role} of {marker}" if marker else role for role, marker in _owners(head)]
     table = read_table(text, head.first_row, last, head.separator, names)
-    if not len(table.values):
-        refuse(text.file, "The section has no rows. Export the whole recording.", head.first_row)
-    frames = table.values[:, head.roles.index("frame")]
-    wrong = np.flatnonzero(~(np.abs(frames) < 2**53) | (frames != np.round(frames)))
-    if len(wrong):
-        refuse(
-            text.file,
-            f"Read {frames[wrong[0]]:g} as the number of a frame. Expected a whole number.",
-            int(table.lines[wrong[0]]),
-        )
-    positions = np.stack([table.values[:, at : at + 3] for _, at in head.markers], axis=1)
-    rows = MarkerRows(
-        frame=frames.astype(np.int64),
+    return marker_data(
+        {"file": file, "format": READER.format, "encoding": text.encoding},
+        frame=frames_of(table, head.roles.index("frame"), file, head.first_row),
+        lines=table.lines,
         t=None,
         rate=head.rate,
-        labels=tuple(marker for marker, _ in head.markers),
-        positions=positions,
+        labels=[marker for marker, _ in head.markers],
+        positions=np.stack([table.values[:, at : at + 3] for _, at in head.markers], axis=1),
         unit=head.unit,
         unit_place=("the row of units", head.first_row),
-        lines=table.lines,
+        doubts=[*table.doubts, *_unread(text, start, last, head)],
     )
-    source = {"file": file, "format": "Vicon Nexus CSV", "encoding": text.encoding}
-    doubts = [*table.doubts, *_unread(text, start, last, head)]
-    return marker_data(rows, source, doubts)
 
 
 def _title(line: str) -> str:
