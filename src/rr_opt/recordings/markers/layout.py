@@ -22,6 +22,8 @@ from rr_opt.array import Array
 from rr_opt.model.experiment import Layout
 from rr_opt.outcome import InputError
 
+Complex = NDArray[np.complex128]
+
 FEWEST = 2
 """Markers that a platform needs for its place and heading in the plane."""
 
@@ -159,8 +161,6 @@ def _refuse(labels: Sequence[str], what: str) -> NoReturn:
         "two markers each, and a servo that wiggles. Give the layout with --layout."
     )
 
-
-Complex = NDArray[np.complex128]
 
 _FRAMES = 2000
 _ROUNDS = 20

@@ -15,6 +15,7 @@ from rr_opt.outcome import InputError
 from rr_opt.recordings.cleaning import unwrapped
 from rr_opt.recordings.markers.layout import (
     Bodies,
+    Complex,
     Guessed,
     Layout,
     bodies_of,
@@ -171,7 +172,7 @@ def fit_markers(
         _recording(data, fitted, sigma, ghosts.lost),
         bodies, shift, noise,
         np.sqrt(fitted.squares / np.where(fitted.freedom > 0, fitted.freedom, np.nan)),
-        np.sqrt(_mean(fitted.residual**2)),
+        _rms(fitted.residual),
         tilt(bodies, height), tuple(swaps), ghosts, (),
     )  # fmt: skip
     doubts = _notices(data, layout, made, guess, always, noise_sigma)
@@ -194,10 +195,10 @@ def _renamed(bodies: Bodies, order: Order) -> Bodies:
     return replace(bodies, places=places, platform=platform, heights=heights)
 
 
-def _mean(squares: Array) -> Array:
-    """Over frames and both axes of (n, k, 2); NaN of a marker that was never used."""
-    count = np.isfinite(squares).sum(axis=(0, 2))
-    return np.nansum(squares, axis=(0, 2)) / np.where(count > 0, count, np.nan)
+def _rms(residual: Complex) -> Array:
+    """Of a marker's coordinates, over the frames of (n, k); NaN of one that was never used."""
+    count = 2 * np.isfinite(residual).sum(axis=0)
+    return np.sqrt(np.nansum(np.abs(residual) ** 2, axis=0) / np.where(count > 0, count, np.nan))
 
 
 def _recording(data: MarkerData, fitted: Fit, sigma: float, lost: NDArray[np.int_]) -> Recording:

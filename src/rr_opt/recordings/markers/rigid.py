@@ -8,8 +8,9 @@ information
     M = S (1 - (S/T) u u'),   S = sum w,  T = sum w |b|^2,  u = J R mean(b)
 
 (b a marker's place from P, R the platform's rotation, J a quarter turn), so that P is the mean of
-the two platforms' own, weighted by M. The headings follow P by (S/T) u. That is exact but for the
-curvature of a rotation over the distance by which the platforms disagree on P. No loop over frames.
+the two platforms' own, weighted by M. The headings follow P by l = (S/T) u. That is exact but for
+the curvature of a rotation over the distance by which the platforms disagree on P. Vectors are
+complex numbers, and there is no loop over frames.
 
 The platforms' shapes are the recording's, as a layout is measured by hand. Where the markers sit a
 millimetre from where the layout says, their residuals have a mean in the platform's axes. Put
@@ -20,64 +21,14 @@ apart.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import chdtri
 
 from rr_opt.array import Array
-from rr_opt.recordings.markers.layout import FEWEST, Bodies
-
-
-@dataclass(frozen=True)
-class Alone:
-    """One platform's fit, in n frames; what is said of a frame that is not `there` means nothing.
-
-    joint        (n, 2), where this platform alone has P, m
-    heading      (n,), rad
-    lever        (n, 2), by how much the heading follows P, S/T u, rad/m
-    per_heading  (n,), 1/T, 1/m^2
-    information  (n, 2, 2), M
-    there        (n,), whether the frame has two markers of the platform
-    """
-
-    joint: Array
-    heading: Array
-    lever: Array
-    per_heading: Array
-    information: Array
-    there: NDArray[np.bool_]
-
-
-def alone(places: Array, seen: Array) -> Alone:
-    """The fit of markers at `places` (k, 2) on the platform, m, as `seen` (n, k, 2) from above."""
-    used = np.asarray(np.isfinite(seen).all(axis=2))
-    count = used.sum(axis=1)
-    there = count >= FEWEST
-    used = used & there[:, None]
-    S = np.where(there, count, 1).astype(float)
-    weight = used.astype(float)
-    centre = np.einsum("nk,nkj->nj", weight, np.nan_to_num(seen)) / S[:, None]
-    b_mean = weight @ places / S[:, None] if len(places) else np.zeros((len(seen), 2))
-    off = np.where(used[..., None], seen - centre[:, None], 0.0)
-    # Deviations of b need no centring: `off` sums to zero.
-    along = np.einsum("nki,ki->n", off, places)
-    across = np.einsum("nk,k->n", off[..., 1], places[:, 0]) - np.einsum(
-        "nk,k->n", off[..., 0], places[:, 1]
-    )
-    heading = np.where(there, np.arctan2(across, along), np.nan)
-    cos, sin = np.cos(heading), np.sin(heading)
-    arm = np.stack(
-        [cos * b_mean[:, 0] - sin * b_mean[:, 1], sin * b_mean[:, 0] + cos * b_mean[:, 1]], 1
-    )
-    T = np.where(there, weight @ (places**2).sum(axis=1), 1.0)
-    u = np.nan_to_num(np.stack([-arm[:, 1], arm[:, 0]], 1))
-    lever = (S / T)[:, None] * u
-    M = S[:, None, None] * (np.eye(2) - lever[:, :, None] * u[:, None, :])
-    M = np.where(there[:, None, None], M, 0.0)
-    return Alone(centre - arm, heading, lever, 1 / T, M, there)
-
+from rr_opt.recordings.markers.layout import FEWEST, Bodies, Complex
 
 _CHUNK = 20_000
 """Frames at a time, which bounds the memory."""
@@ -92,7 +43,7 @@ class Fit:
     spread    (n, 4), standard deviations of x, y (m per m of a marker's noise), psi and phi (rad
               per m), for markers whose two coordinates have noise of 1 m
     covary    (n,), covariance of x and y in the same measure
-    residual  (n, k, 2), seen less fitted, floor axes, m; NaN where a marker was not used
+    residual  (n, k), seen less fitted, x + iy, m; NaN where a marker was not used
     squares   (n,), sum of the squared residuals, m^2
     freedom   (n,), how many more coordinates than unknowns; squares/freedom estimates the noise's
               variance
@@ -102,7 +53,7 @@ class Fit:
     heading: Array
     spread: Array
     covary: Array
-    residual: Array
+    residual: Complex
     squares: Array
     freedom: NDArray[np.int_]
 
@@ -110,71 +61,72 @@ class Fit:
 def fit(bodies: Bodies, seen: Array) -> Fit:
     """Fit every frame of `seen` (n, k, 2), m; NaN is a marker that is not there."""
     pieces = [
-        _fit(bodies, seen[start : start + _CHUNK]) for start in range(0, max(len(seen), 1), _CHUNK)
+        _fit(bodies, seen[start : start + _CHUNK] @ np.array([1, 1j]))
+        for start in range(0, max(len(seen), 1), _CHUNK)
     ]
-    if len(pieces) == 1:
-        return pieces[0]
-    names = Fit.__dataclass_fields__
-    return Fit(**{name: np.concatenate([getattr(one, name) for one in pieces]) for name in names})
+    names = [one.name for one in fields(Fit)]
+    return Fit(*(np.concatenate([getattr(one, name) for one in pieces]) for name in names))
 
 
-def _fit(bodies: Bodies, seen: Array) -> Fit:
-    parts = [alone(bodies.places[bodies.of(one)], seen[:, bodies.of(one)]) for one in (0, 1)]
-    total = parts[0].information + parts[1].information
-    joint_covariance = _inverse(total)
-    pull = sum(np.einsum("nij,nj->ni", p.information, np.nan_to_num(p.joint)) for p in parts)
-    joint = np.einsum("nij,nj->ni", joint_covariance, pull)
-    headings, slopes = [], []
-    for part in parts:
-        off = np.where(part.there, np.einsum("ni,ni->n", part.lever, joint - part.joint), np.nan)
-        headings.append(part.heading - off)
-        slopes.append(part.lever)
-    residual, squares = _residuals(bodies, seen, joint, headings)
-    spread, covary = _spread(parts, joint_covariance, slopes)
-    counted = 2 * (~np.isnan(residual[..., 0])).sum(axis=1)
-    freedom = counted - 2 - sum(part.there.astype(int) for part in parts)
-    return Fit(joint, np.stack(headings, 1), spread, covary, residual, squares,
-               np.maximum(freedom, 0))  # fmt: skip
-
-
-def _residuals(
-    bodies: Bodies, seen: Array, joint: Array, headings: list[Array]
-) -> tuple[Array, Array]:
-    turned = np.stack(headings, 1)[:, bodies.platform]
-    cos, sin = np.cos(turned), np.sin(turned)
-    forward, left = bodies.places[:, 0], bodies.places[:, 1]
-    used = np.isfinite(seen).all(axis=2, keepdims=True)
-    residual = np.where(used, seen - joint[:, None], np.nan)
-    residual[..., 0] -= cos * forward - sin * left
-    residual[..., 1] -= sin * forward + cos * left
-    return residual, np.nansum(residual**2, axis=(1, 2))
-
-
-def _spread(parts: list[Alone], C: Array, slopes: list[Array]) -> tuple[Array, Array]:
-    one, two = parts
-    nothing = np.where(one.there | two.there, 0.0, np.nan)
-    var_psi = one.per_heading + np.einsum("ni,nij,nj->n", slopes[0], C, slopes[0])
-    apart = slopes[1] - slopes[0]
-    var_phi = one.per_heading + two.per_heading + np.einsum("ni,nij,nj->n", apart, C, apart)
-    variances = np.stack(
-        [
-            C[:, 0, 0] + nothing,
-            C[:, 1, 1] + nothing,
-            np.where(one.there, var_psi, np.nan),
-            np.where(one.there & two.there, var_phi, np.nan),
-        ],
-        1,
+def _fit(bodies: Bodies, z: Complex) -> Fit:
+    b, used = bodies.places @ np.array([1, 1j]), np.isfinite(z)
+    known = np.where(used, z, 0)
+    # By platform: whether it is there, its heading and P alone, S, 1/T, u and l.
+    there, heading, own, S, per_T, u = [], [], [], [], [], []
+    for one in (0, 1):
+        mine = used & (bodies.platform == one)
+        there.append(mine.sum(axis=1) >= FEWEST)
+        weight = (mine & there[-1][:, None]).astype(float)
+        count = np.where(there[-1], weight.sum(axis=1), 1.0)
+        centre, middle = (weight * known).sum(axis=1) / count, weight @ b / count
+        heading.append(np.angle((weight * (known - centre[:, None])) @ np.conj(b)))
+        arm = middle * np.exp(1j * heading[-1])
+        own.append(centre - arm)
+        S.append(np.where(there[-1], count, 0.0))
+        T = weight @ np.abs(b) ** 2
+        per_T.append(1 / np.where(T > 0, T, 1.0))
+        u.append(1j * arm)
+    lever = [s * t * one for s, t, one in zip(S, per_T, u, strict=True)]
+    xx, yy, xy = (
+        sum(s * (same - p(one) * q(lv)) for s, one, lv in zip(S, u, lever, strict=True))
+        for p, q, same in ((np.real, np.real, 1), (np.imag, np.imag, 1), (np.real, np.imag, 0))
     )
-    return np.sqrt(variances), C[:, 0, 1] + nothing
-
-
-def _inverse(M: Array) -> Array:
-    """Of symmetric (n, 2, 2); NaN where it has none."""
-    a, b, c = M[:, 0, 0], M[:, 0, 1], M[:, 1, 1]
-    size = a * c - b * b
+    pull = sum(
+        s * (at - one * np.real(np.conj(lv) * at))
+        for s, at, one, lv in zip(S, own, u, lever, strict=True)
+    )
+    size = xx * yy - xy * xy
     with np.errstate(divide="ignore", invalid="ignore"):
-        scale = np.where(size > 1e-12 * np.maximum(a * c, 1e-300), 1 / size, np.nan)
-    return np.stack([np.stack([c, -b], 1), np.stack([-b, a], 1)], 1) * scale[:, None, None]
+        scale = np.where(size > 1e-12 * np.maximum(xx * yy, 1e-300), 1 / size, np.nan)
+    Cxx, Cyy, Cxy = scale * yy, scale * xx, -scale * xy
+    joint = Cxx * pull.real + Cxy * pull.imag + 1j * (Cxy * pull.real + Cyy * pull.imag)
+    turned = [
+        np.where(is_there, angle - np.real(np.conj(lv) * (joint - at)), np.nan)
+        for is_there, angle, lv, at in zip(there, heading, lever, own, strict=True)
+    ]
+
+    def spread_of(lv: Complex) -> Array:
+        return Cxx * lv.real**2 + 2 * Cxy * lv.real * lv.imag + Cyy * lv.imag**2
+
+    psi = per_T[0] + spread_of(lever[0])
+    phi = per_T[0] + per_T[1] + spread_of(lever[1] - lever[0])
+    psi = np.where(there[0], psi, np.nan)
+    phi = np.where(there[0] & there[1], phi, np.nan)
+    angles = np.stack(turned, 1)
+    residual = np.where(
+        used, z - joint[:, None] - b * np.exp(1j * angles[:, bodies.platform]), np.nan
+    )
+    unknowns = 2 + there[0].astype(int) + there[1]
+    freedom = 2 * np.isfinite(residual).sum(axis=1) - unknowns
+    return Fit(
+        np.stack([joint.real, joint.imag], 1),
+        angles,
+        np.sqrt(np.stack([Cxx, Cyy, psi, phi], 1)),
+        Cxy,
+        residual,
+        np.nansum(np.abs(residual) ** 2, axis=1),
+        np.maximum(freedom, 0),
+    )  # fmt: skip
 
 
 FALSE_ALARM = 1e-6
@@ -238,11 +190,10 @@ def _means(bodies: Bodies, fitted: Fit) -> tuple[Array, Array]:
     good = ~beyond(fitted, sigma) & (fitted.freedom > 0)
     shift, error = np.zeros_like(bodies.places), np.full(len(bodies.places), np.inf)
     for i, where in enumerate(bodies.platform):
-        rows = good & np.isfinite(fitted.residual[:, i, 0])
+        rows = good & np.isfinite(fitted.residual[:, i])
         if rows.sum() < _FEWEST:
             continue
-        turn = np.exp(-1j * fitted.heading[rows, where])
-        own = (fitted.residual[rows, i, 0] + 1j * fitted.residual[rows, i, 1]) * turn
+        own = fitted.residual[rows, i] * np.exp(-1j * fitted.heading[rows, where])
         shift[i] = np.median(own.real), np.median(own.imag)
         # A median of Gaussians has 1.25 times the error of their mean.
         error[i] = 1.25 * max(sigma, 1e-9) / np.sqrt(rows.sum())
