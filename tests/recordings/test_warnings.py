@@ -29,7 +29,7 @@ def test_sentences_end_as_sentences_do():
 
 def test_a_notice_is_its_text_and_keeps_its_code():
     told = notice("gap.many", count=3, most=0.1, total=1.5)
-    assert told == "3 gaps in all are longer than 0.1 s, 1.5 s."
+    assert told == "3 gaps are longer than 0.1 s, 1.5 s in all."
     for one in (told, pickle.loads(pickle.dumps(told))):
         assert (one.code, one.kind, one.level) == ("gap.many", "gap", "warning")
 

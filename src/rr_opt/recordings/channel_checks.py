@@ -66,8 +66,8 @@ def _of_noise(
         "channel": channel,
         "noise": size_text(channel, noise.sigma),
         "stated": size_text(channel, stated),
-        "whose": "the markers' residuals lead to" if by_fit else "are stated",
-        "remedy": "" if by_fit else f"Correct `{_KEYS[channel]}` if it is not meant so.",
+        "whose": "follow from the markers' residuals" if by_fit else "are stated",
+        "remedy": "" if by_fit else f"Correct `{_KEYS[channel]}` if that is not intended.",
     }
     if times > _MANY:
         yield notice("noise.large", **sizes)
@@ -115,13 +115,13 @@ def _of_jumps(recording: Recording, found: Mapping[str, Sequence[Jump]]) -> Iter
 
 def _why(channels: set[str]) -> str:
     if "phi" in channels and len(channels) > 1:
-        return "time that is missing, or a blow?"
+        return "Missing time, or a blow?"
     if channels <= {"x", "y", "psi"} and channels & {"x", "y"}:
         return (
-            "the floor frame was set anew, or a marker has another's name? Recordings share one "
+            "Was the floor frame set anew, or has a marker another's name? Recordings share one "
             "floor frame: cut it there."
         )
-    return "a marker with another's name, or a blow?"
+    return "A marker with another's name, or a blow?"
 
 
 def _of_gaps(holes: Sequence[Gap]) -> Iterator[Notice]:

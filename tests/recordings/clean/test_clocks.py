@@ -79,7 +79,7 @@ def test_a_motion_that_only_repeats_leaves_whole_periods_open_and_the_longest_ov
     assert all(one == round(one) for one in apart)
     assert all(fit.samples >= other.samples for other in others)
     told = list(log_notices(fit, None, None, tuple(other.offset for other in others)))
-    assert "repeats itself" in told[1]
+    assert "periodic" in told[1]
 
 
 def test_a_lag_is_told_in_milliseconds_and_said_to_be_one_thing_with_a_clock():

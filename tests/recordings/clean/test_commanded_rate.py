@@ -27,7 +27,7 @@ def test_times_are_those_of_the_command(experiment, rate):
     found = at_commanded_rate(slowed(experiment, rate))
     for run, true in zip(found.runs, experiment.runs, strict=True):
         assert np.abs(run.recording.t - true.recording.t).max() < 2e-3
-        assert "phi's period differs from its command's" in run.recording.doubts[-1]
+        assert "period of phi differs from its command's" in run.recording.doubts[-1]
 
 
 def test_a_clock_that_is_right_is_left_alone(experiment):

@@ -53,7 +53,7 @@ def test_a_good_recording_has_none():
         (("psi", "phi"), np.degrees(1), "look like degrees"),
         (("t",), 1e3, "look like milliseconds"),
         (("t",), 100.0, "frame numbers"),
-        (("x",), 1e9, "no unit makes that"),
+        (("x",), 1e9, "in any unit"),
     ],
 )
 def test_another_unit_is_told_and_nothing_is_converted(names, factor, said):
@@ -132,7 +132,7 @@ def test_a_jump_is_told():
 
     cleaned = clean(recording(change))
     assert kinds(cleaned.doubts) == {"jump"}
-    assert "jumps x by 4" in texts(cleaned)
+    assert "s: x by 4" in texts(cleaned)
     assert "t = 14.99 s" in texts(cleaned)
 
 

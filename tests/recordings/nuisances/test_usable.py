@@ -47,7 +47,7 @@ def test_where_nothing_is_left_to_fit_it_says_why():
 
 def test_what_is_wrong_in_one_is_refused_by_name():
     wrong = recording(change=lambda v: v.update(y=-v["y"]))
-    with pytest.raises(InputError, match=r"run.csv: Place and angles[^$]*y is mirrored"):
+    with pytest.raises(InputError, match=r"run.csv: Position and angles[^$]*y is mirrored"):
         usable(experiment((wrong, "fit"), (recording("other.csv", seed=1), "fit")))
 
 

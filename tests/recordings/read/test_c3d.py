@@ -78,7 +78,7 @@ def test_points_that_are_angles_are_no_markers(tmp_path, points):
     data = read_file(written(tmp_path / "a.c3d", points, more=more))
     assert data.labels == ("A", "C", "*4")
     np.testing.assert_allclose(data.positions, points[:, [0, 2, 3]] / 1000, atol=1e-7)
-    assert data.doubts == ("1 points are no places, and were not read.",)
+    assert data.doubts == ("1 points are not positions, and were not read.",)
 
 
 def test_analog_samples_between_the_points(tmp_path, points):
@@ -106,4 +106,4 @@ def test_more_frames_than_the_header_can_count(tmp_path):
     data = read_file(written(tmp_path / "a.c3d", points, labels=["A"]))
     assert len(data) == 65_800
     np.testing.assert_allclose(data.positions, points / 1000, atol=1e-6)
-    assert data.doubts[0].startswith("The header can count to frame 65535 only")
+    assert data.doubts[0].startswith("The header cannot count beyond frame 65535")

@@ -117,7 +117,7 @@ def test_a_row_that_lacks_its_last_cells_is_told(write):
     run = read_file(write(ROWS.replace(",+0.26,0.6", "")))
     assert run.flags["psi"].tolist() == [0, Flag.MISSING, 0]
     assert run.doubts == (
-        "Line 3 has fewer cells than the header. What they lack was taken as missing.",
+        "Line 3 has fewer cells than the header. The others were taken as empty.",
     )
 
 

@@ -56,9 +56,9 @@ def test_what_the_header_says_wrongly_is_told(write):
     data = read_file(write(text))
     assert data.rate == pytest.approx(50.0)
     assert data.doubts == (
-        "The header states 3 markers, and names 2.",
-        "The header states 4 frames, and there are 3.",
-        "The header states 60 Hz, and the times come at 50 Hz. The times were taken.",
+        "The header states 3 markers, but names 2.",
+        "The header states 4 frames; the file has 3.",
+        "The header states 60 Hz, but the times come at 50 Hz. The times were used.",
     )
 
 

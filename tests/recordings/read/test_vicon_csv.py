@@ -58,7 +58,7 @@ def test_as_described(write):
     data = read_file(write(SECTION))
     check(data)
     assert data.source["subject"] == "RR"
-    assert data.doubts == ("The first frame is 11, so that t begins at 0.05 s.",)
+    assert data.doubts == ("The first frame is 11, so t begins at 0.05 s.",)
 
 
 @pytest.mark.parametrize(
@@ -146,7 +146,7 @@ def test_frames_that_are_missing_there_twice_or_out_of_place(write):
     np.testing.assert_allclose(data.positions[1:5, 0, 0] * 1000, seen)
     assert np.isnan(data.positions[5]).all()
     told = " ".join(data.doubts)
-    for words in ("Out of order", "time of another row", "different things", "jumps twice"):
+    for words in ("Out of order", "time of another row", "different values", "jumps twice"):
         assert words.replace("twice", "2 times") in told
 
 

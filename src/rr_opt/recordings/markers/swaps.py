@@ -12,8 +12,9 @@ size do, all of them are left out. A frame that nothing makes fit is not taken a
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import combinations
+from itertools import combinations, permutations
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,40 +30,19 @@ _MOST = 12
 """Of more markers, three or four exchanged at once are not sought: there are too many ways."""
 
 
-def pairs(count: int) -> list[Order]:
-    """Two of `count` markers exchanged."""
-    return [_moved(count, {i: j, j: i}) for i, j in combinations(range(count), 2)]
-
-
-def several(count: int) -> list[Order]:
-    """Three in a ring, or two pairs at once."""
-    if count > _MOST:
-        return []
-    rings = [
-        _moved(count, way)
-        for i, j, k in combinations(range(count), 3)
-        for way in ({i: j, j: k, k: i}, {i: k, k: j, j: i})
-    ]
-    doubles = [
-        _moved(count, {a: b, b: a, c: d, d: c})
-        for i, j, k, m in combinations(range(count), 4)
-        for a, b, c, d in ((i, j, k, m), (i, k, j, m), (i, m, j, k))
-    ]
-    return rings + doubles
+def exchanges(count: int, *sizes: int) -> Iterator[Order]:
+    """Every way to exchange 2 of `count` markers, 3 in a ring, or 4 as two pairs at once."""
+    for size in sizes if max(sizes) == 2 or count <= _MOST else ():
+        for chosen in combinations(range(count), size):
+            for places in permutations(chosen):
+                way = dict(zip(chosen, places, strict=True))
+                if all(i != j and (size == 3 or way[j] == i) for i, j in way.items()):
+                    yield tuple(way.get(i, i) for i in range(count))
 
 
 def members(order: Order) -> tuple[int, ...]:
     """The markers that are not in their own column."""
     return tuple(i for i, column in enumerate(order) if i != column)
-
-
-def put_back(seen: NDArray[np.float64], order: Order) -> NDArray[np.float64]:
-    """The markers (n, k, 2) each in its own column."""
-    return seen[:, order]
-
-
-def _moved(count: int, way: dict[int, int]) -> Order:
-    return tuple(way.get(i, i) for i in range(count))
 
 
 _AS_GOOD = 20.0
@@ -147,16 +127,16 @@ def swapped_throughout(bodies: Bodies, seen: Array) -> Order | None:
     sample = seen[rows[:: max(1, len(rows) // _SAMPLE)]]
     if not len(sample):
         return None
-    own = marker_noise(fit(bodies, sample))
-    found = _quietest(bodies, sample, pairs(len(bodies.labels)), own)
+    own, count = marker_noise(fit(bodies, sample)), len(bodies.labels)
+    found = _quietest(bodies, sample, exchanges(count, 2), own)
     if found is None and own > _ROUGH:
         few = sample[:: max(1, len(sample) // _FEW)]
-        found = _quietest(bodies, few, several(len(bodies.labels)), own)
+        found = _quietest(bodies, few, exchanges(count, 3, 4), own)
     return found
 
 
-def _quietest(bodies: Bodies, seen: Array, orders: list[Order], own: float) -> Order | None:
-    tried = {order: marker_noise(fit(bodies, put_back(seen, order))) for order in orders}
+def _quietest(bodies: Bodies, seen: Array, orders: Iterator[Order], own: float) -> Order | None:
+    tried = {order: marker_noise(fit(bodies, seen[:, order])) for order in orders}
     tried = {order: sigma for order, sigma in tried.items() if np.isfinite(sigma)}
     best = min(tried, key=lambda order: tried[order], default=None)
     return best if best and tried[best] * _BETTER < own else None
@@ -167,66 +147,33 @@ def put_right(bodies: Bodies, seen: Array, sigma: float) -> tuple[Array, list[Sw
 
     sigma: of a marker's coordinate, m.
     """
-    first = fit(bodies, seen)
-    left, freedom = np.flatnonzero(beyond(first, sigma)), first.freedom
-    if not len(left):
-        return seen, []
-    seen, count = seen.copy(), len(bodies.labels)
-    found, left = _exchanged(bodies, seen, left, freedom, sigma, pairs(count))
+    first, count = fit(bodies, seen), len(bodies.labels)
+    seen, found = seen.copy(), list[Swap]()
+
+    def mended(rows: NDArray[np.int_], order: Order) -> NDArray[np.bool_]:
+        fitted = fit(bodies, seen[rows][:, order])
+        # A marker that no fit uses any more fits nothing.
+        return ~beyond(fitted, sigma) & (fitted.freedom >= first.freedom[rows])
+
+    def exchanged(
+        left: NDArray[np.int_], orders: Iterator[Order], sample: int, least: int
+    ) -> NDArray[np.int_]:
+        """The frames that are left once orders are tried, those that mend most of a sample first;
+        least: how many they have to mend of it."""
+        rows = left[:: max(1, len(left) // sample)]
+        mends = {order: int(mended(rows, order).sum()) for order in orders} if len(rows) else {}
+        for order in sorted(mends, key=lambda one: -mends[one]):
+            if mends[order] >= least and len(left):
+                solved = mended(left, order)
+                if solved.any():
+                    rows, left = left[solved], left[~solved]
+                    seen[rows] = seen[rows][:, order]
+                    found.append(Swap(members(order), rows))
+        return left
+
+    left = np.flatnonzero(beyond(first, sigma))
+    left = exchanged(left, exchanges(count, 2), _SAMPLE, 0)
     if len(left):
         left = left[without_ghosts(bodies, seen[left], sigma, most=1).lost]
-        likely = _that_mend(bodies, seen[left], freedom[left], sigma, several(count))
-        found += _exchanged(bodies, seen, left, freedom, sigma, likely)[0]
+        exchanged(left, exchanges(count, 3, 4), _FEW, 1)
     return seen, found
-
-
-def _exchanged(
-    bodies: Bodies, seen: Array, left: NDArray[np.int_], freedom: NDArray[np.int_], sigma: float,
-    orders: list[Order],
-) -> tuple[list[Swap], NDArray[np.int_]]:  # fmt: skip
-    """Put right, in `seen` itself, the frames `left` that an exchange mends; what is left then."""
-    found: list[Swap] = []
-    sample = left[:: max(1, len(left) // _SAMPLE)]
-    for order in _ranked(bodies, seen[sample], freedom[sample], sigma, orders):
-        if not len(left):
-            break
-        tried = put_back(seen[left], order)
-        solved = _mended(bodies, tried, sigma, freedom[left])
-        if solved.any():
-            seen[left[solved]] = tried[solved]
-            found.append(Swap(members(order), left[solved]))
-            left = left[~solved]
-    return found, left
-
-
-def _ranked(
-    bodies: Bodies, seen: Array, freedom: NDArray[np.int_], sigma: float, orders: list[Order]
-) -> list[Order]:
-    """Those that mend most frames first."""
-
-    def solves(order: Order) -> int:
-        return int(_mended(bodies, put_back(seen, order), sigma, freedom).sum())
-
-    return sorted(orders, key=solves, reverse=True)
-
-
-def _that_mend(
-    bodies: Bodies, seen: Array, freedom: NDArray[np.int_], sigma: float, orders: list[Order]
-) -> list[Order]:
-    """Those that mend a frame of a few, spread over all that are left."""
-    rows = np.arange(len(seen))[:: max(1, len(seen) // _FEW)]
-    if not len(rows):
-        return []
-    return [
-        order
-        for order in orders
-        if _mended(bodies, put_back(seen[rows], order), sigma, freedom[rows]).any()
-    ]
-
-
-def _mended(
-    bodies: Bodies, tried: Array, sigma: float, freedom: NDArray[np.int_]
-) -> NDArray[np.bool_]:
-    fitted = fit(bodies, tried)
-    # A marker that no fit uses any more fits nothing.
-    return ~beyond(fitted, sigma) & (fitted.freedom >= freedom)

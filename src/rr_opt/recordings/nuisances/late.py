@@ -25,14 +25,14 @@ def _look(given: Evidence) -> Iterator[Notice]:
     likely = given.likely({name: left for name, (left, _) in found.items()})
     # Only the second axle's constraint knows phi.
     sure = "phi" in likely and given.robot is not None
-    told = [
+    late = [
         f"{name} by {1e3 * found[name][1]:+.3g} ms"
         for name in likely
         if abs(found[name][1]) > (_SHORTEST if sure else _UNSURE)
     ]
-    if told:
+    if late:
         code = "late.phi" if "phi" in likely else "late.place"
-        yield notice(code, told=", or ".join(told))
+        yield notice(code, late=", or ".join(late))
 
 
 def _best(given: Evidence, columns: tuple[int, ...]) -> tuple[float, float]:
