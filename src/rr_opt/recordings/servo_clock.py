@@ -13,7 +13,6 @@ from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline
 
 from rr_opt.array import Array
@@ -35,33 +34,28 @@ _LONGEST = 20_000.0
 """Recordings of more than this are not compared, s."""
 
 
-@dataclass(frozen=True)
-class Peaks:
-    """Offsets (m,), s, at which two signals are alike: how much (at most 1), and over how many s.
+_TRIED = 6
+"""Offsets of each kind from which a fit is tried."""
+_APART = 0.02
+"""Offsets that are closer are one, s."""
+_AS_GOOD = 1.25
+"""Times the residual of the best offset with which another is as likely."""
 
-    A periodic motion has one a period.
+
+def offsets_alike(
+    t: Array, one: Array, s: Array, two: Array, near: tuple[float, ...] = ()
+) -> list[float]:
+    """Offsets from t to s, s, worth a fit, where `one` is seen at t (n,) and `two` at s (m,).
+
+    Those at which the signals are most alike, those of the longest overlap, and the nearest to some
+    offsets; a periodic motion has one a period. NaN is no sample.
     """
-
-    offset: Array
-    alike: Array
-    overlap: Array
-
-    def tried(self, near: tuple[float, ...], most: int) -> list[float]:
-        """Those worth a fit: the likest, the longest, and the nearest to some offsets, s."""
-        likest = np.argsort(-self.alike, kind="stable")[:most]
-        longest = np.argsort(-self.alike * self.overlap, kind="stable")[:most]
-        nearest = [int(np.abs(self.offset - one).argmin()) for one in near if len(self.offset)]
-        return self.offset[sorted({*likest.tolist(), *longest.tolist(), *nearest})].tolist()
-
-
-def peaks(t: Array, one: Array, s: Array, two: Array) -> Peaks:
-    """Of offsets from t to s, where `one` is seen at t (n,) and `two` at s (m,); NaN is nothing."""
     # Here and not above: it takes half a second to load, and only servo logs need it.
     from scipy.signal import correlate
 
     first, second = _resampled(t, one), _resampled(s, two)
     if first is None or second is None:
-        return Peaks(np.empty(0), np.empty(0), np.empty(0))
+        return []
     alike = correlate(second, first, method="fft")
     overlap = correlate(np.ones(len(second)), np.ones(len(first)), method="fft")
     size = np.sqrt(
@@ -72,8 +66,13 @@ def peaks(t: Array, one: Array, s: Array, two: Array) -> Peaks:
     score = np.where(fits, alike / np.maximum(size, 1e-12), -1.0)
     peak = np.r_[False, (score[1:-1] > score[:-2]) & (score[1:-1] >= score[2:]), False]
     rows = np.flatnonzero(peak & (score > _PEAK * score.max()) & (score > 0))
-    lag = (rows - (len(first) - 1)) * _STEP
-    return Peaks(s[0] - t[0] + lag, score[rows], overlap[rows] * _STEP)
+    if not len(rows):
+        return []
+    offset = s[0] - t[0] + (rows - (len(first) - 1)) * _STEP
+    likest = np.argsort(-score[rows], kind="stable")[:_TRIED]
+    longest = np.argsort(-score[rows] * overlap[rows], kind="stable")[:_TRIED]
+    nearest = [int(np.abs(offset - one).argmin()) for one in near]
+    return offset[sorted({*likest.tolist(), *longest.tolist(), *nearest})].tolist()
 
 
 def _resampled(t: Array, y: Array) -> Array | None:
@@ -83,14 +82,6 @@ def _resampled(t: Array, y: Array) -> Array | None:
     z = np.interp(np.arange(t[0], t[-1], _STEP), t[known], y[known])
     z = z - z.mean()
     return z if np.abs(z).max() > 0 else None
-
-
-_CLOCKS_MOST = 6
-"""Likest peaks, and longest ones, that are fitted."""
-_APART = 0.02
-"""Offsets that are closer are one, s."""
-_AS_GOOD = 1.25
-"""Times the residual of the best offset with which another is as likely."""
 
 
 def against_log(
@@ -109,28 +100,25 @@ def against_log(
     known = np.isfinite(smooth.value)
     if known.sum() < 2:
         return ()
-    curve = CubicHermiteSpline(log.t[known], smooth.value[known], smooth.first[known])
+    curve = CubicHermiteSpline(
+        log.t[known], smooth.value[known], smooth.first[known], extrapolate=False
+    )
     slope = curve.derivative()
-    first, last = log.t[known][[0, -1]]
-
-    def reference(u: Array) -> tuple[Array, Array]:
-        inside = (u >= first) & (u <= last)
-        return np.where(inside, curve(u), np.nan), np.where(inside, slope(u), np.nan)
-
-    return likely_fits(t, phi, reference, peaks(t, phi, log.t, angle).tried(near, _CLOCKS_MOST))
+    offsets = offsets_alike(t, phi, log.t, angle, near)
+    return likely_fits(t, phi, lambda u: (curve(u), slope(u)), offsets)
 
 
 def likely_fits(
     t: Array, phi: Array, reference: Reference, offsets: list[float]
 ) -> tuple[ClockFit, ...]:
     """The fits from some offsets, s, that are about as good as the best; most samples first."""
-    tried = (clock_fit(t, phi, reference, one) for one in offsets)
-    fits = sorted((fit for fit in tried if fit is not None), key=lambda fit: fit.residual)
-    good = [fit for fit in fits if fit.residual <= _AS_GOOD * fits[0].residual]
-    good.sort(key=lambda fit: -fit.samples)
+    fits = [fit for one in offsets if (fit := clock_fit(t, phi, reference, one)) is not None]
+    best = min((fit.residual for fit in fits), default=0.0)
     apart: list[ClockFit] = []
-    for fit in good:
-        if all(abs(fit.offset - other.offset) > _APART for other in apart):
+    for fit in sorted(fits, key=lambda fit: (-fit.samples, fit.residual)):
+        if fit.residual <= _AS_GOOD * best and all(
+            abs(fit.offset - other.offset) > _APART for other in apart
+        ):
             apart.append(fit)
     return tuple(apart)
 
@@ -139,7 +127,6 @@ _IN_PERIOD = 16
 """Starts of the fit in a period of the command."""
 _LOOKED_AT = 400
 """Samples that the starts are compared on."""
-_MOST = 6
 
 
 def goal_fits(log: ServoLog, gait: Gait, *, from_rest: bool) -> tuple[ClockFit, ...]:
@@ -148,41 +135,27 @@ def goal_fits(log: ServoLog, gait: Gait, *, from_rest: bool) -> tuple[ClockFit, 
     from_rest: the command's first angle is held before its time 0, which shows when it began if
     the log goes back so far. Otherwise whole periods stay open. Empty without a goal that moves.
     """
-    goal = log.goal_angle
-    if goal is None:
+    if log.goal_angle is None:
         return ()
-    moving = np.flatnonzero(np.isfinite(goal))
-    moving = moving[_commanded(goal[moving], from_rest=from_rest)]
-    if len(moving) < 2:
+    known = np.isfinite(log.goal_angle)
+    t, goal = log.t[known], log.goal_angle[known]
+    changes = np.flatnonzero(np.diff(goal))
+    if not len(changes):
         return ()
-    t, goal = log.t[moving], goal[moving]
+    # After its last change the command is over; before the first it may not have begun.
+    moving = slice(0 if from_rest else changes[0], changes[-1] + 2)
+    t, goal = t[moving], goal[moving]
     reference = command_reference(gait, from_rest=from_rest)
-    step = gait.period / _IN_PERIOD
     # A periodic command is the same a period later; one that begins is not.
     span = t[-1] - t[0] if from_rest else 0.0
-    shifts = np.arange(-t[0] - span, -t[0] + gait.period, step)
+    shifts = np.arange(-t[0] - span, -t[0] + gait.period, gait.period / _IN_PERIOD)
     look = np.linspace(0, len(t) - 1, min(_LOOKED_AT, len(t))).astype(int)
-    off = np.array([_off(goal[look], reference(t[look] + one)[0]) for one in shifts])
-    lowest = [
-        i for i in range(len(off))
-        if off[i] <= off[max(i - 1, 0)] and off[i] <= off[min(i + 1, len(off) - 1)]
-    ]  # fmt: skip
-    lowest.sort(key=lambda i: off[i])
-    return likely_fits(t, goal, reference, [float(shifts[i]) for i in lowest[:_MOST]])
-
-
-def _commanded(goal: Array, *, from_rest: bool) -> NDArray[np.bool_]:
-    """Without the time after the last change, and unless it tells the start, before the first."""
-    changes = np.flatnonzero(np.diff(goal))
-    row = np.arange(len(goal))
-    if not len(changes):
-        return np.zeros(len(goal), bool)
-    return (row <= changes[-1] + 1) & ((row >= changes[0]) | from_rest)
-
-
-def _off(goal: Array, told: Array) -> float:
-    """Root mean square difference, but for a constant: phi's zero is not the clock's affair."""
-    return float(np.std(goal - told))
+    # The constant of the difference is phi's zero, and not the clock's affair.
+    off = np.array([np.std(goal[look] - reference(t[look] + one)[0]) for one in shifts])
+    walled = np.concatenate([[np.inf], off, [np.inf]])
+    lowest = np.flatnonzero((off <= walled[:-2]) & (off <= walled[2:]))
+    lowest = lowest[np.argsort(off[lowest], kind="stable")][:_TRIED]
+    return likely_fits(t, goal, reference, shifts[lowest].tolist())
 
 
 _COVERED = 1.959964
