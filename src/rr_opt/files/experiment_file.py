@@ -17,43 +17,13 @@ from rr_opt.files.fields import validate
 from rr_opt.files.gait_record import gait_from
 from rr_opt.files.gate import unreadable
 from rr_opt.files.issue import InvalidFileError, Issue, has_errors
-from rr_opt.files.problem_file import kind_of
+from rr_opt.files.problem_file import ROBOT, kind_of
 from rr_opt.files.robot_file import robot_from
-from rr_opt.files.source import is_result, read_document
+from rr_opt.files.source import is_result, linked, read_document
 from rr_opt.files.yaml_text import Document
 from rr_opt.messages import shown
 from rr_opt.model.gait import Gait
 from rr_opt.model.robot import Robot
-
-
-def robot_of(document: Document, file: Path) -> tuple[Robot | None, list[Path], list[Issue]]:
-    """The robot (None if it cannot be read), the files it is in beside this one, and all issues."""
-    if "robot" not in document.data:
-        return None, [], []  # reported with the other missing keys
-    given = document.data["robot"]
-    if isinstance(given, dict):
-        return _with_paths(robot_from(document.section("robot")), [])
-    if not isinstance(given, str) or not given:
-        message = f"Read {shown(given)}. Expected the name of a robot file, or the robot itself."
-        return None, [], [document.issue("error", ("robot",), message)]
-    named = file.parent / given
-    try:
-        return _with_paths(robot_from(read_document(named)), [named])
-    except InvalidFileError as error:
-        issues = [
-            document.issue("error", ("robot",), f"Read {shown(given)}. {one.message}")
-            if one.line is None
-            else one
-            for one in error.issues
-        ]
-        return None, [], issues
-
-
-def _with_paths(
-    read: tuple[Robot | None, list[Issue]], paths: list[Path]
-) -> tuple[Robot | None, list[Path], list[Issue]]:
-    robot, issues = read
-    return robot, paths, issues
 
 
 def runs_from(document: Document, file: Path) -> tuple[tuple[PlannedRun, ...], list[Issue]]:
@@ -98,24 +68,22 @@ def _run(document: Document, file: Path) -> tuple[PlannedRun | None, list[Issue]
 
 def _gait(document: Document, file: Path) -> tuple[Gait | None, list[Issue]]:
     """The gait written in the entry, or that of the result that it names."""
-    given = document.data["gait"]
-    if isinstance(given, dict):
-        return gait_from(document.section("gait"))
-    if not isinstance(given, str):
-        message = (
-            f"Read {shown(given)}. Expected the gait, or the name of a result that holds it. "
-            "Write for example `{amplitude: 0.5, period: 1 s, offset: 0}`."
-        )
+    expected = (
+        "the gait, or the name of a result that holds it. Write for example "
+        "`{amplitude: 0.5, period: 1 s, offset: 0}`"
+    )
+    found, named, issues = linked(document, "gait", file.parent, expected)
+    if found is None:
+        read = f"Read {shown(document.data['gait'])}. "
+        why = issues[0].message.removeprefix(read)
+        return None, [document.issue("error", ("gait",), f"{read}{why}")]
+    if not named:
+        return gait_from(found)
+    if not is_result(found.data) or not isinstance(found.data.get("gait"), dict):
+        given = shown(document.data["gait"])
+        message = f"Read {given}, which holds no gait. Expected a result of rr-opt."
         return None, [document.issue("error", ("gait",), message)]
-    try:
-        result = read_document(file.parent / given)
-    except InvalidFileError as error:
-        why = error.issues[0].message
-        return None, [document.issue("error", ("gait",), f"Read {shown(given)}. {why}")]
-    if not is_result(result.data) or not isinstance(result.data.get("gait"), dict):
-        message = f"Read {shown(given)}, which holds no gait. Expected a result of rr-opt."
-        return None, [document.issue("error", ("gait",), message)]
-    return gait_from(result.section("gait"))
+    return gait_from(found.section("gait"))
 
 
 def _twice(document: Document, entries: list[object]) -> list[Issue]:
@@ -194,13 +162,16 @@ def named_files(path: Path) -> list[Path]:
 def plan_from(document: Document, file: Path) -> tuple[ExperimentPlan | None, list[Issue]]:
     """The plan (None if an issue is an error), and all issues of the file and its robot."""
     model, issues = validate(ExperimentModel, document)
-    robot, paths, found = robot_of(document, file)
-    issues += found
-    runs: Any = ()
+    robot, paths, runs, markers = None, (), (), None
+    if "robot" in document.data:
+        given, paths, found = linked(document, "robot", file.parent, ROBOT)
+        issues += found
+        if given is not None:
+            robot, found = robot_from(given)
+            issues += found
     if "recordings" in document.data:
         runs, found = runs_from(document, file)
         issues += found
-    markers = None
     if "markers" in document.data:
         markers, found = _markers(document)
         issues += found

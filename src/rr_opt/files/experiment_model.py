@@ -8,8 +8,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, GetJsonSchemaHandler, SkipValidation, create_model
-from pydantic_core import CoreSchema
+from pydantic import BeforeValidator, Field, SkipValidation, create_model
 
 from rr_opt.files.fields import FileModel, Key, Section
 from rr_opt.files.gait_record import FourierRecord, FreeRecord, SineRecord
@@ -177,23 +176,41 @@ ColumnsModel: Any = create_model(
     **dict(_columns()),
 )
 
-PLACE = Quantity("m", "40 mm")
-
 Up = Literal["x", "y", "z", "-x", "-y", "-z"]
 
 
-class _PlacesSchema:
-    """The JSON schema of a platform's markers."""
+class Place:
+    """Reads the place of a marker: [forward, left] or [forward, left, up], m."""
 
-    def __get_pydantic_json_schema__(
-        self, _: CoreSchema, handler: GetJsonSchemaHandler
-    ) -> dict[str, Any]:
-        item = PLACE.json_schema()
-        place = {"type": "array", "items": item, "minItems": 2, "maxItems": 3}
-        return {"type": "object", "additionalProperties": place, "minProperties": 2}
+    size = Quantity("m", "40 mm")
+
+    def read(self, value: object) -> tuple[float, ...]:
+        """The place. Raises InputError."""
+        if not isinstance(value, list) or len(value) not in (2, 3):
+            raise InputError(
+                f"Read {shown(value)}. Expected [forward, left] or [forward, left, up] from the "
+                "joint P, in m. Write for example `[40 mm, 0]`."
+            )
+        return tuple(self.size.read(item) for item in value)
+
+    def json_schema(self) -> dict[str, Any]:
+        """JSON Schema: an array of lengths."""
+        item = self.size.json_schema()
+        return {"type": "array", "items": item, "minItems": 2, "maxItems": 3}
 
 
-Places = Annotated[dict[str, Any], SkipValidation, _PlacesSchema()]
+def _two_markers(given: object) -> object:
+    if isinstance(given, dict) and len(given) > 1:
+        return given
+    raise ValueError(
+        f"Read {shown(given)}. Expected at least 2 markers by name: one alone has no heading. "
+        "Write for example `{RR1: [40 mm, 0], RR2: [180 mm, 30 mm]}`."
+    )
+
+
+Places = Annotated[
+    dict[str, Annotated[Any, Key(Place())]], Field(min_length=2), BeforeValidator(_two_markers)
+]
 
 
 class MarkersModel(FileModel):

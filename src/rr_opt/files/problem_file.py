@@ -11,7 +11,7 @@ from rr_opt.files.fields import another_file, validate
 from rr_opt.files.issue import InvalidFileError, Issue, Level, has_errors
 from rr_opt.files.problem_model import OWN_SHAPE, ProblemModel
 from rr_opt.files.robot_file import RobotModel, robot_from
-from rr_opt.files.source import SHIPPED, fingerprint, is_result, problem_path, read_document
+from rr_opt.files.source import SHIPPED, fingerprint, is_result, linked, problem_path, read_document
 from rr_opt.files.yaml_text import Document
 from rr_opt.messages import nearest, shown
 from rr_opt.model.ballast import with_inertia_ratio
@@ -121,6 +121,16 @@ class Sources:
     issues: tuple[Issue, ...] = ()
 
 
+_READ_ELSEWHERE = {
+    "experiment": "Read the keys of an experiment. Expected a problem or a robot. "
+    "Experiments are read by `rr-opt diagnose`.",
+    "study": "Read the keys of a study. Expected a problem or a robot. "
+    "Studies are solved by `rr-opt study`.",
+    "result": "Read a result, which rr-opt has written. Expected an input file: a problem or a "
+    "robot. Results are read by `rr-opt simulate` and `rr-opt export`.",
+}
+
+
 def problem_sources(path: str | Path | None) -> Sources:
     """The parts of a problem: a problem file, its folder, a robot file, or None (as shipped).
 
@@ -130,49 +140,13 @@ def problem_sources(path: str | Path | None) -> Sources:
     file = problem_path(SHIPPED if path is None else Path(path))
     document = read_document(file)
     kind = kind_of(document)
-    if kind == "experiment":
-        raise InvalidFileError([experiment_issue(document)])
-    if kind == "result":
-        raise InvalidFileError([result_issue(document)])
-    if kind == "study":
-        raise InvalidFileError([study_issue(document)])
+    if kind in _READ_ELSEWHERE:
+        raise InvalidFileError([document.issue("error", (), _READ_ELSEWHERE[kind])])
     if wrong := another_file(RobotModel if kind == "robot" else ProblemModel, document):
         raise InvalidFileError(wrong)
     if kind == "robot":
         return _shipped_problem_with(document, file)
-    if isinstance(document.data.get("robot"), dict):
-        return Sources((file,), document, document.section("robot"))
-    return _with_robot_file(document, file)
-
-
-def experiment_issue(document: Document) -> Issue:
-    """What to say to an experiment file where a robot or a problem is expected."""
-    return document.issue(
-        "error",
-        (),
-        "Read the keys of an experiment. Expected a problem or a robot. "
-        "Experiments are read by `rr-opt diagnose`.",
-    )
-
-
-def study_issue(document: Document) -> Issue:
-    """What to say to a study where a problem is expected."""
-    return document.issue(
-        "error",
-        (),
-        "Read the keys of a study. Expected a problem or a robot. "
-        "Studies are solved by `rr-opt study`.",
-    )
-
-
-def result_issue(document: Document) -> Issue:
-    """What to say to a result where an input file is expected."""
-    return document.issue(
-        "error",
-        (),
-        "Read a result, which rr-opt has written. Expected an input file: a problem or a robot. "
-        "Results are read by `rr-opt simulate` and `rr-opt export`.",
-    )
+    return with_robot(document, file, (file,))
 
 
 def _shipped_problem_with(robot: Document, file: Path) -> Sources:
@@ -183,37 +157,23 @@ def _shipped_problem_with(robot: Document, file: Path) -> Sources:
     return Sources((SHIPPED / "problem.yaml", file), shipped, robot)
 
 
-def _with_robot_file(problem: Document, file: Path) -> Sources:
-    entry = problem.data.get("robot")
+ROBOT = "the name of a robot file, or the robot itself"
+
+
+def with_robot(problem: Document, file: Path, paths: tuple[Path, ...] = ()) -> Sources:
+    """The problem and the robot that it names, relative to `file`; without one, the shipped."""
     if "robot" not in problem.data:
         named = SHIPPED / "robot.yaml"
-    elif isinstance(entry, str) and entry:
-        named = file.parent / entry
-    else:
+        return Sources((*paths, named), problem, read_document(named))
+    expected = f"{ROBOT}. Without this key the robot is the paper's prototype"
+    robot, named, issues = linked(problem, "robot", file.parent, expected)
+    if robot is not None and is_result(robot.data):
         message = (
-            f"Read {shown(entry)}. Expected the name of a robot file, or the robot itself. "
-            "Without this key the robot is the paper's prototype."
+            f"Read {shown(problem.data['robot'])}, a result. Expected a robot file. Write what the "
+            "result holds under `robot` to a file, and name that."
         )
-        return Sources((file,), problem, None, (problem.issue("error", ("robot",), message),))
-    try:
-        robot = read_document(named)
-        if is_result(robot.data):
-            message = (
-                f"Read {shown(entry)}, a result. Expected a robot file. Write what the result "
-                "holds under `robot` to a file, and name that."
-            )
-            return Sources(
-                (file, named), problem, None, (problem.issue("error", ("robot",), message),)
-            )
-        return Sources((file, named), problem, robot)
-    except InvalidFileError as error:
-        issues = tuple(
-            problem.issue("error", ("robot",), f"Read {shown(entry)}. {issue.message}")
-            if issue.line is None
-            else issue
-            for issue in error.issues
-        )
-        return Sources((file, named), problem, None, issues)
+        robot, issues = None, [problem.issue("error", ("robot",), message)]
+    return Sources((*paths, *named), problem, robot, tuple(issues))
 
 
 def read_problem(path: str | Path | None = None) -> Problem:

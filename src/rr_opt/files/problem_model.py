@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, GetJsonSchemaHandler, JsonValue, SkipValidation, create_model
-from pydantic_core import CoreSchema
+from pydantic import Field, JsonValue, SkipValidation, WithJsonSchema, create_model
 
 from rr_opt.files.fields import FileModel, Section
 from rr_opt.files.robot_file import RobotModel
@@ -76,18 +75,15 @@ RangeModel: Any = create_model(
 )
 
 
-class _Varied:
-    """The JSON schema of the values of a key: a list, or a range."""
-
-    def __get_pydantic_json_schema__(
-        self, _: CoreSchema, handler: GetJsonSchemaHandler
-    ) -> dict[str, Any]:
-        values = {"type": "array", "minItems": 1, "description": "The values, one after another."}
-        item = {"anyOf": [values, RangeModel.model_json_schema()]}
-        return {"type": "object", "additionalProperties": item}
-
-
-Varied = Annotated[dict[str, Any], SkipValidation, _Varied()]
+_VALUES: JsonValue = {
+    "type": "array",
+    "minItems": 1,
+    "description": "The values, one after another.",
+}
+_ONE: JsonValue = {"anyOf": [_VALUES, RangeModel.model_json_schema()]}
+Varied = Annotated[
+    dict[str, Any], SkipValidation, WithJsonSchema({"type": "object", "additionalProperties": _ONE})
+]
 
 
 class StudyModel(FileModel):

@@ -9,7 +9,9 @@ from importlib.resources import files
 from pathlib import Path
 
 from rr_opt.files.gate import LONG, read_content
+from rr_opt.files.issue import InvalidFileError, Issue
 from rr_opt.files.yaml_text import Document, parse_yaml
+from rr_opt.messages import shown
 
 _MARKS = ("status", "input_sha256")
 """Keys that every result has and no input."""
@@ -42,6 +44,31 @@ def read_document(path: Path) -> Document:
     """The data of a YAML file, or of a result. Raises InvalidFileError with all that is wrong."""
     content = read_content(path)
     return parse_result(content, str(path)) or parse_yaml(content, str(path))
+
+
+def linked(
+    document: Document, key: str, folder: Path, expected: str
+) -> tuple[Document | None, tuple[Path, ...], list[Issue]]:
+    """What stands under a key: a mapping, or the document in the file that it names.
+
+    None where it cannot be read, with all issues; and the file that it is in, if it is another.
+    expected: what the key should hold, for the message.
+    """
+    given = document.data[key]
+    if isinstance(given, dict):
+        return document.section(key), (), []
+    if not isinstance(given, str) or not given:
+        message = f"Read {shown(given)}. Expected {expected}."
+        return None, (), [document.issue("error", (key,), message)]
+    named = folder / given
+    try:
+        return read_document(named), (named,), []
+    except InvalidFileError as error:
+        # What is wrong with the name stands where it is written.
+        message = f"Read {shown(given)}. {error.issues[0].message}"
+        if error.issues[0].line is None:
+            return None, (named,), [document.issue("error", (key,), message)]
+        return None, (named,), list(error.issues)
 
 
 def fingerprint(paths: Iterable[Path]) -> str:

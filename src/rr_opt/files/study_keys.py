@@ -11,9 +11,9 @@ from pathlib import Path
 from typing import Any
 
 from rr_opt.files.issue import InvalidFileError, Issue
-from rr_opt.files.problem_file import Sources, problem_sources
+from rr_opt.files.problem_file import Sources, problem_sources, with_robot
 from rr_opt.files.schemas import schema
-from rr_opt.files.source import SHIPPED, read_document
+from rr_opt.files.source import linked
 from rr_opt.files.yaml_text import Document, KeyPath, path_text
 from rr_opt.messages import shown, unknown_word
 from rr_opt.outcome import InputError
@@ -126,47 +126,15 @@ def base_sources(document: Document, file: Path) -> Sources:
     """The problem of a study file. Raises InvalidFileError if it cannot be read."""
     entry = document.data.get("problem")
     if isinstance(entry, dict):
-        return _with_robot(document.section("problem"), file)
+        return with_robot(document.section("problem"), file)
     if "problem" not in document.data:
         return problem_sources(None)
-    if not isinstance(entry, str) or not entry:
-        message = (
-            f"Read {shown(entry)}. Expected the name of a problem file, or the problem itself. "
-            "Without this key the problem is the paper's prototype."
-        )
-        raise InvalidFileError([document.issue("error", ("problem",), message)])
-    try:
-        return problem_sources(file.parent / entry)
-    except InvalidFileError as error:
-        raise InvalidFileError([_named(document, one) for one in error.issues]) from None
-
-
-def _named(document: Document, issue: Issue) -> Issue:
-    """An issue of a file that could not be opened stands where the study names it."""
-    if issue.line is not None:
-        return issue
-    return document.issue("error", ("problem",), f"Read {shown(issue.file)}. {issue.message}")
-
-
-def _with_robot(problem: Document, file: Path) -> Sources:
-    """The problem with the robot it names, from which relative names are counted at `file`."""
-    entry = problem.data.get("robot", str(SHIPPED / "robot.yaml"))
-    if isinstance(entry, dict):
-        return Sources((), problem, problem.section("robot"))
-    if not isinstance(entry, str) or not entry:
-        message = f"Read {shown(entry)}. Expected the name of a robot file, or the robot itself."
-        return Sources((), problem, None, (problem.issue("error", ("robot",), message),))
-    named = file.parent / entry
-    try:
-        return Sources((named,), problem, read_document(named))
-    except InvalidFileError as error:
-        found = tuple(
-            problem.issue("error", ("robot",), f"Read {shown(entry)}. {one.message}")
-            if one.line is None
-            else one
-            for one in error.issues
-        )
-        return Sources((named,), problem, None, found)
+    expected = "the name of a problem file, or the problem itself"
+    expected += ". Without this key the problem is the paper's prototype"
+    _, paths, issues = linked(document, "problem", file.parent, expected)
+    if issues:
+        raise InvalidFileError(issues)
+    return problem_sources(paths[0])
 
 
 def with_values(
@@ -184,7 +152,7 @@ def with_values(
     for keys, value in sorted(settings, key=lambda setting: len(setting[0])):
         if keys == ("robot",):
             changed = replace(problem, data={**problem.data, "robot": value})
-            sources = _with_robot(changed, file)
+            sources = with_robot(changed, file)
             problem, robot, issues = changed, sources.robot, sources.issues
             paths = (*paths, *sources.paths)
             continue
