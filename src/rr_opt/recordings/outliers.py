@@ -19,8 +19,8 @@ from scipy.special import ndtri
 
 from rr_opt.array import Array
 from rr_opt.recordings.noise import NoiseEstimate, noise_of, spread_at
-from rr_opt.recordings.smoothing import Smooth, smoothed, strength
-from rr_opt.recordings.time_axis import time_step
+from rr_opt.recordings.smoothing import Smooth, bounded, smoothed, strength
+from rr_opt.recordings.time_axis import in_steps
 
 _CHANCE, _COLOURED = 1e-4, 1.2
 _STRIDES = (2, 4, 8)
@@ -86,7 +86,7 @@ def _off(
         return off
     near, row = at[picked[whole]], rows[whole]
     since = u[near] - u[row][:, None]
-    scale = np.abs(since).max(axis=1)
+    scale = np.maximum(np.abs(since).max(axis=1), 1e-9)
     V = (since / scale[:, None])[..., None] ** np.arange(3)
     # The constant of the parabola through the neighbours is its value at the sample.
     G = np.linalg.inv(np.swapaxes(V, 1, 2) @ V + 1e-12 * np.eye(3))
@@ -132,7 +132,7 @@ def outliers(t: Array, y: Array, sigma: Array) -> Outliers:
     noise, ratio = noise_of(y), 1.0
     if known.sum() < 4 or not np.nanmax(np.abs(y)) < 1e12:
         return Outliers(suspect, noise, float(np.median(sigma)), ratio)
-    scale = 1.0
+    scale, sigma = 1.0, bounded(y, sigma)
     usual = float(np.median(sigma))
     for _ in range(3):
         left = np.where(suspect, np.nan, y)
@@ -179,7 +179,7 @@ def _foretold(t: Array, y: Array, suspect: NDArray[np.bool_], sigma: Array) -> N
     rows = np.flatnonzero(suspect)
     if not len(rows):
         return suspect
-    before, after = misses((t - t[0]) / time_step(t), y, np.isfinite(y) & ~suspect, rows, sigma)
+    before, after = misses(in_steps(t), y, np.isfinite(y) & ~suspect, rows, sigma)
     kept = np.minimum(before, after) > _ONE_SIDE
     # With nothing on either side nothing is known.
     kept &= np.isfinite(before) | np.isfinite(after)

@@ -24,7 +24,7 @@ from scipy.special import factorial
 
 from rr_opt.array import Array
 from rr_opt.recordings.noise import noise_of
-from rr_opt.recordings.time_axis import time_step
+from rr_opt.recordings.time_axis import in_steps, time_step
 
 ORDER = 3
 
@@ -79,7 +79,8 @@ def _whitened(y: Array, factor: Array) -> Array:
 
 _VAGUE = (1e-9, 1e-6, 1e-3, 1.0)
 """Precision of the signal and its derivatives before any sample, relative to a sample's. Only where
-few samples are left, at most uneven times, rounding takes more than the first."""
+few samples are left, at most uneven times, rounding takes more than the first. The last is more
+than rounding can take: no entry of the precision is larger than 1e13."""
 
 
 @dataclass(frozen=True)
@@ -180,7 +181,7 @@ def strength(y: Array, sigma: float) -> float:
     if known.sum() < _FEWEST or not sigma > 0:
         return float(np.sqrt(RATIOS[0] * RATIOS[1]))
     index = np.arange(len(y))
-    z = np.interp(index, index[known], y[known])[:_MOST] / sigma
+    z = np.interp(index, index[known], y[known])[:_MOST] / float(bounded(y, sigma)[0])
     z = z - np.polyval(np.polyfit(index[: len(z)], z, 2), index[: len(z)])
     use = known[: len(z)].copy()
     use[: min(_WARM, len(z) // 4)] = False
@@ -202,10 +203,20 @@ _CLOSEST = 0.3
 """Samples within so many steps of the first of them share a node: the noise that drives the signal
 adds nothing between them that a sample would show, and steps much smaller would suffer in the
 arithmetic, which has their fifth power."""
-_FARTHEST = 1e3
-"""Neighbours are taken to be at most so many steps apart. Across more they say nothing of each
-other, and arithmetic would suffer."""
 _SMOOTH_FEWEST = 4
+_FINEST, _APART = 1e-12, 1e3
+"""A sigma below the first, relative to the signal, is lost in rounding. One that is farther from
+the usual one than the second, as a factor, is no sigma."""
+
+
+def bounded(y: Array, sigma: Array | float) -> Array:
+    """The standard deviations (n,) of y (n,) within what arithmetic can hold."""
+    sigma = np.broadcast_to(np.asarray(sigma, float), y.shape)
+    known = np.abs(y[np.isfinite(y)])
+    good = sigma[(sigma > 0) & np.isfinite(sigma)]
+    least = max(_FINEST * float(known.max(initial=0.0)), 1e-300)
+    usual = max(float(np.median(good)) if len(good) else 0.0, least)
+    return np.clip(np.where(sigma > 0, sigma, usual), usual / _APART, usual * _APART)
 
 
 @dataclass(frozen=True)
@@ -235,12 +246,11 @@ def smoothed(t: Array, y: Array, sigma: Array | float, ratio: float) -> Smooth:
     if known.sum() < _SMOOTH_FEWEST:
         none = np.full(n, np.nan)
         return Smooth(none, none, none, none, none, none, np.zeros(n))
-    tau = time_step(t)
-    sigma = np.broadcast_to(np.asarray(sigma, float), (n,))
+    tau, u = time_step(t), in_steps(t)
+    sigma = bounded(y, sigma)
     usual = float(np.median(sigma[known]))
-    weight = np.where(known, (usual / np.where(sigma > 0, sigma, usual)) ** 2, 0.0)
+    weight = np.where(known, (usual / sigma) ** 2, 0.0)
     # A parabola off, and the noise as unit: what is left is small, and the arithmetic exact.
-    u = (t - t[known].mean()) / tau
     trend = np.polynomial.Polynomial.fit(u[known], y[known], 2)
     left = np.where(known, y - trend(u), 0.0) / usual
     node = _nodes(u)
@@ -250,7 +260,7 @@ def smoothed(t: Array, y: Array, sigma: Array | float, ratio: float) -> Smooth:
     H = A[:, 0]
     seen = np.add.reduceat(weight[:, None, None] * H[:, :, None] * H[:, None], first)
     pull = np.add.reduceat((weight * left)[:, None] * H, first)
-    means, covariances = _solved(np.minimum(np.diff(u[first]), _FARTHEST), ratio, seen, pull)
+    means, covariances = _solved(np.diff(u[first]), ratio, seen, pull)
     state = np.einsum("nij,nj->ni", A, means[node]) * usual
     spread = A @ covariances[node] @ np.swapaxes(A, 1, 2)
     sigmas = usual * np.sqrt(np.maximum(spread[:, range(3), range(3)], 0.0))
@@ -293,10 +303,5 @@ def derivatives(t: Array, y: Array, sigma: Array | float | None = None) -> Smoot
     """
     if sigma is None:
         sigma = noise_of(y).sigma
-    usual = float(np.median(sigma))
-    if not usual > 0:
-        # No noise that could be seen: the samples count as they are.
-        size = float(np.nanstd(y)) if np.isfinite(y).any() else 0.0
-        usual = max(1e-9 * size, 1e-300)
-        sigma = usual
-    return smoothed(t, y, sigma, strength(y, usual))
+    sigma = bounded(y, sigma)
+    return smoothed(t, y, sigma, strength(y, float(np.median(sigma))))

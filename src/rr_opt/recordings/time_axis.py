@@ -21,6 +21,16 @@ def time_step(t: Array) -> float:
     return float(np.median(step)) if len(step) else 1.0
 
 
+_FARTHEST = 1e3
+"""Neighbours are taken to be at most this many steps apart: across more they say nothing of each
+other, and arithmetic would suffer."""
+
+
+def in_steps(t: Array) -> Array:
+    """Increasing times (n,) in usual steps, from 0; longer gaps count as a thousand steps."""
+    return np.concatenate([[0.0], np.cumsum(np.minimum(np.diff(t) / time_step(t), _FARTHEST))])
+
+
 _LATEST = 1e12
 """No clock shows so many seconds, in any unit."""
 _RESTARTS = 5

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from rr_opt.recordings.outliers import outliers
 from rr_opt.recordings.smoothing import derivatives, smoothed, strength
 from tests.recordings.clean.world import GAIT, motion
 
@@ -102,3 +103,19 @@ def test_a_noisier_channel_is_smoothed_more():
 def test_too_few_samples_have_no_derivatives():
     made = derivatives(np.arange(5.0), np.array([1.0, np.nan, 2.0, np.nan, np.nan]), 1.0)
     assert np.isnan(made.first).all()
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_whatever_the_times_and_sigmas_are_the_arithmetic_holds(seed):
+    """Steps, sizes and standard deviations over hundreds of decades; a warning is an error."""
+    rng = np.random.default_rng(seed)
+    n = int(rng.choice([5, 40, 300]))
+    t = np.unique(np.cumsum(10.0 ** rng.uniform(-12, 6, n) if seed % 2 else rng.random(n) ** 9))
+    n = len(t)
+    y = rng.normal(size=n) * 10.0 ** rng.choice([-300, -12, 0, 11, 300])
+    y[rng.random(n) < 0.2] = np.nan
+    sigma = 10.0 ** rng.uniform(*(-300, 300) if seed % 3 else (-12, 12), n)
+    with np.errstate(over="ignore", under="ignore"):
+        made = derivatives(t, y, sigma)
+        outliers(t, y, sigma)
+    assert np.isfinite(made.value).all() or np.isfinite(y).sum() < 4
