@@ -171,14 +171,15 @@ clock.change         error    The clock changes at t = {t:.4g} s: phi repeats ev
     before, and every {after:.3g} s after. Expected seconds throughout. => Cut the recording there,
     or correct its times.
 push.robot           warning  The robot was pushed, or lifted, at t = {t:.4g} s, where x = {x:.3g} m
-    and y = {y:.3g} m: it moved {far:.2g} mm in a way that its wheels do not roll. => Cut the
+    and y = {y:.3g} m: it moved {far:.3g} mm in a way that its wheels do not roll. => Cut the
     recording there.
 push.surge           warning  The robot was pushed, or held, at t = {t:.4g} s, where x = {x:.3g} m
-    and y = {y:.3g} m: it drove {far:.2g} mm more or less than in the periods before and after. =>
+    and y = {y:.3g} m: it drove {far:.3g} mm more or less than in the periods before and after. =>
     Cut the recording there.
-start.running        warning  The recording is said to start from rest, but the robot drives from
-    the first row on as it does later, when its periods begin at {later:.3g} mm/s. Expected it to
-    stand still at t = 0. => Write `start: running`, or cut the recording where the command begins.
+start.running        warning  The recording is said to start from rest, but at t = 0 the robot
+    drives already, at a speed comparable to that of later periods, which begin at {later:.3g} mm/s.
+    Expected it to stand still at t = 0. => Write `start: running`, or cut the recording where the
+    command begins.
 command.still        warning  phi cannot be matched with its command: it does not move.
 command.other        warning  phi does not follow its command: {scale:.2g} of its amplitude. Another
     gait, degrees, or the wrong file?
