@@ -13,9 +13,9 @@ from rr_opt.recordings.warnings import Notice, notice
 _PART = 0.25
 """Of a period whose length of way is compared."""
 _SURE = 5.0
-_MOST = 0.45
+_MOST = 0.4
 """Of the way that its later speed would add, a start from rest lacks 0.65 and more, also where
-friction is strong, and 0.48 where the centres of mass are 3 cm off the axes. A robot that has
+friction is strong, and 0.44 where the centres of mass are 3 cm off the axes. A robot that has
 driven for a few periods only lacks as much, and is not noticed."""
 _FEWEST = 4
 
