@@ -16,13 +16,11 @@ from scipy.ndimage import maximum_filter1d
 
 from rr_opt.array import Array
 from rr_opt.model.experiment import CHANNELS, Flag, Recording
-from rr_opt.recordings.time_axis import time_step
+from rr_opt.recordings.time_axis import LACKING, time_step
 from rr_opt.recordings.warnings import Notice, counted, notice
 
 SHORT = 0.1
 """A gap of a drawing that is bridged, s."""
-LACKING = 1.5
-"""Steps longer than this, in usual steps, lack a row."""
 
 
 @dataclass(frozen=True)

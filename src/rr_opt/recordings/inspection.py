@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
+
+import numpy as np
 
 from rr_opt.files.experiment_plan import layout_from
 from rr_opt.files.issue import InvalidFileError, Issue, refuse
@@ -127,9 +130,10 @@ def _read_both(file: Path, known: Circumstances) -> tuple[Any, Any]:
     """The recording and the servo's log. Raises InvalidFileError with all that is wrong in both."""
     found: list[Any] = []
     issues: list[Issue] = []
-    for path in (file, known.servo_log):
+    for path, log in ((file, False), (known.servo_log, True)):
         try:
-            found.append(None if path is None else read_file(path, known.options))
+            options = replace(known.options, log=log)
+            found.append(None if path is None else read_file(path, options))
         except InvalidFileError as error:
             issues += error.issues
     if issues:
@@ -145,6 +149,14 @@ def inspect(read: Recording | MarkerData, log: ServoLog | None, known: Circumsta
         noise = known.options.noise
         markers = fit_markers(read, layout, noise.position if noise else None)
         recording = markers.recording
+        if read.posed:
+            # Poses show no noise of their own.
+            sigma = {
+                one: np.full(len(recording), noise.of(one) if noise else np.nan)
+                for one in recording.channels
+            }
+            recording = replace(recording, sigma=MappingProxyType(sigma))
+            markers = replace(markers, recording=recording)
     else:
         recording = read
     if log is not None:

@@ -116,7 +116,7 @@ def _longest_rising(t: Array) -> NDArray[np.bool_]:
     return member
 
 
-_JUMP = 1.5
+LACKING = 1.5
 """Steps longer than this, in usual steps, lack a row."""
 _UNEVEN = 0.2
 """Steps that differ by more from the usual one, relative to it, are told."""
@@ -144,7 +144,7 @@ def rate_of(t: Array, file: str, line: int | None = None) -> float:
     steps = np.diff(t)
     # As far below the usual step as above it, so that times that jitter have their mean rate.
     middle = np.median(steps)
-    usual = steps[np.abs(steps / middle - 1) <= _JUMP - 0.99]
+    usual = steps[np.abs(steps / middle - 1) <= LACKING - 0.99]
     usual = usual if len(usual) else steps[steps <= middle]
     with np.errstate(over="ignore"):
         rate = float(len(usual) / usual.sum())
@@ -168,7 +168,7 @@ def time_notices(t: Array, rate: float, stated: float | None = None) -> Iterator
     steps = np.diff(t) * rate
     # Where a row is lacking the steps about it do not make up for it, as they do for a late one.
     around = np.convolve(np.concatenate([[1.0], steps, [1.0]]), np.ones(3), "valid")
-    jumps = np.flatnonzero((steps > _JUMP) & (around > _JUMP + 2))
+    jumps = np.flatnonzero((steps > LACKING) & (around > LACKING + 2))
     if len(jumps):
         listed = ", ".join(
             f"{steps[at] / rate:.4g} s at t = {t[at]:.6g} s" for at in jumps[:_LISTED]

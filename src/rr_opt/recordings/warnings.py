@@ -97,6 +97,8 @@ units.heading        error    The heading turns by {psi:.4g} in a period, and ph
     Expected radians for both: is psi in degrees?
 units.phi            error    phi moves {times:.3g} times as far as the gait. Expected about as far:
     is one of them in degrees, or did the servo not follow?
+bodies.apart         note     Not stamped together with the first body, and put on its times:
+    {names}.
 layout.estimated     warning  The layout was estimated from the file: {one} are on one platform,
     {two} on the other; P is known to {joint:.2g} mm. Which platform is the first, and the zeros of
     psi and phi, cannot be known without one known line on each: the first marker is taken to be on

@@ -53,7 +53,13 @@ QUALISYS = (
     b"NO_OF_FRAMES\t2\nFREQUENCY\t100\nDATA_INCLUDED\t3D\nMARKER_NAMES\tA\n"
     b"Frame\tTime\tA X\tA Y\tA Z\n1\t0.00\t1\t2\t3\n2\t0.01\t1\t2\t3\n"
 )
+TRACKER = (
+    b"Objects\n100\n,,A:A,,,,,,B:B,,,,,\nFrame,Sub Frame,RX,RY,RZ,TX,TY,TZ,RX,RY,RZ,TX,TY,TZ\n"
+    b",,rad,rad,rad,mm,mm,mm,rad,rad,rad,mm,mm,mm\n"
+    b"1,0,0,0,0.1,1,2,3,0,0,0.2,4,5,6\n2,0,0,0,0.1,1,2,3,0,0,0.3,4,5,6\n"
+)
 FILES = {
+    "tracker": TRACKER,
     "motive": MOTIVE,
     "qualisys": QUALISYS,
     "plain": PLAIN,

@@ -155,8 +155,8 @@ def fit_markers(
     """
     guess = None
     if layout is None:
-        above = seen_from_above(_places(data), "z")[0]
-        guess = guessed_layout(data.labels, above)
+        above = seen_from_above(_places(data), data.up)[0]
+        guess = guessed_layout(data.labels, above, data.up)
         layout = guess.layout
     bodies = bodies_of(layout, data.labels)
     seen, height = seen_from_above(_places(data)[:, bodies.columns], layout.up)

@@ -61,7 +61,7 @@ class Fit:
 def fit(bodies: Bodies, seen: Array) -> Fit:
     """Fit every frame of `seen` (n, k, 2), m; NaN is a marker that is not there."""
     pieces = [
-        _fit(bodies, seen[start : start + _CHUNK] @ np.array([1, 1j]))
+        _fit(bodies, (seen[start : start + _CHUNK] @ np.array([1, 1j])).astype(complex))
         for start in range(0, max(len(seen), 1), _CHUNK)
     ]
     names = [one.name for one in fields(Fit)]

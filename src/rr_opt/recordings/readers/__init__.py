@@ -15,6 +15,7 @@ from rr_opt.recordings.readers import (
     netcdf,
     plain_csv,
     qualisys_tsv,
+    ros_bag,
     servo_log,
     trc,
     vicon_csv,
@@ -28,6 +29,7 @@ __all__ = ["READERS", "MarkerData", "ReadOptions", "ServoLog", "read_file"]
 READERS: tuple[Reader, ...] = (
     c3d.READER,
     netcdf.READER,
+    ros_bag.READER,
     trc.READER,
     motive_csv.READER,
     qualisys_tsv.READER,

@@ -140,7 +140,8 @@ def read_header(content: bytes) -> tuple[Bytes, Header]:
         raise ValueError(f"its scale is {scale:g}")
     if start < 2:
         raise ValueError("it does not say where its frames begin")
-    return file, Header(*file.integers("u2", 4, 2), scale, _BLOCK * (start - 1), rate)
+    points, analogs, first, last = file.integers("u2", 4, 2)
+    return file, Header(points, analogs, first, last, scale, _BLOCK * (start - 1), rate)
 
 
 def frame_count(

@@ -32,6 +32,7 @@ class MarkerData:
     rate       frames per second, Hz, as the file states it; else as the times have it
     residual   (n, k), m, of the capture's own triangulation, NaN where unknown; None: not told
     up         the axis that points up where nobody says otherwise
+    posed      the positions are points of bodies whose poses were given: they show no noise
     source     where it came from: file, format, unit, encoding; plain text by name
     doubts     sentences on what looked wrong and what was made of it
     """
@@ -43,17 +44,18 @@ class MarkerData:
     positions: Array
     rate: float
     residual: Array | None = None
-    up: str = "z"
     source: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
     doubts: tuple[str, ...] = ()
+    up: str = "z"
+    posed: bool = False
 
     def __len__(self) -> int:
         return len(self.t)
 
 
-_METRES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "dm": 0.1, "in": 0.0254, "inches": 0.0254}
-_METRES |= {"millimeters": 1e-3, "millimetres": 1e-3, "centimeters": 1e-2}
-_METRES |= {"meters": 1.0, "metres": 1.0}
+METRES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "dm": 0.1, "in": 0.0254, "inches": 0.0254}
+METRES |= {"millimeters": 1e-3, "millimetres": 1e-3, "centimeters": 1e-2}
+METRES |= {"meters": 1.0, "metres": 1.0}
 
 
 def rate_in(cell: str, said: str, file: str, line: int | None = None) -> float:
@@ -106,6 +108,7 @@ def marker_data(
     unit_place: tuple[str, int | None],
     residual: Array | None = None,
     up: str = "z",
+    posed: bool = False,
     doubts: Sequence[Notice] = (),
 ) -> MarkerData:
     """The markers of a file in order of time, in metres, under clean names.
@@ -116,6 +119,7 @@ def marker_data(
     labels     (k,), as written
     positions  (n, k, 3), in `unit`
     unit_place what states the unit, and in which line
+    up, posed  as of MarkerData
 
     Exact zeros are missing markers. Of frames that stand there twice and say different things no
     position is kept. Raises InvalidFileError if the unit is not one of length, or the rate not one
@@ -127,11 +131,11 @@ def marker_data(
     doubts = [*doubts, *told]
     if not unit:
         doubts.append(notice("file.unit"))
-    elif unit.casefold() not in _METRES:
+    elif unit.casefold() not in METRES:
         place, line = unit_place
         message = f"Read the unit {shown(unit)}. Expected mm, cm, m or in. Correct {place}."
         refuse(file, message, line)
-    scale = _METRES[unit.casefold() or "mm"]
+    scale = METRES[unit.casefold() or "mm"]
     times = (frame - 1) / rate if t is None else t
     order = in_order(times, positions, lines)
     if not len(order.rows):
@@ -146,8 +150,8 @@ def marker_data(
     positions[order.unsure] = np.nan
     # A position is there as a whole, or not at all.
     positions[np.isnan(positions).any(axis=2)] = np.nan
-    seen = np.isfinite(positions[:, :, 0]).any(axis=0)
-    if not seen.all():
+    seen = np.isfinite(positions[:, :, 0]).any(axis=0).tolist()
+    if not all(seen):
         names = ", ".join(one for one, known in zip(clean, seen, strict=True) if not known)
         doubts.append(notice("marker.never", names=names))
     doubts += order.doubts
@@ -169,6 +173,7 @@ def marker_data(
         rate=rate,
         residual=None if residual is None else residual[order.rows] * scale,
         up=up,
+        posed=posed,
         source=MappingProxyType({**source, **found}),
         doubts=tuple(doubts),
     )

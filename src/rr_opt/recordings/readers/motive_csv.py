@@ -2,16 +2,20 @@
 
 The header has a row each for the type of what a column belongs to (`Marker`, `Rigid Body`, ...),
 its name, as a rule its ID, `Position` or `Rotation`, and last `Frame,Time (Seconds),X,Y,Z,...`.
-The markers that were measured are read; `Rigid Body Marker` is where Motive's own fit has them.
+The markers that were measured are read, or else the poses of two rigid bodies; `Rigid Body Marker`
+is where Motive's own fit has them.
 Motive's y axis points up unless it was told otherwise: `up: y`.
 """
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from rr_opt.files.issue import refuse
 from rr_opt.messages import shown
+from rr_opt.recordings.readers.bodies import body_data, matrices
 from rr_opt.recordings.readers.marker_rows import MarkerData, frames_of, marker_data, rate_in
 from rr_opt.recordings.readers.text import Reader, ReadOptions, Text, cells_of, read_table
 from rr_opt.recordings.warnings import notice
@@ -26,7 +30,7 @@ def sniff(text: Text, _: ReadOptions) -> bool:
 
 
 def read(file: str, text: Text, _: ReadOptions) -> MarkerData:
-    """The measured markers of a CSV of Motive. Raises InvalidFileError."""
+    """The measured markers, else the rigid bodies, of a CSV of Motive. Raises InvalidFileError."""
     words = cells_of(text.lines[0], ",")
     stated = dict(zip(words[::2], words[1::2], strict=False))
     header = [cells_of(line, ",") for line in text.lines[:_HEADER]]
@@ -44,17 +48,23 @@ def read(file: str, text: Text, _: ReadOptions) -> MarkerData:
     kinds = next((cells for cells in padded if {"Marker", "Rigid Body"} & set(cells)), [""] * width)
     named = padded.index(kinds) + 1 if kinds in padded else 0
     measures = next((cells for cells in padded if "Position" in cells), [""] * width)
-    places = [
-        at
-        for at in range(2, width - 2)
-        if kinds[at] == "Marker" and measures[at] == "Position" and axes[at : at + 3] == [*"XYZ"]
-    ]
-    if not places or named >= len(padded):
+
+    def triples(kind: str, measure: str) -> list[int]:
+        """Where the three columns of every such place, or rotation, begin."""
+        return [
+            at
+            for at in range(2, width - 2)
+            if (kinds[at], measures[at], axes[at : at + 3]) == (kind, measure, [*"XYZ"])
+        ]
+
+    kind = "Marker" if triples("Marker", "Position") else "Rigid Body"
+    places, turns = triples(kind, "Position"), triples(kind, "Rotation")
+    if not places or named >= len(padded) or (kind == "Rigid Body" and len(turns) != len(places)):
         found = ", ".join(dict.fromkeys(one for one in kinds[2:] if one)) or "nothing"
         refuse(
             file,
-            f"Read columns of {shown(found)}. Expected positions of the type `Marker`: poses of "
-            "rigid bodies do not say where the joint is. Export the markers.",
+            f"Read columns of {shown(found)}. Expected positions of the type `Marker`, or "
+            "positions and rotations of the type `Rigid Body`. Export the markers.",
             last + 1,
         )
     columns = [
@@ -63,23 +73,32 @@ def read(file: str, text: Text, _: ReadOptions) -> MarkerData:
     ]
     table = read_table(text, last + 1, len(text.lines), ",", columns)
     doubts = list(table.doubts)
-    others = [one for one in dict.fromkeys(kinds[2:]) if one not in ("", "Marker")]
+    others = [one for one in dict.fromkeys(kinds[2:]) if one not in ("", kind)]
     if others:
         doubts.append(notice("file.columns", names=shown(", ".join(others))))
     rate = stated.get("Export Frame Rate") or stated.get("Capture Frame Rate", "")
-    return marker_data(
-        {"file": file, "format": READER.format, "encoding": text.encoding},
-        frame=frames_of(table, 0, file, last + 1),
-        lines=table.lines,
-        t=table.values[:, 1],
-        rate=rate_in(rate, "as the frame rate", file, 1),
-        labels=[padded[named][at] for at in places],
-        positions=np.stack([table.values[:, at : at + 3] for at in places], axis=1),
-        unit=stated.get("Length Units", ""),
-        unit_place=("`Length Units`", 1),
-        up="y",
-        doubts=doubts,
-    )
+    rows: dict[str, Any] = {
+        "frame": frames_of(table, 0, file, last + 1),
+        "lines": table.lines,
+        "t": table.values[:, 1],
+        "rate": rate_in(rate, "as the frame rate", file, 1),
+        "positions": np.stack([table.values[:, at : at + 3] for at in places], axis=1),
+        "unit": stated.get("Length Units", ""),
+        "unit_place": ("`Length Units`", 1),
+        "up": "y",
+        "doubts": doubts,
+    }
+    source = {"file": file, "format": READER.format, "encoding": text.encoding}
+    names = [padded[named][at] for at in places]
+    if kind == "Marker":
+        return marker_data(source, labels=names, **rows)
+    order = stated.get("Rotation Type", "Quaternion").upper()
+    count = 4 if order == "QUATERNION" else 3
+    if count == 3 and sorted(order) != [*"XYZ"]:
+        refuse(file, f"Read the Rotation Type {shown(order)}. Expected Quaternion or XYZ.", 1)
+    turned = np.stack([table.values[:, at : at + count] for at in turns], axis=1)
+    turned = turned if count == 4 else np.radians(turned)
+    return body_data(source, names=names, rotations=matrices(turned, order), **rows)
 
 
 READER = Reader("OptiTrack Motive CSV", sniff, read)

@@ -1,15 +1,19 @@
-"""The TSV of Qualisys Track Manager with 3D data: keys with values, then a row a frame, in mm.
+"""The TSV of Qualisys Track Manager, 3D or 6D: keys with values, then a row a frame, in mm.
 
-`MARKER_NAMES` names three columns each. The row `Frame`, `Time`, ... and these two columns are
+`MARKER_NAMES` names three columns each, `BODY_NAMES` sixteen: place, three angles, a residual and
+the rotation matrix, column by column. The row `Frame`, `Time`, ... and these two columns are
 there if the export was told to write them; else frames come at `FREQUENCY`.
 """
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from rr_opt.files.issue import refuse
 from rr_opt.messages import shown
+from rr_opt.recordings.readers.bodies import body_data
 from rr_opt.recordings.readers.marker_rows import (
     MarkerData,
     count_notice,
@@ -26,7 +30,7 @@ def sniff(text: Text, _: ReadOptions) -> bool:
 
 
 def read(file: str, text: Text, _: ReadOptions) -> MarkerData:
-    """The markers of a TSV of Qualisys. Raises InvalidFileError, also for 6D data alone."""
+    """The markers, or the rigid bodies, of a TSV of Qualisys. Raises InvalidFileError."""
     stated: dict[str, list[str]] = {}
     at = 0
     while at < len(text.lines) and text.lines[at][:1].isalpha():
@@ -35,39 +39,49 @@ def read(file: str, text: Text, _: ReadOptions) -> MarkerData:
             break
         stated[key] = [value for value in values if value]
         at += 1
-    names = stated.get("MARKER_NAMES", [])
+    bodies = [] if stated.get("MARKER_NAMES") else stated.get("BODY_NAMES", [])
+    names, parts = (bodies, _BODY) if bodies else (stated.get("MARKER_NAMES", []), [*"XYZ"])
     if not names:
         included = " ".join(stated.get("DATA_INCLUDED", [])) or "nothing"
         refuse(
             file,
-            f"Read {shown(included)} as DATA_INCLUDED, without MARKER_NAMES. Expected 3D data: "
-            "poses of rigid bodies do not say where the joint is. Export the markers.",
+            f"Read {shown(included)} as DATA_INCLUDED, without MARKER_NAMES or BODY_NAMES. "
+            "Expected 3D or 6D data. Export the markers.",
             at,
         )
     titled = at < len(text.lines) and text.lines[at].startswith("Frame")
     first = at + titled
     timed = titled or (
-        first < len(text.lines) and text.lines[first].count("\t") >= 3 * len(names) + 1
+        first < len(text.lines) and text.lines[first].count("\t") >= len(parts) * len(names) + 1
     )
-    columns = ["Frame", "Time"] * timed + [f"{axis} of {name}" for name in names for axis in "XYZ"]
+    columns = ["Frame", "Time"] * timed + [f"{axis} of {name}" for name in names for axis in parts]
     table = read_table(text, first, len(text.lines), "\t", columns)
     frame = (
         frames_of(table, 0, file, len(text.lines))
         if timed or not len(table.values)
         else np.arange(1, len(table.values) + 1)
     )
-    return marker_data(
-        {"file": file, "format": READER.format, "encoding": text.encoding},
-        frame=frame,
-        lines=table.lines,
-        t=table.values[:, 1] if timed else None,
-        rate=rate_in("".join(stated.get("FREQUENCY", [])), "as FREQUENCY", file),
-        labels=names,
-        positions=table.values[:, 2 * timed :].reshape(len(frame), len(names), 3),
-        unit="mm",
-        unit_place=("the export", None),
-        doubts=[*table.doubts, *count_notice("".join(stated.get("NO_OF_FRAMES", [])), frame)],
-    )
+    values = table.values[:, 2 * timed :].reshape(len(frame), len(names), len(parts))
+    source = {"file": file, "format": READER.format, "encoding": text.encoding}
+    rows: dict[str, Any] = {
+        "frame": frame,
+        "lines": table.lines,
+        "t": table.values[:, 1] if timed else None,
+        "rate": rate_in("".join(stated.get("FREQUENCY", [])), "as FREQUENCY", file),
+        "unit": "mm",
+        "unit_place": ("the export", None),
+        "doubts": [*table.doubts, *count_notice("".join(stated.get("NO_OF_FRAMES", [])), frame)],
+    }
+    if not bodies:
+        return marker_data(source, labels=names, positions=values, **rows)
+    turned = np.swapaxes(values[..., 7:].reshape(len(frame), len(names), 3, 3), 2, 3)
+    # A body that was not seen has zeros all over.
+    turned[np.abs(np.linalg.det(np.nan_to_num(turned)) - 1) > _RIGID] = np.nan
+    return body_data(source, names=names, positions=values[..., :3], rotations=turned, **rows)
 
+
+_BODY = ["X", "Y", "Z", "Roll", "Pitch", "Yaw", "Residual", *(f"Rot[{n}]" for n in range(9))]
+_RIGID = 0.01
+"""How far the determinant of a rotation, printed with five digits, may be from 1."""
 
 READER = Reader("Qualisys TSV", sniff, read)

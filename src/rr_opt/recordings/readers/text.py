@@ -24,11 +24,13 @@ class ReadOptions:
     noise    standard deviations of motion that states none; None: they are NaN
     counts   what the counts of a servo's log mean
     columns  by channel, the column that it is in, where a text file names it otherwise
+    log      the file is to be the servo's log, if it holds one beside other things
     """
 
     noise: Noise | None = None
     counts: CountScale = field(default_factory=CountScale)
     columns: Mapping[str, Column] = field(default_factory=dict)
+    log: bool = False
 
 
 @dataclass(frozen=True)

@@ -1,18 +1,23 @@
-"""The CSV of Vicon Nexus: sections, each with its own rate; `Trajectories` has the markers.
+"""The CSV of Vicon Nexus and Tracker: sections, each with its own rate.
 
-A section has five lines of header: its title; its rate, Hz; the names, each above the first of its
-columns; `Frame,Sub Frame,X,Y,Z,...`; the units. It ends with a blank line.
+`Trajectories` has the markers. Without them `Objects`, or else `Segments`, have the poses of rigid
+bodies: a rotation vector RX, RY, RZ, or with RW a quaternion, and a place TX, TY, TZ. A section has
+five lines of header: its title; its rate, Hz; the names, each above the first of its columns;
+`Frame,Sub Frame,X,Y,Z,...`; the units. It ends with a blank line.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from rr_opt.files.issue import refuse
 from rr_opt.messages import shown
+from rr_opt.recordings.readers.bodies import body_data, matrices
 from rr_opt.recordings.readers.marker_rows import MarkerData, frames_of, marker_data, rate_in
 from rr_opt.recordings.readers.text import (
     Reader,
@@ -27,7 +32,11 @@ from rr_opt.recordings.warnings import Notice, notice
 
 @dataclass(frozen=True)
 class Head:
-    """rate in Hz; each marker's name and the column of its X; the index of the first row's line."""
+    """rate in Hz; each marker's name and the column of its X; the index of the first row's line.
+
+    turn   how many columns before its X a body's rotation has; 0 of markers
+    angle  the rotation's unit, rad
+    """
 
     separator: str
     rate: float
@@ -35,6 +44,8 @@ class Head:
     markers: tuple[tuple[str, int], ...]
     unit: str
     first_row: int
+    turn: int
+    angle: float
 
 
 def read_head(text: Text, start: int) -> Head:
@@ -42,7 +53,7 @@ def read_head(text: Text, start: int) -> Head:
     if len(text.lines) < start + 6:
         refuse(
             text.file,
-            "The file ends within the header of `Trajectories`. Expected its rate, the names, the "
+            "The file ends within the header of the section. Expected its rate, the names, the "
             "columns, the units and the rows. Export it once more.",
             len(text.lines),
         )
@@ -59,14 +70,19 @@ def read_head(text: Text, start: int) -> Head:
     while roles and not roles[-1]:
         roles.pop()
     names, units = cells_of(name_line, separator), cells_of(unit_line, separator)
-    places = [at for at in range(len(roles) - 2) if roles[at : at + 3] == ["x", "y", "z"]]
+    turn, places = next(
+        (turn, found)
+        for turn, columns in _COLUMNS.items()
+        if (found := _begins(roles, columns)) or turn == 3
+    )
     if not places:
         refuse(
             text.file,
             "Read no columns `X,Y,Z`. Expected three for each marker. Export the trajectories.",
             start + 4,
         )
-    found = {units[at] if at < len(units) else "" for at in places}
+    units += [""] * (len(roles) - len(units))
+    found = {units[at] for at in places}
     if len(found) > 1:
         refuse(
             text.file,
@@ -74,13 +90,26 @@ def read_head(text: Text, start: int) -> Head:
             "Export them in one unit.",
             start + 5,
         )
-    markers = tuple((names[at] if at < len(names) else "", at) for at in places)
+    names += [""] * (len(roles) - len(names))
+    markers = tuple((names[at - turn], at) for at in places)
+    angle = math.radians(1) if units[places[0] - 1].startswith("deg") else 1.0
     rate = rate_in(cells_of(rate_line, separator)[0], "in column 1", text.file, start + 2)
-    return Head(separator, rate, tuple(roles), markers, found.pop(), start + 5)
+    return Head(
+        separator, rate, tuple(roles), markers, found.pop(), start + 5, turn, angle if turn else 1.0
+    )
 
 
-_TITLE = "trajectories"
-_SECTIONS = (_TITLE, "devices", "model outputs", "joints", "segments", "trajectory count", "events")
+def _begins(roles: list[str], columns: str) -> list[int]:
+    """Where the places begin that stand at the end of some columns in a row."""
+    wanted = columns.split()
+    starts = range(len(roles) - len(wanted) + 1)
+    return [at + len(wanted) - 3 for at in starts if roles[at : at + len(wanted)] == wanted]
+
+
+_COLUMNS = {0: "x y z", 4: "rx ry rz rw tx ty tz", 3: "rx ry rz tx ty tz"}
+"""By the columns of a rotation, those of a marker or of a body."""
+_TITLES = ("trajectories", "objects", "segments")
+_SECTIONS = (*_TITLES, "devices", "model outputs", "joints", "trajectory count", "events")
 
 
 def sniff(text: Text, _: ReadOptions) -> bool:
@@ -89,31 +118,38 @@ def sniff(text: Text, _: ReadOptions) -> bool:
 
 
 def read(file: str, text: Text, _: ReadOptions) -> MarkerData:
-    """The markers of the section `Trajectories`. Raises InvalidFileError."""
+    """The markers, or the rigid bodies, of a CSV of Vicon. Raises InvalidFileError."""
     start = _start(text)
     if start is None:
         there = [line for line in text.lines[:50] if _title(line) in _SECTIONS]
         refuse(
             text.file,
-            f"Read the section {shown(_title(there[0]))} and no `Trajectories`. Expected markers. "
-            "Export the trajectories too.",
+            f"Read the section {shown(_title(there[0]))} and no `Trajectories`, `Objects` or "
+            "`Segments`. Expected markers or rigid bodies. Export the trajectories too.",
         )
     head = read_head(text, start)
     last = _end(text, head.first_row, head.separator)
     names = [f"{role} of {marker}" if marker else role for role, marker in _owners(head)]
     table = read_table(text, head.first_row, last, head.separator, names)
-    return marker_data(
-        {"file": file, "format": READER.format, "encoding": text.encoding},
-        frame=frames_of(table, head.roles.index("frame"), file, head.first_row),
-        lines=table.lines,
-        t=None,
-        rate=head.rate,
-        labels=[marker for marker, _ in head.markers],
-        positions=np.stack([table.values[:, at : at + 3] for _, at in head.markers], axis=1),
-        unit=head.unit,
-        unit_place=("the row of units", head.first_row),
-        doubts=[*table.doubts, *_unread(text, start, last, head)],
-    )
+    labels = [marker for marker, _ in head.markers]
+    source = {"file": file, "format": READER.format, "encoding": text.encoding}
+    rows: dict[str, Any] = {
+        "frame": frames_of(table, head.roles.index("frame"), file, head.first_row),
+        "lines": table.lines,
+        "t": None,
+        "rate": head.rate,
+        "positions": np.stack([table.values[:, at : at + 3] for _, at in head.markers], axis=1),
+        "unit": head.unit,
+        "unit_place": ("the row of units", head.first_row),
+        "doubts": [*table.doubts, *_unread(text, start, last, head)],
+    }
+    if not head.turn:
+        return marker_data(source, labels=labels, **rows)
+    turned = np.stack([table.values[:, at - head.turn : at] for _, at in head.markers], axis=1)
+    turned = matrices(turned if head.turn == 4 else head.angle * turned, "vector")
+    short = [label.rpartition(":")[2] for label in labels]  # `Subject:Segment`
+    names = short if len(set(short)) == len(short) else labels
+    return body_data(source, names=names, rotations=turned, **rows)
 
 
 def _title(line: str) -> str:
@@ -122,7 +158,12 @@ def _title(line: str) -> str:
 
 def _start(text: Text) -> int | None:
     """The index of the line that begins the section."""
-    return next((at for at, line in enumerate(text.lines) if _title(line) == _TITLE), None)
+    found = [
+        (_TITLES.index(title), at)
+        for at, line in enumerate(text.lines)
+        if not line[:1].isdigit() and (title := _title(line)) in _TITLES
+    ]
+    return min(found)[1] if found else None
 
 
 def _end(text: Text, first: int, separator: str) -> int:
@@ -138,14 +179,16 @@ def _end(text: Text, first: int, separator: str) -> int:
 
 def _owners(head: Head) -> list[tuple[str, str]]:
     """Each column's role and the marker it belongs to, for messages."""
-    owner = {at + axis: marker for marker, at in head.markers for axis in range(3)}
+    owner = {at + axis: marker for marker, at in head.markers for axis in range(-head.turn, 3)}
     return [(role, owner.get(at, "")) for at, role in enumerate(head.roles)]
 
 
 def _unread(text: Text, start: int, last: int, head: Head) -> Iterator[Notice]:
     """What the file holds besides."""
-    taken = 3 * len(head.markers)
-    other = [role for role in head.roles if role not in ("frame", "sub frame", "x", "y", "z", "")]
+    columns = _COLUMNS[head.turn].split()
+    taken = len(columns) * len(head.markers)
+    known = ("frame", "sub frame", "", *columns)
+    other = [role for role in head.roles if role not in known]
     if len(head.roles) - taken > 2 and other:
         yield notice("file.columns", names=shown(", ".join(dict.fromkeys(other))))
     outside = [*range(start), *range(last, len(text.lines))]
