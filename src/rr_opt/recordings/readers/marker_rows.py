@@ -150,7 +150,7 @@ def marker_data(
     positions[order.unsure] = np.nan
     # A position is there as a whole, or not at all.
     positions[np.isnan(positions).any(axis=2)] = np.nan
-    seen = np.isfinite(positions[:, :, 0]).any(axis=0).tolist()
+    seen = [bool(one.any()) for one in np.isfinite(positions[:, :, 0]).T]
     if not all(seen):
         names = ", ".join(one for one, known in zip(clean, seen, strict=True) if not known)
         doubts.append(notice("marker.never", names=names))
