@@ -147,3 +147,10 @@ def test_angles_in_degrees_and_lengths_in_millimetres():
         (scaled(x=0.01, y=0.01), "x and y are 0.00"),
     ):
         assert said in told(recording(change=change))[1]
+
+
+def test_channels_that_are_never_there_together_contradict_nothing():
+    def change(v):
+        v["x"][::2], v["psi"][1::2] = np.nan, np.nan
+
+    assert told(recording(change=change))[0] <= {"motion.robot"}

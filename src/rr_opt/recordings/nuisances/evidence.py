@@ -56,9 +56,14 @@ class Slip:
 
     @property
     def size(self) -> float:
-        """Root mean square, in noise; what is off for a moment counts as three times the usual."""
+        """Root mean square, in noise; what is off for a moment counts as three times the usual.
+
+        0 where no stride shows it.
+        """
         squares = []
         for row, noise in zip((self.first, self.second), self.noise, strict=True):
+            if not np.isfinite(row).any():
+                return 0.0
             usual = float(np.nanpercentile(np.abs(row), 100 * _BULK)) / _WITHIN
             squares.append(float(np.nanmean(np.minimum(row**2, 9 * usual**2))) / noise**2)
         return float(np.sqrt(np.mean(squares)))
