@@ -155,8 +155,8 @@ def fit_markers(
     """
     guess = None
     if layout is None:
-        above = seen_from_above(_places(data), data.up)[0]
-        guess = guessed_layout(data.labels, above, data.up)
+        up = _upright(data)
+        guess = guessed_layout(data.labels, seen_from_above(_places(data), up)[0], up)
         layout = guess.layout
     bodies = bodies_of(layout, data.labels)
     seen, height = seen_from_above(_places(data)[:, bodies.columns], layout.up)
@@ -177,6 +177,21 @@ def fit_markers(
     )  # fmt: skip
     doubts = _notices(data, layout, made, guess, always, noise_sigma)
     return replace(made, doubts=doubts, recording=_told(made.recording, data, doubts))
+
+
+_FLAT = 0.2
+"""A robot on a floor moves by less than this up and down, relative to along and across."""
+
+
+def _upright(data: MarkerData) -> str:
+    """The axis along which the markers hardly move; the format's own where none stands out."""
+    places = _places(data)
+    seen = places[:, np.isfinite(places[..., 0]).sum(axis=0) > 1]
+    if not seen.size:
+        return data.up
+    moved = np.median(np.nanstd(seen, axis=0), axis=0)
+    least, more, _ = np.argsort(moved)
+    return "xyz"[least] if moved[least] < _FLAT * moved[more] else data.up
 
 
 def _places(data: MarkerData) -> Array:
