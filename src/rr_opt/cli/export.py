@@ -51,7 +51,7 @@ def export(
         gait = {"amplitude": amplitude, "period": period, "offset": offset}
         driven = read_gait(source, read_options(**gait, rate=rate))
         from rr_opt.api import drive
-        from rr_opt.report.setpoints import setpoints_file
+        from rr_opt.results.setpoints import setpoints_file
 
         file = setpoints_file(out, result_name(source), kind)
         points = drive.export(

@@ -72,7 +72,7 @@ Scheduler = Annotated[
 
 def results_folder(out: Path | None, name: str) -> Path:
     """--out, or out/NAME. Raises InputError, before anything is computed, if it cannot be made."""
-    from rr_opt.report.archive import folder_for_results
+    from rr_opt.documents.archive import folder_for_results
 
     return folder_for_results(out or Path("out") / name)
 

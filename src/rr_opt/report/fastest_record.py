@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from rr_opt.files.record import plain, robot_record
 from rr_opt.model.ballast import load_count
+from rr_opt.results.fastest import FastestGait
 from rr_opt.version import __version__
-
-if TYPE_CHECKING:
-    from rr_opt.report.fastest import FastestGait
 
 UNITS = {
     "angle": "rad",

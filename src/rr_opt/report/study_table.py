@@ -7,18 +7,16 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from operator import attrgetter
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from rr_opt.design.study.row import Optimum, Row
+from rr_opt.documents.document import csv_text
 from rr_opt.formatting import direction_text
-from rr_opt.report.document import csv_text
 from rr_opt.report.trajectory_file import netcdf_writer, write_dataset
+from rr_opt.results.study import SolvedStudy
 from rr_opt.version import __version__
-
-if TYPE_CHECKING:
-    from rr_opt.report.study import SolvedStudy
 
 _OF_OPTIMUM = (
     ("speed", "m/s", "mean speed along the path, positive along platform 1"),

@@ -7,14 +7,14 @@ from types import MappingProxyType
 import numpy as np
 import pytest
 
-from rr_opt.answers.corrected_robot import corrected_robot, servo_made
-from rr_opt.answers.diagnosis import Loss, LossUnknown, loss
 from rr_opt.model.gait import SineGait
 from rr_opt.model.problem import GaitBounds, Limits, Problem
 from rr_opt.model.robot import EffectUse
 from rr_opt.motion.rollout import rollout
 from rr_opt.report.diagnosis.loss import loss_sentences, share_lost
 from rr_opt.report.diagnosis.record import record
+from rr_opt.results.corrected_robot import corrected_robot, servo_made
+from rr_opt.results.loss import Loss, LossUnknown, loss_of
 from rr_opt.verify.sweep import sweep
 
 
@@ -46,7 +46,7 @@ def test_no_gait_of_a_sweep_is_faster_than_the_best(missing):
 
 def test_a_right_model_loses_nothing(missing, consistent):
     assert consistent.loss is None
-    same = loss(missing.experiment, missing.experiment.robot)
+    same = loss_of(missing.experiment, missing.experiment.robot)
     assert abs(same.share) < 1e-6
     assert same.promised == pytest.approx(same.reached)
 
@@ -54,13 +54,15 @@ def test_a_right_model_loses_nothing(missing, consistent):
 @pytest.mark.parametrize("effect", ["floor_patch", "floor_tilt", "lateral_slip"])
 def test_what_has_no_steady_motion_is_told_in_a_sentence(missing, effect):
     robot = with_effect(missing.experiment.robot, effect)
-    told = loss(missing.experiment, robot)
+    told = loss_of(missing.experiment, robot)
     assert isinstance(told, LossUnknown)
     assert effect.replace("_", " ") in told.sentence
 
 
 def test_what_the_capture_system_sees_changes_no_speed(missing):
-    told = loss(missing.experiment, with_effect(missing.experiment.robot, "marker_offset", dx=0.01))
+    told = loss_of(
+        missing.experiment, with_effect(missing.experiment.robot, "marker_offset", dx=0.01)
+    )
     assert abs(told.share) < 1e-6
 
 
@@ -80,7 +82,7 @@ def test_a_servo_that_was_seen_to_be_slow_gets_gaits_it_can_make(missing):
     found = replace(missing.found, values=values, parameters={})
     robot = corrected_robot(missing.experiment, found)
     assert robot.servo.rate_limit == 1.7
-    told = loss(missing.experiment, robot)
+    told = loss_of(missing.experiment, robot)
     assert told.best.peak_rate == pytest.approx(1.7, rel=1e-4)
     # A triangle at the limit is what a servo makes that is asked for far more.
     slow = servo_made(robot, SineGait(1.0, 1.0))
@@ -106,11 +108,11 @@ def test_a_gait_that_drives_the_robot_the_other_way_loses_more_than_all():
 
 
 def test_a_gait_that_a_sweep_beats_is_no_best_gait(missing, monkeypatch):
-    from rr_opt.answers import diagnosis
+    from rr_opt.results import loss as module
     from rr_opt.verify.sweep import SweepCheck
 
     beaten = SweepCheck(100, 0.2, None, None, -0.5, 0.1, 0.0)
-    monkeypatch.setattr(diagnosis, "check_optimum", lambda *_: beaten)
-    told = loss(missing.experiment, missing.experiment.robot)
+    monkeypatch.setattr(module, "check_optimum", lambda *_: beaten)
+    told = loss_of(missing.experiment, missing.experiment.robot)
     assert isinstance(told, LossUnknown)
     assert "a plain sweep finds a faster gait" in told.sentence

@@ -8,8 +8,8 @@ import subprocess
 
 import pytest
 
-from rr_opt.report.diagnosis.document import diagnosis_document, figures_of
-from rr_opt.report.webpage import page
+from rr_opt.documents.webpage import page
+from rr_opt.report.diagnosis.document import REPORT
 
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))), None)
 DESK, PHONE = 1200, 412
@@ -46,7 +46,7 @@ frame.addEventListener("load", () => {{
 def texts(every):
     """The page of each verdict."""
     return {
-        verdict: page(diagnosis_document(one, figures_of(one))) for verdict, one in every.items()
+        verdict: page(REPORT.document(one, REPORT.drawn(one))) for verdict, one in every.items()
     }
 
 

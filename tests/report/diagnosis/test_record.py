@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from rr_opt.report.archive import strict_json
+from rr_opt.documents.archive import strict_json
 from rr_opt.report.diagnosis.record import record
 from rr_opt.sysid.diagnosis import CHANNELS
 

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from rr_opt.report.diagnosis.document import summary
+from rr_opt.report.diagnosis.summary import summary
 from rr_opt.report.diagnosis.words import headline, interval_text, value_text
 from rr_opt.sysid.diagnosis import Estimate
 

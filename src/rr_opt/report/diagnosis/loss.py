@@ -1,12 +1,10 @@
-"""What the wrong model would have cost, in sentences and for scripts."""
+"""What the wrong model would have cost, in sentences."""
 
 from __future__ import annotations
 
-from typing import Any
-
-from rr_opt.answers.diagnosis import Loss, LossUnknown
 from rr_opt.formatting import number, with_unit
 from rr_opt.model.gait import Gait
+from rr_opt.results.loss import Loss, LossUnknown
 
 _NONE = 5e-4
 """A smaller share of the speed is not reported as a loss."""
@@ -57,24 +55,3 @@ def gait_words(gait: Gait) -> str:
     """`1.51 rad, 1.73 s`, and an offset if there is one."""
     said = f"{with_unit(gait.amplitude, 'rad', 3)}, {with_unit(gait.period, 's', 3)}"
     return f"{said}, offset {with_unit(gait.offset, 'rad', 3)}" if gait.offset else said
-
-
-def loss_record(one: Loss | LossUnknown | None) -> dict[str, Any] | None:
-    """diagnosis.json's `loss`: null where the robot as believed is right; SI."""
-    if one is None:
-        return None
-    if isinstance(one, LossUnknown):
-        return {"not_told": one.sentence}
-    return {
-        "gait_as_believed": _gait(one.believed),
-        "speed_promised": one.promised,
-        "speed_reached": one.reached,
-        "gait_as_found": _gait(one.best),
-        "speed_as_found": one.speed,
-        "share_lost": one.share,
-        "beyond_what_was_recorded": one.unseen,
-    }
-
-
-def _gait(gait: Gait) -> dict[str, float]:
-    return {"amplitude": gait.amplitude, "period": gait.period, "offset": gait.offset}

@@ -1,4 +1,4 @@
-"""One steady period, or a simulated motion, over time."""
+"""One steady period over time."""
 
 from __future__ import annotations
 
@@ -7,16 +7,12 @@ from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
 from rr_opt.formatting import number
 from rr_opt.model.problem import Limits
-from rr_opt.model.robot import Robot
-from rr_opt.motion.rollout import Trajectory
 from rr_opt.motion.steady_cycle import SteadyCycle
-from rr_opt.report.figures.path import path
-from rr_opt.report.figures.style import FORWARD, GREY, INK, LIMIT, colour_of, figure, note
+from rr_opt.report.figures.style import FORWARD, GREY, INK, LIMIT, colour_of, note
 
 
 def cycle(axes: Sequence[Axes], steady: SteadyCycle, limits: Limits) -> Sequence[Axes]:
@@ -58,27 +54,3 @@ def against_limit(ax: Axes, t: ArrayLike, values: ArrayLike, limit: float, label
     note(ax, f"limit {number(limit)} {unit}", y=0.985, color=LIMIT)
     ax.axhline(0, color=GREY, lw=0.5)
     return ax
-
-
-def motion(robot: Robot, trajectory: Trajectory, period: float) -> Figure:
-    """Four axes, top to bottom: path (m), phi (rad), v (m/s), torque (N m).
-
-    period: of the gait, s.
-    """
-    drawn = figure(7.4, 8.6)
-    axes = drawn.subplots(4, 1, gridspec_kw={"height_ratios": [2.4, 1, 1, 1]})
-    path(axes[0], robot, trajectory, float(trajectory.v.mean()), period)
-    axes[0].set_title("The path of P, and the robot at a few instants")
-    t = trajectory.t
-    against_limit(axes[1], t, trajectory.phi, robot.servo.angle_limit, "φ, rad")
-    axes[2].plot(t, trajectory.v, color=INK)
-    axes[2].set_ylabel("v, m/s")
-    against_limit(axes[3], t, trajectory.torque, robot.servo.torque_limit, "τ, N m")
-    for ax in axes[1:]:
-        ax.set_xlim(t[0], t[-1])
-    for ax in axes[1:3]:
-        ax.sharex(axes[3])
-        ax.tick_params(labelbottom=False)
-    axes[3].set_xlabel("time, s")
-    drawn.align_ylabels(list(axes[1:]))
-    return drawn

@@ -11,7 +11,6 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 from numpy.typing import NDArray
 
-from rr_opt.answers.diagnosis import DiagnosisAnswer, Loss
 from rr_opt.array import Array
 from rr_opt.formatting import number
 from rr_opt.model.experiment import CHANNELS as SEEN
@@ -28,6 +27,8 @@ from rr_opt.report.figures.style import (
     styled,
     svg,
 )
+from rr_opt.results.diagnosis import ExplainedExperiment
+from rr_opt.results.loss import Loss
 from rr_opt.sysid.diagnosis import Curve, Misfit, Residue, Stage
 
 NOMINAL, FINAL, RECORDED = BACKWARD, FORWARD, "#b4bdc6"
@@ -228,25 +229,25 @@ def _distance(seen: NDArray[np.float64], one: Misfit) -> float:
     return float(np.sqrt(np.nanmean(square))) if np.isfinite(square).any() else float("nan")
 
 
-NAMES = ("evidence", "paths", "bands", "misfit", "residue", "loss")
-
 _MOST_PATHS, _MOST_BANDS, _MOST_CURVES = 4, 4, 8
 
 
-def draw(one: DiagnosisAnswer) -> tuple[dict[str, str], dict[str, str]]:
-    """SVG texts by name, and what to write under each; those for which there is something."""
-    drawn: dict[str, str] = {}
-    told: dict[str, str] = {}
-    makers = (_evidence, _paths, _bands, _misfit, _residue, _loss)
+def draw(one: ExplainedExperiment) -> dict[str, tuple[str, str]]:
+    """SVG text and caption by name, of the figures for which there is something."""
+    makers = {
+        "evidence": _evidence,
+        "paths": _paths,
+        "bands": _bands,
+        "misfit": _misfit,
+        "residue": _residue,
+        "loss": _loss,
+    }
     with styled():
-        for name, make in zip(NAMES, makers, strict=True):
-            made = make(one)
-            if made is not None:
-                drawn[name], told[name] = svg(made[0]), made[1]
-    return drawn, told
+        made = {name: make(one) for name, make in makers.items()}
+        return {name: (svg(each[0]), each[1]) for name, each in made.items() if each is not None}
 
 
-def _evidence(one: DiagnosisAnswer) -> tuple[Figure, str] | None:
+def _evidence(one: ExplainedExperiment) -> tuple[Figure, str] | None:
     curves = [
         (stage.name.replace("_", " "), each, _measured(stage))
         for stage in one.guilty
@@ -273,7 +274,7 @@ def _measured(stage: Stage) -> str:
     return input_words(stage.channel)
 
 
-def _paths(one: DiagnosisAnswer) -> tuple[Figure, str]:
+def _paths(one: ExplainedExperiment) -> tuple[Figure, str]:
     shown = one.proof[:_MOST_PATHS]
     wide = all(flat(one.experiment.runs[k].recording) for k in shown)
     columns = 1 if wide else min(len(shown), 2)
@@ -294,7 +295,7 @@ def _paths(one: DiagnosisAnswer) -> tuple[Figure, str]:
     )
 
 
-def _bands(one: DiagnosisAnswer) -> tuple[Figure, str]:
+def _bands(one: ExplainedExperiment) -> tuple[Figure, str]:
     shown = one.proof[:_MOST_BANDS]
     nominal, final = ([level[k] for k in shown] for level in (one.found.nominal, one.found.final))
     made = figure(WIDTH, 0.7 + 1.35 * len(SEEN))
@@ -311,7 +312,7 @@ def _bands(one: DiagnosisAnswer) -> tuple[Figure, str]:
     )
 
 
-def _misfit(one: DiagnosisAnswer) -> tuple[Figure, str]:
+def _misfit(one: ExplainedExperiment) -> tuple[Figure, str]:
     found = one.found
     made = figure(WIDTH, 1.3 + 0.3 * len(found.final))
     misfit(ax := made.subplots(), found.nominal, found.refitted, found.final)
@@ -322,7 +323,7 @@ def _misfit(one: DiagnosisAnswer) -> tuple[Figure, str]:
     return made, f"RMS of simulated less recorded over all channels, in σ of the noise. {held}"
 
 
-def _residue(one: DiagnosisAnswer) -> tuple[Figure, str] | None:
+def _residue(one: ExplainedExperiment) -> tuple[Figure, str] | None:
     some = one.found.residue
     if not some:
         return None
@@ -332,7 +333,7 @@ def _residue(one: DiagnosisAnswer) -> tuple[Figure, str] | None:
     return made, " ".join(each.sentence for each in some)
 
 
-def _loss(one: DiagnosisAnswer) -> tuple[Figure, str] | None:
+def _loss(one: ExplainedExperiment) -> tuple[Figure, str] | None:
     if not isinstance(one.loss, Loss):
         return None
     made = figure(WIDTH, 3.0)

@@ -11,12 +11,12 @@ from matplotlib.axes import Axes
 from rr_opt.formatting import QUANTITIES, number
 from rr_opt.model.gait import SineGait
 from rr_opt.motion.rollout import repeated
-from rr_opt.report.fastest import FastestGait
 from rr_opt.report.figures.cycle import cycle
 from rr_opt.report.figures.path import along_travel, cycles_to_show, path
 from rr_opt.report.figures.speed_map import map_data, speed_map
 from rr_opt.report.figures.style import FORWARD, GREY, INK, figure, lanes, panel, styled, svg
-from rr_opt.report.limits import BoundRow, LimitRow
+from rr_opt.results.fastest import FastestGait
+from rr_opt.results.limits import BoundRow, LimitRow
 from rr_opt.verify.replay import Replay
 
 

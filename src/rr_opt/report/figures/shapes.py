@@ -15,21 +15,21 @@ from rr_opt.report.figures.style import (
     styled,
     svg,
 )
-from rr_opt.report.shapes import FastestShapes, family
+from rr_opt.results.shapes import FastestShapes, family
 
 _SAMPLES = 1500
 _SHADES = (0.35, 0.55, 0.75, 1.0)
 
 
-def draw(compared: FastestShapes) -> str:
-    """The figure as SVG text; empty if no family has an optimum.
+def draw(compared: FastestShapes) -> dict[str, str]:
+    """The figure as SVG text by its name; nothing if no family has an optimum.
 
     phi (rad) and its rate (rad/s) over the phase, and a bar for each speed (mm/s).
     """
     solved = [(one, one.gait, one.speed) for one in compared.solved]
     lines = [(one, gait, speed) for one, gait, speed in solved if gait and speed is not None]
     if not lines:
-        return ""
+        return {}
     with styled():
         drawn = figure(8.6, 4.2)
         axes = drawn.subplot_mosaic([["angle", "speed"], ["rate", "speed"]], width_ratios=[1.1, 1])
@@ -57,4 +57,4 @@ def draw(compared: FastestShapes) -> str:
         lanes(bars, [family(one) for one, *_ in lines])
         bars.set_xlim(0, 1.5 * top)
         bars.set_xlabel("speed of the best gait, mm/s")
-        return svg(drawn)
+        return {"shapes": svg(drawn)}

@@ -18,21 +18,16 @@ from rr_opt.model.problem import GaitBounds, Interval, Problem
 from rr_opt.model.robot import Robot
 from rr_opt.report.figures.style import (
     DASHED,
-    GREY,
     GROUND,
     INK,
     LIMIT,
     PAPER,
     SIGNED,
     STAR,
-    figure,
     hatched,
     signed,
     speed_bar,
-    styled,
-    svg,
 )
-from rr_opt.verify.evaluate import Evaluated, Found
 from rr_opt.verify.sweep import speed_map as evaluated_map
 
 
@@ -118,11 +113,12 @@ def speed_map(
     ax.set_xlim(data.period[0], data.period[-1])
     ax.set_ylim(data.amplitude[0], data.amplitude[-1])
     ax.grid(visible=False)
-    _label(ax)
+    label(ax)
     return ax
 
 
-def _label(ax: Axes) -> None:
+def label(ax: Axes) -> None:
+    """Label the axes of a map of sines."""
     ax.set_xlabel("period T, s")
     ax.set_ylabel("amplitude α, rad")
 
@@ -195,37 +191,3 @@ def _torque_line(ax: Axes, data: MapData, limit: float, most: float) -> None:
 def _name(ax: Axes, x: float, y: float, text: str, *, ha: str, va: str = "center") -> None:
     halo = [withStroke(linewidth=3, foreground=PAPER, alpha=0.85)]
     ax.text(x, y, text + " ", color=LIMIT, fontsize=9, ha=ha, va=va, zorder=5, path_effects=halo)
-
-
-_MANY = 2000
-
-
-def draw(found: Evaluated, best: Found | None) -> str:
-    """A sweep: a dot for each gait that respects every limit, the fastest on top; a faint cross for
-    any other. Many dots become one picture inside the SVG, to keep it small.
-
-    Gaits of several offsets and inertia ratios share a place: what is seen is the fastest.
-    """
-    amplitude, period = found.decisions[:2]
-    speed, kept = 1e3 * found.speed, found.feasible
-    order = np.flatnonzero(kept)
-    order = order[np.argsort(np.abs(speed[order]))]
-    top = float(np.abs(speed[order[-1]])) if len(order) else 1.0
-    with styled():
-        drawn = figure(6.8, 4.8)
-        drawn.set_dpi(160)
-        ax = drawn.add_subplot()
-        ax.plot(period[~kept], amplitude[~kept], "x", color=GREY, ms=2.5, mew=0.5, alpha=0.3)
-        dots = ax.scatter(
-            period[order], amplitude[order], c=speed[order], cmap=SIGNED, norm=signed(top), s=26,
-            edgecolors=GREY, linewidths=0.25, zorder=3,
-        )  # fmt: skip
-        for part in (*ax.collections, *ax.lines):
-            part.set_rasterized(len(speed) > _MANY)
-        ends = speed[order].min(initial=0.0), speed[order].max(initial=0.0)
-        speed_bar(ax, dots).set_ylim(min(ends[0], -1e-9), max(ends[1], 1e-9))
-        if best:
-            ax.plot(best.gait.period, best.gait.amplitude, ms=19, mew=1.2, zorder=5, **STAR)
-        ax.set_title(f"{len(speed)} gaits: dots keep every limit, crosses do not", weight="normal")
-        _label(ax)
-        return svg(drawn)

@@ -37,8 +37,7 @@ from rr_opt.report.figures.style import (
     styled,
     svg,
 )
-from rr_opt.report.study import SolvedStudy
-from rr_opt.report.study_page import front
+from rr_opt.results.study import SolvedStudy
 
 _COSTS = (("peak_torque", "largest servo torque, N m"), ("energy_per_metre", "energy, J/m"))
 
@@ -122,7 +121,7 @@ def pareto(ax: Axes, result: SolvedStudy, name: str, label: str) -> Axes:
         if some.any():
             ax.plot(cost[some], speed[some], "o", ms=5, mec="none", color=colour, alpha=0.45,
                     label=word)  # fmt: skip
-    best = front(cost, speed)
+    best = result.front(name)
     ax.plot(cost[best], speed[best], drawstyle="steps-post", color=INK, lw=1.2, zorder=3)
     ax.plot(cost[best], speed[best], "o", ms=7, mfc=OPTIMUM, mec=INK, mew=1.0, zorder=4,
             label="front")  # fmt: skip

@@ -9,16 +9,17 @@ from matplotlib.figure import Figure
 
 from rr_opt.formatting import with_unit
 from rr_opt.report.figures.style import LIMIT, figure, note, styled, svg
+from rr_opt.results.turn_chart import TurnChart
 from rr_opt.verify.turn_chart import Tightest, TurnMap
 
 _WIDEST = 20.0
 """m; wider circles are left out of the picture."""
 
 
-def draw(seen: TurnMap, tight: Tightest | None) -> str:
-    """The chart as SVG text."""
+def draw(chart: TurnChart) -> dict[str, str]:
+    """The chart as SVG text by its name."""
     with styled():
-        return svg(turn_chart(seen, tight))
+        return {"turn-chart": svg(turn_chart(chart.seen, chart.tight))}
 
 
 def turn_chart(seen: TurnMap, tight: Tightest | None) -> Figure:

@@ -4,13 +4,10 @@ from __future__ import annotations
 
 import base64
 import re
-from collections.abc import Sequence
 from functools import cache
-from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rr_opt.report.archive import write_text
-from rr_opt.report.document import (
+from rr_opt.documents.document import (
     Badge,
     Block,
     Chain,
@@ -37,19 +34,13 @@ def page(document: Document) -> str:
     return _template().render(document=document)
 
 
-def write_page(folder: Path, document: Document, written: Sequence[Path] = ()) -> list[Path]:
-    """Write the page and its figures; returns these and what was `written` before, page first."""
-    drawn = [write_text(folder / f"{one.name}.svg", one.svg) for one in document.figures]
-    return [write_text(folder / PAGE, page(document)), *written, *drawn]
-
-
 @cache
 def _template() -> Template:
     # Here and not above: without a page Jinja2 need not be loaded.
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
     environment = Environment(
-        loader=PackageLoader("rr_opt.report"),
+        loader=PackageLoader("rr_opt.documents"),
         autoescape=True,
         trim_blocks=True,
         lstrip_blocks=True,

@@ -10,9 +10,9 @@ from __future__ import annotations
 import csv
 import io
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, Literal, TypeVar
 
 from rr_opt.formatting import number
 from rr_opt.version import __version__
@@ -36,6 +36,7 @@ class Link:
     target: str
 
 
+Item = TypeVar("Item")
 Cell = str | float | bool | Badge | Link | None
 """None: there is no such thing. Numbers are SI."""
 
@@ -64,6 +65,14 @@ class Table:
 def table(head: Iterable[str], rows: Iterable[Sequence[Cell]], note: str = "") -> Table:
     """A table of any sequences."""
     return Table(tuple(head), tuple(map(tuple, rows)), note)
+
+
+def table_of(
+    items: Iterable[Item], columns: Mapping[str, Callable[[Item], Cell]], note: str = ""
+) -> Table:
+    """A row for each item; a column is its heading and what it shows of an item."""
+    rows = (tuple(cell(item) for cell in columns.values()) for item in items)
+    return Table(tuple(columns), tuple(rows), note)
 
 
 def cell_text(cell: Cell) -> str:
@@ -260,3 +269,14 @@ class Document:
 def versions(sha256: str) -> tuple[str, str]:
     """The footer of a report on an input with this fingerprint."""
     return f"rr-opt {__version__}", f"input SHA-256 `{sha256}`"
+
+
+def gallery(figures: Iterable[Figure]) -> Section:
+    """Figures as a section of the page; a terminal shows none."""
+    return Section("", (Gallery(tuple(figures)),), brief=False)
+
+
+def facts_alone(facts: Iterable[Fact], *blocks: Block) -> Document:
+    """A report for a terminal alone."""
+    sections = (Section("", (Facts(tuple(facts)),)), *(Section("", (one,)) for one in blocks))
+    return Document("", "", "", "", sections)

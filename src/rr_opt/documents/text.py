@@ -6,7 +6,7 @@ import textwrap
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from rr_opt.report.document import (
+from rr_opt.documents.document import (
     Block,
     Chain,
     Checks,

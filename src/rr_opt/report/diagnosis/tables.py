@@ -1,0 +1,139 @@
+"""The tables of a diagnosis: effects, candidates, parameters, misfits, recordings."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rr_opt.documents.document import Badge, Cell, Table, table, table_of
+from rr_opt.formatting import number, with_unit
+from rr_opt.model.experiment import Run
+from rr_opt.model.parameters import parameters_of
+from rr_opt.report.diagnosis.words import (
+    candidate_words,
+    interval_text,
+    number_text,
+    parameter_words,
+    share_text,
+    value_text,
+)
+from rr_opt.results.diagnosis import ExplainedExperiment
+from rr_opt.sysid.diagnosis import Estimate, Misfit
+
+_MOST = 30
+"""Rows of candidates; diagnosis.json has all."""
+
+
+def effects_table(one: ExplainedExperiment) -> Table:
+    """What was accepted, with its values; nothing for a verdict without effects."""
+    rows: list[list[Cell]] = []
+    for finding in one.found.findings if one.found.verdict != "parameters" else ():
+        removes = share_text(finding) + (", minor" if finding.minor else "")
+        first = [finding.name.replace("_", " "), f"{finding.confidence:.2f}", removes]
+        for name, value in finding.parameters.items():
+            rows.append([first[0], name, value_text(value), *first[1:]])
+            first = ["", "", ""]
+    head = ["Effect", "Parameter", "Value [95 % interval]", "Confidence", "Explains"]
+    return table(head, rows)
+
+
+_CANDIDATES = (
+    "Each row was fitted to the fitted recordings, with the robot's parameters re-estimated. "
+    "Score: twice the log predictive density lost, each recording predicted from the others; less "
+    "is better. Misfit: what simulation leaves beyond the noise."
+)
+
+
+def candidates_table(one: ExplainedExperiment) -> Table:
+    """All sets of effects that were fitted, the best first."""
+    tried = sorted(one.found.tried, key=lambda each: each.score)
+    return table_of(
+        tried[:_MOST],
+        {
+            "Effects": lambda each: candidate_words(each.effects),
+            "Score over the best": lambda each: f"+{each.score - tried[0].score:.0f}",
+            "Misfit": lambda each: f"{each.fit:.2f} σ",
+            "Verdict": lambda each: Badge("accepted", "good") if each.accepted else "",
+        },
+        _CANDIDATES if tried else "",
+    )
+
+
+def parameters_table(one: ExplainedExperiment) -> Table:
+    """The robot's own parameters: as believed, and as estimated."""
+    nominal = parameters_of(one.experiment.robot)
+    moved = {
+        name
+        for finding in one.found.findings
+        if one.found.verdict == "parameters"
+        for name in finding.parameters
+    }
+
+    def believed(name: str, value: Estimate) -> str | None:
+        known = one.experiment.uncertainty.get(name)
+        if name not in nominal:
+            return None
+        text = number_text(value, nominal[name])
+        if known is None:
+            return text
+        if known.factor is not None:
+            return f"{text}, within a factor of {known.factor:g}"
+        return f"{text} ± {number_text(value, known.sigma)}"
+
+    columns = {
+        "Parameter": lambda each: each[0],
+        "What": lambda each: parameter_words(each[0]),
+        "As believed": lambda each: believed(*each),
+        "Estimated": lambda each: number_text(each[1], each[1].value),
+        "95 % interval": lambda each: interval_text(each[1]),
+    }
+    if moved:
+        changed = Badge("not as believed", "warn")
+        columns["Verdict"] = lambda each: changed if each[0] in moved else ""
+    return table_of([one for one in one.found.parameters.items() if "." not in one[0]], columns)
+
+
+def misfit_table(one: ExplainedExperiment) -> Table:
+    """Misfit of every recording and channel, before and after."""
+    found, off = one.found, one.found.mismatch
+    names = list(dict.fromkeys(name for each in found.final for name in each.channels))
+
+    def change(pair: tuple[Misfit, Misfit], name: str) -> str | None:
+        before, after = (level.channels.get(name) for level in pair)
+        return None if before is None or after is None else f"{before:.2f} → {after:.2f}"
+
+    note = (
+        "With the robot's values re-fitted within what was stated of them, the fitted recordings "
+        f"are {off.rms:.2f} σ off beyond the noise; noise alone leaves that much or more with "
+        f"probability {off.p_value:.2g}."
+    )
+    columns = {
+        "Recording": lambda pair: pair[1].recording,
+        "Use": lambda pair: Badge("held out", "note") if pair[1].held_out else "fitted",
+        "All, σ": lambda pair: f"{pair[0].rms:.2f} → {pair[1].rms:.2f}",
+        **{name: lambda pair, name=name: change(pair, name) for name in names},
+    }
+    return table_of(zip(found.nominal, found.final, strict=True), columns, note)
+
+
+def recordings_table(one: ExplainedExperiment) -> Table:
+    """What was recorded."""
+
+    def good(run: Run) -> str:
+        recording = run.recording
+        flags = np.array([recording.flags[name] > 0 for name in recording.channels])
+        share = 100 * (1 - float(flags.mean()))
+        return f"{len(recording)} samples, {number(share, 3)} % good"
+
+    return table_of(
+        one.experiment.runs,
+        {
+            "Recording": lambda run: run.name,
+            "Use": lambda run: run.use,
+            "Start": lambda run: run.start,
+            "Amplitude": lambda run: with_unit(run.gait.amplitude, "rad", 3),
+            "Period": lambda run: with_unit(run.gait.period, "s", 3),
+            "Offset": lambda run: with_unit(run.gait.offset, "rad", 3),
+            "Length": lambda run: f"{run.recording.t[-1] - run.recording.t[0]:.3g} s",
+            "Data": good,
+        },
+    )
