@@ -8,10 +8,12 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
+from rr_opt.documents import document as doc
 from rr_opt.documents.archive import folder_for_results, remove, write_json, write_text
-from rr_opt.documents.document import Captions, Document, Figure, captioned
 from rr_opt.documents.text import markdown, terminal
 from rr_opt.documents.webpage import PAGE, page
+from rr_opt.files.record import plain
+from rr_opt.version import __version__
 
 Progress = Callable[[str], None]
 """Called with every step, such as `start 3 of 8`."""
@@ -29,7 +31,7 @@ def _no_files(_: Any) -> Mapping[str, str]:
 class Report:
     """How results of one kind are shown.
 
-    record    the result as plain data, SI
+    record    what its JSON file holds, SI
     document  the result as a report with some figures
     file      name of the record's file; markdown: of the report as Markdown, if it has one
     tables    text files beside the record, by name; others: names of all files beside it
@@ -38,22 +40,28 @@ class Report:
     """
 
     record: Callable[[Any], dict[str, Any]]
-    document: Callable[[Any, Sequence[Figure]], Document]
+    document: Callable[[Any, Sequence[doc.Figure]], doc.Document]
     file: str = ""
     markdown: str = ""
     tables: Callable[[Any], Mapping[str, str]] = _no_files
     others: tuple[str, ...] = ()
     figures: str = ""
-    captions: Captions = field(default_factory=dict)
+    captions: doc.Captions = field(default_factory=dict)
     svgs: bool = True
 
-    def drawn(self, result: Any, progress: Progress = quiet) -> tuple[Figure, ...]:
+    def drawn(self, result: Any, progress: Progress = quiet) -> tuple[doc.Figure, ...]:
         """The figures with their captions."""
         if not self.figures:
             return ()
         progress("figures")
         # Here and not above: without figures matplotlib need not be loaded.
-        return captioned(self.captions, import_module(self.figures).draw(result))
+        return doc.captioned(self.captions, import_module(self.figures).draw(result))
+
+    def stamped(self, result: Any) -> dict[str, Any]:
+        """The record as JSON has it, with the version and the fingerprint of the input."""
+        sha256 = getattr(result, "sha256", "")
+        stamp = {"version": __version__, "input_sha256": sha256} if sha256 else {}
+        return plain(self.record(result)) | stamp
 
     def text(self, result: Any, files: Sequence[Path]) -> str:
         """The result as text, with the names of its files."""
@@ -77,7 +85,7 @@ class Report:
         svgs = (f"{name}.svg" for name in self.captions)
         remove(folder, filter(None, (PAGE, self.file, self.markdown, *self.others, *svgs)))
         document = self.document(result, self.drawn(result, progress) if figures else ())
-        written = [write_json(folder / self.file, self.record(result))]
+        written = [write_json(folder / self.file, self.stamped(result))]
         if self.markdown:
             written.append(write_text(folder / self.markdown, markdown(document)))
         written += [write_text(folder / name, text) for name, text in self.tables(result).items()]
@@ -87,6 +95,6 @@ class Report:
         svg = [write_text(folder / f"{one.name}.svg", one.svg) for one in drawn]
         return [write_text(folder / PAGE, page(self.page_of(result, document))), *written, *svg]
 
-    def page_of(self, result: Any, document: Document) -> Document:
+    def page_of(self, result: Any, document: doc.Document) -> doc.Document:
         """What the page shows, if it is not the document itself."""
         return document

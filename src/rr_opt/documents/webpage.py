@@ -7,18 +7,7 @@ import re
 from functools import cache
 from typing import TYPE_CHECKING
 
-from rr_opt.documents.document import (
-    Badge,
-    Block,
-    Chain,
-    Checks,
-    Document,
-    Facts,
-    Gallery,
-    Link,
-    Table,
-    cell_text,
-)
+from rr_opt.documents import document as doc
 
 if TYPE_CHECKING:
     from jinja2 import Template
@@ -26,10 +15,16 @@ if TYPE_CHECKING:
 
 PAGE = "report.html"
 
-_KINDS = {Facts: "facts", Table: "table", Checks: "checks", Chain: "chain", Gallery: "gallery"}
+_KINDS = {
+    doc.Facts: "facts",
+    doc.Table: "table",
+    doc.Checks: "checks",
+    doc.Chain: "chain",
+    doc.Gallery: "gallery",
+}
 
 
-def page(document: Document) -> str:
+def page(document: doc.Document) -> str:
     """The whole page; every text is escaped."""
     return _template().render(document=document)
 
@@ -48,13 +43,13 @@ def _template() -> Template:
     )
     environment.filters |= {
         "code": _code,
-        "cell_text": cell_text,
+        "cell_text": doc.cell_text,
         "data_uri": _data_uri,
         "kind": _kind,
     }
     environment.tests |= {
-        "badge": lambda cell: isinstance(cell, Badge),
-        "link": lambda cell: isinstance(cell, Link),
+        "badge": lambda cell: isinstance(cell, doc.Badge),
+        "link": lambda cell: isinstance(cell, doc.Link),
     }
     return environment.get_template("document.html")
 
@@ -70,5 +65,5 @@ def _data_uri(svg: str) -> str:
     return f"data:image/svg+xml;base64,{base64.b64encode(svg.encode()).decode()}"
 
 
-def _kind(block: Block) -> str:
+def _kind(block: doc.Block) -> str:
     return _KINDS.get(type(block), "text")

@@ -8,7 +8,6 @@ from typing import Any
 
 from rr_opt.documents.document import Fact, facts_alone
 from rr_opt.documents.report import Report
-from rr_opt.files.record import plain
 from rr_opt.formatting import number, side_text, with_unit
 from rr_opt.report.gait import gait_facts, speed_fact
 from rr_opt.results.motion import DrivenCircle
@@ -17,25 +16,23 @@ from rr_opt.results.motion import DrivenCircle
 def record(driven: DrivenCircle) -> dict[str, Any]:
     """Radius, centre, speed and the transient, SI; null for what a straight gait lacks."""
     circle, start = driven.circle, driven.transient
-    return plain(
-        {
-            "gait": driven.gait,
-            "speed": circle.speed,
-            "curvature": circle.curvature,
-            "radius": circle.radius,
-            "centre": circle.centre,
-            "heading_per_period": circle.heading,
-            "yaw_rate": circle.yaw_rate,
-            "time_for_full_turn": circle.time_round,
-            "periods_for_full_turn": circle.periods_round,
-            "from_rest": {
-                "time_constant": start.constant,
-                "factor_per_period": start.factor,
-                "distance_lost": start.lost,
-                "delay": start.delay,
-            },
-        }
-    )
+    return {
+        "gait": driven.gait,
+        "speed": circle.speed,
+        "curvature": circle.curvature,
+        "radius": circle.radius,
+        "centre": circle.centre,
+        "heading_per_period": circle.heading,
+        "yaw_rate": circle.yaw_rate,
+        "time_for_full_turn": circle.time_round,
+        "periods_for_full_turn": circle.periods_round,
+        "from_rest": {
+            "time_constant": start.constant,
+            "factor_per_period": start.factor,
+            "distance_lost": start.lost,
+            "delay": start.delay,
+        },
+    }
 
 
 def _facts(driven: DrivenCircle) -> Iterator[Fact]:

@@ -5,20 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 
-from rr_opt.documents.document import (
-    Badge,
-    Document,
-    Fact,
-    Facts,
-    Figure,
-    Section,
-    Table,
-    Tone,
-    checks,
-    gallery,
-    table,
-    versions,
-)
+from rr_opt.documents import document as doc
 from rr_opt.documents.report import Report
 from rr_opt.formatting import QUANTITIES, counted, number, price_text, speed_text, with_unit
 from rr_opt.messages import listed
@@ -66,31 +53,33 @@ _TITLES = {
 
 
 def fastest_document(
-    result: FastestGait, figures: Sequence[Figure] = (), turn: Section | None = None
-) -> Document:
+    result: FastestGait, figures: Sequence[doc.Figure] = (), turn: doc.Section | None = None
+) -> doc.Document:
     """The report of a fastest gait; turn: a section that leads the others."""
     choice, solved = result.problem.inertia_ratio, result.gait is not None
     chosen = "platform2.I" if choice and choice.by == "inertia" and solved else ""
     good = result.status is Status.OPTIMAL
     lead = " ".join(["Every check confirms it.", *result.remarks, limited_by(result)])
-    return Document(
+    return doc.Document(
         name=result.name,
         kind="fastest gait",
         title=result.headline or _TITLES[result.status],
         lead=lead if good else result.message,
         good=good,
         sections=(
-            Section("", (Facts(tuple(_facts(result)), key=True),)),
+            doc.Section("", (doc.Facts(tuple(_facts(result)), key=True),)),
             *([turn] if turn else []),
-            Section("Checks", (checks((one.passed, one.sentence) for one in result.checks),)),
-            gallery(figures),
-            Section("Limits", (_limits(result),), brief=solved),
-            Section("Decisions and their bounds", (_bounds(result),)),
-            Section("Local optima", (_optima(result),)),
-            Section("Robot", (_robot(result.robot, chosen),), brief=False),
-            Section("Solver", (_solver(result),), brief=solved),
+            doc.Section(
+                "Checks", (doc.checks((one.passed, one.sentence) for one in result.checks),)
+            ),
+            doc.gallery(figures),
+            doc.Section("Limits", (_limits(result),), brief=solved),
+            doc.Section("Decisions and their bounds", (_bounds(result),)),
+            doc.Section("Local optima", (_optima(result),)),
+            doc.Section("Robot", (_robot(result.robot, chosen),), brief=False),
+            doc.Section("Solver", (_solver(result),), brief=solved),
         ),
-        footer=versions(result.sha256),
+        footer=doc.versions(result.sha256),
     )
 
 
@@ -114,27 +103,27 @@ def limited_by(result: FastestGait) -> str:
     return f"It is limited by {listed(active)}."
 
 
-def _facts(result: FastestGait) -> Iterator[Fact]:
+def _facts(result: FastestGait) -> Iterator[doc.Fact]:
     if result.speed is None or result.gait is None or result.replay is None:
         return
     yield speed_fact(result.speed)
     if result.rebuilt and result.as_built is not None:
-        yield Fact("as built", speed_text(result.as_built), "at best, with I2 unchanged")
+        yield doc.Fact("as built", speed_text(result.as_built), "at best, with I2 unchanged")
     yield from gait_facts(result.gait)
     yield _ratio(result)
     yield _cycle(result.replay, turning=result.turns)
 
 
-def _ratio(result: FastestGait) -> Fact:
+def _ratio(result: FastestGait) -> doc.Fact:
     """J20/J10, about which point, and how it is realised."""
     choice, built = result.problem.inertia_ratio, result.problem.robot
     about = choice.about if choice else "joint"
     ratio = number(result.inertia_ratio or 0.0)
     where = f"about {'the joint P' if about == 'joint' else 'the centres of mass'}"
     if choice is None or not result.rebuilt:
-        return Fact("J20/J10", ratio, f"{where}, the robot as it is")
+        return doc.Fact("J20/J10", ratio, f"{where}, the robot as it is")
     means = ", by loads on platform 2" if choice.by == "loads" else ""
-    return Fact(
+    return doc.Fact(
         "J20/J10",
         ratio,
         f"{where}{means}: I2 {built.platform2.I:.4g} -> {result.robot.platform2.I:.4g} kg m2 "
@@ -142,13 +131,13 @@ def _ratio(result: FastestGait) -> Fact:
     )
 
 
-def _cycle(replay: Replay, *, turning: bool) -> Fact:
+def _cycle(replay: Replay, *, turning: bool) -> doc.Fact:
     """What one period does: a step along a line or round a circle."""
     cycle = replay.steady.cycle
     step = f"{1e3 * math.hypot(cycle.dx, cycle.dy):.1f} mm a period"
     if not turning:
-        return Fact("cycle", step, "straight")
-    return Fact(
+        return doc.Fact("cycle", step, "straight")
+    return doc.Fact(
         "cycle",
         step,
         f"round a circle of radius {with_unit(cycle.radius, 'm')}, "
@@ -156,19 +145,19 @@ def _cycle(replay: Replay, *, turning: bool) -> Fact:
     )
 
 
-def _limits(result: FastestGait) -> Table:
+def _limits(result: FastestGait) -> doc.Table:
     """Each limit: what is reached, what is allowed, and its shadow price."""
     kinds = [(QUANTITIES[row.name], row) for row in result.limits.values()]
     if result.replay is None:
-        return table(["Limit", "Allowed"], [[k.words, k.both(row.limit)] for k, row in kinds])
-    return table(
+        return doc.table(["Limit", "Allowed"], [[k.words, k.both(row.limit)] for k, row in kinds])
+    return doc.table(
         ["Limit", "Reached", "Allowed", "State", "Shadow price"],
         [
             [
                 kind.words,
                 kind.both(row.value),
                 kind.both(row.limit),
-                Badge("active", "good") if row.active else Badge("not active"),
+                doc.Badge("active", "good") if row.active else doc.Badge("not active"),
                 price_text(row.name, row.shadow_price) if row.active else None,
             ]
             for kind, row in kinds
@@ -176,13 +165,13 @@ def _limits(result: FastestGait) -> Table:
     )
 
 
-def _bounds(result: FastestGait) -> Table:
+def _bounds(result: FastestGait) -> doc.Table:
     """Each decision, its range, and the shadow price of its active bound."""
     states = {
-        "low": Badge("at lower bound", "good"),
-        "high": Badge("at upper bound", "good"),
-        "fixed": Badge("fixed"),
-        None: Badge("inside"),
+        "low": doc.Badge("at lower bound", "good"),
+        "high": doc.Badge("at upper bound", "good"),
+        "fixed": doc.Badge("fixed"),
+        None: doc.Badge("inside"),
     }
     rows = []
     for row in result.bounds.values():
@@ -192,10 +181,10 @@ def _bounds(result: FastestGait) -> Table:
         if row.active in ("low", "high") and row.shadow_price is not None:
             price = price_text(row.name, row.shadow_price)
         rows.append([kind.words, kind.both(row.value), span, states[row.active], price])
-    return table(["Decision", "Value", "Range", "State", "Shadow price"], rows)
+    return doc.table(["Decision", "Value", "Range", "State", "Shadow price"], rows)
 
 
-def _optima(result: FastestGait) -> Table:
+def _optima(result: FastestGait) -> doc.Table:
     """All local optima; nothing if there is one only."""
     optimum = result.optimum
     ties = {id(one) for one in optimum.ties}
@@ -211,16 +200,16 @@ def _optima(result: FastestGait) -> Table:
         for one in optimum.optima
     ]
     head = ["Speed", "Amplitude", "Period", "Offset", "J20/J10", "Remark"]
-    return table(head, rows if len(rows) > 1 else [])
+    return doc.table(head, rows if len(rows) > 1 else [])
 
 
 _SHOWN = {"m": ("mm", 1e3), "kg m^2": ("kg m²", 1.0)}
 """SI unit -> the unit shown, and how many of it are one SI unit."""
 _SERVO = {"angle_limit": "angle", "rate_limit": "rate", "torque_limit": "torque"}
-_ORIGINS: dict[str, Tone] = {"measured": "good", "fitted": "note", "assumed": "warn"}
+_ORIGINS: dict[str, doc.Tone] = {"measured": "good", "fitted": "note", "assumed": "warn"}
 
 
-def _robot(robot: Robot, chosen: str) -> Table:
+def _robot(robot: Robot, chosen: str) -> doc.Table:
     """Every parameter of the robot, its value, and whether it was measured, fitted or assumed.
 
     chosen: key path of a value that the optimiser chose.
@@ -229,13 +218,13 @@ def _robot(robot: Robot, chosen: str) -> Table:
     for path, words, value in _parameters(robot):
         text = robot.provenance.get(path, "")
         origin = next((one for one in _ORIGINS if text.startswith(one)), "")
-        badge = Badge(origin or "not stated", _ORIGINS.get(origin, "quiet"))
+        badge = doc.Badge(origin or "not stated", _ORIGINS.get(origin, "quiet"))
         source = text.removeprefix(origin).lstrip(": ")
         if path == chosen:
-            badge, source = Badge("chosen", "note"), "by the optimiser"
+            badge, source = doc.Badge("chosen", "note"), "by the optimiser"
         # A number stays on one line with its unit.
         rows.append([path, words, value.replace(" ", "\N{NO-BREAK SPACE}"), badge, source])
-    return table(["Key", "Parameter", "Value", "Origin", "Source"], rows)
+    return doc.table(["Key", "Parameter", "Value", "Origin", "Source"], rows)
 
 
 def _parameters(robot: Robot) -> Iterator[tuple[str, str, str]]:

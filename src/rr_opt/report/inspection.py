@@ -10,21 +10,8 @@ from typing import Any
 
 import numpy as np
 
+from rr_opt.documents import document as doc
 from rr_opt.documents.archive import file_for_result, whole
-from rr_opt.documents.document import (
-    Badge,
-    Document,
-    Fact,
-    Facts,
-    Figure,
-    Section,
-    Table,
-    captioned,
-    gallery,
-    table,
-    versions,
-    warnings,
-)
 from rr_opt.documents.report import Progress, Report, quiet
 from rr_opt.formatting import counted, number, with_unit
 from rr_opt.model.experiment import Flag
@@ -65,18 +52,20 @@ CAPTIONS = {
 }
 
 
-def inspection_document(result: InspectedRecordings, figures: Sequence[Figure] = ()) -> Document:
+def inspection_document(
+    result: InspectedRecordings, figures: Sequence[doc.Figure] = ()
+) -> doc.Document:
     """Every recording with its warnings and figures."""
     found = result.recordings
     several, count = len(found) > 1, sum(len(one.doubts) for one in found)
     what = f"{len(found)} recordings" if several else "A recording"
-    sections = [Section("Recordings", (_table(found),), brief=False)] if several else []
+    sections = [doc.Section("Recordings", (_table(found),), brief=False)] if several else []
     for one in found:
-        doubts = warnings(one.doubts) if one.doubts else "No warnings."
+        doubts = doc.warnings(one.doubts) if one.doubts else "No warnings."
         own = (f for f in figures if not several or f.name.rpartition("-")[0] == stem_of(one))
-        sections.append(Section(one.name, (Facts(tuple(_facts(one))), doubts)))
-        sections.append(gallery(own))
-    return Document(
+        sections.append(doc.Section(one.name, (doc.Facts(tuple(_facts(one))), doubts)))
+        sections.append(doc.gallery(own))
+    return doc.Document(
         name=result.name,
         kind="recordings",
         title=f"{what} with {counted(count, 'warning')}" if count else f"{what} without warnings",
@@ -85,7 +74,7 @@ def inspection_document(result: InspectedRecordings, figures: Sequence[Figure] =
         else "Nothing looks wrong in what was read.",
         good=not count,
         sections=tuple(sections),
-        footer=versions(result.sha256),
+        footer=doc.versions(result.sha256),
     )
 
 
@@ -94,29 +83,29 @@ def stem_of(one: Inspection) -> str:
     return PurePath(one.name).stem
 
 
-def _facts(found: Inspection) -> Iterator[Fact]:
+def _facts(found: Inspection) -> Iterator[doc.Fact]:
     recording = found.recording
     t = recording.t
-    yield Fact("format", str(recording.source.get("format", "recording")))
+    yield doc.Fact("format", str(recording.source.get("format", "recording")))
     length, start = with_unit(float(t[-1] - t[0]), "s"), with_unit(float(t[0]), "s")
     rate = with_unit(1 / time_step(t), "Hz")
-    yield Fact("length", f"{length} from t = {start}", f"{len(recording)} samples at {rate}")
-    yield Fact("path", _path_text(found))
-    yield Fact("phi", _phi_text(found))
-    yield Fact("noise", ", ".join(_noise_text(found, name) for name in recording.channels))
+    yield doc.Fact("length", f"{length} from t = {start}", f"{len(recording)} samples at {rate}")
+    yield doc.Fact("path", _path_text(found))
+    yield doc.Fact("phi", _phi_text(found))
+    yield doc.Fact("noise", ", ".join(_noise_text(found, name) for name in recording.channels))
     sigma = {name: float(np.median(one)) for name, one in recording.sigma.items()}
-    yield Fact("sigma taken", ", ".join(f"{n} {size_text(n, s)}" for n, s in sigma.items()))
-    yield Fact("flagged", _flagged_text(found))
+    yield doc.Fact("sigma taken", ", ".join(f"{n} {size_text(n, s)}" for n, s in sigma.items()))
+    yield doc.Fact("flagged", _flagged_text(found))
     if found.markers is not None:
         fit = found.markers
-        yield Fact(
+        yield doc.Fact(
             "markers",
             f"{len(fit.bodies.labels)} on two rigid platforms, with {1e3 * fit.noise:.3g} mm of "
             "noise per coordinate",
         )
     if found.command is not None:
         fit = found.command
-        yield Fact(
+        yield doc.Fact(
             "command",
             f"phi's clock {1e3 * fit.offset:+.2f} +- {1.96e3 * fit.sigma[0]:.2g} ms, "
             f"scale {fit.scale:.4f} +- {1.96 * fit.sigma[2]:.1g}, "
@@ -124,7 +113,7 @@ def _facts(found: Inspection) -> Iterator[Fact]:
         )
     if found.synchrony is not None and found.synchrony.shift is not None:
         shift = found.synchrony.shift
-        yield Fact(
+        yield doc.Fact(
             "servo log",
             f"the command's clock is {1e3 * shift.offset:+.3f} +- {1.96e3 * shift.sigma[0]:.2g} ms "
             "ahead of the recording's: "
@@ -172,7 +161,7 @@ def _flagged_text(found: Inspection) -> str:
     return "; ".join(texts) or "nothing"
 
 
-def _table(found: Sequence[Inspection]) -> Table:
+def _table(found: Sequence[Inspection]) -> doc.Table:
     head = ["Recording", "Samples", "Length", "Noise of x", "Noise of phi", "Warnings"]
     rows = []
     for one in found:
@@ -184,21 +173,23 @@ def _table(found: Sequence[Inspection]) -> Table:
                 f"{t[-1] - t[0]:.4g} s",
                 size_text("x", noise["x"].sigma),
                 size_text("phi", noise["phi"].sigma),
-                Badge(str(count), "warn") if count else Badge("none", "good"),
+                doc.Badge(str(count), "warn") if count else doc.Badge("none", "good"),
             ]
         )
-    return table(head, rows)
+    return doc.table(head, rows)
 
 
 class _Report(Report):
-    def drawn(self, result: InspectedRecordings, progress: Progress = quiet) -> tuple[Figure, ...]:
+    def drawn(
+        self, result: InspectedRecordings, progress: Progress = quiet
+    ) -> tuple[doc.Figure, ...]:
         """Of several recordings each name begins with the file's."""
         from rr_opt.report.figures.inspection import draw
 
         several, figures = len(result.recordings) > 1, []
         for place, one in enumerate(result.recordings, 1):
             progress(f"figures {place} of {len(result.recordings)}" if several else "figures")
-            for figure in captioned(CAPTIONS, draw(one)):
+            for figure in doc.captioned(CAPTIONS, draw(one)):
                 own = {
                     "name": f"{stem_of(one)}-{figure.name}",
                     "title": f"{one.name}: {figure.title}",

@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from rr_opt.files.record import plain
 from rr_opt.model.experiment import Flag, Recording
 from rr_opt.recordings.clock_fit import ClockFit
 from rr_opt.recordings.inspection import Inspection
@@ -15,19 +14,11 @@ from rr_opt.recordings.markers.pose import MarkerFit
 from rr_opt.recordings.servo_clock import Synchrony
 from rr_opt.recordings.time_axis import time_step
 from rr_opt.results.inspection import InspectedRecordings
-from rr_opt.version import __version__
 
 
 def inspection_record(result: InspectedRecordings) -> dict[str, Any]:
     """The content of inspection.json."""
-    return plain(
-        {
-            "name": result.name,
-            "recordings": [_recording(one) for one in result.recordings],
-            "version": __version__,
-            "input_sha256": result.sha256,
-        }
-    )
+    return {"name": result.name, "recordings": [_recording(one) for one in result.recordings]}
 
 
 def travelled(recording: Recording) -> dict[str, float | None]:

@@ -10,7 +10,6 @@ from typing import Any
 from rr_opt.documents.archive import folder_for_results, remove, write_text
 from rr_opt.documents.document import Fact, facts_alone
 from rr_opt.documents.report import Progress, Report, quiet
-from rr_opt.files.record import plain
 from rr_opt.formatting import number, speed_text
 from rr_opt.report.gait import gait_facts
 from rr_opt.report.trajectory_file import netcdf_writer, trajectory_csv, write_netcdf
@@ -20,19 +19,17 @@ from rr_opt.results.motion import Film, Format, SimulatedMotion
 def record(motion: SimulatedMotion) -> dict[str, Any]:
     """Distance, turn, speed and torque, SI."""
     driven, measured = motion.trajectory, motion.measured
-    return plain(
-        {
-            "gait": motion.gait,
-            "status": motion.source_status,
-            "start": motion.start,
-            "seconds": driven.t[-1],
-            "distance": math.hypot(driven.x[-1] - driven.x[0], driven.y[-1] - driven.y[0]),
-            "turned": driven.psi[-1] - driven.psi[0],
-            "last_speed": measured.mean_v,
-            "last_circle_speed": measured.speed,
-            "peak_torque": measured.peak_torque,
-        }
-    )
+    return {
+        "gait": motion.gait,
+        "status": motion.source_status,
+        "start": motion.start,
+        "seconds": driven.t[-1],
+        "distance": math.hypot(driven.x[-1] - driven.x[0], driven.y[-1] - driven.y[0]),
+        "turned": driven.psi[-1] - driven.psi[0],
+        "last_speed": measured.mean_v,
+        "last_circle_speed": measured.speed,
+        "peak_torque": measured.peak_torque,
+    }
 
 
 def _facts(motion: SimulatedMotion) -> Iterator[Fact]:

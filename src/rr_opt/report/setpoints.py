@@ -8,7 +8,6 @@ from typing import Any
 
 from rr_opt.documents.document import Fact, facts_alone
 from rr_opt.documents.report import Report
-from rr_opt.files.record import plain
 from rr_opt.formatting import number, speed_text, with_unit
 from rr_opt.motion.setpoints import COUNT, SetPoints
 from rr_opt.report.gait import gait_facts
@@ -33,22 +32,20 @@ _STEPS = {
 def record(result: ExportedGait) -> dict[str, Any]:
     """Rate, period, and the speed lost (negative) or gained by each step, SI."""
     points, cost = result.points, result.cost
-    return plain(
-        {
-            "gait": points.gait,
-            "status": result.source_status,
-            "format": result.format,
-            "rate": points.rate,
-            "points": len(points.angles),
-            "period": points.played.period,
-            "speed": cost.nominal,
-            "speed_left": cost.final,
-            "cost": {"period": 0.0, "holding": 0.0, "rounding": None, **cost.steps},
-            "model": MODEL,
-            "file": None,
-            "version": __version__,
-        }
-    )
+    return {
+        "gait": points.gait,
+        "status": result.source_status,
+        "format": result.format,
+        "rate": points.rate,
+        "points": len(points.angles),
+        "period": points.played.period,
+        "speed": cost.nominal,
+        "speed_left": cost.final,
+        "cost": {"period": 0.0, "holding": 0.0, "rounding": None, **cost.steps},
+        "model": MODEL,
+        "file": None,
+        "version": __version__,
+    }
 
 
 def _facts(result: ExportedGait) -> Iterator[Fact]:

@@ -5,26 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from rr_opt.documents import document as doc
 from rr_opt.documents.archive import strict_json
-from rr_opt.documents.document import (
-    Badge,
-    Document,
-    Figure,
-    Section,
-    Table,
-    checks,
-    csv_text,
-    gallery,
-    table,
-    versions,
-)
 from rr_opt.documents.report import Report
 from rr_opt.files.record import plain
 from rr_opt.formatting import direction_text, number, with_unit
 from rr_opt.outcome import Status
 from rr_opt.results.fastest import FastestGait
 from rr_opt.results.shapes import FastestShapes, family
-from rr_opt.version import __version__
 
 CAPTIONS = {
     "shapes": (
@@ -46,15 +34,13 @@ def record(result: FastestShapes) -> dict[str, Any]:
             {**plain(_row(result, one)), "file": _file(one), "result": one.record()}
             for one in result.answers
         ],
-        "version": __version__,
-        "input_sha256": result.sha256,
     }
 
 
 def tables(result: FastestShapes) -> dict[str, str]:
     """shapes.csv, and the record of each family."""
     rows = [_row(result, one) for one in result.answers]
-    text = csv_text(list(rows[0]), [list(row.values()) for row in rows], digits=12)
+    text = doc.csv_text(list(rows[0]), [list(row.values()) for row in rows], digits=12)
     return {"shapes.csv": text} | {_file(o): strict_json(o.record()) for o in result.answers}
 
 
@@ -80,39 +66,39 @@ def _file(answer: FastestGait) -> str:
     return "-".join(reversed(family(answer).replace("harmonics", "fourier").split())) + ".json"
 
 
-def document(result: FastestShapes, figures: Sequence[Figure] = ()) -> Document:
+def document(result: FastestShapes, figures: Sequence[doc.Figure] = ()) -> doc.Document:
     """The families side by side, and every check."""
     results = [(family(one), check) for one in result.answers for check in one.checks]
     passed = sum(check.passed for _, check in results)
-    every = checks((check.passed, f"{name}: {check.sentence}") for name, check in results)
+    every = doc.checks((check.passed, f"{name}: {check.sentence}") for name, check in results)
     count = f"{passed} of {len(results)} passed: replay, limits, and a sweep of all sines."
     title = "Shapes of gait"
     if len(result.solved) > 1:
         gain = result.gain(result.solved[-1]) or 0.0
         title = f"A free gait is {100 * gain:.0f} % faster than the best sine"
-    return Document(
+    return doc.Document(
         name=result.name,
         kind="shapes of gait",
         title=title,
         lead=result.message,
         good=result.status is Status.OPTIMAL,
         sections=(
-            gallery(figures),
-            Section("Families", (_families(result),)),
-            Section("Checks", (count,)),
-            Section("", (every,), brief=False),
+            doc.gallery(figures),
+            doc.Section("Families", (_families(result),)),
+            doc.Section("Checks", (count,)),
+            doc.Section("", (every,), brief=False),
         ),
-        footer=versions(result.sha256),
+        footer=doc.versions(result.sha256),
     )
 
 
-def _families(result: FastestShapes) -> Table:
+def _families(result: FastestShapes) -> doc.Table:
     head = ["Shape", "Speed", "Over the sine", "Amplitude", "Period", "J20/J10", "Limited by"]
     rows = []
     for one in result.answers:
         gait, speed, gain = one.gait, one.speed, result.gain(one)
         if gait is None or speed is None or one.status is not Status.OPTIMAL:
-            rows.append([family(one), Badge(one.status.words), *[None] * 5])
+            rows.append([family(one), doc.Badge(one.status.words), *[None] * 5])
             continue
         rows.append(
             [
@@ -125,7 +111,7 @@ def _families(result: FastestShapes) -> Table:
                 ", ".join(one.active) or "no limit",
             ]
         )
-    return table(head, rows)
+    return doc.table(head, rows)
 
 
 REPORT = Report(

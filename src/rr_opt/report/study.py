@@ -9,26 +9,13 @@ from typing import Any
 
 import numpy as np
 
-from rr_opt.documents.document import (
-    Badge,
-    Document,
-    Fact,
-    Facts,
-    Figure,
-    Section,
-    Table,
-    gallery,
-    table,
-    versions,
-)
+from rr_opt.documents import document as doc
 from rr_opt.documents.report import Report
-from rr_opt.files.record import plain
 from rr_opt.formatting import direction_text, number, speed_text, with_unit
 from rr_opt.outcome import Status
 from rr_opt.report.study_table import study_columns, study_csv, write_netcdf
 from rr_opt.report.trajectory_file import netcdf_writer
 from rr_opt.results.study import SolvedStudy
-from rr_opt.version import __version__
 
 CAPTIONS = {
     "speed": (
@@ -65,31 +52,27 @@ def study_record(result: SolvedStudy) -> dict[str, Any]:
     """The content of study.json, SI: the table's columns row by row, and the gaits."""
     columns = study_columns(result)
     cases = ({c.name: c.cells[k] for c in columns} for k in range(len(result.rows)))
-    return plain(
-        {
-            "status": "studied",
-            "message": result.message,
-            "study": result.study.name,
-            "counts": {status.value: count for status, count in result.counts.items()},
-            "varied": [[line.key.name for line in axis.lines] for axis in result.study.axes],
-            "shape": result.study.shape,
-            "pareto": {name: result.front(name) for name in COSTS},
-            "cases": [
-                {
-                    **record,
-                    "gait": dict(row.optimum.gait) if row.optimum else None,
-                    "continued_from": row.continued,
-                }
-                for record, row in zip(cases, result.rows, strict=True)
-            ],
-            "units": {column.name: column.unit for column in columns if column.unit},
-            "version": __version__,
-            "input_sha256": result.study.sha256,
-        }
-    )
+    return {
+        "status": "studied",
+        "message": result.message,
+        "study": result.study.name,
+        "counts": {status.value: count for status, count in result.counts.items()},
+        "varied": [[line.key.name for line in axis.lines] for axis in result.study.axes],
+        "shape": result.study.shape,
+        "pareto": {name: result.front(name) for name in COSTS},
+        "cases": [
+            {
+                **record,
+                "gait": dict(row.optimum.gait) if row.optimum else None,
+                "continued_from": row.continued,
+            }
+            for record, row in zip(cases, result.rows, strict=True)
+        ],
+        "units": {column.name: column.unit for column in columns if column.unit},
+    }
 
 
-def study_document(result: SolvedStudy, figures: Sequence[Figure] = ()) -> Document:
+def study_document(result: SolvedStudy, figures: Sequence[doc.Figure] = ()) -> doc.Document:
     """What was found, in figures and tables."""
     speed, cases = 1e3 * result.speed, len(result.rows)
     good = result.fastest is not None
@@ -97,19 +80,19 @@ def study_document(result: SolvedStudy, figures: Sequence[Figure] = ()) -> Docum
     if good:
         title = f"{cases} cases, from {np.nanmin(speed):.1f} to {np.nanmax(speed):.1f} mm/s"
     shown = min(cases, _MOST_ROWS)
-    return Document(
+    return doc.Document(
         name=result.study.name,
         kind="study",
         title=title,
         lead=" ".join([result.message, *result.warnings]),
         good=good,
         sections=(
-            Section("", (Facts(_key_facts(result), key=True),), brief=False),
-            Section("", (Facts(tuple(_facts(result))),)),
-            gallery(figures),
-            Section("Fastest for their cost", (_front_table(result),), brief=False),
-            Section("Cases without an optimum", (_failures(result),), brief=False),
-            Section(
+            doc.Section("", (doc.Facts(_key_facts(result), key=True),), brief=False),
+            doc.Section("", (doc.Facts(tuple(_facts(result))),)),
+            doc.gallery(figures),
+            doc.Section("Fastest for their cost", (_front_table(result),), brief=False),
+            doc.Section("Cases without an optimum", (_failures(result),), brief=False),
+            doc.Section(
                 "All cases" if shown == cases else f"The first {shown} cases",
                 (_cases_table(result, range(shown)),),
                 brief=False,
@@ -118,63 +101,63 @@ def study_document(result: SolvedStudy, figures: Sequence[Figure] = ()) -> Docum
         footer=(
             "Each optimum was checked against its limits and a fine simulation; `rr-opt "
             "maximize-speed` checks a case against a sweep too.",
-            *versions(result.study.sha256),
+            *doc.versions(result.study.sha256),
         ),
     )
 
 
-def _facts(result: SolvedStudy) -> Iterator[Fact]:
+def _facts(result: SolvedStudy) -> Iterator[doc.Fact]:
     rows, shape = result.rows, " x ".join(map(str, result.study.shape))
     ended = ", ".join(f"{count} {status.words}" for status, count in result.counts.items() if count)
     started = Counter(row.started for row in rows)
-    yield Fact("cases", f"{shape} = {len(rows)}", ended)
-    yield Fact("branches", str(len({one for one in result.branches if one})))
-    yield Fact("solved from", ", ".join(f"{n} {how}" for how, n in started.items()))
+    yield doc.Fact("cases", f"{shape} = {len(rows)}", ended)
+    yield doc.Fact("branches", str(len({one for one in result.branches if one})))
+    yield doc.Fact("solved from", ", ".join(f"{n} {how}" for how, n in started.items()))
     best = result.fastest
     optimum = rows[best].optimum if best is not None else None
     if best is None or optimum is None:
         return
     gait = f"{with_unit(optimum.amplitude, 'rad')}, {with_unit(optimum.period, 's')}"
-    yield Fact("fastest", speed_text(optimum.speed), result.inputs_text(best))
-    yield Fact("", gait, f"limited by {', '.join(optimum.held) or 'nothing'}")
+    yield doc.Fact("fastest", speed_text(optimum.speed), result.inputs_text(best))
+    yield doc.Fact("", gait, f"limited by {', '.join(optimum.held) or 'nothing'}")
     least = int(np.nanargmin(result.values("cost_of_transport")))
     cheap = rows[least].optimum
     if cheap:
         text = f"{number(cheap.energy_per_metre)} J/m, {1e3 * abs(cheap.speed):.1f} mm/s"
-        yield Fact("least energy", text, result.inputs_text(least))
+        yield doc.Fact("least energy", text, result.inputs_text(least))
 
 
-def _key_facts(result: SolvedStudy) -> tuple[Fact, ...]:
+def _key_facts(result: SolvedStudy) -> tuple[doc.Fact, ...]:
     counts, least = result.counts, result.values("cost_of_transport")
     cold = sum(row.started != "warm" for row in result.rows)
     cost = "–" if np.isnan(least).all() else number(float(np.nanmin(least)), 3)
     return (
-        Fact(f"of {len(result.rows)} cases have an optimum", str(counts[Status.OPTIMAL])),
-        Fact("have no feasible gait", str(counts[Status.INFEASIBLE])),
-        Fact("did not converge", str(counts[Status.NOT_CONVERGED])),
-        Fact("branches of optima", str(len({one for one in result.branches if one}))),
-        Fact("cases checked from cold starts", str(cold)),
-        Fact("least cost of transport", cost),
+        doc.Fact(f"of {len(result.rows)} cases have an optimum", str(counts[Status.OPTIMAL])),
+        doc.Fact("have no feasible gait", str(counts[Status.INFEASIBLE])),
+        doc.Fact("did not converge", str(counts[Status.NOT_CONVERGED])),
+        doc.Fact("branches of optima", str(len({one for one in result.branches if one}))),
+        doc.Fact("cases checked from cold starts", str(cold)),
+        doc.Fact("least cost of transport", cost),
     )
 
 
-def _front_table(result: SolvedStudy) -> Table:
+def _front_table(result: SolvedStudy) -> doc.Table:
     """The cases that are on a front, the fastest first."""
     fronts = [result.front(name) for name in COSTS]
     cases = sorted({case for found in fronts for case in found}, key=lambda k: -result.speed[k])
     return _cases_table(result, cases[:20])
 
 
-def _failures(result: SolvedStudy) -> Table:
+def _failures(result: SolvedStudy) -> doc.Table:
     rows = [
-        [result.inputs_text(case), Badge(row.status.words), row.message]
+        [result.inputs_text(case), doc.Badge(row.status.words), row.message]
         for case, row in enumerate(result.rows)
         if row.optimum is None
     ]
-    return table(["Case", "Status", "Why"], rows[:_MOST_ROWS])
+    return doc.table(["Case", "Status", "Why"], rows[:_MOST_ROWS])
 
 
-def _cases_table(result: SolvedStudy, cases: Iterable[int]) -> Table:
+def _cases_table(result: SolvedStudy, cases: Iterable[int]) -> doc.Table:
     head = ["Case", "Speed", "Amplitude", "Period", "Torque", "Energy", "Limited by", "Branch"]
     rows = []
     for case in cases:
@@ -195,7 +178,7 @@ def _cases_table(result: SolvedStudy, cases: Iterable[int]) -> Table:
                 str(result.branches[case]),
             ]
         )
-    return table(head, rows)
+    return doc.table(head, rows)
 
 
 def check_files(*, netcdf: bool) -> None:

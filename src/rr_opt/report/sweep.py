@@ -5,24 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from rr_opt.documents.document import (
-    Document,
-    Fact,
-    Facts,
-    Figure,
-    Section,
-    csv_text,
-    gallery,
-    versions,
-)
+from rr_opt.documents import document as doc
 from rr_opt.documents.report import Report
-from rr_opt.files.record import plain
 from rr_opt.formatting import number, with_unit
 from rr_opt.report.gait import gait_facts, speed_fact
 from rr_opt.results.sweep import Sweep
 from rr_opt.verify.evaluate import LIMITS, Found
 from rr_opt.verify.grid import DECISIONS
-from rr_opt.version import __version__
 
 CAPTIONS = {
     "sweep": (
@@ -37,20 +26,16 @@ CAPTIONS = {
 def record(result: Sweep) -> dict[str, Any]:
     """The content of sweep.json. status: `swept`, as a sweep proves no optimum."""
     found = result.found
-    return plain(
-        {
-            "status": "swept" if result.best else result.status.value,
-            "message": result.message,
-            "problem": result.name,
-            "points": found.points,
-            "feasible": found.found.feasible.sum(),
-            "failed": found.found.failed,
-            "best": _found(result.best),
-            "best_of_grid": _found(found.best),
-            "version": __version__,
-            "input_sha256": result.sha256,
-        }
-    )
+    return {
+        "status": "swept" if result.best else result.status.value,
+        "message": result.message,
+        "problem": result.name,
+        "points": found.points,
+        "feasible": found.found.feasible.sum(),
+        "failed": found.found.failed,
+        "best": _found(result.best),
+        "best_of_grid": _found(found.best),
+    }
 
 
 def _found(one: Found | None) -> dict[str, Any] | None:
@@ -72,30 +57,30 @@ def tables(result: Sweep) -> dict[str, str]:
     kept = [found.keeps[name].astype(int) for name in LIMITS]
     columns = [*found.decisions, found.speed, found.peak_torque, *kept]
     rows = zip(*(column.tolist() for column in columns), strict=True)
-    return {"sweep.csv": csv_text(names, rows)}
+    return {"sweep.csv": doc.csv_text(names, rows)}
 
 
-def document(result: Sweep, figures: Sequence[Figure] = ()) -> Document:
+def document(result: Sweep, figures: Sequence[doc.Figure] = ()) -> doc.Document:
     """The best gait and the grid."""
     best, grid = result.best, result.found.found
-    facts: list[Fact] = []
+    facts: list[doc.Fact] = []
     if best:
         ratio = "the robot as it is" if best.ratio is None else number(best.ratio)
         facts = [
             *gait_facts(best.gait),
-            Fact("J20/J10", ratio),
+            doc.Fact("J20/J10", ratio),
             speed_fact(best.speed),
-            Fact("torque", f"{with_unit(best.peak_torque, 'N m')} at most"),
+            doc.Fact("torque", f"{with_unit(best.peak_torque, 'N m')} at most"),
         ]
     kept = f"{len(grid.speed)} gaits, of which {int(grid.feasible.sum())} respect all limits"
-    return Document(
+    return doc.Document(
         result.name,
         "sweep",
         result.message if best else "No gait respects every limit",
         "" if best else result.message,
-        (Section("", (Facts((*facts, Fact("grid", kept))),)), gallery(figures)),
+        (doc.Section("", (doc.Facts((*facts, doc.Fact("grid", kept))),)), doc.gallery(figures)),
         good=best is not None,
-        footer=versions(result.sha256),
+        footer=doc.versions(result.sha256),
     )
 
 

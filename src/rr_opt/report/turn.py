@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import Any
 
 from rr_opt.design.turn import Arc
-from rr_opt.documents.document import Document, Fact, Facts, Figure, Section
+from rr_opt.documents import document as doc
 from rr_opt.files.record import plain
 from rr_opt.formatting import number, side_text, with_unit
 from rr_opt.report import fastest
@@ -24,10 +24,10 @@ UNITS = {
 }
 
 
-def turn_document(turn: FastestTurn, figures: Sequence[Figure] = ()) -> Document:
+def turn_document(turn: FastestTurn, figures: Sequence[doc.Figure] = ()) -> doc.Document:
     """The report of a fastest gait, with its arc."""
     facts = tuple(_facts(turn, turn.arc)) if turn.arc else ()
-    return fastest.fastest_document(turn, figures, Section("Turn", (Facts(facts),)))
+    return fastest.fastest_document(turn, figures, doc.Section("Turn", (doc.Facts(facts),)))
 
 
 def turn_record(turn: FastestTurn) -> dict[str, Any]:
@@ -58,16 +58,16 @@ def turn_record(turn: FastestTurn) -> dict[str, Any]:
     return record | {"turn": plain(own), "units": {**record["units"], **UNITS}}
 
 
-def _facts(turn: FastestTurn, arc: Arc) -> Iterator[Fact]:
+def _facts(turn: FastestTurn, arc: Arc) -> Iterator[doc.Fact]:
     """The arc, or the full circle, and what a slightly easier turn would gain."""
     name = "circle" if turn.target.heading is None else "arc"
     degrees = abs(math.degrees(arc.heading))
-    yield Fact(name, f"{number(degrees)} deg to the {side_text(arc.heading)}")
-    yield Fact("radius", with_unit(turn.radius or math.inf, "m"))
+    yield doc.Fact(name, f"{number(degrees)} deg to the {side_text(arc.heading)}")
+    yield doc.Fact("radius", with_unit(turn.radius or math.inf, "m"))
     periods = f"{number(arc.periods, 6)} periods, steady motion"
-    yield Fact("time", with_unit(arc.time, "s"), periods)
-    yield Fact("length", f"{with_unit(arc.length, 'm')} along the mean circle")
-    yield Fact("yaw rate", f"{number(math.degrees(arc.yaw_rate))} deg/s")
+    yield doc.Fact("time", with_unit(arc.time, "s"), periods)
+    yield doc.Fact("length", f"{with_unit(arc.length, 'm')} along the mean circle")
+    yield doc.Fact("yaw rate", f"{number(math.degrees(arc.yaw_rate))} deg/s")
     asked = {
         "curvature": (arc.curvature, "a radius 1 % wider"),
         "yaw_rate": (arc.yaw_rate, "a yaw rate 1 % lower"),
@@ -77,7 +77,7 @@ def _facts(turn: FastestTurn, arc: Arc) -> Iterator[Fact]:
         value, words = asked[name]
         gain = -0.01 * value * price
         if abs(gain) > 1e-9:
-            yield Fact("price", f"{1e3 * gain:+.3g} mm/s for {words}")
+            yield doc.Fact("price", f"{1e3 * gain:+.3g} mm/s for {words}")
 
 
 REPORT = replace(fastest.REPORT, record=turn_record, document=turn_document)

@@ -8,23 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from rr_opt.documents.document import (
-    Document,
-    Fact,
-    Facts,
-    Figure,
-    Section,
-    csv_text,
-    gallery,
-    versions,
-)
+from rr_opt.documents import document as doc
 from rr_opt.documents.report import Report
 from rr_opt.files.record import plain
 from rr_opt.formatting import number, with_unit
 from rr_opt.report.gait import speed_fact
 from rr_opt.results.turn_chart import TurnChart, sine_text
 from rr_opt.verify.turn_chart import RadiusClaim, SignClaim
-from rr_opt.version import __version__
 
 CAPTIONS = {
     "turn-chart": (
@@ -44,19 +34,14 @@ COLUMNS = (
 def record(chart: TurnChart) -> dict[str, Any]:
     """The content of turn-chart.json."""
     sign, radius = chart.sign, chart.radius
-    return plain(
-        {
-            "status": "charted" if chart.tight else chart.status.value,
-            "message": chart.message,
-            "problem": chart.name,
-            "tightest": chart.tight,
-            "sign_claim": {"holds": sign.holds, "holds_each_way": sign.holds_each_way}
-            | plain(sign),
-            "radius_claim": {"holds": radius.holds, **plain(radius)},
-            "version": __version__,
-            "input_sha256": chart.sha256,
-        }
-    )
+    return {
+        "status": "charted" if chart.tight else chart.status.value,
+        "message": chart.message,
+        "problem": chart.name,
+        "tightest": chart.tight,
+        "sign_claim": {"holds": sign.holds, "holds_each_way": sign.holds_each_way} | plain(sign),
+        "radius_claim": {"holds": radius.holds, **plain(radius)},
+    }
 
 
 def tables(chart: TurnChart) -> dict[str, str]:
@@ -76,33 +61,33 @@ def tables(chart: TurnChart) -> dict[str, str]:
         for here, there in zip(parts, mirror, strict=True)
     ]
     rows = zip(*(part.tolist() for part in both), strict=True)
-    return {"turn-chart.csv": csv_text(COLUMNS, rows)}
+    return {"turn-chart.csv": doc.csv_text(COLUMNS, rows)}
 
 
-def document(chart: TurnChart, figures: Sequence[Figure] = ()) -> Document:
+def document(chart: TurnChart, figures: Sequence[doc.Figure] = ()) -> doc.Document:
     """The tightest circle, and the paper's claim on the offset."""
     tight = chart.tight
-    facts: tuple[Section, ...] = ()
+    facts: tuple[doc.Section, ...] = ()
     if tight:
         circle = f"{with_unit(tight.radius, 'm')} by {sine_text(tight.gait)}"
-        tightest = Facts((Fact("tightest", circle), speed_fact(tight.speed)))
+        tightest = doc.Facts((doc.Fact("tightest", circle), speed_fact(tight.speed)))
         facts = (
-            Section("", (tightest,)),
-            Section("The sign of the offset sets the side", (_sign_facts(chart.sign),)),
-            Section("A larger offset makes a smaller radius", (_radius_facts(chart.radius),)),
+            doc.Section("", (tightest,)),
+            doc.Section("The sign of the offset sets the side", (_sign_facts(chart.sign),)),
+            doc.Section("A larger offset makes a smaller radius", (_radius_facts(chart.radius),)),
         )
-    return Document(
+    return doc.Document(
         chart.name,
         "turn chart",
         chart.message if tight else "No gait that turns respects every limit",
         "" if tight else chart.message,
-        (*facts, gallery(figures)),
+        (*facts, doc.gallery(figures)),
         good=tight is not None,
-        footer=versions(chart.sha256),
+        footer=doc.versions(chart.sha256),
     )
 
 
-def _sign_facts(claim: SignClaim) -> Facts:
+def _sign_facts(claim: SignClaim) -> doc.Facts:
     verdict = (
         f"holds for all {claim.gaits} gaits"
         if claim.holds
@@ -110,29 +95,29 @@ def _sign_facts(claim: SignClaim) -> Facts:
     )
     forward = f"{claim.forward_left} left, {claim.forward_right} right at offsets above 0"
     facts = [
-        Fact("verdict", verdict),
-        Fact("forward", forward),
-        Fact("backward", f"{claim.backward_left} left, {claim.backward_right} right"),
+        doc.Fact("verdict", verdict),
+        doc.Fact("forward", forward),
+        doc.Fact("backward", f"{claim.backward_left} left, {claim.backward_right} right"),
     ]
     if claim.exception:
-        facts.append(Fact("first at", sine_text(claim.exception)))
-    return Facts(tuple(facts))
+        facts.append(doc.Fact("first at", sine_text(claim.exception)))
+    return doc.Facts(tuple(facts))
 
 
-def _radius_facts(claim: RadiusClaim) -> Facts:
+def _radius_facts(claim: RadiusClaim) -> doc.Facts:
     curves = f"{claim.curves} curves of one amplitude and period"
     if claim.first is None or claim.worst is None:
-        return Facts((Fact("verdict", f"holds on all {curves}"),))
+        return doc.Facts((doc.Fact("verdict", f"holds on all {curves}"),))
     most = (
         "grows without bound to a straight line, where the turn changes sides"
         if math.isinf(claim.factor)
         else f"reaches {number(claim.factor)} times its least"
     )
-    return Facts(
+    return doc.Facts(
         (
-            Fact("verdict", f"fails on {claim.growing} of {curves}"),
-            Fact("first at", sine_text(claim.first)),
-            Fact("worst", f"the radius {most}, by {sine_text(claim.worst)}"),
+            doc.Fact("verdict", f"fails on {claim.growing} of {curves}"),
+            doc.Fact("first at", sine_text(claim.first)),
+            doc.Fact("worst", f"the radius {most}, by {sine_text(claim.worst)}"),
         )
     )
 

@@ -100,7 +100,7 @@ class Result:
 
     def record(self, files: Sequence[Path] = ()) -> dict[str, Any]:
         """The result as plain data, SI: the content of its JSON file."""
-        return self.report.record(self)
+        return self.report.stamped(self)
 
     def document(self, figures: Sequence[Figure] = ()) -> Document:
         """The result as a report, from which the page and the text are made."""

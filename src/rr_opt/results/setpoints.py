@@ -64,11 +64,6 @@ class ExportedGait(GaitResult):
         return [write_text(file_for_result(Path(path)), self.text)]
 
 
-def setpoints_file(path: Path | None, name: str, format: Format) -> Path:
-    """The file of set points: `path`, or out/NAME-... Raises InputError if it cannot be written."""
-    return file_for_result(path or Path("out") / f"{name}{ENDINGS[format]}")
-
-
 def text_of(points: SetPoints, format: Format) -> str:
     """The content of the file: a row for each set point, t (s) with phi (rad), phi_deg (degrees) or
     the count, 512 where phi is 0; or an array for C.

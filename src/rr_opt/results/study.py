@@ -55,6 +55,16 @@ class SolvedStudy(Result):
     study: Study
     rows: tuple[Row, ...]
 
+    @property
+    def name(self) -> str:
+        """Of the study."""
+        return self.study.name
+
+    @property
+    def sha256(self) -> str:
+        """The fingerprint of its files."""
+        return self.study.sha256
+
     @cached_property
     def branches(self) -> tuple[int | None, ...]:
         """The number of each case's branch of optima, or None."""

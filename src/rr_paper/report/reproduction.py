@@ -9,8 +9,6 @@ import numpy as np
 
 from rr_opt.documents.document import Document, Figure, Gallery, Section, csv_text, versions
 from rr_opt.documents.report import Report
-from rr_opt.files.record import plain
-from rr_opt.version import __version__
 from rr_paper.publication import CITATION, RATE_LIMIT
 from rr_paper.report.audit import findings
 from rr_paper.reproduction import Reproduction
@@ -140,17 +138,13 @@ def record(found: Reproduction) -> dict[str, Any]:
         }
         for one in findings(found)
     }
-    return plain(
-        {
-            "status": "reproduced",
-            "message": document(found).lead,
-            "paper": CITATION,
-            "mujoco_speed": found.mujoco,
-            "sections": sections,
-            "version": __version__,
-            "input_sha256": found.sha256,
-        }
-    )
+    return {
+        "status": "reproduced",
+        "message": document(found).lead,
+        "paper": CITATION,
+        "mujoco_speed": found.mujoco,
+        "sections": sections,
+    }
 
 
 def tables(found: Reproduction) -> dict[str, str]:

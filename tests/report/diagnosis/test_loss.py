@@ -12,7 +12,6 @@ from rr_opt.model.problem import GaitBounds, Limits, Problem
 from rr_opt.model.robot import EffectUse
 from rr_opt.motion.rollout import rollout
 from rr_opt.report.diagnosis.loss import loss_sentences, share_lost
-from rr_opt.report.diagnosis.record import record
 from rr_opt.results.corrected_robot import corrected_robot, servo_made
 from rr_opt.results.loss import Loss, LossUnknown, loss_of
 from rr_opt.verify.sweep import sweep
@@ -90,10 +89,10 @@ def test_a_servo_that_was_seen_to_be_slow_gets_gaits_it_can_make(missing):
 
 
 def test_the_record_has_it(missing, consistent, unexplained):
-    told = record(missing)["loss"]
+    told = missing.record()["loss"]
     assert told["share_lost"] == pytest.approx(1 - told["speed_reached"] / told["speed_as_found"])
-    assert record(consistent)["loss"] is None
-    assert "no name" in record(unexplained)["loss"]["not_told"]
+    assert consistent.record()["loss"] is None
+    assert "no name" in unexplained.record()["loss"]["not_told"]
 
 
 def test_a_gait_that_drives_the_robot_the_other_way_loses_more_than_all():

@@ -5,20 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from rr_opt.documents.document import (
-    Chain,
-    Document,
-    Fact,
-    Facts,
-    Figure,
-    Gallery,
-    Section,
-    Step,
-    versions,
-    warnings,
-)
+from rr_opt.documents import document as doc
 from rr_opt.documents.report import Progress, Report, quiet
 from rr_opt.files.record import robot_yaml
+from rr_opt.report.diagnosis import words
 from rr_opt.report.diagnosis.loss import share_lost
 from rr_opt.report.diagnosis.record import record
 from rr_opt.report.diagnosis.summary import summary
@@ -28,15 +18,6 @@ from rr_opt.report.diagnosis.tables import (
     misfit_table,
     parameters_table,
     recordings_table,
-)
-from rr_opt.report.diagnosis.words import (
-    candidate_words,
-    headline,
-    remainder_text,
-    share_text,
-    size_text,
-    stage_words,
-    value_text,
 )
 from rr_opt.results.diagnosis import ExplainedExperiment
 from rr_opt.results.loss import Loss, LossUnknown
@@ -52,33 +33,37 @@ _PLACES = (
 """Where an effect can act, upstream first."""
 
 
-def diagnosis_document(one: ExplainedExperiment, figures: Sequence[Figure] = ()) -> Document:
+def diagnosis_document(
+    one: ExplainedExperiment, figures: Sequence[doc.Figure] = ()
+) -> doc.Document:
     """The report of a diagnosis."""
     found, loss = one.found, one.loss
     steps = ", ".join(f"{step} {time:.1f} s" for step, time in found.seconds.items())
-    return Document(
+    return doc.Document(
         name=one.name,
         kind="diagnosis",
-        title=headline(found),
+        title=words.headline(found),
         lead=found.summary,
         good=found.verdict == "consistent",
         sections=(
-            Section("Where it goes wrong", (chain(one), chain_note(one))),
-            Section("", (Facts(tuple(_key_facts(one)), key=True),)),
-            Section("", (Gallery(tuple(figures)),)),
-            Section("What was found", (effects_table(one),)),
-            Section(
+            doc.Section("Where it goes wrong", (chain(one), chain_note(one))),
+            doc.Section("", (doc.Facts(tuple(_key_facts(one)), key=True),)),
+            doc.Section("", (doc.Gallery(tuple(figures)),)),
+            doc.Section("What was found", (effects_table(one),)),
+            doc.Section(
                 "What the wrong model would cost",
                 (loss.sentence if isinstance(loss, LossUnknown) else "",),
             ),
-            Section("What remains open, and what to record next", tuple(_open(one))),
-            Section("What was tried", (candidates_table(one),)),
-            Section("The robot's parameters", (parameters_table(one),)),
-            Section("Misfit by channel, before → after, σ", (misfit_table(one),)),
-            Section("Recordings", (recordings_table(one), warnings((*one.left_out, *one.doubts)))),
+            doc.Section("What remains open, and what to record next", tuple(_open(one))),
+            doc.Section("What was tried", (candidates_table(one),)),
+            doc.Section("The robot's parameters", (parameters_table(one),)),
+            doc.Section("Misfit by channel, before → after, σ", (misfit_table(one),)),
+            doc.Section(
+                "Recordings", (recordings_table(one), doc.warnings((*one.left_out, *one.doubts)))
+            ),
         ),
         footer=(
-            *versions(one.sha256),
+            *doc.versions(one.sha256),
             steps,
             "the corrected robot is in `robot-corrected.yaml`, all numbers in `diagnosis.json`",
         ),
@@ -92,22 +77,22 @@ _STATES = {
 }
 
 
-def chain(one: ExplainedExperiment) -> Chain:
+def chain(one: ExplainedExperiment) -> doc.Chain:
     """The stages; without tests of them, where the accepted effect acts."""
     stages, channel = one.found.stages, one.found.channel
     if stages:
-        words = zip(stages, stage_words(stages), strict=True)
-        return Chain(
+        marked = zip(stages, words.stage_words(stages), strict=True)
+        return doc.Chain(
             tuple(
-                Step(stage.name.replace("_", " "), *_STATES[word], size_text(stage))
-                for stage, word in words
+                doc.Step(stage.name.replace("_", " "), *_STATES[word], words.size_text(stage))
+                for stage, word in marked
             )
         )
-    return Chain(
+    return doc.Chain(
         tuple(
-            Step(name, "fault", "✗ the effect acts here")
+            doc.Step(name, "fault", "✗ the effect acts here")
             if channel in channels
-            else Step(name, "untested", "–")
+            else doc.Step(name, "untested", "–")
             for name, channels in _PLACES
         )
     )
@@ -130,19 +115,19 @@ def chain_note(one: ExplainedExperiment) -> str:
 _SIGMA = "σ: one standard deviation of the noise."
 
 
-def _key_facts(one: ExplainedExperiment) -> Iterator[Fact]:
+def _key_facts(one: ExplainedExperiment) -> Iterator[doc.Fact]:
     found = one.found
-    yield Fact("misfit before", f"{found.before:.2f} σ", one.proven_on)
-    yield Fact("misfit now", f"{found.after:.2f} σ", "in units of the noise")
+    yield doc.Fact("misfit before", f"{found.before:.2f} σ", one.proven_on)
+    yield doc.Fact("misfit now", f"{found.after:.2f} σ", "in units of the noise")
     for finding in found.findings[:3]:
         if found.verdict == "missing_physics":
-            name = candidate_words([finding.name])
-            yield Fact("of the mismatch explained by", share_text(finding), name)
+            name = words.candidate_words([finding.name])
+            yield doc.Fact("of the mismatch explained by", words.share_text(finding), name)
         for name, each in list(finding.parameters.items())[:2]:
-            value, _, interval = value_text(each).partition(" [")
-            yield Fact(name, value, f"95 %: {interval.rstrip(']')}")
+            value, _, interval = words.value_text(each).partition(" [")
+            yield doc.Fact(name, value, f"95 %: {interval.rstrip(']')}")
     if isinstance(one.loss, Loss):
-        yield Fact(
+        yield doc.Fact(
             "of the speed lost", share_lost(one.loss), "by the best gait of the nominal model"
         )
 
@@ -150,10 +135,10 @@ def _key_facts(one: ExplainedExperiment) -> Iterator[Fact]:
 def _open(one: ExplainedExperiment) -> Iterator[str]:
     found = one.found
     for group in found.indistinguishable:
-        names = " from ".join(candidate_words([name]) for name in group)
+        names = " from ".join(words.candidate_words([name]) for name in group)
         yield f"These recordings cannot distinguish {names}."
     if found.verdict != "consistent":
-        yield f"Remainder: {remainder_text(found.remainder)}. {found.remainder.matters}"
+        yield f"Remainder: {words.remainder_text(found.remainder)}. {found.remainder.matters}"
     yield from (each.sentence for each in found.residue)
     if found.next_experiment is not None:
         yield found.next_experiment.sentence
@@ -187,7 +172,7 @@ ROBOT = "robot-corrected.yaml"
 
 def robot_file(one: ExplainedExperiment) -> dict[str, str]:
     """The corrected robot as a robot file."""
-    title = f"{headline(one.found)}.\nFrom {one.name} by rr-opt {__version__} diagnose."
+    title = f"{words.headline(one.found)}.\nFrom {one.name} by rr-opt {__version__} diagnose."
     return {ROBOT: robot_yaml(one.corrected_robot, title)}
 
 
@@ -196,14 +181,16 @@ class _Report(Report):
         """The summary."""
         return summary(result, files)
 
-    def drawn(self, result: ExplainedExperiment, progress: Progress = quiet) -> tuple[Figure, ...]:
+    def drawn(
+        self, result: ExplainedExperiment, progress: Progress = quiet
+    ) -> tuple[doc.Figure, ...]:
         """The figures, each with the caption that was drawn for it."""
         progress("figures")
         from rr_opt.report.figures.diagnosis import draw
 
         drawn = draw(result)
         return tuple(
-            Figure(name, title, drawn[name][0], alt, drawn[name][1])
+            doc.Figure(name, title, drawn[name][0], alt, drawn[name][1])
             for name, (title, alt, _) in self.captions.items()
             if name in drawn
         )

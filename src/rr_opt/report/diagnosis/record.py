@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from rr_opt.files.record import plain
 from rr_opt.model.gait import Gait
 from rr_opt.results.diagnosis import ExplainedExperiment
 from rr_opt.results.loss import Loss, LossUnknown
@@ -21,43 +20,38 @@ from rr_opt.sysid.diagnosis import (
     Stage,
     Tried,
 )
-from rr_opt.version import __version__
 
 
 def record(one: ExplainedExperiment) -> dict[str, Any]:
     """The whole of `diagnosis.json`; what is not finite is null."""
     found = one.found
-    return plain(
-        {
-            "name": one.name,
-            "verdict": found.verdict,
-            "summary": found.summary,
-            "mismatch": {"rms_beyond_noise": found.mismatch.rms, "p_value": found.mismatch.p_value},
-            "location": {
-                "channel": found.channel,
-                "where": one.where,
-                "evidence": [_evidence(stage) for stage in found.stages],
-            },
-            "effects": [_finding(each, found.verdict == "parameters") for each in found.findings],
-            "candidates": _candidates(found.tried),
-            "remainder": found.remainder,
-            "indistinguishable": found.indistinguishable,
-            "next_experiment": found.next_experiment and _next(found.next_experiment),
-            "fit": _fit(one),
-            "loss": loss_record(one.loss),
-            "residue": [
-                {"kind": r.kind, **_curve(r), "share": r.share, "sentence": r.sentence}
-                for r in found.residue
-            ],
-            "parameters": {name: _estimate(each) for name, each in found.parameters.items()},
-            "values": found.values,
-            "left_out": one.left_out,
-            "doubts": one.doubts,
-            "seconds": found.seconds,
-            "version": __version__,
-            "input_sha256": one.sha256,
-        }
-    )
+    return {
+        "name": one.name,
+        "verdict": found.verdict,
+        "summary": found.summary,
+        "mismatch": {"rms_beyond_noise": found.mismatch.rms, "p_value": found.mismatch.p_value},
+        "location": {
+            "channel": found.channel,
+            "where": one.where,
+            "evidence": [_evidence(stage) for stage in found.stages],
+        },
+        "effects": [_finding(each, found.verdict == "parameters") for each in found.findings],
+        "candidates": _candidates(found.tried),
+        "remainder": found.remainder,
+        "indistinguishable": found.indistinguishable,
+        "next_experiment": found.next_experiment and _next(found.next_experiment),
+        "fit": _fit(one),
+        "loss": loss_record(one.loss),
+        "residue": [
+            {"kind": r.kind, **_curve(r), "share": r.share, "sentence": r.sentence}
+            for r in found.residue
+        ],
+        "parameters": {name: _estimate(each) for name, each in found.parameters.items()},
+        "values": found.values,
+        "left_out": one.left_out,
+        "doubts": one.doubts,
+        "seconds": found.seconds,
+    }
 
 
 def _fit(one: ExplainedExperiment) -> dict[str, Any]:

@@ -8,16 +8,8 @@ from pathlib import Path
 from rr_opt.documents.document import Fact, facts_alone
 from rr_opt.documents.text import terminal
 from rr_opt.formatting import counted
+from rr_opt.report.diagnosis import words
 from rr_opt.report.diagnosis.loss import loss_line
-from rr_opt.report.diagnosis.words import (
-    candidate_words,
-    headline,
-    remainder_text,
-    share_text,
-    size_text,
-    stage_words,
-    value_text,
-)
 from rr_opt.results.diagnosis import ExplainedExperiment
 from rr_opt.sysid.diagnosis import Finding
 
@@ -29,7 +21,7 @@ def summary(one: ExplainedExperiment, written: Sequence[Path]) -> str:
 
 def _facts(one: ExplainedExperiment) -> Iterator[Fact]:
     found = one.found
-    yield Fact("verdict", f"{found.verdict}: {headline(found)}")
+    yield Fact("verdict", f"{found.verdict}: {words.headline(found)}")
     if found.channel != "none":
         yield Fact("  shows in", found.channel.replace("_", " "))
     if one.where:
@@ -39,12 +31,12 @@ def _facts(one: ExplainedExperiment) -> Iterator[Fact]:
     proof = counted(len(one.proof), "held out recording") if one.marked else one.proven_on
     misfit = f"{found.before:.2f} before, {found.after:.2f} after, in units of the noise"
     yield Fact("misfit", f"{misfit} ({proof})")
-    for stage, word in zip(found.stages, stage_words(found.stages), strict=True):
-        yield Fact(f"channel {stage.name.replace('_', ' ')}", f"{word}, {size_text(stage)}")
+    for stage, word in zip(found.stages, words.stage_words(found.stages), strict=True):
+        yield Fact(f"channel {stage.name.replace('_', ' ')}", f"{word}, {words.size_text(stage)}")
     for group in found.indistinguishable:
         yield Fact("indistinguishable", " or ".join(name.replace("_", " ") for name in group))
     if found.verdict != "consistent":
-        yield Fact("remainder", remainder_text(found.remainder))
+        yield Fact("remainder", words.remainder_text(found.remainder))
     for each in found.residue:
         yield Fact("left over", each.sentence)
     if one.loss is not None:
@@ -57,7 +49,7 @@ def _facts(one: ExplainedExperiment) -> Iterator[Fact]:
 def _finding(finding: Finding, verdict: str) -> Iterator[Fact]:
     if verdict != "parameters":
         minor = ", minor" if finding.minor else ""
-        head = f"confidence {finding.confidence:.2f}, explains {share_text(finding)}{minor}"
-        yield Fact(candidate_words([finding.name]), head)
+        head = f"confidence {finding.confidence:.2f}, explains {words.share_text(finding)}{minor}"
+        yield Fact(words.candidate_words([finding.name]), head)
     for name, value in finding.parameters.items():
-        yield Fact(f"  {name}", value_text(value))
+        yield Fact(f"  {name}", words.value_text(value))

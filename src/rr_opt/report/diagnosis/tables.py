@@ -4,18 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from rr_opt.documents.document import Badge, Cell, Table, table, table_of
+from rr_opt.documents import document as doc
 from rr_opt.formatting import number, with_unit
 from rr_opt.model.experiment import Run
 from rr_opt.model.parameters import parameters_of
-from rr_opt.report.diagnosis.words import (
-    candidate_words,
-    interval_text,
-    number_text,
-    parameter_words,
-    share_text,
-    value_text,
-)
+from rr_opt.report.diagnosis import words
 from rr_opt.results.diagnosis import ExplainedExperiment
 from rr_opt.sysid.diagnosis import Estimate, Misfit
 
@@ -23,17 +16,17 @@ _MOST = 30
 """Rows of candidates; diagnosis.json has all."""
 
 
-def effects_table(one: ExplainedExperiment) -> Table:
+def effects_table(one: ExplainedExperiment) -> doc.Table:
     """What was accepted, with its values; nothing for a verdict without effects."""
-    rows: list[list[Cell]] = []
+    rows: list[list[doc.Cell]] = []
     for finding in one.found.findings if one.found.verdict != "parameters" else ():
-        removes = share_text(finding) + (", minor" if finding.minor else "")
+        removes = words.share_text(finding) + (", minor" if finding.minor else "")
         first = [finding.name.replace("_", " "), f"{finding.confidence:.2f}", removes]
         for name, value in finding.parameters.items():
-            rows.append([first[0], name, value_text(value), *first[1:]])
+            rows.append([first[0], name, words.value_text(value), *first[1:]])
             first = ["", "", ""]
     head = ["Effect", "Parameter", "Value [95 % interval]", "Confidence", "Explains"]
-    return table(head, rows)
+    return doc.table(head, rows)
 
 
 _CANDIDATES = (
@@ -43,22 +36,22 @@ _CANDIDATES = (
 )
 
 
-def candidates_table(one: ExplainedExperiment) -> Table:
+def candidates_table(one: ExplainedExperiment) -> doc.Table:
     """All sets of effects that were fitted, the best first."""
     tried = sorted(one.found.tried, key=lambda each: each.score)
-    return table_of(
+    return doc.table_of(
         tried[:_MOST],
         {
-            "Effects": lambda each: candidate_words(each.effects),
+            "Effects": lambda each: words.candidate_words(each.effects),
             "Score over the best": lambda each: f"+{each.score - tried[0].score:.0f}",
             "Misfit": lambda each: f"{each.fit:.2f} σ",
-            "Verdict": lambda each: Badge("accepted", "good") if each.accepted else "",
+            "Verdict": lambda each: doc.Badge("accepted", "good") if each.accepted else "",
         },
         _CANDIDATES if tried else "",
     )
 
 
-def parameters_table(one: ExplainedExperiment) -> Table:
+def parameters_table(one: ExplainedExperiment) -> doc.Table:
     """The robot's own parameters: as believed, and as estimated."""
     nominal = parameters_of(one.experiment.robot)
     moved = {
@@ -72,27 +65,27 @@ def parameters_table(one: ExplainedExperiment) -> Table:
         known = one.experiment.uncertainty.get(name)
         if name not in nominal:
             return None
-        text = number_text(value, nominal[name])
+        text = words.number_text(value, nominal[name])
         if known is None:
             return text
         if known.factor is not None:
             return f"{text}, within a factor of {known.factor:g}"
-        return f"{text} ± {number_text(value, known.sigma)}"
+        return f"{text} ± {words.number_text(value, known.sigma)}"
 
     columns = {
         "Parameter": lambda each: each[0],
-        "What": lambda each: parameter_words(each[0]),
+        "What": lambda each: words.parameter_words(each[0]),
         "As believed": lambda each: believed(*each),
-        "Estimated": lambda each: number_text(each[1], each[1].value),
-        "95 % interval": lambda each: interval_text(each[1]),
+        "Estimated": lambda each: words.number_text(each[1], each[1].value),
+        "95 % interval": lambda each: words.interval_text(each[1]),
     }
     if moved:
-        changed = Badge("not as believed", "warn")
+        changed = doc.Badge("not as believed", "warn")
         columns["Verdict"] = lambda each: changed if each[0] in moved else ""
-    return table_of([one for one in one.found.parameters.items() if "." not in one[0]], columns)
+    return doc.table_of([one for one in one.found.parameters.items() if "." not in one[0]], columns)
 
 
-def misfit_table(one: ExplainedExperiment) -> Table:
+def misfit_table(one: ExplainedExperiment) -> doc.Table:
     """Misfit of every recording and channel, before and after."""
     found, off = one.found, one.found.mismatch
     names = list(dict.fromkeys(name for each in found.final for name in each.channels))
@@ -108,14 +101,14 @@ def misfit_table(one: ExplainedExperiment) -> Table:
     )
     columns = {
         "Recording": lambda pair: pair[1].recording,
-        "Use": lambda pair: Badge("held out", "note") if pair[1].held_out else "fitted",
+        "Use": lambda pair: doc.Badge("held out", "note") if pair[1].held_out else "fitted",
         "All, σ": lambda pair: f"{pair[0].rms:.2f} → {pair[1].rms:.2f}",
         **{name: lambda pair, name=name: change(pair, name) for name in names},
     }
-    return table_of(zip(found.nominal, found.final, strict=True), columns, note)
+    return doc.table_of(zip(found.nominal, found.final, strict=True), columns, note)
 
 
-def recordings_table(one: ExplainedExperiment) -> Table:
+def recordings_table(one: ExplainedExperiment) -> doc.Table:
     """What was recorded."""
 
     def good(run: Run) -> str:
@@ -124,7 +117,7 @@ def recordings_table(one: ExplainedExperiment) -> Table:
         share = 100 * (1 - float(flags.mean()))
         return f"{len(recording)} samples, {number(share, 3)} % good"
 
-    return table_of(
+    return doc.table_of(
         one.experiment.runs,
         {
             "Recording": lambda run: run.name,

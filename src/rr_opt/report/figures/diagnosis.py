@@ -16,25 +16,15 @@ from rr_opt.formatting import number
 from rr_opt.model.experiment import CHANNELS as SEEN
 from rr_opt.model.experiment import Recording
 from rr_opt.report.diagnosis.loss import gait_words, loss_sentences, pace
-from rr_opt.report.figures.style import (
-    BACKWARD,
-    FAINT,
-    FORWARD,
-    GREY,
-    INK,
-    OPTIMUM,
-    figure,
-    styled,
-    svg,
-)
+from rr_opt.report.figures import style
 from rr_opt.results.diagnosis import ExplainedExperiment
 from rr_opt.results.loss import Loss
 from rr_opt.sysid.diagnosis import Curve, Misfit, Residue, Stage
 
-NOMINAL, FINAL, RECORDED = BACKWARD, FORWARD, "#b4bdc6"
+NOMINAL, FINAL, RECORDED = style.BACKWARD, style.FORWARD, "#b4bdc6"
 """The model as believed is orange, as found blue, what was recorded grey."""
 
-NOISE = GREY
+NOISE = style.GREY
 CHANNELS = {"x": "x", "y": "y", "psi": "ψ", "phi": "φ", "torque": "τ"}
 WIDTH = 5.4
 """Of every figure, inches: read without zooming on a phone."""
@@ -71,17 +61,16 @@ def bands(
         for end in (-_Z, _Z):
             ax.axhline(end, color=NOISE, lw=1, ls=(0, (4, 2)))
         for edge in starts[1:-1]:
-            ax.axvline(edge, color=GREY, lw=0.8)
+            ax.axvline(edge, color=style.GREY, lw=0.8)
         if stretched(largest):
             ax.set_yscale("symlog", linthresh=_LINEAR, linscale=1)
             ax.yaxis.set_major_locator(FixedLocator(_MARKS))
             ax.yaxis.set_minor_locator(NullLocator())
             ax.yaxis.set_major_formatter(FuncFormatter(lambda y, _: f"{y:g}"))
-        ax.set_ylabel(f"{CHANNELS.get(name, name)}, σ")
-        ax.set_xlim(0, starts[-1])
+        ax.set(ylabel=f"{CHANNELS.get(name, name)}, σ", xlim=(0, starts[-1]))
     for (first, last), one in zip(itertools.pairwise(starts), final, strict=True):
         axes[0].text((first + last) / 2, 1.03, one.recording.removesuffix(".csv"), ha="center",
-                     va="bottom", fontsize=9, color=GREY,
+                     va="bottom", fontsize=9, color=style.GREY,
                      transform=axes[0].get_xaxis_transform())  # fmt: skip
     axes[-1].set_xlabel("time, one recording after the other, s")
 
@@ -122,11 +111,10 @@ def curve(ax: Axes, one: Curve | Residue, label: str) -> Axes:
     ax.fill_between(one.at, low, high, color=NOMINAL, alpha=0.22, lw=0)
     ax.plot(one.at, one.mean, "o-", color=NOMINAL, ms=3.5, lw=1.4)
     name = _NAMES.get(one.variable, one.variable.replace("_", " "))
-    ax.set_xlabel(f"{name}, {one.unit}" if one.unit else name)
-    ax.set_ylabel(label)
+    ax.set(xlabel=f"{name}, {one.unit}" if one.unit else name, ylabel=label)
     seen = np.concatenate([low, high])
     if not np.isfinite(seen).any():
-        ax.text(0.5, 0.5, "no data", transform=ax.transAxes, ha="center", color=GREY)
+        ax.text(0.5, 0.5, "no data", transform=ax.transAxes, ha="center", color=style.GREY)
     return ax
 
 
@@ -162,10 +150,12 @@ def misfit(
 ) -> Axes:
     """A row a recording, RMS in sigma over all channels."""
     rows = range(len(final))
-    ax.hlines(rows, [one.rms for one in final], [one.rms for one in nominal], color=FAINT, lw=4)
+    ax.hlines(
+        rows, [one.rms for one in final], [one.rms for one in nominal], color=style.FAINT, lw=4
+    )
     ax.plot([one.rms for one in nominal], rows, "o", ms=7, mfc="white", mec=NOMINAL, mew=1.8,
             label="as believed")  # fmt: skip
-    ax.plot([one.rms for one in refitted], rows, "|", ms=11, mew=2, color=GREY,
+    ax.plot([one.rms for one in refitted], rows, "|", ms=11, mew=2, color=style.GREY,
             label="parameters re-estimated")  # fmt: skip
     ax.plot([one.rms for one in final], rows, "o", ms=7, color=FINAL, label="as found")
     ax.axvline(1.0, color=NOISE, lw=1, ls=(0, (4, 2)))
@@ -181,8 +171,7 @@ def misfit(
     largest = max(one.rms for one in (*nominal, *final))
     ax.set_xlim(0, 1.08 * max(largest, 1.5))
     if stretched(largest):
-        ax.set_xscale("log")
-        ax.set_xlim(0.8, 1.3 * largest)
+        ax.set(xscale="log", xlim=(0.8, 1.3 * largest))
         ax.xaxis.set_major_formatter(FuncFormatter(lambda x, _: number(x, 2)))
         ax.xaxis.set_minor_formatter(FuncFormatter(lambda _x, _y: ""))
     ax.set_xlabel("misfit, in units of the noise σ")
@@ -198,14 +187,14 @@ def path(ax: Axes, recording: Recording, nominal: Misfit, final: Misfit) -> Axes
     seen = np.column_stack([recording.data("x"), recording.data("y")])
     step = max(1, len(seen) // _POINTS)
     ax.plot(*seen[::step].T, color=RECORDED, lw=5, solid_capstyle="round", label="recorded")
-    for one, colour, style, words in (
+    for one, colour, line, words in (
         (nominal, NOMINAL, "--", "as believed"),
         (final, FINAL, "-", "as found"),
     ):
-        ax.plot(*one.predicted[::step, :2].T, style, color=colour, lw=1.4, label=words)
+        ax.plot(*one.predicted[::step, :2].T, line, color=colour, lw=1.4, label=words)
     known = np.flatnonzero(np.isfinite(seen).all(axis=1))
     if len(known):
-        ax.plot(*seen[known[0]], "o", ms=6, color=OPTIMUM, mec=INK, zorder=4)
+        ax.plot(*seen[known[0]], "o", ms=6, color=style.OPTIMUM, mec=style.INK, zorder=4)
     off = [number(1e3 * _distance(seen, one), 2) for one in (nominal, final)]
     held = ", held out" if final.held_out else ""
     ax.set_title(f"{final.recording}{held}\n{off[0]} mm off → {off[1]} mm", fontsize=9.5)
@@ -242,9 +231,11 @@ def draw(one: ExplainedExperiment) -> dict[str, tuple[str, str]]:
         "residue": _residue,
         "loss": _loss,
     }
-    with styled():
+    with style.styled():
         made = {name: make(one) for name, make in makers.items()}
-        return {name: (svg(each[0]), each[1]) for name, each in made.items() if each is not None}
+        return {
+            name: (style.svg(each[0]), each[1]) for name, each in made.items() if each is not None
+        }
 
 
 def _evidence(one: ExplainedExperiment) -> tuple[Figure, str] | None:
@@ -256,7 +247,7 @@ def _evidence(one: ExplainedExperiment) -> tuple[Figure, str] | None:
     if not curves:
         return None
     rows = -(-len(curves) // 2)
-    made = figure(WIDTH, 0.4 + 2.1 * rows)
+    made = style.figure(WIDTH, 0.4 + 2.1 * rows)
     axes = np.atleast_1d(made.subplots(rows, min(len(curves), 2))).ravel()
     for ax, (_, each, label) in zip(axes, curves, strict=False):
         curve(ax, each, label)
@@ -279,7 +270,7 @@ def _paths(one: ExplainedExperiment) -> tuple[Figure, str]:
     wide = all(flat(one.experiment.runs[k].recording) for k in shown)
     columns = 1 if wide else min(len(shown), 2)
     rows = -(-len(shown) // columns)
-    made = figure(WIDTH, 0.8 + (1.9 if wide else 2.7) * rows)
+    made = style.figure(WIDTH, 0.8 + (1.9 if wide else 2.7) * rows)
     axes = np.atleast_1d(made.subplots(rows, columns)).ravel()
     for ax, k in zip(axes, shown, strict=False):
         path(ax, one.experiment.runs[k].recording, one.found.nominal[k], one.found.final[k])
@@ -298,7 +289,7 @@ def _paths(one: ExplainedExperiment) -> tuple[Figure, str]:
 def _bands(one: ExplainedExperiment) -> tuple[Figure, str]:
     shown = one.proof[:_MOST_BANDS]
     nominal, final = ([level[k] for k in shown] for level in (one.found.nominal, one.found.final))
-    made = figure(WIDTH, 0.7 + 1.35 * len(SEEN))
+    made = style.figure(WIDTH, 0.7 + 1.35 * len(SEEN))
     axes = list(made.subplots(len(SEEN), 1, sharex=True))
     bands(axes, nominal, final, SEEN)
     made.align_ylabels()
@@ -314,7 +305,7 @@ def _bands(one: ExplainedExperiment) -> tuple[Figure, str]:
 
 def _misfit(one: ExplainedExperiment) -> tuple[Figure, str]:
     found = one.found
-    made = figure(WIDTH, 1.3 + 0.3 * len(found.final))
+    made = style.figure(WIDTH, 1.3 + 0.3 * len(found.final))
     misfit(ax := made.subplots(), found.nominal, found.refitted, found.final)
     made.legend(*ax.get_legend_handles_labels(), loc="outside lower center", ncols=3)
     held = "Held-out recordings took no part in the fit." if one.marked else (
@@ -327,7 +318,7 @@ def _residue(one: ExplainedExperiment) -> tuple[Figure, str] | None:
     some = one.found.residue
     if not some:
         return None
-    made = figure(WIDTH, 0.3 + 2.4 * len(some))
+    made = style.figure(WIDTH, 0.3 + 2.4 * len(some))
     for ax, each in zip(np.atleast_1d(made.subplots(len(some), 1)), some, strict=True):
         curve(ax, each, input_words(each.kind))
     return made, " ".join(each.sentence for each in some)
@@ -336,6 +327,6 @@ def _residue(one: ExplainedExperiment) -> tuple[Figure, str] | None:
 def _loss(one: ExplainedExperiment) -> tuple[Figure, str] | None:
     if not isinstance(one.loss, Loss):
         return None
-    made = figure(WIDTH, 3.0)
+    made = style.figure(WIDTH, 3.0)
     lost_speed(made.subplots(), one.loss)
     return made, loss_sentences(one.loss)

@@ -16,17 +16,7 @@ from rr_opt.array import Array
 from rr_opt.model.robot import Platform, Robot
 from rr_opt.motion.rollout import Trajectory
 from rr_opt.motion.steady_cycle import Cycle
-from rr_opt.report.figures.style import (
-    GREY,
-    INK,
-    PAPER,
-    PLATFORM1,
-    PLATFORM2,
-    WHEEL,
-    colour_of,
-    figure,
-    styled,
-)
+from rr_opt.report.figures import style
 
 
 def robot_length(robot: Robot) -> float:
@@ -43,14 +33,22 @@ def draw_robot(ax: Axes, robot: Robot, motion: Trajectory, i: int, *, alpha: flo
     joint = np.array([x, y])
     artists = []
     for platform, angle, way, colour in (
-        (robot.platform1, psi, 1.0, PLATFORM1),
-        (robot.platform2, psi + phi, -1.0, PLATFORM2),
+        (robot.platform1, psi, 1.0, style.PLATFORM1),
+        (robot.platform2, psi + phi, -1.0, style.PLATFORM2),
     ):
         artists += _platform(
             ax, platform, robot.h, _Axis(joint, angle, way), colour=colour, alpha=alpha
         )
     size = 0.16 * min(robot.platform1.b, robot.platform2.b) + 0.003
-    dot = Circle((x, y), size, facecolor=PAPER, edgecolor=INK, linewidth=1.1, alpha=alpha, zorder=6)
+    dot = Circle(
+        (x, y),
+        size,
+        facecolor=style.PAPER,
+        edgecolor=style.INK,
+        linewidth=1.1,
+        alpha=alpha,
+        zorder=6,
+    )
     return [*artists, ax.add_patch(dot)]
 
 
@@ -86,13 +84,15 @@ def _platform(
         ),
     ]
     axle = place([way * c, way * c], [-b, b])
-    artists += ax.plot(axle[:, 0], axle[:, 1], color=WHEEL, lw=1.2, alpha=alpha, zorder=5)
+    artists += ax.plot(axle[:, 0], axle[:, 1], color=style.WHEEL, lw=1.2, alpha=alpha, zorder=5)
     half = 0.16 * b + 0.001
     for side in (-b, b):
         along = way * c + h * np.array([-1, 1, 1, -1])
         wheel = place(along, side + half * np.array([-1, -1, 1, 1]))
         artists.append(
-            ax.add_patch(Polygon(wheel, facecolor=WHEEL, edgecolor="none", alpha=alpha, zorder=5))
+            ax.add_patch(
+                Polygon(wheel, facecolor=style.WHEEL, edgecolor="none", alpha=alpha, zorder=5)
+            )
         )
     return artists
 
@@ -113,7 +113,7 @@ def path(ax: Axes, robot: Robot, motion: Trajectory, speed: float, period: float
     motion: turned as it should be drawn; speed: signed, m/s, gives the colour; period: of the
     gait, s, over which the arrow takes its direction.
     """
-    ax.plot(motion.x, motion.y, color=colour_of(speed), lw=1.6, zorder=3, label="path of P")
+    ax.plot(motion.x, motion.y, color=style.colour_of(speed), lw=1.6, zorder=3, label="path of P")
     chosen = instants(motion, robot_length(robot))
     for order, i in enumerate(chosen):
         alpha = 1.0 - 0.65 * (len(chosen) - 1 - order) / max(len(chosen) - 1, 1)
@@ -121,8 +121,7 @@ def path(ax: Axes, robot: Robot, motion: Trajectory, speed: float, period: float
     _arrow(ax, robot, motion, speed, period)
     ax.set_aspect("equal", adjustable="datalim")
     ax.margins(0.06)
-    ax.set_xlabel("x, m")
-    ax.set_ylabel("y, m")
+    ax.set(xlabel="x, m", ylabel="y, m")
     return ax
 
 
@@ -164,8 +163,8 @@ def _arrow(ax: Axes, robot: Robot, motion: Trajectory, speed: float, period: flo
     leading = robot.platform1 if speed > 0 else robot.platform2
     start = last + step / size * (leading.c + 3 * robot.h)
     end = start + step / size * 0.3 * robot_length(robot)
-    style = {"arrowstyle": "-|>", "color": colour_of(speed), "lw": 2.0, "mutation_scale": 14}
-    ax.annotate("", tuple(end), tuple(start), arrowprops=style)
+    arrow = {"arrowstyle": "-|>", "color": style.colour_of(speed), "lw": 2.0, "mutation_scale": 14}
+    ax.annotate("", tuple(end), tuple(start), arrowprops=arrow)
     ax.update_datalim([tuple(end)])
 
 
@@ -177,8 +176,8 @@ def frames(robot: Robot, trajectory: Trajectory, chosen: NDArray[np.int_]) -> It
 
     Axes and grid are drawn once; only what moves is drawn again.
     """
-    with styled():
-        drawn = figure(_WIDTH, _height(robot, trajectory))
+    with style.styled():
+        drawn = style.figure(_WIDTH, _height(robot, trajectory))
         drawn.set_dpi(_DPI)
         canvas = FigureCanvasAgg(drawn)
         ax = drawn.add_subplot()
@@ -186,8 +185,8 @@ def frames(robot: Robot, trajectory: Trajectory, chosen: NDArray[np.int_]) -> It
         canvas.draw()
         drawn.set_layout_engine("none")
         still = canvas.copy_from_bbox(drawn.bbox)
-        (trail,) = ax.plot([], [], color=colour_of(float(trajectory.v.mean())), lw=1.6)
-        clock = ax.text(0.01, 0.97, "", transform=ax.transAxes, va="top", color=GREY)
+        (trail,) = ax.plot([], [], color=style.colour_of(float(trajectory.v.mean())), lw=1.6)
+        clock = ax.text(0.01, 0.97, "", transform=ax.transAxes, va="top", color=style.GREY)
         for i in chosen:
             trail.set_data(trajectory.x[: i + 1], trajectory.y[: i + 1])
             clock.set_text(f"t = {trajectory.t[i]:.2f} s   v = {trajectory.v[i]:+.3f} m/s")
@@ -202,11 +201,12 @@ def frames(robot: Robot, trajectory: Trajectory, chosen: NDArray[np.int_]) -> It
 
 def _view(ax: Axes, robot: Robot, trajectory: Trajectory) -> None:
     margin = 0.75 * robot_length(robot)
-    ax.set_xlim(trajectory.x.min() - margin, trajectory.x.max() + margin)
-    ax.set_ylim(trajectory.y.min() - margin, trajectory.y.max() + margin)
+    ax.set(
+        xlim=(trajectory.x.min() - margin, trajectory.x.max() + margin),
+        ylim=(trajectory.y.min() - margin, trajectory.y.max() + margin),
+    )
     ax.set_aspect("equal")
-    ax.set_xlabel("x, m")
-    ax.set_ylabel("y, m")
+    ax.set(xlabel="x, m", ylabel="y, m")
 
 
 def _height(robot: Robot, trajectory: Trajectory) -> float:

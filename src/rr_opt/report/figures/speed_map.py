@@ -16,18 +16,7 @@ from rr_opt.formatting import number
 from rr_opt.model.gait import SineGait
 from rr_opt.model.problem import GaitBounds, Interval, Problem
 from rr_opt.model.robot import Robot
-from rr_opt.report.figures.style import (
-    DASHED,
-    GROUND,
-    INK,
-    LIMIT,
-    PAPER,
-    SIGNED,
-    STAR,
-    hatched,
-    signed,
-    speed_bar,
-)
+from rr_opt.report.figures import style
 from rr_opt.verify.sweep import speed_map as evaluated_map
 
 
@@ -95,23 +84,28 @@ def speed_map(
     low, high = (min(kept.min(), 0.0), max(kept.max(), 0.0)) if kept.size else (-1.0, 1.0)
     top = max(-low, high, 1e-9)
     levels = np.linspace(low if low < 0 else -1e-3 * top, high if high > 0 else 1e-3 * top, 31)
-    hatched(ax)
+    style.hatched(ax)
     # Colours beyond a limit are covered below, so the speed is only clipped there: a contour
     # that ended at the limit's line would end in steps.
     shown = np.clip(1e3 * data.speed, low, high)
     fill = ax.contourf(
-        data.period, data.amplitude, shown, levels=levels, cmap=SIGNED, norm=signed(top), zorder=1
+        data.period,
+        data.amplitude,
+        shown,
+        levels=levels,
+        cmap=style.SIGNED,
+        norm=style.signed(top),
+        zorder=1,
     )
     # Each band gets an edge of its own colour: else thin white seams show between them.
     fill.set(edgecolor="face", linewidth=0.5)
     _cover(ax, data, problem, robot, best.offset)
-    speed_bar(ax, fill)
+    style.speed_bar(ax, fill)
     _limit_lines(ax, data, problem, robot, best.offset)
     for one in others:
-        ax.plot(one.period, one.amplitude, "o", ms=9, mfc="none", mec=INK, mew=1.4, zorder=6)
-    ax.plot(best.period, best.amplitude, ms=19, mew=1.2, zorder=7, label="optimum", **STAR)
-    ax.set_xlim(data.period[0], data.period[-1])
-    ax.set_ylim(data.amplitude[0], data.amplitude[-1])
+        ax.plot(one.period, one.amplitude, "o", ms=9, mfc="none", mec=style.INK, mew=1.4, zorder=6)
+    ax.plot(best.period, best.amplitude, ms=19, mew=1.2, zorder=7, label="optimum", **style.STAR)
+    ax.set(xlim=(data.period[0], data.period[-1]), ylim=(data.amplitude[0], data.amplitude[-1]))
     ax.grid(visible=False)
     label(ax)
     return ax
@@ -119,8 +113,7 @@ def speed_map(
 
 def label(ax: Axes) -> None:
     """Label the axes of a map of sines."""
-    ax.set_xlabel("period T, s")
-    ax.set_ylabel("amplitude α, rad")
+    ax.set(xlabel="period T, s", ylabel="amplitude α, rad")
 
 
 def _cover(ax: Axes, data: MapData, problem: Problem, robot: Robot, offset: float) -> None:
@@ -134,7 +127,7 @@ def _cover(ax: Axes, data: MapData, problem: Problem, robot: Robot, offset: floa
         excess = np.maximum(excess, span * (torque / problem.limits.torque - 1))
     excess = np.clip(excess, -span, span)
     ax.contourf(
-        data.period, data.amplitude, excess, levels=[0.0, 2 * span], colors=[GROUND],
+        data.period, data.amplitude, excess, levels=[0.0, 2 * span], colors=[style.GROUND],
         hatches=["////"], zorder=2,
     )  # fmt: skip
 
@@ -152,7 +145,7 @@ def _limit_lines(ax: Axes, data: MapData, problem: Problem, robot: Robot, offset
     }
     for name, line in lines.items():
         if line < top:
-            ax.axhline(line, color=LIMIT, lw=1.4, zorder=3)
+            ax.axhline(line, color=style.LIMIT, lw=1.4, zorder=3)
             place = period[0] + 0.97 * (period[-1] - period[0])
             _name(ax, place, line + 0.015 * (top - bottom), texts[name], ha="right", va="bottom")
     _torque_line(ax, data, limits.torque, min(lines.values()))
@@ -165,7 +158,7 @@ def _rate_line(ax: Axes, data: MapData, limit: float) -> None:
     first, last = max(left, bottom / slope), min(right, top / slope)
     if first >= last:
         return
-    ax.plot([first, last], [slope * first, slope * last], color=LIMIT, lw=1.4, zorder=3)
+    ax.plot([first, last], [slope * first, slope * last], color=style.LIMIT, lw=1.4, zorder=3)
     at = first + 0.6 * (last - first)
     side = "right" if at - left > 0.3 * (right - left) else "left"
     _name(ax, at, slope * at, f" rate {number(limit * 30 / math.pi, 3)} rpm", ha=side)
@@ -179,8 +172,8 @@ def _torque_line(ax: Axes, data: MapData, limit: float, most: float) -> None:
     if not known.any() or not torque[known].min() < limit < torque[known].max():
         return
     drawn = ax.contour(
-        data.period, data.amplitude[rows], torque, levels=[limit], colors=[LIMIT],
-        linewidths=1.4, linestyles=[DASHED], zorder=3,
+        data.period, data.amplitude[rows], torque, levels=[limit], colors=[style.LIMIT],
+        linewidths=1.4, linestyles=[style.DASHED], zorder=3,
     )  # fmt: skip
     lines = drawn.get_paths()[0].to_polygons(closed_only=False)
     line = max((np.asarray(one) for one in lines), key=len)
@@ -189,5 +182,7 @@ def _torque_line(ax: Axes, data: MapData, limit: float, most: float) -> None:
 
 
 def _name(ax: Axes, x: float, y: float, text: str, *, ha: str, va: str = "center") -> None:
-    halo = [withStroke(linewidth=3, foreground=PAPER, alpha=0.85)]
-    ax.text(x, y, text + " ", color=LIMIT, fontsize=9, ha=ha, va=va, zorder=5, path_effects=halo)
+    halo = [withStroke(linewidth=3, foreground=style.PAPER, alpha=0.85)]
+    ax.text(
+        x, y, text + " ", color=style.LIMIT, fontsize=9, ha=ha, va=va, zorder=5, path_effects=halo
+    )

@@ -115,8 +115,7 @@ class Grid:
         self.x.apply(ax, "x")
         self.y.apply(ax, "y")
         (left, right), (low, high) = ((part[0], part[-1]) for part in self.borders)
-        ax.set_xlim(left, right)
-        ax.set_ylim(low, high)
+        ax.set(xlim=(left, right), ylim=(low, high))
         ax.grid(visible=False)
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from rr_opt.report.figures import style
 from rr_opt.report.figures.speed_map import label
-from rr_opt.report.figures.style import GREY, SIGNED, STAR, figure, signed, speed_bar, styled, svg
 from rr_opt.results.sweep import Sweep
 
 _MANY = 2000
@@ -23,21 +23,21 @@ def draw(result: Sweep) -> dict[str, str]:
     order = np.flatnonzero(kept)
     order = order[np.argsort(np.abs(speed[order]))]
     top = float(np.abs(speed[order[-1]])) if len(order) else 1.0
-    with styled():
-        drawn = figure(6.8, 4.8)
+    with style.styled():
+        drawn = style.figure(6.8, 4.8)
         drawn.set_dpi(160)
         ax = drawn.add_subplot()
-        ax.plot(period[~kept], amplitude[~kept], "x", color=GREY, ms=2.5, mew=0.5, alpha=0.3)
+        ax.plot(period[~kept], amplitude[~kept], "x", color=style.GREY, ms=2.5, mew=0.5, alpha=0.3)
         dots = ax.scatter(
-            period[order], amplitude[order], c=speed[order], cmap=SIGNED, norm=signed(top), s=26,
-            edgecolors=GREY, linewidths=0.25, zorder=3,
+            period[order], amplitude[order], c=speed[order], cmap=style.SIGNED,
+            norm=style.signed(top), s=26, edgecolors=style.GREY, linewidths=0.25, zorder=3,
         )  # fmt: skip
         for part in (*ax.collections, *ax.lines):
             part.set_rasterized(len(speed) > _MANY)
         ends = speed[order].min(initial=0.0), speed[order].max(initial=0.0)
-        speed_bar(ax, dots).set_ylim(min(ends[0], -1e-9), max(ends[1], 1e-9))
+        style.speed_bar(ax, dots).set_ylim(min(ends[0], -1e-9), max(ends[1], 1e-9))
         if best:
-            ax.plot(best.gait.period, best.gait.amplitude, ms=19, mew=1.2, zorder=5, **STAR)
+            ax.plot(best.gait.period, best.gait.amplitude, ms=19, mew=1.2, zorder=5, **style.STAR)
         ax.set_title(f"{len(speed)} gaits: dots keep every limit, crosses do not", weight="normal")
         label(ax)
-        return {"sweep": svg(drawn)}
+        return {"sweep": style.svg(drawn)}
