@@ -45,13 +45,13 @@ def test_named_ticks_in_order_of_size(study_of):
         zip(ax.get_xticks(), [one.get_text() for one in ax.get_xticklabels()], strict=True)
     )
     assert ticks == {1.0: "10 rpm", 2.0: "20 rpm", 3.0: "no limit"}
-    assert ax.get_xlabel() == "limits.rate"
+    assert ax.get_xlabel() == "rate limit"
 
 
 def test_texts_say_no_limit(result_of):
     result = result_of("  limits.torque: [.inf, 0.5]\n")
-    assert result.inputs_text(0) == "limits.torque = no limit"
-    assert result.inputs_text(1) == "limits.torque = 0.5 N m"
+    assert result.inputs_text(0) == "no torque limit"
+    assert result.inputs_text(1) == "torque limit 0.5 N m"
     assert "inf" not in result.message
 
 

@@ -50,6 +50,8 @@ def _template() -> Template:
     environment.tests |= {
         "badge": lambda cell: isinstance(cell, doc.Badge),
         "link": lambda cell: isinstance(cell, doc.Link),
+        "gallery": lambda block: isinstance(block, doc.Gallery),
+        "tiles": lambda block: isinstance(block, doc.Facts) and block.key,
     }
     return environment.get_template("document.html")
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 
 from rr_opt.documents import document as doc
 from rr_opt.documents.report import Report
-from rr_opt.formatting import QUANTITIES, counted, number, price_text, speed_text, with_unit
+from rr_opt.formatting import QUANTITIES, counted, number, price_text, with_unit
 from rr_opt.messages import listed
 from rr_opt.model.ballast import inertia_ratio
 from rr_opt.model.parameters import PARAMETERS, parameters_of
@@ -15,7 +15,7 @@ from rr_opt.model.robot import Robot
 from rr_opt.motion.rollout import one_period
 from rr_opt.outcome import Status
 from rr_opt.report.fastest_record import fastest_record
-from rr_opt.report.gait import gait_facts, speed_fact
+from rr_opt.report.gait import gait_facts, signed_fact, speed_fact
 from rr_opt.report.trajectory_file import trajectory_csv
 from rr_opt.results.fastest import FastestGait
 from rr_opt.verify.replay import Replay
@@ -35,7 +35,7 @@ CAPTIONS = {
     "path": (
         "The path in steady state",
         "Path of the joint seen from above, with the robot drawn at a few instants",
-        "P's path with the robot at a few instants, darker later. "
+        "P's path with the robot at a few instants, fainter the earlier. "
         "Platform 1 is green, platform 2 amber.",
     ),
     "cycle": (
@@ -108,7 +108,7 @@ def _facts(result: FastestGait) -> Iterator[doc.Fact]:
         return
     yield speed_fact(result.speed)
     if result.rebuilt and result.as_built is not None:
-        yield doc.Fact("as built", speed_text(result.as_built), "at best, with I2 unchanged")
+        yield signed_fact("as built", result.as_built, "at best, with I2 unchanged")
     yield from gait_facts(result.gait)
     yield _ratio(result)
     yield _cycle(result.replay, turning=result.turns)

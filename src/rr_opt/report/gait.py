@@ -48,4 +48,10 @@ def _harmonics(gait: Gait) -> tuple[Fact, ...]:
 def speed_fact(speed: float) -> Fact:
     """A signed mean speed, and which platform leads."""
     leading = 1 if speed > 0 else 2
-    return Fact("speed", speed_text(speed), f"{direction_text(speed)}: platform {leading} leads")
+    return signed_fact("speed", speed, f"{direction_text(speed)}: platform {leading} leads")
+
+
+def signed_fact(label: str, speed: float, detail: str) -> Fact:
+    """A signed speed in m/s, and in mm/s beside what else there is to say."""
+    value, _, other = speed_text(speed).partition(" (")
+    return Fact(label, value, f"({other}, {detail}" if other else detail)

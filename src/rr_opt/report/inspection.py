@@ -25,7 +25,8 @@ CAPTIONS = {
     "path": (
         "The joint's path",
         "The recorded path seen from above",
-        "P seen from above. Arrows: platform 1's heading.",
+        "Grey: P seen from above. Blue: its mean over a period of the command, which shows how the "
+        "robot travels. Arrows: platform 1's heading.",
     ),
     "noise": (
         "Noise",

@@ -15,6 +15,7 @@ from rr_opt.formatting import direction_text, number, speed_text, with_unit
 from rr_opt.outcome import Status
 from rr_opt.report.study_table import study_columns, study_csv, write_netcdf
 from rr_opt.report.trajectory_file import netcdf_writer
+from rr_opt.results.inputs import axis_words, held_words
 from rr_opt.results.study import SolvedStudy
 
 CAPTIONS = {
@@ -78,7 +79,8 @@ def study_document(result: SolvedStudy, figures: Sequence[doc.Figure] = ()) -> d
     good = result.fastest is not None
     title = f"None of {cases} cases has an optimum"
     if good:
-        title = f"{cases} cases, from {np.nanmin(speed):.1f} to {np.nanmax(speed):.1f} mm/s"
+        span = f"{np.nanmin(speed):.1f} to {np.nanmax(speed):.1f} mm/s"
+        title = f"The best speed of {cases} cases ranges from {span}"
     shown = min(cases, _MOST_ROWS)
     return doc.Document(
         name=result.study.name,
@@ -107,10 +109,11 @@ def study_document(result: SolvedStudy, figures: Sequence[doc.Figure] = ()) -> d
 
 
 def _facts(result: SolvedStudy) -> Iterator[doc.Fact]:
-    rows, shape = result.rows, " x ".join(map(str, result.study.shape))
+    rows, shape = result.rows, result.study.shape
+    product = f"{' x '.join(map(str, shape))} = " if len(shape) > 1 else ""
     ended = ", ".join(f"{count} {status.words}" for status, count in result.counts.items() if count)
     started = Counter(row.started for row in rows)
-    yield doc.Fact("cases", f"{shape} = {len(rows)}", ended)
+    yield doc.Fact("cases", f"{product}{len(rows)}", ended)
     yield doc.Fact("branches", str(len({one for one in result.branches if one})))
     yield doc.Fact("solved from", ", ".join(f"{n} {how}" for how, n in started.items()))
     best = result.fastest
@@ -119,7 +122,7 @@ def _facts(result: SolvedStudy) -> Iterator[doc.Fact]:
         return
     gait = f"{with_unit(optimum.amplitude, 'rad')}, {with_unit(optimum.period, 's')}"
     yield doc.Fact("fastest", speed_text(optimum.speed), result.inputs_text(best))
-    yield doc.Fact("", gait, f"limited by {', '.join(optimum.held) or 'nothing'}")
+    yield doc.Fact("", gait, f"limited by {', '.join(held_words(optimum.held))}")
     least = int(np.nanargmin(result.values("cost_of_transport")))
     cheap = rows[least].optimum
     if cheap:
@@ -158,23 +161,24 @@ def _failures(result: SolvedStudy) -> doc.Table:
 
 
 def _cases_table(result: SolvedStudy, cases: Iterable[int]) -> doc.Table:
-    head = ["Case", "Speed", "Amplitude", "Period", "Torque", "Energy", "Limited by", "Branch"]
+    axes = list(map(axis_words, result.study.axes))
+    head = [*axes, "Speed", "Amplitude", "Period", "Torque", "Energy", "Limited by", "Branch"]
     rows = []
     for case in cases:
-        row = result.rows[case]
+        row, values = result.rows[case], result.value_texts(case)
         one = row.optimum
         if one is None:
-            rows.append([result.inputs_text(case), *[None] * 5, row.status.words, None])
+            rows.append([*values, *[None] * 5, row.status.words, None])
             continue
         rows.append(
             [
-                result.inputs_text(case),
+                *values,
                 f"{1e3 * abs(one.speed):.1f} mm/s {direction_text(one.speed)}",
                 with_unit(one.amplitude, "rad", 3),
                 with_unit(one.period, "s", 3),
                 with_unit(one.peak_torque, "N m", 3),
                 with_unit(one.energy_per_metre, "J/m", 3),
-                ", ".join(one.held) or "nothing",
+                ", ".join(held_words(one.held)),
                 str(result.branches[case]),
             ]
         )

@@ -27,7 +27,8 @@ UNITS = {
 def turn_document(turn: FastestTurn, figures: Sequence[doc.Figure] = ()) -> doc.Document:
     """The report of a fastest gait, with its arc."""
     facts = tuple(_facts(turn, turn.arc)) if turn.arc else ()
-    return fastest.fastest_document(turn, figures, doc.Section("Turn", (doc.Facts(facts),)))
+    report = fastest.fastest_document(turn, figures, doc.Section("Turn", (doc.Facts(facts),)))
+    return replace(report, kind="fastest turn")
 
 
 def turn_record(turn: FastestTurn) -> dict[str, Any]:
@@ -80,4 +81,19 @@ def _facts(turn: FastestTurn, arc: Arc) -> Iterator[doc.Fact]:
             yield doc.Fact("price", f"{1e3 * gain:+.3g} mm/s for {words}")
 
 
-REPORT = replace(fastest.REPORT, record=turn_record, document=turn_document)
+CAPTIONS = fastest.CAPTIONS | {
+    "path": (
+        "The path of the turn",
+        "The circle asked for, the arc of the turn on it, and the path of the joint along that arc",
+        "Dashed: the mean circle; grey band: the turn, from its start to its end. P oscillates "
+        "about it in steady motion. Platform 1 is green, platform 2 amber, fainter the earlier.",
+    )
+}
+
+REPORT = replace(
+    fastest.REPORT,
+    record=turn_record,
+    document=turn_document,
+    figures="rr_opt.report.figures.turn",
+    captions=CAPTIONS,
+)

@@ -70,7 +70,8 @@ def loss_of(experiment: Experiment, corrected: Robot) -> Loss | LossUnknown:
     gone = [n for n in ignored_in_steady_cycle(corrected) if CATALOGUE[n].port not in harmless]
     if gone:
         names = listed([name.replace("_", " ") for name in gone])
-        return unknown(f"{names} has no place in a steady motion.")
+        have = "has" if len(gone) == 1 else "have"
+        return unknown(f"{names} {have} no place in a steady motion.")
     try:
         before, after = (maximize_speed(_problem(one)) for one in (experiment.robot, corrected))
         if before.best is None or after.best is None or after.ratio is None:

@@ -6,7 +6,6 @@ from collections import Counter
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -15,31 +14,14 @@ from rr_opt.design.study.plan import branches, plan
 from rr_opt.design.study.row import Row
 from rr_opt.documents.report import Progress, quiet
 from rr_opt.files.study_file import Study
-from rr_opt.files.study_keys import Key
-from rr_opt.formatting import QUANTITIES, direction_text, pace_text, with_unit
+from rr_opt.formatting import direction_text, pace_text
 from rr_opt.outcome import Status
 from rr_opt.results.ignored import ignored_effects
+from rr_opt.results.inputs import axis_words, setting_text, value_text
 from rr_opt.results.result import Result
 
-_LIKE = {"angle_limit": "angle", "rate_limit": "rate", "torque_limit": "torque"}
 _SAME_SPEED = 1e-8
 """Cases whose speeds differ by less, relative, are equally fast."""
-
-
-def unit_of(key: Key) -> tuple[str, float]:
-    """The unit, empty for none, and how many of it are one SI unit."""
-    name = str(key.path[-1] if isinstance(key.path[-1], str) else key.path[-2])
-    kind = QUANTITIES.get(_LIKE.get(name, name))
-    unit, factor = kind.common if kind else (key.unit or "", 1.0)
-    return ("mm", 1e3) if unit == "m" else (unit, factor)
-
-
-def value_text(key: Key, value: Any, digits: int = 4) -> str:
-    """A value of a key for people: a float, SI, in their unit; infinity is `no limit`."""
-    if not isinstance(value, float):
-        return str(value)
-    unit, factor = unit_of(key)
-    return with_unit(factor * value, unit, digits) if np.isfinite(value) else "no limit"
 
 
 @dataclass(frozen=True, repr=False)
@@ -110,11 +92,19 @@ class SolvedStudy(Result):
                 best = speed[case]
         return kept
 
-    def inputs_text(self, case: int) -> str:
-        """`limits.rate = 30 rpm, direction = forward`."""
+    def value_texts(self, case: int) -> list[str]:
+        """The values of a case, one text for each axis."""
         inputs = self.study.inputs(case)
-        keys = [line.key for axis in self.study.axes for line in axis.lines]
-        return ", ".join(f"{key.name} = {value_text(key, inputs[key.name])}" for key in keys)
+        texts = [
+            [value_text(line.key, inputs[line.key.name]) for line in axis.lines]
+            for axis in self.study.axes
+        ]
+        return [" and ".join(dict.fromkeys(several)) for several in texts]
+
+    def inputs_text(self, case: int) -> str:
+        """`rate limit 30 rpm, direction forward`."""
+        words = map(axis_words, self.study.axes)
+        return ", ".join(map(setting_text, words, self.value_texts(case)))
 
     @property
     def message(self) -> str:
@@ -125,7 +115,7 @@ class SolvedStudy(Result):
         speed = float(self.values("speed")[best])
         return (
             f"The fastest of {len(self.rows)} cases drives {direction_text(speed)} at "
-            f"{pace_text(speed)}, with {self.inputs_text(best)}."
+            f"{pace_text(speed)}, at {self.inputs_text(best)}."
         )
 
     @property

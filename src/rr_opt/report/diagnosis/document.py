@@ -48,7 +48,7 @@ def diagnosis_document(
         sections=(
             doc.Section("Where it goes wrong", (chain(one), chain_note(one))),
             doc.Section("", (doc.Facts(tuple(_key_facts(one)), key=True),)),
-            doc.Section("", (doc.Gallery(tuple(figures)),)),
+            doc.gallery(figures),
             doc.Section("What was found", (effects_table(one),)),
             doc.Section(
                 "What the wrong model would cost",
@@ -84,7 +84,9 @@ def chain(one: ExplainedExperiment) -> doc.Chain:
         marked = zip(stages, words.stage_words(stages), strict=True)
         return doc.Chain(
             tuple(
-                doc.Step(stage.name.replace("_", " "), *_STATES[word], words.size_text(stage))
+                doc.Step(
+                    words.stage_name(stage), *_STATES[word], words.stage_text(stage, one.found)
+                )
                 for stage, word in marked
             )
         )
@@ -112,24 +114,28 @@ def chain_note(one: ExplainedExperiment) -> str:
     )
 
 
-_SIGMA = "σ: one standard deviation of the noise."
+_SIGMA = (
+    "Percentages: how much of the misfit an unknown input there would explain, with the robot's "
+    "values re-fitted. Misfits are RMS in σ, one standard deviation of the noise: 1 is the noise "
+    "alone, wherever one stands on this page."
+)
 
 
 def _key_facts(one: ExplainedExperiment) -> Iterator[doc.Fact]:
     found = one.found
     yield doc.Fact("misfit before", f"{found.before:.2f} σ", one.proven_on)
-    yield doc.Fact("misfit now", f"{found.after:.2f} σ", "in units of the noise")
+    yield doc.Fact("misfit now", f"{found.after:.2f} σ", "1 is the noise alone")
     for finding in found.findings[:3]:
         if found.verdict == "missing_physics":
             name = words.candidate_words([finding.name])
-            yield doc.Fact("of the mismatch explained by", words.share_text(finding), name)
+            beyond = "of the misfit beyond the noise"
+            yield doc.Fact(f"explained by {name}", words.share_text(finding), beyond)
         for name, each in list(finding.parameters.items())[:2]:
             value, _, interval = words.value_text(each).partition(" [")
-            yield doc.Fact(name, value, f"95 %: {interval.rstrip(']')}")
+            yield doc.Fact(name.replace("_", " "), value, f"95 %: {interval.rstrip(']')}")
     if isinstance(one.loss, Loss):
-        yield doc.Fact(
-            "of the speed lost", share_lost(one.loss), "by the best gait of the nominal model"
-        )
+        lost = share_lost(one.loss)
+        yield doc.Fact("speed lost", lost, "by driving the best gait of the nominal model")
 
 
 def _open(one: ExplainedExperiment) -> Iterator[str]:
@@ -145,22 +151,38 @@ def _open(one: ExplainedExperiment) -> Iterator[str]:
 
 
 CAPTIONS = {
-    "evidence": ("What the fault depends on", "The misfit over what it depends on", ""),
-    "residue": ("The force that has no name", "The estimated force over what it depends on", ""),
-    "paths": ("Before and after: paths", "Recorded and simulated paths, seen from above", ""),
+    "evidence": (
+        "What the fault depends on",
+        "Curves with 95 % bands: the unknown input over the variable that it follows most",
+        "",
+    ),
+    "residue": (
+        "The force that has no name",
+        "A curve with a 95 % band: the estimated force over the variable that it follows most",
+        "",
+    ),
+    "paths": (
+        "Before and after: paths",
+        "Seen from above: what was recorded, the simulation as believed that leaves it, and the "
+        "simulation as found that stays on it",
+        "",
+    ),
     "misfit": (
         "Before and after: misfit of each recording",
-        "Misfit of each recording as believed, refitted and as found",
+        "A line of three marks for each recording: as believed, with re-estimated parameters, and "
+        "as found, where 1 is the noise",
         "",
     ),
     "bands": (
         "Before and after: what the simulation leaves",
-        "Bands of the residuals of each channel over time",
+        "For each channel over time a wide band of residuals as believed and a narrow one as "
+        "found, between lines that mark the noise",
         "",
     ),
     "loss": (
         "What the wrong model would cost",
-        "Speeds of the best gaits as believed and as found",
+        "Three bars of speed: what the model as believed promises, what the robot makes of that "
+        "gait, and what its own best gait makes",
         "",
     ),
 }

@@ -11,11 +11,12 @@ _NONE = 5e-4
 
 
 def share_lost(one: Loss) -> str:
-    """`12 %`; `nothing` where it is less than a tenth of a per cent; `more than all` where the
-    robot goes the other way."""
+    """`12 %`; `less than 0.05 %`; `more than all` where the robot goes the other way."""
     if one.share > 1:
         return "more than all"
-    return "nothing" if one.share < _NONE else f"{number(100 * one.share, 2)} %"
+    if one.share < _NONE:
+        return f"less than {100 * _NONE:g} %"
+    return f"{number(100 * one.share, 2)} %"
 
 
 def pace(speed: float) -> str:
@@ -37,7 +38,7 @@ def loss_sentences(one: Loss | LossUnknown | None) -> str:
         f"{', as it drives the robot the other way' if one.share > 1 else ''}."
     )
     if one.unseen:
-        said += " These gaits ask for more than was recorded: this is foretold, and not seen."
+        said += " These gaits demand more than any recorded one: this is a prediction."
     return said
 
 

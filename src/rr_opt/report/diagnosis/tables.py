@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from rr_opt.documents import document as doc
@@ -10,7 +12,7 @@ from rr_opt.model.experiment import Run
 from rr_opt.model.parameters import parameters_of
 from rr_opt.report.diagnosis import words
 from rr_opt.results.diagnosis import ExplainedExperiment
-from rr_opt.sysid.diagnosis import Estimate, Misfit
+from rr_opt.sysid.diagnosis import Estimate, Misfit, Tried
 
 _MOST = 30
 """Rows of candidates; diagnosis.json has all."""
@@ -21,7 +23,7 @@ def effects_table(one: ExplainedExperiment) -> doc.Table:
     rows: list[list[doc.Cell]] = []
     for finding in one.found.findings if one.found.verdict != "parameters" else ():
         removes = words.share_text(finding) + (", minor" if finding.minor else "")
-        first = [finding.name.replace("_", " "), f"{finding.confidence:.2f}", removes]
+        first = [words.candidate_words([finding.name]), f"{finding.confidence:.2f}", removes]
         for name, value in finding.parameters.items():
             rows.append([first[0], name, words.value_text(value), *first[1:]])
             first = ["", "", ""]
@@ -32,7 +34,7 @@ def effects_table(one: ExplainedExperiment) -> doc.Table:
 _CANDIDATES = (
     "Each row was fitted to the fitted recordings, with the robot's parameters re-estimated. "
     "Score: twice the log predictive density lost, each recording predicted from the others; less "
-    "is better. Misfit: what simulation leaves beyond the noise."
+    "is better. Misfit: RMS of what simulation leaves in the fitted recordings; 1 is the noise."
 )
 
 
@@ -42,13 +44,21 @@ def candidates_table(one: ExplainedExperiment) -> doc.Table:
     return doc.table_of(
         tried[:_MOST],
         {
-            "Effects": lambda each: words.candidate_words(each.effects),
+            "Effects": lambda each: _candidate(each, tried),
             "Score over the best": lambda each: f"+{each.score - tried[0].score:.0f}",
-            "Misfit": lambda each: f"{each.fit:.2f} σ",
+            "Misfit": lambda each: f"{words.total(each.fit):.2f} σ",
             "Verdict": lambda each: doc.Badge("accepted", "good") if each.accepted else "",
         },
         _CANDIDATES if tried else "",
     )
+
+
+def _candidate(one: Tried, tried: Sequence[Tried]) -> str:
+    """The effects; of sets with the same effects in other forms also which parameters they have."""
+    same = [set(each.values) for each in tried if each.effects == one.effects]
+    own = [name.partition(".")[2] for name in one.values if name not in set.intersection(*same)]
+    form = f" ({', '.join(own).replace('_', ' ')})" if own else ""
+    return words.candidate_words(one.effects) + form
 
 
 def parameters_table(one: ExplainedExperiment) -> doc.Table:
@@ -96,8 +106,8 @@ def misfit_table(one: ExplainedExperiment) -> doc.Table:
 
     note = (
         "With the robot's values re-fitted within what was stated of them, the fitted recordings "
-        f"are {off.rms:.2f} σ off beyond the noise; noise alone leaves that much or more with "
-        f"probability {off.p_value:.2g}."
+        f"leave a misfit of {words.total(off.rms):.2f} σ; noise alone leaves that much or more "
+        f"with probability {off.p_value:.2g}."
     )
     columns = {
         "Recording": lambda pair: pair[1].recording,
@@ -121,7 +131,7 @@ def recordings_table(one: ExplainedExperiment) -> doc.Table:
         one.experiment.runs,
         {
             "Recording": lambda run: run.name,
-            "Use": lambda run: run.use,
+            "Use": lambda run: "held out" if run.use == "holdout" else "fitted",
             "Start": lambda run: run.start,
             "Amplitude": lambda run: with_unit(run.gait.amplitude, "rad", 3),
             "Period": lambda run: with_unit(run.gait.period, "s", 3),

@@ -26,9 +26,6 @@ NOMINAL, FINAL, RECORDED = style.BACKWARD, style.FORWARD, "#b4bdc6"
 
 NOISE = style.GREY
 CHANNELS = {"x": "x", "y": "y", "psi": "ψ", "phi": "φ", "torque": "τ"}
-WIDTH = 5.4
-"""Of every figure, inches: read without zooming on a phone."""
-
 _WIDE = 8.0
 """A range of so many sigma is where linear axes would hide the noise."""
 
@@ -111,7 +108,8 @@ def curve(ax: Axes, one: Curve | Residue, label: str) -> Axes:
     ax.fill_between(one.at, low, high, color=NOMINAL, alpha=0.22, lw=0)
     ax.plot(one.at, one.mean, "o-", color=NOMINAL, ms=3.5, lw=1.4)
     name = _NAMES.get(one.variable, one.variable.replace("_", " "))
-    ax.set(xlabel=f"{name}, {one.unit}" if one.unit else name, ylabel=label)
+    unit = f"in units {one.unit}" if one.unit.startswith("of ") else one.unit
+    ax.set(xlabel=f"{name}, {unit}" if unit else name, ylabel=label)
     seen = np.concatenate([low, high])
     if not np.isfinite(seen).any():
         ax.text(0.5, 0.5, "no data", transform=ax.transAxes, ha="center", color=style.GREY)
@@ -247,7 +245,7 @@ def _evidence(one: ExplainedExperiment) -> tuple[Figure, str] | None:
     if not curves:
         return None
     rows = -(-len(curves) // 2)
-    made = style.figure(WIDTH, 0.4 + 2.1 * rows)
+    made = style.figure(style.WIDTH, 0.4 + 2.1 * rows)
     axes = np.atleast_1d(made.subplots(rows, min(len(curves), 2))).ravel()
     for ax, (_, each, label) in zip(axes, curves, strict=False):
         curve(ax, each, label)
@@ -270,7 +268,7 @@ def _paths(one: ExplainedExperiment) -> tuple[Figure, str]:
     wide = all(flat(one.experiment.runs[k].recording) for k in shown)
     columns = 1 if wide else min(len(shown), 2)
     rows = -(-len(shown) // columns)
-    made = style.figure(WIDTH, 0.8 + (1.9 if wide else 2.7) * rows)
+    made = style.figure(style.WIDTH, 0.8 + (1.9 if wide else 2.7) * rows)
     axes = np.atleast_1d(made.subplots(rows, columns)).ravel()
     for ax, k in zip(axes, shown, strict=False):
         path(ax, one.experiment.runs[k].recording, one.found.nominal[k], one.found.final[k])
@@ -289,7 +287,7 @@ def _paths(one: ExplainedExperiment) -> tuple[Figure, str]:
 def _bands(one: ExplainedExperiment) -> tuple[Figure, str]:
     shown = one.proof[:_MOST_BANDS]
     nominal, final = ([level[k] for k in shown] for level in (one.found.nominal, one.found.final))
-    made = style.figure(WIDTH, 0.7 + 1.35 * len(SEEN))
+    made = style.figure(style.WIDTH, 0.7 + 1.35 * len(SEEN))
     axes = list(made.subplots(len(SEEN), 1, sharex=True))
     bands(axes, nominal, final, SEEN)
     made.align_ylabels()
@@ -305,7 +303,7 @@ def _bands(one: ExplainedExperiment) -> tuple[Figure, str]:
 
 def _misfit(one: ExplainedExperiment) -> tuple[Figure, str]:
     found = one.found
-    made = style.figure(WIDTH, 1.3 + 0.3 * len(found.final))
+    made = style.figure(style.WIDTH, 1.3 + 0.3 * len(found.final))
     misfit(ax := made.subplots(), found.nominal, found.refitted, found.final)
     made.legend(*ax.get_legend_handles_labels(), loc="outside lower center", ncols=3)
     held = "Held-out recordings took no part in the fit." if one.marked else (
@@ -318,7 +316,7 @@ def _residue(one: ExplainedExperiment) -> tuple[Figure, str] | None:
     some = one.found.residue
     if not some:
         return None
-    made = style.figure(WIDTH, 0.3 + 2.4 * len(some))
+    made = style.figure(style.WIDTH, 0.3 + 2.4 * len(some))
     for ax, each in zip(np.atleast_1d(made.subplots(len(some), 1)), some, strict=True):
         curve(ax, each, input_words(each.kind))
     return made, " ".join(each.sentence for each in some)
@@ -327,6 +325,6 @@ def _residue(one: ExplainedExperiment) -> tuple[Figure, str] | None:
 def _loss(one: ExplainedExperiment) -> tuple[Figure, str] | None:
     if not isinstance(one.loss, Loss):
         return None
-    made = style.figure(WIDTH, 3.0)
+    made = style.figure(style.WIDTH, 3.0)
     lost_speed(made.subplots(), one.loss)
     return made, loss_sentences(one.loss)

@@ -29,7 +29,7 @@ def draw(result: FastestGait) -> dict[str, str]:
     drawn = {
         "path": _path(result, replay),
         "cycle": _cycle(result, replay),
-        "prices": style.panel(6.3, 0.9 + 0.42 * len(lines), lambda ax: prices(ax, lines)),
+        "prices": style.panel(0.9 + 0.42 * len(lines), lambda ax: prices(ax, lines)),
     }
     # The map is one of sines.
     return {"speed-map": _speed_map(result, gait), **drawn} if isinstance(gait, SineGait) else drawn
@@ -46,9 +46,7 @@ def _speed_map(result: FastestGait, gait: SineGait) -> str:
     ]
     problem, robot = result.problem, result.robot
     data = map_data(problem, robot, gait)
-    return style.panel(
-        6.3, 4.6, lambda ax: speed_map(ax, data, problem, robot, gait, others=others)
-    )
+    return style.panel(4.2, lambda ax: speed_map(ax, data, problem, robot, gait, others=others))
 
 
 def _path(result: FastestGait, replay: Replay) -> str:
@@ -56,14 +54,12 @@ def _path(result: FastestGait, replay: Replay) -> str:
     motion = repeated(steady, cycles_to_show(robot, steady.cycle))
     straight = abs(steady.cycle.dpsi) < 1e-6
     shown, height = (along_travel(motion), 3.0) if straight else (motion, 5.0)
-    return style.panel(
-        6.3, height, lambda ax: path(ax, robot, shown, steady.speed, steady.gait.period)
-    )
+    return style.panel(height, lambda ax: path(ax, robot, shown, steady.speed, steady.gait.period))
 
 
 def _cycle(result: FastestGait, replay: Replay) -> str:
     with style.styled():
-        drawn = style.figure(6.3, 6.4)
+        drawn = style.figure(style.WIDTH, 6.2)
         cycle(list(drawn.subplots(4, 1, sharex=True)), replay.steady, result.problem.limits)
         return style.svg(drawn)
 

@@ -160,34 +160,42 @@ def noise(ax: Axes, found: Mapping[str, NoiseEstimate], stated: Mapping[str, flo
 _ARROWS = 6
 
 
-def path(ax: Axes, recording: Recording) -> None:
-    """P, m, with a dot where it starts, and arrows of platform 1's heading, towards its axle."""
+def path(ax: Axes, recording: Recording, gait: Gait | None) -> None:
+    """P, m, and its mean over a period of the gait, where that is known: how the robot travels.
+
+    A dot is the start; arrows are platform 1's heading, towards its axle.
+    """
     x, y, psi = (recording.data(channel) for channel in ("x", "y", "psi"))
     step = max(1, len(x) // 4000)
-    ax.plot(x[::step], y[::step], color=style.INK, lw=1.2)
+    ax.plot(x[::step], y[::step], color=style.GREY, lw=0.8, alpha=0.7, label="P")
+    if gait is not None:
+        mean = [_mean_over(recording.t, part, gait.period) for part in (x, y)]
+        ax.plot(*mean, color=style.FORWARD, lw=2.6, zorder=3, label="mean over a period")
     known = np.flatnonzero(np.isfinite(x) & np.isfinite(y))
     headed = known[np.isfinite(psi[known])]
     if len(known):
-        first = known[0]
-        ax.plot(
-            x[first],
-            y[first],
-            "o",
-            ms=8,
-            color=style.OPTIMUM,
-            mec=style.INK,
-            zorder=4,
-            label="start",
-        )
-        ax.legend(loc="best")
+        ax.plot(x[known[0]], y[known[0]], "o", ms=8, color=style.OPTIMUM, mec=style.INK, zorder=5,
+                label="start")  # fmt: skip
     rows = headed[np.linspace(0, len(headed) - 1, min(_ARROWS, len(headed))).astype(int)]
     ax.quiver(
         x[rows], y[rows], np.cos(psi[rows]), np.sin(psi[rows]),
-        color=style.GREY, width=0.004, scale=14, zorder=3,
+        color=style.INK, width=0.005, scale=12, zorder=4,
     )  # fmt: skip
+    ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=3)
     ax.set_aspect("equal", adjustable="datalim")
     ax.margins(0.1)
     ax.set(xlabel="x, m", ylabel="y, m")
+
+
+def _mean_over(t: Array, values: Array, period: float) -> Array:
+    """The mean (n,) over a period round each sample of even steps; NaN near ends and gaps."""
+    size = max(1, round(period * (len(t) - 1) / (t[-1] - t[0])))
+    mean = np.full(len(values), np.nan)
+    if len(values) > size:
+        half = size // 2
+        whole = np.convolve(values, np.full(size, 1 / size), "valid")
+        mean[half : half + len(whole)] = whole
+    return mean
 
 
 _CUT = 8.0
@@ -234,23 +242,23 @@ def draw(found: Inspection) -> dict[str, str]:
     stated = {name: float(np.median(recording.sigma[name])) for name in recording.channels}
     count = len(recording.channels)
     with style.styled():
-        over = style.figure(7.6, 1.55 * count + 0.5)
+        over = style.figure(style.WIDTH, 1.4 * count + 0.5)
         axes = np.ravel(over.subplots(count, 1, sharex=True))
         channels(list(axes), recording, found.cleaned.gaps)
         over.align_ylabels()
         drawn = {
-            "path": style.panel(6.6, 4.8, lambda ax: path(ax, recording)),
+            "path": style.panel(4.4, lambda ax: path(ax, recording, gait)),
             "channels": style.svg(over),
-            "noise": style.panel(6.6, 3.4, lambda ax: noise(ax, found.cleaned.noise, stated)),
+            "noise": style.panel(3.2, lambda ax: noise(ax, found.cleaned.noise, stated)),
         }
         if gait is not None:
-            one = style.figure(7.6, 5.2)
+            one = style.figure(style.WIDTH, 5.0)
             above, below = one.subplots(2, 1, height_ratios=[1.4, 1])
             folded(above, recording.t, recording.data("phi"), gait, found.command)
             difference(below, recording.t, recording.data("phi"), gait)
             drawn["command"] = style.svg(one)
         if markers is not None:
-            one = style.figure(7.6, 4.8)
+            one = style.figure(style.WIDTH, 4.8)
             above, below = one.subplots(2, 1)
             over_time(above, markers)
             by_marker(below, markers)

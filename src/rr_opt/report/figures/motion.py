@@ -12,7 +12,7 @@ def draw(motion: SimulatedMotion) -> dict[str, str]:
     """Four axes, top to bottom: path (m), phi (rad), v (m/s), torque (N m)."""
     robot, trajectory = motion.robot, motion.trajectory
     with style.styled():
-        drawn = style.figure(7.4, 8.6)
+        drawn = style.figure(style.WIDTH, 8.0)
         axes = drawn.subplots(4, 1, gridspec_kw={"height_ratios": [2.4, 1, 1, 1]})
         path(axes[0], robot, trajectory, float(trajectory.v.mean()), motion.gait.period)
         axes[0].set_title("The path of P, and the robot at a few instants")

@@ -107,13 +107,19 @@ def cycles_to_show(robot: Robot, cycle: Cycle) -> int:
     return min(max(count, 2), 24)
 
 
+_POINTS = 6000
+"""Of a path that is drawn."""
+
+
 def path(ax: Axes, robot: Robot, motion: Trajectory, speed: float, period: float) -> Axes:
     """The path of P (m) and the robot at its last instant and at some before.
 
     motion: turned as it should be drawn; speed: signed, m/s, gives the colour; period: of the
     gait, s, over which the arrow takes its direction.
     """
-    ax.plot(motion.x, motion.y, color=style.colour_of(speed), lw=1.6, zorder=3, label="path of P")
+    step = max(1, len(motion.x) // _POINTS)
+    ax.plot(motion.x[::step], motion.y[::step], color=style.colour_of(speed), lw=1.6, zorder=3,
+            label="path of P")  # fmt: skip
     chosen = instants(motion, robot_length(robot))
     for order, i in enumerate(chosen):
         alpha = 1.0 - 0.65 * (len(chosen) - 1 - order) / max(len(chosen) - 1, 1)

@@ -21,8 +21,8 @@ def draw(compared: FastestShapes) -> dict[str, str]:
     if not lines:
         return {}
     with style.styled():
-        drawn = style.figure(8.6, 4.2)
-        axes = drawn.subplot_mosaic([["angle", "speed"], ["rate", "speed"]], width_ratios=[1.1, 1])
+        drawn = style.figure(style.WIDTH, 6.4)
+        axes = drawn.subplot_mosaic([["angle"], ["rate"], ["speed"]])
         angle, rate, bars = (axes[name] for name in ("angle", "rate", "speed"))
         phase, top = np.linspace(0, 1, _SAMPLES), max(1e3 * abs(speed) for *_, speed in lines)
         for place, (one, gait, speed) in enumerate(lines):

@@ -16,6 +16,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 from rr_opt.formatting import counted
 from rr_opt.report.figures import style
 from rr_opt.report.figures.study_axes import Grid, Scale, grid_of, scale_of
+from rr_opt.results.inputs import held_words
 from rr_opt.results.study import SolvedStudy
 
 _COSTS = (("peak_torque", "largest servo torque, N m"), ("energy_per_metre", "energy, J/m"))
@@ -28,10 +29,10 @@ def draw(result: SolvedStudy) -> dict[str, str]:
     axes = [at for at, n in enumerate(result.study.shape) if n > 1] or [0]
     ordered = [at for at in axes if scale_of(result.study.axes[at]).ordered] or axes[:1]
     with style.styled():
-        speeds = style.figure(6.3, 3.9 * len(ordered))
+        speeds = style.figure(style.WIDTH, 4.3 * len(ordered))
         for ax, along in zip(np.ravel(speeds.subplots(len(ordered), 1)), ordered, strict=True):
             speed(ax, result, along)
-        costs = style.figure(6.3, 6.6)
+        costs = style.figure(style.WIDTH, 6.2)
         for ax, (name, label) in zip(costs.subplots(2, 1), _COSTS, strict=True):
             pareto(ax, result, name, label)
         drawn = {"speed": style.svg(speeds), "pareto": style.svg(costs)}
@@ -39,11 +40,11 @@ def draw(result: SolvedStudy) -> dict[str, str]:
     if grid is None:
         count = len({name for row in result.rows if row.optimum for name in row.optimum.held})
         return drawn | {
-            "held": style.panel(6.3, 1.1 + 0.42 * count, partial(active_lanes, result=result))
+            "held": style.panel(1.1 + 0.42 * count, partial(active_lanes, result=result))
         }
     return drawn | {
-        "held": style.panel(6.3, 5.6, partial(active_areas, result=result, grid=grid)),
-        "map": style.panel(6.3, 4.6, partial(study_map, result=result, grid=grid)),
+        "held": style.panel(5.2, partial(active_areas, result=result, grid=grid)),
+        "map": style.panel(4.2, partial(study_map, result=result, grid=grid)),
     }
 
 
@@ -132,10 +133,14 @@ def speed(ax: Axes, result: SolvedStudy, along: int) -> Axes:
     axes = [scale_of(axis) for axis in result.study.axes]
     mine, others = axes[along], [scale for at, scale in enumerate(axes) if at != along]
     x, left_out = mine.steps[mine.order], 0
-    for fixed, cases in _lines(result, along, mine.order):
+    lines = list(_lines(result, along, mine.order))
+    # The first are the widest, so that lines which lie on one another are all seen.
+    widths = np.linspace(1.6 + 0.7 * min(len(lines) - 1, 5), 1.6, len(lines))
+    for (fixed, cases), width in zip(lines, widths, strict=True):
         y = 1e3 * result.speed[cases]
         colour = _colour(others[0], fixed[0]) if others else None
-        _broken(ax, x, y, [result.branches[case] for case in cases], colour or style.GREY)
+        _broken(ax, x, y, [result.branches[case] for case in cases],
+                colour or style.GREY, width)  # fmt: skip
         for at, case in enumerate(cases):
             optimum = result.rows[case].optimum
             if optimum is None:
@@ -168,12 +173,14 @@ def _lines(
         yield fixed, [int(case) for case in moved[fixed][order]]
 
 
-def _broken(ax: Axes, x: np.ndarray, y: np.ndarray, branch: list[int | None], colour: str) -> None:
+def _broken(
+    ax: Axes, x: np.ndarray, y: np.ndarray, branch: list[int | None], colour: str, width: float
+) -> None:
     """A line through the points, dotted between branches."""
     for at in range(len(x) - 1):
         joined = branch[at] == branch[at + 1]
         ax.plot(x[at : at + 2], y[at : at + 2], color=colour, zorder=3, ls="-" if joined else ":",
-                lw=1.6 if joined else 1.0)  # fmt: skip
+                lw=width if joined else 1.0)  # fmt: skip
 
 
 def _tangents(ax: Axes, result: SolvedStudy, cases: list[int], mine: Scale) -> None:
@@ -215,16 +222,11 @@ def _explain(ax: Axes, scale: Scale) -> None:
     for step in steps:
         ax.plot([], [], color=_colour(scale, step), label=scale.texts[step])
     title = scale.label.split(",")[0]
-    ax.legend(title=title, loc="center left", bbox_to_anchor=(1.0, 0.5), alignment="left")
+    ax.legend(title=title, loc="upper center", bbox_to_anchor=(0.5, -0.17), ncols=4)
 
 
 _COLOURS = ("#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#f0e442", "#5b2a86")
 _OTHERS = "#9aa5b1"
-
-
-def _words(held: tuple[str, ...]) -> str:
-    """What limits an optimum, in words."""
-    return " + ".join(name.replace("inertia_ratio", "J20/J10") for name in held) or "nothing"
 
 
 def active_lanes(ax: Axes, result: SolvedStudy) -> Axes:
@@ -239,7 +241,7 @@ def active_lanes(ax: Axes, result: SolvedStudy) -> Axes:
             ax.fill_between(borders[at : at + 2], lane - 0.38, lane + 0.38, lw=0,
                             color=_COLOURS[lane % len(_COLOURS)] if on else style.FAINT,
                             alpha=1.0 if on else 0.5)  # fmt: skip
-    style.lanes(ax, [_words((name,)) for name in names])
+    style.lanes(ax, [held_words((name,))[0] for name in names])
     ax.set_xlim(borders[0], borders[-1])
     ax.grid(visible=False)
     scale.apply(ax)
@@ -248,7 +250,10 @@ def active_lanes(ax: Axes, result: SolvedStudy) -> Axes:
 
 def active_areas(ax: Axes, result: SolvedStudy, grid: Grid) -> Axes:
     """Each case in the colour of what limits it; the rarest share a grey. Hatched: no optimum."""
-    sets = [None if one.optimum is None else _words(one.optimum.held) for one in result.rows]
+    sets = [
+        None if one.optimum is None else " + ".join(held_words(one.optimum.held))
+        for one in result.rows
+    ]
     seen = Counter(sets[case] for case in grid.cases.ravel())
     seen.pop(None, None)
     named = [name for name, _ in seen.most_common(len(_COLOURS))]

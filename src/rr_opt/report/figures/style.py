@@ -65,7 +65,11 @@ def styled() -> Iterator[None]:
         yield
 
 
-def figure(width: float = 6.6, height: float = 4.4) -> Figure:
+WIDTH = 5.2
+"""Inches: of a figure on a page, whose type is then large enough on a phone."""
+
+
+def figure(width: float = WIDTH, height: float = 4.4) -> Figure:
     """An empty figure, inches, that lays itself out; not known to pyplot."""
     made = Figure(figsize=(width, height), layout="constrained")
     FigureCanvasAgg(made)
@@ -79,10 +83,10 @@ def svg(drawn: Figure) -> str:
     return text.getvalue()
 
 
-def panel(width: float, height: float, fill: Callable[[Axes], object]) -> str:
+def panel(height: float, fill: Callable[[Axes], object]) -> str:
     """A figure of one axes, inches, that `fill` draws on, as SVG text."""
     with styled():
-        drawn = figure(width, height)
+        drawn = figure(height=height)
         fill(drawn.add_subplot())
         return svg(drawn)
 

@@ -24,7 +24,7 @@ def draw(result: Sweep) -> dict[str, str]:
     order = order[np.argsort(np.abs(speed[order]))]
     top = float(np.abs(speed[order[-1]])) if len(order) else 1.0
     with style.styled():
-        drawn = style.figure(6.8, 4.8)
+        drawn = style.figure(style.WIDTH, 4.4)
         drawn.set_dpi(160)
         ax = drawn.add_subplot()
         ax.plot(period[~kept], amplitude[~kept], "x", color=style.GREY, ms=2.5, mew=0.5, alpha=0.3)

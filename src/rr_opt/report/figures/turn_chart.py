@@ -26,7 +26,7 @@ def turn_chart(seen: TurnMap, tight: Tightest | None) -> Figure:
     """All panels; offsets below 0 are the mirror image and not drawn."""
     count = len(seen.period)
     columns = min(count, 2)
-    drawn = style.figure(4.6 * columns, 3.6 * -(-count // columns))
+    drawn = style.figure(style.WIDTH, 1.0 + 2.3 * -(-count // columns))
     axes = drawn.subplots(-(-count // columns), columns, sharex=True, sharey=True, squeeze=False)
     for j, ax in enumerate(axes.flat):
         if j >= count:
