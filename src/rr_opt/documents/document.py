@@ -132,24 +132,28 @@ class Fact:
 
 
 @dataclass(frozen=True)
-class Facts:
-    """Facts below one another; as large figures on a page if they are the key ones."""
+class Items:
+    """A block of items; one without any is left out."""
 
-    items: tuple[Fact, ...]
-    key: bool = False
+    items: tuple[Any, ...]
 
     def __bool__(self) -> bool:
         return bool(self.items)
 
 
 @dataclass(frozen=True)
-class Checks:
+class Facts(Items):
+    """Facts below one another; as large figures on a page if they are the key ones."""
+
+    items: tuple[Fact, ...]
+    key: bool = False
+
+
+@dataclass(frozen=True)
+class Checks(Items):
     """Sentences, each with its outcome."""
 
     items: tuple[tuple[Literal["ok", "FAILED", "warning"], str], ...]
-
-    def __bool__(self) -> bool:
-        return bool(self.items)
 
 
 def checks(results: Iterable[tuple[bool, str]]) -> Checks:
@@ -173,13 +177,10 @@ class Step:
 
 
 @dataclass(frozen=True)
-class Chain:
+class Chain(Items):
     """Steps that follow one another, side by side on a page."""
 
     items: tuple[Step, ...]
-
-    def __bool__(self) -> bool:
-        return bool(self.items)
 
 
 @dataclass(frozen=True)
@@ -212,14 +213,11 @@ def captioned(captions: Captions, drawn: Mapping[str, str]) -> tuple[Figure, ...
 
 
 @dataclass(frozen=True)
-class Gallery:
+class Gallery(Items):
     """Figures that flow in two columns where there is room; one below the other if `wide`."""
 
     items: tuple[Figure, ...]
     wide: bool = False
-
-    def __bool__(self) -> bool:
-        return bool(self.items)
 
 
 Block = str | Facts | Table | Checks | Chain | Gallery

@@ -14,36 +14,12 @@ from rr_opt.model.parameters import PARAMETERS, parameters_of
 from rr_opt.model.robot import Robot
 from rr_opt.motion.rollout import one_period
 from rr_opt.outcome import Status
+from rr_opt.report.captions import captions
 from rr_opt.report.fastest_record import fastest_record
 from rr_opt.report.gait import gait_facts, signed_fact, speed_fact
 from rr_opt.report.trajectory_file import trajectory_csv
 from rr_opt.results.fastest import FastestGait
 from rr_opt.verify.replay import Replay
-
-CAPTIONS = {
-    "speed-map": (
-        "Mean speed over period and amplitude",
-        "Map of the mean speed, the region within the limits, and the optimum",
-        "At the optimum's offset and inertia ratio. Hatched: a limit is exceeded. "
-        "The star is the optimum; rings are other local optima with the same offset and ratio.",
-    ),
-    "prices": (
-        "What the limits cost",
-        "The speed that relaxing each limit or bound by one per cent would gain",
-        "From the shadow prices.",
-    ),
-    "path": (
-        "The path in steady state",
-        "Path of the joint seen from above, with the robot drawn at a few instants",
-        "P's path with the robot at a few instants, fainter the earlier. "
-        "Platform 1 is green, platform 2 amber.",
-    ),
-    "cycle": (
-        "One steady period",
-        "Angle, rate, speed and torque over one period, with their limits",
-        "Simulated by CVODES.",
-    ),
-}
 
 _TITLES = {
     Status.OPTIMAL: "The robot does not move",
@@ -265,5 +241,5 @@ REPORT = Report(
     tables=tables,
     others=("trajectory.csv",),
     figures="rr_opt.report.figures.fastest",
-    captions=CAPTIONS,
+    captions=captions("fastest"),
 )

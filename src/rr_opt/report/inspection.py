@@ -18,39 +18,9 @@ from rr_opt.model.experiment import Flag
 from rr_opt.recordings.inspection import Inspection
 from rr_opt.recordings.time_axis import time_step
 from rr_opt.recordings.warnings import size_text
+from rr_opt.report.captions import captions
 from rr_opt.report.inspection_record import inspection_record, travelled
 from rr_opt.results.inspection import InspectedRecordings
-
-CAPTIONS = {
-    "path": (
-        "The joint's path",
-        "The recorded path seen from above",
-        "Grey: P seen from above. Blue: its mean over a period of the command, which shows how the "
-        "robot travels. Arrows: platform 1's heading.",
-    ),
-    "noise": (
-        "Noise",
-        "Noise of each channel against the stated noise",
-        "From sixth differences, with a 95 % interval, against the stated noise. White noise is "
-        "the same at half the frequency; behind a low-pass filter it is larger there.",
-    ),
-    "rigid": (
-        "Markers on rigid platforms",
-        "Residuals of the markers by frame and by marker",
-        "Residuals of a fit of two rigid platforms joined at P: by frame, and by marker.",
-    ),
-    "channels": (
-        "Channels",
-        "Every channel over time, with gaps and flagged samples",
-        "What is taken as data. Bands: gaps; gaps of up to 0.1 s are bridged by a thin line, in "
-        "this figure only. Crosses: flagged samples, those within the axes.",
-    ),
-    "command": (
-        "phi against its command",
-        "The angle over the phase of its command, and the difference over time",
-        "Above: samples at their phase of the period. Below: the difference over time.",
-    ),
-}
 
 
 def inspection_document(
@@ -190,7 +160,7 @@ class _Report(Report):
         several, figures = len(result.recordings) > 1, []
         for place, one in enumerate(result.recordings, 1):
             progress(f"figures {place} of {len(result.recordings)}" if several else "figures")
-            for figure in doc.captioned(CAPTIONS, draw(one)):
+            for figure in doc.captioned(self.captions, draw(one)):
                 own = {
                     "name": f"{stem_of(one)}-{figure.name}",
                     "title": f"{one.name}: {figure.title}",
@@ -224,5 +194,9 @@ def _netcdf(path: Path, found: Inspection) -> Path:
 
 # The figures are in the page alone: there may be dozens.
 REPORT = _Report(
-    inspection_record, inspection_document, "inspection.json", captions=CAPTIONS, svgs=False
+    inspection_record,
+    inspection_document,
+    "inspection.json",
+    captions=captions("inspection"),
+    svgs=False,
 )

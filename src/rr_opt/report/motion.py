@@ -11,6 +11,7 @@ from rr_opt.documents.archive import folder_for_results, remove, write_text
 from rr_opt.documents.document import Fact, facts_alone
 from rr_opt.documents.report import Progress, Report, quiet
 from rr_opt.formatting import number, speed_text
+from rr_opt.report.captions import captions
 from rr_opt.report.gait import gait_facts
 from rr_opt.report.trajectory_file import netcdf_writer, trajectory_csv, write_netcdf
 from rr_opt.results.motion import Film, Format, SimulatedMotion
@@ -93,11 +94,5 @@ REPORT = _Report(
     record,
     lambda motion, _: facts_alone(_facts(motion)),
     figures="rr_opt.report.figures.motion",
-    captions={
-        "motion": (
-            "The simulated motion",
-            "Path of the joint, and angle, speed and torque over time",
-            "P's path with the robot at a few instants; below, angle, speed of axle 1 and torque.",
-        )
-    },
+    captions=captions("motion"),
 )

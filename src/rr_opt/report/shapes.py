@@ -11,17 +11,9 @@ from rr_opt.documents.report import Report
 from rr_opt.files.record import plain
 from rr_opt.formatting import direction_text, number, with_unit
 from rr_opt.outcome import Status
+from rr_opt.report.captions import captions
 from rr_opt.results.fastest import FastestGait
 from rr_opt.results.shapes import FastestShapes, family
-
-CAPTIONS = {
-    "shapes": (
-        "The best gait of each family",
-        "Angle and rate over a period for each family, and the speed of each",
-        "One period of the best gait of each family, under the same limits. Dashed grey: the "
-        "sine. Dashed red: the limit on the rate.",
-    )
-}
 
 
 def record(result: FastestShapes) -> dict[str, Any]:
@@ -121,5 +113,5 @@ REPORT = Report(
     tables=tables,
     others=("shapes.csv", "sine.json", "fourier-3.json", "fourier-5.json", "free.json"),
     figures="rr_opt.report.figures.shapes",
-    captions=CAPTIONS,
+    captions=captions("shapes"),
 )

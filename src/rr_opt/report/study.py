@@ -13,37 +13,11 @@ from rr_opt.documents import document as doc
 from rr_opt.documents.report import Report
 from rr_opt.formatting import direction_text, number, speed_text, with_unit
 from rr_opt.outcome import Status
+from rr_opt.report.captions import captions
 from rr_opt.report.study_table import study_columns, study_csv, write_netcdf
 from rr_opt.report.trajectory_file import netcdf_writer
 from rr_opt.results.inputs import axis_words, held_words
 from rr_opt.results.study import SolvedStudy
-
-CAPTIONS = {
-    "speed": (
-        "Speed over what was varied",
-        "Best speed of each case over the first input, a line for each value of the others",
-        "A line for each combination of the other inputs. Triangles point up for forward and "
-        "down for backward. Dotted: the optimum jumps to another branch.",
-    ),
-    "held": (
-        "Active limits and bounds",
-        "Which limits and bounds are active in each case",
-        "The limits and bounds that limit the best gait. Hatched on a map: no optimum.",
-    ),
-    "map": (
-        "Speed over two inputs",
-        "Map of the best speed over two of the inputs",
-        "A cell for each case; thick lines separate branches, the star is the fastest. "
-        "Hatched: no optimum. If more than two keys were varied, a cell shows the fastest of "
-        "its cases.",
-    ),
-    "pareto": (
-        "What speed costs",
-        "Speed of every case against peak torque and against energy per metre, with the fronts",
-        "Each dot is a case. No case is both faster and cheaper than one on the front. Energy "
-        "is the servo's positive work per metre of path; what it brakes is not given back.",
-    ),
-}
 
 COSTS = ("peak_torque", "energy_per_metre")
 _MOST_ROWS = 300
@@ -208,5 +182,5 @@ REPORT = _Report(
     tables=lambda result: {"study.csv": study_csv(result)},
     others=("study.csv", "study.nc"),
     figures="rr_opt.report.figures.study",
-    captions=CAPTIONS,
+    captions=captions("study"),
 )

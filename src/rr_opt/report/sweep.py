@@ -8,19 +8,11 @@ from typing import Any
 from rr_opt.documents import document as doc
 from rr_opt.documents.report import Report
 from rr_opt.formatting import number, with_unit
+from rr_opt.report.captions import captions
 from rr_opt.report.gait import gait_facts, speed_fact
 from rr_opt.results.sweep import Sweep
 from rr_opt.verify.evaluate import LIMITS, Found
 from rr_opt.verify.grid import DECISIONS
-
-CAPTIONS = {
-    "sweep": (
-        "Speed over the bounds",
-        "Every gait of the sweep by period and amplitude, coloured by its speed",
-        "A dot for each gait that respects every limit, the fastest on top; a cross for any "
-        "other. The star is the best.",
-    )
-}
 
 
 def record(result: Sweep) -> dict[str, Any]:
@@ -91,5 +83,5 @@ REPORT = Report(
     tables=tables,
     others=("sweep.csv",),
     figures="rr_opt.report.figures.sweep",
-    captions=CAPTIONS,
+    captions=captions("sweep"),
 )

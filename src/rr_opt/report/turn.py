@@ -12,6 +12,7 @@ from rr_opt.documents import document as doc
 from rr_opt.files.record import plain
 from rr_opt.formatting import number, side_text, with_unit
 from rr_opt.report import fastest
+from rr_opt.report.captions import captions
 from rr_opt.results.turn import FastestTurn
 
 UNITS = {
@@ -81,19 +82,10 @@ def _facts(turn: FastestTurn, arc: Arc) -> Iterator[doc.Fact]:
             yield doc.Fact("price", f"{1e3 * gain:+.3g} mm/s for {words}")
 
 
-CAPTIONS = fastest.CAPTIONS | {
-    "path": (
-        "The path of the turn",
-        "The circle asked for, the arc of the turn on it, and the path of the joint along that arc",
-        "Dashed: the mean circle; grey band: the turn, from its start to its end. P oscillates "
-        "about it in steady motion. Platform 1 is green, platform 2 amber, fainter the earlier.",
-    )
-}
-
 REPORT = replace(
     fastest.REPORT,
     record=turn_record,
     document=turn_document,
     figures="rr_opt.report.figures.turn",
-    captions=CAPTIONS,
+    captions=fastest.REPORT.captions | captions("turn"),
 )

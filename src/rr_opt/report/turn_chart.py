@@ -12,18 +12,10 @@ from rr_opt.documents import document as doc
 from rr_opt.documents.report import Report
 from rr_opt.files.record import plain
 from rr_opt.formatting import number, with_unit
+from rr_opt.report.captions import captions
 from rr_opt.report.gait import speed_fact
 from rr_opt.results.turn_chart import TurnChart, sine_text
 from rr_opt.verify.turn_chart import RadiusClaim, SignClaim
-
-CAPTIONS = {
-    "turn-chart": (
-        "Radius over offset",
-        "Radius over offset, a panel for each period and a line for each amplitude",
-        "Solid lines turn to the left, dashed ones to the right; a line ends where a limit is "
-        "exceeded.",
-    )
-}
 
 COLUMNS = (
     "amplitude", "period", "offset", "curvature", "speed", "heading_per_period", "peak_torque",
@@ -129,5 +121,5 @@ REPORT = Report(
     tables=tables,
     others=("turn-chart.csv",),
     figures="rr_opt.report.figures.turn_chart",
-    captions=CAPTIONS,
+    captions=captions("turn chart"),
 )

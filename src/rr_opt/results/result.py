@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
@@ -26,23 +26,11 @@ class Svg(str):
         return f"<Svg, {len(self)} characters>"
 
 
-class Plots(Mapping[str, Svg]):
+class Plots(dict[str, Svg]):
     """Figures by name. A notebook shows them all."""
 
-    def __init__(self, figures: Mapping[str, str]):
-        self._figures = {name: Svg(svg) for name, svg in figures.items()}
-
-    def __getitem__(self, name: str) -> Svg:
-        return self._figures[name]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._figures)
-
-    def __len__(self) -> int:
-        return len(self._figures)
-
     def __repr__(self) -> str:
-        return f"Plots({', '.join(self._figures)})"
+        return f"Plots({', '.join(self)})"
 
     def _repr_html_(self) -> str:
         return "\n".join(f"<div>{svg._repr_svg_()}</div>" for svg in self.values())
@@ -112,7 +100,7 @@ class Result:
 
     def plot(self) -> Plots:
         """The figures; empty if there is nothing to draw."""
-        return Plots({figure.name: figure.svg for figure in self.report.drawn(self)})
+        return Plots({figure.name: Svg(figure.svg) for figure in self.report.drawn(self)})
 
     def save(
         self, path: str | Path, *, figures: bool = True, progress: Progress = quiet

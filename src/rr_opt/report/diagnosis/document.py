@@ -8,6 +8,7 @@ from pathlib import Path
 from rr_opt.documents import document as doc
 from rr_opt.documents.report import Progress, Report, quiet
 from rr_opt.files.record import robot_yaml
+from rr_opt.report.captions import captions
 from rr_opt.report.diagnosis import words
 from rr_opt.report.diagnosis.loss import share_lost
 from rr_opt.report.diagnosis.record import record
@@ -150,45 +151,6 @@ def _open(one: ExplainedExperiment) -> Iterator[str]:
         yield found.next_experiment.sentence
 
 
-CAPTIONS = {
-    "evidence": (
-        "What the fault depends on",
-        "Curves with 95 % bands: the unknown input over the variable that it follows most",
-        "",
-    ),
-    "residue": (
-        "The force that has no name",
-        "A curve with a 95 % band: the estimated force over the variable that it follows most",
-        "",
-    ),
-    "paths": (
-        "Before and after: paths",
-        "Seen from above: what was recorded, the simulation as believed that leaves it, and the "
-        "simulation as found that stays on it",
-        "",
-    ),
-    "misfit": (
-        "Before and after: misfit of each recording",
-        "A line of three marks for each recording: as believed, with re-estimated parameters, and "
-        "as found, where 1 is the noise",
-        "",
-    ),
-    "bands": (
-        "Before and after: what the simulation leaves",
-        "For each channel over time a wide band of residuals as believed and a narrow one as "
-        "found, between lines that mark the noise",
-        "",
-    ),
-    "loss": (
-        "What the wrong model would cost",
-        "Three bars of speed: what the model as believed promises, what the robot makes of that "
-        "gait, and what its own best gait makes",
-        "",
-    ),
-}
-"""Captions themselves depend on what was found."""
-
-
 ROBOT = "robot-corrected.yaml"
 
 
@@ -224,5 +186,5 @@ REPORT = _Report(
     "diagnosis.json",
     tables=robot_file,
     others=(ROBOT,),
-    captions=CAPTIONS,
+    captions=captions("diagnosis"),
 )

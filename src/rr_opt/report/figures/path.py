@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -12,8 +13,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.patches import Circle, Polygon
 from numpy.typing import ArrayLike, NDArray
 
-from rr_opt.array import Array
-from rr_opt.model.robot import Platform, Robot
+from rr_opt.model.robot import Robot
 from rr_opt.motion.rollout import Trajectory
 from rr_opt.motion.steady_cycle import Cycle
 from rr_opt.report.figures import style
@@ -29,72 +29,38 @@ def draw_robot(ax: Axes, robot: Robot, motion: Trajectory, i: int, *, alpha: flo
 
     Returns the artists, in order, so that an animation can take them away again.
     """
-    x, y, psi, phi = (float(part[i]) for part in (motion.x, motion.y, motion.psi, motion.phi))
-    joint = np.array([x, y])
-    artists = []
-    for platform, angle, way, colour in (
-        (robot.platform1, psi, 1.0, style.PLATFORM1),
-        (robot.platform2, psi + phi, -1.0, style.PLATFORM2),
+    joint = complex(motion.x[i], motion.y[i])
+    psi, phi, h = float(motion.psi[i]), float(motion.phi[i]), robot.h
+    artists: list = []
+
+    def shape(points: ArrayLike, **look: Any) -> None:
+        points = np.asarray(points)
+        corners = np.column_stack([points.real, points.imag])
+        artists.append(ax.add_patch(Polygon(corners, **look)))
+
+    for one, axis, colour in (
+        (robot.platform1, np.exp(1j * psi), style.PLATFORM1),
+        (robot.platform2, -np.exp(1j * (psi + phi)), style.PLATFORM2),
     ):
-        artists += _platform(
-            ax, platform, robot.h, _Axis(joint, angle, way), colour=colour, alpha=alpha
-        )
+        # Along the platform from the joint, and 1j times as far to the side.
+        wide = 0.72 * one.b
+        tail, nose = -0.25 * one.b, one.c + 0.35 * h
+        hull = np.array([tail + 0.55j * wide, nose + 1j * wide, nose - 1j * wide,
+                         tail - 0.55j * wide])  # fmt: skip
+        hull = joint + axis * hull
+        shape(hull, facecolor=colour, edgecolor=colour, alpha=0.55 * alpha, zorder=4)
+        shape(hull, fill=False, edgecolor=colour, linewidth=1.2, alpha=alpha, zorder=5)
+        ends = joint + axis * (one.c + np.array([-1j, 1j]) * one.b)
+        artists += ax.plot(ends.real, ends.imag, color=style.WHEEL, lw=1.2, alpha=alpha, zorder=5)
+        tyre = 1j * (0.16 * one.b + 0.001)
+        wheel = np.array([-h - tyre, h - tyre, h + tyre, -h + tyre])
+        for side in (-one.b, one.b):
+            place = joint + axis * (one.c + 1j * side + wheel)
+            shape(place, facecolor=style.WHEEL, edgecolor="none", alpha=alpha, zorder=5)
     size = 0.16 * min(robot.platform1.b, robot.platform2.b) + 0.003
-    dot = Circle(
-        (x, y),
-        size,
-        facecolor=style.PAPER,
-        edgecolor=style.INK,
-        linewidth=1.1,
-        alpha=alpha,
-        zorder=6,
-    )
-    return [*artists, ax.add_patch(dot)]
-
-
-@dataclass(frozen=True)
-class _Axis:
-    """A platform's axis: it starts at the joint (m), at an angle (rad); `way` is +1 if the axle
-    lies ahead of P on it, -1 if behind."""
-
-    joint: Array
-    angle: float
-    way: float
-
-    def place(self, along: ArrayLike, across: ArrayLike) -> Array:
-        """Points (..., 2) at distances along the axis and to its left, m."""
-        e = np.array([np.cos(self.angle), np.sin(self.angle)])
-        n = np.array([-e[1], e[0]])
-        return self.joint + np.multiply.outer(along, e) + np.multiply.outer(across, n)
-
-
-def _platform(
-    ax: Axes, platform: Platform, h: float, axis: _Axis, *, colour: str, alpha: float
-) -> list:
-    b, c, way, place = platform.b, platform.c, axis.way, axis.place
-    end = way * (c + 0.35 * h)
-    start = -way * 0.25 * b
-    body = place([start, end, end, start], 0.72 * b * np.array([0.55, 1, -1, -0.55]))
-    artists: list = [
-        ax.add_patch(
-            Polygon(body, facecolor=colour, edgecolor=colour, alpha=0.55 * alpha, zorder=4)
-        ),
-        ax.add_patch(
-            Polygon(body, fill=False, edgecolor=colour, linewidth=1.2, alpha=alpha, zorder=5)
-        ),
-    ]
-    axle = place([way * c, way * c], [-b, b])
-    artists += ax.plot(axle[:, 0], axle[:, 1], color=style.WHEEL, lw=1.2, alpha=alpha, zorder=5)
-    half = 0.16 * b + 0.001
-    for side in (-b, b):
-        along = way * c + h * np.array([-1, 1, 1, -1])
-        wheel = place(along, side + half * np.array([-1, -1, 1, 1]))
-        artists.append(
-            ax.add_patch(
-                Polygon(wheel, facecolor=style.WHEEL, edgecolor="none", alpha=alpha, zorder=5)
-            )
-        )
-    return artists
+    look = {"facecolor": style.PAPER, "edgecolor": style.INK, "linewidth": 1.1, "alpha": alpha}
+    dot = ax.add_patch(Circle((joint.real, joint.imag), size, **look, zorder=6))
+    return [*artists, dot]
 
 
 def cycles_to_show(robot: Robot, cycle: Cycle) -> int:
@@ -144,18 +110,10 @@ def instants(motion: Trajectory, length: float) -> list[int]:
 
 def along_travel(motion: Trajectory) -> Trajectory:
     """The motion turned so that it leads along x from the origin."""
-    dx, dy = motion.x - motion.x[0], motion.y - motion.y[0]
-    angle = math.atan2(dy[-1], dx[-1])
-    cos, sin = math.cos(angle), math.sin(angle)
-    return Trajectory(
-        t=motion.t,
-        x=cos * dx + sin * dy,
-        y=cos * dy - sin * dx,
-        psi=motion.psi - angle,
-        phi=motion.phi,
-        v=motion.v,
-        torque=motion.torque,
-    )
+    way = (motion.x - motion.x[0]) + 1j * (motion.y - motion.y[0])
+    angle = float(np.angle(way[-1]))
+    way = way * np.exp(-1j * angle)
+    return replace(motion, x=way.real, y=way.imag, psi=motion.psi - angle)
 
 
 def _arrow(ax: Axes, robot: Robot, motion: Trajectory, speed: float, period: float) -> None:
