@@ -40,7 +40,7 @@ def diagnose(
     found = identify(RollerRacer(trial), progress)
     if not (found.before < float("inf") and found.after < float("inf")):
         raise NotConvergedError(
-            "The fits did not converge: a simulation left the range of numbers. Expected motion "
+            "The fits did not converge: a simulation diverged. Expected motion "
             "near that of the nominal robot. Look at the recordings with `rr-opt inspect`, and "
             "check the robot's values."
         )

@@ -55,7 +55,7 @@ def _evidence(
 
 
 def shapes(problem: Problem | PathLike, *, progress: Progress = quiet) -> FastestShapes:
-    """The fastest sine beside the fastest gaits of 3 and 5 harmonics and of free shape.
+    """The fastest sine, compared with the fastest gaits of 3 and 5 harmonics and of free shape.
 
     All respect the limits of the problem, whose own shape is ignored, and each is checked. Raises
     InputError for a robot without friction.

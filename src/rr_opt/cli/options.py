@@ -27,7 +27,7 @@ def place(text: str) -> Path:
     if not text.strip():
         raise InputError(
             "--out: Read an empty name. Expected the name of a folder or a file. "
-            "Name one, `.` for the current folder, or leave --out away."
+            "Name one, `.` for the current folder, or omit --out."
         )
     return Path(text)
 
@@ -149,7 +149,7 @@ def read_command(**sizes: str | None) -> Gait | None:
         return None
     if "amplitude" not in read or "period" not in read:
         raise InputError(
-            "The command was given in part. Expected --amplitude and --period, and --offset unless "
+            "Read only part of a command. Expected --amplitude and --period, and --offset unless "
             "it is 0. Give both, or neither."
         )
     from rr_opt.model.gait import SineGait

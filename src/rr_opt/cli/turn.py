@@ -34,7 +34,7 @@ def turn(
     """Find the fastest gait for a turn.
 
     Give --radius; or --heading with --radius, --within or --length. Left is positive, seen from
-    above, whichever way the robot drives. The problem sets the direction of travel.
+    above, in either direction of travel. The problem sets the direction of travel.
     """
     with Steps() as steps:
         asked = options.read_options(radius=radius, heading=heading, within=within, length=length)

@@ -59,7 +59,7 @@ def columns(rows: Sequence[Sequence[str]]) -> list[str]:
 
 
 def _hanging(rows: Sequence[tuple[str, str]]) -> list[str]:
-    """Labels and texts beside them; a long text goes on below itself."""
+    """Labels with their texts; a long text continues with a hanging indent."""
     width = max([6, *(len(label) for label, _ in rows)]) + 2
     return [
         line

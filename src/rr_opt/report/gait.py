@@ -52,6 +52,6 @@ def speed_fact(speed: float) -> Fact:
 
 
 def signed_fact(label: str, speed: float, detail: str) -> Fact:
-    """A signed speed in m/s, and in mm/s beside what else there is to say."""
+    """A signed speed in m/s, with mm/s and a remark as its detail."""
     value, _, other = speed_text(speed).partition(" (")
     return Fact(label, value, f"({other}, {detail}" if other else detail)

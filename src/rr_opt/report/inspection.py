@@ -40,9 +40,9 @@ def inspection_document(
         name=result.name,
         kind="recordings",
         title=f"{what} with {counted(count, 'warning')}" if count else f"{what} without warnings",
-        lead="Read each warning before the recording is used. Nothing was filled in or dropped."
+        lead="Read each warning before using the recording. Nothing was filled in or dropped."
         if count
-        else "Nothing looks wrong in what was read.",
+        else "Nothing looks wrong in the recordings.",
         good=not count,
         sections=tuple(sections),
         footer=doc.versions(result.sha256),
@@ -65,7 +65,7 @@ def _facts(found: Inspection) -> Iterator[doc.Fact]:
     yield doc.Fact("phi", _phi_text(found))
     yield doc.Fact("noise", ", ".join(_noise_text(found, name) for name in recording.channels))
     sigma = {name: float(np.median(one)) for name, one in recording.sigma.items()}
-    yield doc.Fact("sigma taken", ", ".join(f"{n} {size_text(n, s)}" for n, s in sigma.items()))
+    yield doc.Fact("sigma used", ", ".join(f"{n} {size_text(n, s)}" for n, s in sigma.items()))
     yield doc.Fact("flagged", _flagged_text(found))
     if found.markers is not None:
         fit = found.markers

@@ -34,13 +34,13 @@ def record(motion: SimulatedMotion) -> dict[str, Any]:
 
 
 def _facts(motion: SimulatedMotion) -> Iterator[Fact]:
-    told, measured = record(motion), motion.measured
+    data, measured = record(motion), motion.measured
     begun = "rest" if motion.start == "rest" else "the steady state"
-    degrees = number(math.degrees(told["turned"]))
+    degrees = number(math.degrees(data["turned"]))
     mean = f"{speed_text(measured.mean_v)}, mean v of axle 1"
     yield from gait_facts(motion.gait)
-    yield Fact("time", f"{number(told['seconds'])} s from {begun}")
-    yield Fact("moved", f"{number(told['distance'])} m, turned by {degrees} deg")
+    yield Fact("time", f"{number(data['seconds'])} s from {begun}")
+    yield Fact("moved", f"{number(data['distance'])} m, turned by {degrees} deg")
     if measured.speed is None:
         yield Fact("speed", f"{mean}, less than a period")
     else:

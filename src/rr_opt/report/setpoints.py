@@ -15,8 +15,8 @@ from rr_opt.results.setpoints import ExportedGait
 from rr_opt.version import __version__
 
 MODEL = (
-    "Between set points the servo is taken to move at constant speed, and to be at each when the "
-    "next one is sent. Its lag is not counted."
+    "The servo is assumed to move at constant speed between set points and to reach each one when "
+    "the next is sent. Its lag is ignored."
 )
 
 _NOTHING = 1e-6
@@ -24,7 +24,7 @@ _NOTHING = 1e-6
 
 _STEPS = {
     "period": "by the changed period",
-    "holding": "by moving straight from one set point to the next",
+    "holding": "by moving in straight lines between set points",
     "rounding": f"by rounding to counts of {1e3 * COUNT:.2f} mrad",
 }
 

@@ -64,13 +64,13 @@ def document(result: FastestShapes, figures: Sequence[doc.Figure] = ()) -> doc.D
     passed = sum(check.passed for _, check in results)
     every = doc.checks((check.passed, f"{name}: {check.sentence}") for name, check in results)
     count = f"{passed} of {len(results)} passed: replay, limits, and a sweep of all sines."
-    title = "Shapes of gait"
+    title = "Waveforms"
     if len(result.solved) > 1:
         gain = result.gain(result.solved[-1]) or 0.0
         title = f"A free gait is {100 * gain:.0f} % faster than the best sine"
     return doc.Document(
         name=result.name,
-        kind="shapes of gait",
+        kind="waveforms",
         title=title,
         lead=result.message,
         good=result.status is Status.OPTIMAL,
@@ -85,7 +85,7 @@ def document(result: FastestShapes, figures: Sequence[doc.Figure] = ()) -> doc.D
 
 
 def _families(result: FastestShapes) -> doc.Table:
-    head = ["Shape", "Speed", "Over the sine", "Amplitude", "Period", "J20/J10", "Limited by"]
+    head = ["Shape", "Speed", "Gain over the sine", "Amplitude", "Period", "J20/J10", "Limited by"]
     rows = []
     for one in result.answers:
         gait, speed, gain = one.gait, one.speed, result.gain(one)

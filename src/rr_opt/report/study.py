@@ -76,7 +76,7 @@ def study_document(result: SolvedStudy, figures: Sequence[doc.Figure] = ()) -> d
         ),
         footer=(
             "Each optimum was checked against its limits and a fine simulation; `rr-opt "
-            "maximize-speed` checks a case against a sweep too.",
+            "maximize-speed` also checks a case against a sweep.",
             *doc.versions(result.study.sha256),
         ),
     )

@@ -184,7 +184,7 @@ class FastestGait(Result):
         texts = []
         ignored = ignored_in_steady_cycle(self.problem.robot)
         if ignored:
-            texts.append(f"Optimiser and checks ignore {listed(ignored)}.")
+            texts.append(f"The optimiser and the checks ignore {listed(ignored)}.")
         ties = len(self.optimum.ties)
         if ties:
             texts.append(f"{ties} other gait{'s are' if ties > 1 else ' is'} as fast: a tie.")
@@ -201,8 +201,8 @@ class FastestGait(Result):
             texts.append("The sweep's own model cannot represent this shape and does not check it.")
         if self.optimum.sideways:
             texts.append(
-                "It sits where forward turns into backward: its mean velocity is at right angles "
-                "to its mean heading, and its direction is a matter of definition."
+                "It lies where forward motion turns into backward motion: its mean velocity is "
+                "perpendicular to its mean heading, so its direction is a matter of definition."
             )
         return texts
 

@@ -14,9 +14,10 @@ def ignored_effects(robot: Robot) -> tuple[str, ...]:
     if not names:
         return ()
     text = (
-        f"{listed(names)} {'is' if len(names) == 1 else 'are'} ignored: the motion is that on a "
-        "level, uniform floor without side slip, driven by the angle that the servo makes."
+        f"{listed(names)} {'is' if len(names) == 1 else 'are'} ignored: the motion is "
+        "computed for a level, uniform floor without side slip and for the angle that the servo "
+        "makes."
     )
     if of_servo:
-        text += f" Command the servo such that it makes this angle despite {listed(of_servo)}."
+        text += f" Command the servo so that it makes this angle despite {listed(of_servo)}."
     return (text,)

@@ -78,7 +78,7 @@ def loss_of(experiment: Experiment, corrected: Robot) -> Loss | LossUnknown:
             return unknown(next(one.message for one in (before, after) if one.best is None))
         believed, best = before.best, after.best
         if check_optimum(after.problem, best.gait, after.ratio, best.speed).gap < -TOLERATED:
-            return unknown("a plain sweep finds a faster gait of the corrected robot.")
+            return unknown("a plain sweep finds a faster gait for the corrected robot.")
         reached = steady_cycle(corrected, servo_made(corrected, believed.gait)).speed
     except RollerRacerError as error:
         return unknown(str(error))

@@ -68,8 +68,8 @@ class SimulatedMotion(GaitResult):
             "torque": (self.measured.peak_torque, servo.torque_limit),
         }
         return tuple(
-            f"The gait needs {QUANTITIES[name].both(value)}, and the servo's {name} limit is "
-            f"{QUANTITIES[name].both(limit)}. It is simulated as if the servo could."
+            f"The gait needs {QUANTITIES[name].both(value)}, but the servo's {name} limit is "
+            f"{QUANTITIES[name].both(limit)}. The simulation ignores this limit."
             for name, (value, limit) in reached.items()
             if value > limit * (1 + LARGEST_EXCESS)
         )

@@ -49,8 +49,8 @@ class ExportedGait(GaitResult):
         if needed <= limit * (1 + LARGEST_EXCESS):
             return ()
         return (
-            f"A step between set points needs {both(needed)}, and the servo's rate limit is "
-            f"{both(limit)}. The cost in speed is computed as if the servo could.",
+            f"A step between set points needs {both(needed)}, but the servo's rate limit is "
+            f"{both(limit)}. The cost in speed ignores this limit.",
         )
 
     def record(self, files: Sequence[Path] = ()) -> dict[str, Any]:

@@ -115,7 +115,7 @@ class SolvedStudy(Result):
         speed = float(self.values("speed")[best])
         return (
             f"The fastest of {len(self.rows)} cases drives {direction_text(speed)} at "
-            f"{pace_text(speed)}, at {self.inputs_text(best)}."
+            f"{pace_text(speed)} ({self.inputs_text(best)})."
         )
 
     @property
@@ -127,7 +127,7 @@ class SolvedStudy(Result):
         }
         counts = self.counts
         return ignored_effects(self.study.problems[0].robot) + tuple(
-            f"{counts[status]} of {len(self.rows)} cases: {text}. Their rows say why."
+            f"{counts[status]} of {len(self.rows)} cases: {text}. Their rows give the reasons."
             for status, text in words.items()
             if counts[status]
         )

@@ -83,8 +83,8 @@ class FastestTurn(FastestGait):
         bounds = self.problem.gait.offset
         return [
             *super().remarks,
-            "The problem fixes the offset, and a turn needs one: it was freed to all that the "
-            f"limits allow, {number(bounds.low)} to {number(bounds.high)} rad.",
+            "The problem fixes the offset, which a turn needs: it was freed within the limits, "
+            f"{number(bounds.low)} to {number(bounds.high)} rad.",
         ]
 
 
@@ -96,8 +96,8 @@ def _circle_checks(circle: CircleCheck) -> list[Check]:
     return [
         Check(
             max(circle.ends, circle.mean) <= LARGEST,
-            f"{PERIODS} periods by CVODES: P stays within {circle.ends:.1e} of the radius of "
-            f"where the circle has it, and the mean circle's radius differs by {circle.mean:.1e} "
+            f"{PERIODS} periods by CVODES: P deviates from the circle by {circle.ends:.1e} of "
+            f"the radius, and the mean circle's radius differs by {circle.mean:.1e} "
             f"{tail}",
         ),
         Check(

@@ -64,7 +64,7 @@ class TurnChart(Result):
     def warnings(self) -> tuple[str, ...]:
         """Which effects of the robot the chart ignores, and whether it shows one side only."""
         one_sided = () if self.seen.two_sided else (
-            "The robot's two sides differ. The chart shows offsets of 0 and more only.",
+            "The robot's two sides differ. The chart shows only offsets of 0 and above.",
         )  # fmt: skip
         return (*ignored_effects(self.problem.robot), *one_sided)
 

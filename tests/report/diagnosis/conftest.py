@@ -1,4 +1,4 @@
-"""Diagnoses that are made up: no fit is run, so every kind of verdict can be told."""
+"""Diagnoses that are made up: no fit is run, so every kind of verdict can be reported."""
 
 from dataclasses import replace
 from types import MappingProxyType

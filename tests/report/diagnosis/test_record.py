@@ -13,16 +13,16 @@ VERDICTS = ("consistent", "parameters", "missing_physics", "unexplained")
 
 @pytest.mark.parametrize("verdict", VERDICTS)
 def test_every_verdict_has_all_keys(every, verdict):
-    told = json.loads(strict_json(every[verdict].record()))
-    assert told["verdict"] == verdict
-    assert set(told["location"]) == {"channel", "where", "evidence"}
-    assert told["location"]["channel"] in CHANNELS
-    for evidence in told["location"]["evidence"]:
+    reported = json.loads(strict_json(every[verdict].record()))
+    assert reported["verdict"] == verdict
+    assert set(reported["location"]) == {"channel", "where", "evidence"}
+    assert reported["location"]["channel"] in CHANNELS
+    for evidence in reported["location"]["evidence"]:
         assert {"test", "statistic", "p_value"} <= set(evidence)
     for key in ("summary", "candidates", "indistinguishable", "next_experiment", "seconds"):
-        assert key in told
-    assert told["input_sha256"] == "ab" * 32
-    assert bool(told["effects"]) == (verdict in ("parameters", "missing_physics"))
+        assert key in reported
+    assert reported["input_sha256"] == "ab" * 32
+    assert bool(reported["effects"]) == (verdict in ("parameters", "missing_physics"))
 
 
 def test_an_effect_has_values_with_intervals(missing):
@@ -43,7 +43,7 @@ def test_a_wrong_parameter_has_its_value_directly_and_under_parameters(wrong_val
     assert effect["ci95"] == effect["parameters"]["kappa1"]["ci95"] == [1.8e-5, 2.4e-5]
 
 
-def test_misfits_are_told_by_recording_and_channel(missing):
+def test_misfits_are_reported_by_recording_and_channel(missing):
     fit = missing.record()["fit"]
     assert fit["heldout_recordings"] == ["run02.csv", "run04.csv"]
     # By hand, from the residuals of the runs that were fitted.
@@ -64,7 +64,7 @@ def test_candidates_are_ranked(missing):
     assert [one["accepted"] for one in ranked] == [True, False, False]
 
 
-def test_what_remains_is_told(missing, unexplained):
+def test_what_remains_is_reported(missing, unexplained):
     assert missing.record()["remainder"] == {
         "size": "none",
         "rms": 0.05,

@@ -11,7 +11,7 @@ def column(table, name):
     return [row[table.head.index(name)] for row in table.rows]
 
 
-def test_forms_of_one_effect_are_told_apart_by_their_parameters(missing):
+def test_forms_of_one_effect_are_reported_apart_by_their_parameters(missing):
     disc = {"floor_patch.multiplier": 2.0, "floor_patch.x": 0.1, "floor_patch.radius": 0.2}
     edge = {"floor_patch.multiplier": 2.0, "floor_patch.normal": 0.1}
     tried = tuple(

@@ -1,4 +1,4 @@
-"""A value is told in the unit of the bench, with as many digits as its interval allows."""
+"""A value is reported in the unit of the bench, with as many digits as its interval allows."""
 
 import math
 
@@ -51,6 +51,6 @@ def test_the_terminal_tells_what_remains(missing, unexplained):
 
     assert row(missing).split() == ["remainder", "none"]
     # Of the noise alone 1, and 7.90 beyond it.
-    assert "large: misfit 7.96 σ, 97 % of the first excess over the noise" in row(unexplained)
+    assert "large: misfit 7.96 σ, 97 % of the initial excess over the noise" in row(unexplained)
     assert "depends on the speed" in summary(unexplained, [])
     assert any(line.startswith("indistinguishable") for line in summary(missing, []).splitlines())

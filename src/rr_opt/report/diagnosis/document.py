@@ -108,17 +108,17 @@ def chain_note(one: ExplainedExperiment) -> str:
         return f"The stages were not tested one by one.{lit}"
     where = f"{one.where[0].upper()}{one.where[1:].removesuffix('.')}. " if one.where else ""
     if not one.guilty:
-        return f"{where or 'No channel has a fault that counts. '}{_SIGMA}"
+        return f"{where or 'No channel has a significant fault. '}{_SIGMA}"
     return (
         f"{where}Lit: where an unknown input would explain most of the misfit of the nominal "
-        f"model; the others follow the motion and are affected too. {_SIGMA}"
+        f"model; the motion passes the fault on to the other channels. {_SIGMA}"
     )
 
 
 _SIGMA = (
-    "Percentages: how much of the misfit an unknown input there would explain, with the robot's "
-    "values re-fitted. Misfits are RMS in σ, one standard deviation of the noise: 1 is the noise "
-    "alone, wherever one stands on this page."
+    "Percentages: the share of the misfit that an unknown input there would explain, with the "
+    "robot's values re-fitted. All misfits on this page are RMS in σ, one standard deviation of "
+    "the noise, so 1 is the noise alone."
 )
 
 

@@ -30,16 +30,16 @@ def loss_sentences(one: Loss | LossUnknown | None) -> str:
         return ""
     if isinstance(one, LossUnknown):
         return one.sentence
-    said = (
-        f"The best gait for the robot as believed ({gait_words(one.believed)}) promises "
-        f"{pace(one.promised)}; the robot as found makes {pace(one.reached)} of it. Its own best "
-        f"gait ({gait_words(one.best)}) makes {pace(one.speed)}. "
-        f"Lost by the wrong model: {share_lost(one)}"
+    text = (
+        f"The best gait of the robot as believed ({gait_words(one.believed)}) promises "
+        f"{pace(one.promised)}; the robot as found reaches {pace(one.reached)} with it. Its own "
+        f"best gait ({gait_words(one.best)}) reaches {pace(one.speed)}. "
+        f"Speed lost through the wrong model: {share_lost(one)}"
         f"{', as it drives the robot the other way' if one.share > 1 else ''}."
     )
     if one.unseen:
-        said += " These gaits demand more than any recorded one: this is a prediction."
-    return said
+        text += " These gaits demand more than any recorded one: this is a prediction."
+    return text
 
 
 def loss_line(one: Loss | LossUnknown) -> str:
@@ -47,12 +47,12 @@ def loss_line(one: Loss | LossUnknown) -> str:
     if isinstance(one, LossUnknown):
         return one.sentence
     return (
-        f"{share_lost(one)}: the best gait as believed promises {pace(one.promised)} and makes "
-        f"{pace(one.reached)}; the best as found makes {pace(one.speed)}"
+        f"{share_lost(one)}: the best gait as believed promises {pace(one.promised)} and reaches "
+        f"{pace(one.reached)}; the best as found reaches {pace(one.speed)}"
     )
 
 
 def gait_words(gait: Gait) -> str:
     """`1.51 rad, 1.73 s`, and an offset if there is one."""
-    said = f"{with_unit(gait.amplitude, 'rad', 3)}, {with_unit(gait.period, 's', 3)}"
-    return f"{said}, offset {with_unit(gait.offset, 'rad', 3)}" if gait.offset else said
+    text = f"{with_unit(gait.amplitude, 'rad', 3)}, {with_unit(gait.period, 's', 3)}"
+    return f"{text}, offset {with_unit(gait.offset, 'rad', 3)}" if gait.offset else text

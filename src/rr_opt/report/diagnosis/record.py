@@ -109,7 +109,7 @@ def _curve(curve: Curve | Residue) -> dict[str, Any]:
 
 
 def _finding(finding: Finding, of_robot: bool) -> dict[str, Any]:
-    """An effect; a parameter of the robot has its value beside its name too."""
+    """An effect; a parameter of the robot also has its value next to its name."""
     parameters = {name: _estimate(each) for name, each in finding.parameters.items()}
     return {
         "name": finding.name,

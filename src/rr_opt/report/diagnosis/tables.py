@@ -33,8 +33,8 @@ def effects_table(one: ExplainedExperiment) -> doc.Table:
 
 _CANDIDATES = (
     "Each row was fitted to the fitted recordings, with the robot's parameters re-estimated. "
-    "Score: twice the log predictive density lost, each recording predicted from the others; less "
-    "is better. Misfit: RMS of what simulation leaves in the fitted recordings; 1 is the noise."
+    "Score: twice the loss of log predictive density, each recording predicted from the others; "
+    "lower is better. Misfit: RMS residual of simulation in the fitted recordings; 1 is the noise."
 )
 
 
@@ -105,7 +105,7 @@ def misfit_table(one: ExplainedExperiment) -> doc.Table:
         return None if before is None or after is None else f"{before:.2f} → {after:.2f}"
 
     note = (
-        "With the robot's values re-fitted within what was stated of them, the fitted recordings "
+        "With the robot's values re-fitted within their stated uncertainty, the fitted recordings "
         f"leave a misfit of {words.total(off.rms):.2f} σ; noise alone leaves that much or more "
         f"with probability {off.p_value:.2g}."
     )

@@ -12,19 +12,19 @@ from rr_opt.sysid.settings import SETTINGS
 
 _NAMES = {
     "coulomb_friction": "Coulomb friction",
-    "left_right_drag": "a drag that differs from left to right",
-    "com_offset": "a centre of mass beside the axis",
-    "axle_misalignment": "an axle that is not square",
-    "marker_offset": "a tracked point that is not the joint",
+    "left_right_drag": "drag that differs between left and right",
+    "com_offset": "an off-axis centre of mass",
+    "axle_misalignment": "an axle misalignment",
+    "marker_offset": "an offset of the tracked point",
     "clock_offset": "a clock offset",
-    "floor_tilt": "a tilt of the floor",
-    "floor_patch": "a patch of the floor",
-    "lateral_slip": "sideways slip of the wheels",
-    "servo_lag": "a lag of the servo",
+    "floor_tilt": "a floor tilt",
+    "floor_patch": "a floor patch",
+    "lateral_slip": "lateral slip of the wheels",
+    "servo_lag": "servo lag",
     "servo_rate_limit": "the servo's rate limit",
-    "servo_backlash": "backlash of the servo",
-    "servo_offset": "an offset of the servo",
-    "wheel_inertia": "the inertia of the wheels",
+    "servo_backlash": "servo backlash",
+    "servo_offset": "a servo offset",
+    "wheel_inertia": "wheel inertia",
 }
 
 _COMMON = {
@@ -53,7 +53,7 @@ def parameter_words(name: str) -> str:
 def candidate_words(effects: Sequence[str]) -> str:
     """A set of effects."""
     names = (one.replace("_", " ").replace("coulomb", "Coulomb") for one in effects)
-    return " + ".join(names) or "none, the parameters alone"
+    return " + ".join(names) or "none (parameters only)"
 
 
 def listed(words: Iterable[str]) -> str:
@@ -75,7 +75,7 @@ def headline(found: Diagnosis) -> str:
         )
     if found.verdict == "missing_physics":
         return f"The model leaves out {listed(map(effect_words, names)) or 'something'}"
-    return "Something is left out, and no known effect accounts for it"
+    return "Physics is missing, and no known effect accounts for it"
 
 
 def value_text(one: Estimate) -> str:
@@ -131,7 +131,7 @@ def remainder_text(one: Remainder) -> str:
     if one.size == "none":
         return "none"
     depends = f"; {one.depends_on}" if one.depends_on else ""
-    share = f"{100 * one.share:.0f} % of the first excess over the noise"
+    share = f"{100 * one.share:.0f} % of the initial excess over the noise"
     return f"{one.size}: misfit {total(one.rms):.2f} σ, {share}{depends}"
 
 

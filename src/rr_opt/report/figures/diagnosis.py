@@ -27,7 +27,7 @@ NOMINAL, FINAL, RECORDED = style.BACKWARD, style.FORWARD, "#b4bdc6"
 NOISE = style.GREY
 CHANNELS = {"x": "x", "y": "y", "psi": "ψ", "phi": "φ", "torque": "τ"}
 _WIDE = 8.0
-"""A range of so many sigma is where linear axes would hide the noise."""
+"""With more sigma than this a linear axis would hide the noise."""
 
 
 def stretched(largest: float) -> bool:
@@ -38,7 +38,7 @@ def stretched(largest: float) -> bool:
 _ENDS = (2.5, 97.5)
 _Z = 1.96
 _LINEAR = 4.0
-"""Where the axis is stretched it is linear up to so many sigma."""
+"""Up to this many sigma a stretched axis is linear."""
 _MARKS = (0, *(sign * 10**power for power in range(1, 7) for sign in (-1, 1)))
 
 
@@ -98,7 +98,7 @@ def input_words(channel: str) -> str:
     """What an unknown input of a channel is, with its unit."""
     if channel == "actuation":
         return "angle, rad"
-    return "side speed, m/s" if channel.startswith("constraint") else "force of a wheel, N"
+    return "side speed, m/s" if channel.startswith("constraint") else "force per wheel, N"
 
 
 def curve(ax: Axes, one: Curve | Residue, label: str) -> Axes:
@@ -120,11 +120,17 @@ _BAR = 0.45
 
 
 def lost_speed(ax: Axes, one: Loss) -> Axes:
-    """A bar each, mm/s, whichever way; over it its speed, and at its foot its gait."""
+    """A bar each, mm/s, in either direction, with its speed above it and its gait inside."""
     bars = (
         ("what the model as believed promises", one.believed, one.promised, "none", NOMINAL),
-        ("what the robot as found makes of that gait", one.believed, one.reached, NOMINAL, NOMINAL),
-        ("what its own best gait makes", one.best, one.speed, FINAL, FINAL),
+        (
+            "what the robot as found reaches with that gait",
+            one.believed,
+            one.reached,
+            NOMINAL,
+            NOMINAL,
+        ),
+        ("what its own best gait reaches", one.best, one.speed, FINAL, FINAL),
     )
     for row, (words, gait, speed, inside, edge) in enumerate(bars):
         ax.barh(row, 1e3 * abs(speed), _BAR, color=inside, edgecolor=edge, lw=1.4)
@@ -254,7 +260,7 @@ def _evidence(one: ExplainedExperiment) -> tuple[Figure, str] | None:
     names = dict.fromkeys(name for name, *_ in curves)
     return made, (
         f"The unknown input ({' and '.join(names)}) that would explain most of the misfit of the "
-        "nominal model, with a 95 % band. On the line at zero there is none."
+        "nominal model, with a 95 % band. Zero means that none is needed."
     )
 
 
@@ -277,10 +283,10 @@ def _paths(one: ExplainedExperiment) -> tuple[Figure, str]:
     made.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
     for ax in axes[max(len(shown) - columns, 0) : len(shown)]:
         ax.set_xlabel("x, m")
-    kind = "Recordings that were kept apart from the fit" if one.marked else "The recordings"
+    kind = "Held-out recordings" if one.marked else "The recordings"
     return made, (
-        f"{kind}, the worst first, seen from above; the dot is where it starts. How far the "
-        "simulated path is off, RMS, includes the noise."
+        f"{kind}, worst first, seen from above; the dot marks the start. The distances are RMS "
+        "and include the noise."
     )
 
 
@@ -296,8 +302,8 @@ def _bands(one: ExplainedExperiment) -> tuple[Figure, str]:
     labels = ["as believed", "as found", "the noise"]
     made.legend([*handles, *line], labels, loc="outside lower center", ncols=3)
     return made, (
-        "Bands hold 95 % of what is left of each channel in a second, dark where both lie on each "
-        "other. Where blue just fills the space between the broken lines, only noise is left."
+        "Bands contain 95 % of each channel's residuals within a second and are dark where they "
+        "overlap. Where blue just fills the space between the dashed lines, only noise is left."
     )
 
 
@@ -309,7 +315,7 @@ def _misfit(one: ExplainedExperiment) -> tuple[Figure, str]:
     held = "Held-out recordings took no part in the fit." if one.marked else (
         "All of them were fitted: mark one with `use: holdout` to see it predicted."
     )  # fmt: skip
-    return made, f"RMS of simulated less recorded over all channels, in σ of the noise. {held}"
+    return (made, f"RMS difference between simulation and recording, in σ of the noise. {held}")
 
 
 def _residue(one: ExplainedExperiment) -> tuple[Figure, str] | None:

@@ -111,7 +111,12 @@ def folded(ax: Axes, t: Array, phi: Array, gait: Gait, fit: ClockFit | None) -> 
     phase = t[known] % gait.period
     x = np.stack([phase - dash, phase + dash, np.full(len(known), np.nan)], 1).ravel()
     ax.plot(
-        x, np.repeat(phi[known], 3), color=style.GREY, lw=2, solid_capstyle="round", label="seen"
+        x,
+        np.repeat(phi[known], 3),
+        color=style.GREY,
+        lw=2,
+        solid_capstyle="round",
+        label="recorded",
     )
     phase = np.linspace(0, gait.period, 400)
     ax.plot(phase, gait.angle(phase), color=style.FORWARD, lw=1.6, label="command")
@@ -137,12 +142,12 @@ def noise(ax: Axes, found: Mapping[str, NoiseEstimate], stated: Mapping[str, flo
     names = [name for name, one in found.items() if one.sigma > 0]
     for row, name in enumerate(names):
         one = found[name]
-        said = stated[name] if stated[name] > 0 else one.sigma
-        ax.errorbar(one.sigma / said, row, xerr=1.96 * one.error / said, fmt="o",
+        base = stated[name] if stated[name] > 0 else one.sigma
+        ax.errorbar(one.sigma / base, row, xerr=1.96 * one.error / base, fmt="o",
                     color=style.FORWARD, capsize=3,
                     label="" if row else "highest frequencies")  # fmt: skip
-        ax.plot(one.slower / said, row + 0.22, "D", ms=5, color=style.BACKWARD,
-                label="" if row else "half of them")  # fmt: skip
+        ax.plot(one.slower / base, row + 0.22, "D", ms=5, color=style.BACKWARD,
+                label="" if row else "half of these")  # fmt: skip
     ax.axvline(1.0, color=style.INK, lw=1)
     ax.set_yticks(range(len(names)), names)
     ax.set_ylim(len(names) - 0.4, -0.6)
@@ -152,7 +157,7 @@ def noise(ax: Axes, found: Mapping[str, NoiseEstimate], stated: Mapping[str, flo
         ax.set_xscale("log")
     else:
         ax.set_xlim(min(low, 0.0), max(high, 1.5))
-    ax.set_xlabel("noise, in units of the stated one")
+    ax.set_xlabel("noise relative to the stated noise")
     if names:
         ax.legend(loc="lower left", facecolor="white", labelcolor=style.GREY)
 
@@ -209,7 +214,7 @@ def over_time(ax: Axes, fit: MarkerFit) -> None:
     swapped = np.unique(np.concatenate([[], *(swap.frames for swap in fit.swaps)])).astype(int)
     ghosts = np.flatnonzero(fit.ghosts.out.any(axis=1))
     marked = (
-        (swapped, "names put right", style.FORWARD, 0.02),
+        (swapped, "labels corrected", style.FORWARD, 0.02),
         (ghosts, "marker left out", style.BACKWARD, 0.05),
         (fit.ghosts.lost, "does not fit", style.LIMIT, 0.08),
     )

@@ -64,7 +64,7 @@ def draw_robot(ax: Axes, robot: Robot, motion: Trajectory, i: int, *, alpha: flo
 
 
 def cycles_to_show(robot: Robot, cycle: Cycle) -> int:
-    """So many that the robot moves by some of its lengths, or once round its circle."""
+    """Enough periods to move by a few robot lengths, or once round the circle."""
     wanted = 3.0 * robot_length(robot)
     step = max(abs(cycle.speed) * cycle.period, 1e-9)
     count = math.ceil(wanted / step)

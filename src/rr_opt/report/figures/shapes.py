@@ -1,4 +1,4 @@
-"""Waveforms beside one another: the angle, its rate, and the speed that each gives."""
+"""Waveforms compared: angle, rate, and the speed that each one reaches."""
 
 from __future__ import annotations
 

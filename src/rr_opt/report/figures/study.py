@@ -121,7 +121,7 @@ def pareto(ax: Axes, result: SolvedStudy, name: str, label: str) -> Axes:
 FAMILY = LinearSegmentedColormap.from_list(
     "family", ["#5b2a86", "#0072b2", "#009e73", "#c9a400", "#d55e00"]
 )
-"""Five hues of one order, dark to warm, that colour-blind readers can tell apart."""
+"""Five hues in order, dark to warm, that colour-blind readers can distinguish."""
 _MOST_NAMED = 7
 _PRICED = 0.22
 """Half the length of a shadow price's tangent, in gaps between steps."""

@@ -1,4 +1,4 @@
-"""How every figure looks: colours that colour-blind readers can tell apart, one size of type."""
+"""How every figure looks: colours that colour-blind readers can distinguish, one type size."""
 
 from __future__ import annotations
 

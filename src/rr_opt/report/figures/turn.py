@@ -1,4 +1,4 @@
-"""The figures of a turn: those of a fastest gait, its path beside the circle that was asked."""
+"""The figures of a turn: those of a fastest gait, with the circle that was asked for."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def arc(ax: Axes, turn: FastestTurn) -> Axes:
 
 
 def _centre(motion: Trajectory, period: int) -> complex:
-    """The point about which a period, of so many steps, turns the robot."""
+    """The point about which one period, of that many steps, rotates the robot."""
     first, last = (complex(motion.x[i], motion.y[i]) for i in (0, period))
     turned = np.exp(1j * (motion.psi[period] - motion.psi[0]))
     return complex((last - turned * first) / (1 - turned))
