@@ -89,12 +89,9 @@ def hold_together(out: Path, gaits: dict[str, dict[str, Any]], effects: list[str
     say("5. The robot that hides it drives both, from rest, and each model predicts both.")
     lines = [f"{'gait chosen by':<24}{'recorded':>14}{'as believed':>20}{'as found':>20}"]
     for chosen, gait in gaits.items():
-        reported, folder = (
-            f"{gait['amplitude']:.6g}, {gait['period']:.6g} s",
-            f"{out}/best-{chosen}",
-        )
+        told, folder = f"{gait['amplitude']:.6g}, {gait['period']:.6g} s", f"{out}/best-{chosen}"
         words = ("--seconds", str(DRIVE), "--out", folder)
-        run("record", f"{out}/robot.yaml", "--gait", f"{reported}, rest", *effects, *NOISE, *words)
+        run("record", f"{out}/robot.yaml", "--gait", f"{told}, rest", *effects, *NOISE, *words)
         seen = mean_speed(Path(folder) / "run01.csv", gait["period"])
         said = [predicted(out, gait, name) for name in ROBOTS]
         cells = "".join(f"{1e3 * one:>10.1f} ({100 * (one / seen - 1):+.1f} %)" for one in said)

@@ -387,6 +387,8 @@ class _Report(Report):
         return proof_document(result.opened, document.figures, linked=True)
 
 
+_MATRIX = "A matrix of counts: what was hidden in rows, what the diagnosis named in columns"
+
 REPORT = _Report(
     lambda proof: proof_record(proof.opened),
     lambda proof, figures: proof_document(proof.opened, figures),
@@ -395,5 +397,5 @@ REPORT = _Report(
     tables=lambda proof: {"cases.csv": cases_csv(proof.opened)},
     others=("cases.csv",),
     figures="rr_lab.report.confusion_figure",
-    captions={"confusion": ("Diagnosis against truth", "Diagnosis against truth", CONFUSION)},
+    captions={"confusion": ("Diagnosis against truth", _MATRIX, CONFUSION)},
 )

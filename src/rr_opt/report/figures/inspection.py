@@ -149,9 +149,7 @@ def noise(ax: Axes, found: Mapping[str, NoiseEstimate], stated: Mapping[str, flo
         ax.plot(one.slower / base, row + 0.22, "D", ms=5, color=style.BACKWARD,
                 label="" if row else "half of these")  # fmt: skip
     ax.axvline(1.0, color=style.INK, lw=1)
-    ax.set_yticks(range(len(names)), names)
-    ax.set_ylim(len(names) - 0.4, -0.6)
-    ax.grid(visible=False, axis="y")
+    style.lanes(ax, names)
     low, high = ax.get_xlim()
     if np.isfinite(high) and high > 20:
         ax.set_xscale("log")
@@ -235,9 +233,7 @@ def by_marker(ax: Axes, fit: MarkerFit) -> None:
     colours = [(style.PLATFORM1, style.PLATFORM2)[where] for where in fit.bodies.platform]
     rows = np.arange(len(fit.whose))
     ax.barh(rows, 1e3 * np.nan_to_num(fit.whose), color=colours, height=0.6)
-    ax.set_yticks(rows, fit.bodies.labels)
-    ax.invert_yaxis()
-    ax.grid(visible=False, axis="y")
+    style.lanes(ax, fit.bodies.labels)
     ax.set_xlabel("residual, mm")
 
 
