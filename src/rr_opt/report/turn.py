@@ -87,5 +87,5 @@ REPORT = replace(
     record=turn_record,
     document=turn_document,
     figures="rr_opt.report.figures.turn",
-    captions=fastest.REPORT.captions | captions("turn"),
+    captions={**fastest.REPORT.captions, **captions("turn")},
 )

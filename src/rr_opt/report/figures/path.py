@@ -35,7 +35,7 @@ def draw_robot(ax: Axes, robot: Robot, motion: Trajectory, i: int, *, alpha: flo
 
     def shape(points: ArrayLike, **look: Any) -> None:
         points = np.asarray(points)
-        corners = np.column_stack([points.real, points.imag])
+        corners = np.column_stack([np.real(points), np.imag(points)])
         artists.append(ax.add_patch(Polygon(corners, **look)))
 
     for one, axis, colour in (

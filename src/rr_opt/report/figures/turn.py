@@ -36,7 +36,7 @@ def arc(ax: Axes, turn: FastestTurn) -> Axes:
     ax.plot(along.real, along.imag, color=style.FAINT, lw=9, solid_capstyle="butt", label="turn")
     for end in (along[0], along[-1]):
         spoke = np.array([centre, end])
-        ax.plot(spoke.real, spoke.imag, color=style.GREY, lw=0.8)
+        ax.plot(np.real(spoke), np.imag(spoke), color=style.GREY, lw=0.8)
     ax.plot(centre.real, centre.imag, "+", color=style.GREY, ms=8)
     path(ax, turn.robot, motion, steady.speed, steady.gait.period)
     style.note(ax, f"radius {radius:.4g} m, {abs(math.degrees(way.heading)):.4g}°")
