@@ -54,8 +54,11 @@ class Report:
         if not self.figures:
             return ()
         progress("figures")
-        # Here and not above: without figures matplotlib need not be loaded.
-        return doc.captioned(self.captions, import_module(self.figures).draw(result))
+        return doc.captioned(self.captions, self.draw(result))
+
+    def draw(self, result: Any) -> Any:
+        """What the module of the figures draws; it loads matplotlib, so it is loaded only now."""
+        return import_module(self.figures).draw(result)
 
     def stamped(self, result: Any) -> dict[str, Any]:
         """The record as JSON has it, with the version and the fingerprint of the input."""

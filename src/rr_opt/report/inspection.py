@@ -155,12 +155,10 @@ class _Report(Report):
         self, result: InspectedRecordings, progress: Progress = quiet
     ) -> tuple[doc.Figure, ...]:
         """Of several recordings each name begins with the file's."""
-        from rr_opt.report.figures.inspection import draw
-
         several, figures = len(result.recordings) > 1, []
         for place, one in enumerate(result.recordings, 1):
             progress(f"figures {place} of {len(result.recordings)}" if several else "figures")
-            for figure in doc.captioned(self.captions, draw(one)):
+            for figure in doc.captioned(self.captions, self.draw(one)):
                 own = {
                     "name": f"{stem_of(one)}-{figure.name}",
                     "title": f"{one.name}: {figure.title}",
@@ -197,6 +195,7 @@ REPORT = _Report(
     inspection_record,
     inspection_document,
     "inspection.json",
+    figures="rr_opt.report.figures.inspection",
     captions=captions("inspection"),
     svgs=False,
 )

@@ -170,9 +170,7 @@ class _Report(Report):
     ) -> tuple[doc.Figure, ...]:
         """The figures, each with the caption that was drawn for it."""
         progress("figures")
-        from rr_opt.report.figures.diagnosis import draw
-
-        drawn = draw(result)
+        drawn = self.draw(result)
         return tuple(
             doc.Figure(name, title, drawn[name][0], alt, drawn[name][1])
             for name, (title, alt, _) in self.captions.items()
@@ -186,5 +184,6 @@ REPORT = _Report(
     "diagnosis.json",
     tables=robot_file,
     others=(ROBOT,),
+    figures="rr_opt.report.figures.diagnosis",
     captions=captions("diagnosis"),
 )
