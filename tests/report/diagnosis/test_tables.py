@@ -32,4 +32,10 @@ def test_misfits_are_1_for_the_noise_alone(missing):
 def test_a_stage_explains_a_share_of_the_misfit(missing):
     stage = next(one for one in missing.found.stages if one.guilty)
     found = replace(missing.found, mismatch=Mismatch(2 * stage.size, 0.0))
-    assert stage_text(stage, found).startswith("25 %, ")
+    assert stage_text(stage, found).startswith("explains 25 %, ")
+
+
+def test_where_there_is_no_excess_no_share_of_it_is_given(missing):
+    stage = replace(missing.found.stages[0], size=0.03, p_value=0.4)
+    found = replace(missing.found, mismatch=Mismatch(0.03, 0.4))
+    assert stage_text(stage, found) == "p = 0.40"

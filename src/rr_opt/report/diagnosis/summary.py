@@ -32,7 +32,7 @@ def _facts(one: ExplainedExperiment) -> Iterator[Fact]:
     misfit = f"{found.before:.2f} before, {found.after:.2f} after, in units of the noise"
     yield Fact("misfit", f"{misfit} ({proof})")
     for stage, word in zip(found.stages, words.stage_words(found.stages), strict=True):
-        text = f"{word}, explains {words.stage_text(stage, found)}"
+        text = f"{word}, {words.stage_text(stage, found)}"
         yield Fact(f"channel {words.stage_name(stage)}", text)
     for group in found.indistinguishable:
         yield Fact("indistinguishable", " or ".join(name.replace("_", " ") for name in group))

@@ -160,15 +160,16 @@ _STAGES = {"constraint_axle1": "axle 1, sideways", "constraint_axle2": "axle 2, 
 
 
 def stage_text(stage: Stage, found: Diagnosis) -> str:
-    """What an unknown input there would explain, and the chance of it: `55 %, p < 1e-12`.
+    """What an unknown input there would explain, and the chance of it: `explains 55 %, p < 1e-12`.
 
-    The share is of the misfit beyond the noise with the robot's values re-fitted, in mean square.
+    The share is of the misfit beyond the noise with the robot's values re-fitted, in mean square;
+    none is given where that is negligible.
     """
-    beyond = max(found.mismatch.rms, stage.size)
-    share = f"{100 * (stage.size / beyond) ** 2:.0f} %" if beyond > 0 else "0 %"
-    p = stage.p_value
-    if not math.isfinite(p):
-        return share
+    beyond, p, parts = max(found.mismatch.rms, stage.size), stage.p_value, []
+    if beyond > SETTINGS.negligible:
+        parts.append(f"explains {100 * (stage.size / beyond) ** 2:.0f} %")
     if p < 1e-12:
-        return f"{share}, p < 1e-12"
-    return f"{share}, p = {p:.2f}" if p >= 0.095 else f"{share}, p = {p:.1g}"
+        parts.append("p < 1e-12")
+    elif math.isfinite(p):
+        parts.append(f"p = {p:.2f}" if p >= 0.095 else f"p = {p:.1g}")
+    return ", ".join(parts)
