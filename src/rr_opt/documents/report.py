@@ -101,3 +101,7 @@ class Report:
     def page_of(self, result: Any, document: doc.Document) -> doc.Document:
         """What the page shows, if it is not the document itself."""
         return document
+
+
+REPORT = Report(lambda _: {}, lambda *_: doc.Document("", "", "", "", ()))
+"""Of a result that has nothing to draw, and no document."""

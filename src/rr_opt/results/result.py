@@ -57,7 +57,7 @@ class Result:
     warnings  sentences on what the result leaves out, or what to beware of
     """
 
-    REPORT: ClassVar[str]
+    REPORT: ClassVar[str] = "rr_opt.documents.report"
     """The module whose REPORT shows this kind of result. It knows the result, and not the other way
     round, so it is found by its name when the result is shown."""
 
