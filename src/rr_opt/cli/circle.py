@@ -21,6 +21,6 @@ def circle(
     Also shows how a start from rest approaches it. Left is positive, seen from above.
     """
     with Steps() as steps:
-        given = options.read_options(amplitude=amplitude, period=period, offset=offset)
-        answer = rr.circle(options.read_gait(source, given), progress=steps)
+        gait = {"amplitude": amplitude, "period": period, "offset": offset}
+        answer = rr.circle(options.read_gait(source, **gait), progress=steps)
     show(answer, json=json)

@@ -157,10 +157,14 @@ def read_command(**sizes: str | None) -> Gait | None:
     return SineGait(read["amplitude"], read["period"], read.get("offset", 0.0))
 
 
-def read_gait(path: Path | None, options: dict[str, float]) -> RobotWithGait:
-    """What a file (None: the prototype) gives to drive; warnings go to stderr."""
+def read_gait(path: Path | None, **given: str | float | None) -> RobotWithGait:
+    """What a file (None: the prototype) gives to drive, at the sizes among the options.
+
+    All options are read, so that every mistake in them is reported; warnings go to stderr.
+    """
     from rr_opt.api.load import load_gait
 
+    options = read_options(**given)
     sizes = {name: options.get(name) for name in ("amplitude", "period", "offset")}
     driven = load_gait(path, **sizes)
     warn(driven.warnings)

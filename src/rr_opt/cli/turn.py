@@ -3,30 +3,22 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Literal
-
-import typer
+from typing import Annotated
 
 import rr_opt as rr
-from rr_opt.cli import options
+from rr_opt.cli import choices, options
 from rr_opt.cli.show import show
 from rr_opt.cli.steps import Steps
-
-_RADIUS = "Radius of the circle in m, or with a unit; positive to the left."
-_HEADING = "Change of heading in rad, or with a unit: '90 deg'; positive to the left."
-_WITHIN = "Longest time for the change of heading, s."
-_LENGTH = "Longest path for the change of heading, m."
-_CYCLES = "whole: the change of heading takes a whole number of periods."
 
 
 def turn(
     problem: options.ProblemFile = None,
     *,
-    radius: Annotated[str | None, typer.Option(help=_RADIUS)] = None,
-    heading: Annotated[str | None, typer.Option(help=_HEADING)] = None,
-    within: Annotated[str | None, typer.Option(help=_WITHIN)] = None,
-    length: Annotated[str | None, typer.Option(help=_LENGTH)] = None,
-    cycles: Annotated[Literal["any", "whole"], typer.Option(help=_CYCLES)] = "any",
+    radius: choices.Radius = None,
+    heading: choices.Heading = None,
+    within: choices.Within = None,
+    length: choices.Length = None,
+    cycles: choices.Cycles = "any",
     out: Annotated[Path | None, options.out_option("out/NAME-turn-...")] = None,
     json: Annotated[bool, options.json_option("result.json")] = False,
     figures: options.Figures = True,
