@@ -22,7 +22,7 @@ from rr_opt.motion.circle import Circle, circle_of
 from rr_opt.motion.rollout import Trajectory, rollout
 from rr_opt.motion.steady_cycle import steady_cycle as simulated_cycle
 from rr_opt.outcome import Status
-from rr_opt.report.fastest import FastestGait
+from rr_opt.results.fastest import FastestGait
 from rr_opt.verify.speeds import speeds
 from rr_opt.verify.turn_chart import RadiusClaim, SignClaim, radius_claim, sign_claim, turn_map
 from rr_paper.consistency import Hypothesis

@@ -14,8 +14,8 @@ from rr_lab.files import seal_of
 from rr_lab.trial.lots import Made, draw_lot
 from rr_lab.trial.trial import MADE, SAID, SEALS, Drawn, Trial, drawn_of, open_trial, tidy
 from rr_opt.batch.journal import Journal
+from rr_opt.documents.archive import write_bytes
 from rr_opt.outcome import InputError
-from rr_opt.report.archive import write_bytes
 
 STUB = str(Path(__file__).parent / "stub.py")
 IDENTITY = {"seed": "5eed", "kinds": ["null"], "code": "none", "version": "0"}

@@ -17,8 +17,8 @@ from rr_lab.trial.child import one_case
 from rr_lab.trial.lots import draw_lot, read_kinds, read_seed, seed_of_commit
 from rr_lab.trial.trial import PACKAGE, Drawn, drawn_of, whole_trial
 from rr_opt.batch.run import pool_of, run
-from rr_opt.report.archive import folder_for_results, write_bytes
-from rr_opt.report.result import Result
+from rr_opt.documents.archive import folder_for_results, write_bytes
+from rr_opt.results.result import Result
 
 Progress = Callable[[str], None]
 

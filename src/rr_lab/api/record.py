@@ -14,12 +14,12 @@ from rr_lab.files import WRITTEN, folder_of, seal_of, sealed_text
 from rr_lab.formats import drawn_clock
 from rr_lab.random_case import case_of
 from rr_opt.api.load import load_robot, prototype
+from rr_opt.documents.archive import file_for_result, folder_for_results, write_bytes, write_text
 from rr_opt.files.experiment_file import FILE_NAME
 from rr_opt.model.experiment import Noise
 from rr_opt.model.robot import EffectUse
 from rr_opt.outcome import InputError
-from rr_opt.report.archive import file_for_result, folder_for_results, write_bytes, write_text
-from rr_opt.report.result import Result
+from rr_opt.results.result import Result
 
 HASH = "answer.sha256"
 """In the folder: the answer's SHA-256, as sha256sum writes and checks it."""

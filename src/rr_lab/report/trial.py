@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any
 
 from rr_lab.trial import statistics
 from rr_lab.trial.case import Case
@@ -14,10 +14,8 @@ from rr_lab.trial.confusion import confusion
 from rr_lab.trial.measures import BREAKDOWN, breakdown, by_engine, measures, side_by_side
 from rr_lab.trial.statistics import Rate, rate
 from rr_lab.trial.trial import Opened, tidy
-from rr_opt.formatting import number
-from rr_opt.report.document import (
+from rr_opt.documents.document import (
     Block,
-    Captions,
     Document,
     Fact,
     Facts,
@@ -29,8 +27,10 @@ from rr_opt.report.document import (
     csv_text,
     table,
 )
-from rr_opt.report.result import Progress, Result, quiet
-from rr_opt.report.text import columns
+from rr_opt.documents.report import Progress, Report, quiet
+from rr_opt.documents.text import columns
+from rr_opt.formatting import number
+from rr_opt.results.result import Result
 
 ISOLATION = (
     "The laboratory drew and sealed every case before the first was diagnosed. Each was diagnosed "
@@ -164,28 +164,9 @@ def headline(opened: Opened) -> str:
 class Proof(Result):
     """The outcome of a trial, in its folder."""
 
-    RECORD, MARKDOWN, OTHERS = "proof.json", "README.md", ("cases.csv",)
-    CAPTIONS: ClassVar[Captions] = {
-        "confusion": ("Diagnosis against truth", "Diagnosis against truth", CONFUSION)
-    }
+    REPORT = "rr_lab.report.trial"
 
     opened: Opened
-
-    def document(self, figures: Sequence[Figure] = ()) -> Document:
-        """The counts, and every miss."""
-        return proof_document(self.opened, figures)
-
-    def record(self, files: Sequence[Path] = ()) -> dict[str, Any]:  # noqa: ARG002
-        """The content of proof.json."""
-        return proof_record(self.opened)
-
-    def _tables(self) -> dict[str, str]:
-        return {"cases.csv": cases_csv(self.opened)}
-
-    def _drawn(self) -> dict[str, str]:
-        from rr_lab.report.confusion_figure import draw  # matplotlib takes a second
-
-        return {"confusion": draw(self.opened)}
 
     def save(
         self, path: str | Path, *, figures: bool = True, progress: Progress = quiet
@@ -194,11 +175,6 @@ class Proof(Result):
         written = super().save(path, figures=figures, progress=progress)
         tidy(Path(path), [case.id for case in self.opened.cases if not case.missed])
         return written
-
-    def _write_page(self, folder: Path, document: Document, written: Sequence[Path]) -> list[Path]:
-        """On the page alone the misses lead to their reports: these are not published."""
-        linked = proof_document(self.opened, document.figures, linked=True)
-        return super()._write_page(folder, linked, written)
 
 
 @dataclass(frozen=True, repr=False)
@@ -403,3 +379,23 @@ def _row(case: Case) -> tuple[Any, ...]:
         claim.before if claim else None, claim.refitted if claim else None,
         claim.after if claim else None, case.wall, case.cpu, truth.disturbance,
     )  # fmt: skip
+
+
+class _Report(Report):
+    def page_of(self, result: Proof, document: Document) -> Document:
+        """On the page alone the misses lead to their reports: these are not published."""
+        return proof_document(result.opened, document.figures, linked=True)
+
+
+_MATRIX = "A matrix of counts: what was hidden in rows, what the diagnosis named in columns"
+
+REPORT = _Report(
+    lambda proof: proof_record(proof.opened),
+    lambda proof, figures: proof_document(proof.opened, figures),
+    "proof.json",
+    "README.md",
+    tables=lambda proof: {"cases.csv": cases_csv(proof.opened)},
+    others=("cases.csv",),
+    figures="rr_lab.report.confusion_figure",
+    captions={"confusion": ("Diagnosis against truth", _MATRIX, CONFUSION)},
+)

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from rr_opt.array import Array
 from rr_opt.files.problem_file import read_problem
-from rr_opt.report.document import Document, Figure
-from rr_opt.report.result import Result
+from rr_opt.results.result import Result
 from rr_paper.calibration.comparison import Assessment, assess
 from rr_paper.calibration.fit import Effort, Estimator, Fit, estimator
 from rr_paper.calibration.intervals import Coverage, Posterior, Profile, coverage, profiles, sample
@@ -20,8 +17,6 @@ from rr_paper.calibration.likelihood import Data, measured
 from rr_paper.calibration.models import DRY, MODELS, READINGS, VISCOUS, Model, Reading
 from rr_paper.calibration.unknowns import UNKNOWNS, Unknown, shares
 from rr_paper.publication import COLUMNS, Column
-from rr_paper.report.calibration import CAPTIONS, document
-from rr_paper.report.calibration_record import record, tables
 
 _CHEAP = Effort(log2_size=15, slices=12, values=25, starts=2, steps=20, sets=200)
 _MEDIUM = Effort(log2_size=13, slices=8, values=0, starts=0, steps=15, sets=0)
@@ -120,11 +115,7 @@ class Calibration(Result):
     alternatives     other readings of J20/J10
     """
 
-    RECORD, CAPTIONS = "calibration.json", CAPTIONS
-    OTHERS = (
-        *("intervals.csv", "models.csv", "predictions.csv", "profiles.csv", "posterior.csv"),
-        *("readings.csv", "coverage.csv"),
-    )
+    REPORT = "rr_paper.report.calibration_record"
 
     assessments: Mapping[tuple[str, Column], Assessment]
     posterior: Mapping[Column, Posterior]
@@ -132,22 +123,6 @@ class Calibration(Result):
     shipped: Mapping[Column, Shipped]
     coverage: Coverage
     alternatives: tuple[Alternative, ...]
-
-    def document(self, figures: Sequence[Figure] = ()) -> Document:
-        """Intervals, models, and what follows."""
-        return document(self, figures)
-
-    def record(self, files: Sequence[Path] = ()) -> dict[str, Any]:  # noqa: ARG002
-        """The content of calibration.json."""
-        return record(self)
-
-    def _tables(self) -> dict[str, str]:
-        return tables(self)
-
-    def _drawn(self) -> dict[str, str]:
-        from rr_paper.report.calibration_figures import draw
-
-        return draw(self)
 
     def intervals(self) -> list[Interval]:
         """Of every unknown of the viscous model, for each column."""

@@ -4,20 +4,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
+from rr_opt.documents.document import Cell, Table, table
+from rr_opt.documents.prose import prose
 from rr_opt.formatting import number
 from rr_opt.model.ballast import Loads, load_count
-from rr_opt.report.document import Cell, Table, table
-from rr_opt.report.fastest import FastestGait
-from rr_opt.report.prose import prose
+from rr_opt.results.fastest import FastestGait
 from rr_paper import publication
 from rr_paper.consistency import KAPPA, LARGEST_WHEEL, Hypothesis
 from rr_paper.gaits import Peak
 from rr_paper.prototype import BOX, UNITS
-
-if TYPE_CHECKING:
-    from rr_paper.reproduction import Reproduction
+from rr_paper.reproduction import Reproduction
 
 
 @dataclass(frozen=True)

@@ -4,19 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
+from rr_opt.documents.document import Badge, Document, Figure, Gallery, Section, Table, Tone, table
+from rr_opt.documents.prose import prose
 from rr_opt.formatting import number
-from rr_opt.report.document import Badge, Document, Figure, Gallery, Section, Table, Tone, table
-from rr_opt.report.prose import prose
 from rr_opt.version import __version__
+from rr_paper.calibration.calibration import Calibration
 from rr_paper.calibration.intervals import JOINT_LEVEL
 from rr_paper.calibration.models import DRY, MODELS, READINGS, VISCOUS
 from rr_paper.calibration.unknowns import UNKNOWNS
 from rr_paper.publication import CITATION, COLUMNS, T_POINT, Column
-
-if TYPE_CHECKING:
-    from rr_paper.calibration.calibration import Calibration
 
 _SHORT: dict[Column, str] = {"mean": "first column", "other": "v_exp"}
 _TONES: dict[str, Tone] = {"pinned down": "good", "narrowed": "note", "not identifiable": "warn"}

@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from rr_opt.documents.document import csv_text
+from rr_opt.documents.report import Report
 from rr_opt.files.record import plain
-from rr_opt.report.document import csv_text
 from rr_opt.version import __version__
+from rr_paper.calibration.calibration import Calibration
 from rr_paper.calibration.comparison import Assessment
 from rr_paper.calibration.likelihood import measured
 from rr_paper.calibration.models import MODELS, READINGS, VISCOUS
 from rr_paper.calibration.unknowns import UNKNOWNS, values
 from rr_paper.publication import ROWS, T_POINT, Row
-from rr_paper.report.calibration import conclusions
-
-if TYPE_CHECKING:
-    from rr_paper.calibration.calibration import Calibration
+from rr_paper.report.calibration import CAPTIONS, conclusions, document
 
 _DRAWS = 1000
 """Draws of each posterior that are written."""
@@ -212,3 +211,17 @@ def _posterior_rows(found: Calibration) -> _Rows:
             {"column": column, **{name: of[i] for name, of in at.items()}} for i in range(_DRAWS)
         ]
     return rows
+
+
+REPORT = Report(
+    record,
+    document,
+    "calibration.json",
+    tables=tables,
+    others=(
+        *("intervals.csv", "models.csv", "predictions.csv", "profiles.csv", "posterior.csv"),
+        *("readings.csv", "coverage.csv"),
+    ),
+    figures="rr_paper.report.calibration_figures",
+    captions=CAPTIONS,
+)

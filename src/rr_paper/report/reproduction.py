@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 
-from rr_opt.report.document import Document, Figure, Gallery, Section, csv_text, versions
+from rr_opt.documents.document import Document, Figure, Gallery, Section, csv_text, versions
+from rr_opt.documents.report import Report
 from rr_paper.publication import CITATION, RATE_LIMIT
 from rr_paper.report.audit import findings
+from rr_paper.reproduction import Reproduction
 from rr_paper.tables import SpeedSurface
-
-if TYPE_CHECKING:
-    from rr_paper.reproduction import Reproduction
 
 CAPTIONS = {
     "figure3": (
@@ -58,7 +57,7 @@ CAPTIONS = {
 }
 
 
-def document(found: Reproduction, figures: Sequence[Figure]) -> Document:
+def document(found: Reproduction, figures: Sequence[Figure] = ()) -> Document:
     """The page, its Markdown and the text for a terminal."""
     rows, audit = found.tables.rows, findings(found)
     drawn = {figure.name: figure for figure in figures}
@@ -126,3 +125,47 @@ def _surface(surface: SpeedSurface, every: int) -> str:
         for i in range(0, len(surface.amplitude), 5)
     ]  # fmt: skip
     return csv_text(head, rows)
+
+
+def record(found: Reproduction) -> dict[str, Any]:
+    """The content of reproduce.json: the tables of the audit, in the units of their heads."""
+    sections = {
+        one.key: {
+            "title": one.title,
+            "finding": one.finding,
+            "sentences": one.sentences,
+            "rows": one.table.records,
+        }
+        for one in findings(found)
+    }
+    return {
+        "status": "reproduced",
+        "message": document(found).lead,
+        "paper": CITATION,
+        "mujoco_speed": found.mujoco,
+        "sections": sections,
+    }
+
+
+def tables(found: Reproduction) -> dict[str, str]:
+    """The curves, and the table of each finding; that of the columns holds Tables 2 and 3."""
+    return curves(found) | {
+        "tables.csv" if one.key == "columns" else f"audit-{one.key}.csv": one.table.csv(digits=9)
+        for one in findings(found)
+    }
+
+
+REPORT = Report(
+    record,
+    document,
+    "reproduce.json",
+    "audit.md",
+    tables=tables,
+    others=(
+        *("figure3.csv", "figure4.csv", "figure5.csv", "figure6.csv", "signs.csv", "tables.csv"),
+        *("audit-signs.csv", "audit-left-out.csv", "audit-readings.csv", "audit-limits.csv"),
+        *("audit-posture.csv", "audit-period.csv", "audit-amplitude.csv", "audit-turning.csv"),
+    ),
+    figures="rr_paper.report.figures",
+    captions=CAPTIONS,
+)
