@@ -15,8 +15,8 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from rr_lab.case import stream
-from rr_lab.draw import draw_gait, draw_robot
 from rr_lab.engines import ENGINES, Engine, record
+from rr_lab.sampling import draw_gait, draw_robot
 from rr_opt.model.experiment import Recording
 from rr_opt.model.gait import SineGait
 from rr_opt.model.robot import Robot

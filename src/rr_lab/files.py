@@ -147,14 +147,16 @@ def _effect(robot: Robot, use: EffectUse) -> dict[str, Any]:
     realisation = effect.realisation if effect.named else effect.name
     parameters, plant = {}, {}
     for name, value in use.values.items():
-        each = effect.parameter(name)
+        each = effect.accepted[name]
         (plant if each.plant else parameters)[name] = _valued(value, each.unit)
-    known = effect_named(effect.name)
-    for name, value in effect.derived(robot, use.values).items():
-        parameters[name] = _valued(value, known.parameter(name).unit)
+    known = effect_named(effect.name).accepted
+    for name, value in (effect.derived(robot, use.values) if effect.derived else {}).items():
+        parameters[name] = _valued(value, known[name].unit)
     record = {"name": effect.name if effect.named else "unknown", "what": what}
     if realisation:
         record["realisation"] = realisation
+    if effect.same_as:
+        record["same_as"] = list(effect.same_as)
     return {**record, "parameters": parameters, **({"plant": plant} if plant else {})}
 
 

@@ -10,11 +10,11 @@ import numpy as np
 
 from rr_lab.case import Case, Plan, stream
 from rr_lab.disturbances import disturbance_named
-from rr_lab.draw import draw_effect, draw_near, draw_noise, draw_plans, draw_robot, draw_wrong
+from rr_lab.effect_size import EffectSize, scaled_to
 from rr_lab.effects import NAMED, OUTSIDE_NAMES, REALISATIONS, effect_named, rig_with
 from rr_lab.effects.hidden import HiddenEffect
 from rr_lab.engines import Engine
-from rr_lab.visibility import Gauge, at_visibility
+from rr_lab.sampling import draw_effect, draw_near, draw_noise, draw_plans, draw_robot, draw_wrong
 from rr_opt.model.experiment import Noise
 from rr_opt.model.parameters import default_uncertainty
 from rr_opt.model.robot import EffectUse, Robot
@@ -25,13 +25,11 @@ KINDS = ("null", "parameters", "single", "pair", "outside")
 # Wheel inertia is a change of parameters in disguise: it is hidden only if it is asked for.
 SINGLES = tuple(name for name in NAMED if name != "wheel_inertia")
 
-SEEN = 3.0, 60.0
-"""Between which the visibility is drawn, sigma, evenly in its logarithm."""
+SIZES = 3.0, 60.0
+"""Between which the effect size is drawn, sigma, uniformly in its logarithm."""
 
 GAUGED = 3
 """Runs on which the strength is set."""
-
-Visibility = Callable[[Case], float]
 
 
 def random_case(
@@ -41,7 +39,7 @@ def random_case(
     seconds: float = 30.0,
     spread: float = 0.0,
     target: float | None = None,
-    visibility: Visibility | None = None,
+    size: Callable[[Case], float] | None = None,
     engine: Engine = "mujoco",
     disturbance: str = "",
 ) -> Case:
@@ -51,17 +49,15 @@ def random_case(
                 pair:EFFECT+EFFECT name what is hidden, a realisation as EFFECT/REALISATION
     spread      0: but for what is hidden the nominal values are true; 1: they are off by chance, as
                 far as their uncertainties say
-    target      visibility of each effect, sigma; drawn if left out
-    visibility  RMS deviation of a case from its nominal, in sigma; by default the laboratory's own
-                `Gauge`
+    target      size of each effect, sigma; drawn if left out
+    size        RMS deviation of a case from its nominal, in sigma; `EffectSize` if left out
     engine      what drives it; robot, runs and effects are drawn alike for all
     disturbance  of the recordings, by name
     Raises InputError for an unknown kind or disturbance.
     """
     disturbance_named(disturbance)
     case = bare_case(seed, seconds, spread=spread, engine=engine)
-    hidden = hidden_in(case, kind, target=target, visibility=visibility)
-    return replace(hidden, disturbance=disturbance)
+    return replace(hidden_in(case, kind, target=target, size=size), disturbance=disturbance)
 
 
 def bare_case(
@@ -93,7 +89,11 @@ def bare_case(
 
 
 def hidden_in(
-    case: Case, kind: str, *, target: float | None = None, visibility: Visibility | None = None
+    case: Case,
+    kind: str,
+    *,
+    target: float | None = None,
+    size: Callable[[Case], float] | None = None,
 ) -> Case:
     """The case with what its seed and the kind hide in it; see `random_case`."""
     head, names = read_kind(kind, case.seed)
@@ -107,19 +107,24 @@ def hidden_in(
     effects = [_realisation(rng, name) for name in names or _names(rng, head)]
     # Strength is that of the effect alone: what is off by chance is not to hide it.
     alone = replace(case, robot=case.nominal)
-    gauge = visibility or Gauge.of(alone, GAUGED)
+    size = size or EffectSize.of(alone, GAUGED)
     uses, notes = [], {}
     for effect in effects:
-        wanted = target or float(np.exp(rng.uniform(*np.log(SEEN))))
-        if effect.visible:
-            wanted = float(np.clip(wanted, *effect.visible))
+        wanted = target or float(np.exp(rng.uniform(*np.log(SIZES))))
+        if effect.sizes:
+            wanted = float(np.clip(wanted, *effect.sizes))
         drawn = replace(alone, effects=(draw_effect(rng, effect, alone),))
-        scaled, reached = at_visibility(drawn, wanted, gauge)
+        scaled, reached = scaled_to(drawn, wanted, size)
         uses.append(scaled.effects[0])
         notes[f"visibility_{effect.name}"] = reached
-    known = all(effect.named for effect in effects)
-    verdict = "missing_physics" if known else "unexplained"
-    return replace(case, effects=tuple(uses), verdict=verdict, notes=notes)
+    return replace(case, effects=tuple(uses), verdict=_verdict(effects), notes=notes)
+
+
+def _verdict(effects: list[HiddenEffect]) -> str:
+    """What a right diagnosis says of these effects."""
+    if not effects:
+        return "consistent"
+    return "missing_physics" if all(effect.named for effect in effects) else "unexplained"
 
 
 def read_kind(kind: str, seed: int = 0) -> tuple[str, tuple[str, ...]]:
@@ -176,7 +181,7 @@ def case_of(
     """A case with the effects given, or with what a kind of case draws, see `random_case`.
 
     robot, plans, noise  drawn if left out
-    seed                 of all that is drawn; 0 if left out, and with a kind one by chance
+    seed                 of all that is drawn; 0 if left out, and with a kind a random one
     Raises InputError for an unknown kind or disturbance, or a wrong effect.
     """
     disturbance_named(disturbance)
@@ -187,6 +192,5 @@ def case_of(
     if kind:
         return replace(hidden_in(case, kind), disturbance=disturbance)
     rig_with(case.robot, effects)
-    known = all(effect_named(use.name).named for use in effects)
-    verdict = "consistent" if not effects else "missing_physics" if known else "unexplained"
+    verdict = _verdict([effect_named(use.name) for use in effects])
     return replace(case, effects=effects, verdict=verdict, disturbance=disturbance)

@@ -68,6 +68,10 @@ class Tether:
     stiffness: float
 
 
+CABLE_ONSET = 5e-3
+"""m/s, over which a dragged cable's friction sets in, as u/sqrt(u^2 + onset^2)."""
+
+
 def swing_inertia(robot: Robot) -> float:
     """Of the platforms as they turn against each other about a joint at rest, kg m2."""
     one, two = robot.platform1.joint_inertia, robot.platform2.joint_inertia
@@ -114,6 +118,7 @@ class Rig:
     load       mass (kg) and stiffness (N/m) of what shifts on platform 1; None: nothing does
     density    kg/m3, of a medium that drags at the platforms' bodies; see `box_of`
     tether     the cord that holds platform 1; None: nothing does
+    cable      N, with which a cable that drags on the floor holds axle 2's centre back
     offset     rad, is added to the command before it is shaped
     shapers    of the command, in order
     laws       of the wheels' friction, in order: each changes what the ones before it left
@@ -131,7 +136,7 @@ class Rig:
     left: list[float] = field(default_factory=lambda: [0.0, 0.0])
     mu: float = GRIPS
     creep: float = 0.0
-    tilt: tuple[float, float] = (0.0, 0.0)
+    tilt: list[float] = field(default_factory=lambda: [0.0, 0.0])
     play: float = 0.0
     gear: float | None = None
     hinge_dry: float = 0.0
@@ -141,10 +146,11 @@ class Rig:
     load: tuple[float, float] | None = None
     density: float = 0.0
     tether: Tether | None = None
+    cable: float = 0.0
     offset: float = 0.0
     shapers: list[Shaper] = field(default_factory=list)
     laws: list[Law] = field(default_factory=list)
-    tracked: tuple[float, float] = (0.0, 0.0)
+    tracked: list[float] = field(default_factory=lambda: [0.0, 0.0])
     clock: float = 0.0
 
     def __post_init__(self) -> None:

@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from rr_lab.effects.actuation import ACTUATION
-from rr_lab.effects.contact import CONTACT
 from rr_lab.effects.hidden import HiddenEffect
-from rr_lab.effects.other import FLOOR, MASS, MEASUREMENT
 from rr_lab.effects.outside import OUTSIDE
-from rr_lab.effects.rolling import ROLLING
+from rr_lab.effects.surroundings import FLOOR, MASS, MEASUREMENT
+from rr_lab.effects.wheels import CONTACT, ROLLING
 from rr_lab.rig import Rig
 from rr_opt.model.robot import EffectUse, Robot
 from rr_opt.outcome import InputError

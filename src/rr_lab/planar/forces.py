@@ -24,6 +24,7 @@ import casadi as ca
 
 from rr_lab.planar.layout import Layout, axis, left_of
 from rr_lab.rig import (
+    CABLE_ONSET,
     WHEELS,
     Drift,
     Falling,
@@ -196,6 +197,16 @@ def medium(moment: Moment, rig: Rig) -> list[Pull]:
         hold = rig.density * height * reach**4 * ca.fabs(turns @ moment.w)
         pulls.append(Pull(turns, hold, 0.0))
     return pulls
+
+
+def dragged(moment: Moment, rig: Rig) -> list[Pull]:
+    """What a cable that drags on the floor makes of axle 2's motion, if there is one."""
+    if not rig.cable:
+        return []
+    left, right = moment.layout.wheels[2:]
+    ways = moment.way((left.place + right.place) / 2)
+    speed = ca.norm_2(ca.vertcat(ways @ moment.w, CABLE_ONSET))
+    return [Pull(ways[axis, :], rig.cable / speed, 0.0) for axis in range(2)]
 
 
 HINGE_ONSET = 1e-3

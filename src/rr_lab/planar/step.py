@@ -38,7 +38,18 @@ from dataclasses import dataclass, replace
 
 import casadi as ca
 
-from rr_lab.planar.forces import Moment, Pull, bearings, bent, hinge, medium, pushed, stops, turning
+from rr_lab.planar.forces import (
+    Moment,
+    Pull,
+    bearings,
+    bent,
+    dragged,
+    hinge,
+    medium,
+    pushed,
+    stops,
+    turning,
+)
 from rr_lab.planar.layout import Layout, axis, coordinates, layout, left_of
 from rr_lab.rig import WHEELS, Rig, wheel_loads
 
@@ -166,7 +177,7 @@ def _sweep(rig: Rig, dt: float) -> ca.Function:
         )
     ]
     pulls = [turning(moment, rig), *hinge(moment, rig), *stops(moment, rig), *bent(moment, rig)]
-    pulls += medium(moment, rig)
+    pulls += [*medium(moment, rig), *dragged(moment, rig)]
     pulls += [pull for wheel in wheels for pull in wheel.pulls]
     mass, turned = _inertia(built, guess.w)
     left, right = rate * mass, rate * (mass @ kept.w) - turned + pushed(moment, rig, nudge)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from matplotlib.axes import Axes
 from matplotlib.patches import Rectangle
 
-from rr_lab.trial.confusion import Confusion, confusion
+from rr_lab.trial.counts import Confusion, confusion
 from rr_lab.trial.trial import Opened
 from rr_opt.report.figures.style import (
     BACKWARD,

@@ -7,8 +7,8 @@ import math
 import numpy as np
 
 from rr_lab.case import Case, Plan, motion_of
+from rr_lab.effect_size import COARSE
 from rr_lab.effects.hidden import HiddenEffect, Setting
-from rr_lab.visibility import COARSE
 from rr_opt.model.experiment import Noise
 from rr_opt.model.gait import SineGait
 from rr_opt.model.parameters import Uncertainty, parameters_of, with_parameters
@@ -18,7 +18,7 @@ from rr_opt.model.robot import EffectUse, Platform, Robot, Servo
 def draw_effect(rng: np.random.Generator, effect: HiddenEffect, case: Case) -> EffectUse:
     """An effect of about its typical size for a case that does not have it yet.
 
-    Its strength is made right later, by `at_visibility`.
+    `effect_size.scaled_to` corrects its strength later.
     """
 
     def passed() -> tuple[float, float]:

@@ -1,0 +1,222 @@
+"""The outcome of a blind trial: README.md and page, proof.json, cases.csv, and the figure."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, ClassVar
+
+from rr_lab.report.case import hidden_text, page_of, said_text, size_text
+from rr_lab.report.proof_record import cases_csv, proof_record
+from rr_lab.trial import statistics
+from rr_lab.trial.counts import BREAKDOWN, CONFUSION, COUNTS, TITLES, breakdown, by_engine
+from rr_lab.trial.outcome import Case
+from rr_lab.trial.statistics import SIZES, Rate
+from rr_lab.trial.trial import Opened, tidy
+from rr_opt.formatting import number
+from rr_opt.report.document import (
+    Block,
+    Captions,
+    Document,
+    Fact,
+    Facts,
+    Figure,
+    Gallery,
+    Link,
+    Section,
+    Table,
+    table,
+)
+from rr_opt.report.result import Progress, Result, quiet
+
+ISOLATION = (
+    "The laboratory drew and sealed every case before the first was diagnosed. Each was diagnosed "
+    "by a separate process, `rr-opt diagnose`, in a temporary folder with a copy of the recordings "
+    "and their experiment.yaml; its arguments and environment reveal nothing else. It runs as the "
+    "same user, so nothing but its own code keeps it from other files."
+)
+ENGINES = (
+    "The same counts for each of the laboratory's two engines: a three-dimensional robot in "
+    "MuJoCo, and two bodies in the plane with another contact model."
+)
+CHANGED = (
+    "The code of rr-opt changed during the trial, so the counts belong to no single version. Start "
+    "again with --restart."
+)
+AGAIN = (
+    "`rr-opt prove --case ID --out FOLDER`, where FOLDER holds this page, makes and diagnoses a "
+    "case again and writes its report. The code has to be that of the trial."
+)
+SHARE = "share, 95 % interval"
+_KEY = ("false_claims", "single", "pair_both", "parameters", "outside", "no_answer")
+
+
+@dataclass(frozen=True, repr=False)
+class Proof(Result):
+    """The outcome of a trial, in its folder."""
+
+    RECORD, MARKDOWN, OTHERS = "proof.json", "README.md", ("cases.csv",)
+    CAPTIONS: ClassVar[Captions] = {
+        "confusion": ("Diagnosis against truth", "Diagnosis against truth", CONFUSION)
+    }
+
+    opened: Opened
+
+    def document(self, figures: Sequence[Figure] = ()) -> Document:
+        """The counts, and every miss."""
+        return proof_document(self.opened, figures)
+
+    def record(self, files: Sequence[Path] = ()) -> dict[str, Any]:  # noqa: ARG002
+        """The content of proof.json."""
+        return proof_record(self.opened)
+
+    def _tables(self) -> dict[str, str]:
+        return {"cases.csv": cases_csv(self.opened)}
+
+    def _drawn(self) -> dict[str, str]:
+        from rr_lab.report.confusion_figure import draw  # matplotlib takes a second
+
+        return {"confusion": draw(self.opened)}
+
+    def save(
+        self, path: str | Path, *, figures: bool = True, progress: Progress = quiet
+    ) -> list[Path]:
+        """Write the outcome to the trial's folder, and remove what the seed makes again."""
+        written = super().save(path, figures=figures, progress=progress)
+        tidy(Path(path), [case.id for case in self.opened.cases if not case.missed])
+        return written
+
+    def _write_page(self, folder: Path, document: Document, written: Sequence[Path]) -> list[Path]:
+        """On the page alone the misses lead to their reports: these are not published."""
+        linked = proof_document(self.opened, document.figures, linked=True)
+        return super()._write_page(folder, linked, written)
+
+
+def headline(opened: Opened) -> str:
+    """The two numbers that matter most."""
+    rates = {one.name: one.rate(opened.cases) for one in COUNTS}
+    words = {"single": "single effects named", "false_claims": "nulls with a false claim"}
+    parts = [f"{_of(rates[name])} {text}" for name, text in words.items() if rates[name].total]
+    return "Blind trial: " + (", ".join(parts) or f"{len(opened.misses)} misses")
+
+
+def proof_document(
+    opened: Opened, figures: Sequence[Figure] = (), *, linked: bool = False
+) -> Document:
+    """The whole report; linked: the misses lead to their reports, which are beside the page."""
+    cases = opened.cases
+    rates = {one: one.rate(cases) for one in COUNTS}
+    every = {one: rate for one, rate in rates.items() if rate.total}
+    key = tuple(Fact(one.title, _of(rate)) for one, rate in every.items() if one.name in _KEY)
+    counts = [(one.title, *_cells(rate), one.definition) for one, rate in every.items()]
+    broken_down = [
+        (what, name, *_cells(rate))
+        for what, by_name in breakdown(cases).items()
+        for name, rate in by_name.items()
+    ]
+    covered = statistics.coverage(statistics.intervals(cases))
+    sections = (
+        Section("", (Facts(key, key=True),)),
+        Section("", (Gallery(tuple(figures), wide=True),)),
+        Section("Counts", (table(("what", "count", SHARE, "what is counted"), counts),), False),
+        _section("By engine", ENGINES, _by_engine(cases)),
+        _section("By effect, realisation and disturbance", BREAKDOWN,
+                 table(("by", "what", "right", SHARE), broken_down)),
+        _section("Coverage of the 95 % intervals", statistics.COVERAGE,
+                 table(("quantity", "count", SHARE),
+                       [(name, *_cells(rate)) for name, rate in covered.items()])),
+        _section("Held-out error, medians", statistics.HELD_OUT, _held_out(cases)),
+        _section("Remainder", statistics.REMAINDER, _remainders(cases)),
+        _section("p-values where nothing is hidden", statistics.P_VALUES, _p_values(cases)),
+        _section("Time", statistics.TIME, _times(cases)),
+        Section("Misses", (AGAIN, _misses(opened, linked)) if opened.misses else ("None.",)),
+        Section("Cases that the laboratory could not make",
+                (Facts(tuple(Fact(case, why) for case, why in opened.failed.items())),)),
+    )  # fmt: skip
+    lead = f"{len(cases)} cases. {ISOLATION} {CHANGED if opened.changed else ''}".strip()
+    footer = (f"rr-opt {opened.version}", f"seed `{opened.seed}`", f"code SHA-256 `{opened.code}`")
+    return Document("", "blind trial of the diagnosis", headline(opened), lead, sections,
+                    footer=footer)  # fmt: skip
+
+
+def _section(title: str, definition: str, numbers: Table) -> Section:
+    blocks: tuple[Block, ...] = (definition, numbers) if numbers else ()
+    return Section(title, blocks, brief=False)
+
+
+def _of(one: Rate) -> str:
+    """`17 of 20`."""
+    return f"{one.count} of {one.total}" if one.total else "no case"
+
+
+def _cells(one: Rate) -> tuple[str, str]:
+    """`17 of 20`, and `85 % (62 to 97)`."""
+    if one.fraction is None:
+        return _of(one), "–"
+    low, high = one.interval
+    return _of(one), f"{100 * one.fraction:.0f} % ({100 * low:.0f} to {100 * high:.0f})"
+
+
+def _numbers(values: Iterable[float | None]) -> list[str]:
+    return ["–" if value is None else number(value, 3) for value in values]
+
+
+def _by_engine(cases: Sequence[Case]) -> Table:
+    """Each count beside that of the other engine; those without a case are left out."""
+    engines = by_engine(cases)
+    return table(
+        ("what", *(word for name in engines for word in (name, "share"))),
+        [
+            (title, *(cell for rates in engines.values() for cell in _cells(rates[name])))
+            for name, title in TITLES.items()
+            if any(rates[name].total for rates in engines.values())
+        ],
+    )
+
+
+def _held_out(cases: Sequence[Case]) -> Table:
+    rows = [
+        (kind, str(row["after"]["count"]),
+         *_numbers([*(row[when]["median"] for when in row), row["after"]["quantile90"]]))
+        for kind, row in statistics.held_out(cases).items()
+    ]  # fmt: skip
+    head = ("kind", "cases", "nominal", "re-fitted", "corrected", "corrected, 90 % below")
+    return table(head, rows)
+
+
+def _remainders(cases: Sequence[Case]) -> Table:
+    rows = [
+        (kind, *(str(row[size]) for size in SIZES), *_numbers([row["share"]]))
+        for kind, row in statistics.remainders(cases).items()
+    ]
+    return table(("kind", *SIZES, "median share"), rows)
+
+
+def _p_values(cases: Sequence[Case]) -> Table:
+    rows = [
+        (test, str(one["count"]), number(one["distance"], 2), number(one["chance"], 2),
+         str(one["below_005"]))
+        for test, one in statistics.uniformity(cases).items()
+    ]  # fmt: skip
+    return table(("test", "nulls", "distance", "p-value", "below 0.05"), rows)
+
+
+def _times(cases: Sequence[Case]) -> Table:
+    rows = [
+        (f"{name}, s", *_numbers(one[at] for at in ("median", "quantile90", "largest")))
+        for name, one in statistics.times(cases).items()
+    ]
+    return table(("", "median", "90 % below", "most"), rows)
+
+
+def _misses(opened: Opened, linked: bool) -> Table:
+    head = ("case", "outcome", "engine", "hidden", "size", "said")
+    return table(
+        head,
+        [
+            (Link(case.id, page_of(case)) if linked else case.id, case.outcome, case.truth.engine,
+             hidden_text(case), size_text(case), said_text(case))
+            for case in opened.misses
+        ],
+    )  # fmt: skip
