@@ -5,7 +5,6 @@ from __future__ import annotations
 import zlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from pathlib import PurePath
 from types import MappingProxyType
 from typing import Literal
 
@@ -14,7 +13,6 @@ import numpy as np
 from rr_lab.disturbances import disturbance_named
 from rr_lab.effects import rig_with
 from rr_lab.engines import Engine, driven
-from rr_lab.formats import ServoClock
 from rr_lab.run import Motion, Outing, captured
 from rr_opt.model.experiment import Experiment, Noise, Recording, Run, Start, Uncertainty, Use
 from rr_opt.model.gait import SineGait
@@ -111,29 +109,3 @@ def play(
         progress(f"recording {n + 1} of {len(case.plans)}")
         runs.append(Run(recorded(case, n, step), plan.gait, plan.use, plan.start))
     return Experiment(case.nominal, case.noise, case.uncertainty, tuple(runs), case.name)
-
-
-Form = Literal["csv", "vicon", "c3d"]
-
-
-@dataclass(frozen=True)
-class Delivery:
-    """The files of a run.
-
-    form       `csv` has the joint and the angles; `vicon` and `c3d` have the markers
-    servo_log  whether each run comes with the servo's log; clock, that log's own
-    torque     whether the servo's torque is in the CSV
-    """
-
-    form: Form = "csv"
-    servo_log: bool = False
-    clock: ServoClock = field(default_factory=ServoClock)
-    torque: bool = False
-
-    def file(self, plan: Plan) -> str:
-        """The name of a run's recording."""
-        return PurePath(plan.name).stem + (".c3d" if self.form == "c3d" else ".csv")
-
-    def log(self, plan: Plan) -> str:
-        """The name of a run's servo log."""
-        return f"{PurePath(plan.name).stem}-servo.csv"

@@ -7,7 +7,7 @@ equation of motion and no contact.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Literal, get_args
+from typing import Any, Literal, get_args
 
 import numpy as np
 
@@ -25,6 +25,14 @@ Engine = Literal["mujoco", "planar"]
 ENGINES: tuple[Engine, ...] = get_args(Engine)
 
 
+def _module(engine: Engine) -> Any:
+    if engine == "mujoco":
+        return mujoco
+    from rr_lab.planar import drive as planar
+
+    return planar
+
+
 def driven(
     engine: Engine, rig: Rig, gait: Gait, outing: Outing, step: float | None = None
 ) -> Motion:
@@ -33,20 +41,13 @@ def driven(
     Raises InputError if MuJoCo is asked for and not installed, NotConvergedError if the motion is
     lost.
     """
-    if engine == "mujoco":
-        return mujoco.drive(rig, gait, outing, mujoco.STEP if step is None else step)
-    from rr_lab.planar import drive as planar
-
-    return planar.drive(rig, gait, outing, planar.STEP if step is None else step)
+    module = _module(engine)
+    return module.drive(rig, gait, outing, module.STEP if step is None else step)
 
 
 def fine_enough(engine: Engine, rig: Rig, step: float) -> float:
     """The step that an engine drives a rig with where `step` is asked for, s."""
-    if engine == "mujoco":
-        return mujoco.fine_enough(rig, step)
-    from rr_lab.planar import drive as planar
-
-    return planar.fine_enough(rig, step)
+    return _module(engine).fine_enough(rig, step)
 
 
 EXACT = Noise(0.0, 0.0, 0.0)

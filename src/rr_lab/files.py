@@ -6,16 +6,44 @@ import hashlib
 import json
 import secrets
 from collections.abc import Callable, Iterator, Mapping
-from typing import Any
+from dataclasses import dataclass, field
+from pathlib import PurePath
+from typing import Any, Literal
 
 import numpy as np
 
-from rr_lab.case import Case, Delivery, Plan, motion_of, recorded, stream
+from rr_lab.case import Case, Plan, motion_of, recorded, stream
 from rr_lab.effects import effect_named, rig_with
-from rr_lab.formats import c3d_bytes, log_text, places, seen, vicon_text
+from rr_lab.formats import ServoClock, c3d_bytes, log_text, places, seen, vicon_text
 from rr_opt.model.experiment import Recording
 from rr_opt.model.parameters import PARAMETERS, PLATFORM_SYMBOLS, Uncertainty, parameters_of
 from rr_opt.model.robot import EffectUse, Platform, Robot
+
+Form = Literal["csv", "vicon", "c3d"]
+
+
+@dataclass(frozen=True)
+class Delivery:
+    """The files of a run.
+
+    form       `csv` has the joint and the angles; `vicon` and `c3d` have the markers
+    servo_log  whether each run comes with the servo's log; clock, that log's own
+    torque     whether the servo's torque is in the CSV
+    """
+
+    form: Form = "csv"
+    servo_log: bool = False
+    clock: ServoClock = field(default_factory=ServoClock)
+    torque: bool = False
+
+    def file(self, plan: Plan) -> str:
+        """The name of a run's recording."""
+        return PurePath(plan.name).stem + (".c3d" if self.form == "c3d" else ".csv")
+
+    def log(self, plan: Plan) -> str:
+        """The name of a run's servo log."""
+        return f"{PurePath(plan.name).stem}-servo.csv"
+
 
 WRITTEN = "# Written by `rr-opt record`, which may write over it."
 """The first line of the file."""

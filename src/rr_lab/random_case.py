@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import secrets
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rr_lab.case import Case, Plan, stream
+from rr_lab.case import Case, Plan, Verdict, stream
 from rr_lab.disturbances import disturbance_named
 from rr_lab.effect_size import EffectSize, scaled_to
 from rr_lab.effects import NAMED, OUTSIDE_NAMES, REALISATIONS, effect_named, rig_with
@@ -120,7 +120,7 @@ def hidden_in(
     return replace(case, effects=tuple(uses), verdict=_verdict(effects), notes=notes)
 
 
-def _verdict(effects: list[HiddenEffect]) -> str:
+def _verdict(effects: list[HiddenEffect]) -> Verdict:
     """What a right diagnosis says of these effects."""
     if not effects:
         return "consistent"
@@ -165,32 +165,39 @@ def _realisation(rng: np.random.Generator, name: str) -> HiddenEffect:
     return several[int(rng.integers(len(several)))]
 
 
-def case_of(
-    *,
-    robot: Robot | None = None,
-    plans: tuple[Plan, ...] = (),
-    effects: tuple[EffectUse, ...] = (),
-    noise: Noise | None = None,
-    kind: str | None = None,
-    seed: int | None = None,
-    seconds: float = 30.0,
-    missing: float = 0.0,
-    engine: Engine = "mujoco",
-    disturbance: str = "",
-) -> Case:
+@dataclass(frozen=True)
+class Request:
     """A case with the effects given, or with what a kind of case draws, see `random_case`.
 
     robot, plans, noise  drawn if left out
     seed                 of all that is drawn; 0 if left out, and with a kind a random one
-    Raises InputError for an unknown kind or disturbance, or a wrong effect.
+    seconds              of each run that is drawn, at most
+    missing              fraction of lost samples
     """
-    disturbance_named(disturbance)
-    if seed is None:
-        seed = secrets.randbits(48) if kind else 0
-    case = bare_case(seed, seconds, robot=robot, engine=engine)
-    case = replace(case, plans=plans or case.plans, noise=noise or case.noise, missing=missing)
-    if kind:
-        return replace(hidden_in(case, kind), disturbance=disturbance)
-    rig_with(case.robot, effects)
-    verdict = _verdict([effect_named(use.name) for use in effects])
-    return replace(case, effects=effects, verdict=verdict, disturbance=disturbance)
+
+    robot: Robot | None = None
+    plans: tuple[Plan, ...] = ()
+    effects: tuple[EffectUse, ...] = ()
+    noise: Noise | None = None
+    kind: str | None = None
+    seed: int | None = None
+    seconds: float = 30.0
+    missing: float = 0.0
+    engine: Engine = "mujoco"
+    disturbance: str = ""
+
+    def case(self) -> Case:
+        """Raises InputError for an unknown kind or disturbance, or a wrong effect."""
+        disturbance_named(self.disturbance)
+        seed = self.seed
+        if seed is None:
+            seed = secrets.randbits(48) if self.kind else 0
+        case = bare_case(seed, self.seconds, robot=self.robot, engine=self.engine)
+        plans, noise = self.plans or case.plans, self.noise or case.noise
+        case = replace(case, plans=plans, noise=noise, missing=self.missing)
+        if self.kind:
+            return replace(hidden_in(case, self.kind), disturbance=self.disturbance)
+        rig_with(case.robot, self.effects)
+        verdict = _verdict([effect_named(use.name) for use in self.effects])
+        own = {"effects": self.effects, "verdict": verdict, "disturbance": self.disturbance}
+        return replace(case, **own)

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rr_lab.case import Delivery, play
-from rr_lab.files import folder_of
+from rr_lab.case import play
+from rr_lab.files import Delivery, folder_of
 from rr_lab.formats import ServoClock
 from rr_lab.random_case import random_case
 from rr_opt.model.experiment import Noise

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from rr_lab.random_case import case_of
+from rr_lab.random_case import Request
 from rr_lab.trial import sealing
 from rr_lab.trial.draws import Draw
 from rr_lab.trial.isolation import COMMAND, Task, diagnose_apart
@@ -70,7 +70,7 @@ def test_experiment_yaml_is_that_of_the_same_case_with_nothing_hidden(made):
 
 
 def test_the_answer_has_a_random_word_so_that_a_guess_cannot_be_checked(made):
-    case = case_of(seed=DRAW.seed, seconds=1.0)
+    case = Request(seed=DRAW.seed, seconds=1.0).case()
     texts = {sealing._answer_text(case, DRAW) for _ in range(3)}
     assert len(texts) == 3
 

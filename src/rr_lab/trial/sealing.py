@@ -9,10 +9,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from rr_lab.case import Case, Delivery, stream
+from rr_lab.case import Case, stream
 from rr_lab.detectability import Detectability
 from rr_lab.effects import effect_named
-from rr_lab.files import answer, folder_of, seal_of
+from rr_lab.files import Delivery, answer, folder_of, seal_of
 from rr_lab.random_case import random_case
 from rr_lab.trial.draws import Draw
 from rr_opt.outcome import NotConvergedError
