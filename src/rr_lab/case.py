@@ -13,6 +13,7 @@ import numpy as np
 from rr_lab.disturbances import disturbance_named
 from rr_lab.effects import rig_with
 from rr_lab.engines import Engine, driven
+from rr_lab.rig import Rig
 from rr_lab.run import Motion, Outing, captured
 from rr_opt.model.experiment import Experiment, Noise, Recording, Run, Start, Uncertainty, Use
 from rr_opt.model.gait import SineGait
@@ -73,6 +74,11 @@ class Case:
     disturbance: str = ""
     notes: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
 
+    @property
+    def rig(self) -> Rig:
+        """The robot as it is, with what is hidden in it."""
+        return rig_with(self.robot, self.effects)
+
 
 def motion_of(case: Case, plan: Plan, step: float | None = None, *, torque: bool = False) -> Motion:
     """What truly happens in a run; step: s, of the integration, the engine's own if left out."""
@@ -81,7 +87,7 @@ def motion_of(case: Case, plan: Plan, step: float | None = None, *, torque: bool
     outing = replace(
         outing, torque=torque, rate=clock * outing.rate, seconds=outing.seconds / clock
     )
-    return driven(case.engine, rig_with(case.robot, case.effects), plan.gait, outing, step)
+    return driven(case.engine, case.rig, plan.gait, outing, step)
 
 
 def recorded(
@@ -94,7 +100,7 @@ def recorded(
         plan.name,
         case.noise,
         stream(case.seed, "noise", number),
-        tracked=rig_with(case.robot, case.effects).tracked,
+        tracked=case.rig.tracked,
         missing=case.missing,
         disturbance=disturbance_named(case.disturbance),
     )

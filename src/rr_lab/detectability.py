@@ -25,7 +25,6 @@ from scipy.optimize import lsq_linear
 
 from rr_lab.case import Case, Plan
 from rr_lab.effect_size import NominalRun, exact_path
-from rr_lab.effects import rig_with
 from rr_lab.engines import fine_enough
 from rr_opt.array import Array
 from rr_opt.model.parameters import parameters_of, with_parameters
@@ -79,7 +78,7 @@ class Detectability:
 
     def remains(self, case: Case) -> float:
         """RMS deviation, sigma, of the case's runs from the nominal ones after the re-fit."""
-        fine = fine_enough(case.engine, rig_with(case.robot, case.effects), STEP)
+        fine = fine_enough(case.engine, case.rig, STEP)
         seen = [exact_path(case, plan, fine) for plan in self.runs]
         step = max(fine, FINEST)
         at, least = np.zeros(len(case.uncertainty)), math.inf

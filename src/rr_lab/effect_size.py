@@ -31,7 +31,7 @@ CHANNELS = ("x", "y", "psi", "phi")
 
 def exact_path(case: Case, plan: Plan, step: float = COARSE) -> Array:
     """What is seen of a run of a case without noise, (4, n): CHANNELS."""
-    return _seen(motion_of(case, plan, step), rig_with(case.robot, case.effects).tracked)
+    return _seen(motion_of(case, plan, step), case.rig.tracked)
 
 
 def _seen(motion: Motion, tracked: tuple[float, float] = (0.0, 0.0)) -> Array:

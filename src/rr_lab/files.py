@@ -13,7 +13,7 @@ from typing import Any, Literal
 import numpy as np
 
 from rr_lab.case import Case, Plan, motion_of, recorded, stream
-from rr_lab.effects import effect_named, rig_with
+from rr_lab.effects import effect_named
 from rr_lab.formats import ServoClock, c3d_bytes, log_text, places, seen, vicon_text
 from rr_opt.model.experiment import Recording
 from rr_opt.model.parameters import PARAMETERS, PLATFORM_SYMBOLS, Uncertainty, parameters_of
@@ -114,7 +114,7 @@ def folder_of(
         progress(f"recording {n + 1} of {len(case.plans)}")
         yield delivery.file(plan), _recorded(case, plan, n, delivery)
         if delivery.servo_log:
-            rig = rig_with(case.robot, case.effects)
+            rig = case.rig
             log = log_text(rig, plan.gait, plan.outing, delivery.clock)
             yield delivery.log(plan), log.encode()
     # Last, so that a folder with this file has all that it names.
@@ -129,7 +129,7 @@ def _recorded(case: Case, plan: Plan, n: int, delivery: Delivery) -> bytes:
         case.nominal,
         case.noise.position,
         stream(case.seed, "noise", n),
-        tracked=rig_with(case.robot, case.effects).tracked,
+        tracked=case.rig.tracked,
         missing=case.missing,
     )
     return vicon_text(markers).encode() if delivery.form == "vicon" else c3d_bytes(markers)

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from rr_lab.effects.hidden import HiddenEffect, Parameter, Setting, Values, place
-from rr_lab.rig import Drift, Falling, Rig, Rub, Tether
+from rr_lab.laws import Drift, Falling, Rub
+from rr_lab.rig import Rig, Tether
 
 
 def _tether(rig: Rig, values: Values) -> None:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 
 from rr_lab.effects.hidden import HiddenEffect, Parameter, Setting, Values, adds, place
-from rr_lab.rig import Circle, Edge, Patch, Rig
+from rr_lab.laws import Circle, Edge, Patch
+from rr_lab.rig import Rig
 
 
 def _patch(rig: Rig, values: Values) -> None:

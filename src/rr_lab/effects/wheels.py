@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 
 from rr_lab.effects.hidden import HiddenEffect, Parameter, Values, adds
-from rr_lab.rig import Rig, RollingResistance, wheel_loads
+from rr_lab.laws import RollingResistance
+from rr_lab.rig import Rig, wheel_loads
 from rr_opt.model.robot import Robot
 
 
