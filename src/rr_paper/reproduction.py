@@ -2,39 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from importlib.util import find_spec
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from rr_opt.array import Array
-from rr_opt.files.record import plain
 from rr_opt.model.gait import SineGait
 from rr_opt.model.problem import Problem
 from rr_opt.model.robot import Robot
-from rr_opt.report.document import Document, Figure
-from rr_opt.report.result import Result
-from rr_opt.version import __version__
+from rr_paper.best_amplitude import BestAmplitude, audit_best_amplitude
 from rr_paper.consistency import Consistency, audit_hypotheses
-from rr_paper.gaits import (
-    BestAmplitude,
-    PeriodLaw,
-    ServoDemand,
-    SingularPosture,
-    Turning,
-    audit_best_amplitude,
-    audit_period,
-    audit_turning,
-    servo_demands,
-    singular_posture,
-)
+from rr_paper.period import PeriodLaw, audit_period
 from rr_paper.prototype import ABOUT_P, Sensitivity, sensitivities
-from rr_paper.publication import CITATION, TABLE_3
-from rr_paper.report.audit import findings
-from rr_paper.report.reproduction import CAPTIONS, curves, document
+from rr_paper.publication import TABLE_3
+from rr_paper.servo import ServoDemand, SingularPosture, servo_demands, singular_posture
 from rr_paper.signs import SignAudit, audit_signs
 from rr_paper.tables import (
     SpeedSurface,
@@ -45,6 +28,7 @@ from rr_paper.tables import (
     recompute,
     start_from_rest,
 )
+from rr_paper.turning import Turning, audit_turning
 
 _TYPICAL = TABLE_3[1]
 """The row that is driven where the paper does not say which run it shows."""
@@ -53,17 +37,10 @@ _SETTLED = 20.0
 """A run from rest is steady by then, s."""
 
 
-@dataclass(frozen=True, repr=False)
-class Reproduction(Result):
+@dataclass(frozen=True)
+class Reproduction:
     """sha256: of the shipped problem; robot: its robot; mujoco: speed of the gait of Fig. 3 in
     MuJoCo, m/s, or None."""
-
-    RECORD, MARKDOWN, CAPTIONS = "reproduce.json", "audit.md", CAPTIONS
-    OTHERS = (
-        *("figure3.csv", "figure4.csv", "figure5.csv", "figure6.csv", "signs.csv", "tables.csv"),
-        *("audit-signs.csv", "audit-left-out.csv", "audit-readings.csv", "audit-limits.csv"),
-        *("audit-posture.csv", "audit-period.csv", "audit-amplitude.csv", "audit-turning.csv"),
-    )
 
     sha256: str
     robot: Robot
@@ -80,57 +57,6 @@ class Reproduction(Result):
     period: PeriodLaw
     best: BestAmplitude
     mujoco: float | None
-
-    @property
-    def warnings(self) -> tuple[str, ...]:
-        """Whether a check is missing."""
-        if self.mujoco is not None:
-            return ()
-        return (
-            "MuJoCo is not installed, so it could not be used as a further check of the signs of "
-            "equation (3). Install it with `pip install 'rr-opt[lab]'`.",
-        )
-
-    def document(self, figures: Sequence[Figure] = ()) -> Document:
-        """The findings, with figures beside the paper's."""
-        return document(self, figures)
-
-    def record(self, files: Sequence[Path] = ()) -> dict[str, Any]:  # noqa: ARG002
-        """The content of reproduce.json: the tables of the audit, in the units of their heads."""
-        record = {
-            "status": "reproduced",
-            "message": self.document().lead,
-            "paper": CITATION,
-            "mujoco_speed": self.mujoco,
-            "sections": {
-                one.key: {
-                    "title": one.title,
-                    "finding": one.finding,
-                    "sentences": one.sentences,
-                    "rows": one.table.records,
-                }
-                for one in findings(self)
-            },
-            "version": __version__,
-            "input_sha256": self.sha256,
-        }
-        return plain(record)
-
-    def _tables(self) -> dict[str, str]:
-        """The curves, and the table of each finding; that of the columns holds Tables 2 and 3."""
-        tables = {
-            "tables.csv" if one.key == "columns" else f"audit-{one.key}.csv": one.table.csv(
-                digits=9
-            )
-            for one in findings(self)
-        }
-        return curves(self) | tables
-
-    def _drawn(self) -> dict[str, str]:
-        # Here and not above, so that matplotlib is not loaded without figures.
-        from rr_paper.report.figures import draw
-
-        return draw(self)
 
 
 def reproduce(problem: Problem, progress: Callable[[str], None]) -> Reproduction:

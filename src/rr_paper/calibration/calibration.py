@@ -2,26 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from rr_opt.array import Array
 from rr_opt.files.problem_file import read_problem
-from rr_opt.report.document import Document, Figure
-from rr_opt.report.result import Result
 from rr_paper.calibration.comparison import Assessment, assess
+from rr_paper.calibration.coverage import Coverage, coverage
 from rr_paper.calibration.fit import Effort, Estimator, Fit, estimator
-from rr_paper.calibration.intervals import Coverage, Posterior, Profile, coverage, profiles, sample
 from rr_paper.calibration.likelihood import Data, measured
 from rr_paper.calibration.models import DRY, MODELS, READINGS, VISCOUS, Model, Reading
+from rr_paper.calibration.posterior import Posterior, sample
+from rr_paper.calibration.profiles import Profile, profiles
 from rr_paper.calibration.unknowns import UNKNOWNS, Unknown, shares
 from rr_paper.publication import COLUMNS, Column
-from rr_paper.report.calibration import CAPTIONS, document
-from rr_paper.report.calibration_record import record, tables
 
 _CHEAP = Effort(log2_size=15, slices=12, values=25, starts=2, steps=20, sets=200)
 _MEDIUM = Effort(log2_size=13, slices=8, values=0, starts=0, steps=15, sets=0)
@@ -108,8 +104,8 @@ class Interval:
         return all(low - 1e-12 <= value <= high + 1e-12 for low, high in both)
 
 
-@dataclass(frozen=True, repr=False)
-class Calibration(Result):
+@dataclass(frozen=True)
+class Calibration:
     """What the nine rows say.
 
     assessments      by model and column
@@ -120,34 +116,12 @@ class Calibration(Result):
     alternatives     other readings of J20/J10
     """
 
-    RECORD, CAPTIONS = "calibration.json", CAPTIONS
-    OTHERS = (
-        *("intervals.csv", "models.csv", "predictions.csv", "profiles.csv", "posterior.csv"),
-        *("readings.csv", "coverage.csv"),
-    )
-
     assessments: Mapping[tuple[str, Column], Assessment]
     posterior: Mapping[Column, Posterior]
     normal_profiles: Mapping[Column, tuple[Profile, ...]]
     shipped: Mapping[Column, Shipped]
     coverage: Coverage
     alternatives: tuple[Alternative, ...]
-
-    def document(self, figures: Sequence[Figure] = ()) -> Document:
-        """Intervals, models, and what follows."""
-        return document(self, figures)
-
-    def record(self, files: Sequence[Path] = ()) -> dict[str, Any]:  # noqa: ARG002
-        """The content of calibration.json."""
-        return record(self)
-
-    def _tables(self) -> dict[str, str]:
-        return tables(self)
-
-    def _drawn(self) -> dict[str, str]:
-        from rr_paper.report.calibration_figures import draw
-
-        return draw(self)
 
     def intervals(self) -> list[Interval]:
         """Of every unknown of the viscous model, for each column."""

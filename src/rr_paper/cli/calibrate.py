@@ -23,7 +23,8 @@ def calibrate(
         steps("starting")
         folder = results_folder(out, "calibration")
         from rr_paper.calibration.calibration import calibrate as compute
+        from rr_paper.report.calibration import CalibrationReport
 
-        found = compute(steps)
+        found = CalibrationReport(compute(steps))
         files = found.save(folder, progress=steps)
     show(found, files, json=json)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from rr_opt.formatting import number
 from rr_opt.model.ballast import Loads, load_count
@@ -12,12 +11,10 @@ from rr_opt.report.document import Cell, Table, table
 from rr_opt.report.fastest import FastestGait
 from rr_opt.report.prose import prose
 from rr_paper import publication
+from rr_paper.best_amplitude import Peak
 from rr_paper.consistency import KAPPA, LARGEST_WHEEL, Hypothesis
-from rr_paper.gaits import Peak
 from rr_paper.prototype import BOX, UNITS
-
-if TYPE_CHECKING:
-    from rr_paper.reproduction import Reproduction
+from rr_paper.reproduction import Reproduction
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -33,13 +32,12 @@ from rr_opt.report.figures.style import (
 )
 from rr_paper.consistency import QUESTIONS, Consistency, Question
 from rr_paper.equation3 import CORRECTED, PRINTED
-from rr_paper.gaits import PeriodLaw, Turning
+from rr_paper.period import PeriodLaw
 from rr_paper.publication import ANGLE_LIMIT, RATE_LIMIT, Row
+from rr_paper.reproduction import Reproduction
 from rr_paper.signs import Comparison
 from rr_paper.tables import AMPLITUDES, RecomputedRow, SpeedSurface, Start, Tables
-
-if TYPE_CHECKING:
-    from rr_paper.reproduction import Reproduction
+from rr_paper.turning import Turning
 
 _THREE = (FORWARD, PLATFORM1, BACKWARD)
 """Colours of three rows or circles."""

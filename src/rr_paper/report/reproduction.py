@@ -3,59 +3,81 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+from rr_opt.files.record import plain
 from rr_opt.report.document import Document, Figure, Gallery, Section, csv_text, versions
+from rr_opt.report.result import Result
+from rr_opt.version import __version__
 from rr_paper.publication import CITATION, RATE_LIMIT
 from rr_paper.report.audit import findings
+from rr_paper.report.captions import captions
+from rr_paper.reproduction import Reproduction
 from rr_paper.tables import SpeedSurface
 
-if TYPE_CHECKING:
-    from rr_paper.reproduction import Reproduction
 
-CAPTIONS = {
-    "figure3": (
-        "Beside Fig. 3: a start from rest",
-        "The path of the joint from rest, and the average speed rising to its steady value.",
-        "The paper does not say which gait it shows; here it is a row of Table 3. The average is "
-        "the displacement of P over a sliding period, as in the paper.",
-    ),
-    "signs": (
-        "The signs of equation (3)",
-        "Speed of axle 1 over time: three curves on one another, a fourth apart.",
-        "Two derivations and the corrected equation coincide; the printed one does not.",
-    ),
-    "figure4": (
-        "Beside Fig. 4: J20/J10 and amplitude",
-        "A map of speed with Table 2's rows, and their speeds over the amplitude.",
-        "Left: means of Table 2 (mm/s, 95 % intervals) in the colour of their speed, at the "
-        "amplitude that fits best. Right: the same rows over the amplitude that the paper leaves "
-        "out.",
-    ),
-    "figure5": (
-        "Beside Fig. 5: period and amplitude",
-        "A map of speed with Table 3's rows, and cuts through it at 1 s and 2 s.",
-        "Left: means of Table 3 (mm/s, 95 % intervals) in the colour of their speed; where a dot "
-        "is paler than its surroundings, the model is too fast. Right: cuts at the two periods.",
-    ),
-    "figure6": (
-        "Beside Fig. 6: three offsets",
-        "Three circles through one point, the smaller the larger the offset.",
-        "One lap, from rest at the dot. The paper prints no radius to compare these with.",
-    ),
-    "period": (
-        "The effect of the period",
-        "The ratio of speeds at 1 s and 2 s over the amplitude, with intervals.",
-        "With viscous friction every robot is near 4. The intervals allow it; v_exp does not.",
-    ),
-    "readings": (
-        "What the nine averages say about readings",
-        "Chi-square of every reading for both columns.",
-        "p by Student's t of three runs. No definition of J20/J10 stands out.",
-    ),
-}
+@dataclass(frozen=True, repr=False)
+class ReproductionReport(Result):
+    """A reproduction as files: the findings, with figures beside the paper's."""
+
+    RECORD, MARKDOWN, CAPTIONS = "reproduce.json", "audit.md", captions("reproduction")
+    OTHERS = (
+        *("figure3.csv", "figure4.csv", "figure5.csv", "figure6.csv", "signs.csv", "tables.csv"),
+        *("audit-signs.csv", "audit-left-out.csv", "audit-readings.csv", "audit-limits.csv"),
+        *("audit-posture.csv", "audit-period.csv", "audit-amplitude.csv", "audit-turning.csv"),
+    )
+
+    found: Reproduction
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Whether a check is missing."""
+        if self.found.mujoco is not None:
+            return ()
+        return (
+            "MuJoCo is not installed, so it could not be used as a further check of the signs of "
+            "equation (3). Install it with `pip install 'rr-opt[lab]'`.",
+        )
+
+    def document(self, figures: Sequence[Figure] = ()) -> Document:
+        """The findings, with figures beside the paper's."""
+        return document(self.found, figures)
+
+    def record(self, files: Sequence[Path] = ()) -> dict[str, Any]:  # noqa: ARG002
+        """The content of reproduce.json: the tables of the audit, in the units of their heads."""
+        record = {
+            "status": "reproduced",
+            "message": self.document().lead,
+            "paper": CITATION,
+            "mujoco_speed": self.found.mujoco,
+            "sections": {
+                one.key: {
+                    "title": one.title,
+                    "finding": one.finding,
+                    "sentences": one.sentences,
+                    "rows": one.table.records,
+                }
+                for one in findings(self.found)
+            },
+            "version": __version__,
+            "input_sha256": self.found.sha256,
+        }
+        return plain(record)
+
+    def _tables(self) -> dict[str, str]:
+        """The curves, and the table of each finding; that of the columns holds Tables 2 and 3."""
+        tables = {f"audit-{one.key}.csv": one.table.csv(digits=9) for one in findings(self.found)}
+        tables["tables.csv"] = tables.pop("audit-columns.csv")
+        return curves(self.found) | tables
+
+    def _drawn(self) -> dict[str, str]:
+        from rr_paper.report.figures import draw  # matplotlib takes a second
+
+        return draw(self.found)
 
 
 def document(found: Reproduction, figures: Sequence[Figure]) -> Document:
