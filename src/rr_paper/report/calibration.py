@@ -12,9 +12,9 @@ from rr_opt.report.document import Badge, Document, Figure, Gallery, Section, Ta
 from rr_opt.report.prose import prose
 from rr_opt.report.result import Result
 from rr_opt.version import __version__
-from rr_paper.calibration.calibration import Calibration
 from rr_paper.calibration.models import DRY, MODELS, READINGS, VISCOUS
 from rr_paper.calibration.profiles import JOINT_LEVEL
+from rr_paper.calibration.result import Calibration
 from rr_paper.calibration.unknowns import UNKNOWNS
 from rr_paper.publication import CITATION, COLUMNS, T_POINT, Column
 from rr_paper.report.calibration_record import record, tables

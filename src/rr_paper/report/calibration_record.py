@@ -9,10 +9,10 @@ import numpy as np
 from rr_opt.files.record import plain
 from rr_opt.report.document import csv_text
 from rr_opt.version import __version__
-from rr_paper.calibration.calibration import Calibration
 from rr_paper.calibration.comparison import Assessment
 from rr_paper.calibration.likelihood import measured
 from rr_paper.calibration.models import MODELS, READINGS, VISCOUS
+from rr_paper.calibration.result import Calibration
 from rr_paper.calibration.unknowns import UNKNOWNS, values
 from rr_paper.publication import ROWS, T_POINT, Row
 
