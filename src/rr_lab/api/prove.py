@@ -13,8 +13,8 @@ from rr_lab.engines import ENGINES, Engine
 from rr_lab.mujoco.plant import engine as mujoco
 from rr_lab.report.case import ProvedCase
 from rr_lab.report.proof import Proof
-from rr_lab.trial.draws import CODE, KINDS, read_kinds, read_seed, seed_of_commit
-from rr_lab.trial.trial import Basis, again, basis_of, whole_trial
+from rr_lab.trial.draws import CODE, KINDS, Basis, read_kinds, read_seed, seed_of_commit
+from rr_lab.trial.trial import again, basis_of, whole_trial
 from rr_opt.batch.run import pool_of, run
 from rr_opt.report.archive import folder_for_results
 from rr_opt.report.result import Progress, Result, quiet

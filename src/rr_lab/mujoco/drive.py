@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rr_lab.mujoco.model_text import longest_step
-from rr_lab.mujoco.plant import Course, Plant, stepped
+from rr_lab.mujoco.plant import Plant, stepped
 from rr_lab.rig import Rig
 from rr_lab.run import Motion, Outing, asked_angle
 from rr_opt.array import Array
@@ -20,6 +23,39 @@ SETTLE = 0.05
 
 STEP = 2.5e-4
 """s. results/lab/README.md shows what it is worth."""
+
+
+@dataclass(frozen=True)
+class Course:
+    """Of `count` steps, the robot is let go at `let_go`; the recording begins at `first` and has
+    what is at the beginning of every `every`-th step."""
+
+    let_go: int
+    first: int
+    every: int
+    count: int
+
+    @property
+    def recorded(self) -> range:
+        """Steps at whose beginning there is a sample."""
+        return range(self.first, self.count, self.every)
+
+    def parts(self, *, pushed: bool, torque: bool) -> Iterator[tuple[int, int]]:
+        """From which step to before which other they are alike, so that they are taken together.
+
+        pushed  whether step `first` is unlike the others
+        torque  whether the steps that begin with a sample have to be looked at when they are taken
+        """
+        marks = {0, self.let_go, self.first, self.count}
+        if pushed:
+            marks.add(self.first + 1)
+        if torque:
+            marks |= {n for k in self.recorded for n in (k, k + 1)}
+        return pairwise(sorted(mark for mark in marks if mark <= self.count))
+
+    def samples(self, start: int) -> slice:
+        """Which steps from `start` on, not before `first`, are recorded."""
+        return slice((self.first - start) % self.every, None, self.every)
 
 
 def fine_enough(rig: Rig, step: float) -> float:

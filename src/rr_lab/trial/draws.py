@@ -90,6 +90,19 @@ def draw_case(
     return Draw(number, item, target, spread, own, engine, disturbance)
 
 
+@dataclass(frozen=True)
+class Basis:
+    """What the cases of a trial are drawn from."""
+
+    seed: str
+    kinds: tuple[str, ...]
+    engines: tuple[Engine, ...]
+
+    def draw(self, number: int) -> Draw:
+        """Case 1, 2, ..."""
+        return draw_case(self.seed, number, self.kinds, self.engines)
+
+
 def case_seed(seed: str, number: int) -> int:
     """The seed of a case: the first 48 bits of the SHA-256 of `SEED/NUMBER`."""
     digest = hashlib.sha256(f"{seed}/{number}".encode()).digest()

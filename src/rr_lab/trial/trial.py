@@ -15,9 +15,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from rr_lab.engines import Engine
 from rr_lab.files import seal_of
-from rr_lab.trial.draws import Draw, draw_case, fingerprint
+from rr_lab.trial.draws import Basis, Draw, fingerprint
 from rr_lab.trial.isolation import (
     COMMAND,
     OUTPUT,
@@ -175,19 +174,6 @@ def tidy(folder: Path, right: Sequence[str]) -> None:
     that came out right."""
     for place in ("cases", *(f"said/{name}" for name in right)):
         shutil.rmtree(folder / place, ignore_errors=True)
-
-
-@dataclass(frozen=True)
-class Basis:
-    """What the cases of a trial are drawn from."""
-
-    seed: str
-    kinds: tuple[str, ...]
-    engines: tuple[Engine, ...]
-
-    def draw(self, number: int) -> Draw:
-        """Case 1, 2, ..."""
-        return draw_case(self.seed, number, self.kinds, self.engines)
 
 
 def basis_of(folder: Path) -> Basis | None:
