@@ -1,6 +1,6 @@
 """How well the laboratory agrees with the reduced model: `python -m benchmarks.lab_agreement`.
 
-Robots and gaits by lot, nothing hidden. Each run of ten periods is recorded by each engine with
+Random robots and gaits, nothing hidden. Each run of ten periods is recorded by each engine with
 smaller and smaller steps; CVODES drives the reduced model from the initial state that fits best.
 Writes results/lab/null.csv and results/lab/README.md.
 """

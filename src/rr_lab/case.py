@@ -14,7 +14,7 @@ from rr_lab.disturbances import disturbance_named
 from rr_lab.effects import rig_with
 from rr_lab.engines import Engine, driven
 from rr_lab.rig import Rig
-from rr_lab.run import Motion, Outing, captured
+from rr_lab.run import Conditions, Motion, captured
 from rr_opt.model.experiment import Experiment, Noise, Recording, Run, Start, Uncertainty, Use
 from rr_opt.model.gait import SineGait
 from rr_opt.model.robot import EffectUse, Robot
@@ -31,7 +31,7 @@ Verdict = Literal["consistent", "parameters", "missing_physics", "unexplained"]
 
 @dataclass(frozen=True)
 class Plan:
-    """One run of a case: see `Outing`."""
+    """One run of a case: see `Conditions`."""
 
     name: str
     gait: SineGait
@@ -42,9 +42,9 @@ class Plan:
     periods: int = 3
 
     @property
-    def outing(self) -> Outing:
+    def conditions(self) -> Conditions:
         """How the robot is let go, at 100 samples a second."""
-        return Outing(self.seconds, self.start, self.pose, periods=self.periods)
+        return Conditions(self.seconds, self.start, self.pose, periods=self.periods)
 
 
 @dataclass(frozen=True)
@@ -83,11 +83,11 @@ class Case:
 def motion_of(case: Case, plan: Plan, step: float | None = None, *, torque: bool = False) -> Motion:
     """What truly happens in a run; step: s, of the integration, the engine's own if left out."""
     clock = disturbance_named(case.disturbance).clock
-    outing = plan.outing
-    outing = replace(
-        outing, torque=torque, rate=clock * outing.rate, seconds=outing.seconds / clock
+    conditions = plan.conditions
+    conditions = replace(
+        conditions, torque=torque, rate=clock * conditions.rate, seconds=conditions.seconds / clock
     )
-    return driven(case.engine, case.rig, plan.gait, outing, step)
+    return driven(case.engine, case.rig, plan.gait, conditions, step)
 
 
 def recorded(

@@ -98,7 +98,7 @@ EVERY, LONG, BESIDE = 4.0, (0.1, 0.3), 0.15
 
 
 def _mended(values: Channels, _sigma: Channels, rate: float, rng: np.random.Generator) -> Channels:
-    """Where markers were swapped, a cubic through what is beside it."""
+    """Swapped markers, mended by a cubic through the samples on either side."""
     made = {name: each.copy() for name, each in values.items()}
     n, beside = len(next(iter(values.values()))), round(BESIDE * rate)
     for _ in range(round(n / rate / EVERY)):

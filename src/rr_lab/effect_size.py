@@ -53,7 +53,7 @@ class NominalRun:
         sigma = np.array([case.noise.of(channel) for channel in CHANNELS])
         rig = rig_with(case.nominal)
         base, nudged = (
-            _seen(driven(case.engine, rig, plan.gait, replace(plan.outing, nudge=nudge), step))
+            _seen(driven(case.engine, rig, plan.gait, replace(plan.conditions, nudge=nudge), step))
             for nudge in (0.0, NUDGE)
         )
         return cls(base, (nudged - base) / NUDGE, sigma[:, None])

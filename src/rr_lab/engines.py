@@ -14,7 +14,7 @@ import numpy as np
 from rr_lab.effects import rig_with
 from rr_lab.mujoco import drive as mujoco
 from rr_lab.rig import Rig
-from rr_lab.run import Motion, Outing, captured
+from rr_lab.run import Conditions, Motion, captured
 from rr_opt.model.experiment import Noise, Recording
 from rr_opt.model.gait import Gait
 from rr_opt.model.robot import EffectUse, Robot
@@ -34,19 +34,19 @@ def _module(engine: Engine) -> Any:
 
 
 def driven(
-    engine: Engine, rig: Rig, gait: Gait, outing: Outing, step: float | None = None
+    engine: Engine, rig: Rig, gait: Gait, conditions: Conditions, step: float | None = None
 ) -> Motion:
     """Drive a gait with steps of `step` s, or of the engine's own.
 
-    Raises InputError if MuJoCo is asked for and not installed, NotConvergedError if the motion is
+    Raises InputError if MuJoCo is needed and not installed, NotConvergedError if the motion is
     lost.
     """
     module = _module(engine)
-    return module.drive(rig, gait, outing, module.STEP if step is None else step)
+    return module.drive(rig, gait, conditions, module.STEP if step is None else step)
 
 
 def fine_enough(engine: Engine, rig: Rig, step: float) -> float:
-    """The step that an engine drives a rig with where `step` is asked for, s."""
+    """The step that an engine actually uses if `step` is requested, s."""
     return _module(engine).fine_enough(rig, step)
 
 
@@ -78,10 +78,10 @@ def record(
     pose     x (m), y (m) and heading (rad) where the robot is put down
     missing  fraction of the samples that are lost
     step     of the integration, s; the engine's own if left out
-    Raises InputError for an unknown effect, or if MuJoCo is asked for and not installed.
+    Raises InputError for an unknown effect, or if MuJoCo is needed and not installed.
     """
     rig = rig_with(robot, effects)
-    outing = Outing(seconds, start, pose, rate, periods, torque=torque)
-    motion = driven(engine, rig, gait, outing, step)
+    conditions = Conditions(seconds, start, pose, rate, periods, torque=torque)
+    motion = driven(engine, rig, gait, conditions, step)
     rng = np.random.default_rng(seed)
     return captured(motion, name, noise, rng, tracked=rig.tracked, missing=missing)

@@ -14,7 +14,7 @@ import numpy as np
 
 from rr_lab.case import Case, Plan, motion_of, recorded, stream
 from rr_lab.effects import effect_named
-from rr_lab.formats import ServoClock, c3d_bytes, log_text, places, seen, vicon_text
+from rr_lab.formats import ServoClock, c3d_bytes, log_text, marker_data, places, vicon_text
 from rr_opt.model.experiment import Recording
 from rr_opt.model.parameters import PARAMETERS, PLATFORM_SYMBOLS, Uncertainty, parameters_of
 from rr_opt.model.robot import EffectUse, Platform, Robot
@@ -105,7 +105,7 @@ PLAIN = Delivery()
 def folder_of(
     case: Case, delivery: Delivery = PLAIN, progress: Callable[[str], None] = lambda _: None
 ) -> Iterator[tuple[str, bytes]]:
-    """Names and contents of the files of a case, each made when it is asked for.
+    """Names and contents of the files of a case, each made on demand.
 
     `progress` is called before each recording. Raises InputError if a package that the
     form needs is missing.
@@ -115,7 +115,7 @@ def folder_of(
         yield delivery.file(plan), _recorded(case, plan, n, delivery)
         if delivery.servo_log:
             rig = case.rig
-            log = log_text(rig, plan.gait, plan.outing, delivery.clock)
+            log = log_text(rig, plan.gait, plan.conditions, delivery.clock)
             yield delivery.log(plan), log.encode()
     # Last, so that a folder with this file has all that it names.
     yield "experiment.yaml", experiment_text(case, delivery).encode()
@@ -124,7 +124,7 @@ def folder_of(
 def _recorded(case: Case, plan: Plan, n: int, delivery: Delivery) -> bytes:
     if delivery.form == "csv":
         return csv_text(recorded(case, n, torque=delivery.torque)).encode()
-    markers = seen(
+    markers = marker_data(
         motion_of(case, plan),
         case.nominal,
         case.noise.position,

@@ -12,7 +12,7 @@ from rr_lab.case import Case, Plan, Verdict, stream
 from rr_lab.disturbances import disturbance_named
 from rr_lab.effect_size import EffectSize, scaled_to
 from rr_lab.effects import NAMED, OUTSIDE_NAMES, REALISATIONS, effect_named, rig_with
-from rr_lab.effects.hidden import HiddenEffect
+from rr_lab.effects.hidden_effect import HiddenEffect
 from rr_lab.engines import Engine
 from rr_lab.sampling import draw_effect, draw_near, draw_noise, draw_plans, draw_robot, draw_wrong
 from rr_opt.model.experiment import Noise
@@ -22,7 +22,7 @@ from rr_opt.outcome import InputError
 
 KINDS = ("null", "parameters", "single", "pair", "outside")
 
-# Wheel inertia is a change of parameters in disguise: it is hidden only if it is asked for.
+# Wheel inertia is a change of parameters in disguise: it is hidden only on request.
 SINGLES = tuple(name for name in NAMED if name != "wheel_inertia")
 
 SIZES = 3.0, 60.0
@@ -47,11 +47,11 @@ def random_case(
 
     kind        null, parameters, single, pair, outside or random; single:EFFECT, outside:EFFECT and
                 pair:EFFECT+EFFECT name what is hidden, a realisation as EFFECT/REALISATION
-    spread      0: but for what is hidden the nominal values are true; 1: they are off by chance, as
-                far as their uncertainties say
+    spread      0: but for what is hidden the nominal values are true; 1: they are drawn within
+                their uncertainties
     target      size of each effect, sigma; drawn if left out
     size        RMS deviation of a case from its nominal, in sigma; `EffectSize` if left out
-    engine      what drives it; robot, runs and effects are drawn alike for all
+    engine      what drives it; robot, runs and effects are the same for all
     disturbance  of the recordings, by name
     Raises InputError for an unknown kind or disturbance.
     """
@@ -105,7 +105,7 @@ def hidden_in(
         return replace(case, robot=robot, changed=changed, verdict="parameters")
     rng = stream(case.seed, "effects")
     effects = [_realisation(rng, name) for name in names or _names(rng, head)]
-    # Strength is that of the effect alone: what is off by chance is not to hide it.
+    # Strength is that of the effect alone: errors of the nominal values are not to mask it.
     alone = replace(case, robot=case.nominal)
     size = size or EffectSize.of(alone, GAUGED)
     uses, notes = [], {}

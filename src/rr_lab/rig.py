@@ -175,7 +175,7 @@ def wheel_loads(rig: Rig) -> Array:
     The robot stands on four wheels, on a joint that turns about the vertical alone: a stiff body,
     whose weight and whose two moments on the floor give three conditions for four loads. Of all
     loads that keep them, those are taken whose squares are least: the loads of four equal springs.
-    Without a mass beside the axis the wheels of an axle share alike, and of platform 1's axle
+    Without a mass off the axis both wheels of an axle carry the same, and those of platform 1
 
         N1 = g (m1 (c1 + c2 - a1) + m2 a2) / (c1 + c2)
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from rr_lab.case import Case, Plan, motion_of
 from rr_lab.effect_size import COARSE
-from rr_lab.effects.hidden import HiddenEffect, Setting
+from rr_lab.effects.hidden_effect import HiddenEffect, Setting
 from rr_opt.model.experiment import Noise
 from rr_opt.model.gait import SineGait
 from rr_opt.model.parameters import Uncertainty, parameters_of, with_parameters
@@ -39,7 +39,7 @@ CLEARANCE = 0.25
 """The least S1 = c1 cos phi + c2 over c1 + c2: a distance from the singular posture."""
 
 SHORTEST = 0.65
-"""Of the longest run's length: people do not record all runs alike."""
+"""Of the longest run's length: people do not record runs of one length."""
 
 
 def draw_plans(rng: np.random.Generator, robot: Robot, seconds: float = 30.0) -> tuple[Plan, ...]:

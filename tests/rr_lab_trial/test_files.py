@@ -6,7 +6,7 @@ import json
 import pytest
 
 from rr_lab.report.proof import Proof
-from rr_lab.trial.trial import Opened
+from rr_lab.trial.trial import OpenedTrial
 from tests.rr_lab_trial.made_up import case, said, single, truth
 
 DRAG, SLIP = "quadratic_drag", "lateral_slip"
@@ -32,7 +32,7 @@ CASES = (
     case(truth("pair", DRAG, SLIP), said("missing_physics", SLIP), "006"),
     case(truth("parameters", "m1", values={"m1": {"m1": 0.5}}), said("parameters", "m1"), "007"),
 )
-OPENED = Opened("5eed", "c0de", "1.2.3", CASES, {"008": "MuJoCo gave up."}, (10.0,) * 7)
+OPENED = OpenedTrial("5eed", "c0de", "1.2.3", CASES, {"008": "MuJoCo gave up."}, (10.0,) * 7)
 MISSES = {"002": "report.html", "004": "output.txt", "006": "report.html"}
 
 
@@ -107,5 +107,5 @@ def test_the_summary_defines_what_it_counts(folder):
 
 
 def test_a_trial_of_one_kind(tmp_path):
-    Proof(Opened("5eed", "c0de", "1.2.3", (single(DRAG, None),), {}, (1.0,))).save(tmp_path)
+    Proof(OpenedTrial("5eed", "c0de", "1.2.3", (single(DRAG, None),), {}, (1.0,))).save(tmp_path)
     assert "0 of 1 single effects named" in (tmp_path / "README.md").read_text()

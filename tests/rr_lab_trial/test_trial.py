@@ -12,7 +12,7 @@ import pytest
 
 from rr_lab.files import seal_of
 from rr_lab.trial.draws import Basis, draw_case
-from rr_lab.trial.sealing import Made
+from rr_lab.trial.sealing import SealedCase
 from rr_lab.trial.trial import MADE, SAID, SEALS, Trial, basis_of, tidy
 from rr_opt.batch.journal import Journal
 from rr_opt.outcome import InputError
@@ -31,7 +31,7 @@ def made_up(draw):
         "rms_deviation_from_nominal_in_sigma": {}, "engine": draw.engine, "salt": str(draw.seed),
     }  # fmt: skip
     text = json.dumps(answer)
-    return Made({"experiment.yaml": b"robot: {}\n"}, text, seal_of(text), 1.0)
+    return SealedCase({"experiment.yaml": b"robot: {}\n"}, text, seal_of(text), 1.0)
 
 
 def serial(function, tasks):
@@ -116,7 +116,7 @@ def test_a_process_that_dies_over_a_case_is_a_miss(tmp_path):
 
 def test_a_case_that_cannot_be_made_is_told_and_not_diagnosed(tmp_path):
     def make(draw):
-        return Made({}, "", "", 1.0, "MuJoCo gave up.") if draw.number == 2 else made_up(draw)
+        return SealedCase({}, "", "", 1.0, "MuJoCo gave up.") if draw.number == 2 else made_up(draw)
 
     _, then, opened = tried(tmp_path, make=make)
     assert then == [1, 3, 4, 5]

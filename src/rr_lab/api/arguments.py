@@ -1,4 +1,4 @@
-"""What the laboratory is asked for as text: robot, runs, effects, noise."""
+"""Options given as text: robot, runs, effects, noise."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 from rr_lab.case import Plan
 from rr_lab.effects import effect_named
-from rr_lab.effects.hidden import Parameter
+from rr_lab.effects.hidden_effect import Parameter
 from rr_opt.api.arguments import read_arguments
 from rr_opt.api.load import load_robot, prototype
 from rr_opt.formatting import QUANTITIES

@@ -44,7 +44,7 @@ def prove(
         typer.Option(
             metavar="ID",
             help="Make and diagnose only this case, of the trial in --out if there is one, and "
-            "print the answer beside the diagnosis.",
+            "print the answer with the diagnosis.",
             min=1,
         ),
     ] = None,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from rr_lab.effects.actuation import ACTUATION
-from rr_lab.effects.hidden import HiddenEffect
+from rr_lab.effects.hidden_effect import HiddenEffect
 from rr_lab.effects.outside import OUTSIDE
 from rr_lab.effects.surroundings import FLOOR, MASS, MEASUREMENT
 from rr_lab.effects.wheels import CONTACT, ROLLING

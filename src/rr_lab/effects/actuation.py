@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from rr_lab.effects.hidden import HiddenEffect, Parameter, Setting, Values, adds
+from rr_lab.effects.hidden_effect import HiddenEffect, Parameter, Setting, Values, adds
 from rr_lab.rig import Motor, Rig, swing_inertia
 from rr_opt.array import Array
 
@@ -68,7 +68,7 @@ def _rate_limit(rig: Rig, values: Values) -> None:
 
 
 def _below_the_fastest(setting: Setting, _: Values) -> Values:
-    """Just below the fastest rate that is asked for."""
+    """Just below the fastest rate of the commands."""
     fastest = max(gait.peak_rate for gait in setting.gaits)
     return {"rate_limit": float(fastest * setting.rng.uniform(0.8, 0.95))}
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rr_lab.effects.hidden import HiddenEffect, Parameter, Setting, Values, place
+from rr_lab.effects.hidden_effect import HiddenEffect, Parameter, Setting, Values, place
 from rr_lab.laws import Drift, Falling, Rub
 from rr_lab.rig import Rig, Tether
 

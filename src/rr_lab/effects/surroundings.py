@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from rr_lab.effects.hidden import HiddenEffect, Parameter, Setting, Values, adds, place
+from rr_lab.effects.hidden_effect import HiddenEffect, Parameter, Setting, Values, adds, place
 from rr_lab.laws import Circle, Edge, Patch
 from rr_lab.rig import Rig
 
@@ -56,7 +56,7 @@ FLOOR = (
 )  # fmt: skip
 
 MASS = (
-    HiddenEffect("com_offset", "a centre of mass lies beside its platform's axis",
+    HiddenEffect("com_offset", "a centre of mass lies off its platform's axis",
                  _pair("m", 5e-3, 0.03, "d1", "d2"), adds("left", "d1", "d2")),
 )  # fmt: skip
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from rr_lab.effects.hidden import HiddenEffect, Parameter, Values, adds
+from rr_lab.effects.hidden_effect import HiddenEffect, Parameter, Values, adds
 from rr_lab.laws import RollingResistance
 from rr_lab.rig import Rig, wheel_loads
 from rr_opt.model.robot import Robot
@@ -74,9 +74,9 @@ _MU = Parameter("mu", "1", 0.05, neutral=math.inf, most=2e-3)
 _TOE = tuple(_signed(f"toe{n}", "rad", 0.01, 0.1) for n in (1, 2))
 
 ROLLING = (
-    HiddenEffect("coulomb_friction", "dry friction of the wheels, of another size on each axle",
+    HiddenEffect("coulomb_friction", "dry friction of the wheels, different on each axle",
                  _DRY, _coulomb, "per_axle", also=(_ONSET,)),
-    HiddenEffect("coulomb_friction", "dry friction of the wheels, alike on all four",
+    HiddenEffect("coulomb_friction", "dry friction, the same on all four wheels",
                  (_EQUAL,), _equal, "equal", derived=_equal_forces),
     HiddenEffect("coulomb_friction",
                  "dry friction of the wheels in proportion to the load on each",

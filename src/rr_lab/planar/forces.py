@@ -76,7 +76,7 @@ def spring(
 
 
 QUICK = 1000.0
-"""1/s, how fast the motor settles. A robot that is asked for an acceleration of 30 rad/s2 is then
+"""1/s, how fast the motor settles. At a commanded acceleration of 30 rad/s2 it is then
 30/QUICK^2 = 0.03 mrad behind, or up to three times that where its wheels stand in the way."""
 
 HINGE_ONSET = 1e-3

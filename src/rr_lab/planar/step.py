@@ -172,7 +172,7 @@ def _sweep(rig: Rig, dt: float) -> ca.Function:
     for pull in acting:
         left += pull.hold * (pull.way.T @ pull.way)
         right += pull.push * pull.way.T
-    # Symmetric and positive: every hold is, and what has no mass is held by a damper.
+    # Symmetric and positive: every hold is, and a coordinate without mass has a damper.
     w = ca.ldl_solve(right, *ca.ldl(left))
     spins = ca.vertcat(*(wheel.spin(w) for wheel in wheels))
     return ca.Function("sweep", [*guess.parts, kept.w, kept.spins, signals], [w, spins])

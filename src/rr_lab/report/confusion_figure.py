@@ -6,7 +6,7 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Rectangle
 
 from rr_lab.trial.counts import Confusion, confusion
-from rr_lab.trial.trial import Opened
+from rr_lab.trial.trial import OpenedTrial
 from rr_opt.report.figures.style import (
     BACKWARD,
     FAINT,
@@ -23,7 +23,7 @@ _CELL = 0.42
 """Inches."""
 
 
-def draw(opened: Opened) -> str:
+def draw(opened: OpenedTrial) -> str:
     """The figure as SVG."""
     counted = confusion(opened.cases)
     with styled():

@@ -13,7 +13,7 @@ from rr_lab.trial import statistics
 from rr_lab.trial.counts import BREAKDOWN, CONFUSION, COUNTS, TITLES, breakdown, by_engine
 from rr_lab.trial.outcome import Case
 from rr_lab.trial.statistics import SIZES, Rate
-from rr_lab.trial.trial import Opened, tidy
+from rr_lab.trial.trial import OpenedTrial, tidy
 from rr_opt.formatting import number
 from rr_opt.report.document import (
     Block,
@@ -61,7 +61,7 @@ class Proof(Result):
         "confusion": ("Diagnosis against truth", "Diagnosis against truth", CONFUSION)
     }
 
-    opened: Opened
+    opened: OpenedTrial
 
     def document(self, figures: Sequence[Figure] = ()) -> Document:
         """The counts, and every miss."""
@@ -93,7 +93,7 @@ class Proof(Result):
         return super()._write_page(folder, linked, written)
 
 
-def headline(opened: Opened) -> str:
+def headline(opened: OpenedTrial) -> str:
     """The two numbers that matter most."""
     rates = {one.name: one.rate(opened.cases) for one in COUNTS}
     words = {"single": "single effects named", "false_claims": "nulls with a false claim"}
@@ -102,9 +102,9 @@ def headline(opened: Opened) -> str:
 
 
 def proof_document(
-    opened: Opened, figures: Sequence[Figure] = (), *, linked: bool = False
+    opened: OpenedTrial, figures: Sequence[Figure] = (), *, linked: bool = False
 ) -> Document:
-    """The whole report; linked: the misses lead to their reports, which are beside the page."""
+    """The whole report; linked: the misses lead to their reports, which lie next to the page."""
     cases = opened.cases
     rates = {one: one.rate(cases) for one in COUNTS}
     every = {one: rate for one, rate in rates.items() if rate.total}
@@ -163,7 +163,7 @@ def _numbers(values: Iterable[float | None]) -> list[str]:
 
 
 def _by_engine(cases: Sequence[Case]) -> Table:
-    """Each count beside that of the other engine; those without a case are left out."""
+    """A row for each count with a column for each engine; counts without cases are left out."""
     engines = by_engine(cases)
     return table(
         ("what", *(word for name in engines for word in (name, "share"))),
@@ -210,7 +210,7 @@ def _times(cases: Sequence[Case]) -> Table:
     return table(("", "median", "90 % below", "most"), rows)
 
 
-def _misses(opened: Opened, linked: bool) -> Table:
+def _misses(opened: OpenedTrial, linked: bool) -> Table:
     head = ("case", "outcome", "engine", "hidden", "size", "said")
     return table(
         head,

@@ -10,7 +10,7 @@ from rr_lab.trial import statistics
 from rr_lab.trial.counts import BREAKDOWN, CONFUSION, COUNTS, breakdown, by_engine, confusion
 from rr_lab.trial.outcome import Case
 from rr_lab.trial.statistics import Rate
-from rr_lab.trial.trial import Opened
+from rr_lab.trial.trial import OpenedTrial
 from rr_opt.report.document import csv_text
 
 
@@ -18,7 +18,7 @@ def _records(rates: Mapping[str, Rate]) -> dict[str, Any]:
     return {name: rate.record for name, rate in rates.items()}
 
 
-def proof_record(opened: Opened) -> dict[str, Any]:
+def proof_record(opened: OpenedTrial) -> dict[str, Any]:
     """The content of `proof.json`."""
     cases = opened.cases
     counted = confusion(cases)
@@ -65,7 +65,7 @@ def proof_record(opened: Opened) -> dict[str, Any]:
     }
 
 
-def cases_csv(opened: Opened) -> str:
+def cases_csv(opened: OpenedTrial) -> str:
     """A row for each case; where there are two effects, sigma is that of the smaller one."""
     head = (
         "case", "kind", "engine", "strength", "nominal_off", "hidden", "visible_sigma",

@@ -34,7 +34,7 @@ class Count:
 
 
 def _kind(kind: str, *, detectable: bool | None = None) -> Predicate:
-    """Cases of a kind, whose effects are detectable or not, if that is asked for."""
+    """Cases of a kind; detectable: only those whose effects are, or are not."""
     return lambda case: case.truth.kind == kind and detectable in (None, case.scored)
 
 

@@ -44,7 +44,7 @@ class Draw:
 
     kind    as `random_case` takes it: null, parameters, pair, single:EFFECT/REALISATION, ...
     target  effect size of a single effect, sigma; None: drawn by the laboratory
-    spread  0: the nominal values are true; 1: they are off by chance, as their uncertainties say
+    spread  0: the nominal values are true; 1: they are drawn within their uncertainties
     seed    the case's own
     engine  what drives it
     disturbance  of its recordings, by name

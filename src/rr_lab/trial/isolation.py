@@ -60,7 +60,7 @@ class Task:
 
 
 @dataclass(frozen=True)
-class Said:
+class Reply:
     """How the program ended: exit code (negative: a signal), the files it wrote and `output.txt`,
     wall and CPU time, s."""
 
@@ -98,7 +98,7 @@ def opened_case(id: str, answer: Mapping[str, Any], row: Mapping[str, Any]) -> C
     return Case(id, Truth.of(answer), claim, row["wall"], row["cpu"], why)
 
 
-def diagnose_apart(task: Task) -> Said:
+def diagnose_apart(task: Task) -> Reply:
     """Run the program on a copy of the folder; returns how it ended, and raises nothing."""
     with tempfile.TemporaryDirectory(prefix="rr-opt-", ignore_cleanup_errors=True) as place:
         top = Path(place)
@@ -110,7 +110,7 @@ def diagnose_apart(task: Task) -> Said:
         files = {name: (top / SAID / name).read_bytes() for name in written}
         printed = (top / OUTPUT).read_text(encoding="utf-8", errors="replace")
         printed = printed.replace(f"{top}{os.sep}", "")  # the folder is gone
-    return Said(code, {**files, OUTPUT: printed[-_LONGEST:].encode()}, wall, cpu, late)
+    return Reply(code, {**files, OUTPUT: printed[-_LONGEST:].encode()}, wall, cpu, late)
 
 
 def _run(task: Task, top: Path) -> tuple[int, float, float, bool]:

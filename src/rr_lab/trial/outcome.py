@@ -22,7 +22,7 @@ class Truth:
     values     by effect or, for `parameters`, by parameter: its parameters, SI
     size       RMS deviation of each effect alone from the nominal runs, sigma
     remains    the same after the nominal parameters are re-fitted
-    spread     0: the nominal values are true; 1: off by chance
+    spread     0: the nominal values are true; 1: drawn within their uncertainties
     engine     what drove the robot
     realised   by effect: which of its realisations, where it has several
     same_as    by effect: other names of the catalogue that are as right

@@ -22,7 +22,7 @@ TORQUE = 0.3
 
 
 @dataclass(frozen=True)
-class Made:
+class SealedCase:
     """files by name; answer, a JSON text with a random word in it; seal, its SHA-256; seconds of
     CPU. Where the laboratory failed, why, and nothing else."""
 
@@ -33,7 +33,7 @@ class Made:
     failed: str = ""
 
 
-def make(draw: Draw, seconds: float = 30.0) -> Made:
+def make(draw: Draw, seconds: float = 30.0) -> SealedCase:
     """Drive and record a case; seconds: length of each run.
 
     If the engine fails, `failed` says why; nothing is raised.
@@ -53,8 +53,8 @@ def make(draw: Draw, seconds: float = 30.0) -> Made:
         with_torque = stream(draw.seed, "torque").random() < TORQUE
         files = dict(folder_of(case, Delivery(torque=bool(with_torque))))
     except NotConvergedError as error:
-        return Made({}, "", "", time.process_time() - began, str(error))
-    return Made(files, text, seal_of(text), time.process_time() - began)
+        return SealedCase({}, "", "", time.process_time() - began, str(error))
+    return SealedCase(files, text, seal_of(text), time.process_time() - began)
 
 
 def _answer_text(case: Case, draw: Draw) -> str:

@@ -21,13 +21,13 @@ from rr_lab.trial.isolation import (
     COMMAND,
     OUTPUT,
     TIME_LIMIT,
-    Said,
+    Reply,
     Task,
     diagnose_apart,
     opened_case,
 )
 from rr_lab.trial.outcome import Case
-from rr_lab.trial.sealing import Made, make
+from rr_lab.trial.sealing import SealedCase, make
 from rr_opt.batch.journal import Journal
 from rr_opt.outcome import InputError, NotConvergedError
 from rr_opt.report.archive import write_bytes
@@ -35,7 +35,7 @@ from rr_opt.version import __version__
 
 
 @dataclass(frozen=True)
-class Opened:
+class OpenedTrial:
     """A trial that is over.
 
     seed, code, version  what it was run with: the seed, the SHA-256 of the code, its version
@@ -59,7 +59,7 @@ class Opened:
 
 
 class OnDemand(dict[int, Any]):
-    """value(key) for each of the keys, computed when it is asked for; nothing is kept."""
+    """value(key) for each of the keys, computed at each look-up; nothing is kept."""
 
     def __init__(self, keys: Iterable[int], value: Callable[[int], Any]):
         super().__init__(dict.fromkeys(keys))
@@ -83,7 +83,9 @@ class Trial:
     folder: Path
     draws: Sequence[Draw]
 
-    def make(self, journal: Journal, run: Run, how: Callable[[Draw], Made] = make) -> Iterator[int]:
+    def make(
+        self, journal: Journal, run: Run, how: Callable[[Draw], SealedCase] = make
+    ) -> Iterator[int]:
         """Make the cases that the journal does not have; yields each case's number.
 
         At the end all seals are written, in the form that `sha256sum --check` reads.
@@ -96,7 +98,7 @@ class Trial:
         lines = [f"{seal}  answers/{name}.json\n" for name, seal in seals.items() if seal]
         write_bytes(self.folder / SEALS, "".join(lines).encode())
 
-    def _made(self, id: str, made: Made | str) -> dict[str, Any]:
+    def _made(self, id: str, made: SealedCase | str) -> dict[str, Any]:
         """The row of a case that was made; its files are written before it."""
         if isinstance(made, str) or made.failed:
             why = made if isinstance(made, str) else made.failed
@@ -125,7 +127,7 @@ class Trial:
         wanted = OnDemand((number for number in ids if number not in journal.rows), task)
         for number, ended in run(diagnose_apart, wanted):
             # A text: the process that had started the diagnosis died.
-            said = Said(-1, {OUTPUT: ended.encode()}) if isinstance(ended, str) else ended
+            said = Reply(-1, {OUTPUT: ended.encode()}) if isinstance(ended, str) else ended
             place = self.folder / "said" / ids[number]
             shutil.rmtree(place, ignore_errors=True)
             _write(place, said.files)
@@ -137,10 +139,10 @@ class Trial:
         made: Mapping[int, Mapping[str, Any]],
         said: Mapping[int, Mapping[str, Any]],
         identity: Mapping[str, Any],
-    ) -> Opened:
+    ) -> OpenedTrial:
         """Open every answer. Raises InputError if one is not what was sealed."""
         rows = {draw: made[draw.number] for draw in self.draws}
-        return Opened(
+        return OpenedTrial(
             identity["seed"],
             identity["code"],
             identity["version"],
@@ -203,7 +205,7 @@ def whole_trial(
     follow: Follow,
     restart: bool = False,
     make_only: bool = False,
-) -> Opened | None:
+) -> OpenedTrial | None:
     """Make every case, then diagnose every case, then open every answer.
 
     restart: what an earlier run left is forgotten; make_only: nothing is diagnosed and nothing

@@ -1,4 +1,4 @@
-"""calibration.json, and the CSV files beside it."""
+"""calibration.json and its CSV files."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Figures beside the paper's."""
+"""Figures to compare with the paper's."""
 
 from __future__ import annotations
 

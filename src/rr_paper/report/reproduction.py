@@ -22,7 +22,7 @@ from rr_paper.tables import SpeedSurface
 
 @dataclass(frozen=True, repr=False)
 class ReproductionReport(Result):
-    """A reproduction as files: the findings, with figures beside the paper's."""
+    """A reproduction as files: the findings, and figures to compare with the paper's."""
 
     RECORD, MARKDOWN, CAPTIONS = "reproduce.json", "audit.md", captions("reproduction")
     OTHERS = (
@@ -44,7 +44,7 @@ class ReproductionReport(Result):
         )
 
     def document(self, figures: Sequence[Figure] = ()) -> Document:
-        """The findings, with figures beside the paper's."""
+        """The findings, and figures to compare with the paper's."""
         return document(self.found, figures)
 
     def record(self, files: Sequence[Path] = ()) -> dict[str, Any]:  # noqa: ARG002
