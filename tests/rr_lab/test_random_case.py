@@ -1,4 +1,4 @@
-"""A case by lot is plausible, the same for the same seed, and says what is hidden in it."""
+"""A random case is plausible, the same for the same seed, and says what is hidden in it."""
 
 import json
 from dataclasses import replace

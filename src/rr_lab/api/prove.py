@@ -54,8 +54,8 @@ def prove(
 ) -> Proof | MadeCases:
     """Make and seal cases, diagnose each blind, then open and score them.
 
-    An interrupted trial resumes when it is called again with the same arguments. Raises InputError if the folder
-    has another trial, or an answer that was changed.
+    Called again with the same arguments, an interrupted trial resumes. Raises InputError if the
+    folder has another trial, or an answer that was changed.
     """
     with closing(pool_of(workers, scheduler)) as pool:
         opened = whole_trial(

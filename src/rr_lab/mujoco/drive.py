@@ -41,7 +41,7 @@ class Course:
         return range(self.first, self.count, self.every)
 
     def parts(self, *, pushed: bool, torque: bool) -> Iterator[tuple[int, int]]:
-        """Ranges of steps that are alike and can be taken in one call: first, and one past the last.
+        """Ranges of steps that can be taken in one call: first, and one past the last.
 
         pushed  whether step `first` is unlike the others
         torque  whether the steps that begin with a sample have to be looked at when they are taken
