@@ -8,7 +8,7 @@ difference in standard deviations of the noise.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -34,7 +34,7 @@ def exact_path(case: Case, plan: Plan, step: float = COARSE) -> Array:
     return _seen(motion_of(case, plan, step), case.rig.tracked)
 
 
-def _seen(motion: Motion, tracked: tuple[float, float] = (0.0, 0.0)) -> Array:
+def _seen(motion: Motion, tracked: Sequence[float] = (0.0, 0.0)) -> Array:
     recording = captured(motion, "", EXACT, stream(0), tracked=tracked)
     return np.array(list(recording.values.values()))
 

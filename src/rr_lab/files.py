@@ -180,7 +180,7 @@ def _effect(robot: Robot, use: EffectUse) -> dict[str, Any]:
     known = effect_named(effect.name).accepted
     for name, value in (effect.derived(robot, use.values) if effect.derived else {}).items():
         parameters[name] = _valued(value, known[name].unit)
-    record = {"name": effect.name if effect.named else "unknown", "what": what}
+    record: dict[str, Any] = {"name": effect.name if effect.named else "unknown", "what": what}
     if realisation:
         record["realisation"] = realisation
     if effect.same_as:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -60,7 +60,7 @@ def marker_data(
     sigma: float,
     rng: np.random.Generator,
     *,
-    tracked: tuple[float, float] = (0.0, 0.0),
+    tracked: Sequence[float] = (0.0, 0.0),
     missing: float = 0.0,
 ) -> MarkerData:
     """The markers of a motion with white noise of `sigma` (m) on each coordinate.
@@ -77,7 +77,7 @@ def marker_data(
     return MarkerData((*first, *second), positions, rate)
 
 
-def _placed(pose: Array, spots: Places, moved: tuple[float, float]) -> Array:
+def _placed(pose: Array, spots: Places, moved: Sequence[float]) -> Array:
     """(n, k, 3) of the markers of a body whose joint end is at pose (n, 3)."""
     forward, left, up = (np.array(one) for one in zip(*spots.values(), strict=True))
     forward, left = forward + moved[0], left + moved[1]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import secrets
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -32,32 +33,62 @@ GAUGED = 3
 """Runs on which the strength is set."""
 
 
-def random_case(
-    seed: int,
-    kind: str = "random",
-    *,
-    seconds: float = 30.0,
-    spread: float = 0.0,
-    target: float | None = None,
-    size: Callable[[Case], float] | None = None,
-    engine: Engine = "mujoco",
-    disturbance: str = "",
-) -> Case:
-    """Draw a case; the same seed, kind and engine give the same.
+@dataclass(frozen=True)
+class Request:
+    """What a case is made from; the same seed, kind and engine give the same.
 
+    robot, plans, noise  drawn if left out
+    effects     what is hidden; or
     kind        null, parameters, single, pair, outside or random; single:EFFECT, outside:EFFECT and
                 pair:EFFECT+EFFECT name what is hidden, a realisation as EFFECT/REALISATION
+    seed        of all that is drawn; 0 if left out, and with a kind a random one
+    seconds     of each run that is drawn, at most
+    missing     fraction of lost samples
+    engine      what drives it; robot, runs and effects are the same for all
+    disturbance  of the recordings, by name
     spread      0: but for what is hidden the nominal values are true; 1: they are drawn within
                 their uncertainties
     target      size of each effect, sigma; drawn if left out
     size        RMS deviation of a case from its nominal, in sigma; `EffectSize` if left out
-    engine      what drives it; robot, runs and effects are the same for all
-    disturbance  of the recordings, by name
-    Raises InputError for an unknown kind or disturbance.
     """
-    disturbance_named(disturbance)
-    case = bare_case(seed, seconds, spread=spread, engine=engine)
-    return replace(hidden_in(case, kind, target=target, size=size), disturbance=disturbance)
+
+    robot: Robot | None = None
+    plans: tuple[Plan, ...] = ()
+    effects: tuple[EffectUse, ...] = ()
+    noise: Noise | None = None
+    kind: str | None = None
+    seed: int | None = None
+    seconds: float = 30.0
+    missing: float = 0.0
+    engine: Engine = "mujoco"
+    disturbance: str = ""
+    spread: float = 0.0
+    target: float | None = None
+    size: Callable[[Case], float] | None = None
+
+    def case(self) -> Case:
+        """Raises InputError for an unknown kind or disturbance, or a wrong effect."""
+        disturbance_named(self.disturbance)
+        seed = self.seed
+        if seed is None:
+            seed = secrets.randbits(48) if self.kind else 0
+        case = bare_case(
+            seed, self.seconds, spread=self.spread, robot=self.robot, engine=self.engine
+        )
+        plans, noise = self.plans or case.plans, self.noise or case.noise
+        case = replace(case, plans=plans, noise=noise, missing=self.missing)
+        if self.kind:
+            case = _hidden_in(case, self.kind, self.target, self.size)
+        else:
+            rig_with(case.robot, self.effects)
+            verdict = _verdict([effect_named(use.name) for use in self.effects])
+            case = replace(case, effects=self.effects, verdict=verdict)
+        return replace(case, disturbance=self.disturbance)
+
+
+def random_case(seed: int, kind: str = "random", **more: Any) -> Case:
+    """A case that is all drawn; more: fields of `Request`. Raises as `Request.case` does."""
+    return Request(kind=kind, seed=seed, **more).case()
 
 
 def bare_case(
@@ -88,14 +119,10 @@ def bare_case(
     )
 
 
-def hidden_in(
-    case: Case,
-    kind: str,
-    *,
-    target: float | None = None,
-    size: Callable[[Case], float] | None = None,
+def _hidden_in(
+    case: Case, kind: str, target: float | None, size: Callable[[Case], float] | None
 ) -> Case:
-    """The case with what its seed and the kind hide in it; see `random_case`."""
+    """The case with what its seed and the kind hide in it; see `Request`."""
     head, names = read_kind(kind, case.seed)
     if head == "null":
         return case
@@ -163,41 +190,3 @@ def _realisation(rng: np.random.Generator, name: str) -> HiddenEffect:
         return effect_named(name)
     several = REALISATIONS[name]
     return several[int(rng.integers(len(several)))]
-
-
-@dataclass(frozen=True)
-class Request:
-    """A case with the effects given, or with what a kind of case draws, see `random_case`.
-
-    robot, plans, noise  drawn if left out
-    seed                 of all that is drawn; 0 if left out, and with a kind a random one
-    seconds              of each run that is drawn, at most
-    missing              fraction of lost samples
-    """
-
-    robot: Robot | None = None
-    plans: tuple[Plan, ...] = ()
-    effects: tuple[EffectUse, ...] = ()
-    noise: Noise | None = None
-    kind: str | None = None
-    seed: int | None = None
-    seconds: float = 30.0
-    missing: float = 0.0
-    engine: Engine = "mujoco"
-    disturbance: str = ""
-
-    def case(self) -> Case:
-        """Raises InputError for an unknown kind or disturbance, or a wrong effect."""
-        disturbance_named(self.disturbance)
-        seed = self.seed
-        if seed is None:
-            seed = secrets.randbits(48) if self.kind else 0
-        case = bare_case(seed, self.seconds, robot=self.robot, engine=self.engine)
-        plans, noise = self.plans or case.plans, self.noise or case.noise
-        case = replace(case, plans=plans, noise=noise, missing=self.missing)
-        if self.kind:
-            return replace(hidden_in(case, self.kind), disturbance=self.disturbance)
-        rig_with(case.robot, self.effects)
-        verdict = _verdict([effect_named(use.name) for use in self.effects])
-        own = {"effects": self.effects, "verdict": verdict, "disturbance": self.disturbance}
-        return replace(case, **own)

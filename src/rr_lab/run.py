@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -72,7 +73,7 @@ def captured(
     noise: Noise,
     rng: np.random.Generator,
     *,
-    tracked: tuple[float, float] = (0.0, 0.0),
+    tracked: Sequence[float] = (0.0, 0.0),
     missing: float = 0.0,
     disturbance: Disturbance = NO_DISTURBANCE,
 ) -> Recording:

@@ -152,10 +152,10 @@ class Claim:
             str(diagnosis["verdict"]),
             tuple(map(Named.of, diagnosis["effects"])),
             tuple(map(frozenset, diagnosis["indistinguishable"])),
-            *map(fit.get, _FIT),
-            {test: p for test, p in p_values.items() if p is not None},
-            remainder.get("size", ""),
-            remainder.get("share"),
+            *(fit.get(name) for name in _FIT),
+            p_values={test: p for test, p in p_values.items() if p is not None},
+            remainder=remainder.get("size", ""),
+            share=remainder.get("share"),
         )
 
     @property

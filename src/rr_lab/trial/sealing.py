@@ -41,14 +41,9 @@ def make(draw: Draw, seconds: float = 30.0) -> SealedCase:
     began = time.process_time()
     try:
         case = random_case(
-            draw.seed,
-            draw.kind,
-            target=draw.target,
-            spread=draw.spread,
-            seconds=seconds,
-            engine=draw.engine,
-            disturbance=draw.disturbance,
-        )
+            draw.seed, draw.kind, target=draw.target, spread=draw.spread, seconds=seconds,
+            engine=draw.engine, disturbance=draw.disturbance,
+        )  # fmt: skip
         text = _answer_text(case, draw)
         with_torque = stream(draw.seed, "torque").random() < TORQUE
         files = dict(folder_of(case, Delivery(torque=bool(with_torque))))
