@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 from rr_lab.report.case import hidden_text, page_of, said_text, size_text
 from rr_lab.report.proof_record import cases_csv, proof_record
 from rr_lab.trial import statistics
-from rr_lab.trial.counts import BREAKDOWN, CONFUSION, COUNTS, TITLES, breakdown, by_engine
+from rr_lab.trial.counts import COUNTS, TEXTS, TITLES, breakdown, by_engine
 from rr_lab.trial.outcome import Case
 from rr_lab.trial.statistics import SIZES, Rate
 from rr_lab.trial.trial import OpenedTrial, tidy
@@ -30,24 +30,7 @@ from rr_opt.report.document import (
 )
 from rr_opt.report.result import Progress, Result, quiet
 
-ISOLATION = (
-    "The laboratory drew and sealed every case before the first was diagnosed. Each was diagnosed "
-    "by a separate process, `rr-opt diagnose`, in a temporary folder with a copy of the recordings "
-    "and their experiment.yaml; its arguments and environment reveal nothing else. It runs as the "
-    "same user, so nothing but its own code keeps it from other files."
-)
-ENGINES = (
-    "The same counts for each of the laboratory's two engines: a three-dimensional robot in "
-    "MuJoCo, and two bodies in the plane with another contact model."
-)
-CHANGED = (
-    "The code of rr-opt changed during the trial, so the counts belong to no single version. Start "
-    "again with --restart."
-)
-AGAIN = (
-    "`rr-opt prove --case ID --out FOLDER`, where FOLDER holds this page, makes and diagnoses a "
-    "case again and writes its report. The code has to be that of the trial."
-)
+_SAYS = TEXTS["tables"]
 SHARE = "share, 95 % interval"
 _KEY = ("false_claims", "single", "pair_both", "parameters", "outside", "no_answer")
 
@@ -58,7 +41,7 @@ class Proof(Result):
 
     RECORD, MARKDOWN, OTHERS = "proof.json", "README.md", ("cases.csv",)
     CAPTIONS: ClassVar[Captions] = {
-        "confusion": ("Diagnosis against truth", "Diagnosis against truth", CONFUSION)
+        "confusion": ("Diagnosis against truth", "Diagnosis against truth", _SAYS["confusion"])
     }
 
     opened: OpenedTrial
@@ -120,21 +103,23 @@ def proof_document(
         Section("", (Facts(key, key=True),)),
         Section("", (Gallery(tuple(figures), wide=True),)),
         Section("Counts", (table(("what", "count", SHARE, "what is counted"), counts),), False),
-        _section("By engine", ENGINES, _by_engine(cases)),
-        _section("By effect, realisation and disturbance", BREAKDOWN,
+        _section("By engine", TEXTS["engines"], _by_engine(cases)),
+        _section("By effect, realisation and disturbance", _SAYS["breakdown"],
                  table(("by", "what", "right", SHARE), broken_down)),
-        _section("Coverage of the 95 % intervals", statistics.COVERAGE,
+        _section("Coverage of the 95 % intervals", _SAYS["coverage"],
                  table(("quantity", "count", SHARE),
                        [(name, *_cells(rate)) for name, rate in covered.items()])),
-        _section("Held-out error, medians", statistics.HELD_OUT, _held_out(cases)),
-        _section("Remainder", statistics.REMAINDER, _remainders(cases)),
-        _section("p-values where nothing is hidden", statistics.P_VALUES, _p_values(cases)),
-        _section("Time", statistics.TIME, _times(cases)),
-        Section("Misses", (AGAIN, _misses(opened, linked)) if opened.misses else ("None.",)),
+        _section("Held-out error, medians", _SAYS["held_out"], _held_out(cases)),
+        _section("Remainder", _SAYS["remainder"], _remainders(cases)),
+        _section("p-values where nothing is hidden", _SAYS["p_values"], _p_values(cases)),
+        _section("Time", _SAYS["time"], _times(cases)),
+        Section("Misses",
+                (TEXTS["again"], _misses(opened, linked)) if opened.misses else ("None.",)),
         Section("Cases that the laboratory could not make",
                 (Facts(tuple(Fact(case, why) for case, why in opened.failed.items())),)),
     )  # fmt: skip
-    lead = f"{len(cases)} cases. {ISOLATION} {CHANGED if opened.changed else ''}".strip()
+    lead = f"{len(cases)} cases. {TEXTS['isolation']}"
+    lead += f" {TEXTS['changed']}" if opened.changed else ""
     footer = (f"rr-opt {opened.version}", f"seed `{opened.seed}`", f"code SHA-256 `{opened.code}`")
     return Document("", "blind trial of the diagnosis", headline(opened), lead, sections,
                     footer=footer)  # fmt: skip

@@ -7,7 +7,7 @@ from typing import Any
 
 from rr_lab.report.case import case_record, hidden_text, page_of, said_text
 from rr_lab.trial import statistics
-from rr_lab.trial.counts import BREAKDOWN, CONFUSION, COUNTS, breakdown, by_engine, confusion
+from rr_lab.trial.counts import COUNTS, TEXTS, breakdown, by_engine, confusion
 from rr_lab.trial.outcome import Case
 from rr_lab.trial.statistics import Rate
 from rr_lab.trial.trial import OpenedTrial
@@ -20,7 +20,7 @@ def _records(rates: Mapping[str, Rate]) -> dict[str, Any]:
 
 def proof_record(opened: OpenedTrial) -> dict[str, Any]:
     """The content of `proof.json`."""
-    cases = opened.cases
+    cases, words = opened.cases, TEXTS["tables"]
     counted = confusion(cases)
     covered = _records(statistics.coverage(statistics.intervals(cases)))
     return {
@@ -35,11 +35,11 @@ def proof_record(opened: OpenedTrial) -> dict[str, Any]:
         },
         "engines": {engine: _records(rates) for engine, rates in by_engine(cases).items()},
         "breakdown": {
-            "definition": BREAKDOWN,
+            "definition": words["breakdown"],
             **{what: _records(rates) for what, rates in breakdown(cases).items()},
         },
         "confusion": {
-            "definition": CONFUSION,
+            "definition": words["confusion"],
             "rows": list(counted.rows),
             "columns": list(counted.columns),
             "counts": [
@@ -48,18 +48,18 @@ def proof_record(opened: OpenedTrial) -> dict[str, Any]:
             ],
         },
         "coverage": {
-            "definition": statistics.COVERAGE,
+            "definition": words["coverage"],
             "all": covered.pop("all", Rate(0, 0).record),
             "quantities": covered,
         },
-        "held_out": {"definition": statistics.HELD_OUT, "kinds": statistics.held_out(cases)},
-        "remainder": {"definition": statistics.REMAINDER, "kinds": statistics.remainders(cases)},
+        "held_out": {"definition": words["held_out"], "kinds": statistics.held_out(cases)},
+        "remainder": {"definition": words["remainder"], "kinds": statistics.remainders(cases)},
         "time": {
-            "definition": statistics.TIME,
+            "definition": words["time"],
             **statistics.times(cases),
             "making_cpu": statistics.quantiles(opened.made_seconds),
         },
-        "p_values": {"definition": statistics.P_VALUES, "tests": statistics.uniformity(cases)},
+        "p_values": {"definition": words["p_values"], "tests": statistics.uniformity(cases)},
         "misses": [{**case_record(case), "page": page_of(case)} for case in opened.misses],
         "not_made": dict(opened.failed),
     }

@@ -1,10 +1,12 @@
-"""The counts of a trial, each with the sentence that defines it; and the confusion matrix."""
+"""The counts of a trial, which `texts.toml` defines in words; and the confusion matrix."""
 
 from __future__ import annotations
 
+import tomllib
 from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 from rr_lab.engines import ENGINES
 from rr_lab.random_case import SINGLES
@@ -58,94 +60,55 @@ def _by_its_name(case: Case) -> bool:
     return _right(case) and case.claim is not None and case.claim.names == case.truth.names
 
 
-def _nulls(name: str, off: float, words: str) -> Count:
-    return Count(
-        f"false_claims_{name}",
-        f"... nominal values {words.partition(',')[0]}",
-        f"Of the same, those whose nominal values are {words}.",
-        lambda case: _null("null")(case) and case.truth.spread == off,
-        _came_out("false claim"),
-    )
+def _and(*conditions: Predicate) -> Predicate:
+    return lambda case: all(condition(case) for condition in conditions)
 
 
-def _single(name: str, low: float, high: float) -> Count:
-    return Count(
-        f"single_{name}",
-        f"... {name}",
-        f"Of the same, those whose effect has a size of {low:g} to {high:g} sigma before the "
-        "re-fit.",
-        lambda case: _kind("single", detectable=True)(case) and case.truth.strength == name,
-        _right,
-    )
+def _spread(size: float) -> Predicate:
+    return lambda case: case.truth.spread == size
 
 
-COUNTS = (
-    Count("false_claims", "nulls with a false claim",
-          "Of the cases with nothing hidden, those whose verdict is not `consistent`; no answer is "
-          "no claim.",
-          _null("null"), _came_out("false claim")),
-    _nulls("exact", 0.0, "true"),
-    _nulls("off", 1.0, "off by chance, each as far as its uncertainty says"),
-    Count("single", "single effects named",
-          f"Of the cases with one effect that leaves at least {FLOOR:g} sigma after the nominal "
-          "parameters are re-fitted, those with the verdict `missing_physics` that name it, or one "
-          "that the diagnosis calls indistinguishable from it, and nothing else.",
-          _kind("single", detectable=True), _right),
-    *(_single(name, *ends) for name, ends in STRENGTHS.items()),
-    Count("single_exact", "... by its own name",
-          "Of the same, those that name the effect itself and nothing else.",
-          _kind("single", detectable=True), _by_its_name),
-    Count("single_invisible", "undetectable, no wrong name",
-          f"Of the cases with one effect that leaves less than {FLOOR:g} sigma after the re-fit, "
-          "those that answer and do not name another one.",
-          _kind("single", detectable=False), lambda case: not case.missed),
-    Count("pair_both", "pairs, both named",
-          "Of the cases with two detectable effects, those with the verdict `missing_physics` that "
-          "name both and nothing else.",
-          _kind("pair", detectable=True), _right),
-    Count("pair_one", "... at least one named",
-          "Of the same, those that name at least one of the two, under any verdict.",
-          _kind("pair", detectable=True), lambda case: bool(case.found)),
-    Count("pair_wrong", "... with a wrong name",
-          "Of the same, those that name anything that is not hidden.",
-          _kind("pair", detectable=True), lambda case: bool(case.extra)),
-    Count("parameters", "wrong values recognised",
-          "Of the cases with one or two wrong nominal values, those with the verdict `parameters`, "
-          "whichever it names.",
-          _kind("parameters"), _right),
-    Count("parameters_named", "... and every one named",
-          "Of the same, those that name every wrong value, or one that the diagnosis calls "
-          "indistinguishable from it, and no other.",
-          _kind("parameters"), _all_named),
-    Count("outside", "outside the catalogue, recognised",
-          "Of the cases with a detectable effect that the catalogue does not have, those with the "
-          f"verdict `unexplained` and no name of a confidence above {SURE:g}.",
-          _kind("outside", detectable=True), _right),
-    Count("outside_named", "... named with confidence",
-          f"Of the same, those with a name of a confidence above {SURE:g}, under any verdict.",
-          _kind("outside", detectable=True), _came_out("named with confidence")),
-    Count("disturbed_false_claims", "disturbed nulls with a false claim",
-          "Of the cases with disturbed recordings and nothing hidden, those whose verdict is not "
-          "`consistent`.",
-          _null("disturbed"), _came_out("false claim")),
-    Count("disturbed_single", "disturbed, single effects named",
-          "Of the cases with disturbed recordings and one detectable effect, those that name it "
-          "and nothing else, as above.",
-          lambda case: _kind("disturbed", detectable=True)(case) and not case.truth.nothing,
-          _right),
-    Count("no_answer", "no answer",
-          "Of all cases, those whose diagnosis crashed, took too long or ended with an error; each "
-          "counts as a miss above as well.",
-          lambda _: True, lambda case: case.claim is None),
-)  # fmt: skip
-"""In the order to show them."""
+def _strength(name: str) -> Predicate:
+    return lambda case: case.truth.strength == name
 
 
-BREAKDOWN = (
-    "How many came out right. By effect and realisation: cases with one detectable effect; outside "
-    "the catalogue, those with the verdict `unexplained`. By disturbance: cases with disturbed "
-    "recordings in which nothing or one detectable effect is hidden."
+_SINGLE, _PAIR = _kind("single", detectable=True), _kind("pair", detectable=True)
+_OUTSIDE, _NULL = _kind("outside", detectable=True), _null("null")
+_FALSE = _came_out("false claim")
+
+_PREDICATES: dict[str, tuple[Predicate, Predicate]] = {
+    "false_claims": (_NULL, _FALSE),
+    "false_claims_exact": (_and(_NULL, _spread(0.0)), _FALSE),
+    "false_claims_off": (_and(_NULL, _spread(1.0)), _FALSE),
+    "single": (_SINGLE, _right),
+    **{f"single_{name}": (_and(_SINGLE, _strength(name)), _right) for name in STRENGTHS},
+    "single_exact": (_SINGLE, _by_its_name),
+    "single_invisible": (_kind("single", detectable=False), lambda case: not case.missed),
+    "pair_both": (_PAIR, _right),
+    "pair_one": (_PAIR, lambda case: bool(case.found)),
+    "pair_wrong": (_PAIR, lambda case: bool(case.extra)),
+    "parameters": (_kind("parameters"), _right),
+    "parameters_named": (_kind("parameters"), _all_named),
+    "outside": (_OUTSIDE, _right),
+    "outside_named": (_OUTSIDE, _came_out("named with confidence")),
+    "disturbed_false_claims": (_null("disturbed"), _FALSE),
+    "disturbed_single": (
+        _and(_kind("disturbed", detectable=True), lambda case: not case.truth.nothing), _right,
+    ),
+    "no_answer": (lambda _: True, lambda case: case.claim is None),
+}  # fmt: skip
+"""By name: among which cases, and which of them are counted."""
+
+TEXTS = tomllib.loads(Path(__file__).with_name("texts.toml").read_text(encoding="utf-8"))
+
+_NUMBERS = {"floor": f"{FLOOR:g}", "sure": f"{SURE:g}"} | {
+    name: f"{low:g} to {high:g}" for name, (low, high) in STRENGTHS.items()
+}
+COUNTS = tuple(
+    Count(name, text["title"], text["definition"].format(**_NUMBERS), *_PREDICATES[name])
+    for name, text in TEXTS["counts"].items()
 )
+"""In the order to show them."""
 
 
 def breakdown(cases: Sequence[Case]) -> dict[str, dict[str, Rate]]:
@@ -192,12 +155,6 @@ NOTHING, VALUE, NO_NAME = "nothing", "a wrong value", "no known effect"
 SEVERAL, NONE = "several effects", "no answer"
 _WORDS = {"null": NOTHING, "consistent": NOTHING, "parameters": VALUE, "outside": NO_NAME,
           "unexplained": NO_NAME}  # fmt: skip
-
-CONFUSION = (
-    "Rows are what was hidden, columns the diagnosis. Cases with one detectable effect, nothing, "
-    "wrong values, or an effect outside the catalogue. A name that the diagnosis calls "
-    "indistinguishable from the true one counts as the true one."
-)
 
 
 @dataclass(frozen=True)

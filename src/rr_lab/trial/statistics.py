@@ -48,13 +48,8 @@ class Rate:
         return {**data, "fraction": self.fraction, "ci95": list(self.interval)}
 
 
-COVERAGE = (
-    "Of the 95 % intervals of the parameters of effects that were named by their own name under "
-    "the verdict `missing_physics`, and of wrong values named under `parameters`, those that "
-    "contain the true value; 95 % of them should. Not counted: edge_x and edge_y of a floor patch, "
-    "as any point on its edge is as good."
-)
 _ANY_POINT = ("edge_x", "edge_y")
+"""Of a floor patch; any point on its edge is as good."""
 
 
 @dataclass(frozen=True)
@@ -105,11 +100,6 @@ def coverage(every: Sequence[Interval]) -> dict[str, Rate]:
     return {"all": Rate.of(one.covers for one in every), **by_quantity} if every else {}
 
 
-P_VALUES = (
-    "Where nothing is hidden the p-values of a test should be uniform between 0 and 1: the "
-    "Kolmogorov-Smirnov distance, its own p-value, and how many are below 0.05."
-)
-
 FEWEST = 8
 """With fewer p-values nothing is reported."""
 
@@ -134,15 +124,6 @@ def uniformity(cases: Sequence[Case]) -> dict[str, dict[str, Any]]:
     return table
 
 
-HELD_OUT = (
-    "RMS misfit of recordings that took no part in the fit, in units of the noise sigma: "
-    "of the nominal model, with its parameters re-fitted, and with all effects found."
-)
-TIME = "Time of one diagnosis with its page, one process for each case, s."
-REMAINDER = (
-    "What the diagnosis says is left with the effects that it names: how many answers say none, "
-    "small or large, and the median share of the first mismatch."
-)
 SIZES = ("none", "small", "large")
 
 
