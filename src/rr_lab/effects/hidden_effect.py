@@ -50,11 +50,6 @@ class Parameter:
         return self.neutral + min(max(away, -self.most), self.most)
 
 
-def place(name: str, unit: str = "m", typical: float = 0.0) -> Parameter:
-    """A place, a direction or a shape: no measure of strength."""
-    return Parameter(name, unit, typical, neutral=None)
-
-
 @dataclass(frozen=True)
 class Setting:
     """What drawn values may depend on.

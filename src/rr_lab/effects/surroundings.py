@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from rr_lab.effects.hidden_effect import HiddenEffect, Parameter, Setting, Values, adds, place
+from rr_lab.effects.hidden_effect import Setting, Values
 from rr_lab.laws import Circle, Edge, Patch
 from rr_lab.rig import Rig
 
@@ -38,31 +38,4 @@ def _across_a_path(setting: Setting, values: Values) -> Values:
     return {"multiplier": 1 + values["multiplier"] / 2, "normal": normal, "edge_x": x, "edge_y": y}
 
 
-def _pair(unit: str, typical: float, most: float, *names: str) -> tuple[Parameter, ...]:
-    return tuple(Parameter(name, unit, typical, most=most, signed=True) for name in names)
-
-
-_MULTIPLIER = Parameter("multiplier", "1", 2.0, neutral=1.0, most=20.0)
-_DISC = tuple(map(place, ("x", "y", "radius")))
-_EDGE = (place("normal", "rad"), place("edge_x"), place("edge_y"))
-
-FLOOR = (
-    HiddenEffect("floor_tilt", "the floor slopes", _pair("rad", 1e-3, 0.02, "tilt_x", "tilt_y"),
-                 adds("tilt", "tilt_x", "tilt_y"), draw=_any_direction),
-    HiddenEffect("floor_patch", "a round part of the floor brakes more than the rest",
-                 (_MULTIPLIER, *_DISC), _patch, "disc", also=_EDGE, draw=_round_a_path),
-    HiddenEffect("floor_patch", "the floor beyond a straight edge brakes more than the rest",
-                 (_MULTIPLIER, *_EDGE), _patch, "edge", draw=_across_a_path),
-)  # fmt: skip
-
-MASS = (
-    HiddenEffect("com_offset", "a centre of mass lies off its platform's axis",
-                 _pair("m", 5e-3, 0.03, "d1", "d2"), adds("left", "d1", "d2")),
-)  # fmt: skip
-
-MEASUREMENT = (
-    HiddenEffect("marker_offset", "the point that is tracked is not the joint",
-                 _pair("m", 5e-3, 0.03, "dx", "dy"), adds("tracked", "dx", "dy")),
-    HiddenEffect("clock_offset", "the recording's clock and the command's are apart",
-                 _pair("s", 0.02, 0.2, "offset"), adds("clock", "offset")),
-)  # fmt: skip
+FUNCTIONS = (_patch, _any_direction, _round_a_path, _across_a_path)

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import math
-
-from rr_lab.effects.hidden_effect import HiddenEffect, Parameter, Values, adds
+from rr_lab.effects.hidden_effect import Values
 from rr_lab.laws import RollingResistance
 from rr_lab.rig import Rig, wheel_loads
 from rr_opt.model.robot import Robot
@@ -58,52 +56,14 @@ def _slip(rig: Rig, values: Values) -> None:
     rig.creep += values.get("creep_compliance", 0.0)
 
 
-def _signed(name: str, unit: str, typical: float, most: float) -> Parameter:
-    return Parameter(name, unit, typical, most=most, signed=True)
-
-
-_DRY = tuple(Parameter(f"force{n}", "N", 2e-3, most=0.1) for n in (1, 2))
-_ONSET = Parameter("onset", "m/s", 2e-3, neutral=None, plant=True)
-_EQUAL = Parameter("force", "N", 2e-3, most=0.1, plant=True)
-_RESISTANCE = Parameter("mu", "1", 1e-3, most=0.05, plant=True)
-_DRAG = Parameter("coefficient_total", "N s2/m2", 0.1, most=20.0)
-_DENSITY = Parameter("density", "kg/m^3", 15.0, most=400.0, plant=True)
-_LEAN = tuple(_signed(f"asymmetry{n}", "1", 0.3, 0.9) for n in (1, 2))
-_CREEP = Parameter("creep_compliance", "m/(N s)", 0.03, most=2.0)
-_MU = Parameter("mu", "1", 0.05, neutral=math.inf, most=2e-3)
-_TOE = tuple(_signed(f"toe{n}", "rad", 0.01, 0.1) for n in (1, 2))
-
-ROLLING = (
-    HiddenEffect("coulomb_friction", "dry friction of the wheels, different on each axle",
-                 _DRY, _coulomb, "per_axle", also=(_ONSET,)),
-    HiddenEffect("coulomb_friction", "dry friction, the same on all four wheels",
-                 (_EQUAL,), _equal, "equal", derived=_equal_forces),
-    HiddenEffect("coulomb_friction",
-                 "dry friction of the wheels in proportion to the load on each",
-                 (_RESISTANCE,), _by_load, "load_proportional", derived=_forces_of_loads),
-    HiddenEffect("quadratic_drag", "drag of the wheels that grows with the square of the speed",
-                 (_DRAG,), _quadratic, "wheels"),
-    HiddenEffect("quadratic_drag",
-                 "drag of a medium on the platforms' bodies, along and across, at their centres of "
-                 "mass",
-                 (_DENSITY,), adds("density", "density"), "medium_density"),
-    HiddenEffect("left_right_drag", "one side's wheels turn harder than the other's",
-                 _LEAN, _left_right),
-    HiddenEffect("wheel_inertia", "the wheels' own spin inertia",
-                 (Parameter("J", "kg m2", 1e-5, most=2e-4),), _wheel_inertia),
-)  # fmt: skip
-
-CONTACT = (
-    HiddenEffect("lateral_slip", "the wheels creep sideways in proportion to their side force",
-                 (_CREEP,), _slip, "creep", also=(_MU,)),
-    HiddenEffect("lateral_slip", "the wheels slide sideways", (_MU,), _slip, "sliding"),
-    HiddenEffect("lateral_slip", "the wheels slide sideways at the peaks of a cycle alone",
-                 (_MU,), _slip, "grazing", sizes=(1.0, 4.0)),
-    HiddenEffect("lateral_slip", "the wheels slide sideways through most of a cycle",
-                 (_MU,), _slip, "sliding_strongly", sizes=(30.0, 120.0)),
-    HiddenEffect("lateral_slip",
-                 "the wheels creep sideways, up to a limit above which they slide",
-                 (_CREEP, _MU), _slip, "saturating_creep"),
-    HiddenEffect("axle_misalignment", "an axle is not square to its platform",
-                 _TOE, adds("toe", "toe1", "toe2")),
-)  # fmt: skip
+FUNCTIONS = (
+    _coulomb,
+    _equal,
+    _equal_forces,
+    _by_load,
+    _forces_of_loads,
+    _quadratic,
+    _left_right,
+    _wheel_inertia,
+    _slip,
+)
