@@ -17,11 +17,11 @@ from scipy.optimize import least_squares
 from rr_lab.case import stream
 from rr_lab.engines import ENGINES, Engine, record
 from rr_lab.sampling import draw_gait, draw_robot
+from rr_opt.documents.archive import write_text
 from rr_opt.model.experiment import Recording
 from rr_opt.model.gait import SineGait
 from rr_opt.model.robot import Robot
 from rr_opt.motion.integrators import cvodes
-from rr_opt.report.archive import write_text
 
 STEPS = (1e-3, 5e-4, 2.5e-4, 1.25e-4)
 RUNS = 12

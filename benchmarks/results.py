@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from rr_opt.report.archive import write_json, write_text
+from rr_opt.documents.archive import write_json, write_text
 
 FOLDER = Path(__file__).parents[1] / "results" / "bench"
 _PACKAGES = ("numpy", "scipy", "casadi")

@@ -13,11 +13,11 @@ from mkdocs.structure.files import File, Files  # pyright: ignore[reportMissingI
 ROOT = Path(__file__).parents[1]
 PAGES = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")
 OTHERS = (
+    "docs/pages/*.png",
     "docs/notebooks/*.ipynb",
     "LICENSE",
     "CITATION.cff",
     "problems/**/*.yaml",
-    "docs/notebooks/*.ipynb",
 )
 RESULTS = ("*.md", "*.svg", "*.csv", "*.json")
 

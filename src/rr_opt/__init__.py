@@ -27,7 +27,6 @@ from typing import TYPE_CHECKING, Any
 from rr_opt.version import __version__
 
 if TYPE_CHECKING:
-    from rr_opt.api.diagnose import ExplainedExperiment as ExplainedExperiment
     from rr_opt.api.diagnose import diagnose as diagnose
     from rr_opt.api.drive import circle as circle
     from rr_opt.api.drive import export as export
@@ -70,19 +69,20 @@ if TYPE_CHECKING:
     from rr_opt.outcome import InputError as InputError
     from rr_opt.outcome import NotConvergedError as NotConvergedError
     from rr_opt.outcome import Status as Status
-    from rr_opt.report.fastest import FastestGait as FastestGait
-    from rr_opt.report.inspection import InspectedRecordings as InspectedRecordings
-    from rr_opt.report.motion import DrivenCircle as DrivenCircle
-    from rr_opt.report.motion import SimulatedMotion as SimulatedMotion
-    from rr_opt.report.setpoints import ExportedGait as ExportedGait
-    from rr_opt.report.shapes import FastestShapes as FastestShapes
-    from rr_opt.report.study import SolvedStudy as SolvedStudy
-    from rr_opt.report.sweep import Sweep as Sweep
-    from rr_opt.report.turn import FastestTurn as FastestTurn
-    from rr_opt.report.turn_chart import TurnChart as TurnChart
+    from rr_opt.results.diagnosis import ExplainedExperiment as ExplainedExperiment
+    from rr_opt.results.fastest import FastestGait as FastestGait
+    from rr_opt.results.inspection import InspectedRecordings as InspectedRecordings
+    from rr_opt.results.motion import DrivenCircle as DrivenCircle
+    from rr_opt.results.motion import SimulatedMotion as SimulatedMotion
+    from rr_opt.results.setpoints import ExportedGait as ExportedGait
+    from rr_opt.results.shapes import FastestShapes as FastestShapes
+    from rr_opt.results.study import SolvedStudy as SolvedStudy
+    from rr_opt.results.sweep import Sweep as Sweep
+    from rr_opt.results.turn import FastestTurn as FastestTurn
+    from rr_opt.results.turn_chart import TurnChart as TurnChart
 
 _HOMES = {
-    "api.diagnose": "ExplainedExperiment diagnose",
+    "api.diagnose": "diagnose",
     "api.drive": "circle export simulate",
     "api.fastest": "maximize_speed shapes turn",
     "api.inspect": "inspect",
@@ -98,15 +98,16 @@ _HOMES = {
     "model.problem": "GaitBounds Limits Problem RatioChoice",
     "model.robot": "EffectUse Platform Robot Servo",
     "outcome": "InputError NotConvergedError Status",
-    "report.fastest": "FastestGait",
-    "report.inspection": "InspectedRecordings",
-    "report.motion": "DrivenCircle SimulatedMotion",
-    "report.setpoints": "ExportedGait",
-    "report.shapes": "FastestShapes",
-    "report.study": "SolvedStudy",
-    "report.sweep": "Sweep",
-    "report.turn": "FastestTurn",
-    "report.turn_chart": "TurnChart",
+    "results.diagnosis": "ExplainedExperiment",
+    "results.fastest": "FastestGait",
+    "results.inspection": "InspectedRecordings",
+    "results.motion": "DrivenCircle SimulatedMotion",
+    "results.setpoints": "ExportedGait",
+    "results.shapes": "FastestShapes",
+    "results.study": "SolvedStudy",
+    "results.sweep": "Sweep",
+    "results.turn": "FastestTurn",
+    "results.turn_chart": "TurnChart",
 }
 """Public names by the module that has them."""
 _MODULE_OF = {name: module for module, names in _HOMES.items() for name in names.split()}

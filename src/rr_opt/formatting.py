@@ -84,7 +84,7 @@ def speed_text(speed: float) -> str:
 
 
 def pace_text(speed: float) -> str:
-    """How fast, whichever way: `0.1290 m/s`, or `0.0738 mm/s`."""
+    """The speed without its direction: `0.1290 m/s`, or `0.0738 mm/s`."""
     if abs(speed) < _CRAWLING:
         return f"{number(1e3 * abs(speed))} mm/s"
     return f"{abs(speed):.4f} m/s"

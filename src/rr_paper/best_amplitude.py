@@ -12,7 +12,7 @@ from rr_opt.api.fastest import maximize_speed
 from rr_opt.model.problem import GaitBounds, Interval, Problem
 from rr_opt.model.robot import Robot
 from rr_opt.outcome import Status
-from rr_opt.report.fastest import FastestGait
+from rr_opt.results.fastest import FastestGait
 from rr_paper.consistency import Hypothesis
 from rr_paper.equation3 import CORRECTED, Signs, steady_cycle
 from rr_paper.prototype import ABOUT_P, prototype, random_prototype

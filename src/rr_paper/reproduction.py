@@ -12,6 +12,7 @@ from rr_opt.array import Array
 from rr_opt.model.gait import SineGait
 from rr_opt.model.problem import Problem
 from rr_opt.model.robot import Robot
+from rr_opt.results.result import Result
 from rr_paper.best_amplitude import BestAmplitude, audit_best_amplitude
 from rr_paper.consistency import Consistency, audit_hypotheses
 from rr_paper.period import PeriodLaw, audit_period
@@ -37,10 +38,12 @@ _SETTLED = 20.0
 """A run from rest is steady by then, s."""
 
 
-@dataclass(frozen=True)
-class Reproduction:
+@dataclass(frozen=True, repr=False)
+class Reproduction(Result):
     """sha256: of the shipped problem; robot: its robot; mujoco: speed of the gait of Fig. 3 in
     MuJoCo, m/s, or None."""
+
+    REPORT = "rr_paper.report.reproduction"
 
     sha256: str
     robot: Robot
@@ -57,6 +60,16 @@ class Reproduction:
     period: PeriodLaw
     best: BestAmplitude
     mujoco: float | None
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Whether a check is missing."""
+        if self.mujoco is not None:
+            return ()
+        return (
+            "MuJoCo is not installed, so it could not be used as a further check of the signs of "
+            "equation (3). Install it with `pip install 'rr-opt[lab]'`.",
+        )
 
 
 def reproduce(problem: Problem, progress: Callable[[str], None]) -> Reproduction:

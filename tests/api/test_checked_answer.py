@@ -94,8 +94,8 @@ def test_simulate_circle_and_export_a_result(problem, tmp_path):
     assert circle["radius"] is None
     assert circle["speed"] == pytest.approx(command("circle", result)["speed"])
     points = rr.export(best, format="servo")
-    told = command("export", result, "--format", "servo", "--out", "points.csv")
-    assert points.record() == {**told, "file": None}
+    reported = command("export", result, "--format", "servo", "--out", "points.csv")
+    assert points.record() == {**reported, "file": None}
     assert points.text == (tmp_path / "points.csv").read_text()
 
 
@@ -104,9 +104,9 @@ def test_study(problem, tmp_path):
         "problem: mine.yaml\nvary: {limits.rate: [20 rpm, 25 rpm]}"
     )
     solved = rr.study("study.yaml", workers=1)
-    told = command("study", "study.yaml", "--workers", "1", "--no-figures")
+    reported = command("study", "study.yaml", "--workers", "1", "--no-figures")
     seconds = {"seconds", "solver_seconds"}
-    for mine, its in zip(solved.record()["cases"], told["cases"], strict=True):
+    for mine, its in zip(solved.record()["cases"], reported["cases"], strict=True):
         assert {k: v for k, v in mine.items() if k not in seconds} == {
             k: v for k, v in its.items() if k not in seconds
         }

@@ -30,7 +30,7 @@ def test_the_same_numbers_the_same_answer(folder, tmp_path):
     assert (read.verdict, made.verdict) == ("consistent", "consistent")
     one, other = read.record(), made.record()
     assert [one["summary"], one["effects"]] == [other["summary"], other["effects"]]
-    left = (told["fit"]["heldout_rms_after"] for told in (one, other))
+    left = (reported["fit"]["heldout_rms_after"] for reported in (one, other))
     assert next(left) == pytest.approx(next(left))
     assert made.sha256 not in ("", read.sha256)
     assert made.loss is None

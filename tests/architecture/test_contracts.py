@@ -26,6 +26,7 @@ PLANTED = [
     ("layers", "rr_opt/design/planted.py", "import rr_opt.cli.main"),
     ("layers", "rr_opt/design/planted.py", "import rr_opt.batch.run"),
     ("layers", "rr_opt/report/planted.py", "import rr_opt.api.fastest"),
+    ("layers", "rr_opt/results/planted.py", "import rr_opt.report.fastest"),
     ("layers", "rr_opt/api/planted.py", "import rr_opt.cli.main"),
     ("layers", "rr_opt/sysid/planted.py", "import rr_opt.machines.racer.racer"),
     ("packages", "rr_opt/report/planted.py", "import rr_lab.rig"),

@@ -13,7 +13,7 @@ COMMANDS = pytest.mark.parametrize(
 )
 
 
-def told(run, verb, *arguments):
+def reported(run, verb, *arguments):
     done = run(*verb, *arguments, "--json")
     assert done.exit_code == 0, done.stderr
     assert json.loads(done.stdout)["status"] is None
@@ -22,43 +22,43 @@ def told(run, verb, *arguments):
 
 @COMMANDS
 def test_of_the_prototype(run, verb):
-    assert told(run, verb) == [
+    assert reported(run, verb) == [
         "warning: No amplitude and period given. The default is driven, amplitude 0.785 rad and "
         "period 1 s after the paper's run, and not the optimum of the prototype. Run `rr-opt "
         "maximize-speed` first and give out/prototype/result.json, or --amplitude and --period."
     ]
-    assert told(run, verb, *BOTH) == []
+    assert reported(run, verb, *BOTH) == []
 
 
 @COMMANDS
 def test_of_a_robot(run, verb, tmp_path):
     record = {**robot_record(read_problem(None).robot), "physics": []}
     (tmp_path / "my robot.yaml").write_text(json.dumps(record))
-    (line,) = told(run, verb, "my robot.yaml", *BOTH[:2])
+    (line,) = reported(run, verb, "my robot.yaml", *BOTH[:2])
     assert line.startswith("warning: No period given. The default is driven, period 1 s")
     assert "Run `rr-opt maximize-speed 'my robot.yaml'` first" in line
     assert "out/my robot/result.json" in line
-    assert told(run, verb, "my robot.yaml", *BOTH) == []
+    assert reported(run, verb, "my robot.yaml", *BOTH) == []
 
 
 @COMMANDS
 def test_of_a_problem_only_what_it_leaves_open(run, verb, tmp_path):
     problem = tmp_path / "mine.yaml"
     problem.write_text("gait: {amplitude: 0.3, period: [1.5 s, 2 s]}\n")
-    (line,) = told(run, verb, "mine.yaml")
+    (line,) = reported(run, verb, "mine.yaml")
     assert line.startswith("warning: No period given. The default is driven, period 1.5 s")
     problem.write_text("gait: {amplitude: 0.3, period: 1.5 s}\n")
-    assert told(run, verb, "mine.yaml") == []
+    assert reported(run, verb, "mine.yaml") == []
 
 
 @COMMANDS
 @pytest.mark.parametrize("shape", ["fourier", "free"])
 def test_a_sine_where_another_shape_is_asked_for(run, verb, tmp_path, shape):
     (tmp_path / "mine.yaml").write_text(f"gait: {{shape: {shape}}}\n")
-    told_of_it = f"The problem asks for a `{shape}` gait, and a sine is driven. Run `rr-opt"
-    (line,) = told(run, verb, "mine.yaml")
-    assert told_of_it in line
+    reported_of_it = f"The problem asks for a `{shape}` gait, but a sine is driven. Run `rr-opt"
+    (line,) = reported(run, verb, "mine.yaml")
+    assert reported_of_it in line
     assert "The default is driven" in line
-    (line,) = told(run, verb, "mine.yaml", *BOTH)
-    assert told_of_it in line
+    (line,) = reported(run, verb, "mine.yaml", *BOTH)
+    assert reported_of_it in line
     assert line.endswith("first and give out/mine/result.json.")

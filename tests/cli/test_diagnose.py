@@ -58,12 +58,12 @@ def test_recordings_of_the_model_itself(run, folder, tmp_path):
     assert done.stdout.startswith("verdict")
     assert "consistent" in done.stdout.splitlines()[0]
     out = tmp_path / "res"
-    told = json.loads((out / "diagnosis.json").read_text())
-    assert set(told) >= KEYS
-    assert told["verdict"] == "consistent"
-    assert told["effects"] == []
-    assert 0.9 < told["fit"]["heldout_rms_after"] < 1.1
-    assert told["fit"]["heldout_recordings"] == ["run1.csv"]
+    reported = json.loads((out / "diagnosis.json").read_text())
+    assert set(reported) >= KEYS
+    assert reported["verdict"] == "consistent"
+    assert reported["effects"] == []
+    assert 0.9 < reported["fit"]["heldout_rms_after"] < 1.1
+    assert reported["fit"]["heldout_recordings"] == ["run1.csv"]
     assert (out / "report.html").read_text().startswith("<!DOCTYPE html>")
     assert {"paths.svg", "bands.svg", "misfit.svg"} <= {path.name for path in out.iterdir()}
     # The other verbs read the corrected robot.
@@ -120,10 +120,10 @@ def test_one_recording_that_cannot_tell_is_left_out(tables, tmp_path):
     from rr_opt.recordings.usable import usable
 
     write(tmp_path / "trial", [tables[0], tables[1][:60], tables[2]], ("fit",) * 3)
-    experiment, told = usable(read_experiment(tmp_path / "trial"))
+    experiment, reported = usable(read_experiment(tmp_path / "trial"))
     assert [one.name for one in experiment.runs] == ["run0.csv", "run2.csv"]
-    assert len(told) == 1
-    assert told[0].startswith("run1.csv: ")
+    assert len(reported) == 1
+    assert reported[0].startswith("run1.csv: ")
 
 
 def test_wrong_folders_end_with_a_message(run, tables, tmp_path):

@@ -20,8 +20,8 @@ def drive(run, tmp_path):
         (tmp_path / "result.json").write_text(json.dumps({**record, "gait": gait, "robot": robot}))
         done = run(verb, "result.json", "--json")
         assert done.exit_code == 0, done.stderr
-        told = [line for line in done.stderr.splitlines(keepends=True) if "warning" in line]
-        return json.loads(done.stdout)["status"], "".join(told)
+        reported = [line for line in done.stderr.splitlines(keepends=True) if "warning" in line]
+        return json.loads(done.stdout)["status"], "".join(reported)
 
     return command
 

@@ -52,13 +52,13 @@ def test_every_format_of_a_result(run, result, tmp_path, kind, name):
 def test_every_shape(run, result, tmp_path, gait):
     done = run("export", result(gait), "--rate", "100", "--out", "below/a.csv", "--json")
     assert done.exit_code == 0, done.stderr
-    told = json.loads(done.stdout)
-    assert told["gait"] == gait_record(gait)
-    assert told["points"] == 140
-    change = told["speed_left"] - told["speed"]
-    sign = 1 if told["speed"] > 0 else -1
-    assert told["cost"]["period"] + told["cost"]["holding"] == pytest.approx(sign * change)
-    assert told["cost"]["rounding"] is None
+    reported = json.loads(done.stdout)
+    assert reported["gait"] == gait_record(gait)
+    assert reported["points"] == 140
+    change = reported["speed_left"] - reported["speed"]
+    sign = 1 if reported["speed"] > 0 else -1
+    assert reported["cost"]["period"] + reported["cost"]["holding"] == pytest.approx(sign * change)
+    assert reported["cost"]["rounding"] is None
     table = rows(tmp_path / "below" / "a.csv")
     assert len(table) == 141
     assert float(table[8][1]) == pytest.approx(float(gait.angle(0.07)), abs=1e-8)
@@ -74,13 +74,13 @@ def test_options_as_those_of_simulate(run, tmp_path):
 
 def test_keeping_the_period_changes_the_rate(run, result):
     done = run("export", result(SineGait(0.15, 0.3)), "--keep-period", "--json")
-    told = json.loads(done.stdout)
-    assert told["period"] == 0.3
-    assert told["rate"] == pytest.approx(38 / 0.3)
-    assert told["cost"]["period"] == 0
+    reported = json.loads(done.stdout)
+    assert reported["period"] == 0.3
+    assert reported["rate"] == pytest.approx(38 / 0.3)
+    assert reported["cost"]["period"] == 0
 
 
-def test_steps_too_fast_for_the_servo_are_told(run, result):
+def test_steps_too_fast_for_the_servo_are_reported(run, result):
     done = run("export", result(SineGait(0.5, 0.3)))
     assert done.exit_code == 0
     assert "warning: A step between set points needs" in done.stderr
@@ -115,7 +115,7 @@ def test_a_gait_that_does_not_move_is_refused(run, result, tmp_path, gait):
     assert not (tmp_path / "out").exists()
 
 
-def test_a_folder_without_a_problem_is_told_what_is_expected(run, result, tmp_path):
+def test_a_folder_without_a_problem_is_reported_what_is_expected(run, result, tmp_path):
     (tmp_path / "empty").mkdir()
     expected = (
         "This is a folder without problem.yaml. Expected a result.json, a robot file, a problem "

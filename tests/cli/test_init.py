@@ -54,5 +54,5 @@ def test_nothing_is_written_over(run, tmp_path):
 def test_there_is_nothing_wrong_with_the_recordings(run):
     run("init", "experiment")
     done = run("inspect", "experiment", "--no-figures", "--json")
-    told = json.loads(done.stdout)
-    assert [one["doubts"] for one in told["recordings"]] == [[]] * 3
+    reported = json.loads(done.stdout)
+    assert [one["doubts"] for one in reported["recordings"]] == [[]] * 3

@@ -72,8 +72,8 @@ def test_an_experiment_is_inspected_run_by_run(run, folder, tmp_path):
     assert "\nrun01.csv\n" in first
     assert "No warnings." in first
     assert re.search(r"phi lags its command by 3[78]", " ".join(second.split()))
-    told = json.loads((tmp_path / "res" / "inspection.json").read_text())
-    command = told["recordings"][1]["command"]["offset"]
+    reported = json.loads((tmp_path / "res" / "inspection.json").read_text())
+    command = reported["recordings"][1]["command"]["offset"]
     low, high = command["ci95"]
     assert low < -0.038 < high or abs(command["value"] + 0.038) < 5e-4
     page = (tmp_path / "res" / "report.html").read_text()
@@ -88,9 +88,9 @@ def test_a_marker_file_with_a_layout(run, tmp_path):
     options = ("--layout", "layout.yaml", "--amplitude", "0.7", "--period", "1", "--offset", "0.1")
     done = run("inspect", "run.csv", *options, "--start", "rest", "--json", "--out", "res")
     assert done.exit_code == 0, done.stderr
-    told = json.loads(done.stdout)
-    assert told == json.loads((tmp_path / "res" / "inspection.json").read_text())
-    (one,) = told["recordings"]
+    reported = json.loads(done.stdout)
+    assert reported == json.loads((tmp_path / "res" / "inspection.json").read_text())
+    (one,) = reported["recordings"]
     text = " ".join(one["doubts"])
     assert "L1 and R1 have each other's names" in text
     assert "Marker T3 is not where its platform is" in text
@@ -102,7 +102,7 @@ def test_a_marker_file_with_a_layout(run, tmp_path):
     assert "Markers on rigid platforms" in page
 
 
-def test_without_a_layout_it_is_estimated_and_told(run, tmp_path):
+def test_without_a_layout_it_is_estimated_and_reported(run, tmp_path):
     write_vicon(tmp_path / "run.csv")
     done = run("inspect", "run.csv", "--no-figures", "--out", "res")
     assert done.exit_code == 0, done.stderr

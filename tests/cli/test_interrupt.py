@@ -12,10 +12,10 @@ ENTRY = "from rr_opt.cli.entry import main; main()"
 PROGRAM = f"""
 import sys
 from rr_opt.cli import steps
-told = steps.Steps.__call__
+reported = steps.Steps.__call__
 def tell(self, text):
     print(text, file=sys.stderr, flush=True)
-    told(self, text)
+    reported(self, text)
 steps.Steps.__call__ = tell
 {ENTRY}
 """

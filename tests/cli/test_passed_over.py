@@ -1,4 +1,4 @@
-"""A robot with effects that have no place in a steady cycle is taken, and told so in one line."""
+"""A robot with effects that have no place in a steady cycle is accepted; one line reports them."""
 
 import json
 

@@ -25,11 +25,11 @@ def test_the_folder_can_be_used(recorded, run, tmp_path):
 
 def test_an_effect_changes_the_motion_and_nothing_else(run, recorded, tmp_path):
     use = "coulomb_friction:force1=2 mN,force2=0.002"
-    told = run(
+    reported = run(
         *("record", *RUNS, "--seconds", "2", "--noise", "1 mm, 3 mrad"),
         *("--effect", use, "--out", "dry", "--seal", "answer.json"),
     )
-    assert told.exit_code == 0, told.stderr
+    assert reported.exit_code == 0, reported.stderr
     plain, dry = (
         (tmp_path / name / "run02.csv").read_text().splitlines()[-1].split(",")
         for name in ("rec", "dry")
@@ -72,23 +72,26 @@ def test_either_engine_records_the_same_run(run, tmp_path):
 
 
 def test_a_hidden_case_is_sealed(run, tmp_path):
-    told = run(
+    reported = run(
         *("record", *RUNS, "--hide", "parameters", "--seconds", "1", "--out", "case"),
         *("--seal", "answer.json"),
     )
-    assert told.exit_code == 0, told.stderr
+    assert reported.exit_code == 0, reported.stderr
     digest = hashlib.sha256((tmp_path / "answer.json").read_bytes()).hexdigest()
-    assert digest in told.stdout
+    assert digest in reported.stdout
     assert (tmp_path / "case" / "answer.sha256").read_text().split() == [digest, "answer.json"]
     answer = json.loads((tmp_path / "answer.json").read_text())
     assert answer["verdict"] == "parameters"
     for name in (each["name"] for each in answer["effects"]):
-        assert name not in told.stdout.replace(digest, "")
+        assert name not in reported.stdout.replace(digest, "")
 
 
 def test_json_stands_alone(run):
-    told = run(*("record", "--gait", "0.5, 1 s", "--seconds", "1", "--out", "rec", "--json"))
-    assert json.loads(told.stdout) == {"folder": "rec", "files": ["run01.csv", "experiment.yaml"]}
+    reported = run(*("record", "--gait", "0.5, 1 s", "--seconds", "1", "--out", "rec", "--json"))
+    assert json.loads(reported.stdout) == {
+        "folder": "rec",
+        "files": ["run01.csv", "experiment.yaml"],
+    }
 
 
 @pytest.mark.parametrize(
@@ -111,10 +114,10 @@ def test_json_stands_alone(run):
     ],
 )
 def test_wrong_input(run, arguments, expected):
-    told = run("record", "--seconds", "1", *arguments)
-    assert told.exit_code == 2
-    assert expected in told.stderr
-    assert "Traceback" not in told.stderr
+    reported = run("record", "--seconds", "1", *arguments)
+    assert reported.exit_code == 2
+    assert expected in reported.stderr
+    assert "Traceback" not in reported.stderr
 
 
 def test_what_record_did_not_write_is_kept(run, recorded, tmp_path):
@@ -123,9 +126,9 @@ def test_what_record_did_not_write_is_kept(run, recorded, tmp_path):
     assert run(*again).exit_code == 0
     mine = file.read_text().split("\n", 1)[1]
     file.write_text(mine)
-    told = run(*again)
-    assert told.exit_code == 2
-    assert "was not written by `rr-opt record`" in told.stderr
+    reported = run(*again)
+    assert reported.exit_code == 2
+    assert "was not written by `rr-opt record`" in reported.stderr
     assert file.read_text() == mine
 
 
@@ -138,16 +141,16 @@ def test_what_record_did_not_write_is_kept(run, recorded, tmp_path):
     ],
 )
 def test_an_effect_that_is_none(run, tmp_path, use, said):
-    told = run("record", *RUNS, "--seconds", "2", "--effect", use, "--out", "rec")
-    assert told.exit_code == 2
-    assert said in told.stderr
+    reported = run("record", *RUNS, "--seconds", "2", "--effect", use, "--out", "rec")
+    assert reported.exit_code == 2
+    assert said in reported.stderr
     assert not (tmp_path / "rec").exists()
 
 
 def test_degrees_for_radians(run):
-    told = run("record", "--gait", "30, 1.2", "--seconds", "1", "--engine", "planar")
-    assert told.exit_code == 0
-    assert "run01.csv goes to" in told.stderr
-    assert "write `30 deg`" in told.stderr
+    reported = run("record", "--gait", "30, 1.2", "--seconds", "1", "--engine", "planar")
+    assert reported.exit_code == 0
+    assert "run01.csv goes to" in reported.stderr
+    assert "write `30 deg`" in reported.stderr
     right = run("record", "--gait", "30 deg, 1.2", "--seconds", "1", "--engine", "planar")
     assert "warning" not in right.stderr

@@ -1,4 +1,4 @@
-"""A robot file alone is the robot as it is; where the ratio is free, the change is told."""
+"""A robot file alone is the robot as it is; where the ratio is free, the change is reported."""
 
 import json
 
@@ -20,15 +20,15 @@ def robot(tmp_path, monkeypatch):
 
 def test_a_bare_robot_keeps_its_inertia(run, robot, tmp_path):
     done = run("maximize-speed", "bot.yaml", "--no-figures", "--json")
-    told = json.loads(done.stdout)
-    assert told["robot"]["platform2"] == robot["platform2"]
-    assert told["speed_as_built"] is None
+    reported = json.loads(done.stdout)
+    assert reported["robot"]["platform2"] == robot["platform2"]
+    assert reported["speed_as_built"] is None
     text = run("maximize-speed", "bot.yaml", "--no-figures").stdout
     assert "the robot as it is" in text
     assert "as built" not in text
 
 
-def test_a_free_ratio_is_told_with_the_speed_as_built(run, robot, tmp_path):
+def test_a_free_ratio_is_reported_with_the_speed_as_built(run, robot, tmp_path):
     (tmp_path / "free.yaml").write_text(f"robot: bot.yaml\n{GAIT}inertia_ratio: [0.05, 0.4]\n")
     (tmp_path / "fixed.yaml").write_text(f"robot: bot.yaml\n{GAIT}")
     free, fixed = (
@@ -39,8 +39,8 @@ def test_a_free_ratio_is_told_with_the_speed_as_built(run, robot, tmp_path):
     assert abs(free["speed"]) > abs(fixed["speed"])
     done = run("maximize-speed", "free.yaml")
     old, new = (one["robot"]["platform2"]["I"] for one in (fixed, free))
-    told = " ".join(done.stdout.split())
-    assert f"I2 {old:.4g} -> {new:.4g} kg m2 (ratio {fixed['inertia_ratio']:.4g} -> " in told
+    reported = " ".join(done.stdout.split())
+    assert f"I2 {old:.4g} -> {new:.4g} kg m2 (ratio {fixed['inertia_ratio']:.4g} -> " in reported
     assert f"{1e3 * fixed['speed']:+.1f} mm/s" in done.stdout.replace("(", "(+").replace("+-", "-")
     page = (tmp_path / "out" / "free" / "report.html").read_text()
     assert "at best, with I2 unchanged" in page
@@ -54,9 +54,9 @@ def test_a_gait_is_driven_with_the_ratio_of_its_problem(run, robot, tmp_path, ve
         name, *options = verb
         done = run(name, "one.yaml", *options, "--json")
         assert done.exit_code == 0, done.stderr
-        told = json.loads(done.stdout)
+        reported = json.loads(done.stdout)
         warned = "leaves the inertia ratio" in done.stderr
-        return told.get("speed", told.get("last_circle_speed")), warned
+        return reported.get("speed", reported.get("last_circle_speed")), warned
 
     own, silent = speed("")
     assert speed("inertia_ratio: 0.3\n") == (pytest.approx(speed("inertia_ratio: 0.3\n")[0]), False)

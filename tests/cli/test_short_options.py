@@ -21,23 +21,23 @@ def test_every_verb_has_the_short_options(run, verb):
 
 
 def test_a_stage_is_a_line_with_the_time(run):
-    told = run("circle", *GAIT, "--offset", "0.1").stderr
-    assert [line.split("s  ")[1] for line in told.splitlines()] == ["steady cycle"]
+    reported = run("circle", *GAIT, "--offset", "0.1").stderr
+    assert [line.split("s  ")[1] for line in reported.splitlines()] == ["steady cycle"]
 
 
-def test_of_many_equal_steps_each_quarter_is_told(capsys):
+def test_of_many_equal_steps_each_quarter_is_reported(capsys):
     with Steps() as steps:
         for number in range(1, 41):
             steps(f"case {number} of 40")
         steps("files")
-    told = [line.split("s  ")[1] for line in capsys.readouterr().err.splitlines()]
-    assert told == [*(f"case {n} of 40" for n in (1, 10, 20, 30, 40)), "files"]
+    reported = [line.split("s  ")[1] for line in capsys.readouterr().err.splitlines()]
+    assert reported == [*(f"case {n} of 40" for n in (1, 10, 20, 30, 40)), "files"]
 
 
 def test_quiet_is_silent_but_for_errors(run):
-    told = run("simulate", "--seconds", "0.5", "--out", "res").stderr
-    assert "warning: No amplitude and period given" in told
-    assert "simulate by CVODES" in told
+    reported = run("simulate", "--seconds", "0.5", "--out", "res").stderr
+    assert "warning: No amplitude and period given" in reported
+    assert "simulate by CVODES" in reported
     done = run("simulate", "--seconds", "0.5", "--out", "res", "-q")
     assert (done.exit_code, done.stderr) == (0, "")
     assert run("simulate", "nowhere.yaml", "-q").stderr

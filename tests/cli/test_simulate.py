@@ -47,7 +47,7 @@ def test_rest_and_steady_start_as_named(run, tmp_path):
     assert first["steady"] < -0.01
 
 
-def test_a_gait_beyond_the_servo_is_told(run):
+def test_a_gait_beyond_the_servo_is_reported(run):
     done = run("simulate", "--period", "0.5", "--seconds", "0.1")
     assert "rate limit" in done.stderr
     assert done.exit_code == 0
@@ -81,11 +81,11 @@ def test_speeds_are_named_and_the_torque_is_the_true_peak(run, tmp_path):
     record = {"status": "optimal", "input_sha256": "0", "gait": gait_record(FREE), "robot": robot}
     (tmp_path / "result.json").write_text(json.dumps(record))
     arguments = ("simulate", "result.json", "--seconds", "28", "--rate", str(1 / FREE.period))
-    told = json.loads(run(*arguments, "--start", "steady", "--json").stdout)
+    reported = json.loads(run(*arguments, "--start", "steady", "--json").stdout)
     seen = replay(read_problem(None).robot, FREE, Limits(3.0, 9.0, 9.0), 1.0)
-    assert told["peak_torque"] == pytest.approx(seen.reached["torque"], rel=1e-4)
-    assert told["last_circle_speed"] == pytest.approx(seen.speed, rel=1e-6)
-    assert told["last_speed"] == pytest.approx(np.mean(seen.steady.v[:-1]), rel=1e-4)
+    assert reported["peak_torque"] == pytest.approx(seen.reached["torque"], rel=1e-4)
+    assert reported["last_circle_speed"] == pytest.approx(seen.speed, rel=1e-6)
+    assert reported["last_speed"] == pytest.approx(np.mean(seen.steady.v[:-1]), rel=1e-4)
     printed = run(*arguments, "--start", "steady").stdout
     assert f"{number(seen.reached['torque'])} N m at most" in printed
     assert f"{speed_text(seen.speed)}, along the mean circle of the last period" in printed
@@ -94,8 +94,8 @@ def test_speeds_are_named_and_the_torque_is_the_true_peak(run, tmp_path):
 
 def test_less_than_a_period_has_no_circle(run):
     arguments = ("simulate", "--period", "2", "--seconds", "1.9")
-    told = json.loads(run(*arguments, "--json").stdout)
-    assert told["last_circle_speed"] is None
+    reported = json.loads(run(*arguments, "--json").stdout)
+    assert reported["last_circle_speed"] is None
     assert "mean v of axle 1, less than a period" in run(*arguments).stdout
 
 
@@ -104,7 +104,7 @@ def test_torque_between_the_samples_is_held_against_the_servo(run):
     assert "the servo's torque limit" in done.stderr
 
 
-def test_a_wrong_gait_of_a_result_is_told(run, tmp_path):
+def test_a_wrong_gait_of_a_result_is_reported(run, tmp_path):
     robot = robot_record(read_problem(None).robot)
     record = {"status": "optimal", "input_sha256": "0", "gait": {"shape": "fre"}, "robot": robot}
     (tmp_path / "result.json").write_text(json.dumps(record))

@@ -1,4 +1,4 @@
-"""Every wrong option of simulate is told in one go, in the terms of that option."""
+"""Every wrong option of simulate is reported in one go, in the terms of that option."""
 
 import pytest
 

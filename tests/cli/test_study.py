@@ -81,12 +81,12 @@ def test_a_file_that_changed_is_refused_until_restart(study, quick, tmp_path):
 
 def test_json_stands_alone_and_is_the_file(study, quick, tmp_path):
     done = study(TWO, "--json", "--no-figures")
-    told = json.loads(done.stdout)
-    assert told == json.loads((tmp_path / "res" / "study.json").read_text())
-    assert told["shape"] == [2, 2]
-    assert [case["direction"] for case in told["cases"]] == ["either", "backward"] * 2
-    assert {case["drives"] for case in told["cases"]} == {"backward"}
-    assert told["pareto"]["peak_torque"]
+    reported = json.loads(done.stdout)
+    assert reported == json.loads((tmp_path / "res" / "study.json").read_text())
+    assert reported["shape"] == [2, 2]
+    assert [case["direction"] for case in reported["cases"]] == ["either", "backward"] * 2
+    assert {case["drives"] for case in reported["cases"]} == {"backward"}
+    assert reported["pareto"]["peak_torque"]
 
 
 def test_netcdf_has_the_axes_of_the_study(study, quick, tmp_path):

@@ -13,10 +13,10 @@ def swept(run, quick):
 
 def test_json_stands_alone_and_is_the_file(swept, tmp_path):
     assert swept.exit_code == 0, swept.stderr
-    told = json.loads(swept.stdout)
-    assert told == json.loads((tmp_path / "res" / "sweep.json").read_text())
-    assert told["status"] == "swept"
-    assert told["best"]["speed"] < 0
+    reported = json.loads(swept.stdout)
+    assert reported == json.loads((tmp_path / "res" / "sweep.json").read_text())
+    assert reported["status"] == "swept"
+    assert reported["best"]["speed"] < 0
 
 
 def test_every_gait_is_a_row_and_the_best_of_the_grid_is_among_them(swept, tmp_path):

@@ -27,14 +27,14 @@ def plain(tmp_path):
 def test_turn_and_back_again(run, plain):
     done = run("turn", plain, "--heading", "-90 deg", "--radius", "50 cm", "--no-figures", "--json")
     assert done.exit_code == 0, done.stderr
-    told = json.loads(done.stdout)
-    arc = told["turn"]["arc"]
+    reported = json.loads(done.stdout)
+    arc = reported["turn"]["arc"]
     assert arc["heading"] == pytest.approx(-math.pi / 2)
     assert arc["radius"] == pytest.approx(0.5, rel=1e-6)
     assert arc["length"] == pytest.approx(0.25 * math.pi, rel=1e-6)
-    assert arc["length"] == pytest.approx(arc["time"] * abs(told["speed"]), rel=1e-6)
-    assert arc["time"] == pytest.approx(arc["periods"] * told["gait"]["period"])
-    assert told["turn"]["offset_opened"]
+    assert arc["length"] == pytest.approx(arc["time"] * abs(reported["speed"]), rel=1e-6)
+    assert arc["time"] == pytest.approx(arc["periods"] * reported["gait"]["period"])
+    assert reported["turn"]["offset_opened"]
     again = run("circle", "out/plain-turn-heading--90deg-radius-0.5m/result.json", "--json")
     circle = json.loads(again.stdout)
     assert circle["radius"] == pytest.approx(0.5, rel=1e-6)
@@ -99,10 +99,10 @@ def test_a_gait_without_a_circle(run, options):
 
 
 def test_circle_of_a_straight_gait(run):
-    told = json.loads(run("circle", "--json").stdout)
-    assert told["radius"] is None
-    assert told["centre"] is None
-    assert abs(told["curvature"]) < 1e-9
+    reported = json.loads(run("circle", "--json").stdout)
+    assert reported["radius"] is None
+    assert reported["centre"] is None
+    assert abs(reported["curvature"]) < 1e-9
 
 
 def test_chart(run, plain, tmp_path):

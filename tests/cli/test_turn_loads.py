@@ -11,6 +11,6 @@ LOADS = Path(__file__).parents[2] / "problems" / "loads"
 def test_whole_loads(run):
     done = run("turn", str(LOADS), "--radius", "1", "--no-figures", "--json")
     assert done.exit_code == 0
-    told = json.loads(done.stdout)
-    assert told["check"]["gap"] >= -1e-4
-    assert told["loads"] == round(told["loads"])
+    reported = json.loads(done.stdout)
+    assert reported["check"]["gap"] >= -1e-4
+    assert reported["loads"] == round(reported["loads"])

@@ -4,16 +4,10 @@ from __future__ import annotations
 
 import json
 
-import typer
 from typer.testing import CliRunner
 
-from rr_opt.cli.lint import lint
-from rr_opt.cli.schema import schema
+from rr_opt.cli.main import app
 from rr_opt.files.source import SHIPPED
-
-app = typer.Typer()
-app.command()(lint)
-app.command()(schema)
 
 
 def run(*arguments: object):

@@ -5,7 +5,7 @@ import pytest
 from rr_opt.design.maximize_speed import maximize_speed
 from rr_opt.files.problem_file import read_problem
 from rr_opt.model.problem import GaitBounds, Interval, Problem
-from rr_opt.report.fastest import FastestGait
+from rr_opt.results.fastest import FastestGait
 from rr_opt.verify.replay import replay
 from rr_opt.verify.sweep import SweepCheck
 

@@ -9,8 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from rr_opt.outcome import InputError
-from rr_opt.report.archive import (
+from rr_opt.documents.archive import (
     file_for_result,
     folder_for_results,
     remove,
@@ -19,6 +18,7 @@ from rr_opt.report.archive import (
     write_json,
     write_text,
 )
+from rr_opt.outcome import InputError
 
 
 def test_a_failed_write_leaves_the_file_that_was_there(tmp_path):

@@ -8,7 +8,7 @@ from html.parser import HTMLParser
 
 import pytest
 
-from rr_opt.report.document import (
+from rr_opt.documents.document import (
     Badge,
     Chain,
     Document,
@@ -24,8 +24,9 @@ from rr_opt.report.document import (
     csv_text,
     warnings,
 )
-from rr_opt.report.text import markdown, terminal
-from rr_opt.report.webpage import page, write_page
+from rr_opt.documents.report import Report
+from rr_opt.documents.text import markdown, terminal
+from rr_opt.documents.webpage import page
 
 EVIL = '<script>alert("&")</script>'
 CASES = Table(("speed", "name"), ((0.12344, "a"), (None, Badge("b", "good"))))
@@ -112,8 +113,8 @@ def test_the_terminal_gets_the_brief_sections_and_the_files(tmp_path):
 
 
 def test_the_page_leads_the_files_and_the_figures_end_them(tmp_path):
-    record = tmp_path / "record.json"
-    written = write_page(tmp_path, document(), [record])
+    report = Report(lambda _: {}, lambda *_: document(), "record.json")
+    written = report.save(None, tmp_path)
     assert [path.name for path in written] == ["report.html", "record.json", "drawn.svg"]
 
 

@@ -6,7 +6,7 @@ import pytest
 
 from rr_opt.design.maximize_speed import maximize_speed
 from rr_opt.model.problem import Interval, RatioChoice
-from rr_opt.report.fastest import FastestGait
+from rr_opt.results.fastest import FastestGait
 
 
 def speed(problem):

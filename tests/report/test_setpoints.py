@@ -127,14 +127,14 @@ def test_counts_are_those_of_the_servos_manual(degrees, count):
 
 
 @pytest.mark.parametrize("degrees", [151.0, -151.0, 149.95])
-def test_an_angle_without_a_count_is_told(degrees):
+def test_an_angle_without_a_count_is_reported(degrees):
     points = set_points(SineGait(1e-9, 1.0, math.radians(degrees)), 10.0)
     with pytest.raises(InputError, match=r"-?1\d\d.* degrees.*cover -150 to 149.7 degrees"):
         _ = points.counts
 
 
 @pytest.mark.parametrize("rate", [1.0, 1e9])
-def test_a_rate_that_makes_no_sense_is_told(rate):
+def test_a_rate_that_makes_no_sense_is_reported(rate):
     with pytest.raises(InputError, match=r"--rate: .* set points a second"):
         set_points(SineGait(0.2, 1.0), rate)
 

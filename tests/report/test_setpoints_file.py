@@ -9,7 +9,7 @@ import pytest
 
 from rr_opt.model.gait import SineGait
 from rr_opt.motion.setpoints import set_points
-from rr_opt.report.setpoints import text_of
+from rr_opt.results.setpoints import text_of
 from tests.motion.gaits import EVERY
 
 SHAPES = pytest.mark.parametrize("gait", EVERY.values(), ids=EVERY)

@@ -103,7 +103,7 @@ def test_the_summary_defines_what_it_counts(folder):
     assert text.startswith("# Blind trial: 1 of 2 single effects named, 1 of 2 nulls with a false")
     assert "50 % (1 to 99)" in text
     assert "verdict is not `consistent`" in text
-    assert "![Diagnosis against truth](confusion.svg)" in text
+    assert "what the diagnosis named in columns](confusion.svg)" in text
 
 
 def test_a_trial_of_one_kind(tmp_path):

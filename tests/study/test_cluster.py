@@ -38,9 +38,9 @@ def test_a_killed_worker_costs_no_row(started, tmp_path):
             os.kill(first.pid, signal.SIGKILL)
             killed = True
         time.sleep(0.01)
-    told = "\n".join(path.read_text() for path in sorted(tmp_path.glob("log*")))
-    assert killed, told
-    assert study.returncode == 0, told
+    reported = "\n".join(path.read_text() for path in sorted(tmp_path.glob("log*")))
+    assert killed, reported
+    assert study.returncode == 0, reported
     rows = [json.loads(line) for line in journal.read_text().splitlines()[1:]]
     assert sorted(row["case"] for row in rows) == list(range(25))
     assert {row["status"] for row in rows} == {"optimal"}

@@ -8,9 +8,10 @@ from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure
 
 from rr_opt.outcome import Status
-from rr_opt.report.figures.study import active_areas, speed, study_map
+from rr_opt.report.figures.study import speed
 from rr_opt.report.figures.study_axes import grid_of, scale_of
-from rr_opt.report.study import SolvedStudy
+from rr_opt.report.figures.study_map import active_areas, study_map
+from rr_opt.results.study import SolvedStudy
 
 ENDLESS = "problem: {gait: {period: 1 s, amplitude: [0.1, 1]}}\nvary:\n"
 
@@ -45,13 +46,13 @@ def test_named_ticks_in_order_of_size(study_of):
         zip(ax.get_xticks(), [one.get_text() for one in ax.get_xticklabels()], strict=True)
     )
     assert ticks == {1.0: "10 rpm", 2.0: "20 rpm", 3.0: "no limit"}
-    assert ax.get_xlabel() == "limits.rate"
+    assert ax.get_xlabel() == "rate limit"
 
 
 def test_texts_say_no_limit(result_of):
     result = result_of("  limits.torque: [.inf, 0.5]\n")
-    assert result.inputs_text(0) == "limits.torque = no limit"
-    assert result.inputs_text(1) == "limits.torque = 0.5 N m"
+    assert result.inputs_text(0) == "no torque limit"
+    assert result.inputs_text(1) == "torque limit 0.5 N m"
     assert "inf" not in result.message
 
 

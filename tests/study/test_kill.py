@@ -32,7 +32,7 @@ def start(folder):
 
 
 def until(running, journal, count):
-    """Wait until the journal has so many lines."""
+    """Wait until the journal has that many lines."""
     end = time.monotonic() + 60
     while len(lines(journal)) < count:
         assert running.poll() is None, running.communicate()

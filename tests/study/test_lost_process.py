@@ -1,4 +1,4 @@
-"""A process that dies costs the case it died over alone, and each case is told once."""
+"""A process that dies costs the case it died over alone, and each case is reported once."""
 
 import os
 import signal
@@ -21,11 +21,11 @@ def dies_over_three(number):
 def test_the_rest_is_done(workers):
     pool = LocalPool(workers)
     try:
-        told = list(run(pool, dies_over_three, {number: number for number in range(8)}))
+        reported = list(run(pool, dies_over_three, {number: number for number in range(8)}))
     finally:
         pool.close()
-    assert sorted(key for key, _ in told) == list(range(8))
-    assert dict(told) == {n: LOST if n == 3 else n * n for n in range(8)}
+    assert sorted(key for key, _ in reported) == list(range(8))
+    assert dict(reported) == {n: LOST if n == 3 else n * n for n in range(8)}
 
 
 def dies_once(path):

@@ -16,8 +16,9 @@ from rr_lab.report.proof import Proof
 from rr_lab.trial.draws import CODE, KINDS, Basis, read_kinds, read_seed, seed_of_commit
 from rr_lab.trial.trial import again, basis_of, whole_trial
 from rr_opt.batch.run import pool_of, run
-from rr_opt.report.archive import folder_for_results
-from rr_opt.report.result import Progress, Result, quiet
+from rr_opt.documents.archive import folder_for_results
+from rr_opt.documents.report import Progress, quiet
+from rr_opt.results.result import Result
 
 
 @dataclass(frozen=True, repr=False)

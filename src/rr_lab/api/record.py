@@ -12,10 +12,11 @@ from rr_lab.case import Case, stream
 from rr_lab.files import WRITTEN, Delivery, Form, folder_of, seal_of, sealed_text
 from rr_lab.formats import drawn_clock
 from rr_lab.random_case import Request
+from rr_opt.documents.archive import file_for_result, folder_for_results, write_bytes, write_text
+from rr_opt.documents.report import Progress, quiet
 from rr_opt.files.experiment_file import FILE_NAME
 from rr_opt.outcome import InputError
-from rr_opt.report.archive import file_for_result, folder_for_results, write_bytes, write_text
-from rr_opt.report.result import Progress, Result, quiet
+from rr_opt.results.result import Result
 
 HASH = "answer.sha256"
 """In the folder: the answer's SHA-256, as sha256sum writes and checks it."""

@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from rr_lab.trial.outcome import Case
+from rr_opt.documents.text import columns
 from rr_opt.formatting import number
-from rr_opt.report.result import Result
-from rr_opt.report.text import columns
+from rr_opt.results.result import Result
 
 
 def hidden_text(case: Case) -> str:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from matplotlib.axes import Axes
 from matplotlib.patches import Rectangle
 
+from rr_lab.report.proof import Proof
 from rr_lab.trial.counts import Confusion, confusion
-from rr_lab.trial.trial import OpenedTrial
 from rr_opt.report.figures.style import (
     BACKWARD,
     FAINT,
@@ -23,13 +23,13 @@ _CELL = 0.42
 """Inches."""
 
 
-def draw(opened: OpenedTrial) -> str:
-    """The figure as SVG."""
-    counted = confusion(opened.cases)
+def draw(proof: Proof) -> dict[str, str]:
+    """The figure as SVG text by its name."""
+    counted = confusion(proof.opened.cases)
     with styled():
         drawn = figure(3.2 + _CELL * len(counted.columns), 2.6 + _CELL * len(counted.rows))
         matrix(drawn.subplots(), counted)
-        return svg(drawn)
+        return {"confusion": svg(drawn)}
 
 
 def matrix(ax: Axes, counted: Confusion) -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, ClassVar
 
 from rr_lab.report.case import hidden_text, page_of, said_text, size_text
 from rr_lab.report.proof_record import cases_csv, proof_record
@@ -14,10 +13,8 @@ from rr_lab.trial.counts import COUNTS, TEXTS, TITLES, breakdown, by_engine
 from rr_lab.trial.outcome import Case
 from rr_lab.trial.statistics import SIZES, Rate
 from rr_lab.trial.trial import OpenedTrial, tidy
-from rr_opt.formatting import number
-from rr_opt.report.document import (
+from rr_opt.documents.document import (
     Block,
-    Captions,
     Document,
     Fact,
     Facts,
@@ -28,7 +25,9 @@ from rr_opt.report.document import (
     Table,
     table,
 )
-from rr_opt.report.result import Progress, Result, quiet
+from rr_opt.documents.report import Progress, Report, quiet
+from rr_opt.formatting import number
+from rr_opt.results.result import Result
 
 _SAYS = TEXTS["tables"]
 SHARE = "share, 95 % interval"
@@ -39,28 +38,9 @@ _KEY = ("false_claims", "single", "pair_both", "parameters", "outside", "no_answ
 class Proof(Result):
     """The outcome of a trial, in its folder."""
 
-    RECORD, MARKDOWN, OTHERS = "proof.json", "README.md", ("cases.csv",)
-    CAPTIONS: ClassVar[Captions] = {
-        "confusion": ("Diagnosis against truth", "Diagnosis against truth", _SAYS["confusion"])
-    }
+    REPORT = "rr_lab.report.proof"
 
     opened: OpenedTrial
-
-    def document(self, figures: Sequence[Figure] = ()) -> Document:
-        """The counts, and every miss."""
-        return proof_document(self.opened, figures)
-
-    def record(self, files: Sequence[Path] = ()) -> dict[str, Any]:  # noqa: ARG002
-        """The content of proof.json."""
-        return proof_record(self.opened)
-
-    def _tables(self) -> dict[str, str]:
-        return {"cases.csv": cases_csv(self.opened)}
-
-    def _drawn(self) -> dict[str, str]:
-        from rr_lab.report.confusion_figure import draw  # matplotlib takes a second
-
-        return {"confusion": draw(self.opened)}
 
     def save(
         self, path: str | Path, *, figures: bool = True, progress: Progress = quiet
@@ -69,11 +49,6 @@ class Proof(Result):
         written = super().save(path, figures=figures, progress=progress)
         tidy(Path(path), [case.id for case in self.opened.cases if not case.missed])
         return written
-
-    def _write_page(self, folder: Path, document: Document, written: Sequence[Path]) -> list[Path]:
-        """On the page alone the misses lead to their reports: these are not published."""
-        linked = proof_document(self.opened, document.figures, linked=True)
-        return super()._write_page(folder, linked, written)
 
 
 def headline(opened: OpenedTrial) -> str:
@@ -205,3 +180,23 @@ def _misses(opened: OpenedTrial, linked: bool) -> Table:
             for case in opened.misses
         ],
     )  # fmt: skip
+
+
+class _Report(Report):
+    def page_of(self, result: Proof, document: Document) -> Document:
+        """On the page alone the misses lead to their reports: these are not published."""
+        return proof_document(result.opened, document.figures, linked=True)
+
+
+_MATRIX = "A matrix of counts: what was hidden in rows, what the diagnosis named in columns"
+
+REPORT = _Report(
+    lambda proof: proof_record(proof.opened),
+    lambda proof, figures: proof_document(proof.opened, figures),
+    "proof.json",
+    "README.md",
+    tables=lambda proof: {"cases.csv": cases_csv(proof.opened)},
+    others=("cases.csv",),
+    figures="rr_lab.report.confusion_figure",
+    captions={"confusion": ("Diagnosis against truth", _MATRIX, _SAYS["confusion"])},
+)

@@ -11,7 +11,7 @@ from rr_lab.trial.counts import COUNTS, TEXTS, breakdown, by_engine, confusion
 from rr_lab.trial.outcome import Case
 from rr_lab.trial.statistics import Rate
 from rr_lab.trial.trial import OpenedTrial
-from rr_opt.report.document import csv_text
+from rr_opt.documents.document import csv_text
 
 
 def _records(rates: Mapping[str, Rate]) -> dict[str, Any]:

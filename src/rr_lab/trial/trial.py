@@ -29,8 +29,8 @@ from rr_lab.trial.isolation import (
 from rr_lab.trial.outcome import Case
 from rr_lab.trial.sealing import SealedCase, make
 from rr_opt.batch.journal import Journal
+from rr_opt.documents.archive import write_bytes
 from rr_opt.outcome import InputError, NotConvergedError
-from rr_opt.report.archive import write_bytes
 from rr_opt.version import __version__
 
 

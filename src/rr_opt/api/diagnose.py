@@ -2,64 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
 
 import numpy as np
 
-from rr_opt.answers.diagnosis import DiagnosisAnswer
 from rr_opt.api.identity import identity
+from rr_opt.documents.report import Progress, quiet
 from rr_opt.model.experiment import Experiment, Run
 from rr_opt.outcome import NotConvergedError
 from rr_opt.recordings.clock_fit import at_commanded_rate
 from rr_opt.recordings.experiment import read_experiment
 from rr_opt.recordings.usable import usable
-from rr_opt.report.archive import folder_for_results
-from rr_opt.report.result import Plots, Progress, Result, quiet
-
-
-class ExplainedExperiment(DiagnosisAnswer, Result):
-    """The diagnosis of an experiment.
-
-    verdict          `consistent`, `parameters`, `missing_physics` or `unexplained`
-    effects          accepted, strongest first, each with `name`, `confidence` and `parameters`,
-                     whose `value`, `low` and `high` (95 %) are in SI; for the verdict `parameters`
-                     those
-    corrected_robot  the nominal robot with all of them, which any other function takes
-    loss             what the best gait of the nominal robot would lose, or why that is unknown
-    found            the whole diagnosis
-    """
-
-    def record(self, files: Sequence[Path] = ()) -> dict[str, Any]:
-        """The content of diagnosis.json."""
-        from rr_opt.report.diagnosis.record import record
-
-        return record(self)
-
-    def summary(self, files: Sequence[Path] = ()) -> str:
-        """The verdict, what was found, and what to record next, as text."""
-        from rr_opt.report.diagnosis.document import summary
-
-        return summary(self, files)
-
-    def plot(self) -> Plots:
-        """Evidence, paths, misfit before and after, and the lost speed."""
-        from rr_opt.report.figures.diagnosis import draw
-
-        return Plots(draw(self)[0])
-
-    def save(
-        self, path: str | Path, *, figures: bool = True, progress: Progress = quiet
-    ) -> list[Path]:
-        """Write diagnosis.json, robot-corrected.yaml, the figures and the page."""
-        from rr_opt.report.diagnosis.document import write_diagnosis
-
-        return write_diagnosis(
-            self, folder_for_results(Path(path)), page=figures, progress=progress
-        )
+from rr_opt.results.diagnosis import ExplainedExperiment
 
 
 def diagnose(
@@ -84,7 +40,7 @@ def diagnose(
     found = identify(RollerRacer(trial), progress)
     if not (found.before < float("inf") and found.after < float("inf")):
         raise NotConvergedError(
-            "The fits did not converge: a simulation left the range of numbers. Expected motion "
+            "The fits did not converge: a simulation diverged. Expected motion "
             "near that of the nominal robot. Look at the recordings with `rr-opt inspect`, and "
             "check the robot's values."
         )

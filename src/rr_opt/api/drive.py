@@ -15,9 +15,9 @@ from rr_opt.motion.rollout import measured, rollout
 from rr_opt.motion.setpoints import cost, set_points
 from rr_opt.motion.steady_cycle import require_regular, steady_cycle
 from rr_opt.outcome import InputError
-from rr_opt.report.motion import DrivenCircle, SimulatedMotion
-from rr_opt.report.result import Progress, quiet
-from rr_opt.report.setpoints import ExportedGait, Format, text_of
+from rr_opt.results.motion import DrivenCircle, SimulatedMotion
+from rr_opt.results.result import Progress, quiet
+from rr_opt.results.setpoints import ExportedGait, Format, text_of
 
 
 class HasGait(Protocol):

@@ -12,10 +12,10 @@ from rr_opt.design.maximize_speed import Optimum
 from rr_opt.design.turn import fastest_turn
 from rr_opt.design.turn_target import Target, checked
 from rr_opt.model.problem import Problem
-from rr_opt.report.fastest import FastestGait
-from rr_opt.report.result import Progress, quiet
-from rr_opt.report.shapes import FastestShapes, family_name
-from rr_opt.report.turn import FastestTurn
+from rr_opt.results.fastest import FastestGait
+from rr_opt.results.result import Progress, quiet
+from rr_opt.results.shapes import FastestShapes, family_name
+from rr_opt.results.turn import FastestTurn
 from rr_opt.verify.replay import Replay, check_circle, replay
 from rr_opt.verify.sweep import SweepCheck, SweepResult, check_optimum, sweep
 from rr_opt.verify.turn_sweep import check_turn
@@ -55,7 +55,7 @@ def _evidence(
 
 
 def shapes(problem: Problem | PathLike, *, progress: Progress = quiet) -> FastestShapes:
-    """The fastest sine beside the fastest gaits of 3 and 5 harmonics and of free shape.
+    """The fastest sine, compared with the fastest gaits of 3 and 5 harmonics and of free shape.
 
     All respect the limits of the problem, whose own shape is ignored, and each is checked. Raises
     InputError for a robot without friction.

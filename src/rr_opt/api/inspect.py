@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import NoReturn
 
+from rr_opt.documents.archive import file_for_result
 from rr_opt.files.experiment_file import read_plan
 from rr_opt.files.source import fingerprint
 from rr_opt.model.experiment import Start
@@ -12,9 +13,8 @@ from rr_opt.model.gait import Gait
 from rr_opt.outcome import InputError
 from rr_opt.recordings.experiment import inspect_experiment, is_experiment
 from rr_opt.recordings.inspection import inspect_file
-from rr_opt.report.archive import file_for_result
-from rr_opt.report.inspection import InspectedRecordings
-from rr_opt.report.result import Progress, quiet
+from rr_opt.results.inspection import InspectedRecordings
+from rr_opt.results.result import Progress, quiet
 
 
 def inspect(

@@ -215,7 +215,7 @@ def _doubts(
             f"after the paper's run, and not the optimum of {of}."
         )
     if shape != "sine":
-        notes.append(f"The problem asks for a `{shape}` gait, and a sine is driven.")
+        notes.append(f"The problem asks for a `{shape}` gait, but a sine is driven.")
     if not notes:
         return ()
     command = shlex.join(["rr-opt", "maximize-speed", *([] if path is None else [str(path)])])

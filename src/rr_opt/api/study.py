@@ -12,10 +12,10 @@ from rr_opt.batch.run import Pool, pool_of, run
 from rr_opt.design.study.case import solve_case, solve_study
 from rr_opt.design.study.plan import plan
 from rr_opt.design.study.row import Row, row_from, row_record
+from rr_opt.documents.archive import folder_for_results
 from rr_opt.files.study_file import Study, read_study
-from rr_opt.report.archive import folder_for_results
-from rr_opt.report.result import Progress, quiet
-from rr_opt.report.study import SolvedStudy
+from rr_opt.results.result import Progress, quiet
+from rr_opt.results.study import SolvedStudy
 from rr_opt.version import __version__
 
 JOURNAL = "journal.jsonl"

@@ -8,9 +8,9 @@ from rr_opt.api.identity import identity
 from rr_opt.api.load import PathLike, problem_of
 from rr_opt.model.problem import Problem
 from rr_opt.motion.dynamics import require_friction
-from rr_opt.report.result import Progress, quiet
-from rr_opt.report.sweep import Sweep
-from rr_opt.report.turn_chart import TurnChart
+from rr_opt.results.result import Progress, quiet
+from rr_opt.results.sweep import Sweep
+from rr_opt.results.turn_chart import TurnChart
 from rr_opt.verify import sweep as verify
 from rr_opt.verify.grid import free_decisions
 from rr_opt.verify.turn_chart import radius_claim, sign_claim, tightest, turn_map

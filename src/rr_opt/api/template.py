@@ -8,9 +8,9 @@ from typing import Literal
 
 import numpy as np
 
+from rr_opt.documents.archive import file_for_result, write_text
 from rr_opt.files.experiment_file import FILE_NAME, read_plan
 from rr_opt.outcome import InputError
-from rr_opt.report.archive import file_for_result, write_text
 
 Kind = Literal["robot", "problem", "study", "experiment"]
 

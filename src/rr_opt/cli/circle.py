@@ -2,27 +2,25 @@
 
 from __future__ import annotations
 
-from rr_opt.cli.options import Amplitude, Driven, Offset, Period, Summary, read_gait, read_options
+import rr_opt as rr
+from rr_opt.cli import options
 from rr_opt.cli.show import show
 from rr_opt.cli.steps import Steps
 
 
 def circle(
-    source: Driven = None,
+    source: options.Driven = None,
     *,
-    amplitude: Amplitude = None,
-    period: Period = None,
-    offset: Offset = None,
-    json: Summary = False,
+    amplitude: options.Amplitude = None,
+    period: options.Period = None,
+    offset: options.Offset = None,
+    json: options.Summary = False,
 ) -> None:
     """Compute the circle of a gait: radius, centre, speed, time for a full turn.
 
     Also shows how a start from rest approaches it. Left is positive, seen from above.
     """
     with Steps() as steps:
-        options = read_options(amplitude=amplitude, period=period, offset=offset)
-        driven = read_gait(source, options)
-        from rr_opt.api import drive
-
-        answer = drive.circle(driven, progress=steps)
+        gait = {"amplitude": amplitude, "period": period, "offset": offset}
+        answer = rr.circle(options.read_gait(source, **gait), progress=steps)
     show(answer, json=json)

@@ -7,7 +7,8 @@ from typing import Annotated
 
 import typer
 
-from rr_opt.cli.options import json_option, out_option, results_folder
+import rr_opt as rr
+from rr_opt.cli import options
 from rr_opt.cli.show import show
 from rr_opt.cli.steps import Steps
 
@@ -17,8 +18,8 @@ def diagnose(
         Path,
         typer.Argument(metavar="FOLDER", help="Folder with an experiment.yaml and its recordings."),
     ],
-    out: Annotated[Path | None, out_option("out/NAME-diagnosis")] = None,
-    json: Annotated[bool, json_option("diagnosis.json")] = False,
+    out: Annotated[Path | None, options.out_option("out/NAME-diagnosis")] = None,
+    json: Annotated[bool, options.json_option("diagnosis.json")] = False,
     page: Annotated[
         bool, typer.Option("--page/--no-page", help="Draw figures and write report.html.")
     ] = True,
@@ -29,10 +30,8 @@ def diagnose(
     """
     with Steps() as steps:
         steps("reading")
-        from rr_opt.api import diagnose as library
-
-        experiment = library.read_experiment(source)
-        folder = results_folder(out, f"{experiment.name}-diagnosis")
-        found = library.diagnose(experiment, progress=steps)
+        experiment = rr.load_experiment(source)
+        folder = options.results_folder(out, f"{experiment.name}-diagnosis")
+        found = rr.diagnose(experiment, progress=steps)
         files = found.save(folder, figures=page, progress=steps)
     show(found, files, json=json)

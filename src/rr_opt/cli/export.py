@@ -2,45 +2,23 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import Annotated, Literal
-
-import typer
-
-from rr_opt.cli.options import (
-    Amplitude,
-    Driven,
-    Offset,
-    Period,
-    Summary,
-    out_option,
-    read_gait,
-    read_options,
-    result_name,
-)
+import rr_opt as rr
+from rr_opt.cli import choices, options
 from rr_opt.cli.show import show
 from rr_opt.cli.steps import Steps
 
-_FORMAT = (
-    "csv: time and angle in rad and degrees; c-header: a C array; "
-    "servo: counts of the servo CDS5516."
-)
-_KEEP = "Adjust the rate instead of the period."
-
 
 def export(
-    source: Driven = None,
+    source: options.Driven = None,
     *,
-    kind: Annotated[
-        Literal["csv", "c-header", "servo"], typer.Option("--format", help=_FORMAT)
-    ] = "csv",
-    rate: Annotated[float, typer.Option(help="Set points per second.")] = 125.0,
-    keep_period: Annotated[bool, typer.Option("--keep-period", help=_KEEP)] = False,
-    amplitude: Amplitude = None,
-    period: Period = None,
-    offset: Offset = None,
-    out: Annotated[Path | None, out_option("out/NAME-...", "The file to write.", "FILE")] = None,
-    json: Summary = False,
+    kind: choices.SetPoints = "csv",
+    rate: choices.PointRate = 125.0,
+    keep_period: choices.KeepPeriod = False,
+    amplitude: options.Amplitude = None,
+    period: options.Period = None,
+    offset: options.Offset = None,
+    out: choices.PointFile = None,
+    json: options.Summary = False,
 ) -> None:
     """Write a gait as set points for a controller.
 
@@ -49,13 +27,8 @@ def export(
     """
     with Steps() as steps:
         gait = {"amplitude": amplitude, "period": period, "offset": offset}
-        driven = read_gait(source, read_options(**gait, rate=rate))
-        from rr_opt.api import drive
-        from rr_opt.report.setpoints import setpoints_file
-
-        file = setpoints_file(out, result_name(source), kind)
-        points = drive.export(
-            driven, format=kind, rate=rate, keep_period=keep_period, progress=steps
-        )
+        driven = options.read_gait(source, **gait, rate=rate)
+        file = options.setpoints_file(out, source, kind)
+        points = rr.export(driven, format=kind, rate=rate, keep_period=keep_period, progress=steps)
         files = points.save(file)
     show(points, files, json=json)

@@ -7,25 +7,23 @@ from typing import Annotated, Literal
 
 import typer
 
-from rr_opt.cli.options import out_option
+import rr_opt as rr
+from rr_opt.cli import options
 
 _KIND = "robot, problem, study or experiment."
+_OUT = "The file to write; of an experiment its folder."
 
 
 def init(
     kind: Annotated[
         Literal["robot", "problem", "study", "experiment"], typer.Argument(help=_KIND)
     ] = "problem",
-    out: Annotated[
-        Path | None, out_option("KIND.yaml", "The file to write; of an experiment its folder.")
-    ] = None,
-    force: Annotated[bool, typer.Option("--force", help="Write over what is there.")] = False,
+    out: Annotated[Path | None, options.out_option("KIND.yaml", _OUT)] = None,
+    force: Annotated[bool, typer.Option("--force", help="Overwrite existing files.")] = False,
 ) -> None:
     """Write a commented input file with units, to be filled in.
 
     An experiment is a folder with simulated recordings, which `rr-opt diagnose` reads as they are.
     """
-    from rr_opt.api.template import init as write
-
-    for file in write(kind, out, force=force):
+    for file in rr.init(kind, out, force=force):
         typer.echo(str(file))

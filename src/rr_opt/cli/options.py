@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import warnings
 from collections.abc import Iterable
 from pathlib import Path
@@ -14,6 +15,7 @@ from rr_opt.outcome import InputError
 
 if TYPE_CHECKING:
     from rr_opt.api.load import RobotWithGait
+    from rr_opt.model.gait import Gait
     from rr_opt.model.problem import Problem
 
 
@@ -25,7 +27,7 @@ def place(text: str) -> Path:
     if not text.strip():
         raise InputError(
             "--out: Read an empty name. Expected the name of a folder or a file. "
-            "Name one, `.` for the current folder, or leave --out away."
+            "Name one, `.` for the current folder, or omit --out."
         )
     return Path(text)
 
@@ -72,9 +74,50 @@ Scheduler = Annotated[
 
 def results_folder(out: Path | None, name: str) -> Path:
     """--out, or out/NAME. Raises InputError, before anything is computed, if it cannot be made."""
-    from rr_opt.report.archive import folder_for_results
+    from rr_opt.documents.archive import folder_for_results
 
     return folder_for_results(out or Path("out") / name)
+
+
+def motion_folder(out: Path | None, source: Path | None, format: Any, film: Any) -> Path:
+    """The folder of a motion. Raises InputError also for files that cannot be made here."""
+    from rr_opt.report.motion import check_files
+
+    check_files(format, film)
+    return results_folder(out, f"{result_name(source)}-motion")
+
+
+def study_folder(out: Path | None, name: str, *, netcdf: bool) -> Path:
+    """The folder of a study. Raises InputError also for a netCDF file that cannot be made here."""
+    from rr_opt.report.study import check_files
+
+    check_files(netcdf=netcdf)
+    return results_folder(out, name)
+
+
+def inspection_folder(out: Path | None, source: Path, netcdf: Path | None) -> Path:
+    """The folder of an inspection. Raises InputError also for an impossible netCDF file."""
+    from rr_opt.api.inspect import check_files, name_of
+
+    check_files(source, netcdf)
+    return results_folder(out, f"{name_of(source)}-inspect")
+
+
+def turn_folder(out: Path | None, name: str, asked: dict[str, float], cycles: str) -> Path:
+    """NAME-turn-heading-90deg-radius-0.5m-whole, so that another turn has another folder."""
+    units = {"heading": "deg", "radius": "m", "within": "s", "length": "m"}
+    shown = asked | {"heading": math.degrees(asked.get("heading", 0.0))}
+    parts = [f"{key}-{shown[key]:.6g}{unit}" for key, unit in units.items() if key in asked]
+    whole = ["whole"] if cycles == "whole" else []
+    return results_folder(out, "-".join([name, "turn", *parts, *whole]))
+
+
+def setpoints_file(out: Path | None, source: Path | None, format: Any) -> Path:
+    """--out, or out/NAME-... Raises InputError if it cannot be written."""
+    from rr_opt.documents.archive import file_for_result
+    from rr_opt.results.setpoints import ENDINGS
+
+    return file_for_result(out or Path("out") / f"{result_name(source)}{ENDINGS[format]}")
 
 
 def read_options(**given: str | float | None) -> dict[str, float]:
@@ -99,10 +142,29 @@ def read_problem(path: Path | None) -> Problem:
     return problem
 
 
-def read_gait(path: Path | None, options: dict[str, float]) -> RobotWithGait:
-    """What a file (None: the prototype) gives to drive; warnings go to stderr."""
+def read_command(**sizes: str | None) -> Gait | None:
+    """The commanded gait of --amplitude, --period and --offset; None if there is none."""
+    read = read_options(**sizes)
+    if not read:
+        return None
+    if "amplitude" not in read or "period" not in read:
+        raise InputError(
+            "Read only part of a command. Expected --amplitude and --period, and --offset unless "
+            "it is 0. Give both, or neither."
+        )
+    from rr_opt.model.gait import SineGait
+
+    return SineGait(read["amplitude"], read["period"], read.get("offset", 0.0))
+
+
+def read_gait(path: Path | None, **given: str | float | None) -> RobotWithGait:
+    """What a file (None: the prototype) gives to drive, at the sizes among the options.
+
+    All options are read, so that every mistake in them is reported; warnings go to stderr.
+    """
     from rr_opt.api.load import load_gait
 
+    options = read_options(**given)
     sizes = {name: options.get(name) for name in ("amplitude", "period", "offset")}
     driven = load_gait(path, **sizes)
     warn(driven.warnings)

@@ -12,12 +12,12 @@ from rr_opt.cli.options import warn
 from rr_opt.outcome import Status
 
 if TYPE_CHECKING:
-    from rr_opt.report.result import Result
+    from rr_opt.results.result import Result
 
 
 def show(result: Result, files: Sequence[Path] = (), *, json: bool) -> None:
     """Print a result and its warnings. Ends the command if it is not what was asked for."""
-    from rr_opt.report.archive import strict_json
+    from rr_opt.documents.archive import strict_json
 
     warn(result.warnings)
     text = strict_json(result.record(files)) if json else result.summary(files)

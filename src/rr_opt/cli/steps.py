@@ -18,7 +18,7 @@ _quiet = False
 
 
 def silence(quiet: bool) -> None:
-    """Whether the progress of this process is silent from now on."""
+    """Set whether this process reports progress and warnings."""
     global _quiet  # noqa: PLW0603 - there is one stderr
     _quiet = quiet
 
@@ -49,7 +49,7 @@ class Steps:
         return self
 
     def __call__(self, text: str) -> None:
-        """Tell that a step begins."""
+        """Show that a step begins."""
         interrupt.check()
         counted = _COUNTED.fullmatch(text)
         number, total = (int(counted[2]), int(counted[3])) if counted else (1, None)

@@ -5,15 +5,16 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
-from rr_opt.cli.options import ProblemFile, json_option, out_option, read_problem, results_folder
+import rr_opt as rr
+from rr_opt.cli import options
 from rr_opt.cli.show import show
 from rr_opt.cli.steps import Steps
 
 
 def turn_chart(
-    problem: ProblemFile = None,
-    out: Annotated[Path | None, out_option("out/NAME-turn-chart")] = None,
-    json: Annotated[bool, json_option("turn-chart.json")] = False,
+    problem: options.ProblemFile = None,
+    out: Annotated[Path | None, options.out_option("out/NAME-turn-chart")] = None,
+    json: Annotated[bool, options.json_option("turn-chart.json")] = False,
 ) -> None:
     """Chart the circles of a robot: radius over offset, amplitude and period.
 
@@ -21,10 +22,8 @@ def turn_chart(
     determine the circle. The inertia ratio is the robot's own.
     """
     with Steps() as steps:
-        posed = read_problem(problem)
-        folder = results_folder(out, f"{posed.name}-turn-chart")
-        from rr_opt.api import survey
-
-        chart = survey.turn_chart(posed, progress=steps)
+        posed = options.read_problem(problem)
+        folder = options.results_folder(out, f"{posed.name}-turn-chart")
+        chart = rr.turn_chart(posed, progress=steps)
         files = chart.save(folder, progress=steps)
     show(chart, files, json=json)

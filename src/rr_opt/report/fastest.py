@@ -1,264 +1,245 @@
-"""The fastest gait of a problem, with the evidence that it is one."""
+"""The report of a fastest gait."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property
-from pathlib import Path
-from typing import Any
+from collections.abc import Iterator, Sequence
 
-from rr_opt.design.decisions import ballast_interval
-from rr_opt.design.maximize_speed import Optimum
-from rr_opt.design.solve import Candidate
-from rr_opt.formatting import direction_text, pace_text
+from rr_opt.documents import document as doc
+from rr_opt.documents.report import Report
+from rr_opt.formatting import QUANTITIES, counted, number, price_text, with_unit
 from rr_opt.messages import listed
-from rr_opt.model.ballast import inertia_ratio, with_load_count
-from rr_opt.model.gait import Gait
-from rr_opt.model.problem import LARGEST_EXCESS, Problem
+from rr_opt.model.ballast import inertia_ratio
+from rr_opt.model.parameters import PARAMETERS, parameters_of
 from rr_opt.model.robot import Robot
-from rr_opt.motion.dynamics import ignored_in_steady_cycle
 from rr_opt.motion.rollout import one_period
 from rr_opt.outcome import Status
-from rr_opt.report.document import Document, Figure
-from rr_opt.report.fastest_page import CAPTIONS, fastest_document
+from rr_opt.report.captions import captions
 from rr_opt.report.fastest_record import fastest_record
-from rr_opt.report.gait import ignored_effects
-from rr_opt.report.limits import LIMIT_NAMES, BoundRow, LimitRow, bound_rows, limit_row
-from rr_opt.report.result import Check, Result
+from rr_opt.report.gait import gait_facts, signed_fact, speed_fact
 from rr_opt.report.trajectory_file import trajectory_csv
+from rr_opt.results.fastest import FastestGait
 from rr_opt.verify.replay import Replay
-from rr_opt.verify.sweep import TOLERATED, SweepCheck
 
-LARGEST_REPLAY_ERROR = 1e-6
-"""Of the replayed speed, relative: the optimiser's mesh is refined until it is well below this."""
-
-
-@dataclass(frozen=True, repr=False)
-class FastestGait(Result):
-    """The fastest gait of a problem, with the evidence for it.
-
-    name, sha256   of the problem: its name, and the fingerprint of its files
-    optimum        as the optimiser left it
-    replay, sweep  the motion simulated by CVODES, and the comparison with a plain sweep; None
-                   where there is no optimum to check
-    as_built       speed of the fastest gait of the robot as it is, m/s, where the optimum has
-                   another inertia ratio; None elsewhere, and if that robot has no such gait
-    """
-
-    RECORD = "result.json"
-    OTHERS = ("trajectory.csv",)
-    CAPTIONS = CAPTIONS
-
-    name: str
-    sha256: str
-    optimum: Optimum
-    replay: Replay | None = None
-    sweep: SweepCheck | None = None
-    as_built: float | None = None
-
-    @property
-    def problem(self) -> Problem:
-        """The problem solved."""
-        return self.optimum.problem
-
-    @property
-    def gait(self) -> Gait | None:
-        """The fastest gait; None if there is none."""
-        return self.optimum.best.gait if self.optimum.best else None
-
-    @property
-    def speed(self) -> float | None:
-        """Its mean speed, m/s, negative backward; None if there is no gait."""
-        return self.optimum.best.speed if self.optimum.best else None
-
-    @property
-    def robot(self) -> Robot:
-        """The robot, with the optimum's inertia ratio where that was to be chosen."""
-        return self.optimum.robot or self.problem.robot
-
-    @property
-    def inertia_ratio(self) -> float | None:
-        """J20/J10 of that robot, in the problem's definition; None if there is no gait."""
-        return self.optimum.ratio
-
-    @property
-    def rebuilt(self) -> bool:
-        """Whether the optimum has another inertia ratio than the robot as it is."""
-        return self.robot.platform2 != self.problem.robot.platform2
-
-    @property
-    def turns(self) -> bool:
-        """Whether the robot goes round a circle: a radius of many kilometres is a straight line."""
-        return self.replay is not None and abs(self.replay.steady.cycle.dpsi) > 1e-7
-
-    @cached_property
-    def limits(self) -> dict[str, LimitRow]:
-        """By name (angle, rate, torque, singularity), each with `limit`, `value`, `active` and
-        `shadow_price`, SI."""
-        return {name: limit_row(name, self.optimum, self.replay) for name in LIMIT_NAMES}
-
-    @cached_property
-    def bounds(self) -> dict[str, BoundRow]:
-        """The same of amplitude, period, offset, and the inertia ratio if it is a decision; empty
-        without a gait."""
-        return bound_rows(self.optimum)
-
-    def ratio_of(self, candidate: Candidate) -> float:
-        """J20/J10 of one of the optima, in the problem's definition."""
-        robot, choice = self.problem.robot, self.problem.inertia_ratio
-        span = ballast_interval(robot, choice)
-        amount = span.low + candidate.share * (span.high - span.low)
-        platform = robot.platform2
-        changed = (
-            with_load_count(platform, choice.loads, amount)
-            if choice and choice.by == "loads"
-            else replace(platform, I=amount)
-        )
-        return inertia_ratio(replace(robot, platform2=changed), choice.about if choice else "joint")
-
-    @property
-    def checks(self) -> list[Check]:
-        """Replay by CVODES, the limits over the whole cycle, and the sweep."""
-        checks = []
-        if self.replay:
-            error, excess = self.replay.error, self.replay.excess
-            speed = (
-                f"Replay by CVODES: its speed is {1e3 * self.replay.speed:+.3f} mm/s, "
-                f"{error:.1e} from the optimiser's, relative "
-                f"(at most {LARGEST_REPLAY_ERROR:.0e} allowed)."
-            )
-            worst = (
-                f"the worst limit is exceeded by {excess:.1e} of its value "
-                f"(at most {LARGEST_EXCESS:.0e} allowed)."
-                if excess > 0
-                else "no limit is exceeded."
-            )
-            checks += [
-                Check(error <= LARGEST_REPLAY_ERROR, speed),
-                Check(excess <= LARGEST_EXCESS, f"Limits over the whole cycle: {worst}"),
-            ]
-        if self.sweep:
-            better = _sweep_sentence(self.sweep, self.problem.gait.shape)
-            checks.append(Check(self.sweep.gap >= -TOLERATED, better))
-            if not math.isnan(self.sweep.error):
-                own = (
-                    f"The sweep's own model gives the optimum {1e3 * self.sweep.speed:+.3f} "
-                    f"mm/s, {self.sweep.error:.1e} from the optimiser's, relative "
-                    f"(at most {TOLERATED:.0e} allowed)."
-                )
-                checks.append(Check(self.sweep.error <= TOLERATED, own))
-        return checks
-
-    @property
-    def status(self) -> Status:
-        """As the optimiser ended, unless a check failed."""
-        if all(check.passed for check in self.checks):
-            return self.optimum.status
-        return Status.NOT_CONVERGED
-
-    @property
-    def headline(self) -> str:
-        """The result in a phrase; empty if nothing was confirmed."""
-        if self.status is not Status.OPTIMAL or not self.speed:
-            return ""
-        return f"{self._subject} at {1e3 * abs(self.speed):.1f} mm/s"
-
-    @property
-    def message(self) -> str:
-        """The outcome in a paragraph; a failed check comes first."""
-        failed = [check.sentence for check in self.checks if not check.passed]
-        if failed:
-            return "The optimum was not confirmed. " + " ".join(failed)
-        if self.speed is None:
-            return self.optimum.message
-        first = f"{self._subject} at {pace_text(self.speed)}, and every check confirms it."
-        return " ".join([first, *self.remarks])
-
-    @property
-    def _subject(self) -> str:
-        return f"The fastest gait found drives {direction_text(self.speed or 0.0)}"
-
-    @property
-    def remarks(self) -> list[str]:
-        """What else there is to know of the gait, in sentences."""
-        best = self.optimum.best
-        if best is None:
-            return []
-        texts = []
-        ignored = ignored_in_steady_cycle(self.problem.robot)
-        if ignored:
-            texts.append(f"Optimiser and checks ignore {listed(ignored)}.")
-        ties = len(self.optimum.ties)
-        if ties:
-            texts.append(f"{ties} other gait{'s are' if ties > 1 else ' is'} as fast: a tie.")
-        sine = self.optimum.sine
-        if sine:
-            gain = 100 * (abs(best.speed) / sine - 1)
-            texts.append(f"That is {gain:.1f} % faster than the fastest sine.")
-        if beyond := self._beyond_servo(best.gait):
-            texts.append(
-                "But the problem allows more than the robot's servo: the gait exceeds its "
-                f"{listed(beyond)} limit."
-            )
-        if self.sweep and math.isnan(self.sweep.error):
-            texts.append("The sweep's own model cannot represent this shape and does not check it.")
-        if self.optimum.sideways:
-            texts.append(
-                "It sits where forward turns into backward: its mean velocity is at right angles "
-                "to its mean heading, and its direction is a matter of definition."
-            )
-        return texts
-
-    def _beyond_servo(self, gait: Gait) -> list[str]:
-        """Which limits of the robot file's servo the gait exceeds."""
-        servo, needed = self.problem.robot.servo, self.replay.reached if self.replay else {}
-        return [
-            name
-            for name, value, able in (
-                ("angle", gait.peak_angle, servo.angle_limit),
-                ("rate", gait.peak_rate, servo.rate_limit),
-                ("torque", needed.get("torque", 0.0), servo.torque_limit),
-            )
-            if value > able * (1 + LARGEST_EXCESS)
-        ]
-
-    @property
-    def warnings(self) -> tuple[str, ...]:
-        """Which effects of the robot the optimum ignores."""
-        return ignored_effects(self.problem.robot)
-
-    def document(self, figures: Sequence[Figure] = ()) -> Document:
-        """Gait, speed, checks, limits, bounds, local optima and robot."""
-        return fastest_document(self, figures)
-
-    def record(self, files: Sequence[Path] = ()) -> dict[str, Any]:
-        """The content of result.json; the same keys whatever the outcome."""
-        return fastest_record(self)
-
-    def _tables(self) -> dict[str, str]:
-        if self.replay is None:
-            return {}
-        return {"trajectory.csv": trajectory_csv(one_period(self.replay.steady))}
-
-    def _drawn(self) -> dict[str, str]:
-        # Here and not above: without figures matplotlib need not be loaded.
-        from rr_opt.report.figures.fastest import draw
-
-        return draw(self)
+_TITLES = {
+    Status.OPTIMAL: "The robot does not move",
+    Status.INFEASIBLE: "No gait respects all limits",
+    Status.NOT_CONVERGED: "No confirmed optimum",
+}
 
 
-def _sweep_sentence(sweep: SweepCheck, shape: str) -> str:
-    gaits = "gaits" if shape == "sine" else "sines"
-    if sweep.best_gait is None:
-        return f"Sweep of {sweep.points} {gaits}: none of them respects every limit."
-    head = f"Sweep of {sweep.points} {gaits}: the best has {1e3 * sweep.best_speed:+.3f} mm/s, "
-    if abs(sweep.gap) < 1e-6:
-        return head + "as fast as the optimum to within a millionth."
-    if sweep.gap >= 0:
-        return head + f"{100 * sweep.gap:.2g} % slower than the optimum."
-    return (
-        head + f"{-100 * sweep.gap:.2g} % faster than the optimum "
-        f"(at most {100 * TOLERATED:g} % allowed)."
+def fastest_document(
+    result: FastestGait, figures: Sequence[doc.Figure] = (), turn: doc.Section | None = None
+) -> doc.Document:
+    """The report of a fastest gait; turn: a section that leads the others."""
+    choice, solved = result.problem.inertia_ratio, result.gait is not None
+    chosen = "platform2.I" if choice and choice.by == "inertia" and solved else ""
+    good = result.status is Status.OPTIMAL
+    lead = " ".join(["Every check confirms it.", *result.remarks, limited_by(result)])
+    return doc.Document(
+        name=result.name,
+        kind="fastest gait",
+        title=result.headline or _TITLES[result.status],
+        lead=lead if good else result.message,
+        good=good,
+        sections=(
+            doc.Section("", (doc.Facts(tuple(_facts(result)), key=True),)),
+            *([turn] if turn else []),
+            doc.Section(
+                "Checks", (doc.checks((one.passed, one.sentence) for one in result.checks),)
+            ),
+            doc.gallery(figures),
+            doc.Section("Limits", (_limits(result),), brief=solved),
+            doc.Section("Decisions and their bounds", (_bounds(result),)),
+            doc.Section("Local optima", (_optima(result),)),
+            doc.Section("Robot", (_robot(result.robot, chosen),), brief=False),
+            doc.Section("Solver", (_solver(result),), brief=solved),
+        ),
+        footer=doc.versions(result.sha256),
     )
+
+
+def limited_by(result: FastestGait) -> str:
+    """`It is limited by the rate limit and the lower bound of the period.`"""
+    if result.replay is None:
+        return ""
+    active = [
+        "the singularity margin" if row.name == "singularity" else f"the {row.name} limit"
+        for row in result.limits.values()
+        if row.active
+    ]
+    active += [
+        f"the {'lower' if row.active == 'low' else 'upper'} bound of the "
+        f"{QUANTITIES[row.name].words}"
+        for row in result.bounds.values()
+        if row.active in ("low", "high")
+    ]
+    if not active:
+        return "No limit or bound is active: it is an interior optimum."
+    return f"It is limited by {listed(active)}."
+
+
+def _facts(result: FastestGait) -> Iterator[doc.Fact]:
+    if result.speed is None or result.gait is None or result.replay is None:
+        return
+    yield speed_fact(result.speed)
+    if result.rebuilt and result.as_built is not None:
+        yield signed_fact("as built", result.as_built, "at best, with I2 unchanged")
+    yield from gait_facts(result.gait)
+    yield _ratio(result)
+    yield _cycle(result.replay, turning=result.turns)
+
+
+def _ratio(result: FastestGait) -> doc.Fact:
+    """J20/J10, about which point, and how it is realised."""
+    choice, built = result.problem.inertia_ratio, result.problem.robot
+    about = choice.about if choice else "joint"
+    ratio = number(result.inertia_ratio or 0.0)
+    where = f"about {'the joint P' if about == 'joint' else 'the centres of mass'}"
+    if choice is None or not result.rebuilt:
+        return doc.Fact("J20/J10", ratio, f"{where}, the robot as it is")
+    means = ", by loads on platform 2" if choice.by == "loads" else ""
+    return doc.Fact(
+        "J20/J10",
+        ratio,
+        f"{where}{means}: I2 {built.platform2.I:.4g} -> {result.robot.platform2.I:.4g} kg m2 "
+        f"(ratio {number(inertia_ratio(built, about))} -> {ratio})",
+    )
+
+
+def _cycle(replay: Replay, *, turning: bool) -> doc.Fact:
+    """What one period does: a step along a line or round a circle."""
+    cycle = replay.steady.cycle
+    step = f"{1e3 * math.hypot(cycle.dx, cycle.dy):.1f} mm a period"
+    if not turning:
+        return doc.Fact("cycle", step, "straight")
+    return doc.Fact(
+        "cycle",
+        step,
+        f"round a circle of radius {with_unit(cycle.radius, 'm')}, "
+        f"turning {math.degrees(cycle.dpsi):+.3g} deg a period",
+    )
+
+
+def _limits(result: FastestGait) -> doc.Table:
+    """Each limit: what is reached, what is allowed, and its shadow price."""
+    kinds = [(QUANTITIES[row.name], row) for row in result.limits.values()]
+    if result.replay is None:
+        return doc.table(["Limit", "Allowed"], [[k.words, k.both(row.limit)] for k, row in kinds])
+    return doc.table(
+        ["Limit", "Reached", "Allowed", "State", "Shadow price"],
+        [
+            [
+                kind.words,
+                kind.both(row.value),
+                kind.both(row.limit),
+                doc.Badge("active", "good") if row.active else doc.Badge("not active"),
+                price_text(row.name, row.shadow_price) if row.active else None,
+            ]
+            for kind, row in kinds
+        ],
+    )
+
+
+def _bounds(result: FastestGait) -> doc.Table:
+    """Each decision, its range, and the shadow price of its active bound."""
+    states = {
+        "low": doc.Badge("at lower bound", "good"),
+        "high": doc.Badge("at upper bound", "good"),
+        "fixed": doc.Badge("fixed"),
+        None: doc.Badge("inside"),
+    }
+    rows = []
+    for row in result.bounds.values():
+        kind, fixed = QUANTITIES[row.name], row.active == "fixed"
+        span = "fixed" if fixed else f"{number(row.low)} to {with_unit(row.high, kind.unit)}"
+        price = None
+        if row.active in ("low", "high") and row.shadow_price is not None:
+            price = price_text(row.name, row.shadow_price)
+        rows.append([kind.words, kind.both(row.value), span, states[row.active], price])
+    return doc.table(["Decision", "Value", "Range", "State", "Shadow price"], rows)
+
+
+def _optima(result: FastestGait) -> doc.Table:
+    """All local optima; nothing if there is one only."""
+    optimum = result.optimum
+    ties = {id(one) for one in optimum.ties}
+    rows = [
+        [
+            f"{1e3 * one.speed:+.2f} mm/s",
+            with_unit(one.gait.amplitude, "rad"),
+            with_unit(one.gait.period, "s"),
+            with_unit(one.gait.offset, "rad"),
+            number(result.ratio_of(one)),
+            "the optimum" if one is optimum.best else "a tie" if id(one) in ties else "",
+        ]
+        for one in optimum.optima
+    ]
+    head = ["Speed", "Amplitude", "Period", "Offset", "J20/J10", "Remark"]
+    return doc.table(head, rows if len(rows) > 1 else [])
+
+
+_SHOWN = {"m": ("mm", 1e3), "kg m^2": ("kg m²", 1.0)}
+"""SI unit -> the unit shown, and how many of it are one SI unit."""
+_SERVO = {"angle_limit": "angle", "rate_limit": "rate", "torque_limit": "torque"}
+_ORIGINS: dict[str, doc.Tone] = {"measured": "good", "fitted": "note", "assumed": "warn"}
+
+
+def _robot(robot: Robot, chosen: str) -> doc.Table:
+    """Every parameter of the robot, its value, and whether it was measured, fitted or assumed.
+
+    chosen: key path of a value that the optimiser chose.
+    """
+    rows = []
+    for path, words, value in _parameters(robot):
+        text = robot.provenance.get(path, "")
+        origin = next((one for one in _ORIGINS if text.startswith(one)), "")
+        badge = doc.Badge(origin or "not stated", _ORIGINS.get(origin, "quiet"))
+        source = text.removeprefix(origin).lstrip(": ")
+        if path == chosen:
+            badge, source = doc.Badge("chosen", "note"), "by the optimiser"
+        # A number stays on one line with its unit.
+        rows.append([path, words, value.replace(" ", "\N{NO-BREAK SPACE}"), badge, source])
+    return doc.table(["Key", "Parameter", "Value", "Origin", "Source"], rows)
+
+
+def _parameters(robot: Robot) -> Iterator[tuple[str, str, str]]:
+    for name, value in parameters_of(robot).items():
+        parameter = PARAMETERS[name]
+        unit, factor = _SHOWN.get(parameter.unit, (parameter.unit, 1.0))
+        yield ".".join(parameter.key), parameter.words, with_unit(value * factor, unit)
+    for key, name in _SERVO.items():
+        kind = QUANTITIES[name]
+        yield f"servo.{key}", kind.words, kind.both(getattr(robot.servo, key))
+    for use in robot.physics:
+        for parameter, value in use.values.items():
+            yield f"physics.{use.name}.{parameter}", "effect beyond the paper", number(value)
+
+
+def _solver(result: FastestGait) -> str:
+    optimum, guesses = result.optimum, ("initial guess", "initial guesses")
+    text = (
+        f"{counted(optimum.starts, *guesses)}, {counted(optimum.iterations, 'iteration')}, "
+        f"{optimum.intervals} intervals a period, "
+        f"{counted(len(optimum.optima), 'distinct optimum', 'distinct optima')}."
+    )
+    failed = len(optimum.failures)
+    return f"{text} {counted(failed, *guesses)} led to no optimum." if failed else text
+
+
+def tables(result: FastestGait) -> dict[str, str]:
+    """The cycle as CSV; nothing without a gait."""
+    if result.replay is None:
+        return {}
+    return {"trajectory.csv": trajectory_csv(one_period(result.replay.steady))}
+
+
+REPORT = Report(
+    fastest_record,
+    fastest_document,
+    "result.json",
+    tables=tables,
+    others=("trajectory.csv",),
+    figures="rr_opt.report.figures.fastest",
+    captions=captions("fastest"),
+)

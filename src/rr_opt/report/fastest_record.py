@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from rr_opt.files.record import plain, robot_record
 from rr_opt.model.ballast import load_count
-from rr_opt.version import __version__
-
-if TYPE_CHECKING:
-    from rr_opt.report.fastest import FastestGait
+from rr_opt.results.fastest import FastestGait
 
 UNITS = {
     "angle": "rad",
@@ -38,7 +35,7 @@ def fastest_record(result: FastestGait) -> dict[str, Any]:
     """The content of result.json; the same keys whatever the outcome."""
     optimum, replay, sweep = result.optimum, result.replay, result.sweep
     cycle = replay.steady.cycle if replay else None
-    record = {
+    return {
         "status": result.status,
         "message": result.message,
         "warnings": result.warnings,
@@ -85,10 +82,7 @@ def fastest_record(result: FastestGait) -> dict[str, Any]:
         "robot": robot_record(result.robot),
         "loads": _loads(result),
         "units": UNITS,
-        "version": __version__,
-        "input_sha256": result.sha256,
     }
-    return plain(record)
 
 
 def _loads(result: FastestGait) -> float | None:

@@ -13,10 +13,10 @@ from typing import IO, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from rr_opt.documents.archive import whole
 from rr_opt.model.robot import Robot
 from rr_opt.motion.rollout import Trajectory
 from rr_opt.outcome import InputError, RollerRacerError
-from rr_opt.report.archive import whole
 from rr_opt.report.figures.path import frames
 
 Film = Literal["gif", "mp4"]

@@ -1,14 +1,10 @@
-"""A gait as facts, and which effects of its robot steady motion ignores."""
+"""A gait and its speed as facts."""
 
 from __future__ import annotations
 
-from rr_opt.effects.effect import Port
+from rr_opt.documents.document import Fact
 from rr_opt.formatting import QUANTITIES, direction_text, speed_text, with_unit
-from rr_opt.messages import listed
 from rr_opt.model.gait import FourierGait, FreeGait, Gait
-from rr_opt.model.robot import Robot
-from rr_opt.motion.dynamics import ignored_in_steady_cycle
-from rr_opt.report.document import Fact
 
 _NEGLIGIBLE = 1e-4
 """A coefficient this small, relative to the largest, is what an optimiser leaves of 0."""
@@ -52,18 +48,10 @@ def _harmonics(gait: Gait) -> tuple[Fact, ...]:
 def speed_fact(speed: float) -> Fact:
     """A signed mean speed, and which platform leads."""
     leading = 1 if speed > 0 else 2
-    return Fact("speed", speed_text(speed), f"{direction_text(speed)}: platform {leading} leads")
+    return signed_fact("speed", speed, f"{direction_text(speed)}: platform {leading} leads")
 
 
-def ignored_effects(robot: Robot) -> tuple[str, ...]:
-    """One sentence that names the robot's effects which steady motion ignores; empty if none."""
-    names, of_servo = ignored_in_steady_cycle(robot), ignored_in_steady_cycle(robot, Port.ACTUATION)
-    if not names:
-        return ()
-    text = (
-        f"{listed(names)} {'is' if len(names) == 1 else 'are'} ignored: the motion is that on a "
-        "level, uniform floor without side slip, driven by the angle that the servo makes."
-    )
-    if of_servo:
-        text += f" Command the servo such that it makes this angle despite {listed(of_servo)}."
-    return (text,)
+def signed_fact(label: str, speed: float, detail: str) -> Fact:
+    """A signed speed in m/s, with mm/s and a remark as its detail."""
+    value, _, other = speed_text(speed).partition(" (")
+    return Fact(label, value, f"({other}, {detail}" if other else detail)

@@ -1,34 +1,22 @@
-"""A gait as set points for a controller, what they cost in speed, and their file."""
+"""The report of set points: what each step from the gait to them costs in speed."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
-from pathlib import Path
-from typing import Any, Literal
+from collections.abc import Iterator
+from typing import Any
 
-import numpy as np
-
-from rr_opt.files.record import plain
-from rr_opt.formatting import QUANTITIES, number, speed_text, with_unit
-from rr_opt.model.problem import LARGEST_EXCESS
-from rr_opt.motion.setpoints import CENTRE, COUNT, Cost, SetPoints, interpolated
-from rr_opt.report.archive import file_for_result, write_text
-from rr_opt.report.document import Document, Fact, Figure, Section, csv_text
+from rr_opt.documents.document import Fact, facts_alone
+from rr_opt.documents.report import Report
+from rr_opt.formatting import number, speed_text, with_unit
+from rr_opt.motion.setpoints import COUNT, SetPoints
 from rr_opt.report.gait import gait_facts
-from rr_opt.report.motion import GaitResult
-from rr_opt.report.result import Progress, quiet
+from rr_opt.results.setpoints import ExportedGait
 from rr_opt.version import __version__
 
-Format = Literal["csv", "c-header", "servo"]
-
-ENDINGS: dict[Format, str] = {"csv": "-angles.csv", "c-header": ".h", "servo": "-counts.csv"}
-"""What the name of a file ends with, unless the user gives another name."""
-
 MODEL = (
-    "Between set points the servo is taken to move at constant speed, and to be at each when the "
-    "next one is sent. Its lag is not counted."
+    "The servo is assumed to move at constant speed between set points and to reach each one when "
+    "the next is sent. Its lag is ignored."
 )
 
 _NOTHING = 1e-6
@@ -36,83 +24,41 @@ _NOTHING = 1e-6
 
 _STEPS = {
     "period": "by the changed period",
-    "holding": "by moving straight from one set point to the next",
+    "holding": "by moving in straight lines between set points",
     "rounding": f"by rounding to counts of {1e3 * COUNT:.2f} mrad",
 }
 
 
-@dataclass(frozen=True, repr=False)
-class ExportedGait(GaitResult):
-    """A gait as set points: `points` has them as arrays, `cost` what they lose in speed."""
-
-    points: SetPoints
-    cost: Cost
-    format: Format
-
-    @property
-    def text(self) -> str:
-        """The content of the file for the controller."""
-        return text_of(self.points, self.format)
-
-    @property
-    def beyond_servo(self) -> tuple[str, ...]:
-        """A sentence if the servo is too slow for the steps between set points."""
-        angles = self.points.rounded if self.format == "servo" else self.points.angles
-        needed = interpolated(angles, self.points.rate).peak_rate
-        limit, both = self.robot.servo.rate_limit, QUANTITIES["rate"].both
-        if needed <= limit * (1 + LARGEST_EXCESS):
-            return ()
-        return (
-            f"A step between set points needs {both(needed)}, and the servo's rate limit is "
-            f"{both(limit)}. The cost in speed is computed as if the servo could.",
-        )
-
-    def record(self, files: Sequence[Path] = ()) -> dict[str, Any]:
-        """Rate, period, the speed lost (negative) or gained by each step, SI, and the file."""
-        points, cost = self.points, self.cost
-        record = {
-            "gait": points.gait,
-            "status": self.source_status,
-            "format": self.format,
-            "rate": points.rate,
-            "points": len(points.angles),
-            "period": points.played.period,
-            "speed": cost.nominal,
-            "speed_left": cost.final,
-            "cost": {"period": 0.0, "holding": 0.0, "rounding": None, **cost.steps},
-            "model": MODEL,
-            "file": str(files[0]) if files else None,
-            "version": __version__,
-        }
-        return plain(record)
-
-    def document(self, figures: Sequence[Figure] = ()) -> Document:
-        """The gait, its set points, and the speed before and after."""
-        facts = super().document()
-        return replace(facts, sections=(*facts.sections, Section("", (MODEL,))))
-
-    def _facts(self) -> Iterator[Fact]:
-        points, cost = self.points, self.cost
-        rate = f"{with_unit(points.rate, '', 6)} a second, one every {number(1e3 / points.rate)} ms"
-        yield from gait_facts(points.gait)
-        yield Fact("set points", f"{len(points.angles)} a period, {rate}")
-        yield Fact("  period", _period_text(points))
-        yield Fact("speed", f"{speed_text(cost.nominal)}, of the gait itself")
-        for name, change in cost.steps.items():
-            yield Fact(f"  {name}", f"{_change_text(change, cost.nominal)} {_STEPS[name]}")
-        total = _change_text(sum(cost.steps.values()), cost.nominal)
-        yield Fact("  left", f"{speed_text(cost.final)}, {total}")
-
-    def save(
-        self, path: str | Path, *, figures: bool = True, progress: Progress = quiet
-    ) -> list[Path]:
-        """Write the file for the controller."""
-        return [write_text(file_for_result(Path(path)), self.text)]
+def record(result: ExportedGait) -> dict[str, Any]:
+    """Rate, period, and the speed lost (negative) or gained by each step, SI."""
+    points, cost = result.points, result.cost
+    return {
+        "gait": points.gait,
+        "status": result.source_status,
+        "format": result.format,
+        "rate": points.rate,
+        "points": len(points.angles),
+        "period": points.played.period,
+        "speed": cost.nominal,
+        "speed_left": cost.final,
+        "cost": {"period": 0.0, "holding": 0.0, "rounding": None, **cost.steps},
+        "model": MODEL,
+        "file": None,
+        "version": __version__,
+    }
 
 
-def setpoints_file(path: Path | None, name: str, format: Format) -> Path:
-    """The file of set points: `path`, or out/NAME-... Raises InputError if it cannot be written."""
-    return file_for_result(path or Path("out") / f"{name}{ENDINGS[format]}")
+def _facts(result: ExportedGait) -> Iterator[Fact]:
+    points, cost = result.points, result.cost
+    rate = f"{with_unit(points.rate, '', 6)} a second, one every {number(1e3 / points.rate)} ms"
+    yield from gait_facts(points.gait)
+    yield Fact("set points", f"{len(points.angles)} a period, {rate}")
+    yield Fact("  period", _period_text(points))
+    yield Fact("speed", f"{speed_text(cost.nominal)}, of the gait itself")
+    for name, change in cost.steps.items():
+        yield Fact(f"  {name}", f"{_change_text(change, cost.nominal)} {_STEPS[name]}")
+    total = _change_text(sum(cost.steps.values()), cost.nominal)
+    yield Fact("  left", f"{speed_text(cost.final)}, {total}")
 
 
 def _period_text(points: SetPoints) -> str:
@@ -133,50 +79,4 @@ def _change_text(change: float, nominal: float) -> str:
     return f"{'+' if change > 0 else ''}{number(1e3 * change, 3)} mm/s{share}"
 
 
-def text_of(points: SetPoints, format: Format) -> str:
-    """The content of the file: a row for each set point, t (s) with phi (rad), phi_deg (degrees) or
-    the count, 512 where phi is 0; or an array for C.
-
-    Raises InputError for an angle beyond the servo's counts.
-    """
-    times = (np.arange(len(points.angles)) / points.rate).tolist()
-    if format == "csv":
-        angles = points.angles.tolist(), np.degrees(points.angles).tolist()
-        return csv_text(("t", "phi", "phi_deg"), zip(times, *angles, strict=True))
-    if format == "servo":
-        return csv_text(("t", "count"), zip(times, points.counts.tolist(), strict=True))
-    return _c_header(points)
-
-
-_PER_LINE = 6
-
-
-def _c_header(points: SetPoints) -> str:
-    numbers = [_c_float(angle) for angle in points.angles]
-    rows = [numbers[i : i + _PER_LINE] for i in range(0, len(numbers), _PER_LINE)]
-    array = ",\n".join("    " + ", ".join(row) for row in rows)
-    return f"""\
-/* Set points of a Roller Racer gait, written by rr-opt {__version__}.
- *
- * Send rr_gait_angle[i % RR_GAIT_POINTS] at t = i/RR_GAIT_RATE. The angle is phi, from platform
- * 1 to platform 2, in rad. As CDS5516 counts: {CENTRE} + phi * 1024 * 180/(300 * pi).
- */
-#ifndef RR_GAIT_H
-#define RR_GAIT_H
-
-#define RR_GAIT_POINTS {len(numbers)} /* set points in a period */
-#define RR_GAIT_RATE {_c_float(points.rate)} /* set points a second */
-#define RR_GAIT_PERIOD {_c_float(points.played.period)} /* s */
-
-static const float rr_gait_angle[RR_GAIT_POINTS] = {{
-{array}
-}};
-
-#endif
-"""
-
-
-def _c_float(value: float) -> str:
-    """A float literal of C; rounding to nothing has no sign."""
-    text = f"{0.0 if math.isclose(value, 0.0, abs_tol=1e-12) else value:.9g}"
-    return (text if any(mark in text for mark in ".e") else f"{text}.0") + "f"
+REPORT = Report(record, lambda result, _: facts_alone(_facts(result), MODEL))

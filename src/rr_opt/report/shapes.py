@@ -1,218 +1,56 @@
-"""What waveforms are worth: the fastest gait of each family, side by side."""
+"""The report of the waveforms: a row for each family, in a table, as CSV, and in full as JSON."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from itertools import pairwise
-from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any
 
+from rr_opt.documents import document as doc
+from rr_opt.documents.archive import strict_json
+from rr_opt.documents.report import Report
 from rr_opt.files.record import plain
 from rr_opt.formatting import direction_text, number, with_unit
-from rr_opt.model.problem import GaitBounds
 from rr_opt.outcome import Status
-from rr_opt.report.archive import strict_json
-from rr_opt.report.document import (
-    Badge,
-    Captions,
-    Document,
-    Figure,
-    Gallery,
-    Section,
-    Table,
-    checks,
-    csv_text,
-    table,
-    versions,
-)
-from rr_opt.report.fastest import FastestGait
-from rr_opt.report.result import Check, Result
-from rr_opt.version import __version__
-
-MISSED = 1e-4
-"""A family that contains another and comes out slower by more than this, relative, missed an
-optimum; less is what solvers leave."""
-
-COLUMNS = ("shape", "status", "speed", "gain", "amplitude", "period", "offset", "inertia_ratio",
-           "peak_angle", "peak_rate", "peak_torque", "held_by", "message")  # fmt: skip
+from rr_opt.report.captions import captions
+from rr_opt.results.fastest import FastestGait
+from rr_opt.results.shapes import FastestShapes, family
 
 
-@dataclass(frozen=True, repr=False)
-class FastestShapes(Result):
-    """The fastest gait of each family of waveforms under the same limits.
-
-    answers   a FastestGait for the sine, 3 and 5 harmonics, and a free gait: each family contains
-              the one before
-    """
-
-    RECORD = "shapes.json"
-    OTHERS = ("shapes.csv", "sine.json", "fourier-3.json", "fourier-5.json", "free.json")
-    CAPTIONS: ClassVar[Captions] = {
-        "shapes": (
-            "The best gait of each family",
-            "Angle and rate over a period for each family, and the speed of each",
-            "One period of the best gait of each family, under the same limits. Dashed grey: the "
-            "sine. Dashed red: the limit on the rate.",
-        )
+def record(result: FastestShapes) -> dict[str, Any]:
+    """The content of shapes.json: each row of shapes.csv with the whole result."""
+    return {
+        "status": result.status.value,
+        "message": result.message,
+        "problem": result.name,
+        "shapes": [
+            {**plain(_row(result, one)), "file": _file(one), "result": one.record()}
+            for one in result.answers
+        ],
     }
 
-    name: str
-    sha256: str
-    answers: tuple[FastestGait, ...]
 
-    @property
-    def solved(self) -> list[FastestGait]:
-        """Those with a confirmed optimum."""
-        return [one for one in self.answers if one.status is Status.OPTIMAL]
-
-    @property
-    def status(self) -> Status:
-        """The worst of them all."""
-        order = [Status.NOT_CONVERGED, Status.INFEASIBLE, Status.OPTIMAL]
-        return min((one.status for one in self.answers), key=order.index)
-
-    @property
-    def checks(self) -> list[Check]:
-        """Those of all families."""
-        return [check for one in self.answers for check in one.checks]
-
-    @property
-    def warnings(self) -> tuple[str, ...]:
-        """Those of any family: all have one robot."""
-        return self.answers[0].warnings
-
-    def gain(self, answer: FastestGait) -> float | None:
-        """Speed over the sine's, less 1; None if either has no gait."""
-        speed, sine = answer.speed, self.answers[0].speed
-        return None if speed is None or sine is None else abs(speed) / abs(sine) - 1
-
-    @property
-    def message(self) -> str:
-        """How much faster than a sine the other waveforms are, in a sentence."""
-        failed = [
-            f"{family(one)}: {one.message}"
-            for one in self.answers
-            if one.status is not Status.OPTIMAL
-        ]
-        solved = [(one, abs(one.speed)) for one in self.solved if one.speed is not None]
-        if failed or len(solved) < 2:
-            return " ".join(failed)
-        speeds = ", ".join(f"{1e3 * speed:.1f} mm/s with {_with(one)}" for one, speed in solved)
-        gain = 100 * (solved[-1][1] / solved[0][1] - 1)
-        text = f"Under the same limits {speeds}: {gain:.1f} % more than the best sine."
-        for (smaller, slow), (larger, fast) in pairwise(solved):
-            if fast < slow * (1 - MISSED):
-                text += (
-                    f" But {family(larger)} came out slower than {family(smaller)}, which it "
-                    "contains: a better gait was missed."
-                )
-        return text
-
-    def record(self, files: Sequence[Path] = ()) -> dict[str, Any]:
-        """The content of shapes.json: each row of shapes.csv with the whole result."""
-        return {
-            "status": self.status.value,
-            "message": self.message,
-            "problem": self.name,
-            "shapes": [
-                {**plain(self._row(one)), "file": _file(one), "result": one.record()}
-                for one in self.answers
-            ],
-            "version": __version__,
-            "input_sha256": self.sha256,
-        }
-
-    def _tables(self) -> dict[str, str]:
-        rows = [list(self._row(one).values()) for one in self.answers]
-        results = {_file(one): strict_json(one.record()) for one in self.answers}
-        return {"shapes.csv": csv_text(COLUMNS, rows, digits=12), **results}
-
-    def _row(self, answer: FastestGait) -> dict[str, Any]:
-        row: dict[str, Any] = dict.fromkeys(COLUMNS)
-        row |= {"shape": family(answer), "status": answer.status.value, "message": answer.message}
-        gait, replay = answer.gait, answer.replay
-        if gait and replay:
-            row |= {
-                "speed": answer.speed,
-                "gain": self.gain(answer),
-                "amplitude": gait.amplitude,
-                "period": gait.period,
-                "offset": gait.offset,
-                "inertia_ratio": answer.inertia_ratio,
-                "peak_angle": replay.reached["angle"],
-                "peak_rate": replay.reached["rate"],
-                "peak_torque": replay.reached["torque"],
-                "held_by": " ".join(_active(answer)),
-            }
-        return row
-
-    def document(self, figures: Sequence[Figure] = ()) -> Document:
-        """The families side by side, and every check."""
-        results = [(family(one), check) for one in self.answers for check in one.checks]
-        passed = sum(check.passed for _, check in results)
-        every = checks((check.passed, f"{name}: {check.sentence}") for name, check in results)
-        count = f"{passed} of {len(results)} passed: replay, limits, and a sweep of all sines."
-        title = "Shapes of gait"
-        if len(self.solved) > 1:
-            gain = self.gain(self.solved[-1]) or 0.0
-            title = f"A free gait is {100 * gain:.0f} % faster than the best sine"
-        return Document(
-            name=self.name,
-            kind="shapes of gait",
-            title=title,
-            lead=self.message,
-            good=self.status is Status.OPTIMAL,
-            sections=(
-                Section("", (Gallery(tuple(figures)),), brief=False),
-                Section("Families", (self._families(),)),
-                Section("Checks", (count,)),
-                Section("", (every,), brief=False),
-            ),
-            footer=versions(self.sha256),
-        )
-
-    def _families(self) -> Table:
-        head = ["Shape", "Speed", "Over the sine", "Amplitude", "Period", "J20/J10", "Limited by"]
-        rows = []
-        for one in self.answers:
-            gait, speed, gain = one.gait, one.speed, self.gain(one)
-            if gait is None or speed is None or one.status is not Status.OPTIMAL:
-                rows.append([family(one), Badge(one.status.words), *[None] * 5])
-                continue
-            rows.append(
-                [
-                    family(one),
-                    f"{1e3 * abs(speed):.1f} mm/s {direction_text(speed)}",
-                    f"{100 * gain:+.1f} %" if gain else None,
-                    with_unit(gait.amplitude, "rad"),
-                    with_unit(gait.period, "s"),
-                    number(one.inertia_ratio or 0.0),
-                    ", ".join(_active(one)) or "no limit",
-                ]
-            )
-        return table(head, rows)
-
-    def _drawn(self) -> dict[str, str]:
-        from rr_opt.report.figures.shapes import draw
-
-        drawn = draw(self)
-        return {"shapes": drawn} if drawn else {}
+def tables(result: FastestShapes) -> dict[str, str]:
+    """shapes.csv, and the record of each family."""
+    rows = [_row(result, one) for one in result.answers]
+    text = doc.csv_text(list(rows[0]), [list(row.values()) for row in rows], digits=12)
+    return {"shapes.csv": text} | {_file(o): strict_json(o.record()) for o in result.answers}
 
 
-def family(answer: FastestGait) -> str:
-    """`sine`, `3 harmonics` or `free`."""
-    return family_name(answer.problem.gait)
-
-
-def family_name(gait: GaitBounds) -> str:
-    """`sine`, `3 harmonics` or `free`."""
-    return f"{gait.harmonics} harmonics" if gait.shape == "fourier" else gait.shape
-
-
-def _with(answer: FastestGait) -> str:
-    shape = answer.problem.gait.shape
-    return {"free": "a free gait", "sine": "a sine"}.get(shape, family(answer))
+def _row(result: FastestShapes, answer: FastestGait) -> dict[str, Any]:
+    gait, replay = answer.gait, answer.replay
+    solved = gait is not None and replay is not None
+    reached = replay.reached if replay else {}
+    return {
+        "shape": family(answer),
+        "status": answer.status.value,
+        "speed": answer.speed if solved else None,
+        "gain": result.gain(answer) if solved else None,
+        **{name: getattr(gait, name, None) for name in ("amplitude", "period", "offset")},
+        "inertia_ratio": answer.inertia_ratio if solved else None,
+        **{f"peak_{name}": reached.get(name) for name in ("angle", "rate", "torque")},
+        "held_by": " ".join(answer.active) if solved else None,
+        "message": answer.message,
+    }
 
 
 def _file(answer: FastestGait) -> str:
@@ -220,5 +58,60 @@ def _file(answer: FastestGait) -> str:
     return "-".join(reversed(family(answer).replace("harmonics", "fourier").split())) + ".json"
 
 
-def _active(answer: FastestGait) -> list[str]:
-    return [row.name for row in answer.limits.values() if row.active] if answer.replay else []
+def document(result: FastestShapes, figures: Sequence[doc.Figure] = ()) -> doc.Document:
+    """The families side by side, and every check."""
+    results = [(family(one), check) for one in result.answers for check in one.checks]
+    passed = sum(check.passed for _, check in results)
+    every = doc.checks((check.passed, f"{name}: {check.sentence}") for name, check in results)
+    count = f"{passed} of {len(results)} passed: replay, limits, and a sweep of all sines."
+    title = "Waveforms"
+    if len(result.solved) > 1:
+        gain = result.gain(result.solved[-1]) or 0.0
+        title = f"A free gait is {100 * gain:.0f} % faster than the best sine"
+    return doc.Document(
+        name=result.name,
+        kind="waveforms",
+        title=title,
+        lead=result.message,
+        good=result.status is Status.OPTIMAL,
+        sections=(
+            doc.gallery(figures),
+            doc.Section("Families", (_families(result),)),
+            doc.Section("Checks", (count,)),
+            doc.Section("", (every,), brief=False),
+        ),
+        footer=doc.versions(result.sha256),
+    )
+
+
+def _families(result: FastestShapes) -> doc.Table:
+    head = ["Shape", "Speed", "Gain over the sine", "Amplitude", "Period", "J20/J10", "Limited by"]
+    rows = []
+    for one in result.answers:
+        gait, speed, gain = one.gait, one.speed, result.gain(one)
+        if gait is None or speed is None or one.status is not Status.OPTIMAL:
+            rows.append([family(one), doc.Badge(one.status.words), *[None] * 5])
+            continue
+        rows.append(
+            [
+                family(one),
+                f"{1e3 * abs(speed):.1f} mm/s {direction_text(speed)}",
+                f"{100 * gain:+.1f} %" if gain else None,
+                with_unit(gait.amplitude, "rad"),
+                with_unit(gait.period, "s"),
+                number(one.inertia_ratio or 0.0),
+                ", ".join(one.active) or "no limit",
+            ]
+        )
+    return doc.table(head, rows)
+
+
+REPORT = Report(
+    record,
+    document,
+    "shapes.json",
+    tables=tables,
+    others=("shapes.csv", "sine.json", "fourier-3.json", "fourier-5.json", "free.json"),
+    figures="rr_opt.report.figures.shapes",
+    captions=captions("shapes"),
+)

@@ -1,193 +1,186 @@
-"""A study that was solved: its outcome, and its report."""
+"""The report of a study."""
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import cached_property
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from rr_opt.array import Array
-from rr_opt.design.study.plan import branches, plan
-from rr_opt.design.study.row import Row
-from rr_opt.files.record import plain
-from rr_opt.files.study_file import Study
-from rr_opt.files.study_keys import Key
-from rr_opt.formatting import QUANTITIES, direction_text, pace_text, with_unit
+from rr_opt.documents import document as doc
+from rr_opt.documents.report import Report
+from rr_opt.formatting import direction_text, number, speed_text, with_unit
 from rr_opt.outcome import Status
-from rr_opt.report.document import Document, Figure
-from rr_opt.report.gait import ignored_effects
-from rr_opt.report.result import Progress, Result, quiet
-from rr_opt.report.study_page import CAPTIONS, COSTS, front, study_document
+from rr_opt.report.captions import captions
 from rr_opt.report.study_table import study_columns, study_csv, write_netcdf
 from rr_opt.report.trajectory_file import netcdf_writer
-from rr_opt.version import __version__
+from rr_opt.results.inputs import axis_words, held_words
+from rr_opt.results.study import SolvedStudy
 
-_LIKE = {"angle_limit": "angle", "rate_limit": "rate", "torque_limit": "torque"}
-_SAME_SPEED = 1e-8
-"""Cases whose speeds differ by less, relative, are equally fast."""
-
-
-def unit_of(key: Key) -> tuple[str, float]:
-    """The unit, empty for none, and how many of it are one SI unit."""
-    name = str(key.path[-1] if isinstance(key.path[-1], str) else key.path[-2])
-    kind = QUANTITIES.get(_LIKE.get(name, name))
-    unit, factor = kind.common if kind else (key.unit or "", 1.0)
-    return ("mm", 1e3) if unit == "m" else (unit, factor)
+COSTS = ("peak_torque", "energy_per_metre")
+_MOST_ROWS = 300
 
 
-def value_text(key: Key, value: Any, digits: int = 4) -> str:
-    """A value of a key for people: a float, SI, in their unit; infinity is `no limit`."""
-    if not isinstance(value, float):
-        return str(value)
-    unit, factor = unit_of(key)
-    return with_unit(factor * value, unit, digits) if np.isfinite(value) else "no limit"
+def study_record(result: SolvedStudy) -> dict[str, Any]:
+    """The content of study.json, SI: the table's columns row by row, and the gaits."""
+    columns = study_columns(result)
+    cases = ({c.name: c.cells[k] for c in columns} for k in range(len(result.rows)))
+    return {
+        "status": "studied",
+        "message": result.message,
+        "study": result.study.name,
+        "counts": {status.value: count for status, count in result.counts.items()},
+        "varied": [[line.key.name for line in axis.lines] for axis in result.study.axes],
+        "shape": result.study.shape,
+        "pareto": {name: result.front(name) for name in COSTS},
+        "cases": [
+            {
+                **record,
+                "gait": dict(row.optimum.gait) if row.optimum else None,
+                "continued_from": row.continued,
+            }
+            for record, row in zip(cases, result.rows, strict=True)
+        ],
+        "units": {column.name: column.unit for column in columns if column.unit},
+    }
 
 
-@dataclass(frozen=True, repr=False)
-class SolvedStudy(Result):
-    """A study with all its rows.
+def study_document(result: SolvedStudy, figures: Sequence[doc.Figure] = ()) -> doc.Document:
+    """What was found, in figures and tables."""
+    speed, cases = 1e3 * result.speed, len(result.rows)
+    good = result.fastest is not None
+    title = f"None of {cases} cases has an optimum"
+    if good:
+        span = f"{np.nanmin(speed):.1f} to {np.nanmax(speed):.1f} mm/s"
+        title = f"The best speed of {cases} cases ranges from {span}"
+    shown = min(cases, _MOST_ROWS)
+    return doc.Document(
+        name=result.study.name,
+        kind="study",
+        title=title,
+        lead=" ".join([result.message, *result.warnings]),
+        good=good,
+        sections=(
+            doc.Section("", (doc.Facts(_key_facts(result), key=True),), brief=False),
+            doc.Section("", (doc.Facts(tuple(_facts(result))),)),
+            doc.gallery(figures),
+            doc.Section("Fastest for their cost", (_front_table(result),), brief=False),
+            doc.Section("Cases without an optimum", (_failures(result),), brief=False),
+            doc.Section(
+                "All cases" if shown == cases else f"The first {shown} cases",
+                (_cases_table(result, range(shown)),),
+                brief=False,
+            ),
+        ),
+        footer=(
+            "Each optimum was checked against its limits and a fine simulation; `rr-opt "
+            "maximize-speed` also checks a case against a sweep.",
+            *doc.versions(result.study.sha256),
+        ),
+    )
 
-    rows  one for each case, in the order of `study.problems`; `row.optimum` is None where there is
-          none, and `row.message` says why
-    """
 
-    RECORD = "study.json"
-    OTHERS = ("study.csv", "study.nc")
-    CAPTIONS = CAPTIONS
+def _facts(result: SolvedStudy) -> Iterator[doc.Fact]:
+    rows, shape = result.rows, result.study.shape
+    product = f"{' x '.join(map(str, shape))} = " if len(shape) > 1 else ""
+    ended = ", ".join(f"{count} {status.words}" for status, count in result.counts.items() if count)
+    started = Counter(row.started for row in rows)
+    yield doc.Fact("cases", f"{product}{len(rows)}", ended)
+    yield doc.Fact("branches", str(len({one for one in result.branches if one})))
+    yield doc.Fact("solved from", ", ".join(f"{n} {how}" for how, n in started.items()))
+    best = result.fastest
+    optimum = rows[best].optimum if best is not None else None
+    if best is None or optimum is None:
+        return
+    gait = f"{with_unit(optimum.amplitude, 'rad')}, {with_unit(optimum.period, 's')}"
+    yield doc.Fact("fastest", speed_text(optimum.speed), result.inputs_text(best))
+    yield doc.Fact("", gait, f"limited by {', '.join(held_words(optimum.held))}")
+    least = int(np.nanargmin(result.values("cost_of_transport")))
+    cheap = rows[least].optimum
+    if cheap:
+        text = f"{number(cheap.energy_per_metre)} J/m, {1e3 * abs(cheap.speed):.1f} mm/s"
+        yield doc.Fact("least energy", text, result.inputs_text(least))
 
-    study: Study
-    rows: tuple[Row, ...]
 
-    @cached_property
-    def branches(self) -> tuple[int | None, ...]:
-        """The number of each case's branch of optima, or None."""
-        adjacent = plan([axis.numbers for axis in self.study.axes], self.study.shape).adjacent
-        return tuple(branches(self.rows, adjacent))
+def _key_facts(result: SolvedStudy) -> tuple[doc.Fact, ...]:
+    counts, least = result.counts, result.values("cost_of_transport")
+    cold = sum(row.started != "warm" for row in result.rows)
+    cost = "–" if np.isnan(least).all() else number(float(np.nanmin(least)), 3)
+    return (
+        doc.Fact(f"of {len(result.rows)} cases have an optimum", str(counts[Status.OPTIMAL])),
+        doc.Fact("have no feasible gait", str(counts[Status.INFEASIBLE])),
+        doc.Fact("did not converge", str(counts[Status.NOT_CONVERGED])),
+        doc.Fact("branches of optima", str(len({one for one in result.branches if one}))),
+        doc.Fact("cases checked from cold starts", str(cold)),
+        doc.Fact("least cost of transport", cost),
+    )
 
-    def values(self, name: str) -> Array:
-        """A number of every optimum by its name in `row.optimum`, nan where there is none."""
-        return np.array(
-            [np.nan if row.optimum is None else getattr(row.optimum, name) for row in self.rows],
-            float,
+
+def _front_table(result: SolvedStudy) -> doc.Table:
+    """The cases that are on a front, the fastest first."""
+    fronts = [result.front(name) for name in COSTS]
+    cases = sorted({case for found in fronts for case in found}, key=lambda k: -result.speed[k])
+    return _cases_table(result, cases[:20])
+
+
+def _failures(result: SolvedStudy) -> doc.Table:
+    rows = [
+        [result.inputs_text(case), doc.Badge(row.status.words), row.message]
+        for case, row in enumerate(result.rows)
+        if row.optimum is None
+    ]
+    return doc.table(["Case", "Status", "Why"], rows[:_MOST_ROWS])
+
+
+def _cases_table(result: SolvedStudy, cases: Iterable[int]) -> doc.Table:
+    axes = list(map(axis_words, result.study.axes))
+    head = [*axes, "Speed", "Amplitude", "Period", "Torque", "Energy", "Limited by", "Branch"]
+    rows = []
+    for case in cases:
+        row, values = result.rows[case], result.value_texts(case)
+        one = row.optimum
+        if one is None:
+            rows.append([*values, *[None] * 5, row.status.words, None])
+            continue
+        rows.append(
+            [
+                *values,
+                f"{1e3 * abs(one.speed):.1f} mm/s {direction_text(one.speed)}",
+                with_unit(one.amplitude, "rad", 3),
+                with_unit(one.period, "s", 3),
+                with_unit(one.peak_torque, "N m", 3),
+                with_unit(one.energy_per_metre, "J/m", 3),
+                ", ".join(held_words(one.held)),
+                str(result.branches[case]),
+            ]
         )
-
-    @property
-    def speed(self) -> Array:
-        """|speed| of every case, m/s; nan where there is no optimum."""
-        return np.abs(self.values("speed"))
-
-    @property
-    def fastest(self) -> int | None:
-        """The number of the case with the fastest optimum; of equally fast ones the first."""
-        speed = self.speed
-        if np.isnan(speed).all():
-            return None
-        return int(np.flatnonzero(speed >= np.nanmax(speed) * (1 - _SAME_SPEED))[0])
-
-    @property
-    def counts(self) -> dict[Status, int]:
-        """How many rows ended in each way."""
-        counted = Counter(row.status for row in self.rows)
-        return {status: counted[status] for status in Status}
-
-    def inputs_text(self, case: int) -> str:
-        """`limits.rate = 30 rpm, direction = forward`."""
-        inputs = self.study.inputs(case)
-        keys = [line.key for axis in self.study.axes for line in axis.lines]
-        return ", ".join(f"{key.name} = {value_text(key, inputs[key.name])}" for key in keys)
-
-    @property
-    def message(self) -> str:
-        """The outcome in a sentence."""
-        best = self.fastest
-        if best is None:
-            return f"None of the {len(self.rows)} cases has an optimum."
-        speed = float(self.values("speed")[best])
-        return (
-            f"The fastest of {len(self.rows)} cases drives {direction_text(speed)} at "
-            f"{pace_text(speed)}, with {self.inputs_text(best)}."
-        )
-
-    @property
-    def warnings(self) -> tuple[str, ...]:
-        """Which effects of the robot the study ignores, and how many cases have no optimum."""
-        words = {
-            Status.INFEASIBLE: "no gait that respects all limits",
-            Status.NOT_CONVERGED: "no optimum that the solver could confirm",
-        }
-        counts = self.counts
-        return ignored_effects(self.study.problems[0].robot) + tuple(
-            f"{counts[status]} of {len(self.rows)} cases: {text}. Their rows say why."
-            for status, text in words.items()
-            if counts[status]
-        )
-
-    @property
-    def status(self) -> Status:
-        """OPTIMAL if any case has an optimum; else INFEASIBLE if no case has a feasible gait."""
-        counts = self.counts
-        if counts[Status.OPTIMAL]:
-            return Status.OPTIMAL
-        return Status.NOT_CONVERGED if counts[Status.NOT_CONVERGED] else Status.INFEASIBLE
-
-    def record(self, files: Sequence[Path] = ()) -> dict[str, Any]:
-        """The content of study.json, SI: the table's columns row by row, and the gaits."""
-        columns = study_columns(self)
-        cases = ({c.name: c.cells[k] for c in columns} for k in range(len(self.rows)))
-        record = {
-            "status": "studied",
-            "message": self.message,
-            "study": self.study.name,
-            "counts": {status.value: count for status, count in self.counts.items()},
-            "varied": [[line.key.name for line in axis.lines] for axis in self.study.axes],
-            "shape": self.study.shape,
-            "pareto": {name: front(self.values(name), self.speed) for name in COSTS},
-            "cases": [
-                {
-                    **record,
-                    "gait": dict(row.optimum.gait) if row.optimum else None,
-                    "continued_from": row.continued,
-                }
-                for record, row in zip(cases, self.rows, strict=True)
-            ],
-            "units": {column.name: column.unit for column in columns if column.unit},
-            "version": __version__,
-            "input_sha256": self.study.sha256,
-        }
-        return plain(record)
-
-    def document(self, figures: Sequence[Figure] = ()) -> Document:
-        """What was found, in figures and tables."""
-        return study_document(self, figures)
-
-    def save(
-        self,
-        path: str | Path,
-        *,
-        figures: bool = True,
-        progress: Progress = quiet,
-        netcdf: bool = False,
-    ) -> list[Path]:
-        """Write study.csv, study.json and, if asked for, study.nc, with figures and page."""
-        check_files(netcdf=netcdf)
-        written = super().save(path, figures=figures, progress=progress)
-        return [*written, write_netcdf(Path(path) / "study.nc", self)] if netcdf else written
-
-    def _tables(self) -> dict[str, str]:
-        return {"study.csv": study_csv(self)}
-
-    def _drawn(self) -> dict[str, str]:
-        from rr_opt.report.figures.study import draw
-
-        return draw(self)
+    return doc.table(head, rows)
 
 
 def check_files(*, netcdf: bool) -> None:
     """Raise InputError, before anything is computed, for a file that cannot be made here."""
     if netcdf:
         netcdf_writer()
+
+
+class _Report(Report):
+    def save(
+        self, result: SolvedStudy, path: str | Path, *, netcdf: bool = False, **options: Any
+    ) -> list[Path]:
+        """Write study.csv, study.json and, if asked for, study.nc, with figures and page."""
+        check_files(netcdf=netcdf)
+        written = super().save(result, path, **options)
+        return [*written, write_netcdf(Path(path) / "study.nc", result)] if netcdf else written
+
+
+REPORT = _Report(
+    study_record,
+    study_document,
+    "study.json",
+    tables=lambda result: {"study.csv": study_csv(result)},
+    others=("study.csv", "study.nc"),
+    figures="rr_opt.report.figures.study",
+    captions=captions("study"),
+)

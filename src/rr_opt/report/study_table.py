@@ -7,18 +7,16 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from operator import attrgetter
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from rr_opt.design.study.row import Optimum, Row
+from rr_opt.documents.document import csv_text
 from rr_opt.formatting import direction_text
-from rr_opt.report.document import csv_text
 from rr_opt.report.trajectory_file import netcdf_writer, write_dataset
+from rr_opt.results.study import SolvedStudy
 from rr_opt.version import __version__
-
-if TYPE_CHECKING:
-    from rr_opt.report.study import SolvedStudy
 
 _OF_OPTIMUM = (
     ("speed", "m/s", "mean speed along the path, positive along platform 1"),
@@ -33,7 +31,7 @@ _OF_OPTIMUM = (
     ("peak_rate", "rad/s", "largest |dphi/dt|"),
     ("peak_torque", "N m", "largest |torque| of the servo"),
     ("least_s1", "m", "smallest S1 = c1 cos phi + c2"),
-    ("energy_per_metre", "J/m", "positive work of the servo per metre of path, none given back"),
+    ("energy_per_metre", "J/m", "positive work of the servo per metre of path, without recovery"),
     ("net_energy_per_metre", "J/m", "net work of the servo per metre: what friction takes"),
     ("cost_of_transport", "1", "energy_per_metre over the weight"),
 )
@@ -69,7 +67,7 @@ def study_columns(result: SolvedStudy) -> list[Column]:
         return of_optima(f"price_{name}", per, meaning, lambda one: prices(one).get(name, 0.0))
 
     def expected(end: int, word: str) -> Column:
-        meaning = f"{word} |speed| that the neighbours let expect"
+        meaning = f"{word} |speed| expected from the neighbours"
         cell = lambda row: row.expected and row.expected[end]  # noqa: E731
         return of_rows(f"expected_{word}", "m/s", meaning, cell)
 

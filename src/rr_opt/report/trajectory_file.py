@@ -6,10 +6,10 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
+from rr_opt.documents.archive import whole
+from rr_opt.documents.document import csv_text
 from rr_opt.motion.rollout import Trajectory
 from rr_opt.outcome import InputError
-from rr_opt.report.archive import whole
-from rr_opt.report.document import csv_text
 from rr_opt.version import __version__
 
 _COLUMNS = {

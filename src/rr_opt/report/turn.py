@@ -1,24 +1,19 @@
-"""The fastest turn: a fastest gait with the arc it drives and the check of its circle."""
+"""The report of a turn: that of a fastest gait, with its arc."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
-from pathlib import Path
+from dataclasses import replace
 from typing import Any
 
 from rr_opt.design.turn import Arc
-from rr_opt.design.turn_target import Target
+from rr_opt.documents import document as doc
 from rr_opt.files.record import plain
-from rr_opt.formatting import direction_text, number, side_text, with_unit
-from rr_opt.model.problem import ANY
-from rr_opt.outcome import Status
-from rr_opt.report.document import Document, Fact, Facts, Figure, Section
-from rr_opt.report.fastest import FastestGait
-from rr_opt.report.fastest_page import fastest_document
-from rr_opt.report.result import Check
-from rr_opt.verify.replay import LARGEST, PERIODS, CircleCheck
+from rr_opt.formatting import number, side_text, with_unit
+from rr_opt.report import fastest
+from rr_opt.report.captions import captions
+from rr_opt.results.turn import FastestTurn
 
 UNITS = {
     "heading": "rad, positive to the left",
@@ -30,141 +25,51 @@ UNITS = {
 }
 
 
-@dataclass(frozen=True, repr=False)
-class FastestTurn(FastestGait):
-    """The fastest gait that makes a turn: as FastestGait, and
-
-    target   what was asked
-    opened   whether the problem fixed the offset, which a turn needs, and it was freed
-    arc      heading, curvature, time and length of the turn; None where there is no gait
-    circle   whether the robot stays on the circle, and comes to it from rest; None likewise
-    """
-
-    target: Target = field(default_factory=Target)
-    opened: bool = False
-    arc: Arc | None = None
-    circle: CircleCheck | None = None
-
-    @property
-    def radius(self) -> float | None:
-        """Of the circle, m, positive, inf for a straight line; None if there is no gait."""
-        if self.arc is None:
-            return None
-        return abs(1 / self.arc.curvature) if self.arc.curvature else math.inf
-
-    @property
-    def turn_prices(self) -> dict[str, float]:
-        """Shadow prices of what was asked of the turn, m/s of |speed| per SI unit."""
-        best, turn = self.optimum.best, self.problem.turn
-        if best is None or turn is None:
-            return {}
-        names = ("curvature", "yaw_rate", "heading")
-        return {name: best.prices[name] for name in names if getattr(turn, name) != ANY}
-
-    @property
-    def checks(self) -> list[Check]:
-        """Those of any fastest gait, and the circle's."""
-        return super().checks + (_circle_checks(self.circle) if self.circle else [])
-
-    @property
-    def headline(self) -> str:
-        """The result in a phrase; empty if nothing was confirmed."""
-        arc = self.arc
-        if arc is None or self.radius is None or self.status is not Status.OPTIMAL:
-            return ""
-        return (
-            f"The fastest turn found goes {direction_text(arc.speed)} and to the "
-            f"{side_text(arc.curvature)} round {with_unit(self.radius, 'm')} at "
-            f"{1e3 * abs(arc.speed):.1f} mm/s"
-        )
-
-    @property
-    def _subject(self) -> str:
-        arc = self.arc
-        if arc is None or self.radius is None:
-            return super()._subject
-        return (
-            f"The fastest turn found goes {direction_text(arc.speed)} and to the "
-            f"{side_text(arc.curvature)}, round a circle of radius {with_unit(self.radius, 'm')},"
-        )
-
-    @property
-    def remarks(self) -> list[str]:
-        """What else there is to know of the gait, in sentences."""
-        if not self.opened or self.arc is None:
-            return super().remarks
-        bounds = self.problem.gait.offset
-        return [
-            *super().remarks,
-            "The problem fixes the offset, and a turn needs one: it was freed to all that the "
-            f"limits allow, {number(bounds.low)} to {number(bounds.high)} rad.",
-        ]
-
-    def document(self, figures: Sequence[Figure] = ()) -> Document:
-        """The report of a fastest gait, with its arc."""
-        facts = _facts(self, self.arc) if self.arc else ()
-        return fastest_document(self, figures, Section("Turn", (Facts(tuple(facts)),)))
-
-    def record(self, files: Sequence[Path] = ()) -> dict[str, Any]:
-        """The content of result.json: that of any fastest gait, and `turn`."""
-        record, target, circle = super().record(), self.target, self.circle
-        turn = {
-            "asked": {
-                "heading": target.heading,
-                "radius": target.radius,
-                "within": target.within,
-                "length": target.length,
-                "cycles": "whole" if target.whole else "any",
-            },
-            "offset_opened": self.opened,
-            "arc": self.arc and {**plain(self.arc), "radius": self.radius},
-            "prices": self.turn_prices,
-            "circle_check": circle
-            and {
-                "ends": circle.ends,
-                "mean": circle.mean,
-                "rest": circle.rest,
-                "rest_periods": circle.periods,
-                "time_constant": circle.transient.constant,
-                "distance_lost": circle.transient.lost,
-                "delay": circle.transient.delay,
-            },
-        }
-        return record | {"turn": plain(turn), "units": {**record["units"], **UNITS}}
+def turn_document(turn: FastestTurn, figures: Sequence[doc.Figure] = ()) -> doc.Document:
+    """The report of a fastest gait, with its arc."""
+    facts = tuple(_facts(turn, turn.arc)) if turn.arc else ()
+    report = fastest.fastest_document(turn, figures, doc.Section("Turn", (doc.Facts(facts),)))
+    return replace(report, kind="fastest turn")
 
 
-def _circle_checks(circle: CircleCheck) -> list[Check]:
-    """Whether P stays on the circle, and whether a start from rest converges to it."""
-    tail = f"(at most {LARGEST:.0e} allowed)."
-    start = circle.transient
-    ahead = "behind" if start.lost >= 0 else "ahead of"
-    return [
-        Check(
-            max(circle.ends, circle.mean) <= LARGEST,
-            f"{PERIODS} periods by CVODES: P stays within {circle.ends:.1e} of the radius of "
-            f"where the circle has it, and the mean circle's radius differs by {circle.mean:.1e} "
-            f"{tail}",
-        ),
-        Check(
-            circle.rest <= LARGEST,
-            f"From rest, after {circle.periods} periods by CVODES: the radius differs by "
-            f"{circle.rest:.1e} {tail} The deviation falls to 1/e in "
-            f"{with_unit(start.constant, 's')}, and the robot stays "
-            f"{with_unit(abs(start.lost), 'm')} {ahead} one that is steady from the start.",
-        ),
-    ]
+def turn_record(turn: FastestTurn) -> dict[str, Any]:
+    """The content of result.json: that of any fastest gait, and `turn`."""
+    record, target, circle = fastest.fastest_record(turn), turn.target, turn.circle
+    own = {
+        "asked": {
+            "heading": target.heading,
+            "radius": target.radius,
+            "within": target.within,
+            "length": target.length,
+            "cycles": "whole" if target.whole else "any",
+        },
+        "offset_opened": turn.opened,
+        "arc": turn.arc and {**plain(turn.arc), "radius": turn.radius},
+        "prices": turn.turn_prices,
+        "circle_check": circle
+        and {
+            "ends": circle.ends,
+            "mean": circle.mean,
+            "rest": circle.rest,
+            "rest_periods": circle.periods,
+            "time_constant": circle.transient.constant,
+            "distance_lost": circle.transient.lost,
+            "delay": circle.transient.delay,
+        },
+    }
+    return record | {"turn": plain(own), "units": {**record["units"], **UNITS}}
 
 
-def _facts(turn: FastestTurn, arc: Arc) -> Iterator[Fact]:
+def _facts(turn: FastestTurn, arc: Arc) -> Iterator[doc.Fact]:
     """The arc, or the full circle, and what a slightly easier turn would gain."""
     name = "circle" if turn.target.heading is None else "arc"
     degrees = abs(math.degrees(arc.heading))
-    yield Fact(name, f"{number(degrees)} deg to the {side_text(arc.heading)}")
-    yield Fact("radius", with_unit(turn.radius or math.inf, "m"))
+    yield doc.Fact(name, f"{number(degrees)} deg to the {side_text(arc.heading)}")
+    yield doc.Fact("radius", with_unit(turn.radius or math.inf, "m"))
     periods = f"{number(arc.periods, 6)} periods, steady motion"
-    yield Fact("time", with_unit(arc.time, "s"), periods)
-    yield Fact("length", f"{with_unit(arc.length, 'm')} along the mean circle")
-    yield Fact("yaw rate", f"{number(math.degrees(arc.yaw_rate))} deg/s")
+    yield doc.Fact("time", with_unit(arc.time, "s"), periods)
+    yield doc.Fact("length", f"{with_unit(arc.length, 'm')} along the mean circle")
+    yield doc.Fact("yaw rate", f"{number(math.degrees(arc.yaw_rate))} deg/s")
     asked = {
         "curvature": (arc.curvature, "a radius 1 % wider"),
         "yaw_rate": (arc.yaw_rate, "a yaw rate 1 % lower"),
@@ -174,4 +79,13 @@ def _facts(turn: FastestTurn, arc: Arc) -> Iterator[Fact]:
         value, words = asked[name]
         gain = -0.01 * value * price
         if abs(gain) > 1e-9:
-            yield Fact("price", f"{1e3 * gain:+.3g} mm/s for {words}")
+            yield doc.Fact("price", f"{1e3 * gain:+.3g} mm/s for {words}")
+
+
+REPORT = replace(
+    fastest.REPORT,
+    record=turn_record,
+    document=turn_document,
+    figures="rr_opt.report.figures.turn",
+    captions={**fastest.REPORT.captions, **captions("turn")},
+)

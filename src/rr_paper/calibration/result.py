@@ -9,6 +9,7 @@ import numpy as np
 
 from rr_opt.array import Array
 from rr_opt.files.problem_file import read_problem
+from rr_opt.results.result import Result
 from rr_paper.calibration.comparison import Assessment
 from rr_paper.calibration.coverage import Coverage
 from rr_paper.calibration.fit import Fit
@@ -93,8 +94,8 @@ class Interval:
         return all(low - 1e-12 <= value <= high + 1e-12 for low, high in both)
 
 
-@dataclass(frozen=True)
-class Calibration:
+@dataclass(frozen=True, repr=False)
+class Calibration(Result):
     """What the nine rows say.
 
     assessments      by model and column
@@ -104,6 +105,8 @@ class Calibration:
     coverage         on data of known robots
     alternatives     other readings of J20/J10
     """
+
+    REPORT = "rr_paper.report.calibration"
 
     assessments: Mapping[tuple[str, Column], Assessment]
     posterior: Mapping[Column, Posterior]

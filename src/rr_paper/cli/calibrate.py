@@ -23,8 +23,7 @@ def calibrate(
         steps("starting")
         folder = results_folder(out, "calibration")
         from rr_paper.calibration.calibration import calibrate as compute
-        from rr_paper.report.calibration import CalibrationReport
 
-        found = CalibrationReport(compute(steps))
+        found = compute(steps)
         files = found.save(folder, progress=steps)
     show(found, files, json=json)

@@ -25,8 +25,7 @@ def reproduce(
 
         problem, folder = shipped(), results_folder(out, "paper")
         from rr_paper import reproduction
-        from rr_paper.report.reproduction import ReproductionReport
 
-        found = ReproductionReport(reproduction.reproduce(problem, steps))
+        found = reproduction.reproduce(problem, steps)
         files = found.save(folder, figures=figures, progress=steps)
     show(found, files, json=json)

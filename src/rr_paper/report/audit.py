@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from rr_opt.documents.document import Cell, Table, table
+from rr_opt.documents.prose import prose
 from rr_opt.formatting import number
 from rr_opt.model.ballast import Loads, load_count
-from rr_opt.report.document import Cell, Table, table
-from rr_opt.report.fastest import FastestGait
-from rr_opt.report.prose import prose
+from rr_opt.results.fastest import FastestGait
 from rr_paper import publication
 from rr_paper.best_amplitude import Peak
 from rr_paper.consistency import KAPPA, LARGEST_WHEEL, Hypothesis

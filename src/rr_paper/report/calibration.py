@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
+from rr_opt.documents.document import Badge, Document, Figure, Gallery, Section, Table, Tone, table
+from rr_opt.documents.prose import prose
+from rr_opt.documents.report import Report
 from rr_opt.formatting import number
-from rr_opt.report.document import Badge, Document, Figure, Gallery, Section, Table, Tone, table
-from rr_opt.report.prose import prose
-from rr_opt.report.result import Result
 from rr_opt.version import __version__
 from rr_paper.calibration.models import DRY, MODELS, READINGS, VISCOUS
 from rr_paper.calibration.profiles import JOINT_LEVEL
@@ -22,36 +21,6 @@ from rr_paper.report.captions import captions
 
 _SHORT: dict[Column, str] = {"mean": "first column", "other": "v_exp"}
 _TONES: dict[str, Tone] = {"pinned down": "good", "narrowed": "note", "not identifiable": "warn"}
-
-
-@dataclass(frozen=True, repr=False)
-class CalibrationReport(Result):
-    """A calibration as files: intervals, models, and what follows."""
-
-    RECORD, CAPTIONS = "calibration.json", captions("calibration")
-    OTHERS = (
-        *("intervals.csv", "models.csv", "predictions.csv", "profiles.csv", "posterior.csv"),
-        *("readings.csv", "coverage.csv"),
-    )
-
-    found: Calibration
-
-    def document(self, figures: Sequence[Figure] = ()) -> Document:
-        """Intervals, models, and what follows."""
-        return document(self.found, figures)
-
-    def record(self, files: Sequence[Path] = ()) -> dict[str, Any]:  # noqa: ARG002
-        """The content of calibration.json."""
-        said = conclusions(self.found)
-        return record(self.found, said.verdict, said.follows)
-
-    def _tables(self) -> dict[str, str]:
-        return tables(self.found)
-
-    def _drawn(self) -> dict[str, str]:
-        from rr_paper.report.calibration_figures import draw  # matplotlib takes a second
-
-        return draw(self.found)
 
 
 @dataclass(frozen=True)
@@ -188,3 +157,22 @@ def _sampling(found: Calibration) -> tuple[str, str]:
         f"Rises of the deviance that 95 % of the truths of {found.coverage.sets} simulated data "
         f"sets stay below, in the order of the unknowns: {needed}",
     )
+
+
+def _record(found: Calibration) -> dict[str, Any]:
+    said = conclusions(found)
+    return record(found, said.verdict, said.follows)
+
+
+REPORT = Report(
+    _record,
+    document,
+    "calibration.json",
+    tables=tables,
+    others=(
+        *("intervals.csv", "models.csv", "predictions.csv", "profiles.csv", "posterior.csv"),
+        *("readings.csv", "coverage.csv"),
+    ),
+    figures="rr_paper.report.calibration_figures",
+    captions=captions("calibration"),
+)

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from rr_opt.documents.document import csv_text
 from rr_opt.files.record import plain
-from rr_opt.report.document import csv_text
 from rr_opt.version import __version__
 from rr_paper.calibration.comparison import Assessment
 from rr_paper.calibration.likelihood import measured

@@ -1,6 +1,6 @@
 """Titles, alternative texts and captions of figures, from `rr_paper/data`."""
 
-from rr_opt.report.document import Captions
+from rr_opt.documents.document import Captions
 from rr_paper.publication import read_data
 
 

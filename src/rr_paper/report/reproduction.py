@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from rr_opt.files.record import plain
-from rr_opt.report.document import Document, Figure, Gallery, Section, csv_text, versions
-from rr_opt.report.result import Result
-from rr_opt.version import __version__
+from rr_opt.documents.document import Document, Figure, Gallery, Section, csv_text, versions
+from rr_opt.documents.report import Report
 from rr_paper.publication import CITATION, RATE_LIMIT
 from rr_paper.report.audit import findings
 from rr_paper.report.captions import captions
@@ -20,67 +16,7 @@ from rr_paper.reproduction import Reproduction
 from rr_paper.tables import SpeedSurface
 
 
-@dataclass(frozen=True, repr=False)
-class ReproductionReport(Result):
-    """A reproduction as files: the findings, and figures to compare with the paper's."""
-
-    RECORD, MARKDOWN, CAPTIONS = "reproduce.json", "audit.md", captions("reproduction")
-    OTHERS = (
-        *("figure3.csv", "figure4.csv", "figure5.csv", "figure6.csv", "signs.csv", "tables.csv"),
-        *("audit-signs.csv", "audit-left-out.csv", "audit-readings.csv", "audit-limits.csv"),
-        *("audit-posture.csv", "audit-period.csv", "audit-amplitude.csv", "audit-turning.csv"),
-    )
-
-    found: Reproduction
-
-    @property
-    def warnings(self) -> tuple[str, ...]:
-        """Whether a check is missing."""
-        if self.found.mujoco is not None:
-            return ()
-        return (
-            "MuJoCo is not installed, so it could not be used as a further check of the signs of "
-            "equation (3). Install it with `pip install 'rr-opt[lab]'`.",
-        )
-
-    def document(self, figures: Sequence[Figure] = ()) -> Document:
-        """The findings, and figures to compare with the paper's."""
-        return document(self.found, figures)
-
-    def record(self, files: Sequence[Path] = ()) -> dict[str, Any]:  # noqa: ARG002
-        """The content of reproduce.json: the tables of the audit, in the units of their heads."""
-        record = {
-            "status": "reproduced",
-            "message": self.document().lead,
-            "paper": CITATION,
-            "mujoco_speed": self.found.mujoco,
-            "sections": {
-                one.key: {
-                    "title": one.title,
-                    "finding": one.finding,
-                    "sentences": one.sentences,
-                    "rows": one.table.records,
-                }
-                for one in findings(self.found)
-            },
-            "version": __version__,
-            "input_sha256": self.found.sha256,
-        }
-        return plain(record)
-
-    def _tables(self) -> dict[str, str]:
-        """The curves, and the table of each finding; that of the columns holds Tables 2 and 3."""
-        tables = {f"audit-{one.key}.csv": one.table.csv(digits=9) for one in findings(self.found)}
-        tables["tables.csv"] = tables.pop("audit-columns.csv")
-        return curves(self.found) | tables
-
-    def _drawn(self) -> dict[str, str]:
-        from rr_paper.report.figures import draw  # matplotlib takes a second
-
-        return draw(self.found)
-
-
-def document(found: Reproduction, figures: Sequence[Figure]) -> Document:
+def document(found: Reproduction, figures: Sequence[Figure] = ()) -> Document:
     """The page, its Markdown and the text for a terminal."""
     rows, audit = found.tables.rows, findings(found)
     drawn = {figure.name: figure for figure in figures}
@@ -148,3 +84,46 @@ def _surface(surface: SpeedSurface, every: int) -> str:
         for i in range(0, len(surface.amplitude), 5)
     ]  # fmt: skip
     return csv_text(head, rows)
+
+
+def record(found: Reproduction) -> dict[str, Any]:
+    """The content of reproduce.json: the tables of the audit, in the units of their heads."""
+    sections = {
+        one.key: {
+            "title": one.title,
+            "finding": one.finding,
+            "sentences": one.sentences,
+            "rows": one.table.records,
+        }
+        for one in findings(found)
+    }
+    return {
+        "status": "reproduced",
+        "message": document(found).lead,
+        "paper": CITATION,
+        "mujoco_speed": found.mujoco,
+        "sections": sections,
+    }
+
+
+def tables(found: Reproduction) -> dict[str, str]:
+    """The curves, and the table of each finding; that of the columns holds Tables 2 and 3."""
+    audit = {f"audit-{one.key}.csv": one.table.csv(digits=9) for one in findings(found)}
+    audit["tables.csv"] = audit.pop("audit-columns.csv")
+    return curves(found) | audit
+
+
+REPORT = Report(
+    record,
+    document,
+    "reproduce.json",
+    "audit.md",
+    tables=tables,
+    others=(
+        *("figure3.csv", "figure4.csv", "figure5.csv", "figure6.csv", "signs.csv", "tables.csv"),
+        *("audit-signs.csv", "audit-left-out.csv", "audit-readings.csv", "audit-limits.csv"),
+        *("audit-posture.csv", "audit-period.csv", "audit-amplitude.csv", "audit-turning.csv"),
+    ),
+    figures="rr_paper.report.figures",
+    captions=captions("reproduction"),
+)

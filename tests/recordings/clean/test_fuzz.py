@@ -7,14 +7,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from rr_opt.documents.archive import strict_json
 from rr_opt.model.experiment import CHANNELS, Flag, Recording
 from rr_opt.model.gait import SineGait
 from rr_opt.outcome import InputError
 from rr_opt.recordings.inspection import Circumstances, inspect
 from rr_opt.recordings.markers.pose import fit_markers
 from rr_opt.recordings.readers.marker_rows import MarkerData
-from rr_opt.report.archive import strict_json
-from rr_opt.report.inspection import InspectedRecordings
+from rr_opt.results.inspection import InspectedRecordings
 from tests.recordings.clean.world import LAYOUT
 
 SHAPES = ("wiggle", "constant", "zero", "steps", "noise", "nan", "one value", "alternating", "huge")

@@ -1,4 +1,4 @@
-"""Diagnoses that are made up: no fit is run, so every kind of verdict can be told."""
+"""Diagnoses that are made up: no fit is run, so every kind of verdict can be reported."""
 
 from dataclasses import replace
 from types import MappingProxyType
@@ -6,9 +6,9 @@ from types import MappingProxyType
 import numpy as np
 import pytest
 
-from rr_opt.answers.diagnosis import DiagnosisAnswer
 from rr_opt.model.experiment import CHANNELS, Experiment, Noise, Recording, Run, Uncertainty
 from rr_opt.model.gait import SineGait
+from rr_opt.results.diagnosis import ExplainedExperiment
 from rr_opt.sysid.diagnosis import (
     Curve,
     Diagnosis,
@@ -130,7 +130,7 @@ def _found(experiment):
 def missing():
     """Missing physics, every part of it filled in."""
     experiment = _experiment()
-    return DiagnosisAnswer(
+    return ExplainedExperiment(
         "trial", "ab" * 32, experiment, _found(experiment), ("run09.csv: too short.",)
     )
 

@@ -7,14 +7,13 @@ from types import MappingProxyType
 import numpy as np
 import pytest
 
-from rr_opt.answers.corrected_robot import corrected_robot, servo_made
-from rr_opt.answers.diagnosis import Loss, LossUnknown, loss
 from rr_opt.model.gait import SineGait
 from rr_opt.model.problem import GaitBounds, Limits, Problem
 from rr_opt.model.robot import EffectUse
 from rr_opt.motion.rollout import rollout
 from rr_opt.report.diagnosis.loss import loss_sentences, share_lost
-from rr_opt.report.diagnosis.record import record
+from rr_opt.results.corrected_robot import corrected_robot, servo_made
+from rr_opt.results.loss import Loss, LossUnknown, loss_of
 from rr_opt.verify.sweep import sweep
 
 
@@ -23,14 +22,14 @@ def with_effect(robot, name, **values):
 
 
 def test_what_the_gait_makes_is_what_a_long_drive_makes(missing):
-    told = missing.loss
-    assert isinstance(told, Loss)
+    reported = missing.loss
+    assert isinstance(reported, Loss)
     # From rest by CVODES until it has settled; then the distance of one period.
-    T = told.believed.period
-    driven = rollout(missing.corrected_robot, told.believed, 60 * T, "rest", 50 / T)
+    T = reported.believed.period
+    driven = rollout(missing.corrected_robot, reported.believed, 60 * T, "rest", 50 / T)
     last = np.hypot(driven.x[-1] - driven.x[-51], driven.y[-1] - driven.y[-51])
-    assert abs(told.reached) == pytest.approx(last / T, rel=1e-4)
-    assert abs(told.promised) > abs(told.reached)
+    assert abs(reported.reached) == pytest.approx(last / T, rel=1e-4)
+    assert abs(reported.promised) > abs(reported.reached)
 
 
 def test_no_gait_of_a_sweep_is_faster_than_the_best(missing):
@@ -46,22 +45,24 @@ def test_no_gait_of_a_sweep_is_faster_than_the_best(missing):
 
 def test_a_right_model_loses_nothing(missing, consistent):
     assert consistent.loss is None
-    same = loss(missing.experiment, missing.experiment.robot)
+    same = loss_of(missing.experiment, missing.experiment.robot)
     assert abs(same.share) < 1e-6
     assert same.promised == pytest.approx(same.reached)
 
 
 @pytest.mark.parametrize("effect", ["floor_patch", "floor_tilt", "lateral_slip"])
-def test_what_has_no_steady_motion_is_told_in_a_sentence(missing, effect):
+def test_what_has_no_steady_motion_is_reported_in_a_sentence(missing, effect):
     robot = with_effect(missing.experiment.robot, effect)
-    told = loss(missing.experiment, robot)
-    assert isinstance(told, LossUnknown)
-    assert effect.replace("_", " ") in told.sentence
+    reported = loss_of(missing.experiment, robot)
+    assert isinstance(reported, LossUnknown)
+    assert effect.replace("_", " ") in reported.sentence
 
 
 def test_what_the_capture_system_sees_changes_no_speed(missing):
-    told = loss(missing.experiment, with_effect(missing.experiment.robot, "marker_offset", dx=0.01))
-    assert abs(told.share) < 1e-6
+    reported = loss_of(
+        missing.experiment, with_effect(missing.experiment.robot, "marker_offset", dx=0.01)
+    )
+    assert abs(reported.share) < 1e-6
 
 
 def test_a_lagging_servo_makes_less_and_later(missing):
@@ -80,18 +81,20 @@ def test_a_servo_that_was_seen_to_be_slow_gets_gaits_it_can_make(missing):
     found = replace(missing.found, values=values, parameters={})
     robot = corrected_robot(missing.experiment, found)
     assert robot.servo.rate_limit == 1.7
-    told = loss(missing.experiment, robot)
-    assert told.best.peak_rate == pytest.approx(1.7, rel=1e-4)
+    reported = loss_of(missing.experiment, robot)
+    assert reported.best.peak_rate == pytest.approx(1.7, rel=1e-4)
     # A triangle at the limit is what a servo makes that is asked for far more.
     slow = servo_made(robot, SineGait(1.0, 1.0))
     assert slow.amplitude == pytest.approx(1.7 / 4, rel=0.03)
 
 
 def test_the_record_has_it(missing, consistent, unexplained):
-    told = record(missing)["loss"]
-    assert told["share_lost"] == pytest.approx(1 - told["speed_reached"] / told["speed_as_found"])
-    assert record(consistent)["loss"] is None
-    assert "no name" in record(unexplained)["loss"]["not_told"]
+    reported = missing.record()["loss"]
+    assert reported["share_lost"] == pytest.approx(
+        1 - reported["speed_reached"] / reported["speed_as_found"]
+    )
+    assert consistent.record()["loss"] is None
+    assert "no name" in unexplained.record()["loss"]["not_told"]
 
 
 def test_a_gait_that_drives_the_robot_the_other_way_loses_more_than_all():
@@ -102,15 +105,15 @@ def test_a_gait_that_drives_the_robot_the_other_way_loses_more_than_all():
     assert "more than all, as it drives the robot the other way." in loss_sentences(turned)
     less = replace(turned, reached=0.2)
     assert share_lost(less) == "20 %"
-    assert "Lost by the wrong model: 20 %." in loss_sentences(less)
+    assert "Speed lost through the wrong model: 20 %." in loss_sentences(less)
 
 
 def test_a_gait_that_a_sweep_beats_is_no_best_gait(missing, monkeypatch):
-    from rr_opt.answers import diagnosis
+    from rr_opt.results import loss as module
     from rr_opt.verify.sweep import SweepCheck
 
     beaten = SweepCheck(100, 0.2, None, None, -0.5, 0.1, 0.0)
-    monkeypatch.setattr(diagnosis, "check_optimum", lambda *_: beaten)
-    told = loss(missing.experiment, missing.experiment.robot)
-    assert isinstance(told, LossUnknown)
-    assert "a plain sweep finds a faster gait" in told.sentence
+    monkeypatch.setattr(module, "check_optimum", lambda *_: beaten)
+    reported = loss_of(missing.experiment, missing.experiment.robot)
+    assert isinstance(reported, LossUnknown)
+    assert "a plain sweep finds a faster gait" in reported.sentence

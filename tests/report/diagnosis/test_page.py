@@ -8,8 +8,8 @@ import subprocess
 
 import pytest
 
-from rr_opt.report.diagnosis.document import diagnosis_document, figures_of
-from rr_opt.report.webpage import page
+from rr_opt.documents.webpage import page
+from rr_opt.report.diagnosis.document import REPORT
 
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))), None)
 DESK, PHONE = 1200, 412
@@ -18,7 +18,7 @@ FIGURES = {"consistent": 3, "parameters": 4, "missing_physics": 5, "unexplained"
 # The page stands in a frame of the phone's width: no window of Chromium is that narrow.
 HOLDER = """<!DOCTYPE html><html><head><meta charset="utf-8"></head>
 <body style="margin:0"><iframe id="frame" style="border:0;width:{width}px;height:9000px"
- srcdoc="{page}"></iframe><pre id="told"></pre><script>
+ srcdoc="{page}"></iframe><pre id="reported"></pre><script>
 frame.addEventListener("load", () => {{
   const inner = frame.contentDocument, view = frame.contentWindow;
   const seen = one => {{
@@ -27,7 +27,7 @@ frame.addEventListener("load", () => {{
       && box.left >= 0 && box.right <= {width} + 0.5;
   }};
   const all = query => [...inner.querySelectorAll(query)];
-  told.textContent = JSON.stringify({{
+  reported.textContent = JSON.stringify({{
     verdict: all("h1").filter(seen).map(one => one.textContent),
     boxes: all("ol.chain li").map(one => [seen(one), one.className, one.textContent,
       view.getComputedStyle(one).backgroundColor]),
@@ -46,7 +46,7 @@ frame.addEventListener("load", () => {{
 def texts(every):
     """The page of each verdict."""
     return {
-        verdict: page(diagnosis_document(one, figures_of(one))) for verdict, one in every.items()
+        verdict: page(REPORT.document(one, REPORT.drawn(one))) for verdict, one in every.items()
     }
 
 
@@ -64,10 +64,10 @@ def shown(text, width, folder):
         *(f"--window-size={max(width, 600)},9000", "--dump-dom", holder.as_uri()),
     ]
     done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=60)
-    told = re.search(r'<pre id="told">(.+?)</pre>', done.stdout, re.DOTALL)
-    assert told, done.stderr[-2000:]
+    reported = re.search(r'<pre id="reported">(.+?)</pre>', done.stdout, re.DOTALL)
+    assert reported, done.stderr[-2000:]
     console = [line for line in done.stderr.splitlines() if "CONSOLE" in line]
-    return json.loads(html.unescape(told[1])), console
+    return json.loads(html.unescape(reported[1])), console
 
 
 @pytest.mark.parametrize(

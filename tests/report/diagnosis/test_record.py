@@ -5,8 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from rr_opt.report.archive import strict_json
-from rr_opt.report.diagnosis.record import record
+from rr_opt.documents.archive import strict_json
 from rr_opt.sysid.diagnosis import CHANNELS
 
 VERDICTS = ("consistent", "parameters", "missing_physics", "unexplained")
@@ -14,20 +13,20 @@ VERDICTS = ("consistent", "parameters", "missing_physics", "unexplained")
 
 @pytest.mark.parametrize("verdict", VERDICTS)
 def test_every_verdict_has_all_keys(every, verdict):
-    told = json.loads(strict_json(record(every[verdict])))
-    assert told["verdict"] == verdict
-    assert set(told["location"]) == {"channel", "where", "evidence"}
-    assert told["location"]["channel"] in CHANNELS
-    for evidence in told["location"]["evidence"]:
+    reported = json.loads(strict_json(every[verdict].record()))
+    assert reported["verdict"] == verdict
+    assert set(reported["location"]) == {"channel", "where", "evidence"}
+    assert reported["location"]["channel"] in CHANNELS
+    for evidence in reported["location"]["evidence"]:
         assert {"test", "statistic", "p_value"} <= set(evidence)
     for key in ("summary", "candidates", "indistinguishable", "next_experiment", "seconds"):
-        assert key in told
-    assert told["input_sha256"] == "ab" * 32
-    assert bool(told["effects"]) == (verdict in ("parameters", "missing_physics"))
+        assert key in reported
+    assert reported["input_sha256"] == "ab" * 32
+    assert bool(reported["effects"]) == (verdict in ("parameters", "missing_physics"))
 
 
 def test_an_effect_has_values_with_intervals(missing):
-    (effect,) = record(missing)["effects"]
+    (effect,) = missing.record()["effects"]
     assert effect["name"] == "coulomb_friction"
     assert effect["parameters"]["force1"] == {
         "value": 0.0152,
@@ -38,14 +37,14 @@ def test_an_effect_has_values_with_intervals(missing):
 
 
 def test_a_wrong_parameter_has_its_value_directly_and_under_parameters(wrong_values):
-    (effect,) = record(wrong_values)["effects"]
+    (effect,) = wrong_values.record()["effects"]
     assert effect["name"] == "kappa1"
     assert effect["value"] == effect["parameters"]["kappa1"]["value"] == 2.1e-5
     assert effect["ci95"] == effect["parameters"]["kappa1"]["ci95"] == [1.8e-5, 2.4e-5]
 
 
-def test_misfits_are_told_by_recording_and_channel(missing):
-    fit = record(missing)["fit"]
+def test_misfits_are_reported_by_recording_and_channel(missing):
+    fit = missing.record()["fit"]
     assert fit["heldout_recordings"] == ["run02.csv", "run04.csv"]
     # By hand, from the residuals of the runs that were fitted.
     fitted = np.concatenate([missing.found.nominal[k].residuals.ravel() for k in (0, 2)])
@@ -59,20 +58,20 @@ def test_misfits_are_told_by_recording_and_channel(missing):
 
 
 def test_candidates_are_ranked(missing):
-    ranked = record(missing)["candidates"]
+    ranked = missing.record()["candidates"]
     assert [one["score_above_best"] for one in ranked] == [0, 900, 2000]
     assert [one["rms_beyond_noise"] for one in ranked] == [0.02, None, 8.0]
     assert [one["accepted"] for one in ranked] == [True, False, False]
 
 
-def test_what_remains_is_told(missing, unexplained):
-    assert record(missing)["remainder"] == {
+def test_what_remains_is_reported(missing, unexplained):
+    assert missing.record()["remainder"] == {
         "size": "none",
         "rms": 0.05,
         "share": 0.01,
         "depends_on": "",
         "matters": "It places the robot to within 0.4 mm.",
     }
-    left = record(unexplained)["remainder"]
+    left = unexplained.record()["remainder"]
     assert (left["size"], left["share"]) == ("large", 0.97)
     assert left["depends_on"] == "a force along the wheels that depends on the speed"

@@ -1,10 +1,10 @@
-"""A value is told in the unit of the bench, with as many digits as its interval allows."""
+"""A value is reported in the unit of the bench, with as many digits as its interval allows."""
 
 import math
 
 import pytest
 
-from rr_opt.report.diagnosis.document import summary
+from rr_opt.report.diagnosis.summary import summary
 from rr_opt.report.diagnosis.words import headline, interval_text, value_text
 from rr_opt.sysid.diagnosis import Estimate
 
@@ -50,6 +50,7 @@ def test_the_terminal_tells_what_remains(missing, unexplained):
         return next(line for line in summary(one, []).splitlines() if line.startswith("remainder"))
 
     assert row(missing).split() == ["remainder", "none"]
-    assert "large: 7.90 sigma beyond the noise, 97% of the misfit" in row(unexplained)
+    # Of the noise alone 1, and 7.90 beyond it.
+    assert "large: misfit 7.96 σ, 97 % of the initial excess over the noise" in row(unexplained)
     assert "depends on the speed" in summary(unexplained, [])
     assert any(line.startswith("indistinguishable") for line in summary(missing, []).splitlines())

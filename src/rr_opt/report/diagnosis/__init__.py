@@ -1,1 +1,1 @@
-"""A diagnosis told: the page, the record for scripts, the corrected robot, the terminal's text."""
+"""The report of a diagnosis: page, record, corrected robot, and text for a terminal."""

@@ -1,23 +1,22 @@
-"""What the wrong model would have cost, in sentences and for scripts."""
+"""What the wrong model would have cost, in sentences."""
 
 from __future__ import annotations
 
-from typing import Any
-
-from rr_opt.answers.diagnosis import Loss, LossUnknown
 from rr_opt.formatting import number, with_unit
 from rr_opt.model.gait import Gait
+from rr_opt.results.loss import Loss, LossUnknown
 
 _NONE = 5e-4
 """A smaller share of the speed is not reported as a loss."""
 
 
 def share_lost(one: Loss) -> str:
-    """`12 %`; `nothing` where it is less than a tenth of a per cent; `more than all` where the
-    robot goes the other way."""
+    """`12 %`; `less than 0.05 %`; `more than all` where the robot goes the other way."""
     if one.share > 1:
         return "more than all"
-    return "nothing" if one.share < _NONE else f"{number(100 * one.share, 2)} %"
+    if one.share < _NONE:
+        return f"less than {100 * _NONE:g} %"
+    return f"{number(100 * one.share, 2)} %"
 
 
 def pace(speed: float) -> str:
@@ -31,16 +30,16 @@ def loss_sentences(one: Loss | LossUnknown | None) -> str:
         return ""
     if isinstance(one, LossUnknown):
         return one.sentence
-    said = (
-        f"The best gait for the robot as believed ({gait_words(one.believed)}) promises "
-        f"{pace(one.promised)}; the robot as found makes {pace(one.reached)} of it. Its own best "
-        f"gait ({gait_words(one.best)}) makes {pace(one.speed)}. "
-        f"Lost by the wrong model: {share_lost(one)}"
+    text = (
+        f"The best gait of the robot as believed ({gait_words(one.believed)}) promises "
+        f"{pace(one.promised)}; the robot as found reaches {pace(one.reached)} with it. Its own "
+        f"best gait ({gait_words(one.best)}) reaches {pace(one.speed)}. "
+        f"Speed lost through the wrong model: {share_lost(one)}"
         f"{', as it drives the robot the other way' if one.share > 1 else ''}."
     )
     if one.unseen:
-        said += " These gaits ask for more than was recorded: this is foretold, and not seen."
-    return said
+        text += " These gaits demand more than any recorded one: this is a prediction."
+    return text
 
 
 def loss_line(one: Loss | LossUnknown) -> str:
@@ -48,33 +47,12 @@ def loss_line(one: Loss | LossUnknown) -> str:
     if isinstance(one, LossUnknown):
         return one.sentence
     return (
-        f"{share_lost(one)}: the best gait as believed promises {pace(one.promised)} and makes "
-        f"{pace(one.reached)}; the best as found makes {pace(one.speed)}"
+        f"{share_lost(one)}: the best gait as believed promises {pace(one.promised)} and reaches "
+        f"{pace(one.reached)}; the best as found reaches {pace(one.speed)}"
     )
 
 
 def gait_words(gait: Gait) -> str:
     """`1.51 rad, 1.73 s`, and an offset if there is one."""
-    said = f"{with_unit(gait.amplitude, 'rad', 3)}, {with_unit(gait.period, 's', 3)}"
-    return f"{said}, offset {with_unit(gait.offset, 'rad', 3)}" if gait.offset else said
-
-
-def loss_record(one: Loss | LossUnknown | None) -> dict[str, Any] | None:
-    """diagnosis.json's `loss`: null where the robot as believed is right; SI."""
-    if one is None:
-        return None
-    if isinstance(one, LossUnknown):
-        return {"not_told": one.sentence}
-    return {
-        "gait_as_believed": _gait(one.believed),
-        "speed_promised": one.promised,
-        "speed_reached": one.reached,
-        "gait_as_found": _gait(one.best),
-        "speed_as_found": one.speed,
-        "share_lost": one.share,
-        "beyond_what_was_recorded": one.unseen,
-    }
-
-
-def _gait(gait: Gait) -> dict[str, float]:
-    return {"amplitude": gait.amplitude, "period": gait.period, "offset": gait.offset}
+    text = f"{with_unit(gait.amplitude, 'rad', 3)}, {with_unit(gait.period, 's', 3)}"
+    return f"{text}, offset {with_unit(gait.offset, 'rad', 3)}" if gait.offset else text

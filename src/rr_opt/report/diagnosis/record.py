@@ -2,26 +2,59 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from rr_opt.answers.diagnosis import DiagnosisAnswer, rms
-from rr_opt.report.diagnosis.loss import loss_record
+import numpy as np
+
+from rr_opt.model.gait import Gait
+from rr_opt.results.diagnosis import ExplainedExperiment
+from rr_opt.results.loss import Loss, LossUnknown
 from rr_opt.sysid.diagnosis import (
     Curve,
     Estimate,
     Finding,
     Misfit,
-    Remainder,
+    NextExperiment,
     Residue,
     Stage,
     Tried,
 )
-from rr_opt.version import __version__
 
 
-def fit_record(one: DiagnosisAnswer) -> dict[str, Any]:
+def record(one: ExplainedExperiment) -> dict[str, Any]:
+    """The whole of `diagnosis.json`; what is not finite is null."""
+    found = one.found
+    return {
+        "name": one.name,
+        "verdict": found.verdict,
+        "summary": found.summary,
+        "mismatch": {"rms_beyond_noise": found.mismatch.rms, "p_value": found.mismatch.p_value},
+        "location": {
+            "channel": found.channel,
+            "where": one.where,
+            "evidence": [_evidence(stage) for stage in found.stages],
+        },
+        "effects": [_finding(each, found.verdict == "parameters") for each in found.findings],
+        "candidates": _candidates(found.tried),
+        "remainder": found.remainder,
+        "indistinguishable": found.indistinguishable,
+        "next_experiment": found.next_experiment and _next(found.next_experiment),
+        "fit": _fit(one),
+        "loss": loss_record(one.loss),
+        "residue": [
+            {"kind": r.kind, **_curve(r), "share": r.share, "sentence": r.sentence}
+            for r in found.residue
+        ],
+        "parameters": {name: _estimate(each) for name, each in found.parameters.items()},
+        "values": found.values,
+        "left_out": one.left_out,
+        "doubts": one.doubts,
+        "seconds": found.seconds,
+    }
+
+
+def _fit(one: ExplainedExperiment) -> dict[str, Any]:
     """Everything in units of the noise sigma.
 
     Where none is held out, the `heldout` ones are of the fitted recordings.
@@ -31,11 +64,11 @@ def fit_record(one: DiagnosisAnswer) -> dict[str, Any]:
     fitted = {name: [m for m in level if not m.held_out] for name, level in levels.items()}
     held = {name: [m for m in level if m.held_out] for name, level in levels.items()}
     return {
-        "heldout_rms_before": number_of(found.before),
-        "heldout_rms_parameters": number_of(rms(held["parameters"] or fitted["parameters"])),
-        "heldout_rms_after": number_of(found.after),
+        "heldout_rms_before": found.before,
+        "heldout_rms_parameters": _rms(held["parameters"] or fitted["parameters"]),
+        "heldout_rms_after": found.after,
         "heldout_recordings": [m.recording for m in held["after"]],
-        **{f"fitted_rms_{name}": number_of(rms(level)) for name, level in fitted.items()},
+        **{f"fitted_rms_{name}": _rms(level) for name, level in fitted.items()},
         "recordings": [
             _recording(dict(zip(levels, each, strict=True)))
             for each in zip(*levels.values(), strict=True)
@@ -48,142 +81,87 @@ def _recording(levels: Mapping[str, Misfit]) -> dict[str, Any]:
     return {
         "file": after.recording,
         "use": "holdout" if after.held_out else "fit",
-        **{name: number_of(one.rms) for name, one in levels.items()},
+        **{name: one.rms for name, one in levels.items()},
         "channels": {
-            channel: {name: number_of(one.channels.get(channel)) for name, one in levels.items()}
+            channel: {name: one.channels.get(channel) for name, one in levels.items()}
             for channel in after.channels
         },
     }
 
 
-def number_of(value: float | None) -> float | None:
-    """The value; None for what is not finite, or not there."""
-    return float(value) if value is not None and math.isfinite(value) else None
-
-
-def record(one: DiagnosisAnswer) -> dict[str, Any]:
-    """The whole of `diagnosis.json`; what is not finite is null."""
-    found = one.found
-    return {
-        "name": one.name,
-        "verdict": found.verdict,
-        "summary": found.summary,
-        "mismatch": {
-            "rms_beyond_noise": number_of(found.mismatch.rms),
-            "p_value": number_of(found.mismatch.p_value),
-        },
-        "location": {
-            "channel": found.channel,
-            "where": one.where,
-            "evidence": [_evidence(stage) for stage in found.stages],
-        },
-        "effects": [_finding(each, found.verdict == "parameters") for each in found.findings],
-        "candidates": _candidates(found.tried),
-        "remainder": _remainder(found.remainder),
-        "indistinguishable": [list(group) for group in found.indistinguishable],
-        "next_experiment": _next(one),
-        "fit": fit_record(one),
-        "loss": loss_record(one.loss),
-        "residue": [_residue(each) for each in found.residue],
-        "parameters": {name: _estimate(each) for name, each in found.parameters.items()},
-        "values": {name: number_of(value) for name, value in found.values.items()},
-        "left_out": list(one.left_out),
-        "doubts": list(one.doubts),
-        "seconds": {step: number_of(time) for step, time in found.seconds.items()},
-        "version": __version__,
-        "input_sha256": one.sha256,
-    }
+def _rms(misfits: Iterable[Misfit]) -> float:
+    """Root mean square over all their values, in sigma; NaN of none."""
+    squares = [one.residuals.ravel() ** 2 for one in misfits]
+    return float(np.sqrt(np.nanmean(np.concatenate(squares)))) if squares else float("nan")
 
 
 def _evidence(stage: Stage) -> dict[str, Any]:
+    names = ("channel", "statistic", "p_value", "size", "guilty", "where")
     return {
         "test": stage.name,
-        "channel": stage.channel,
-        "statistic": number_of(stage.statistic),
-        "p_value": number_of(stage.p_value),
-        "size": number_of(stage.size),
-        "guilty": stage.guilty,
-        "where": stage.where,
+        **{name: getattr(stage, name) for name in names},
         "curves": [_curve(curve) for curve in stage.curves],
     }
 
 
 def _curve(curve: Curve | Residue) -> dict[str, Any]:
-    return {
-        "variable": curve.variable,
-        "unit": curve.unit,
-        "at": _numbers(curve.at),
-        "mean": _numbers(curve.mean),
-        "error": _numbers(curve.error),
-    }
+    return {name: getattr(curve, name) for name in ("variable", "unit", "at", "mean", "error")}
 
 
 def _finding(finding: Finding, of_robot: bool) -> dict[str, Any]:
-    """An effect; a parameter of the robot has its value beside its name too."""
+    """An effect; a parameter of the robot also has its value next to its name."""
     parameters = {name: _estimate(each) for name, each in finding.parameters.items()}
     return {
         "name": finding.name,
-        "confidence": number_of(finding.confidence),
+        "confidence": finding.confidence,
         **(parameters.get(finding.name, {}) if of_robot else {}),
         "parameters": parameters,
-        "removes": number_of(finding.removes),
+        "removes": finding.removes,
         "minor": finding.minor,
     }
 
 
-def _remainder(one: Remainder) -> dict[str, Any]:
-    return {
-        "size": one.size,
-        "rms": number_of(one.rms),
-        "share": number_of(one.share),
-        "depends_on": one.depends_on,
-        "matters": one.matters,
-    }
-
-
 def _estimate(one: Estimate) -> dict[str, Any]:
-    ends = [number_of(one.low), number_of(one.high)]
-    return {"value": number_of(one.value), "ci95": ends, "unit": one.unit}
+    return {"value": one.value, "ci95": [one.low, one.high], "unit": one.unit}
 
 
 def _candidates(tried: Sequence[Tried]) -> list[dict[str, Any]]:
-    best = min((one.score for one in tried), default=0.0)
+    ranked = sorted(tried, key=lambda one: one.score)
     return [
         {
-            "effects": list(one.effects),
-            "score": number_of(one.score),
-            "score_above_best": number_of(one.score - best),
-            "rms_beyond_noise": number_of(one.fit),
-            "values": {name: number_of(value) for name, value in one.values.items()},
+            "effects": one.effects,
+            "score": one.score,
+            "score_above_best": one.score - ranked[0].score,
+            "rms_beyond_noise": one.fit,
+            "values": one.values,
             "accepted": one.accepted,
         }
-        for one in sorted(tried, key=lambda one: one.score)
+        for one in ranked
     ]
 
 
-def _next(one: DiagnosisAnswer) -> dict[str, Any] | None:
-    asked = one.found.next_experiment
-    if asked is None:
+def _next(asked: NextExperiment) -> dict[str, Any]:
+    gait = {name: getattr(asked, name) for name in ("amplitude", "period", "offset")}
+    names = ("start", "heading", "seconds", "between", "separation", "sentence")
+    return {"gait": gait, **{name: getattr(asked, name) for name in names}}
+
+
+def loss_record(one: Loss | LossUnknown | None) -> dict[str, Any] | None:
+    """diagnosis.json's `loss`: null where the robot as believed is right; SI."""
+    if one is None:
         return None
+    if isinstance(one, LossUnknown):
+        return {"not_told": one.sentence}
     return {
-        "gait": {"amplitude": asked.amplitude, "period": asked.period, "offset": asked.offset},
-        "start": asked.start,
-        "heading": number_of(asked.heading),
-        "seconds": number_of(asked.seconds),
-        "between": list(asked.between),
-        "separation": number_of(asked.separation),
-        "sentence": asked.sentence,
+        "gait_as_believed": _gait(one.believed),
+        "speed_promised": one.promised,
+        "speed_reached": one.reached,
+        "gait_as_found": _gait(one.best),
+        "speed_as_found": one.speed,
+        "share_lost": one.share,
+        "beyond_what_was_recorded": one.unseen,
     }
 
 
-def _residue(one: Residue) -> dict[str, Any]:
-    return {
-        "kind": one.kind,
-        **_curve(one),
-        "share": number_of(one.share),
-        "sentence": one.sentence,
-    }
-
-
-def _numbers(values: Any) -> list[float | None]:
-    return [number_of(value) for value in values]
+def _gait(gait: Gait) -> dict[str, float]:
+    return {name: getattr(gait, name) for name in ("amplitude", "period", "offset")}

@@ -12,19 +12,19 @@ from rr_opt.sysid.settings import SETTINGS
 
 _NAMES = {
     "coulomb_friction": "Coulomb friction",
-    "left_right_drag": "a drag that differs from left to right",
-    "com_offset": "a centre of mass beside the axis",
-    "axle_misalignment": "an axle that is not square",
-    "marker_offset": "a tracked point that is not the joint",
+    "left_right_drag": "drag that differs between left and right",
+    "com_offset": "an off-axis centre of mass",
+    "axle_misalignment": "an axle misalignment",
+    "marker_offset": "an offset of the tracked point",
     "clock_offset": "a clock offset",
-    "floor_tilt": "a tilt of the floor",
-    "floor_patch": "a patch of the floor",
-    "lateral_slip": "sideways slip of the wheels",
-    "servo_lag": "a lag of the servo",
+    "floor_tilt": "a floor tilt",
+    "floor_patch": "a floor patch",
+    "lateral_slip": "lateral slip of the wheels",
+    "servo_lag": "servo lag",
     "servo_rate_limit": "the servo's rate limit",
-    "servo_backlash": "backlash of the servo",
-    "servo_offset": "an offset of the servo",
-    "wheel_inertia": "the inertia of the wheels",
+    "servo_backlash": "servo backlash",
+    "servo_offset": "a servo offset",
+    "wheel_inertia": "wheel inertia",
 }
 
 _COMMON = {
@@ -52,7 +52,8 @@ def parameter_words(name: str) -> str:
 
 def candidate_words(effects: Sequence[str]) -> str:
     """A set of effects."""
-    return " + ".join(one.replace("_", " ") for one in effects) or "none, the parameters alone"
+    names = (one.replace("_", " ").replace("coulomb", "Coulomb") for one in effects)
+    return " + ".join(names) or "none (parameters only)"
 
 
 def listed(words: Iterable[str]) -> str:
@@ -74,7 +75,7 @@ def headline(found: Diagnosis) -> str:
         )
     if found.verdict == "missing_physics":
         return f"The model leaves out {listed(map(effect_words, names)) or 'something'}"
-    return "Something is left out, and no known effect accounts for it"
+    return "Physics is missing, and no known effect accounts for it"
 
 
 def value_text(one: Estimate) -> str:
@@ -120,14 +121,18 @@ def _fixed(value: float, digits: int | None) -> str:
     return number(value, 3) if digits is None else f"{value:.{digits}f}"
 
 
+def total(beyond: float) -> float:
+    """A misfit of which `beyond` is beyond the noise, both RMS in sigma: 1 is the noise alone."""
+    return math.hypot(1.0, beyond)
+
+
 def remainder_text(one: Remainder) -> str:
-    """What is left: `small: 0.41 sigma beyond the noise, 3 % of the misfit; a force ...`."""
+    """What is left: `small: misfit 1.08 σ, 3 % of the excess over the noise; a force ...`."""
     if one.size == "none":
         return "none"
     depends = f"; {one.depends_on}" if one.depends_on else ""
-    return (
-        f"{one.size}: {one.rms:.2f} sigma beyond the noise, {one.share:.0%} of the misfit{depends}"
-    )
+    share = f"{100 * one.share:.0f} % of the initial excess over the noise"
+    return f"{one.size}: misfit {total(one.rms):.2f} σ, {share}{depends}"
 
 
 def share_text(finding: Finding) -> str:
@@ -146,11 +151,25 @@ def _unlit(stage: Stage) -> str:
     return "affected" if seen else "clear"
 
 
-def size_text(stage: Stage) -> str:
-    """How large a stage's fault would be, and the chance of it: `3.10 σ, p < 1e-12`."""
-    p = stage.p_value
-    if not math.isfinite(p):
-        return f"{stage.size:.2f} σ"
+def stage_name(stage: Stage) -> str:
+    """`rolling`, `axle 1, sideways`."""
+    return _STAGES.get(stage.channel, stage.name.replace("_", " "))
+
+
+_STAGES = {"constraint_axle1": "axle 1, sideways", "constraint_axle2": "axle 2, sideways"}
+
+
+def stage_text(stage: Stage, found: Diagnosis) -> str:
+    """What an unknown input there would explain, and the chance of it: `explains 55 %, p < 1e-12`.
+
+    The share is of the misfit beyond the noise with the robot's values re-fitted, in mean square;
+    none is given where that is negligible.
+    """
+    beyond, p, parts = max(found.mismatch.rms, stage.size), stage.p_value, []
+    if beyond > SETTINGS.negligible:
+        parts.append(f"explains {100 * (stage.size / beyond) ** 2:.0f} %")
     if p < 1e-12:
-        return f"{stage.size:.2f} σ, p < 1e-12"
-    return f"{stage.size:.2f} σ, p = {p:.2f}" if p >= 0.095 else f"{stage.size:.2f} σ, p = {p:.1g}"
+        parts.append("p < 1e-12")
+    elif math.isfinite(p):
+        parts.append(f"p = {p:.2f}" if p >= 0.095 else f"p = {p:.1g}")
+    return ", ".join(parts)

@@ -11,12 +11,12 @@ from matplotlib.axes import Axes
 from rr_opt.formatting import QUANTITIES, number
 from rr_opt.model.gait import SineGait
 from rr_opt.motion.rollout import repeated
-from rr_opt.report.fastest import FastestGait
+from rr_opt.report.figures import style
 from rr_opt.report.figures.cycle import cycle
 from rr_opt.report.figures.path import along_travel, cycles_to_show, path
 from rr_opt.report.figures.speed_map import map_data, speed_map
-from rr_opt.report.figures.style import FORWARD, GREY, INK, figure, lanes, panel, styled, svg
-from rr_opt.report.limits import BoundRow, LimitRow
+from rr_opt.results.fastest import FastestGait
+from rr_opt.results.limits import BoundRow, LimitRow
 from rr_opt.verify.replay import Replay
 
 
@@ -29,7 +29,7 @@ def draw(result: FastestGait) -> dict[str, str]:
     drawn = {
         "path": _path(result, replay),
         "cycle": _cycle(result, replay),
-        "prices": panel(6.3, 0.9 + 0.42 * len(lines), lambda ax: prices(ax, lines)),
+        "prices": style.panel(0.9 + 0.42 * len(lines), lambda ax: prices(ax, lines)),
     }
     # The map is one of sines.
     return {"speed-map": _speed_map(result, gait), **drawn} if isinstance(gait, SineGait) else drawn
@@ -46,7 +46,7 @@ def _speed_map(result: FastestGait, gait: SineGait) -> str:
     ]
     problem, robot = result.problem, result.robot
     data = map_data(problem, robot, gait)
-    return panel(6.3, 4.6, lambda ax: speed_map(ax, data, problem, robot, gait, others=others))
+    return style.panel(4.2, lambda ax: speed_map(ax, data, problem, robot, gait, others=others))
 
 
 def _path(result: FastestGait, replay: Replay) -> str:
@@ -54,14 +54,14 @@ def _path(result: FastestGait, replay: Replay) -> str:
     motion = repeated(steady, cycles_to_show(robot, steady.cycle))
     straight = abs(steady.cycle.dpsi) < 1e-6
     shown, height = (along_travel(motion), 3.0) if straight else (motion, 5.0)
-    return panel(6.3, height, lambda ax: path(ax, robot, shown, steady.speed, steady.gait.period))
+    return style.panel(height, lambda ax: path(ax, robot, shown, steady.speed, steady.gait.period))
 
 
 def _cycle(result: FastestGait, replay: Replay) -> str:
-    with styled():
-        drawn = figure(6.3, 6.4)
+    with style.styled():
+        drawn = style.figure(style.WIDTH, 6.2)
         cycle(list(drawn.subplots(4, 1, sharex=True)), replay.steady, result.problem.limits)
-        return svg(drawn)
+        return style.svg(drawn)
 
 
 @dataclass(frozen=True)
@@ -103,14 +103,16 @@ def prices(ax: Axes, lines: Sequence[Gain]) -> Axes:
     """A lollipop for each line, the first on top."""
     reach = max([one.gain for one in lines] + [1e-9])
     for place, one in enumerate(lines):
-        ax.plot([0, one.gain], [place, place], color=FORWARD, lw=3, solid_capstyle="butt")
+        ax.plot([0, one.gain], [place, place], color=style.FORWARD, lw=3, solid_capstyle="butt")
         idle = bool(one.remark)
-        colour = GREY if idle else FORWARD
+        colour = style.GREY if idle else style.FORWARD
         ax.plot(one.gain, place, "o", ms=6 if idle else 9, color=colour, clip_on=False, zorder=4)
         text = one.remark or f"{one.gain:+.3g} mm/s"
         at = max(one.gain, 0.0) + 0.035 * reach
-        ax.text(at, place, text, va="center", color=GREY if idle else INK, fontsize=9.5)
-    lanes(ax, [one.label for one in lines], pad=9)
-    ax.set_xlim(min(0.0, *(one.gain for one in lines)), 1.35 * reach)
-    ax.set_xlabel("speed gained by relaxing it by 1 %, mm/s")
+        ax.text(at, place, text, va="center", color=style.GREY if idle else style.INK, fontsize=9.5)
+    style.lanes(ax, [one.label for one in lines], pad=9)
+    ax.set(
+        xlim=(min(0.0, *(one.gain for one in lines)), 1.35 * reach),
+        xlabel="speed gained by relaxing it by 1 %, mm/s",
+    )
     return ax

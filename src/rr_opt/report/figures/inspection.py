@@ -16,21 +16,7 @@ from rr_opt.recordings.gaps import Gap, bridged
 from rr_opt.recordings.inspection import Inspection
 from rr_opt.recordings.markers.pose import MarkerFit
 from rr_opt.recordings.noise import NoiseEstimate
-from rr_opt.report.figures.style import (
-    BACKWARD,
-    FORWARD,
-    GREY,
-    INK,
-    LIMIT,
-    OPTIMUM,
-    PLATFORM1,
-    PLATFORM2,
-    figure,
-    note,
-    panel,
-    styled,
-    svg,
-)
+from rr_opt.report.figures import style
 
 _MOST = 800
 _DIGITS = re.compile(r"(\.\d\d)\d+")
@@ -60,7 +46,10 @@ def small(svg: str) -> str:
 
 
 _LABELS = {"x": "x, m", "y": "y, m", "psi": "ψ, rad", "phi": "φ, rad", "torque": "τ, N m"}
-_MARKS = ((Flag.OUTLIER, "outlier", "x", BACKWARD), (Flag.OUT_OF_ORDER, "out of order", "+", LIMIT))
+_MARKS = (
+    (Flag.OUTLIER, "outlier", "x", style.BACKWARD),
+    (Flag.OUT_OF_ORDER, "out of order", "+", style.LIMIT),
+)
 _MOST_GAPS = 200
 
 
@@ -73,12 +62,11 @@ def channels(axes: Sequence[Axes], recording: Recording, holes: Sequence[Gap]) -
     for ax, channel in zip(axes, recording.channels, strict=True):
         y = recording.data(channel)
         if not np.isfinite(y).all():
-            ax.plot(*thinned(t, bridged(t, y)), color=PLATFORM2, lw=0.8)
-        ax.plot(*thinned(t, y), color=INK, lw=1.1)
+            ax.plot(*thinned(t, bridged(t, y)), color=style.PLATFORM2, lw=0.8)
+        ax.plot(*thinned(t, y), color=style.INK, lw=1.1)
         _bands(ax, channel, holes)
         _flags(ax, recording, channel)
-        ax.set_ylabel(_LABELS.get(channel, channel))
-        ax.set_xlim(t[0], t[-1])
+        ax.set(ylabel=_LABELS.get(channel, channel), xlim=(t[0], t[-1]))
         _limits(ax, y)
     axes[-1].set_xlabel("time, s")
 
@@ -86,7 +74,7 @@ def channels(axes: Sequence[Axes], recording: Recording, holes: Sequence[Gap]) -
 def _bands(ax: Axes, channel: str, holes: Sequence[Gap]) -> None:
     mine = [gap for gap in holes if channel in gap.channels or not gap.channels]
     for gap in sorted(mine, key=lambda one: -one.length)[:_MOST_GAPS]:
-        ax.axvspan(gap.start, gap.end, color=PLATFORM2, alpha=0.25, lw=0)
+        ax.axvspan(gap.start, gap.end, color=style.PLATFORM2, alpha=0.25, lw=0)
 
 
 def _flags(ax: Axes, recording: Recording, channel: str) -> None:
@@ -122,25 +110,28 @@ def folded(ax: Axes, t: Array, phi: Array, gait: Gait, fit: ClockFit | None) -> 
     dash = gait.period * _DOT
     phase = t[known] % gait.period
     x = np.stack([phase - dash, phase + dash, np.full(len(known), np.nan)], 1).ravel()
-    ax.plot(x, np.repeat(phi[known], 3), color=GREY, lw=2, solid_capstyle="round", label="seen")
+    ax.plot(
+        x,
+        np.repeat(phi[known], 3),
+        color=style.GREY,
+        lw=2,
+        solid_capstyle="round",
+        label="recorded",
+    )
     phase = np.linspace(0, gait.period, 400)
-    ax.plot(phase, gait.angle(phase), color=FORWARD, lw=1.6, label="command")
+    ax.plot(phase, gait.angle(phase), color=style.FORWARD, lw=1.6, label="command")
     if fit is not None:
         text = f"offset {1e3 * fit.offset:+.2f} ± {1.96e3 * fit.sigma[0]:.2g} ms"
-        note(ax, f"{text}, scale {fit.scale:.4f}", x=0.015, y=0.06, ha="left", va="bottom")
-    ax.set_xlim(0, gait.period)
-    ax.set_xlabel("phase of the command, s")
-    ax.set_ylabel("φ, rad")
+        style.note(ax, f"{text}, scale {fit.scale:.4f}", x=0.015, y=0.06, ha="left", va="bottom")
+    ax.set(xlim=(0, gait.period), xlabel="phase of the command, s", ylabel="φ, rad")
     ax.legend(loc="upper right", ncols=2)
 
 
 def difference(ax: Axes, t: Array, phi: Array, gait: Gait) -> None:
     """phi less its command, mrad, over time."""
-    ax.plot(*thinned(t, 1e3 * (phi - gait.angle(t))), color=INK, lw=0.7)
-    ax.axhline(0, color=FORWARD, lw=1.2)
-    ax.set_xlim(t[0], t[-1])
-    ax.set_xlabel("time, s")
-    ax.set_ylabel("φ − command, mrad")
+    ax.plot(*thinned(t, 1e3 * (phi - gait.angle(t))), color=style.INK, lw=0.7)
+    ax.axhline(0, color=style.FORWARD, lw=1.2)
+    ax.set(xlim=(t[0], t[-1]), xlabel="time, s", ylabel="φ − command, mrad")
 
 
 def noise(ax: Axes, found: Mapping[str, NoiseEstimate], stated: Mapping[str, float]) -> None:
@@ -151,48 +142,63 @@ def noise(ax: Axes, found: Mapping[str, NoiseEstimate], stated: Mapping[str, flo
     names = [name for name, one in found.items() if one.sigma > 0]
     for row, name in enumerate(names):
         one = found[name]
-        said = stated[name] if stated[name] > 0 else one.sigma
-        ax.errorbar(one.sigma / said, row, xerr=1.96 * one.error / said, fmt="o", color=FORWARD,
-                    capsize=3, label="" if row else "highest frequencies")  # fmt: skip
-        ax.plot(one.slower / said, row + 0.22, "D", ms=5, color=BACKWARD,
-                label="" if row else "half of them")  # fmt: skip
-    ax.axvline(1.0, color=INK, lw=1)
-    ax.set_yticks(range(len(names)), names)
-    ax.set_ylim(len(names) - 0.4, -0.6)
-    ax.grid(visible=False, axis="y")
+        base = stated[name] if stated[name] > 0 else one.sigma
+        ax.errorbar(one.sigma / base, row, xerr=1.96 * one.error / base, fmt="o",
+                    color=style.FORWARD, capsize=3,
+                    label="" if row else "highest frequencies")  # fmt: skip
+        ax.plot(one.slower / base, row + 0.22, "D", ms=5, color=style.BACKWARD,
+                label="" if row else "half of these")  # fmt: skip
+    ax.axvline(1.0, color=style.INK, lw=1)
+    style.lanes(ax, names)
     low, high = ax.get_xlim()
     if np.isfinite(high) and high > 20:
         ax.set_xscale("log")
     else:
         ax.set_xlim(min(low, 0.0), max(high, 1.5))
-    ax.set_xlabel("noise, in units of the stated one")
+    ax.set_xlabel("noise relative to the stated noise")
     if names:
-        ax.legend(loc="lower left", facecolor="white", labelcolor=GREY)
+        ax.legend(loc="lower left", facecolor="white", labelcolor=style.GREY)
 
 
 _ARROWS = 6
 
 
-def path(ax: Axes, recording: Recording) -> None:
-    """P, m, with a dot where it starts, and arrows of platform 1's heading, towards its axle."""
+def path(ax: Axes, recording: Recording, gait: Gait | None) -> None:
+    """P, m, and its mean over a period of the gait, where that is known: how the robot travels.
+
+    A dot is the start; arrows are platform 1's heading, towards its axle.
+    """
     x, y, psi = (recording.data(channel) for channel in ("x", "y", "psi"))
     step = max(1, len(x) // 4000)
-    ax.plot(x[::step], y[::step], color=INK, lw=1.2)
+    ax.plot(x[::step], y[::step], color=style.GREY, lw=0.8, alpha=0.7, label="P")
+    if gait is not None:
+        mean = [_mean_over(recording.t, part, gait.period) for part in (x, y)]
+        ax.plot(*mean, color=style.FORWARD, lw=2.6, zorder=3, label="mean over a period")
     known = np.flatnonzero(np.isfinite(x) & np.isfinite(y))
     headed = known[np.isfinite(psi[known])]
     if len(known):
-        first = known[0]
-        ax.plot(x[first], y[first], "o", ms=8, color=OPTIMUM, mec=INK, zorder=4, label="start")
-        ax.legend(loc="best")
+        ax.plot(x[known[0]], y[known[0]], "o", ms=8, color=style.OPTIMUM, mec=style.INK, zorder=5,
+                label="start")  # fmt: skip
     rows = headed[np.linspace(0, len(headed) - 1, min(_ARROWS, len(headed))).astype(int)]
     ax.quiver(
         x[rows], y[rows], np.cos(psi[rows]), np.sin(psi[rows]),
-        color=GREY, width=0.004, scale=14, zorder=3,
+        color=style.INK, width=0.005, scale=12, zorder=4,
     )  # fmt: skip
+    ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=3)
     ax.set_aspect("equal", adjustable="datalim")
     ax.margins(0.1)
-    ax.set_xlabel("x, m")
-    ax.set_ylabel("y, m")
+    ax.set(xlabel="x, m", ylabel="y, m")
+
+
+def _mean_over(t: Array, values: Array, period: float) -> Array:
+    """The mean (n,) over a period round each sample of even steps; NaN near ends and gaps."""
+    size = max(1, round(period * (len(t) - 1) / (t[-1] - t[0])))
+    mean = np.full(len(values), np.nan)
+    if len(values) > size:
+        half = size // 2
+        whole = np.convolve(values, np.full(size, 1 / size), "valid")
+        mean[half : half + len(whole)] = whole
+    return mean
 
 
 _CUT = 8.0
@@ -202,13 +208,13 @@ _CUT = 8.0
 def over_time(ax: Axes, fit: MarkerFit) -> None:
     """Root mean square residual of each frame, mm; put right and left out frames marked below."""
     t = fit.recording.t
-    ax.plot(*thinned(t, 1e3 * fit.residual), color=INK, lw=0.7)
+    ax.plot(*thinned(t, 1e3 * fit.residual), color=style.INK, lw=0.7)
     swapped = np.unique(np.concatenate([[], *(swap.frames for swap in fit.swaps)])).astype(int)
     ghosts = np.flatnonzero(fit.ghosts.out.any(axis=1))
     marked = (
-        (swapped, "names put right", FORWARD, 0.02),
-        (ghosts, "marker left out", BACKWARD, 0.05),
-        (fit.ghosts.lost, "does not fit", LIMIT, 0.08),
+        (swapped, "labels corrected", style.FORWARD, 0.02),
+        (ghosts, "marker left out", style.BACKWARD, 0.05),
+        (fit.ghosts.lost, "does not fit", style.LIMIT, 0.08),
     )
     for rows, words, colour, height in marked:
         if len(rows):
@@ -219,19 +225,15 @@ def over_time(ax: Axes, fit: MarkerFit) -> None:
     if np.isfinite(fit.noise) and fit.noise > 0:
         largest = float(np.nanmax(fit.residual))
         ax.set_ylim(0, 1e3 * min(1.1 * largest, _CUT * fit.noise))
-    ax.set_xlim(t[0], t[-1])
-    ax.set_xlabel("time, s")
-    ax.set_ylabel("residual, mm")
+    ax.set(xlim=(t[0], t[-1]), xlabel="time, s", ylabel="residual, mm")
 
 
 def by_marker(ax: Axes, fit: MarkerFit) -> None:
     """Root mean square residual of each marker, mm."""
-    colours = [(PLATFORM1, PLATFORM2)[where] for where in fit.bodies.platform]
+    colours = [(style.PLATFORM1, style.PLATFORM2)[where] for where in fit.bodies.platform]
     rows = np.arange(len(fit.whose))
     ax.barh(rows, 1e3 * np.nan_to_num(fit.whose), color=colours, height=0.6)
-    ax.set_yticks(rows, fit.bodies.labels)
-    ax.invert_yaxis()
-    ax.grid(visible=False, axis="y")
+    style.lanes(ax, fit.bodies.labels)
     ax.set_xlabel("residual, mm")
 
 
@@ -240,26 +242,26 @@ def draw(found: Inspection) -> dict[str, str]:
     recording, gait, markers = found.recording, found.gait, found.markers
     stated = {name: float(np.median(recording.sigma[name])) for name in recording.channels}
     count = len(recording.channels)
-    with styled():
-        over = figure(7.6, 1.55 * count + 0.5)
+    with style.styled():
+        over = style.figure(style.WIDTH, 1.4 * count + 0.5)
         axes = np.ravel(over.subplots(count, 1, sharex=True))
         channels(list(axes), recording, found.cleaned.gaps)
         over.align_ylabels()
         drawn = {
-            "path": panel(6.6, 4.8, lambda ax: path(ax, recording)),
-            "channels": svg(over),
-            "noise": panel(6.6, 3.4, lambda ax: noise(ax, found.cleaned.noise, stated)),
+            "path": style.panel(4.4, lambda ax: path(ax, recording, gait)),
+            "channels": style.svg(over),
+            "noise": style.panel(3.2, lambda ax: noise(ax, found.cleaned.noise, stated)),
         }
         if gait is not None:
-            one = figure(7.6, 5.2)
+            one = style.figure(style.WIDTH, 5.0)
             above, below = one.subplots(2, 1, height_ratios=[1.4, 1])
             folded(above, recording.t, recording.data("phi"), gait, found.command)
             difference(below, recording.t, recording.data("phi"), gait)
-            drawn["command"] = svg(one)
+            drawn["command"] = style.svg(one)
         if markers is not None:
-            one = figure(7.6, 4.8)
+            one = style.figure(style.WIDTH, 4.8)
             above, below = one.subplots(2, 1)
             over_time(above, markers)
             by_marker(below, markers)
-            drawn["rigid"] = svg(one)
+            drawn["rigid"] = style.svg(one)
     return {name: small(text) for name, text in drawn.items()}

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -12,21 +13,10 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.patches import Circle, Polygon
 from numpy.typing import ArrayLike, NDArray
 
-from rr_opt.array import Array
-from rr_opt.model.robot import Platform, Robot
+from rr_opt.model.robot import Robot
 from rr_opt.motion.rollout import Trajectory
 from rr_opt.motion.steady_cycle import Cycle
-from rr_opt.report.figures.style import (
-    GREY,
-    INK,
-    PAPER,
-    PLATFORM1,
-    PLATFORM2,
-    WHEEL,
-    colour_of,
-    figure,
-    styled,
-)
+from rr_opt.report.figures import style
 
 
 def robot_length(robot: Robot) -> float:
@@ -39,66 +29,42 @@ def draw_robot(ax: Axes, robot: Robot, motion: Trajectory, i: int, *, alpha: flo
 
     Returns the artists, in order, so that an animation can take them away again.
     """
-    x, y, psi, phi = (float(part[i]) for part in (motion.x, motion.y, motion.psi, motion.phi))
-    joint = np.array([x, y])
-    artists = []
-    for platform, angle, way, colour in (
-        (robot.platform1, psi, 1.0, PLATFORM1),
-        (robot.platform2, psi + phi, -1.0, PLATFORM2),
+    joint = complex(motion.x[i], motion.y[i])
+    psi, phi, h = float(motion.psi[i]), float(motion.phi[i]), robot.h
+    artists: list = []
+
+    def shape(points: ArrayLike, **look: Any) -> None:
+        points = np.asarray(points)
+        corners = np.column_stack([np.real(points), np.imag(points)])
+        artists.append(ax.add_patch(Polygon(corners, **look)))
+
+    for one, axis, colour in (
+        (robot.platform1, np.exp(1j * psi), style.PLATFORM1),
+        (robot.platform2, -np.exp(1j * (psi + phi)), style.PLATFORM2),
     ):
-        artists += _platform(
-            ax, platform, robot.h, _Axis(joint, angle, way), colour=colour, alpha=alpha
-        )
+        # Along the platform from the joint, and 1j times as far to the side.
+        wide = 0.72 * one.b
+        tail, nose = -0.25 * one.b, one.c + 0.35 * h
+        hull = np.array([tail + 0.55j * wide, nose + 1j * wide, nose - 1j * wide,
+                         tail - 0.55j * wide])  # fmt: skip
+        hull = joint + axis * hull
+        shape(hull, facecolor=colour, edgecolor=colour, alpha=0.55 * alpha, zorder=4)
+        shape(hull, fill=False, edgecolor=colour, linewidth=1.2, alpha=alpha, zorder=5)
+        ends = joint + axis * (one.c + np.array([-1j, 1j]) * one.b)
+        artists += ax.plot(ends.real, ends.imag, color=style.WHEEL, lw=1.2, alpha=alpha, zorder=5)
+        tyre = 1j * (0.16 * one.b + 0.001)
+        wheel = np.array([-h - tyre, h - tyre, h + tyre, -h + tyre])
+        for side in (-one.b, one.b):
+            place = joint + axis * (one.c + 1j * side + wheel)
+            shape(place, facecolor=style.WHEEL, edgecolor="none", alpha=alpha, zorder=5)
     size = 0.16 * min(robot.platform1.b, robot.platform2.b) + 0.003
-    dot = Circle((x, y), size, facecolor=PAPER, edgecolor=INK, linewidth=1.1, alpha=alpha, zorder=6)
-    return [*artists, ax.add_patch(dot)]
-
-
-@dataclass(frozen=True)
-class _Axis:
-    """A platform's axis: it starts at the joint (m), at an angle (rad); `way` is +1 if the axle
-    lies ahead of P on it, -1 if behind."""
-
-    joint: Array
-    angle: float
-    way: float
-
-    def place(self, along: ArrayLike, across: ArrayLike) -> Array:
-        """Points (..., 2) at distances along the axis and to its left, m."""
-        e = np.array([np.cos(self.angle), np.sin(self.angle)])
-        n = np.array([-e[1], e[0]])
-        return self.joint + np.multiply.outer(along, e) + np.multiply.outer(across, n)
-
-
-def _platform(
-    ax: Axes, platform: Platform, h: float, axis: _Axis, *, colour: str, alpha: float
-) -> list:
-    b, c, way, place = platform.b, platform.c, axis.way, axis.place
-    end = way * (c + 0.35 * h)
-    start = -way * 0.25 * b
-    body = place([start, end, end, start], 0.72 * b * np.array([0.55, 1, -1, -0.55]))
-    artists: list = [
-        ax.add_patch(
-            Polygon(body, facecolor=colour, edgecolor=colour, alpha=0.55 * alpha, zorder=4)
-        ),
-        ax.add_patch(
-            Polygon(body, fill=False, edgecolor=colour, linewidth=1.2, alpha=alpha, zorder=5)
-        ),
-    ]
-    axle = place([way * c, way * c], [-b, b])
-    artists += ax.plot(axle[:, 0], axle[:, 1], color=WHEEL, lw=1.2, alpha=alpha, zorder=5)
-    half = 0.16 * b + 0.001
-    for side in (-b, b):
-        along = way * c + h * np.array([-1, 1, 1, -1])
-        wheel = place(along, side + half * np.array([-1, -1, 1, 1]))
-        artists.append(
-            ax.add_patch(Polygon(wheel, facecolor=WHEEL, edgecolor="none", alpha=alpha, zorder=5))
-        )
-    return artists
+    look = {"facecolor": style.PAPER, "edgecolor": style.INK, "linewidth": 1.1, "alpha": alpha}
+    dot = ax.add_patch(Circle((joint.real, joint.imag), size, **look, zorder=6))
+    return [*artists, dot]
 
 
 def cycles_to_show(robot: Robot, cycle: Cycle) -> int:
-    """So many that the robot moves by some of its lengths, or once round its circle."""
+    """Enough periods to move by a few robot lengths, or once round the circle."""
     wanted = 3.0 * robot_length(robot)
     step = max(abs(cycle.speed) * cycle.period, 1e-9)
     count = math.ceil(wanted / step)
@@ -107,13 +73,19 @@ def cycles_to_show(robot: Robot, cycle: Cycle) -> int:
     return min(max(count, 2), 24)
 
 
+_POINTS = 6000
+"""Of a path that is drawn."""
+
+
 def path(ax: Axes, robot: Robot, motion: Trajectory, speed: float, period: float) -> Axes:
     """The path of P (m) and the robot at its last instant and at some before.
 
     motion: turned as it should be drawn; speed: signed, m/s, gives the colour; period: of the
     gait, s, over which the arrow takes its direction.
     """
-    ax.plot(motion.x, motion.y, color=colour_of(speed), lw=1.6, zorder=3, label="path of P")
+    step = max(1, len(motion.x) // _POINTS)
+    ax.plot(motion.x[::step], motion.y[::step], color=style.colour_of(speed), lw=1.6, zorder=3,
+            label="path of P")  # fmt: skip
     chosen = instants(motion, robot_length(robot))
     for order, i in enumerate(chosen):
         alpha = 1.0 - 0.65 * (len(chosen) - 1 - order) / max(len(chosen) - 1, 1)
@@ -121,8 +93,7 @@ def path(ax: Axes, robot: Robot, motion: Trajectory, speed: float, period: float
     _arrow(ax, robot, motion, speed, period)
     ax.set_aspect("equal", adjustable="datalim")
     ax.margins(0.06)
-    ax.set_xlabel("x, m")
-    ax.set_ylabel("y, m")
+    ax.set(xlabel="x, m", ylabel="y, m")
     return ax
 
 
@@ -139,18 +110,10 @@ def instants(motion: Trajectory, length: float) -> list[int]:
 
 def along_travel(motion: Trajectory) -> Trajectory:
     """The motion turned so that it leads along x from the origin."""
-    dx, dy = motion.x - motion.x[0], motion.y - motion.y[0]
-    angle = math.atan2(dy[-1], dx[-1])
-    cos, sin = math.cos(angle), math.sin(angle)
-    return Trajectory(
-        t=motion.t,
-        x=cos * dx + sin * dy,
-        y=cos * dy - sin * dx,
-        psi=motion.psi - angle,
-        phi=motion.phi,
-        v=motion.v,
-        torque=motion.torque,
-    )
+    way = (motion.x - motion.x[0]) + 1j * (motion.y - motion.y[0])
+    angle = float(np.angle(way[-1]))
+    way = way * np.exp(-1j * angle)
+    return replace(motion, x=way.real, y=way.imag, psi=motion.psi - angle)
 
 
 def _arrow(ax: Axes, robot: Robot, motion: Trajectory, speed: float, period: float) -> None:
@@ -164,8 +127,8 @@ def _arrow(ax: Axes, robot: Robot, motion: Trajectory, speed: float, period: flo
     leading = robot.platform1 if speed > 0 else robot.platform2
     start = last + step / size * (leading.c + 3 * robot.h)
     end = start + step / size * 0.3 * robot_length(robot)
-    style = {"arrowstyle": "-|>", "color": colour_of(speed), "lw": 2.0, "mutation_scale": 14}
-    ax.annotate("", tuple(end), tuple(start), arrowprops=style)
+    arrow = {"arrowstyle": "-|>", "color": style.colour_of(speed), "lw": 2.0, "mutation_scale": 14}
+    ax.annotate("", tuple(end), tuple(start), arrowprops=arrow)
     ax.update_datalim([tuple(end)])
 
 
@@ -177,8 +140,8 @@ def frames(robot: Robot, trajectory: Trajectory, chosen: NDArray[np.int_]) -> It
 
     Axes and grid are drawn once; only what moves is drawn again.
     """
-    with styled():
-        drawn = figure(_WIDTH, _height(robot, trajectory))
+    with style.styled():
+        drawn = style.figure(_WIDTH, _height(robot, trajectory))
         drawn.set_dpi(_DPI)
         canvas = FigureCanvasAgg(drawn)
         ax = drawn.add_subplot()
@@ -186,8 +149,8 @@ def frames(robot: Robot, trajectory: Trajectory, chosen: NDArray[np.int_]) -> It
         canvas.draw()
         drawn.set_layout_engine("none")
         still = canvas.copy_from_bbox(drawn.bbox)
-        (trail,) = ax.plot([], [], color=colour_of(float(trajectory.v.mean())), lw=1.6)
-        clock = ax.text(0.01, 0.97, "", transform=ax.transAxes, va="top", color=GREY)
+        (trail,) = ax.plot([], [], color=style.colour_of(float(trajectory.v.mean())), lw=1.6)
+        clock = ax.text(0.01, 0.97, "", transform=ax.transAxes, va="top", color=style.GREY)
         for i in chosen:
             trail.set_data(trajectory.x[: i + 1], trajectory.y[: i + 1])
             clock.set_text(f"t = {trajectory.t[i]:.2f} s   v = {trajectory.v[i]:+.3f} m/s")
@@ -202,11 +165,12 @@ def frames(robot: Robot, trajectory: Trajectory, chosen: NDArray[np.int_]) -> It
 
 def _view(ax: Axes, robot: Robot, trajectory: Trajectory) -> None:
     margin = 0.75 * robot_length(robot)
-    ax.set_xlim(trajectory.x.min() - margin, trajectory.x.max() + margin)
-    ax.set_ylim(trajectory.y.min() - margin, trajectory.y.max() + margin)
+    ax.set(
+        xlim=(trajectory.x.min() - margin, trajectory.x.max() + margin),
+        ylim=(trajectory.y.min() - margin, trajectory.y.max() + margin),
+    )
     ax.set_aspect("equal")
-    ax.set_xlabel("x, m")
-    ax.set_ylabel("y, m")
+    ax.set(xlabel="x, m", ylabel="y, m")
 
 
 def _height(robot: Robot, trajectory: Trajectory) -> float:

@@ -14,25 +14,9 @@ from numpy.typing import NDArray
 from rr_opt.array import Array
 from rr_opt.formatting import number
 from rr_opt.model.gait import SineGait
-from rr_opt.model.problem import GaitBounds, Interval, Problem
+from rr_opt.model.problem import GaitBounds, Interval, Limits, Problem
 from rr_opt.model.robot import Robot
-from rr_opt.report.figures.style import (
-    DASHED,
-    GREY,
-    GROUND,
-    INK,
-    LIMIT,
-    PAPER,
-    SIGNED,
-    STAR,
-    figure,
-    hatched,
-    signed,
-    speed_bar,
-    styled,
-    svg,
-)
-from rr_opt.verify.evaluate import Evaluated, Found
+from rr_opt.report.figures import style
 from rr_opt.verify.sweep import speed_map as evaluated_map
 
 
@@ -65,21 +49,25 @@ def map_data(problem: Problem, robot: Robot, best: SineGait) -> MapData:
     return MapData(found.periods, found.amplitudes, found.speed.T, found.peak_torque.T)
 
 
-def reach(problem: Problem, robot: Robot, offset: float) -> dict[str, float]:
-    """The amplitude (rad) at which each limit on the angle is met, for gaits at an offset."""
-    one, two = robot.platform1, robot.platform2
-    cosine = (problem.limits.singularity - two.c) / one.c
-    edge = math.acos(min(max(cosine, -1.0), 1.0)) if cosine > -1 else math.inf
-    return {"singularity": edge - abs(offset), "angle": problem.limits.angle - abs(offset)}
+def uses(data: MapData, problem: Problem, robot: Robot, offset: float) -> dict[str, Array]:
+    """How much of each limit every gait of the map uses, (A, T): more than 1 exceeds it."""
+    one, two, limits = robot.platform1, robot.platform2, problem.limits
+    cosine = (limits.singularity - two.c) / one.c
+    posture = math.acos(min(max(cosine, -1.0), 1.0)) if cosine > -1 else math.inf
+    amplitude, period = np.meshgrid(data.amplitude, data.period, indexing="ij")
+    angle = amplitude + abs(offset)
+    return {
+        "rate": 2 * math.pi * amplitude / (limits.rate * period),
+        # Past the singular posture there is no torque, and no gait.
+        "torque": np.nan_to_num(data.torque / limits.torque, nan=2.0),
+        "singularity": angle / posture,
+        "angle": angle / limits.angle,
+    }
 
 
 def allowed(data: MapData, problem: Problem, robot: Robot, offset: float) -> NDArray[np.bool_]:
     """Which gaits of the map respect every limit, (A, T)."""
-    amplitude, period = data.amplitude[:, None], data.period[None, :]
-    inside = amplitude <= min(reach(problem, robot, offset).values())
-    inside = inside & (2 * math.pi * amplitude <= problem.limits.rate * period)
-    with np.errstate(invalid="ignore"):
-        return inside & (data.torque <= problem.limits.torque)
+    return np.max(list(uses(data, problem, robot, offset).values()), axis=0) <= 1
 
 
 def speed_map(
@@ -100,132 +88,66 @@ def speed_map(
     low, high = (min(kept.min(), 0.0), max(kept.max(), 0.0)) if kept.size else (-1.0, 1.0)
     top = max(-low, high, 1e-9)
     levels = np.linspace(low if low < 0 else -1e-3 * top, high if high > 0 else 1e-3 * top, 31)
-    hatched(ax)
+    style.hatched(ax)
     # Colours beyond a limit are covered below, so the speed is only clipped there: a contour
     # that ended at the limit's line would end in steps.
     shown = np.clip(1e3 * data.speed, low, high)
     fill = ax.contourf(
-        data.period, data.amplitude, shown, levels=levels, cmap=SIGNED, norm=signed(top), zorder=1
+        data.period,
+        data.amplitude,
+        shown,
+        levels=levels,
+        cmap=style.SIGNED,
+        norm=style.signed(top),
+        zorder=1,
     )
     # Each band gets an edge of its own colour: else thin white seams show between them.
     fill.set(edgecolor="face", linewidth=0.5)
-    _cover(ax, data, problem, robot, best.offset)
-    speed_bar(ax, fill)
-    _limit_lines(ax, data, problem, robot, best.offset)
+    shares = uses(data, problem, robot, best.offset)
+    worst = np.clip(np.max(list(shares.values()), axis=0), 0.0, 2.0)
+    ax.contourf(data.period, data.amplitude, worst, levels=[1.0, 2.0], colors=[style.GROUND],
+                hatches=["////"], zorder=2)  # fmt: skip
+    style.speed_bar(ax, fill)
+    _edges(ax, data, shares, problem.limits)
     for one in others:
-        ax.plot(one.period, one.amplitude, "o", ms=9, mfc="none", mec=INK, mew=1.4, zorder=6)
-    ax.plot(best.period, best.amplitude, ms=19, mew=1.2, zorder=7, label="optimum", **STAR)
-    ax.set_xlim(data.period[0], data.period[-1])
-    ax.set_ylim(data.amplitude[0], data.amplitude[-1])
+        ax.plot(one.period, one.amplitude, "o", ms=9, mfc="none", mec=style.INK, mew=1.4, zorder=6)
+    ax.plot(best.period, best.amplitude, ms=19, mew=1.2, zorder=7, label="optimum", **style.STAR)
+    ax.set(xlim=(data.period[0], data.period[-1]), ylim=(data.amplitude[0], data.amplitude[-1]))
     ax.grid(visible=False)
-    _label(ax)
+    label(ax)
     return ax
 
 
-def _label(ax: Axes) -> None:
-    ax.set_xlabel("period T, s")
-    ax.set_ylabel("amplitude α, rad")
+def label(ax: Axes) -> None:
+    """Label the axes of a map of sines."""
+    ax.set(xlabel="period T, s", ylabel="amplitude α, rad")
 
 
-def _cover(ax: Axes, data: MapData, problem: Problem, robot: Robot, offset: float) -> None:
-    """Hatched grey over every gait that exceeds a limit."""
-    amplitude, period = data.amplitude[:, None], data.period[None, :]
-    most = min(reach(problem, robot, offset).values())
-    excess = np.maximum(amplitude - most, amplitude - problem.limits.rate * period / 2 / math.pi)
-    span = data.amplitude[-1]
-    torque = np.where(np.isfinite(data.torque), data.torque, 2 * problem.limits.torque)
-    if math.isfinite(problem.limits.torque):
-        excess = np.maximum(excess, span * (torque / problem.limits.torque - 1))
-    excess = np.clip(excess, -span, span)
-    ax.contourf(
-        data.period, data.amplitude, excess, levels=[0.0, 2 * span], colors=[GROUND],
-        hatches=["////"], zorder=2,
-    )  # fmt: skip
-
-
-def _limit_lines(ax: Axes, data: MapData, problem: Problem, robot: Robot, offset: float) -> None:
+def _edges(ax: Axes, data: MapData, shares: dict[str, Array], limits: Limits) -> None:
     """The edges of what is allowed, each with its name."""
-    period, limits = data.period, problem.limits
-    bottom, top = data.amplitude[0], data.amplitude[-1]
-    if math.isfinite(limits.rate):
-        _rate_line(ax, data, limits.rate)
-    lines = reach(problem, robot, offset)
     texts = {
+        "rate": f"rate {number(limits.rate * 30 / math.pi, 3)} rpm",
+        "torque": f"torque {number(limits.torque, 3)} N m",
         "singularity": f"S1 = {number(1e3 * limits.singularity, 3)} mm: singular posture near",
         "angle": f"|φ| = {number(limits.angle, 3)} rad",
     }
-    for name, line in lines.items():
-        if line < top:
-            ax.axhline(line, color=LIMIT, lw=1.4, zorder=3)
-            place = period[0] + 0.97 * (period[-1] - period[0])
-            _name(ax, place, line + 0.015 * (top - bottom), texts[name], ha="right", va="bottom")
-    _torque_line(ax, data, limits.torque, min(lines.values()))
-
-
-def _rate_line(ax: Axes, data: MapData, limit: float) -> None:
-    """alpha = rate T/(2 pi), named on the side where there is room."""
-    (left, right), (bottom, top) = data.period[[0, -1]], data.amplitude[[0, -1]]
-    slope = limit / (2 * math.pi)
-    first, last = max(left, bottom / slope), min(right, top / slope)
-    if first >= last:
-        return
-    ax.plot([first, last], [slope * first, slope * last], color=LIMIT, lw=1.4, zorder=3)
-    at = first + 0.6 * (last - first)
-    side = "right" if at - left > 0.3 * (right - left) else "left"
-    _name(ax, at, slope * at, f" rate {number(limit * 30 / math.pi, 3)} rpm", ha=side)
-
-
-def _torque_line(ax: Axes, data: MapData, limit: float, most: float) -> None:
-    """Where the peak torque meets its limit, among gaits short of the limits on the angle."""
-    rows = data.amplitude <= most
-    torque = data.torque[rows]
-    known = np.isfinite(torque)
-    if not known.any() or not torque[known].min() < limit < torque[known].max():
-        return
-    drawn = ax.contour(
-        data.period, data.amplitude[rows], torque, levels=[limit], colors=[LIMIT],
-        linewidths=1.4, linestyles=[DASHED], zorder=3,
-    )  # fmt: skip
-    lines = drawn.get_paths()[0].to_polygons(closed_only=False)
-    line = max((np.asarray(one) for one in lines), key=len)
-    x, y = line[len(line) // 2]
-    _name(ax, float(x), float(y), f" torque {number(limit, 3)} N m", ha="left")
-
-
-def _name(ax: Axes, x: float, y: float, text: str, *, ha: str, va: str = "center") -> None:
-    halo = [withStroke(linewidth=3, foreground=PAPER, alpha=0.85)]
-    ax.text(x, y, text + " ", color=LIMIT, fontsize=9, ha=ha, va=va, zorder=5, path_effects=halo)
-
-
-_MANY = 2000
-
-
-def draw(found: Evaluated, best: Found | None) -> str:
-    """A sweep: a dot for each gait that respects every limit, the fastest on top; a faint cross for
-    any other. Many dots become one picture inside the SVG, to keep it small.
-
-    Gaits of several offsets and inertia ratios share a place: what is seen is the fastest.
-    """
-    amplitude, period = found.decisions[:2]
-    speed, kept = 1e3 * found.speed, found.feasible
-    order = np.flatnonzero(kept)
-    order = order[np.argsort(np.abs(speed[order]))]
-    top = float(np.abs(speed[order[-1]])) if len(order) else 1.0
-    with styled():
-        drawn = figure(6.8, 4.8)
-        drawn.set_dpi(160)
-        ax = drawn.add_subplot()
-        ax.plot(period[~kept], amplitude[~kept], "x", color=GREY, ms=2.5, mew=0.5, alpha=0.3)
-        dots = ax.scatter(
-            period[order], amplitude[order], c=speed[order], cmap=SIGNED, norm=signed(top), s=26,
-            edgecolors=GREY, linewidths=0.25, zorder=3,
+    halo = [withStroke(linewidth=3, foreground=style.PAPER, alpha=0.85)]
+    regular = np.maximum(shares["singularity"], shares["angle"]) <= 1
+    for name, share in shares.items():
+        # The torque is known among gaits short of the limits on the angle.
+        known = np.where(regular, share, np.nan) if name == "torque" else share
+        if not np.nanmin(known, initial=2.0) < 1 < np.nanmax(known, initial=0.0):
+            continue
+        edge = ax.contour(
+            data.period, data.amplitude, known, levels=[1.0], colors=[style.LIMIT], zorder=3,
+            linewidths=1.4, linestyles=[style.DASHED if name == "torque" else "-"],
         )  # fmt: skip
-        for part in (*ax.collections, *ax.lines):
-            part.set_rasterized(len(speed) > _MANY)
-        ends = speed[order].min(initial=0.0), speed[order].max(initial=0.0)
-        speed_bar(ax, dots).set_ylim(min(ends[0], -1e-9), max(ends[1], 1e-9))
-        if best:
-            ax.plot(best.gait.period, best.gait.amplitude, ms=19, mew=1.2, zorder=5, **STAR)
-        ax.set_title(f"{len(speed)} gaits: dots keep every limit, crosses do not", weight="normal")
-        _label(ax)
-        return svg(drawn)
+        pieces = edge.get_paths()[0].to_polygons(closed_only=False)
+        line = max(map(np.asarray, pieces), key=len)
+        # Near the right end of a long line, beside the middle of a short one.
+        right = np.ptp(line[:, 0]) > 0.5 * np.ptp(data.period)
+        line = line[line[:, 0].argsort()]
+        x = float(np.quantile(line[[0, -1], 0], 0.85 if right else 0.5))
+        y = float(np.interp(x, *line.T))
+        ax.text(x, y, f" {texts[name]} ", color=style.LIMIT, fontsize=9, zorder=5, va="bottom",
+                ha="right" if right else "left", path_effects=halo)  # fmt: skip

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from rr_opt.array import Array
 from rr_opt.files.study_axes import Axis
 from rr_opt.formatting import number
-from rr_opt.report.study import SolvedStudy, unit_of, value_text
+from rr_opt.results.inputs import axis_words, unit_of, value_text
+from rr_opt.results.study import SolvedStudy
 
 _EVEN = 0.05
 _WIDEST = 60
@@ -72,8 +73,7 @@ def scale_of(axis: Axis) -> Scale:
     """How to show an axis; keys that are varied in step are shown by the first."""
     line = next((line for line in axis.lines if line.numbers is not None), axis.lines[0])
     unit, factor = unit_of(line.key)
-    more = f" and {len(axis.lines) - 1} more" if len(axis.lines) > 1 else ""
-    name, numbers = f"{line.key.name}{more}", line.numbers
+    name, numbers = axis_words(axis), line.numbers
     values = line.values if numbers is None else numbers
     texts = tuple(value_text(line.key, value, 3) for value in values)
     if numbers is None or not np.isfinite(numbers).all():
@@ -115,8 +115,7 @@ class Grid:
         self.x.apply(ax, "x")
         self.y.apply(ax, "y")
         (left, right), (low, high) = ((part[0], part[-1]) for part in self.borders)
-        ax.set_xlim(left, right)
-        ax.set_ylim(low, high)
+        ax.set(xlim=(left, right), ylim=(low, high))
         ax.grid(visible=False)
 
 

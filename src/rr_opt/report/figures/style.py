@@ -1,4 +1,4 @@
-"""How every figure looks: colours that colour-blind readers can tell apart, one size of type."""
+"""How every figure looks: colours that colour-blind readers can distinguish, one type size."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from typing import Any
 
 import matplotlib as mpl
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import LinearSegmentedColormap, TwoSlopeNorm
@@ -18,6 +19,8 @@ INK, GREY, FAINT, PAPER = "#1f2933", "#66727f", "#d5dbe1", "#ffffff"
 FORWARD, BACKWARD = "#0072b2", "#d55e00"
 PLATFORM1, PLATFORM2, WHEEL = "#009e73", "#e69f00", "#2b3440"
 LIMIT, OPTIMUM = "#9b2d5d", "#f0e442"
+NOMINAL, FOUND = BACKWARD, FORWARD
+"""The model as believed is orange, as found blue."""
 
 SIGNED = LinearSegmentedColormap.from_list(
     "signed", ["#7a2e00", "#d55e00", "#f5b98a", "#f7f5f2", "#8fc1e0", "#0072b2", "#003a5d"]
@@ -65,7 +68,11 @@ def styled() -> Iterator[None]:
         yield
 
 
-def figure(width: float = 6.6, height: float = 4.4) -> Figure:
+WIDTH = 5.2
+"""Inches: of a figure on a page, whose type is then large enough on a phone."""
+
+
+def figure(width: float = WIDTH, height: float = 4.4) -> Figure:
     """An empty figure, inches, that lays itself out; not known to pyplot."""
     made = Figure(figsize=(width, height), layout="constrained")
     FigureCanvasAgg(made)
@@ -79,10 +86,10 @@ def svg(drawn: Figure) -> str:
     return text.getvalue()
 
 
-def panel(width: float, height: float, fill: Callable[[Axes], object]) -> str:
+def panel(height: float, fill: Callable[[Axes], object]) -> str:
     """A figure of one axes, inches, that `fill` draws on, as SVG text."""
     with styled():
-        drawn = figure(width, height)
+        drawn = figure(height=height)
         fill(drawn.add_subplot())
         return svg(drawn)
 
@@ -134,3 +141,16 @@ def note(ax: Axes, text: str, x: float = 0.985, y: float = 0.96, **style: object
     options = {"ha": "right", "va": "top", "fontsize": 9.0, "color": GREY, **style}
     box = {"facecolor": PAPER, "edgecolor": "none", "alpha": 0.8, "pad": 1.5}
     ax.text(x, y, text, transform=ax.transAxes, bbox=box, **options)  # type: ignore[arg-type]
+
+
+def grid(drawn: Figure, count: int, columns: int) -> list[Axes]:
+    """`count` axes in rows of `columns`; the last row may be shorter."""
+    axes = np.atleast_1d(drawn.subplots(-(-count // columns), columns)).ravel()
+    for ax in axes[count:]:
+        ax.remove()
+    return list(axes[:count])
+
+
+def legend_below(drawn: Figure, ax: Axes) -> None:
+    """What the axes label, below all axes."""
+    drawn.legend(*ax.get_legend_handles_labels(), loc="outside lower center", ncols=3)

@@ -8,24 +8,25 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from rr_opt.formatting import with_unit
-from rr_opt.report.figures.style import LIMIT, figure, note, styled, svg
+from rr_opt.report.figures import style
+from rr_opt.results.turn_chart import TurnChart
 from rr_opt.verify.turn_chart import Tightest, TurnMap
 
 _WIDEST = 20.0
 """m; wider circles are left out of the picture."""
 
 
-def draw(seen: TurnMap, tight: Tightest | None) -> str:
-    """The chart as SVG text."""
-    with styled():
-        return svg(turn_chart(seen, tight))
+def draw(chart: TurnChart) -> dict[str, str]:
+    """The chart as SVG text by its name."""
+    with style.styled():
+        return {"turn-chart": style.svg(turn_chart(chart.seen, chart.tight))}
 
 
 def turn_chart(seen: TurnMap, tight: Tightest | None) -> Figure:
     """All panels; offsets below 0 are the mirror image and not drawn."""
     count = len(seen.period)
     columns = min(count, 2)
-    drawn = figure(4.6 * columns, 3.6 * -(-count // columns))
+    drawn = style.figure(style.WIDTH, 1.0 + 2.3 * -(-count // columns))
     axes = drawn.subplots(-(-count // columns), columns, sharex=True, sharey=True, squeeze=False)
     for j, ax in enumerate(axes.flat):
         if j >= count:
@@ -33,10 +34,12 @@ def turn_chart(seen: TurnMap, tight: Tightest | None) -> Figure:
             continue
         _panel(ax, seen, j)
         if tight:
-            ax.axhline(tight.radius, color=LIMIT, lw=1.0)
-    note(axes[0, 0], "solid: to the left, dashed: to the right")
+            ax.axhline(tight.radius, color=style.LIMIT, lw=1.0)
+    style.note(axes[0, 0], "solid: to the left, dashed: to the right")
     if tight:
-        note(axes[0, 0], f"tightest: {with_unit(tight.radius, 'm')}", y=0.1, color=LIMIT)
+        style.note(
+            axes[0, 0], f"tightest: {with_unit(tight.radius, 'm')}", y=0.1, color=style.LIMIT
+        )
     for ax in axes[-1]:
         ax.set_xlabel("offset φ0, rad")
     for ax in axes[:, 0]:
@@ -59,5 +62,4 @@ def _panel(ax: Axes, seen: TurnMap, j: int) -> None:
             radius = np.full(len(seen.offset), np.nan)
             radius[there] = 1 / np.abs(curvature[i][there])
             ax.plot(seen.offset, radius, line, color=colours[i], lw=1.5)
-    ax.set_yscale("log")
-    ax.set_title(f"T = {with_unit(float(seen.period[j]), 's', 3)}")
+    ax.set(yscale="log", title=f"T = {with_unit(float(seen.period[j]), 's', 3)}")

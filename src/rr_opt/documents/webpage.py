@@ -4,24 +4,10 @@ from __future__ import annotations
 
 import base64
 import re
-from collections.abc import Sequence
 from functools import cache
-from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rr_opt.report.archive import write_text
-from rr_opt.report.document import (
-    Badge,
-    Block,
-    Chain,
-    Checks,
-    Document,
-    Facts,
-    Gallery,
-    Link,
-    Table,
-    cell_text,
-)
+from rr_opt.documents import document as doc
 
 if TYPE_CHECKING:
     from jinja2 import Template
@@ -29,18 +15,18 @@ if TYPE_CHECKING:
 
 PAGE = "report.html"
 
-_KINDS = {Facts: "facts", Table: "table", Checks: "checks", Chain: "chain", Gallery: "gallery"}
+_KINDS = {
+    doc.Facts: "facts",
+    doc.Table: "table",
+    doc.Checks: "checks",
+    doc.Chain: "chain",
+    doc.Gallery: "gallery",
+}
 
 
-def page(document: Document) -> str:
+def page(document: doc.Document) -> str:
     """The whole page; every text is escaped."""
     return _template().render(document=document)
-
-
-def write_page(folder: Path, document: Document, written: Sequence[Path] = ()) -> list[Path]:
-    """Write the page and its figures; returns these and what was `written` before, page first."""
-    drawn = [write_text(folder / f"{one.name}.svg", one.svg) for one in document.figures]
-    return [write_text(folder / PAGE, page(document)), *written, *drawn]
 
 
 @cache
@@ -49,7 +35,7 @@ def _template() -> Template:
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
     environment = Environment(
-        loader=PackageLoader("rr_opt.report"),
+        loader=PackageLoader("rr_opt.documents"),
         autoescape=True,
         trim_blocks=True,
         lstrip_blocks=True,
@@ -57,13 +43,15 @@ def _template() -> Template:
     )
     environment.filters |= {
         "code": _code,
-        "cell_text": cell_text,
+        "cell_text": doc.cell_text,
         "data_uri": _data_uri,
         "kind": _kind,
     }
     environment.tests |= {
-        "badge": lambda cell: isinstance(cell, Badge),
-        "link": lambda cell: isinstance(cell, Link),
+        "badge": lambda cell: isinstance(cell, doc.Badge),
+        "link": lambda cell: isinstance(cell, doc.Link),
+        "gallery": lambda block: isinstance(block, doc.Gallery),
+        "tiles": lambda block: isinstance(block, doc.Facts) and block.key,
     }
     return environment.get_template("document.html")
 
@@ -79,5 +67,5 @@ def _data_uri(svg: str) -> str:
     return f"data:image/svg+xml;base64,{base64.b64encode(svg.encode()).decode()}"
 
 
-def _kind(block: Block) -> str:
+def _kind(block: doc.Block) -> str:
     return _KINDS.get(type(block), "text")

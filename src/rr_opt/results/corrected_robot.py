@@ -89,11 +89,11 @@ def _within(effect: str, parameter: str, value: float) -> float:
 def _provenance(experiment: Experiment, found: Diagnosis) -> dict[str, str]:
     used = sum(run.use == "fit" for run in experiment.runs)
     source = f"{used} recording{'s' if used != 1 else ''} of {experiment.name or 'an experiment'}"
-    told = {}
+    origins = {}
     for name, one in found.parameters.items():
         interval = f"{one.low:.4g} to {one.high:.4g} {one.unit}".removesuffix(" dimensionless")
-        told[_key(name)] = f"fitted: {interval} (95 %), {source}"
-    return told
+        origins[_key(name)] = f"fitted: {interval} (95 %), {source}"
+    return origins
 
 
 def _key(name: str) -> str:

@@ -6,23 +6,12 @@ import textwrap
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from rr_opt.report.document import (
-    Block,
-    Chain,
-    Checks,
-    Document,
-    Facts,
-    Gallery,
-    Link,
-    Section,
-    Table,
-    cell_text,
-)
+from rr_opt.documents import document as doc
 
 _WIDTH = 100
 
 
-def terminal(document: Document, files: Iterable[Path] = ()) -> str:
+def terminal(document: doc.Document, files: Iterable[Path] = ()) -> str:
     """The brief sections as text, and the files that were written."""
     head = f"{document.name}: {document.title}" if document.name else document.title
     # Why there is no result goes to stderr.
@@ -33,31 +22,31 @@ def terminal(document: Document, files: Iterable[Path] = ()) -> str:
     return "\n\n".join("\n".join(lines) for lines in parts if lines) + "\n"
 
 
-def _section(section: Section) -> list[str]:
+def _section(section: doc.Section) -> list[str]:
     lines = [line for block in section.blocks if block for line in _lines(block)]
     if not lines or not section.title:
         return lines
     return [section.title, *(f"  {line}" if line else line for line in lines)]
 
 
-def _lines(block: Block) -> list[str]:
+def _lines(block: doc.Block) -> list[str]:
     match block:
         case str():
             return _wrapped(block)
-        case Facts():
+        case doc.Facts():
             return _hanging([(fact.label, fact.text) for fact in block.items])
-        case Table():
+        case doc.Table():
             return columns(_cells(block)) + _wrapped(block.note)
-        case Checks():
+        case doc.Checks():
             return _hanging(block.items)
-        case Chain():
+        case doc.Chain():
             return columns([(step.name, f"{step.mark}  {step.detail}") for step in block.items])
-        case Gallery():
+        case doc.Gallery():
             return []
 
 
-def _cells(block: Table) -> list[list[str]]:
-    return [list(block.head), *([cell_text(cell) for cell in row] for row in block.rows)]
+def _cells(block: doc.Table) -> list[list[str]]:
+    return [list(block.head), *([doc.cell_text(cell) for cell in row] for row in block.rows)]
 
 
 def columns(rows: Sequence[Sequence[str]]) -> list[str]:
@@ -70,7 +59,7 @@ def columns(rows: Sequence[Sequence[str]]) -> list[str]:
 
 
 def _hanging(rows: Sequence[tuple[str, str]]) -> list[str]:
-    """Labels and texts beside them; a long text goes on below itself."""
+    """Labels with their texts; a long text continues with a hanging indent."""
     width = max([6, *(len(label) for label, _ in rows)]) + 2
     return [
         line
@@ -86,7 +75,7 @@ def _wrapped(words: str, first: str = "", later: str = "") -> list[str]:
     return wrapper.wrap(words)
 
 
-def markdown(document: Document) -> str:
+def markdown(document: doc.Document) -> str:
     """Every section as Markdown, the figures as links to files beside it."""
     parts = [f"# {document.title}", document.lead]
     for section in document.sections:
@@ -95,28 +84,28 @@ def markdown(document: Document) -> str:
     return "\n\n".join(part for part in (*parts, *document.footer) if part) + "\n"
 
 
-def _marked(block: Block) -> str:
+def _marked(block: doc.Block) -> str:
     match block:
         case str():
             return block
-        case Facts():
+        case doc.Facts():
             return "\n".join(f"- **{fact.label}**: {fact.text}" for fact in block.items)
-        case Table():
+        case doc.Table():
             return "\n\n".join(filter(None, (_marked_table(block), block.note)))
-        case Checks():
+        case doc.Checks():
             return "\n".join(f"- {state}: {sentence}" for state, sentence in block.items)
-        case Chain():
+        case doc.Chain():
             return "\n".join(f"- {s.name}: {s.mark} {s.detail}".rstrip() for s in block.items)
-        case Gallery():
+        case doc.Gallery():
             return "\n\n".join(f"![{figure.alt}]({figure.name}.svg)" for figure in block.items)
 
 
-def _marked_table(block: Table) -> str:
+def _marked_table(block: doc.Table) -> str:
     """Padded, so that it reads well as plain text too."""
     head, *rows = _cells(block)
     for cells, row in zip(rows, block.rows, strict=True):
         for k, cell in enumerate(row):
-            if isinstance(cell, Link):
+            if isinstance(cell, doc.Link):
                 cells[k] = f"[{cell.text}]({cell.target})"
     widths = [max(3, *(len(row[k]) for row in (head, *rows))) for k in range(len(head))]
     lines = ["| " + " | ".join(map(str.ljust, row, widths)) + " |" for row in (head, *rows)]

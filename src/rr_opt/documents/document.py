@@ -10,9 +10,9 @@ from __future__ import annotations
 import csv
 import io
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, Literal, TypeVar
 
 from rr_opt.formatting import number
 from rr_opt.version import __version__
@@ -36,6 +36,7 @@ class Link:
     target: str
 
 
+Item = TypeVar("Item")
 Cell = str | float | bool | Badge | Link | None
 """None: there is no such thing. Numbers are SI."""
 
@@ -64,6 +65,14 @@ class Table:
 def table(head: Iterable[str], rows: Iterable[Sequence[Cell]], note: str = "") -> Table:
     """A table of any sequences."""
     return Table(tuple(head), tuple(map(tuple, rows)), note)
+
+
+def table_of(
+    items: Iterable[Item], columns: Mapping[str, Callable[[Item], Cell]], note: str = ""
+) -> Table:
+    """A row for each item; a column is its heading and what it shows of an item."""
+    rows = (tuple(cell(item) for cell in columns.values()) for item in items)
+    return Table(tuple(columns), tuple(rows), note)
 
 
 def cell_text(cell: Cell) -> str:
@@ -123,24 +132,28 @@ class Fact:
 
 
 @dataclass(frozen=True)
-class Facts:
-    """Facts below one another; as large figures on a page if they are the key ones."""
+class Items:
+    """A block of items; one without any is left out."""
 
-    items: tuple[Fact, ...]
-    key: bool = False
+    items: tuple[Any, ...]
 
     def __bool__(self) -> bool:
         return bool(self.items)
 
 
 @dataclass(frozen=True)
-class Checks:
+class Facts(Items):
+    """Facts below one another; as large figures on a page if they are the key ones."""
+
+    items: tuple[Fact, ...]
+    key: bool = False
+
+
+@dataclass(frozen=True)
+class Checks(Items):
     """Sentences, each with its outcome."""
 
     items: tuple[tuple[Literal["ok", "FAILED", "warning"], str], ...]
-
-    def __bool__(self) -> bool:
-        return bool(self.items)
 
 
 def checks(results: Iterable[tuple[bool, str]]) -> Checks:
@@ -164,13 +177,10 @@ class Step:
 
 
 @dataclass(frozen=True)
-class Chain:
+class Chain(Items):
     """Steps that follow one another, side by side on a page."""
 
     items: tuple[Step, ...]
-
-    def __bool__(self) -> bool:
-        return bool(self.items)
 
 
 @dataclass(frozen=True)
@@ -203,14 +213,11 @@ def captioned(captions: Captions, drawn: Mapping[str, str]) -> tuple[Figure, ...
 
 
 @dataclass(frozen=True)
-class Gallery:
+class Gallery(Items):
     """Figures that flow in two columns where there is room; one below the other if `wide`."""
 
     items: tuple[Figure, ...]
     wide: bool = False
-
-    def __bool__(self) -> bool:
-        return bool(self.items)
 
 
 Block = str | Facts | Table | Checks | Chain | Gallery
@@ -260,3 +267,14 @@ class Document:
 def versions(sha256: str) -> tuple[str, str]:
     """The footer of a report on an input with this fingerprint."""
     return f"rr-opt {__version__}", f"input SHA-256 `{sha256}`"
+
+
+def gallery(figures: Iterable[Figure]) -> Section:
+    """Figures as a section of the page; a terminal shows none."""
+    return Section("", (Gallery(tuple(figures)),), brief=False)
+
+
+def facts_alone(facts: Iterable[Fact], *blocks: Block) -> Document:
+    """A report for a terminal alone."""
+    sections = (Section("", (Facts(tuple(facts)),)), *(Section("", (one,)) for one in blocks))
+    return Document("", "", "", "", sections)

@@ -2,23 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
 from typing import Any, ClassVar
 
+from rr_opt.documents.archive import write_text
+from rr_opt.documents.document import Document, Figure
+from rr_opt.documents.report import Progress, Report, quiet
 from rr_opt.outcome import Status
-from rr_opt.report.archive import folder_for_results, remove, write_json, write_text
-from rr_opt.report.document import Captions, Document, Figure, captioned
-from rr_opt.report.text import markdown, terminal
-from rr_opt.report.webpage import PAGE, write_page
-
-Progress = Callable[[str], None]
-"""Called with every step, such as `start 3 of 8`."""
-
-
-def quiet(_: str) -> None:
-    """Progress that is not shown."""
 
 
 class Svg(str):
@@ -33,23 +26,11 @@ class Svg(str):
         return f"<Svg, {len(self)} characters>"
 
 
-class Plots(Mapping[str, Svg]):
+class Plots(dict[str, Svg]):
     """Figures by name. A notebook shows them all."""
 
-    def __init__(self, figures: Mapping[str, str]):
-        self._figures = {name: Svg(svg) for name, svg in figures.items()}
-
-    def __getitem__(self, name: str) -> Svg:
-        return self._figures[name]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._figures)
-
-    def __len__(self) -> int:
-        return len(self._figures)
-
     def __repr__(self) -> str:
-        return f"Plots({', '.join(self._figures)})"
+        return f"Plots({', '.join(self)})"
 
     def _repr_html_(self) -> str:
         return "\n".join(f"<div>{svg._repr_svg_()}</div>" for svg in self.values())
@@ -76,12 +57,14 @@ class Result:
     warnings  sentences on what the result leaves out, or what to beware of
     """
 
-    RECORD: ClassVar[str] = ""
-    OTHERS: ClassVar[tuple[str, ...]] = ()
-    MARKDOWN: ClassVar[str] = ""
-    CAPTIONS: ClassVar[Captions] = {}
-    # Names of files: the record, other data, and the report as Markdown, where there is one. The
-    # figures have captions by name.
+    REPORT: ClassVar[str] = "rr_opt.documents.report"
+    """The module whose REPORT shows this kind of result. It knows the result, and not the other way
+    round, so it is found by its name when the result is shown."""
+
+    @property
+    def report(self) -> Report:
+        """How this kind of result is shown."""
+        return import_module(self.REPORT).REPORT
 
     @property
     def status(self) -> Status:
@@ -104,20 +87,20 @@ class Result:
         return ()
 
     def record(self, files: Sequence[Path] = ()) -> dict[str, Any]:
-        """The result as plain data, SI: the content of the JSON file."""
-        raise NotImplementedError
+        """The result as plain data, SI: the content of its JSON file."""
+        return self.report.stamped(self)
 
     def document(self, figures: Sequence[Figure] = ()) -> Document:
         """The result as a report, from which the page and the text are made."""
-        raise NotImplementedError
+        return self.report.document(self, figures)
 
     def summary(self, files: Sequence[Path] = ()) -> str:
         """The result as text, with the names of its files."""
-        return terminal(self.document(), files)
+        return self.report.text(self, files)
 
     def plot(self) -> Plots:
         """The figures; empty if there is nothing to draw."""
-        return Plots({figure.name: figure.svg for figure in self._figures()})
+        return Plots({figure.name: Svg(figure.svg) for figure in self.report.drawn(self)})
 
     def save(
         self, path: str | Path, *, figures: bool = True, progress: Progress = quiet
@@ -127,39 +110,7 @@ class Result:
         Files that an earlier result left there under the same names are replaced. Raises
         InputError if the folder cannot be written to.
         """
-        folder = folder_for_results(Path(path))
-        names = (
-            PAGE,
-            self.RECORD,
-            self.MARKDOWN,
-            *self.OTHERS,
-            *map("{}.svg".format, self.CAPTIONS),
-        )
-        remove(folder, filter(None, names))
-        if figures:
-            progress("figures")
-        document = self.document(self._figures(progress) if figures else ())
-        written = [write_json(folder / self.RECORD, self.record())]
-        if self.MARKDOWN:
-            written.append(write_text(folder / self.MARKDOWN, markdown(document)))
-        written += [write_text(folder / name, text) for name, text in self._tables().items()]
-        return self._write_page(folder, document, written) if figures else written
-
-    def _tables(self) -> Mapping[str, str]:
-        """The text files beside the record, by name."""
-        return {}
-
-    def _drawn(self) -> Mapping[str, str]:
-        """The figures as SVG texts by name."""
-        return {}
-
-    def _figures(self, progress: Progress = quiet) -> tuple[Figure, ...]:
-        """The figures with their captions."""
-        return captioned(self.CAPTIONS, self._drawn())
-
-    def _write_page(self, folder: Path, document: Document, written: Sequence[Path]) -> list[Path]:
-        """Write the page and the figures; returns these and what was `written` before."""
-        return write_page(folder, document, written)
+        return self.report.save(self, path, figures=figures, progress=progress)
 
     def __str__(self) -> str:
         return self.summary()

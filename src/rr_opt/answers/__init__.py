@@ -1,1 +1,0 @@
-"""What was found, with the evidence for it: checked, and ready to be shown."""

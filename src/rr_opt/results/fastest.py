@@ -1,0 +1,240 @@
+"""The fastest gait of a problem, with the evidence that it is one."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+from rr_opt.design.decisions import ballast_interval
+from rr_opt.design.maximize_speed import Optimum
+from rr_opt.design.solve import Candidate
+from rr_opt.formatting import direction_text, pace_text
+from rr_opt.messages import listed
+from rr_opt.model.ballast import inertia_ratio, with_load_count
+from rr_opt.model.gait import Gait
+from rr_opt.model.problem import LARGEST_EXCESS, Problem
+from rr_opt.model.robot import Robot
+from rr_opt.motion.dynamics import ignored_in_steady_cycle
+from rr_opt.outcome import Status
+from rr_opt.results.ignored import ignored_effects
+from rr_opt.results.limits import LIMIT_NAMES, BoundRow, LimitRow, bound_rows, limit_row
+from rr_opt.results.result import Check, Result
+from rr_opt.verify.replay import Replay
+from rr_opt.verify.sweep import TOLERATED, SweepCheck
+
+LARGEST_REPLAY_ERROR = 1e-6
+"""Of the replayed speed, relative: the optimiser's mesh is refined until it is well below this."""
+
+
+@dataclass(frozen=True, repr=False)
+class FastestGait(Result):
+    """The fastest gait of a problem, with the evidence for it.
+
+    name, sha256   of the problem: its name, and the fingerprint of its files
+    optimum        as the optimiser left it
+    replay, sweep  the motion simulated by CVODES, and the comparison with a plain sweep; None
+                   where there is no optimum to check
+    as_built       speed of the fastest gait of the robot as it is, m/s, where the optimum has
+                   another inertia ratio; None elsewhere, and if that robot has no such gait
+    """
+
+    REPORT = "rr_opt.report.fastest"
+
+    name: str
+    sha256: str
+    optimum: Optimum
+    replay: Replay | None = None
+    sweep: SweepCheck | None = None
+    as_built: float | None = None
+
+    @property
+    def problem(self) -> Problem:
+        """The problem solved."""
+        return self.optimum.problem
+
+    @property
+    def gait(self) -> Gait | None:
+        """The fastest gait; None if there is none."""
+        return self.optimum.best.gait if self.optimum.best else None
+
+    @property
+    def speed(self) -> float | None:
+        """Its mean speed, m/s, negative backward; None if there is no gait."""
+        return self.optimum.best.speed if self.optimum.best else None
+
+    @property
+    def robot(self) -> Robot:
+        """The robot, with the optimum's inertia ratio where that was to be chosen."""
+        return self.optimum.robot or self.problem.robot
+
+    @property
+    def inertia_ratio(self) -> float | None:
+        """J20/J10 of that robot, in the problem's definition; None if there is no gait."""
+        return self.optimum.ratio
+
+    @property
+    def rebuilt(self) -> bool:
+        """Whether the optimum has another inertia ratio than the robot as it is."""
+        return self.robot.platform2 != self.problem.robot.platform2
+
+    @property
+    def turns(self) -> bool:
+        """Whether the robot goes round a circle: a radius of many kilometres is a straight line."""
+        return self.replay is not None and abs(self.replay.steady.cycle.dpsi) > 1e-7
+
+    @cached_property
+    def limits(self) -> dict[str, LimitRow]:
+        """By name (angle, rate, torque, singularity), each with `limit`, `value`, `active` and
+        `shadow_price`, SI."""
+        return {name: limit_row(name, self.optimum, self.replay) for name in LIMIT_NAMES}
+
+    @cached_property
+    def bounds(self) -> dict[str, BoundRow]:
+        """The same of amplitude, period, offset, and the inertia ratio if it is a decision; empty
+        without a gait."""
+        return bound_rows(self.optimum)
+
+    @property
+    def active(self) -> list[str]:
+        """Names of the limits that constrain the gait."""
+        return [row.name for row in self.limits.values() if row.active] if self.replay else []
+
+    def ratio_of(self, candidate: Candidate) -> float:
+        """J20/J10 of one of the optima, in the problem's definition."""
+        robot, choice = self.problem.robot, self.problem.inertia_ratio
+        span = ballast_interval(robot, choice)
+        amount = span.low + candidate.share * (span.high - span.low)
+        platform = robot.platform2
+        changed = (
+            with_load_count(platform, choice.loads, amount)
+            if choice and choice.by == "loads"
+            else replace(platform, I=amount)
+        )
+        return inertia_ratio(replace(robot, platform2=changed), choice.about if choice else "joint")
+
+    @property
+    def checks(self) -> list[Check]:
+        """Replay by CVODES, the limits over the whole cycle, and the sweep."""
+        checks = []
+        if self.replay:
+            error, excess = self.replay.error, self.replay.excess
+            speed = (
+                f"Replay by CVODES: its speed is {1e3 * self.replay.speed:+.3f} mm/s, "
+                f"{error:.1e} from the optimiser's, relative "
+                f"(at most {LARGEST_REPLAY_ERROR:.0e} allowed)."
+            )
+            worst = (
+                f"the worst limit is exceeded by {excess:.1e} of its value "
+                f"(at most {LARGEST_EXCESS:.0e} allowed)."
+                if excess > 0
+                else "no limit is exceeded."
+            )
+            checks += [
+                Check(error <= LARGEST_REPLAY_ERROR, speed),
+                Check(excess <= LARGEST_EXCESS, f"Limits over the whole cycle: {worst}"),
+            ]
+        if self.sweep:
+            better = _sweep_sentence(self.sweep, self.problem.gait.shape)
+            checks.append(Check(self.sweep.gap >= -TOLERATED, better))
+            if not math.isnan(self.sweep.error):
+                own = (
+                    f"The sweep's own model gives the optimum {1e3 * self.sweep.speed:+.3f} "
+                    f"mm/s, {self.sweep.error:.1e} from the optimiser's, relative "
+                    f"(at most {TOLERATED:.0e} allowed)."
+                )
+                checks.append(Check(self.sweep.error <= TOLERATED, own))
+        return checks
+
+    @property
+    def status(self) -> Status:
+        """As the optimiser ended, unless a check failed."""
+        if all(check.passed for check in self.checks):
+            return self.optimum.status
+        return Status.NOT_CONVERGED
+
+    @property
+    def headline(self) -> str:
+        """The result in a phrase; empty if nothing was confirmed."""
+        if self.status is not Status.OPTIMAL or not self.speed:
+            return ""
+        return f"{self._subject} at {1e3 * abs(self.speed):.1f} mm/s"
+
+    @property
+    def message(self) -> str:
+        """The outcome in a paragraph; a failed check comes first."""
+        failed = [check.sentence for check in self.checks if not check.passed]
+        if failed:
+            return "The optimum was not confirmed. " + " ".join(failed)
+        if self.speed is None:
+            return self.optimum.message
+        first = f"{self._subject} at {pace_text(self.speed)}, and every check confirms it."
+        return " ".join([first, *self.remarks])
+
+    @property
+    def _subject(self) -> str:
+        return f"The fastest gait found drives {direction_text(self.speed or 0.0)}"
+
+    @property
+    def remarks(self) -> list[str]:
+        """What else there is to know of the gait, in sentences."""
+        best = self.optimum.best
+        if best is None:
+            return []
+        texts = []
+        ignored = ignored_in_steady_cycle(self.problem.robot)
+        if ignored:
+            texts.append(f"The optimiser and the checks ignore {listed(ignored)}.")
+        ties = len(self.optimum.ties)
+        if ties:
+            texts.append(f"{ties} other gait{'s are' if ties > 1 else ' is'} as fast: a tie.")
+        sine = self.optimum.sine
+        if sine:
+            gain = 100 * (abs(best.speed) / sine - 1)
+            texts.append(f"That is {gain:.1f} % faster than the fastest sine.")
+        if beyond := self._beyond_servo(best.gait):
+            texts.append(
+                "But the problem allows more than the robot's servo: the gait exceeds its "
+                f"{listed(beyond)} limit."
+            )
+        if self.sweep and math.isnan(self.sweep.error):
+            texts.append("The sweep's own model cannot represent this shape and does not check it.")
+        if self.optimum.sideways:
+            texts.append(
+                "It lies where forward motion turns into backward motion: its mean velocity is "
+                "perpendicular to its mean heading, so its direction is a matter of definition."
+            )
+        return texts
+
+    def _beyond_servo(self, gait: Gait) -> list[str]:
+        """Which limits of the robot file's servo the gait exceeds."""
+        servo, needed = self.problem.robot.servo, self.replay.reached if self.replay else {}
+        return [
+            name
+            for name, value, able in (
+                ("angle", gait.peak_angle, servo.angle_limit),
+                ("rate", gait.peak_rate, servo.rate_limit),
+                ("torque", needed.get("torque", 0.0), servo.torque_limit),
+            )
+            if value > able * (1 + LARGEST_EXCESS)
+        ]
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Which effects of the robot the optimum ignores."""
+        return ignored_effects(self.problem.robot)
+
+
+def _sweep_sentence(sweep: SweepCheck, shape: str) -> str:
+    gaits = "gaits" if shape == "sine" else "sines"
+    if sweep.best_gait is None:
+        return f"Sweep of {sweep.points} {gaits}: none of them respects every limit."
+    head = f"Sweep of {sweep.points} {gaits}: the best has {1e3 * sweep.best_speed:+.3f} mm/s, "
+    if abs(sweep.gap) < 1e-6:
+        return head + "as fast as the optimum to within a millionth."
+    if sweep.gap >= 0:
+        return head + f"{100 * sweep.gap:.2g} % slower than the optimum."
+    return (
+        head + f"{-100 * sweep.gap:.2g} % faster than the optimum "
+        f"(at most {100 * TOLERATED:g} % allowed)."
+    )

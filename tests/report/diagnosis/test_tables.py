@@ -1,0 +1,41 @@
+"""The tables of the page: one scale of misfits, and no two rows that look the same."""
+
+from dataclasses import replace
+
+from rr_opt.report.diagnosis.tables import candidates_table
+from rr_opt.report.diagnosis.words import stage_text, total
+from rr_opt.sysid.diagnosis import Mismatch, Tried
+
+
+def column(table, name):
+    return [row[table.head.index(name)] for row in table.rows]
+
+
+def test_forms_of_one_effect_are_reported_apart_by_their_parameters(missing):
+    disc = {"floor_patch.multiplier": 2.0, "floor_patch.x": 0.1, "floor_patch.radius": 0.2}
+    edge = {"floor_patch.multiplier": 2.0, "floor_patch.normal": 0.1}
+    tried = tuple(
+        Tried(("floor_patch",), 0.1, score, values, False)
+        for score, values in ((1.0, disc), (2.0, edge))
+    )
+    rows = column(
+        candidates_table(replace(missing, found=replace(missing.found, tried=tried))), "Effects"
+    )
+    assert rows == ["floor patch (x, radius)", "floor patch (normal)"]
+
+
+def test_misfits_are_1_for_the_noise_alone(missing):
+    assert total(0.0) == 1.0
+    assert "1.00 σ" in column(candidates_table(missing), "Misfit")
+
+
+def test_a_stage_explains_a_share_of_the_misfit(missing):
+    stage = next(one for one in missing.found.stages if one.guilty)
+    found = replace(missing.found, mismatch=Mismatch(2 * stage.size, 0.0))
+    assert stage_text(stage, found).startswith("explains 25 %, ")
+
+
+def test_where_there_is_no_excess_no_share_of_it_is_given(missing):
+    stage = replace(missing.found.stages[0], size=0.03, p_value=0.4)
+    found = replace(missing.found, mismatch=Mismatch(0.03, 0.4))
+    assert stage_text(stage, found) == "p = 0.40"
