@@ -13,7 +13,7 @@ from rr_lab.trial.isolation import COMMAND, Task, diagnose_apart
 from rr_lab.trial.sealing import make
 
 STUB = str(Path(__file__).parent / "stub.py")
-DRAW = Draw(17, "single:coulomb_friction", 10.0, 0.0, 987654321012345)
+DRAW = Draw(17, "single:coulomb_friction", 10.0, 0.0, 987654321012345, "planar")
 
 
 def command(how):
@@ -64,7 +64,7 @@ def test_no_variable_but_a_few_is_handed_on(seen, monkeypatch, made):
 
 def test_experiment_yaml_is_that_of_the_same_case_with_nothing_hidden(made):
     """Kinds cannot be told from it: robot, gaits, noise and uncertainties are drawn before."""
-    null = make(Draw(17, "null", None, 0.0, DRAW.seed), seconds=3.0)
+    null = make(Draw(17, "null", None, 0.0, DRAW.seed, "planar"), seconds=3.0)
     assert made.files["experiment.yaml"] == null.files["experiment.yaml"]
     assert made.files["run01.csv"] != null.files["run01.csv"]
 
