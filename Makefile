@@ -84,7 +84,7 @@ bench: $(BENCH) ## measure against other ways to the same answer, into results/b
 real: $(DEV) ## diagnose a real pendulum (DATA=/path/to/data_measured.csv)
 	$(BIN)/python -m benchmarks.real_pendulum "$(DATA)"
 
-prove: $(DEV) ## try the diagnosis on 100 sealed cases, of the commit's own seed (hours)
+prove: $(DEV) ## try the diagnosis on 100 sealed cases, of the commit's own seed (an hour)
 	$(BIN)/rr-opt prove --workers $(WORKERS) --out results/proof
 
 demo: $(DEV) ## record, diagnose, open the seal, correct, predict: some minutes (SEED=5)

@@ -1,6 +1,6 @@
 """How well the laboratory agrees with the reduced model: `python -m benchmarks.lab_agreement`.
 
-Robots and gaits by lot, nothing hidden. Each run of ten periods is recorded by each engine with
+Random robots and gaits, nothing hidden. Each run of ten periods is recorded by each engine with
 smaller and smaller steps; CVODES drives the reduced model from the initial state that fits best.
 Writes results/lab/null.csv and results/lab/README.md.
 """
@@ -15,8 +15,8 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from rr_lab.case import stream
-from rr_lab.draw import draw_gait, draw_robot
 from rr_lab.engines import ENGINES, Engine, record
+from rr_lab.sampling import draw_gait, draw_robot
 from rr_opt.documents.archive import write_text
 from rr_opt.model.experiment import Recording
 from rr_opt.model.gait import SineGait

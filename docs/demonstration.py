@@ -20,6 +20,8 @@ import sys
 from pathlib import Path
 from typing import Any
 
+from rr_lab.effects import effect_named
+
 PROGRAM = Path(sys.executable).with_name("rr-opt")
 SECONDS, DRIVE = 15, 40
 """s, of each recording, and of each drive that is predicted."""
@@ -132,8 +134,11 @@ def mean_speed(path: Path, period: float) -> float:
 
 def effect_text(one: dict[str, Any]) -> str:
     """An effect of an answer as `record --effect` takes it."""
-    values = ",".join(f"{name}={each['value']}" for name, each in one["parameters"].items())
-    return f"{one['name']}:{values}"
+    name = "/".join(filter(None, (one["name"], one.get("realisation"))))
+    accepted = effect_named(name).accepted
+    values = one["parameters"] | one.get("plant", {})
+    given = (f"{key}={each['value']}" for key, each in values.items() if key in accepted)
+    return f"{name}:{','.join(given)}"
 
 
 def say(text: str) -> None:

@@ -12,7 +12,7 @@ PATIENCE = 60.0
 
 @contextmanager
 def patience(seconds: float) -> Iterator[None]:
-    """Raises TimeoutError within, after so many CPU seconds; seen between lines of Python only."""
+    """Raises TimeoutError in the body after this many CPU seconds, between lines of Python only."""
 
     def stop(*_: object) -> None:
         raise TimeoutError(f"not done in {seconds:g} CPU s")

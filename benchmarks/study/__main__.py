@@ -41,7 +41,7 @@ def idle(_task: Task) -> Row:
 
 
 def study_of(cases: int) -> Study:
-    """The prototype over rate and torque, about so many cases."""
+    """The prototype over rate and torque, with about this many cases."""
     torques = max(2, round(cases**0.5))
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "study.yaml"

@@ -41,7 +41,7 @@ class Work:
 
     friction   a key of FRICTION
     amplitude, period, offset, ratio  (K,): rad, s, rad, J20/J10 about the joint
-    periods    so many points in a row differ in their period alone
+    periods    this many points in a row differ in their period alone
     """
 
     friction: str
@@ -94,7 +94,7 @@ class Work:
 
 
 def drawn(size: int, count: int) -> NDArray[np.int_]:
-    """So many of so many, at random, the same each time."""
+    """A random subset of the given size, the same each time."""
     return np.sort(np.random.default_rng(0).choice(size, count, replace=False))
 
 

@@ -22,7 +22,7 @@ _CHECKED = 4096
 """Points whose speeds are looked at, of those that have more; only those that take no steps do."""
 
 _LONG = 6.0
-"""A way that takes so many seconds is run once."""
+"""A way that takes longer, s, is run once."""
 
 
 @dataclass

@@ -17,7 +17,7 @@ def round_(radius: float) -> Turn:
 
 
 def whole(heading: float, periods: int, radius: float) -> Turn:
-    """An arc of this heading (rad) and radius (m) in so many periods."""
+    """An arc of this heading (rad) and radius (m) in a number of periods."""
     each = heading / periods
     return replace(round_(math.copysign(radius, heading)), heading=Interval(each, each))
 

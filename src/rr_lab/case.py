@@ -5,7 +5,6 @@ from __future__ import annotations
 import zlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from pathlib import PurePath
 from types import MappingProxyType
 from typing import Literal
 
@@ -14,8 +13,8 @@ import numpy as np
 from rr_lab.disturbances import disturbance_named
 from rr_lab.effects import rig_with
 from rr_lab.engines import Engine, driven
-from rr_lab.formats import ServoClock
-from rr_lab.run import Motion, Outing, captured
+from rr_lab.rig import Rig
+from rr_lab.run import Conditions, Motion, captured
 from rr_opt.model.experiment import Experiment, Noise, Recording, Run, Start, Uncertainty, Use
 from rr_opt.model.gait import SineGait
 from rr_opt.model.robot import EffectUse, Robot
@@ -32,7 +31,7 @@ Verdict = Literal["consistent", "parameters", "missing_physics", "unexplained"]
 
 @dataclass(frozen=True)
 class Plan:
-    """One run of a case: see `Outing`."""
+    """One run of a case: see `Conditions`."""
 
     name: str
     gait: SineGait
@@ -43,9 +42,9 @@ class Plan:
     periods: int = 3
 
     @property
-    def outing(self) -> Outing:
+    def conditions(self) -> Conditions:
         """How the robot is let go, at 100 samples a second."""
-        return Outing(self.seconds, self.start, self.pose, periods=self.periods)
+        return Conditions(self.seconds, self.start, self.pose, periods=self.periods)
 
 
 @dataclass(frozen=True)
@@ -75,15 +74,20 @@ class Case:
     disturbance: str = ""
     notes: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
 
+    @property
+    def rig(self) -> Rig:
+        """The robot as it is, with what is hidden in it."""
+        return rig_with(self.robot, self.effects)
+
 
 def motion_of(case: Case, plan: Plan, step: float | None = None, *, torque: bool = False) -> Motion:
     """What truly happens in a run; step: s, of the integration, the engine's own if left out."""
     clock = disturbance_named(case.disturbance).clock
-    outing = plan.outing
-    outing = replace(
-        outing, torque=torque, rate=clock * outing.rate, seconds=outing.seconds / clock
+    conditions = plan.conditions
+    conditions = replace(
+        conditions, torque=torque, rate=clock * conditions.rate, seconds=conditions.seconds / clock
     )
-    return driven(case.engine, rig_with(case.robot, case.effects), plan.gait, outing, step)
+    return driven(case.engine, case.rig, plan.gait, conditions, step)
 
 
 def recorded(
@@ -96,7 +100,7 @@ def recorded(
         plan.name,
         case.noise,
         stream(case.seed, "noise", number),
-        tracked=rig_with(case.robot, case.effects).tracked,
+        tracked=case.rig.tracked,
         missing=case.missing,
         disturbance=disturbance_named(case.disturbance),
     )
@@ -111,29 +115,3 @@ def play(
         progress(f"recording {n + 1} of {len(case.plans)}")
         runs.append(Run(recorded(case, n, step), plan.gait, plan.use, plan.start))
     return Experiment(case.nominal, case.noise, case.uncertainty, tuple(runs), case.name)
-
-
-Form = Literal["csv", "vicon", "c3d"]
-
-
-@dataclass(frozen=True)
-class Delivery:
-    """The files of a run.
-
-    form       `csv` has the joint and the angles; `vicon` and `c3d` have the markers
-    servo_log  whether each run comes with the servo's log; clock, that log's own
-    torque     whether the servo's torque is in the CSV
-    """
-
-    form: Form = "csv"
-    servo_log: bool = False
-    clock: ServoClock = field(default_factory=ServoClock)
-    torque: bool = False
-
-    def file(self, plan: Plan) -> str:
-        """The name of a run's recording."""
-        return PurePath(plan.name).stem + (".c3d" if self.form == "c3d" else ".csv")
-
-    def log(self, plan: Plan) -> str:
-        """The name of a run's servo log."""
-        return f"{PurePath(plan.name).stem}-servo.csv"

@@ -18,14 +18,6 @@ Distortion = Callable[[Channels, Channels, float, np.random.Generator], Channels
 """(values, sigma of each channel, samples a second, random numbers) -> values as they are kept."""
 
 
-def _white(rng: np.random.Generator, n: int) -> Array:
-    return rng.standard_normal(n)
-
-
-def _kept(values: Channels, _sigma: Channels, _rate: float, _: np.random.Generator) -> Channels:
-    return values
-
-
 @dataclass(frozen=True)
 class Disturbance:
     """noise      of unit variance, of n samples
@@ -36,8 +28,8 @@ class Disturbance:
 
     name: str
     what: str
-    noise: Callable[[np.random.Generator, int], Array] = _white
-    distort: Distortion = _kept
+    noise: Callable[[np.random.Generator, int], Array] = np.random.Generator.standard_normal
+    distort: Distortion = lambda values, *_: values
     clock: float = 1.0
     stated: float = 1.0
 
@@ -106,7 +98,7 @@ EVERY, LONG, BESIDE = 4.0, (0.1, 0.3), 0.15
 
 
 def _mended(values: Channels, _sigma: Channels, rate: float, rng: np.random.Generator) -> Channels:
-    """Where markers were swapped, a cubic through what is beside it."""
+    """Swapped markers, mended by a cubic through the samples on either side."""
     made = {name: each.copy() for name, each in values.items()}
     n, beside = len(next(iter(values.values()))), round(BESIDE * rate)
     for _ in range(round(n / rate / EVERY)):

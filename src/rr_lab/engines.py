@@ -7,14 +7,14 @@ equation of motion and no contact.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Literal, get_args
+from typing import Any, Literal, get_args
 
 import numpy as np
 
 from rr_lab.effects import rig_with
 from rr_lab.mujoco import drive as mujoco
 from rr_lab.rig import Rig
-from rr_lab.run import Motion, Outing, captured
+from rr_lab.run import Conditions, Motion, captured
 from rr_opt.model.experiment import Noise, Recording
 from rr_opt.model.gait import Gait
 from rr_opt.model.robot import EffectUse, Robot
@@ -25,28 +25,29 @@ Engine = Literal["mujoco", "planar"]
 ENGINES: tuple[Engine, ...] = get_args(Engine)
 
 
+def _module(engine: Engine) -> Any:
+    if engine == "mujoco":
+        return mujoco
+    from rr_lab.planar import drive as planar
+
+    return planar
+
+
 def driven(
-    engine: Engine, rig: Rig, gait: Gait, outing: Outing, step: float | None = None
+    engine: Engine, rig: Rig, gait: Gait, conditions: Conditions, step: float | None = None
 ) -> Motion:
     """Drive a gait with steps of `step` s, or of the engine's own.
 
-    Raises InputError if MuJoCo is asked for and not installed, NotConvergedError if the motion is
+    Raises InputError if MuJoCo is needed and not installed, NotConvergedError if the motion is
     lost.
     """
-    if engine == "mujoco":
-        return mujoco.drive(rig, gait, outing, mujoco.STEP if step is None else step)
-    from rr_lab.planar import drive as planar
-
-    return planar.drive(rig, gait, outing, planar.STEP if step is None else step)
+    module = _module(engine)
+    return module.drive(rig, gait, conditions, module.STEP if step is None else step)
 
 
 def fine_enough(engine: Engine, rig: Rig, step: float) -> float:
-    """The step that an engine drives a rig with where `step` is asked for, s."""
-    if engine == "mujoco":
-        return mujoco.fine_enough(rig, step)
-    from rr_lab.planar import drive as planar
-
-    return planar.fine_enough(rig, step)
+    """The step that an engine actually uses if `step` is requested, s."""
+    return _module(engine).fine_enough(rig, step)
 
 
 EXACT = Noise(0.0, 0.0, 0.0)
@@ -77,10 +78,10 @@ def record(
     pose     x (m), y (m) and heading (rad) where the robot is put down
     missing  fraction of the samples that are lost
     step     of the integration, s; the engine's own if left out
-    Raises InputError for an unknown effect, or if MuJoCo is asked for and not installed.
+    Raises InputError for an unknown effect, or if MuJoCo is needed and not installed.
     """
     rig = rig_with(robot, effects)
-    outing = Outing(seconds, start, pose, rate, periods, torque=torque)
-    motion = driven(engine, rig, gait, outing, step)
+    conditions = Conditions(seconds, start, pose, rate, periods, torque=torque)
+    motion = driven(engine, rig, gait, conditions, step)
     rng = np.random.default_rng(seed)
     return captured(motion, name, noise, rng, tracked=rig.tracked, missing=missing)

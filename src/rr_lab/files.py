@@ -6,16 +6,44 @@ import hashlib
 import json
 import secrets
 from collections.abc import Callable, Iterator, Mapping
-from typing import Any
+from dataclasses import dataclass, field
+from pathlib import PurePath
+from typing import Any, Literal
 
 import numpy as np
 
-from rr_lab.case import Case, Delivery, Plan, motion_of, recorded, stream
-from rr_lab.effects import effect_named, rig_with
-from rr_lab.formats import c3d_bytes, log_text, places, seen, vicon_text
+from rr_lab.case import Case, Plan, motion_of, recorded, stream
+from rr_lab.effects import effect_named
+from rr_lab.formats import ServoClock, c3d_bytes, log_text, marker_data, places, vicon_text
 from rr_opt.model.experiment import Recording
 from rr_opt.model.parameters import PARAMETERS, PLATFORM_SYMBOLS, Uncertainty, parameters_of
 from rr_opt.model.robot import EffectUse, Platform, Robot
+
+Form = Literal["csv", "vicon", "c3d"]
+
+
+@dataclass(frozen=True)
+class Delivery:
+    """The files of a run.
+
+    form       `csv` has the joint and the angles; `vicon` and `c3d` have the markers
+    servo_log  whether each run comes with the servo's log; clock, that log's own
+    torque     whether the servo's torque is in the CSV
+    """
+
+    form: Form = "csv"
+    servo_log: bool = False
+    clock: ServoClock = field(default_factory=ServoClock)
+    torque: bool = False
+
+    def file(self, plan: Plan) -> str:
+        """The name of a run's recording."""
+        return PurePath(plan.name).stem + (".c3d" if self.form == "c3d" else ".csv")
+
+    def log(self, plan: Plan) -> str:
+        """The name of a run's servo log."""
+        return f"{PurePath(plan.name).stem}-servo.csv"
+
 
 WRITTEN = "# Written by `rr-opt record`, which may write over it."
 """The first line of the file."""
@@ -77,7 +105,7 @@ PLAIN = Delivery()
 def folder_of(
     case: Case, delivery: Delivery = PLAIN, progress: Callable[[str], None] = lambda _: None
 ) -> Iterator[tuple[str, bytes]]:
-    """Names and contents of the files of a case, each made when it is asked for.
+    """Names and contents of the files of a case, each made on demand.
 
     `progress` is called before each recording. Raises InputError if a package that the
     form needs is missing.
@@ -86,8 +114,8 @@ def folder_of(
         progress(f"recording {n + 1} of {len(case.plans)}")
         yield delivery.file(plan), _recorded(case, plan, n, delivery)
         if delivery.servo_log:
-            rig = rig_with(case.robot, case.effects)
-            log = log_text(rig, plan.gait, plan.outing, delivery.clock)
+            rig = case.rig
+            log = log_text(rig, plan.gait, plan.conditions, delivery.clock)
             yield delivery.log(plan), log.encode()
     # Last, so that a folder with this file has all that it names.
     yield "experiment.yaml", experiment_text(case, delivery).encode()
@@ -96,12 +124,12 @@ def folder_of(
 def _recorded(case: Case, plan: Plan, n: int, delivery: Delivery) -> bytes:
     if delivery.form == "csv":
         return csv_text(recorded(case, n, torque=delivery.torque)).encode()
-    markers = seen(
+    markers = marker_data(
         motion_of(case, plan),
         case.nominal,
         case.noise.position,
         stream(case.seed, "noise", n),
-        tracked=rig_with(case.robot, case.effects).tracked,
+        tracked=case.rig.tracked,
         missing=case.missing,
     )
     return vicon_text(markers).encode() if delivery.form == "vicon" else c3d_bytes(markers)
@@ -147,14 +175,16 @@ def _effect(robot: Robot, use: EffectUse) -> dict[str, Any]:
     realisation = effect.realisation if effect.named else effect.name
     parameters, plant = {}, {}
     for name, value in use.values.items():
-        each = effect.parameter(name)
+        each = effect.accepted[name]
         (plant if each.plant else parameters)[name] = _valued(value, each.unit)
-    known = effect_named(effect.name)
-    for name, value in effect.derived(robot, use.values).items():
-        parameters[name] = _valued(value, known.parameter(name).unit)
-    record = {"name": effect.name if effect.named else "unknown", "what": what}
+    known = effect_named(effect.name).accepted
+    for name, value in (effect.derived(robot, use.values) if effect.derived else {}).items():
+        parameters[name] = _valued(value, known[name].unit)
+    record: dict[str, Any] = {"name": effect.name if effect.named else "unknown", "what": what}
     if realisation:
         record["realisation"] = realisation
+    if effect.same_as:
+        record["same_as"] = list(effect.same_as)
     return {**record, "parameters": parameters, **({"plant": plant} if plant else {})}
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from rr_lab.mujoco.drive import servo_angles
 from rr_lab.rig import Rig
-from rr_lab.run import Motion, Outing
+from rr_lab.run import Conditions, Motion
 from rr_opt.array import Array
 from rr_opt.model.experiment import CountScale
 from rr_opt.model.gait import Gait
@@ -21,14 +21,14 @@ from rr_opt.model.robot import Robot
 from rr_opt.outcome import InputError
 
 HEIGHTS = (0.06, 0.07, 0.065, 0.08)
-"""m above the floor; all differ, so that no two sets of markers look alike."""
+"""m above the floor; all differ, so that no two sets of markers can be confused."""
 
 Places = Mapping[str, tuple[float, float, float]]
 """By marker: forward, left and up of P's point on the floor, m, in its platform's axes."""
 
 
 @dataclass(frozen=True)
-class Seen:
+class MarkerData:
     """Marker positions: labels (k) and positions (n, k, 3), m, NaN where one was not seen."""
 
     labels: tuple[str, ...]
@@ -54,15 +54,15 @@ def _corners(name: str, c: float, b: float, ahead: float) -> Places:
     }
 
 
-def seen(
+def marker_data(
     motion: Motion,
     robot: Robot,
     sigma: float,
     rng: np.random.Generator,
     *,
-    tracked: tuple[float, float] = (0.0, 0.0),
+    tracked: Sequence[float] = (0.0, 0.0),
     missing: float = 0.0,
-) -> Seen:
+) -> MarkerData:
     """The markers of a motion with white noise of `sigma` (m) on each coordinate.
 
     tracked  how far platform 1's markers sit from where the layout says, m
@@ -74,10 +74,10 @@ def seen(
     positions = positions + sigma * rng.standard_normal(positions.shape)
     rate = 1 / (motion.t[1] - motion.t[0])
     positions[_hidden(rng, positions.shape[:2], missing, rate)] = np.nan
-    return Seen((*first, *second), positions, rate)
+    return MarkerData((*first, *second), positions, rate)
 
 
-def _placed(pose: Array, spots: Places, moved: tuple[float, float]) -> Array:
+def _placed(pose: Array, spots: Places, moved: Sequence[float]) -> Array:
     """(n, k, 3) of the markers of a body whose joint end is at pose (n, 3)."""
     forward, left, up = (np.array(one) for one in zip(*spots.values(), strict=True))
     forward, left = forward + moved[0], left + moved[1]
@@ -98,28 +98,28 @@ def _hidden(
 SUBJECT = "Racer"
 
 
-def vicon_text(seen: Seen) -> str:
+def vicon_text(markers: MarkerData) -> str:
     """The section `Trajectories`: rate, names, columns and units, then a row for each frame, in mm.
 
     Frames count from 1; a marker that was not seen leaves its cells empty.
     """
-    names = "".join(f",{SUBJECT}:{label},," for label in seen.labels)
-    roles, units = ",X,Y,Z" * len(seen.labels), ",mm,mm,mm" * len(seen.labels)
+    names = "".join(f",{SUBJECT}:{label},," for label in markers.labels)
+    roles, units = ",X,Y,Z" * len(markers.labels), ",mm,mm,mm" * len(markers.labels)
     lines = [
         "Trajectories",
-        f"{seen.rate:.0f}",
+        f"{markers.rate:.0f}",
         f",{names}",
         f"Frame,Sub Frame{roles}",
         f",{units}",
     ]
-    rows = 1000 * seen.positions.reshape(len(seen.positions), -1)
+    rows = 1000 * markers.positions.reshape(len(markers.positions), -1)
     for frame, row in enumerate(rows, 1):
         cells = ("" if np.isnan(value) else f"{value:.4f}" for value in row)
         lines.append(f"{frame},0,{','.join(cells)}")
     return "\n".join(lines) + "\n"
 
 
-def c3d_bytes(seen: Seen) -> bytes:
+def c3d_bytes(markers: MarkerData) -> bytes:
     """The bytes of the file, in mm. Raises InputError if ezc3d is not installed."""
     try:
         import ezc3d  # an extra
@@ -129,11 +129,11 @@ def c3d_bytes(seen: Seen) -> bytes:
             "with: pip install 'rr-opt[lab]', or take another format."
         ) from None
     file: Any = ezc3d.c3d()
-    file["parameters"]["POINT"]["RATE"]["value"] = [seen.rate]
+    file["parameters"]["POINT"]["RATE"]["value"] = [markers.rate]
     file["parameters"]["POINT"]["UNITS"]["value"] = ["mm"]
-    file["parameters"]["POINT"]["LABELS"]["value"] = list(seen.labels)
-    points = np.ones((4, len(seen.labels), len(seen.positions)))
-    points[:3] = 1000 * np.moveaxis(seen.positions, (0, 1, 2), (2, 1, 0))
+    file["parameters"]["POINT"]["LABELS"]["value"] = list(markers.labels)
+    points = np.ones((4, len(markers.labels), len(markers.positions)))
+    points[:3] = 1000 * np.moveaxis(markers.positions, (0, 1, 2), (2, 1, 0))
     file["data"]["points"] = points
     hidden = np.isnan(points[0])
     file["data"]["meta_points"]["residuals"] = np.where(hidden, -1.0, 0.1)[np.newaxis]
@@ -160,13 +160,13 @@ def drawn_clock(rng: np.random.Generator) -> ServoClock:
     return ServoClock(float(rng.uniform(-0.5, 0.5)), float(rng.uniform(-1e-4, 1e-4)))
 
 
-def log_text(rig: Rig, gait: Gait, outing: Outing, clock: ServoClock) -> str:
+def log_text(rig: Rig, gait: Gait, conditions: Conditions, clock: ServoClock) -> str:
     """CSV `t,goal,present` of one run, from the log's t = 0.
 
     `present` is the angle of the servo's own shaft: play behind it does not show.
     """
-    own = np.arange(round(outing.seconds * RATE) + 1) / RATE
-    goal, present = servo_angles(rig, gait, outing, own / (1 + clock.drift) + clock.offset)
+    own = np.arange(round(conditions.seconds * RATE) + 1) / RATE
+    goal, present = servo_angles(rig, gait, conditions, own / (1 + clock.drift) + clock.offset)
     scale = CountScale()
     counts = (np.rint(scale.zero + angle / scale.each).astype(int) for angle in (goal, present))
     rows = (f"{t:.3f},{one},{two}" for t, one, two in zip(own, *counts, strict=True))

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import secrets
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
-from rr_lab.case import Case, Plan, stream
+from rr_lab.case import Case, Plan, Verdict, stream
 from rr_lab.disturbances import disturbance_named
-from rr_lab.draw import draw_effect, draw_near, draw_noise, draw_plans, draw_robot, draw_wrong
+from rr_lab.effect_size import EffectSize, scaled_to
 from rr_lab.effects import NAMED, OUTSIDE_NAMES, REALISATIONS, effect_named, rig_with
-from rr_lab.effects.hidden import HiddenEffect
+from rr_lab.effects.hidden_effect import HiddenEffect
 from rr_lab.engines import Engine
-from rr_lab.visibility import Gauge, at_visibility
+from rr_lab.sampling import draw_effect, draw_near, draw_noise, draw_plans, draw_robot, draw_wrong
 from rr_opt.model.experiment import Noise
 from rr_opt.model.parameters import default_uncertainty
 from rr_opt.model.robot import EffectUse, Robot
@@ -22,46 +23,72 @@ from rr_opt.outcome import InputError
 
 KINDS = ("null", "parameters", "single", "pair", "outside")
 
-# Wheel inertia is a change of parameters in disguise: it is hidden only if it is asked for.
+# Wheel inertia is a change of parameters in disguise: it is hidden only on request.
 SINGLES = tuple(name for name in NAMED if name != "wheel_inertia")
 
-SEEN = 3.0, 60.0
-"""Between which the visibility is drawn, sigma, evenly in its logarithm."""
+SIZES = 3.0, 60.0
+"""Between which the effect size is drawn, sigma, uniformly in its logarithm."""
 
 GAUGED = 3
 """Runs on which the strength is set."""
 
-Visibility = Callable[[Case], float]
 
+@dataclass(frozen=True)
+class Request:
+    """What a case is made from; the same seed, kind and engine give the same.
 
-def random_case(
-    seed: int,
-    kind: str = "random",
-    *,
-    seconds: float = 30.0,
-    spread: float = 0.0,
-    target: float | None = None,
-    visibility: Visibility | None = None,
-    engine: Engine = "mujoco",
-    disturbance: str = "",
-) -> Case:
-    """Draw a case; the same seed, kind and engine give the same.
-
+    robot, plans, noise  drawn if left out
+    effects     what is hidden; or
     kind        null, parameters, single, pair, outside or random; single:EFFECT, outside:EFFECT and
                 pair:EFFECT+EFFECT name what is hidden, a realisation as EFFECT/REALISATION
-    spread      0: but for what is hidden the nominal values are true; 1: they are off by chance, as
-                far as their uncertainties say
-    target      visibility of each effect, sigma; drawn if left out
-    visibility  RMS deviation of a case from its nominal, in sigma; by default the laboratory's own
-                `Gauge`
-    engine      what drives it; robot, runs and effects are drawn alike for all
+    seed        of all that is drawn; 0 if left out, and with a kind a random one
+    seconds     of each run that is drawn, at most
+    missing     fraction of lost samples
+    engine      what drives it; robot, runs and effects are the same for all
     disturbance  of the recordings, by name
-    Raises InputError for an unknown kind or disturbance.
+    spread      0: but for what is hidden the nominal values are true; 1: they are drawn within
+                their uncertainties
+    target      size of each effect, sigma; drawn if left out
+    size        RMS deviation of a case from its nominal, in sigma; `EffectSize` if left out
     """
-    disturbance_named(disturbance)
-    case = bare_case(seed, seconds, spread=spread, engine=engine)
-    hidden = hidden_in(case, kind, target=target, visibility=visibility)
-    return replace(hidden, disturbance=disturbance)
+
+    robot: Robot | None = None
+    plans: tuple[Plan, ...] = ()
+    effects: tuple[EffectUse, ...] = ()
+    noise: Noise | None = None
+    kind: str | None = None
+    seed: int | None = None
+    seconds: float = 30.0
+    missing: float = 0.0
+    engine: Engine = "mujoco"
+    disturbance: str = ""
+    spread: float = 0.0
+    target: float | None = None
+    size: Callable[[Case], float] | None = None
+
+    def case(self) -> Case:
+        """Raises InputError for an unknown kind or disturbance, or a wrong effect."""
+        disturbance_named(self.disturbance)
+        seed = self.seed
+        if seed is None:
+            seed = secrets.randbits(48) if self.kind else 0
+        case = bare_case(
+            seed, self.seconds, spread=self.spread, robot=self.robot, engine=self.engine
+        )
+        plans, noise = self.plans or case.plans, self.noise or case.noise
+        case = replace(case, plans=plans, noise=noise, missing=self.missing)
+        if self.kind:
+            case = _hidden_in(case, self.kind, self.target, self.size)
+        else:
+            rig_with(case.robot, self.effects)
+            verdict = _verdict([effect_named(use.name) for use in self.effects])
+            case = replace(case, effects=self.effects, verdict=verdict)
+        return replace(case, disturbance=self.disturbance)
+
+
+def random_case(seed: int, kind: str = "random", **more: Any) -> Case:
+    """A case that is all drawn; more: fields of `Request`. Raises as `Request.case` does."""
+    return Request(kind=kind, seed=seed, **more).case()
 
 
 def bare_case(
@@ -92,10 +119,10 @@ def bare_case(
     )
 
 
-def hidden_in(
-    case: Case, kind: str, *, target: float | None = None, visibility: Visibility | None = None
+def _hidden_in(
+    case: Case, kind: str, target: float | None, size: Callable[[Case], float] | None
 ) -> Case:
-    """The case with what its seed and the kind hide in it; see `random_case`."""
+    """The case with what its seed and the kind hide in it; see `Request`."""
     head, names = read_kind(kind, case.seed)
     if head == "null":
         return case
@@ -105,21 +132,26 @@ def hidden_in(
         return replace(case, robot=robot, changed=changed, verdict="parameters")
     rng = stream(case.seed, "effects")
     effects = [_realisation(rng, name) for name in names or _names(rng, head)]
-    # Strength is that of the effect alone: what is off by chance is not to hide it.
+    # Strength is that of the effect alone: errors of the nominal values are not to mask it.
     alone = replace(case, robot=case.nominal)
-    gauge = visibility or Gauge.of(alone, GAUGED)
+    size = size or EffectSize.of(alone, GAUGED)
     uses, notes = [], {}
     for effect in effects:
-        wanted = target or float(np.exp(rng.uniform(*np.log(SEEN))))
-        if effect.visible:
-            wanted = float(np.clip(wanted, *effect.visible))
+        wanted = target or float(np.exp(rng.uniform(*np.log(SIZES))))
+        if effect.sizes:
+            wanted = float(np.clip(wanted, *effect.sizes))
         drawn = replace(alone, effects=(draw_effect(rng, effect, alone),))
-        scaled, reached = at_visibility(drawn, wanted, gauge)
+        scaled, reached = scaled_to(drawn, wanted, size)
         uses.append(scaled.effects[0])
         notes[f"visibility_{effect.name}"] = reached
-    known = all(effect.named for effect in effects)
-    verdict = "missing_physics" if known else "unexplained"
-    return replace(case, effects=tuple(uses), verdict=verdict, notes=notes)
+    return replace(case, effects=tuple(uses), verdict=_verdict(effects), notes=notes)
+
+
+def _verdict(effects: list[HiddenEffect]) -> Verdict:
+    """What a right diagnosis says of these effects."""
+    if not effects:
+        return "consistent"
+    return "missing_physics" if all(effect.named for effect in effects) else "unexplained"
 
 
 def read_kind(kind: str, seed: int = 0) -> tuple[str, tuple[str, ...]]:
@@ -158,35 +190,3 @@ def _realisation(rng: np.random.Generator, name: str) -> HiddenEffect:
         return effect_named(name)
     several = REALISATIONS[name]
     return several[int(rng.integers(len(several)))]
-
-
-def case_of(
-    *,
-    robot: Robot | None = None,
-    plans: tuple[Plan, ...] = (),
-    effects: tuple[EffectUse, ...] = (),
-    noise: Noise | None = None,
-    kind: str | None = None,
-    seed: int | None = None,
-    seconds: float = 30.0,
-    missing: float = 0.0,
-    engine: Engine = "mujoco",
-    disturbance: str = "",
-) -> Case:
-    """A case with the effects given, or with what a kind of case draws, see `random_case`.
-
-    robot, plans, noise  drawn if left out
-    seed                 of all that is drawn; 0 if left out, and with a kind one by chance
-    Raises InputError for an unknown kind or disturbance, or a wrong effect.
-    """
-    disturbance_named(disturbance)
-    if seed is None:
-        seed = secrets.randbits(48) if kind else 0
-    case = bare_case(seed, seconds, robot=robot, engine=engine)
-    case = replace(case, plans=plans or case.plans, noise=noise or case.noise, missing=missing)
-    if kind:
-        return replace(hidden_in(case, kind), disturbance=disturbance)
-    rig_with(case.robot, effects)
-    known = all(effect_named(use.name).named for use in effects)
-    verdict = "consistent" if not effects else "missing_physics" if known else "unexplained"
-    return replace(case, effects=effects, verdict=verdict, disturbance=disturbance)

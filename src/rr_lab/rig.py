@@ -1,8 +1,6 @@
 """The robot on the laboratory's bench: what it is made of, before an engine is chosen.
 
-A rig that no effect has touched is the nominal robot. It is plain data that every engine reads. An
-engine that steps through a motion calls the wheels' laws at each step; another one makes
-expressions of the same data.
+A rig that no effect has touched is the nominal robot. It is plain data that every engine reads.
 """
 
 from __future__ import annotations
@@ -68,6 +66,10 @@ class Tether:
     stiffness: float
 
 
+CABLE_ONSET = 5e-3
+"""m/s, over which a dragged cable's friction sets in, as u/sqrt(u^2 + onset^2)."""
+
+
 def swing_inertia(robot: Robot) -> float:
     """Of the platforms as they turn against each other about a joint at rest, kg m2."""
     one, two = robot.platform1.joint_inertia, robot.platform2.joint_inertia
@@ -114,6 +116,7 @@ class Rig:
     load       mass (kg) and stiffness (N/m) of what shifts on platform 1; None: nothing does
     density    kg/m3, of a medium that drags at the platforms' bodies; see `box_of`
     tether     the cord that holds platform 1; None: nothing does
+    cable      N, with which a cable that drags on the floor holds axle 2's centre back
     offset     rad, is added to the command before it is shaped
     shapers    of the command, in order
     laws       of the wheels' friction, in order: each changes what the ones before it left
@@ -131,7 +134,7 @@ class Rig:
     left: list[float] = field(default_factory=lambda: [0.0, 0.0])
     mu: float = GRIPS
     creep: float = 0.0
-    tilt: tuple[float, float] = (0.0, 0.0)
+    tilt: list[float] = field(default_factory=lambda: [0.0, 0.0])
     play: float = 0.0
     gear: float | None = None
     hinge_dry: float = 0.0
@@ -141,10 +144,11 @@ class Rig:
     load: tuple[float, float] | None = None
     density: float = 0.0
     tether: Tether | None = None
+    cable: float = 0.0
     offset: float = 0.0
     shapers: list[Shaper] = field(default_factory=list)
     laws: list[Law] = field(default_factory=list)
-    tracked: tuple[float, float] = (0.0, 0.0)
+    tracked: list[float] = field(default_factory=lambda: [0.0, 0.0])
     clock: float = 0.0
 
     def __post_init__(self) -> None:
@@ -171,7 +175,7 @@ def wheel_loads(rig: Rig) -> Array:
     The robot stands on four wheels, on a joint that turns about the vertical alone: a stiff body,
     whose weight and whose two moments on the floor give three conditions for four loads. Of all
     loads that keep them, those are taken whose squares are least: the loads of four equal springs.
-    Without a mass beside the axis the wheels of an axle share alike, and of platform 1's axle
+    Without a mass off the axis both wheels of an axle carry the same, and those of platform 1
 
         N1 = g (m1 (c1 + c2 - a1) + m2 a2) / (c1 + c2)
 
@@ -186,94 +190,3 @@ def wheel_loads(rig: Rig) -> Array:
     balance = np.array([(1.0, x, y) for x, y in stands]).T
     weight = -rig.gravity[2] * np.array([(m, m * x, m * y) for m, x, y in masses]).sum(0)
     return np.linalg.lstsq(balance, weight)[0]
-
-
-@dataclass(frozen=True)
-class Circle:
-    """A round place, m."""
-
-    x: float
-    y: float
-    radius: float
-
-    def depth(self, x: Any, y: Any) -> Any:
-        """How far inside a point is, m; negative outside. Of numbers or expressions."""
-        return self.radius - ((x - self.x) ** 2 + (y - self.y) ** 2) ** 0.5
-
-
-@dataclass(frozen=True)
-class Edge:
-    """All that lies beyond a straight edge through (x, y), m; normal, rad, points into it."""
-
-    x: float
-    y: float
-    normal: float
-
-    def depth(self, x: Any, y: Any) -> Any:
-        """How far beyond a point is, m; negative before it. Of numbers or expressions."""
-        return (x - self.x) * math.cos(self.normal) + (y - self.y) * math.sin(self.normal)
-
-
-@dataclass(frozen=True)
-class Patch:
-    """Friction `times` as large for each wheel that is within."""
-
-    times: float
-    within: Circle | Edge
-
-    def __call__(self, wheels: Wheels) -> None:
-        """The friction of this instant."""
-        # Plain numbers: a law is asked at every step, and tables of four cost more than they do.
-        for wheel, place in enumerate(wheels.places.tolist()):
-            if self.within.depth(*place) > 0:
-                wheels.damping[wheel] *= self.times
-                wheels.dry[wheel] *= self.times
-
-
-@dataclass(frozen=True)
-class Falling:
-    """Dry friction of all wheels that falls from `torque` (N m) to a third of it as they turn
-    faster than `rate` (rad/s)."""
-
-    torque: float
-    rate: float
-
-    def __call__(self, wheels: Wheels) -> None:
-        """The friction of this instant."""
-        wheels.dry += self.torque * (1 + 2 * np.exp(-((wheels.rate / self.rate) ** 2))) / 3
-
-
-@dataclass(frozen=True)
-class Drift:
-    """Viscous friction that changes by the fraction `change` with the time constant `time` (s)."""
-
-    change: float
-    time: float
-
-    def __call__(self, wheels: Wheels) -> None:
-        """The friction of this instant."""
-        wheels.damping *= 1 + self.change * (1 - np.exp(-max(wheels.t, 0.0) / self.time))
-
-
-@dataclass(frozen=True)
-class Rub:
-    """The left wheel of platform 1 rubs with `torque` (N m) over the first fifth of each turn."""
-
-    torque: float
-
-    def __call__(self, wheels: Wheels) -> None:
-        """The friction of this instant."""
-        if wheels.angle[0] % (2 * np.pi) < 0.4 * np.pi:
-            wheels.dry[0] += self.torque
-
-
-@dataclass(frozen=True)
-class RollingResistance:
-    """Dry friction at the rim of each wheel, `mu` of its load."""
-
-    mu: float
-    h: float
-
-    def __call__(self, wheels: Wheels) -> None:
-        """The friction of this instant."""
-        wheels.dry += self.mu * self.h * wheels.loads

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -16,14 +17,14 @@ from rr_opt.model.gait import Gait
 
 
 @dataclass(frozen=True)
-class Outing:
-    """How a robot is let go.
+class Conditions:
+    """Conditions of a run: how a robot is let go, and what is recorded.
 
     seconds, rate   how long is recorded, s, and how often, 1/s
     start           `rest`: the command begins at its time 0; `running`: `periods` whole periods
                     before, from rest
     nudge           m/s, a push at the recording's t = 0, by which the whole mass would be faster
-    torque          whether the servo's is written down too
+    torque          whether the servo's torque is recorded too
     pose            x (m), y (m) of P and heading (rad) of platform 1 where it is put down
     """
 
@@ -72,7 +73,7 @@ def captured(
     noise: Noise,
     rng: np.random.Generator,
     *,
-    tracked: tuple[float, float] = (0.0, 0.0),
+    tracked: Sequence[float] = (0.0, 0.0),
     missing: float = 0.0,
     disturbance: Disturbance = NO_DISTURBANCE,
 ) -> Recording:

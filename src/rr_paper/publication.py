@@ -1,4 +1,4 @@
-"""The numbers that the paper prints, as printed, each in one place.
+"""The numbers that the paper prints, as printed; they are in `data/paper.toml`.
 
 Experimental Investigations of the Controlled Motion of the Roller Racer Robot, in: D. Chugo
 et al. (Eds.), CLAWAR 2021, LNNS 324, pp. 428-437 (2022). Tables 1-3 and Figs. 3-6 are in its
@@ -19,8 +19,10 @@ The points of the paper's figures are not printed as numbers, so none of them is
 from __future__ import annotations
 
 import math
+import tomllib
 from dataclasses import dataclass
-from typing import Literal, NamedTuple
+from pathlib import Path
+from typing import Any, Literal, NamedTuple
 
 from scipy.special import stdtrit
 
@@ -30,25 +32,22 @@ CITATION = (
 )
 
 
+def read_data(name: str) -> dict[str, Any]:
+    """A table of `rr_paper/data`."""
+    return tomllib.loads((Path(__file__).parent / "data" / name).read_text(encoding="utf-8"))
+
+
+_PAPER = read_data("paper.toml")
+
+
 class Value(NamedTuple):
     """A number of Table 1 with its unit; None where the table prints none."""
 
     value: float
-    unit: str | None
+    unit: str | None = None
 
 
-TABLE_1 = {
-    "greatest angle phi": Value(2.6, "rad"),
-    "greatest rate dphi/dt": Value(30.0, "rpm"),
-    "m1": Value(0.469, "kg"),
-    "m2": Value(0.250, "kg"),
-    "mass of one load": Value(0.066, "kg"),
-    "I10": Value(0.00386, "kg m2"),
-    "I20": Value(0.00175, "kg m2"),
-    "c1 - a1": Value(0.186, "m"),
-    "c2 - a2": Value(0.0441, "m"),
-    "kappa": Value(0.25, None),
-}
+TABLE_1 = {name: Value(**one) for name, one in _PAPER["table_1"].items()}
 """Table 1, the parameters of the prototype."""
 
 ANGLE_LIMIT = TABLE_1["greatest angle phi"].value
@@ -74,18 +73,18 @@ class Row:
 
     ratio       J20/J10
     period      T, s
-    amplitude   alpha, rad; None where the paper does not state it
     mean        the column with the interval, m/s; by its head the mean of n = 3 runs
     half_width  of the 95 % interval, t s/sqrt(n), m/s
     other       the column headed v_exp, m/s
+    amplitude   alpha, rad; None where the paper does not state it
     """
 
     ratio: float
     period: float
-    amplitude: float | None
     mean: float
     half_width: float
     other: float
+    amplitude: float | None = None
 
     @property
     def standard_error(self) -> float:
@@ -97,23 +96,9 @@ class Row:
         return self.mean if column == "mean" else self.other
 
 
-TABLE_2 = (
-    Row(0.16, 1.0, None, 0.1015, 0.056, 0.1057),
-    Row(0.18, 1.0, None, 0.1659, 0.085, 0.1511),
-    Row(0.20, 1.0, None, 0.2099, 0.096, 0.1954),
+TABLE_2, TABLE_3 = (
+    tuple(Row(**row) for row in _PAPER["rows"][name]) for name in ("table_2", "table_3")
 )
-"""Table 2, the first series. T = 1 s is the text's (section 3.1)."""
-
-TABLE_3 = (
-    Row(0.3, 1.0, 0.262, 0.0181, 0.015, 0.027),
-    Row(0.3, 1.0, 0.524, 0.1378, 0.046, 0.16),
-    Row(0.3, 1.0, 0.785, 0.3473, 0.124, 0.45),
-    Row(0.3, 2.0, 0.262, 0.0069, 0.006, 0.011),
-    Row(0.3, 2.0, 0.524, 0.0348, 0.024, 0.023),
-    Row(0.3, 2.0, 0.785, 0.0536, 0.014, 0.04),
-)
-"""Table 3, the second series. J20/J10 = 0.3 is the text's (section 3.1)."""
-
 ROWS = (*TABLE_2, *TABLE_3)
 """All nine rows, Table 2 first."""
 
@@ -127,13 +112,12 @@ class Surface:
     period: tuple[float, float]
 
 
-FIGURE_4 = Surface(amplitude=(0.0, 1.4), ratio=(0.08, 0.2), period=(1.0, 1.0))
-"""Fig. 4: average speed over J20/J10 and amplitude at T = 1 s. The text has 0.08 to 0.2."""
-FIGURE_5 = Surface(amplitude=(0.0, 1.2), ratio=(0.3, 0.3), period=(0.8, 2.0))
-"""Fig. 5: average speed over period and amplitude at J20/J10 = 0.3."""
+FIGURE_4, FIGURE_5 = (
+    Surface(**{name: tuple(ends) for name, ends in _PAPER[figure].items()})
+    for figure in ("figure_4", "figure_5")
+)
 
-LOADED_RATIOS = (0.08, 0.14, 0.17, 0.19, 0.2)
-"""J20/J10 "by attachment of the additional loads" (section 3.1)."""
+LOADED_RATIOS = tuple(_PAPER["text"]["loaded_ratios"])
 RATIOS = tuple(sorted({*LOADED_RATIOS, *(row.ratio for row in ROWS)}))
 """Every J20/J10 that the paper prints."""
 
@@ -148,8 +132,6 @@ class Circles:
     offsets: tuple[float, ...]
 
 
-FIGURE_6 = Circles(0.52, 1.0, 0.3, (0.0873, 0.174533, 0.261799))
-"""Fig. 6: trajectories with an offset (section 3.2)."""
-
-BEST_AMPLITUDE = 1.0
-"""rad: speed increases with amplitude "up to a certain value (about 1 rad, for our prototype)"."""
+FIGURE_6 = Circles(**_PAPER["figure_6"] | {"offsets": tuple(_PAPER["figure_6"]["offsets"])})
+BEST_AMPLITUDE = _PAPER["text"]["best_amplitude"]
+"""rad, up to which speed increases by the paper's conclusion."""

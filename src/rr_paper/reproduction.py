@@ -13,21 +13,12 @@ from rr_opt.model.gait import SineGait
 from rr_opt.model.problem import Problem
 from rr_opt.model.robot import Robot
 from rr_opt.results.result import Result
+from rr_paper.best_amplitude import BestAmplitude, audit_best_amplitude
 from rr_paper.consistency import Consistency, audit_hypotheses
-from rr_paper.gaits import (
-    BestAmplitude,
-    PeriodLaw,
-    ServoDemand,
-    SingularPosture,
-    Turning,
-    audit_best_amplitude,
-    audit_period,
-    audit_turning,
-    servo_demands,
-    singular_posture,
-)
+from rr_paper.period import PeriodLaw, audit_period
 from rr_paper.prototype import ABOUT_P, Sensitivity, sensitivities
 from rr_paper.publication import TABLE_3
+from rr_paper.servo import ServoDemand, SingularPosture, servo_demands, singular_posture
 from rr_paper.signs import SignAudit, audit_signs
 from rr_paper.tables import (
     SpeedSurface,
@@ -38,6 +29,7 @@ from rr_paper.tables import (
     recompute,
     start_from_rest,
 )
+from rr_paper.turning import Turning, audit_turning
 
 _TYPICAL = TABLE_3[1]
 """The row that is driven where the paper does not say which run it shows."""

@@ -49,7 +49,7 @@ PLANTED = [
     ("plain-model", "rr_opt/model/robot.py", "import casadi as ca"),
     ("trial-apart", "rr_lab/trial/planted.py", "import rr_opt.sysid.selection"),
     ("lab-apart", "rr_lab/rig.py", "import rr_opt.motion.steady_cycle"),
-    ("lab-apart", "rr_lab/draw.py", "import rr_opt.files.lint"),
+    ("lab-apart", "rr_lab/sampling.py", "import rr_opt.files.lint"),
     ("engines-apart", "rr_lab/planar/planted.py", "import rr_lab.mujoco.plant"),
 ]
 PACKAGES = ("rr_opt", "rr_lab", "rr_paper")

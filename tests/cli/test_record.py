@@ -41,6 +41,16 @@ def test_an_effect_changes_the_motion_and_nothing_else(run, recorded, tmp_path):
     assert answer["effects"][0]["parameters"]["force1"]["value"] == 2e-3
 
 
+def test_a_realisation_is_recorded_by_its_own_name(run, tmp_path):
+    use = "servo_lag/second_order:tau=20 ms,zeta=0.7"
+    words = ("--seconds", "1", "--effect", use, "--out", "rec", "--seal", "answer.json")
+    told = run("record", *RUNS, *words, "--engine", "planar")
+    assert told.exit_code == 0, told.stderr
+    (effect,) = json.loads((tmp_path / "answer.json").read_text())["effects"]
+    assert effect["realisation"] == "second_order"
+    assert effect["plant"]["zeta"]["value"] == 0.7
+
+
 def test_a_disturbance_spoils_the_recording_and_is_in_the_answer(run, recorded, tmp_path):
     words = ("--seconds", "2", "--noise", "1 mm, 3 mrad", "--out", "gaps", "--seal", "answer.json")
     assert run("record", *RUNS, *words, "--disturbance", "dropouts").exit_code == 0

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+
+from tests.written import Write, writer
 
 ROBOT = """\
 platform1: {m: 0.469, I: 0.00386, c: 0.206, a: 0.020, b: 0.050, kappa: 2.0e-5}
 platform2: {m: 0.250, I: 0.00175, c: 0.0641, a: 0.020, b: 0.050, kappa: 2.0e-5}
 h: 0.020
 """
-
-Write = Callable[..., Path]
 
 
 @pytest.fixture
@@ -23,12 +22,4 @@ def robot_text() -> str:
 
 @pytest.fixture
 def write(tmp_path: Path) -> Write:
-    """Write a text or bytes to a file of a folder that the test owns."""
-
-    def to_file(content: str | bytes, name: str = "file.yaml") -> Path:
-        path = tmp_path / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_bytes(content.encode() if isinstance(content, str) else content)
-        return path
-
-    return to_file
+    return writer(tmp_path, "file.yaml")

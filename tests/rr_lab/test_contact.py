@@ -6,7 +6,7 @@ import pytest
 from rr_lab.mujoco.drive import drive
 from rr_lab.mujoco.plant import Plant
 from rr_lab.rig import Rig
-from rr_lab.run import Outing
+from rr_lab.run import Conditions
 from rr_opt.model.gait import SineGait
 from tests.rr_lab.reduced import LONG
 
@@ -64,7 +64,7 @@ def test_sliding_wheels_carry_their_share_of_the_weight(monkeypatch):
             own[int("2" in wheel)] += force[0]
         loads.append(own)
 
-    drive(Rig(LONG, mu=0.02, laws=[look]), SineGait(0.6, 1.2, 0.2), Outing(3.0), STEP)
+    drive(Rig(LONG, mu=0.02, laws=[look]), SineGait(0.6, 1.2, 0.2), Conditions(3.0), STEP)
     one, two = LONG.platform1, LONG.platform2
     length = one.c + two.c
     on1 = 9.81 * (one.m * (length - one.a) + two.m * two.a) / length

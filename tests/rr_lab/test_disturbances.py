@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rr_lab.case import Delivery, motion_of, recorded
+from rr_lab.case import motion_of, recorded
 from rr_lab.disturbances import DISTURBANCES
-from rr_lab.files import answer, experiment_text
+from rr_lab.files import Delivery, answer, experiment_text
 from rr_lab.random_case import random_case
 from rr_opt.model.experiment import Flag, Noise
 from rr_opt.outcome import InputError

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rr_lab.case import Delivery, play
-from rr_lab.files import folder_of
+from rr_lab.case import play
+from rr_lab.files import Delivery, folder_of
 from rr_lab.formats import ServoClock
 from rr_lab.random_case import random_case
 from rr_opt.model.experiment import Noise
@@ -60,7 +60,7 @@ def test_servo_log_has_its_own_clock(case, tmp_path):
     written(case, tmp_path, Delivery(servo_log=True, clock=clock))
     log = read_file(tmp_path / "run01-servo.csv")
     assert log.rate == pytest.approx(250)
-    gait, begin = case.plans[0].gait, case.plans[0].outing.begin(case.plans[0].gait)
+    gait, begin = case.plans[0].gait, case.plans[0].conditions.begin(case.plans[0].gait)
     command = np.maximum(log.t / (1 + clock.drift) + clock.offset, begin)
     # Half a count of 5.1 mrad.
     np.testing.assert_allclose(log.goal_angle, gait.angle(command), atol=2.6e-3)

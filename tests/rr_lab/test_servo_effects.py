@@ -45,6 +45,13 @@ def test_lag_of_second_order_turns_further():
     np.testing.assert_allclose(phi, expected, atol=2e-5)
 
 
+@pytest.mark.parametrize("start", ["rest", "running"])
+def test_a_pure_delay_shifts_the_command(start):
+    t, phi = phi_with("servo_lag/delay", start=start, delay=0.037)
+    begin = 0.0 if start == "rest" else -math.inf
+    np.testing.assert_allclose(phi, GAIT.angle(np.maximum(t - 0.037, begin)), atol=1e-6)
+
+
 def test_rate_limit_is_kept_and_used():
     t, phi = phi_with("servo_rate_limit", rate_limit=2.0)
     rate = np.diff(phi) / np.diff(t)

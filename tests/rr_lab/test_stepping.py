@@ -6,7 +6,7 @@ import pytest
 from rr_lab.effects import rig_with
 from rr_lab.mujoco.drive import drive
 from rr_lab.mujoco.plant import Plant, stepped
-from rr_lab.run import Outing
+from rr_lab.run import Conditions
 from rr_opt.model.gait import SineGait
 from rr_opt.model.robot import EffectUse
 from rr_opt.outcome import NotConvergedError
@@ -25,7 +25,7 @@ def driven(uses, *, law=None, step=1e-3, **how):
     rig = rig_with(LONG, uses)
     if law:
         rig.laws.append(law)
-    return drive(rig, GAIT, Outing(2.0, **how), step)
+    return drive(rig, GAIT, Conditions(2.0, **how), step)
 
 
 def assert_same(one, other):
@@ -83,4 +83,4 @@ def test_a_motion_lost_before_the_recording_is_told(start, law):
     if law:
         rig.laws.append(law)
     with pytest.raises(NotConvergedError, match="broke down"):
-        drive(rig, GAIT, Outing(0.2, start), 1e-3)
+        drive(rig, GAIT, Conditions(0.2, start), 1e-3)

@@ -1,14 +1,14 @@
 """Cases of a trial written by hand: what was hidden, and what was said."""
 
-from rr_lab.trial.case import Case, Claim, Named, Truth
+from rr_lab.trial.outcome import Case, Claim, Named, Truth
 
 
-def truth(kind, *hidden, remains=5.0, seen=10.0, values=None, spread=0.0, engine="mujoco", **more):
+def truth(kind, *hidden, remains=5.0, size=10.0, values=None, spread=0.0, engine="mujoco", **more):
     """What was hidden; every effect leaves `remains` sigma after the re-fit."""
     names = ("unknown",) if kind == "outside" else hidden
     values = values or {name: {} for name in names}
     effects = () if kind == "parameters" else hidden
-    each = dict.fromkeys(effects, seen)
+    each = dict.fromkeys(effects, size)
     return Truth(
         kind, effects, values, each, dict.fromkeys(effects, remains), spread, engine, **more
     )

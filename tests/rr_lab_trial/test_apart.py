@@ -6,13 +6,14 @@ from pathlib import Path
 
 import pytest
 
-from rr_lab.random_case import case_of
-from rr_lab.trial import lots as making
-from rr_lab.trial.child import COMMAND, Task, diagnose_apart
-from rr_lab.trial.lots import Lot, make
+from rr_lab.random_case import Request
+from rr_lab.trial import sealing
+from rr_lab.trial.draws import Draw
+from rr_lab.trial.isolation import COMMAND, Task, diagnose_apart
+from rr_lab.trial.sealing import make
 
 STUB = str(Path(__file__).parent / "stub.py")
-LOT = Lot(17, "single:coulomb_friction", 10.0, 0.0, 987654321012345)
+DRAW = Draw(17, "single:coulomb_friction", 10.0, 0.0, 987654321012345, "planar")
 
 
 def command(how):
@@ -21,10 +22,10 @@ def command(how):
 
 @pytest.fixture(scope="module")
 def made():
-    """A case with dry friction, of runs of 3 s; how visible it stays is not asked here."""
+    """A case with dry friction, of runs of 3 s; how detectable it is does not matter here."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(making, "_stays_visible", lambda case: {"coulomb_friction": 1.0})
-        return make(LOT, seconds=3.0)
+        patch.setattr(sealing, "_remains", lambda case: {"coulomb_friction": 1.0})
+        return make(DRAW, seconds=3.0)
 
 
 @pytest.fixture(scope="module")
@@ -50,7 +51,7 @@ def test_its_folder_is_named_alike_for_every_case(seen):
 def test_nothing_tells_kind_seed_number_or_answer(made, seen):
     hidden = json.loads(made.answer)
     everything = json.dumps([seen["words"], seen["files"], sorted(seen["environment"])]).lower()
-    for word in (str(LOT.seed), "coulomb", "friction", "single", "visib", "answer",
+    for word in (str(DRAW.seed), "coulomb", "friction", "single", "visib", "answer",
                  made.seal, hidden["salt"], "case-"):  # fmt: skip
         assert word.lower() not in everything, word
 
@@ -63,14 +64,14 @@ def test_no_variable_but_a_few_is_handed_on(seen, monkeypatch, made):
 
 def test_experiment_yaml_is_that_of_the_same_case_with_nothing_hidden(made):
     """Kinds cannot be told from it: robot, gaits, noise and uncertainties are drawn before."""
-    null = make(Lot(17, "null", None, 0.0, LOT.seed), seconds=3.0)
+    null = make(Draw(17, "null", None, 0.0, DRAW.seed, "planar"), seconds=3.0)
     assert made.files["experiment.yaml"] == null.files["experiment.yaml"]
     assert made.files["run01.csv"] != null.files["run01.csv"]
 
 
 def test_the_answer_has_a_random_word_so_that_a_guess_cannot_be_checked(made):
-    case = case_of(seed=LOT.seed, seconds=1.0)
-    texts = {making._answer_text(case, LOT) for _ in range(3)}
+    case = Request(seed=DRAW.seed, seconds=1.0).case()
+    texts = {sealing._answer_text(case, DRAW) for _ in range(3)}
     assert len(texts) == 3
 
 
@@ -84,14 +85,14 @@ def test_time_and_exit_code_are_told(made):
     assert said.cpu > 0
     assert said.wall > 0
     assert said.files["report.html"] == b"a page"
-    assert said.output == "the stub says well\n"
+    assert said.files["output.txt"].decode() == "the stub says well\n"
 
 
 def test_a_crash_is_told_with_its_output(made):
     said = diagnose_apart(Task(made.files, command("crash")))
     assert said.exit_code == 3
-    assert said.files == {}
-    assert "the stub says crash" in said.output
+    assert list(said.files) == ["output.txt"]
+    assert b"the stub says crash" in said.files["output.txt"]
 
 
 def test_a_program_that_does_not_end_is_ended():

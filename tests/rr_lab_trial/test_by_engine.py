@@ -2,7 +2,7 @@
 
 import pytest
 
-from rr_lab.trial.measures import by_engine, measures, side_by_side
+from rr_lab.trial.counts import COUNTS, by_engine
 from tests.rr_lab_trial.made_up import case, said, truth
 
 DRAG = "quadratic_drag"
@@ -19,7 +19,7 @@ CASES = (
 
 
 def counted(engine, name):
-    (found,) = (one.rate for one in by_engine(CASES)[engine] if one.name == name)
+    found = by_engine(CASES)[engine][name]
     return found.count, found.total
 
 
@@ -32,15 +32,12 @@ def test_counts_by_hand():
     assert counted("planar", "coverage") == (0, 1)
 
 
-@pytest.mark.parametrize("measure", measures(CASES), ids=lambda measure: measure.name)
-def test_they_add_up(measure):
-    parts = [counted(engine, measure.name) for engine in by_engine(CASES)]
-    assert tuple(map(sum, zip(*parts, strict=True))) == (measure.rate.count, measure.rate.total)
+@pytest.mark.parametrize("count", COUNTS, ids=lambda count: count.name)
+def test_they_add_up(count):
+    parts = [counted(engine, count.name) for engine in by_engine(CASES)]
+    whole = count.rate(CASES)
+    assert tuple(map(sum, zip(*parts, strict=True))) == (whole.count, whole.total)
 
 
-def test_side_by_side_has_what_any_engine_has():
-    titles = [title for title, _ in side_by_side(CASES)]
-    assert "single effects named" in titles
-    assert "pairs, both named" not in titles
+def test_an_engine_that_drove_nothing_is_left_out():
     assert list(by_engine(CASES[:1])) == ["mujoco"]
-    assert side_by_side(()) == []

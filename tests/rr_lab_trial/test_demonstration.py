@@ -6,6 +6,11 @@ import pytest
 
 from docs.demonstration import effect_text, mean_speed
 from rr_lab.api.arguments import read_effects
+from rr_lab.effects import EVERY
+from rr_lab.files import answer
+from rr_lab.random_case import random_case
+
+NAMED = [effect for effect in EVERY if effect.named]
 
 
 def written(path, speed, heading):
@@ -29,8 +34,9 @@ def test_mean_speed(tmp_path, speed, heading):
     )
 
 
-def test_an_opened_answer_can_be_hidden_again():
-    values = {"tilt_x": {"value": 1.5e-3, "unit": "rad"}, "tilt_y": {"value": -2e-5, "unit": "rad"}}
-    (use,) = read_effects([effect_text({"name": "floor_tilt", "parameters": values})])
-    assert use.name == "floor_tilt"
-    assert use.values == {"tilt_x": 1.5e-3, "tilt_y": -2e-5}
+@pytest.mark.parametrize("effect", NAMED, ids=lambda effect: effect.key)
+def test_an_opened_answer_can_be_hidden_again(effect):
+    case = random_case(4, f"single:{effect.key}", seconds=1.0, size=lambda _: 10.0, target=10.0)
+    (use,) = read_effects([effect_text(answer(case)["effects"][0])])
+    assert use.name == effect.key
+    assert use.values == pytest.approx(case.effects[0].values, rel=1e-8)

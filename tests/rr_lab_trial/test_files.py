@@ -5,8 +5,8 @@ import json
 
 import pytest
 
-from rr_lab.report.trial import Proof
-from rr_lab.trial.trial import Opened
+from rr_lab.report.proof import Proof
+from rr_lab.trial.trial import OpenedTrial
 from tests.rr_lab_trial.made_up import case, said, single, truth
 
 DRAG, SLIP = "quadratic_drag", "lateral_slip"
@@ -16,7 +16,13 @@ CASES = (
     case(truth("null", engine="planar"), said("parameters", "m1"), "002"),
     case(
         truth("single", DRAG, values=VALUES),
-        said("missing_physics", DRAG, intervals={DRAG: {"coefficient_total": (0.4, 0.6)}}),
+        said(
+            "missing_physics",
+            DRAG,
+            intervals={DRAG: {"coefficient_total": (0.4, 0.6)}},
+            remainder="small",
+            share=0.25,
+        ),
         "003",
     ),
     case(truth("single", DRAG), None, "004", why_none="no answer after 1800 s"),
@@ -26,7 +32,7 @@ CASES = (
     case(truth("pair", DRAG, SLIP), said("missing_physics", SLIP), "006"),
     case(truth("parameters", "m1", values={"m1": {"m1": 0.5}}), said("parameters", "m1"), "007"),
 )
-OPENED = Opened("5eed", "c0de", "1.2.3", CASES, {"008": "MuJoCo gave up."}, (10.0,) * 7)
+OPENED = OpenedTrial("5eed", "c0de", "1.2.3", CASES, {"008": "MuJoCo gave up."}, (10.0,) * 7)
 MISSES = {"002": "report.html", "004": "output.txt", "006": "report.html"}
 
 
@@ -48,6 +54,15 @@ def test_the_record(folder):
     rows, columns = record["confusion"]["rows"], record["confusion"]["columns"]
     counts = record["confusion"]["counts"]
     assert counts[rows.index(DRAG)][columns.index("no answer")] == 1
+
+
+def test_what_the_diagnosis_says_is_left(folder):
+    left = json.loads((folder / "proof.json").read_text())["remainder"]["kinds"]
+    assert left == {"single": {"none": 0, "small": 1, "large": 0, "share": 0.25}}
+    with (folder / "cases.csv").open(newline="") as file:
+        rows = [(row["remainder"], row["remainder_share"]) for row in csv.DictReader(file)]
+    assert [row for row in rows if row[0]] == [("small", "0.25")]
+    assert "## Remainder" in (folder / "README.md").read_text()
 
 
 def test_every_miss_is_listed_with_its_page(folder):
@@ -92,5 +107,5 @@ def test_the_summary_defines_what_it_counts(folder):
 
 
 def test_a_trial_of_one_kind(tmp_path):
-    Proof(Opened("5eed", "c0de", "1.2.3", (single(DRAG, None),), {}, (1.0,))).save(tmp_path)
+    Proof(OpenedTrial("5eed", "c0de", "1.2.3", (single(DRAG, None),), {}, (1.0,))).save(tmp_path)
     assert "0 of 1 single effects named" in (tmp_path / "README.md").read_text()

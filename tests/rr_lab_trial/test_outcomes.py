@@ -24,6 +24,8 @@ TABLE = [
     (truth("single", DRAG), said("missing_physics", SLIP, groups=[(SLIP, TILT)]), "wrong name"),
     (truth("single", DRAG), said("missing_physics", DRAG, SLIP), "right, and more"),
     (truth("single", DRAG), said("unexplained", DRAG), "said unexplained"),
+    (truth("single", DRAG, same_as={DRAG: (SLIP,)}), said("missing_physics", SLIP), "right"),
+    (truth("single", DRAG, same_as={DRAG: (TILT,)}), said("missing_physics", SLIP), "wrong name"),
     (truth("single", DRAG), said("consistent"), "said consistent"),
     (truth("single", DRAG), None, "no answer"),
     (PAIR, said("missing_physics", SLIP, DRAG), "right"),
@@ -75,8 +77,8 @@ def test_a_group_makes_one_name_stand_for_one_effect_only_if_it_holds_both():
 
 
 @pytest.mark.parametrize(
-    ("seen", "strength"),
+    ("size", "strength"),
     [(2.1, "faint"), (4.9, "faint"), (5.1, "medium"), (16, "strong"), (60, "strong")],
 )
-def test_strength_is_what_is_seen(seen, strength):
-    assert truth("single", DRAG, seen=seen).strength == strength
+def test_strength_goes_by_the_size(size, strength):
+    assert truth("single", DRAG, size=size).strength == strength

@@ -4,7 +4,7 @@ import subprocess
 
 import pytest
 
-from rr_lab.trial.lots import fingerprint, read_seed, seed_of_commit
+from rr_lab.trial.draws import CODE, fingerprint, read_seed, seed_of_commit
 from rr_opt.outcome import InputError
 
 
@@ -73,6 +73,12 @@ def test_the_fingerprint_sees_every_file_of_the_code(tree):
     (source / "code.py").rename(source / "other.py")
     seen.append(fingerprint(source))
     assert len(set(seen)) == 4
+
+
+def test_the_fingerprint_is_of_the_diagnosis_and_of_the_laboratory():
+    assert {path.name for path in CODE} == {"rr_opt", "rr_lab"}
+    assert all((path / "__init__.py").is_file() for path in CODE)
+    assert fingerprint() == fingerprint(*CODE) != fingerprint(CODE[0])
 
 
 def test_the_fingerprint_is_the_same_once_the_code_has_run(tree):

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from rr_lab.trial.confusion import confusion
-from rr_lab.trial.statistics import by_quantity, evenness, held_out, intervals, sizes
+from rr_lab.trial.counts import confusion
+from rr_lab.trial.statistics import coverage, held_out, intervals, quantiles, remainders, uniformity
 from tests.rr_lab_trial.made_up import case, said, single, truth
 
 DRAG, SLIP, DRY = "quadratic_drag", "lateral_slip", "coulomb_friction"
@@ -27,8 +27,9 @@ def test_coverage_counts_each_quantity_of_what_was_named():
         case(NULL, said("missing_physics", DRY, intervals={DRY: {"force1": (0.0, 1.0)}})),
         case(NULL, None),
     ]
-    found = by_quantity(intervals(cases))
+    found = coverage(intervals(cases))
     assert {name: (one.count, one.total) for name, one in found.items()} == {
+        "all": (3, 4),
         "coulomb_friction.force1": (2, 2),
         "coulomb_friction.force2": (1, 2),
     }
@@ -37,20 +38,31 @@ def test_coverage_counts_each_quantity_of_what_was_named():
 def test_coverage_of_wrong_values():
     hidden = truth("parameters", "m1", values={"m1": {"m1": 0.5}})
     ends = {"m1": {"m1": (0.45, 0.49)}, "a2": {"a2": (0.0, 1.0)}}
-    found = by_quantity(intervals([case(hidden, said("parameters", "m1", "a2", intervals=ends))]))
-    assert {name: (one.count, one.total) for name, one in found.items()} == {"m1": (0, 1)}
+    found = coverage(intervals([case(hidden, said("parameters", "m1", "a2", intervals=ends))]))
+    assert {name: (one.count, one.total) for name, one in found.items()} == {
+        "all": (0, 1),
+        "m1": (0, 1),
+    }
 
 
 def test_held_out_error_by_kind():
     claims = [said("consistent", before=b, refitted=1.5, after=1.0) for b in (1.0, 2.0, 6.0)]
     table = held_out([*(case(NULL, one) for one in claims), case(NULL, None)])
-    assert table["null"]["before"].median == 2.0
-    assert table["null"]["before"].largest == 6.0
-    assert table["null"]["after"].count == 3
+    assert table["null"]["before"]["median"] == 2.0
+    assert table["null"]["before"]["largest"] == 6.0
+    assert table["null"]["after"]["count"] == 3
 
 
-def test_sizes_of_nothing():
-    assert sizes([None]).median is None
+def test_remainders_by_kind():
+    claims = [said("consistent", remainder="none", share=0.0)]
+    claims += [said("unexplained", remainder=size, share=0.4) for size in ("small", "large")]
+    cases = [*(case(NULL, one) for one in claims), case(NULL, None)]
+    cases.append(single(DRAG, said("consistent")))
+    assert remainders(cases) == {"null": {"none": 1, "small": 1, "large": 1, "share": 0.4}}
+
+
+def test_quantiles_of_nothing():
+    assert quantiles([None])["median"] is None
 
 
 def test_even_p_values_and_others():
@@ -58,7 +70,7 @@ def test_even_p_values_and_others():
     cases = [case(NULL, said("consistent", p_values={"good": p, "bad": p**4})) for p in even]
     # What is hidden elsewhere has no say in it.
     cases.append(single(DRAG, said("consistent", p_values={"good": 0.0})))
-    told = evenness(cases)
+    told = uniformity(cases)
     assert told["good"]["count"] == 40
     assert told["good"]["below_005"] == 2
     assert told["good"]["distance"] == pytest.approx(0.5 / 40)
@@ -69,7 +81,7 @@ def test_even_p_values_and_others():
 
 
 def test_few_p_values_tell_nothing():
-    assert evenness([case(NULL, said("consistent", p_values={"test": 0.5}))] * 7) == {}
+    assert uniformity([case(NULL, said("consistent", p_values={"test": 0.5}))] * 7) == {}
 
 
 def test_confusion():
@@ -117,4 +129,7 @@ def test_a_direction_is_the_same_a_turn_on_and_a_point_on_an_edge_is_not_counted
     }
     claim = said("missing_physics", "floor_patch", intervals=ends)
     found = intervals([single("floor_patch", claim, values=true)])
-    assert {one.parameter: one.held for one in found} == {"multiplier": True, "normal": held}
+    assert {one.quantity: one.covers for one in found} == {
+        "floor_patch.multiplier": True,
+        "floor_patch.normal": held,
+    }

@@ -11,39 +11,41 @@ from pathlib import Path
 import pytest
 
 from rr_lab.files import seal_of
-from rr_lab.trial.lots import Made, draw_lot
-from rr_lab.trial.trial import MADE, SAID, SEALS, Drawn, Trial, drawn_of, open_trial, tidy
+from rr_lab.trial.draws import Basis, draw_case
+from rr_lab.trial.sealing import SealedCase
+from rr_lab.trial.trial import MADE, SAID, SEALS, Trial, basis_of, tidy
 from rr_opt.batch.journal import Journal
-from rr_opt.documents.archive import write_bytes
 from rr_opt.outcome import InputError
 
 STUB = str(Path(__file__).parent / "stub.py")
-IDENTITY = {"seed": "5eed", "kinds": ["null"], "code": "none", "version": "0"}
-LOTS = [draw_lot("5eed", number, ("null",)) for number in range(1, 6)]
+IDENTITY = {
+    "seed": "5eed", "kinds": ["null"], "engines": ["planar"], "code": "none", "version": "0"
+}  # fmt: skip
+DRAWS = [draw_case("5eed", number, ("null",)) for number in range(1, 6)]
 
 
-def made_up(lot):
+def made_up(draw):
     """A case with nothing hidden, made of nothing."""
     answer = {
         "kind": "null", "hidden": [], "spread": 0.0, "effects": [], "stays_visible": {},
-        "rms_deviation_from_nominal_in_sigma": {}, "engine": lot.engine, "salt": str(lot.seed),
+        "rms_deviation_from_nominal_in_sigma": {}, "engine": draw.engine, "salt": str(draw.seed),
     }  # fmt: skip
     text = json.dumps(answer)
-    return Made({"experiment.yaml": b"robot: {}\n"}, text, seal_of(text), 1.0)
+    return SealedCase({"experiment.yaml": b"robot: {}\n"}, text, seal_of(text), 1.0)
 
 
 def serial(function, tasks):
     return ((key, function(tasks[key])) for key in tasks)
 
 
-def tried(folder, how="well", lots=LOTS, make=made_up, run=serial, limit=60.0):
+def tried(folder, how="well", draws=DRAWS, make=made_up, run=serial, limit=60.0):
     """The trial to its end: the numbers made and diagnosed now, and what was opened."""
-    trial = Trial(folder, write_bytes, lots)
+    trial = Trial(folder, draws)
     with Journal(folder / MADE, IDENTITY) as made, Journal(folder / SAID, IDENTITY) as said:
         now = list(trial.make(made, run, make))
         command = (sys.executable, STUB, how)
         then = list(trial.diagnose(made.rows, said, run, command, limit))
-        return now, then, open_trial(folder, lots, made.rows, said.rows, IDENTITY)
+        return now, then, trial.open(made.rows, said.rows, IDENTITY)
 
 
 def test_all_is_made_and_sealed_before_anything_is_diagnosed(tmp_path):
@@ -68,7 +70,7 @@ def test_the_seals_are_those_that_sha256sum_checks(tmp_path):
 
 
 def test_nothing_is_done_twice(tmp_path):
-    trial = Trial(tmp_path, write_bytes, LOTS)
+    trial = Trial(tmp_path, DRAWS)
     with Journal(tmp_path / MADE, IDENTITY) as made:
         begun = trial.make(made, serial, made_up)
         assert [next(begun), next(begun)] == [1, 2]
@@ -78,7 +80,7 @@ def test_nothing_is_done_twice(tmp_path):
 
 
 def test_it_can_be_made_longer(tmp_path):
-    tried(tmp_path, lots=LOTS[:3])
+    tried(tmp_path, draws=DRAWS[:3])
     now, then, opened = tried(tmp_path)
     assert (now, then) == ([4, 5], [4, 5])
     assert len(opened.cases) == 5
@@ -96,7 +98,7 @@ def test_it_can_be_made_longer(tmp_path):
     ],
 )
 def test_no_answer_is_a_miss_and_its_output_is_kept(tmp_path, how, why):
-    _, _, opened = tried(tmp_path, how, LOTS[:1], limit=3.0 if how == "hang" else 60.0)
+    _, _, opened = tried(tmp_path, how, DRAWS[:1], limit=3.0 if how == "hang" else 60.0)
     (miss,) = opened.misses
     assert (miss.outcome, miss.why_none) == ("no answer", why)
     assert f"the stub says {how}" in (tmp_path / "said" / "001" / "output.txt").read_text()
@@ -107,14 +109,14 @@ def test_a_process_that_dies_over_a_case_is_a_miss(tmp_path):
         for key in tasks:
             yield key, ("The process died." if function is not made_up else made_up(tasks[key]))
 
-    _, _, opened = tried(tmp_path, lots=LOTS[:1], run=dying)
+    _, _, opened = tried(tmp_path, draws=DRAWS[:1], run=dying)
     assert opened.misses[0].outcome == "no answer"
     assert (tmp_path / "said" / "001" / "output.txt").read_text() == "The process died."
 
 
 def test_a_case_that_cannot_be_made_is_told_and_not_diagnosed(tmp_path):
-    def make(lot):
-        return Made({}, "", "", 1.0, "MuJoCo gave up.") if lot.number == 2 else made_up(lot)
+    def make(draw):
+        return SealedCase({}, "", "", 1.0, "MuJoCo gave up.") if draw.number == 2 else made_up(draw)
 
     _, then, opened = tried(tmp_path, make=make)
     assert then == [1, 3, 4, 5]
@@ -139,14 +141,10 @@ def test_tidied_it_can_still_be_scored(tmp_path):
     assert tried(tmp_path) == ([], [], opened)
 
 
-@pytest.mark.parametrize(
-    ("named", "engines"), [({}, ("mujoco",)), ({"engines": ["planar"]}, ("planar",))]
-)
-def test_what_it_is_drawn_from_is_read_from_the_folder(named, engines, tmp_path):
-    """A trial that names no engine is of the time when there was one."""
-    assert drawn_of(tmp_path) is None
-    Journal(tmp_path / MADE, IDENTITY | named).__exit__(None, None, None)
-    assert drawn_of(tmp_path) == Drawn("5eed", ("null",), engines)
+def test_what_it_is_drawn_from_is_read_from_the_folder(tmp_path):
+    assert basis_of(tmp_path) is None
+    Journal(tmp_path / MADE, IDENTITY).__exit__(None, None, None)
+    assert basis_of(tmp_path) == Basis("5eed", ("null",), ("planar",))
 
 
 KILLED = """

@@ -8,10 +8,9 @@ import pytest
 from typer.testing import CliRunner
 
 from rr_lab.engines import ENGINES
-from rr_lab.random_case import KINDS
-from rr_lab.trial import child as one
-from rr_lab.trial.child import diagnose_apart
-from rr_lab.trial.lots import draw_lot
+from rr_lab.trial import trial as one
+from rr_lab.trial.draws import KINDS, draw_case
+from rr_lab.trial.isolation import diagnose_apart
 from rr_lab.trial.trial import MADE
 from rr_opt.cli.main import app
 from tests.rr_lab_trial.test_trial import STUB, made_up
@@ -39,7 +38,7 @@ def test_wrong_input(words, told, tmp_path):
 def test_planar_cases_need_no_mujoco(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "mujoco", None)
     seen = []
-    monkeypatch.setattr(one, "make", lambda lot: seen.append(lot) or made_up(lot))
+    monkeypatch.setattr(one, "make", lambda draw: seen.append(draw) or made_up(draw))
     monkeypatch.setattr(one, "diagnose_apart", stub)
     words = ["prove", "--case", "2", "--out", str(tmp_path), "--seed", "5eed", "--kinds", "null"]
     done = CliRunner().invoke(app, words)
@@ -47,7 +46,7 @@ def test_planar_cases_need_no_mujoco(tmp_path, monkeypatch):
     assert "MuJoCo is not installed" in done.stderr
     done = CliRunner().invoke(app, [*words, "--engine", "planar"])
     assert done.exit_code == 0, done.output
-    assert [lot.engine for lot in seen] == ["planar"]
+    assert [draw.engine for draw in seen] == ["planar"]
     assert ["engine", "planar"] in [told.split() for told in done.stdout.splitlines()]
 
 
@@ -85,9 +84,9 @@ def test_one_case_again_is_that_of_the_trial_in_the_folder(words, expected, tmp_
     begun = {"seed": "5eed", "kinds": ["pair", "outside"], "engines": ["planar"]}
     (tmp_path / MADE).write_text(json.dumps(begun) + "\n")
     seen = []
-    monkeypatch.setattr(one, "make", lambda lot: seen.append(lot) or made_up(lot))
+    monkeypatch.setattr(one, "make", lambda draw: seen.append(draw) or made_up(draw))
     monkeypatch.setattr(one, "diagnose_apart", stub)
     for number in range(1, 7):
         again = ["prove", "--case", str(number), "--out", str(tmp_path), *words]
         assert CliRunner().invoke(app, again).exit_code == 0
-    assert seen == [draw_lot(expected[0], number, *expected[1:]) for number in range(1, 7)]
+    assert seen == [draw_case(expected[0], number, *expected[1:]) for number in range(1, 7)]

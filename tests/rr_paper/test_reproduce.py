@@ -10,7 +10,9 @@ from typer.testing import CliRunner
 from rr_opt.cli.main import app
 from rr_paper import reproduction
 from rr_paper.publication import TABLE_2, TABLE_3
-from rr_paper.report.reproduction import CAPTIONS
+from rr_paper.report.reproduction import REPORT
+
+SVGS = [f"{name}.svg" for name in REPORT.captions]
 
 
 @pytest.fixture
@@ -32,11 +34,16 @@ def test_the_folder(run, tmp_path):
     assert record["mujoco_speed"] is None
     assert "MuJoCo is not installed" in done.stderr
     names = {path.name for path in (tmp_path / "res").iterdir()}
-    assert {"report.html", "audit.md", "tables.csv", *(f"{one}.svg" for one in CAPTIONS)} <= names
+    assert {
+        "report.html",
+        "audit.md",
+        "tables.csv",
+        *(f"{one}.svg" for one in REPORT.captions),
+    } <= names
     assert {f"figure{n}.csv" for n in (3, 4, 5, 6)} <= names
     assert {f"audit-{key}.csv" for key in record["sections"] if key != "columns"} <= names
     page = (tmp_path / "res" / "report.html").read_text()
-    assert page.count("data:image/svg+xml") == len(CAPTIONS)
+    assert page.count("data:image/svg+xml") == len(SVGS)
 
 
 def test_the_tables_are_the_printed_ones(run, tmp_path):

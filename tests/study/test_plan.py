@@ -40,6 +40,7 @@ def test_an_anchor_is_next_to_it_along_every_axis(shape):
 def test_weights_place_the_case_among_its_donors():
     numbers = [5.0, 6.0, 7.5, 9.0, 2.0]  # not in order, and unevenly spaced
     made = plan([[n - 20 for n in numbers]], [5])
+    assert made.donors
     for case, donors in made.donors.items():
         assert sum(weight * numbers[donor] for donor, weight in donors) == pytest.approx(
             numbers[case]

@@ -20,6 +20,7 @@ def test_as_by_fitting_again(robust, disturbed, close):
     problem, states = initial(model, (), model.parameters, VALUES, [0, 1, 2])
     problem = replace(problem, q=3.0, robust=robust)
     fit = solve(problem, VALUES, states, 30, 1e-9)
+    assert set(fit.predictive) == {0, 1, 2}
     for run, density in fit.predictive.items():
         others = tuple(one for one in problem.segments if one.run != run)
         again = solve(replace(problem, segments=others), VALUES, states, 30, 1e-9)

@@ -35,7 +35,7 @@ def _compiled(nodes: int):
 
 
 def run(work: Work, steps: int) -> Array:
-    """|speed| (K,) from so many nodes a period."""
+    """|speed| (K,) with the given number of nodes per period."""
     short = -work.size % BLOCK
     values = (work.amplitude, work.period, work.offset, work.parameters[:12])
     given = [np.ascontiguousarray(np.pad(x, [(0, 0)] * (x.ndim - 1) + [(0, short)], "edge"))

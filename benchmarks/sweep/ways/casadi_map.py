@@ -44,7 +44,7 @@ def _integrator(friction: str, steps: int, count: int):
 
 
 def run(work: Work, steps: int) -> Array:
-    """|speed| (K,) from so many steps a period."""
+    """|speed| (K,) with the given number of steps per period."""
     period_of = _integrator(work.friction, steps, work.size)
     gaits = (work.amplitude, work.period, work.offset)
     still = np.zeros(work.size)

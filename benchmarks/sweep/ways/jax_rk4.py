@@ -83,6 +83,6 @@ def _compiled(friction: str):
 
 
 def run(work: Work, steps: int) -> Array:
-    """|speed| (K,) from so many steps a period."""
+    """|speed| (K,) with the given number of steps per period."""
     gaits = np.stack([work.amplitude, work.period, work.offset], axis=1)
     return np.asarray(_compiled(work.friction)(gaits, work.parameters.T, steps))

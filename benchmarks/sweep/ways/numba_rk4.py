@@ -91,6 +91,6 @@ def _compiled(friction: str):  # noqa: PLR0915 - one after the other, as numba's
 
 
 def run(work: Work, steps: int) -> Array:
-    """|speed| (K,) from so many steps a period."""
+    """|speed| (K,) with the given number of steps per period."""
     p = np.ascontiguousarray(work.parameters.T)
     return _compiled(work.friction)(work.amplitude, work.period, work.offset, p, steps)

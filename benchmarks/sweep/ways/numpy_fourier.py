@@ -13,7 +13,7 @@ ROWS = 2048
 
 
 def run(work: Work, steps: int) -> Array:
-    """|speed| (K,) from so many nodes a period."""
+    """|speed| (K,) with the given number of nodes per period."""
     choice = RatioChoice(Interval(0.0, 1.0))
     parts = []
     for k in range(0, work.size, ROWS):

@@ -12,7 +12,7 @@ NAME = "NumPy RK4, all points at once"
 
 
 def run(work: Work, steps: int) -> Array:
-    """|speed| (K,) from so many steps a period."""
+    """|speed| (K,) with the given number of steps per period."""
     motion = rates(np.sin, np.cos, np.tanh, np.sqrt, work.friction)
     p, T = work.parameters, work.period
     omega, h = 2 * np.pi / T, T / steps

@@ -1,13 +1,16 @@
-"""What the laboratory is asked for as text: runs, effects, noise."""
+"""Options given as text: robot, runs, effects, noise."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
+from pathlib import Path
 from typing import Any
 
 from rr_lab.case import Plan
 from rr_lab.effects import effect_named
+from rr_lab.effects.hidden_effect import Parameter
 from rr_opt.api.arguments import read_arguments
+from rr_opt.api.load import load_robot, prototype
 from rr_opt.formatting import QUANTITIES
 from rr_opt.model.experiment import Noise
 from rr_opt.model.gait import SineGait
@@ -16,6 +19,12 @@ from rr_opt.outcome import InputError
 from rr_opt.units import Quantity
 
 STARTS, USES = ("rest", "running"), ("fit", "holdout")
+
+
+def nominal_robot(file: Path | None, kind: str | None) -> Robot | None:
+    """That of a robot file, or the paper's prototype; None, which is a random one, for a kind of
+    case."""
+    return load_robot(file) if file else None if kind else prototype()
 
 
 def read_runs(texts: Iterable[str], seconds: float) -> tuple[Plan, ...]:
@@ -69,35 +78,35 @@ def read_effects(texts: Iterable[str]) -> tuple[EffectUse, ...]:
     for text in texts:
         name, _, rest = text.partition(":")
         effect = effect_named(name.strip())
-        units = effect.accepted
-        values = {}
+        first, values = effect.parameters[0], {}
         for part in filter(None, (part.strip() for part in rest.split(","))):
             key, _, value = (piece.strip() for piece in part.partition("="))
-            if key not in units:
+            if key not in effect.accepted:
                 wrong.append(
-                    f"--effect {name}: Read {part!r}. Expected {' or '.join(units)}. "
-                    f"Write for example `{effect.parameters[0].name}=VALUE`."
+                    f"--effect {name}: Read {part!r}. Expected {' or '.join(effect.accepted)}. "
+                    f"Write for example `{first.name}=VALUE`."
                 )
                 continue
-            unit = "" if units[key].unit == "1" else units[key].unit
-            one = units[key]
-            example = f"{one.typical:g} {unit}".strip()
-            least = None if one.signed or one.neutral is None else 0.0
             try:
-                values[key] = Quantity(unit, example, at_least=least).read(value)
+                values[key] = _quantity(effect.accepted[key]).read(value)
             except InputError as error:
                 wrong.append(f"--effect {name}, {key}: {error}")
         if not rest.strip():
-            first = effect.parameters[0]
-            example = f"{first.typical:g} {first.unit}".removesuffix(" 1")
             wrong.append(
                 f"--effect {name}: Read no value, and without one it does nothing. Write for "
-                f"example `{effect.name}:{first.name}={example}`."
+                f"example `{effect.name}:{first.name}={_quantity(first).example}`."
             )
-        uses.append(EffectUse(effect.name, values))
+        uses.append(EffectUse(name.strip(), values))
     if wrong:
         raise InputError("\n".join(wrong))
     return tuple(uses)
+
+
+def _quantity(one: Parameter) -> Quantity:
+    """How a parameter's value is read."""
+    unit = "" if one.unit == "1" else one.unit
+    least = None if one.signed or one.neutral is None else 0.0
+    return Quantity(unit, f"{one.typical:g} {unit}".strip(), at_least=least)
 
 
 def read_noise(text: str) -> Noise:
@@ -108,8 +117,7 @@ def read_noise(text: str) -> Noise:
             f"--noise: Read {text!r}. Expected that of positions and that of angles. Write for "
             "example '1 mm, 3 mrad'."
         )
-    sizes = [
-        Quantity(unit, example, above=0).read(part.strip())
-        for unit, example, part in zip(("m", "rad"), ("1 mm", "3 mrad"), parts, strict=True)
-    ]
-    return Noise(*sizes)
+    return Noise(
+        Quantity("m", "1 mm", above=0).read(parts[0].strip()),
+        Quantity("rad", "3 mrad", above=0).read(parts[1].strip()),
+    )

@@ -26,7 +26,7 @@ def prove(
         typer.Option(
             help="Only these: null, single, pair, parameters, outside, disturbed; or "
             "single:EFFECT, pair:EFFECT+EFFECT, outside:EFFECT, disturbed:NAME.",
-            show_default="all but disturbed",
+            show_default="all",
         ),
     ] = None,
     engine: Annotated[
@@ -44,7 +44,7 @@ def prove(
         typer.Option(
             metavar="ID",
             help="Make and diagnose only this case, of the trial in --out if there is one, and "
-            "print the answer beside the diagnosis.",
+            "print the answer with the diagnosis.",
             min=1,
         ),
     ] = None,
@@ -65,27 +65,18 @@ def prove(
     An interrupted run resumes when the same command is repeated.
     """
     with Steps() as steps:
-        from rr_lab.api import prove as library
+        from rr_lab.api import prove as trial
 
-        folder, drawn = library.drawn(
-            out or Path("out/proof"),
-            seed=seed,
-            kinds=kinds,
-            engine=engine,
+        folder, basis = trial.basis(
+            out or Path("out/proof"), seed=seed, kinds=kinds, engine=engine,
             resumed=case is not None,
-        )
+        )  # fmt: skip
         if case is not None:
-            found = library.prove_case(folder, drawn, case, progress=steps)
+            found = trial.prove_case(folder, basis, case, progress=steps)
         else:
-            found = library.prove(
-                folder,
-                drawn,
-                cases,
-                workers=workers,
-                scheduler=scheduler,
-                restart=restart,
-                make_only=make_only,
-                progress=steps,
-            )
+            found = trial.prove(
+                folder, basis, cases, workers=workers, scheduler=scheduler, restart=restart,
+                make_only=make_only, progress=steps,
+            )  # fmt: skip
         files = found.save(folder, progress=steps)
     show(found, files, json=json)

@@ -92,26 +92,17 @@ def record(
     Writes an experiment folder: experiment.yaml, and a recording for each run.
     """
     with Steps() as steps:
-        from rr_lab.api.arguments import read_effects, read_noise, read_runs
-        from rr_lab.api.record import record as made
+        from rr_lab.api.arguments import nominal_robot, read_effects, read_noise, read_runs
+        from rr_lab.api.record import record as written
+        from rr_lab.random_case import Request
 
         long = read_options(seconds=seconds)["seconds"]
-        written = made(
-            out or Path("out/recorded"),
-            robot=robot,
-            plans=read_runs(gait or (), long),
-            effects=read_effects(effect or ()),
-            noise=read_noise(noise) if noise else None,
-            hide=hide,
-            seal=seal,
-            seed=seed,
-            seconds=long,
-            missing=missing,
-            disturbance=disturbance,
-            engine=engine,
-            form=form,
-            servo_log=servo_log,
-            torque=torque,
-            progress=steps,
-        )
-    show(written, json=json)
+        request = Request(
+            nominal_robot(robot, hide), read_runs(gait or (), long), read_effects(effect or ()),
+            read_noise(noise) if noise else None, hide, seed, long, missing, engine, disturbance,
+        )  # fmt: skip
+        done = written(
+            out or Path("out/recorded"), request, seal=seal, form=form, servo_log=servo_log,
+            torque=torque, progress=steps,
+        )  # fmt: skip
+    show(done, json=json)

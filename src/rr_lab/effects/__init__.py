@@ -2,19 +2,49 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import tomllib
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
 
-from rr_lab.effects.actuation import ACTUATION
-from rr_lab.effects.contact import CONTACT
-from rr_lab.effects.hidden import HiddenEffect
-from rr_lab.effects.other import FLOOR, MASS, MEASUREMENT
-from rr_lab.effects.outside import OUTSIDE
-from rr_lab.effects.rolling import ROLLING
+from rr_lab.effects import actuation, outside, surroundings, wheels
+from rr_lab.effects.hidden_effect import HiddenEffect, Parameter, adds
 from rr_lab.rig import Rig
 from rr_opt.model.robot import EffectUse, Robot
 from rr_opt.outcome import InputError
 
-EVERY = (*ACTUATION, *ROLLING, *CONTACT, *FLOOR, *MASS, *MEASUREMENT, *OUTSIDE)
+_FUNCTIONS = {
+    function.__name__.strip("_"): function
+    for module in (actuation, outside, surroundings, wheels)
+    for function in module.FUNCTIONS
+}
+
+
+def _parameter(name: str, row: Mapping[str, Any]) -> Parameter:
+    own = dict(row)
+    if not own.pop("strength", True):
+        own["neutral"] = None
+    return Parameter(name, **own)
+
+
+def _effect(row: Mapping[str, Any]) -> HiddenEffect:
+    """A row of `effects.toml`."""
+    own = dict(row)
+    for key in ("parameters", "also"):
+        own[key] = tuple(_parameter(*item) for item in own.get(key, {}).items())
+    for key in ("enter", "draw", "derived"):
+        if key in own:
+            own[key] = _FUNCTIONS[own[key]]
+    if "adds" in own:
+        own["enter"] = adds(*own.pop("adds"))
+    for key in ("sizes", "same_as"):
+        if key in own:
+            own[key] = tuple(own[key])
+    return HiddenEffect(**own)
+
+
+_TABLE = Path(__file__).with_name("effects.toml")
+EVERY = tuple(map(_effect, tomllib.loads(_TABLE.read_text(encoding="utf-8"))["effect"]))
 
 REALISATIONS: dict[str, tuple[HiddenEffect, ...]] = {
     name: tuple(effect for effect in EVERY if effect.name == name)

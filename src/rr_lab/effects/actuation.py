@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from rr_lab.effects.hidden import HiddenEffect, Parameter, Setting, Values
+from rr_lab.effects.hidden_effect import Setting, Values
 from rr_lab.rig import Motor, Rig, swing_inertia
 from rr_opt.array import Array
 
@@ -48,6 +48,11 @@ def _damped(setting: Setting, values: Values) -> Values:
     return {**values, "zeta": float(setting.rng.uniform(0.5, 1.2))}
 
 
+def _delay(rig: Rig, values: Values) -> None:
+    late = values["delay"]
+    rig.shapers.append(lambda t, angle: np.interp(t - late, t, angle))
+
+
 def _rate_limit(rig: Rig, values: Values) -> None:
     limit = values["rate_limit"]
 
@@ -63,7 +68,7 @@ def _rate_limit(rig: Rig, values: Values) -> None:
 
 
 def _below_the_fastest(setting: Setting, _: Values) -> Values:
-    """Just below the fastest rate that is asked for."""
+    """Just below the fastest rate of the commands."""
     fastest = max(gait.peak_rate for gait in setting.gaits)
     return {"rate_limit": float(fastest * setting.rng.uniform(0.8, 0.95))}
 
@@ -91,78 +96,15 @@ def _compliant(setting: Setting, values: Values) -> Values:
     return {**drawn, "gear_stiffness": float(drawn["joint_friction"] / twist)}
 
 
-def _offset(rig: Rig, values: Values) -> None:
-    rig.offset += values["offset"]
-
-
-_TAU = Parameter("tau", "s", 0.02, most=0.3)
-_ZETA = Parameter("zeta", "1", 0.8, neutral=None, plant=True)
-_WIDTH = Parameter("width", "rad", 0.03, most=0.2)
-_FRICTION = Parameter("joint_friction", "N m", 0.1, neutral=None, plant=True)
-_GEAR = Parameter("gear_stiffness", "N m/rad", 20.0, neutral=None, plant=True)
-
-ACTUATION = (
-    HiddenEffect(
-        "servo_lag",
-        "the servo follows its command late and smaller, by a first-order lag",
-        (_TAU,),
-        _lag,
-        "first_order",
-        also=(Parameter("beta", "s^2", 2e-4, neutral=None),),
-    ),
-    HiddenEffect(
-        "servo_lag",
-        "the servo follows its command late, by a second-order lag",
-        (_TAU, _ZETA),
-        _second_order,
-        "second_order",
-        draw=_damped,
-    ),
-    HiddenEffect(
-        "servo_lag",
-        "the servo's position loop is soft: late, and deflected by the load",
-        (_TAU, _ZETA),
-        _p_loop,
-        "p_loop",
-        draw=_damped,
-    ),
-    HiddenEffect(
-        "servo_rate_limit",
-        "the servo turns no faster than a limit",
-        (Parameter("rate_limit", "rad/s", 2.5, neutral=math.inf, most=0.1),),
-        _rate_limit,
-        draw=_below_the_fastest,
-    ),
-    HiddenEffect(
-        "servo_backlash",
-        "play between the servo and platform 2, with stops at its ends; the joint turns freely",
-        (_WIDTH,),
-        _backlash,
-        "inertial",
-        also=(_FRICTION, _GEAR),
-    ),
-    HiddenEffect(
-        "servo_backlash",
-        "play between the servo and platform 2, and dry friction in the joint, which holds the "
-        "load until a flank of the gear pushes it on",
-        (_WIDTH, _FRICTION),
-        _backlash,
-        "frictional",
-        draw=_frictional,
-    ),
-    HiddenEffect(
-        "servo_backlash",
-        "play between the servo and platform 2, dry friction in the joint, and a gear that twists "
-        "under it",
-        (_WIDTH, _FRICTION, _GEAR),
-        _backlash,
-        "frictional_compliant",
-        draw=_compliant,
-    ),
-    HiddenEffect(
-        "servo_offset",
-        "the servo's zero is off",
-        (Parameter("offset", "rad", 0.02, most=0.2, signed=True),),
-        _offset,
-    ),
+FUNCTIONS = (
+    _lag,
+    _second_order,
+    _p_loop,
+    _damped,
+    _delay,
+    _rate_limit,
+    _below_the_fastest,
+    _backlash,
+    _frictional,
+    _compliant,
 )

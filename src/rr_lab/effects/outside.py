@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from rr_lab.effects.hidden import HiddenEffect, Parameter, Setting, Values
-from rr_lab.rig import Drift, Falling, Rig, Rub, Tether
+from rr_lab.effects.hidden_effect import Setting, Values
+from rr_lab.laws import Drift, Falling, Rub
+from rr_lab.rig import Rig, Tether
 
 
 def _tether(rig: Rig, values: Values) -> None:
@@ -41,68 +42,12 @@ def _pin(rig: Rig, values: Values) -> None:
     rig.pin = values["clearance"]
 
 
+def _cable(rig: Rig, values: Values) -> None:
+    rig.cable = values["force"]
+
+
 def _load(rig: Rig, values: Values) -> None:
     rig.load = (values["mass"], values["stiffness"])
 
 
-def _place(name: str, typical: float, unit: str = "m") -> Parameter:
-    return Parameter(name, unit, typical, neutral=None)
-
-
-OUTSIDE = (
-    HiddenEffect(
-        "tether",
-        "a cord to a post pulls when it is taut",
-        (
-            Parameter("stiffness", "N/m", 0.02, most=2.0),
-            _place("slack", 0.1),
-            _place("x", 0.3),
-            _place("y", 0.3),
-        ),
-        _tether,
-        named=False,
-        draw=_beside_a_path,
-    ),
-    HiddenEffect(
-        "stribeck_friction",
-        "dry friction of the wheels that falls as they turn faster",
-        (Parameter("force", "N", 4e-3, most=0.1), _place("speed", 0.05, "m/s")),
-        _stribeck,
-        named=False,
-    ),
-    HiddenEffect(
-        "drifting_friction",
-        "viscous friction that changes while the robot runs",
-        (Parameter("change", "1", 0.8, most=4.0), _place("time", 10.0, "s")),
-        _drift,
-        named=False,
-    ),
-    HiddenEffect(
-        "compliant_platform",
-        "the platforms bend sideways",
-        (Parameter("give", "rad/(N m)", 0.3, most=5.0),),
-        _sprung,
-        named=False,
-    ),
-    HiddenEffect(
-        "wheel_fault",
-        "one wheel rubs over a part of each turn",
-        (Parameter("force", "N", 0.02, most=0.3),),
-        _fault,
-        named=False,
-    ),
-    HiddenEffect(
-        "loose_pin",
-        "the joint's pin has clearance",
-        (Parameter("clearance", "m", 3e-3, most=0.01),),
-        _pin,
-        named=False,
-    ),
-    HiddenEffect(
-        "shifting_load",
-        "a load on platform 1 shifts sideways on a spring",
-        (Parameter("mass", "kg", 0.08, most=0.2), _place("stiffness", 5.0, "N/m")),
-        _load,
-        named=False,
-    ),
-)
+FUNCTIONS = (_tether, _beside_a_path, _stribeck, _drift, _sprung, _fault, _pin, _cable, _load)

@@ -130,8 +130,8 @@ def _platform(rig: Rig, i: int, part: Platform, ahead: float, J: float) -> dict[
 
 
 def loop(rig: Rig) -> Motor | None:
-    """What holds phi at the command: the servo's loop and the gear, one behind the other; None if
-    neither gives way."""
+    """What holds phi at the command: the servo's loop and the gear in series; None if
+    both are stiff."""
     gear = None
     if rig.gear is not None:
         gear = Motor(rig.gear, 2 * (rig.gear * GEAR_INERTIA) ** 0.5)
@@ -142,7 +142,7 @@ def loop(rig: Rig) -> Motor | None:
 
 
 def longest_step(rig: Rig) -> float:
-    """s, in which a servo that gives way turns by a third of a radian of its own swing: explicit
+    """s, in which a compliant servo turns by a third of a radian of its own swing: explicit
     steps, as MuJoCo takes them, lose it at six times that."""
     drive = loop(rig)
     if drive is None:

@@ -8,17 +8,15 @@ from __future__ import annotations
 
 import ctypes
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 from rr_lab.mujoco.model_text import loop, model_text
-from rr_lab.rig import WHEELS, Rig, Wheels, wheel_loads
+from rr_lab.rig import CABLE_ONSET, WHEELS, Rig, Wheels, wheel_loads
 from rr_opt.array import Array
 from rr_opt.outcome import InputError, NotConvergedError
 
@@ -134,6 +132,14 @@ class Plant:
         self.model.dof_frictionloss[self.rolls] = wheels.dry
         data.qfrc_applied[self.rolls] = wheels.torque
 
+    def drag(self) -> None:
+        """Hold axle 2 back with the friction of a cable that it drags."""
+        velocity, axle = np.empty(6), self.data.body("axle2")
+        kind = self.mujoco.mjtObj.mjOBJ_XBODY
+        self.mujoco.mj_objectVelocity(self.model, self.data, kind, axle.id, velocity, 0)
+        along = velocity[3:5]
+        axle.xfrc_applied[:2] = -self.rig.cable * along / np.hypot(np.hypot(*along), CABLE_ONSET)
+
     def loads(self) -> Array:
         """With which the wheels pressed on the floor in the last step, N (4,); before the first
         step what a robot that stands would."""
@@ -186,7 +192,7 @@ def stepped(plant: Plant, controls: Array, times: Array) -> Array:
     Raises NotConvergedError if MuJoCo lost the motion.
     """
     # MuJoCo's own loop forgets forces.
-    alone = plant.rig.laws or plant.data.xfrc_applied.any()
+    alone = plant.rig.laws or plant.rig.cable or plant.data.xfrc_applied.any()
     seen = _one_by_one(plant, controls, times) if alone else _all(plant, controls)
     # Asked here and not at the end of a run: that loop begins by forgetting earlier warnings.
     plant.require_sound()
@@ -194,12 +200,14 @@ def stepped(plant: Plant, controls: Array, times: Array) -> Array:
 
 
 def _one_by_one(plant: Plant, controls: Array, times: Array) -> Array:
-    model, data, laws = plant.model, plant.data, plant.rig.laws
+    model, data, rig = plant.model, plant.data, plant.rig
     step, control, sensors = plant.mujoco.mj_step, data.ctrl, data.sensordata
     seen = np.empty((len(controls), model.nsensordata))
     for k, (given, t) in enumerate(zip(controls.tolist(), times.tolist(), strict=True)):
-        if laws:
+        if rig.laws:
             plant.brake(t)
+        if rig.cable:
+            plant.drag()
         control[0] = given
         step(model, data)
         seen[k] = sensors
@@ -215,36 +223,3 @@ def _all(plant: Plant, controls: Array) -> Array:
     warm = data.qacc_warmstart.copy()
     _, seen = mujoco.rollout.rollout(model, data, state, controls[:, None], initial_warmstart=warm)
     return seen[0]
-
-
-@dataclass(frozen=True)
-class Course:
-    """Of `count` steps, the robot is let go at `let_go`; the recording begins at `first` and has
-    what is at the beginning of every `every`-th step."""
-
-    let_go: int
-    first: int
-    every: int
-    count: int
-
-    @property
-    def recorded(self) -> range:
-        """Steps at whose beginning there is a sample."""
-        return range(self.first, self.count, self.every)
-
-    def parts(self, *, pushed: bool, torque: bool) -> Iterator[tuple[int, int]]:
-        """From which step to before which other they are alike, so that they are taken together.
-
-        pushed  whether step `first` is unlike the others
-        torque  whether the steps that begin with a sample have to be looked at when they are taken
-        """
-        marks = {0, self.let_go, self.first, self.count}
-        if pushed:
-            marks.add(self.first + 1)
-        if torque:
-            marks |= {n for k in self.recorded for n in (k, k + 1)}
-        return pairwise(sorted(mark for mark in marks if mark <= self.count))
-
-    def samples(self, start: int) -> slice:
-        """Which steps from `start` on, not before `first`, are recorded."""
-        return slice((self.first - start) % self.every, None, self.every)

@@ -12,7 +12,7 @@ from rr_lab.planar.forces import motor, turned_by
 from rr_lab.planar.layout import layout
 from rr_lab.planar.step import SIGNALS, step_of
 from rr_lab.rig import Rig
-from rr_lab.run import Motion, Outing, asked_angle
+from rr_lab.run import Conditions, Motion, asked_angle
 from rr_opt.array import Array
 from rr_opt.model.gait import Gait
 from rr_opt.outcome import NotConvergedError
@@ -32,7 +32,7 @@ _AT_ONCE = 100
 
 @dataclass(frozen=True)
 class Clock:
-    """The steps of an outing, `every` to a sample; `before` samples come before the recording.
+    """The steps of an conditions, `every` to a sample; `before` samples come before the recording.
 
     t  command time at the ends of the steps, s, and of two steps before the first
     """
@@ -43,13 +43,13 @@ class Clock:
     t: Array
 
     @classmethod
-    def of(cls, rig: Rig, gait: Gait, outing: Outing, step: float) -> Clock:
+    def of(cls, rig: Rig, gait: Gait, conditions: Conditions, step: float) -> Clock:
         """Steps of about `step` s that begin before the command does."""
-        every = max(1, round(1 / (outing.rate * fine_enough(rig, step))))
-        dt = 1 / (outing.rate * every)
-        early = (rig.clock - outing.begin(gait)) * outing.rate
+        every = max(1, round(1 / (conditions.rate * fine_enough(rig, step))))
+        dt = 1 / (conditions.rate * every)
+        early = (rig.clock - conditions.begin(gait)) * conditions.rate
         before = max(1, math.ceil(early - 1e-6))
-        samples = before + round(outing.seconds * outing.rate)
+        samples = before + round(conditions.seconds * conditions.rate)
         ends = np.arange(-1, samples * every + 1, dtype=float) - before * every
         return cls(dt, every, before, rig.clock + dt * ends)
 
@@ -60,31 +60,31 @@ class Clock:
 
 
 def fine_enough(rig: Rig, step: float) -> float:
-    """The step that a rig is driven with where `step` is asked for, s: no longer than its blows
+    """The step actually used if `step` is requested, s: no longer than its blows
     let it be."""
     return min(step, STRIKING) if rig.play or rig.pin else step
 
 
-def drive(rig: Rig, gait: Gait, outing: Outing, step: float = STEP) -> Motion:
+def drive(rig: Rig, gait: Gait, conditions: Conditions, step: float = STEP) -> Motion:
     """Drive a gait and write down the motion. Raises NotConvergedError if it is lost."""
-    clock, begin = Clock.of(rig, gait, outing, step), outing.begin(gait)
+    clock, begin = Clock.of(rig, gait, conditions, step), conditions.begin(gait)
     asked = asked_angle(rig, gait, begin, clock.t)
     # The difference by which steps are made, so that what is asked and what is done compare.
     rate = (3 * asked[2:] - 4 * asked[1:-1] + asked[:-2]) / (2 * clock.dt)
     t = clock.t[2:]
     nudge = np.zeros(len(t))
-    nudge[clock.samples.start + 1 : clock.samples.start + 2] = outing.nudge / clock.dt
+    nudge[clock.samples.start + 1 : clock.samples.start + 2] = conditions.nudge / clock.dt
     free = np.where(t > begin + 1e-12, 1.0, 0.0)
     signals = np.stack([asked[2:], rate, t - begin, free, nudge])
     assert len(signals) == len(SIGNALS)
-    return _motion(rig, outing, clock, _run(rig, clock, outing, asked[1], signals), signals)
+    return _motion(rig, conditions, clock, _run(rig, clock, conditions, asked[1], signals), signals)
 
 
-def _run(rig: Rig, clock: Clock, outing: Outing, angle: float, signals: Array) -> Array:
+def _run(rig: Rig, clock: Clock, conditions: Conditions, angle: float, signals: Array) -> Array:
     """The states (k, samples), those before the recording among them, from rest at `angle` rad."""
     built = layout(rig)
     still = np.zeros(2 * len(built.names) + 8)
-    still[:3], still[built.names.index("phi")] = outing.pose, angle
+    still[:3], still[built.names.index("phi")] = conditions.pose, angle
     if "shaft" in built.names:
         still[built.names.index("shaft")] = angle
     sample = step_of(rig, clock.dt).fold(clock.every)
@@ -106,15 +106,17 @@ def _run(rig: Rig, clock: Clock, outing: Outing, angle: float, signals: Array) -
     return states
 
 
-def _motion(rig: Rig, outing: Outing, clock: Clock, states: Array, signals: Array) -> Motion:
+def _motion(
+    rig: Rig, conditions: Conditions, clock: Clock, states: Array, signals: Array
+) -> Motion:
     built = layout(rig)
     n = len(built.names)
     states, signals = states[:, clock.before - 1 :], signals[:, clock.samples]
     ends = ca.Function("ends", [built.q], list(built.ends))
     one, two = (np.asarray(end).T for end in ends(states[:n]))
     made, drive = built.names.index(turned_by(built)), motor(rig)
-    t = np.arange(states.shape[1]) / outing.rate
-    if not outing.torque:
+    t = np.arange(states.shape[1]) / conditions.rate
+    if not conditions.torque:
         return Motion(t, one, two)
     torque = drive.stiffness * (signals[0] - states[made])
     torque += drive.damping * (drive.feedforward * signals[1] - states[n + made])

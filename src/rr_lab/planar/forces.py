@@ -1,42 +1,26 @@
-"""What acts on a rig in the plane: bearings, loads, the motor, stops, and what bends or pushes.
+"""What acts on a rig in the plane, but for its wheels: the motor, stops, and what bends or pushes.
 
 A step ends where its forces say, and they depend on where it ends. So its end is guessed, forces
 are written as straight lines through the guess, and the end that these give is the next guess.
 
-The servo: a motor that turns platform 2 against platform 1 after its command.
+The servo is a motor that turns platform 2 against platform 1 after its command. Its torque is
+stiffness * (asked - made) + damping * (the same of the rates), on platform 2 and with the other
+sign on platform 1; nothing limits it. Nothing but this makes the angle.
 
-Its torque is stiffness * (asked - made) + damping * (the same of the rates), on platform 2 and with
-the other sign on platform 1; nothing limits it. Nothing but this makes the angle.
-
-What has play: platform 2 on the motor's shaft, and the joint's pin in its hole.
-
-A stop is a stiff spring with a damper that fades in over the first depth, so that its force neither
-jumps at a touch nor ever pulls.
+A stop bounds what has play: platform 2 on the motor's shaft, and the joint's pin in its hole. It is
+a stiff spring with a damper that fades in over the first depth, so that its force neither jumps at
+a touch nor ever pulls.
 """
 
 from __future__ import annotations
 
-import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Any
 
 import casadi as ca
 
 from rr_lab.planar.layout import Layout, axis, left_of
-from rr_lab.rig import (
-    WHEELS,
-    Drift,
-    Falling,
-    Motor,
-    Patch,
-    Rig,
-    RollingResistance,
-    Rub,
-    box_of,
-    swing_inertia,
-    wheel_loads,
-)
-from rr_opt.outcome import InputError
+from rr_lab.rig import CABLE_ONSET, Motor, Rig, box_of, swing_inertia
 
 
 @dataclass(frozen=True)
@@ -91,78 +75,44 @@ def spring(
     return Pull(way, damping + stiffness * moment.ahead, -stiffness * (before - rest))
 
 
-DRY_ONSET = 2e-3
-"""m/s at the rim, over which dry friction sets in if the rig does not say, as
-u/(u^4 + onset^4)^(1/4): at three times that speed it is within a third of a per cent of its
-force."""
-
-EDGE = 1e-3
-"""m, half the width of a patch's edge: about the length over which a tyre touches the floor."""
-
-_SOFT = 0.02
-"""Of the cosine of a wheel's angle, over which a fault begins and ends: some degrees."""
-
-
-def bearings(moment: Moment, rig: Rig) -> list[ca.SX]:
-    """D of each wheel, N m s: it resists with D times its spin."""
-    viscous: list[Any] = [ca.SX(kappa) for kappa in rig.kappa]
-    dry: list[Any] = [ca.SX(torque) for torque in rig.dry]
-    carried = wheel_loads(rig)
-    for law in rig.laws:
-        for n in range(len(WHEELS)):
-            viscous[n], dry[n] = _changed(law, moment, n, carried[n], viscous[n], dry[n])
-    onset = (rig.onset or DRY_ONSET) / rig.robot.h
-    found = []
-    for n, quadratic in enumerate(rig.quadratic):
-        spin = moment.spins[n]
-        rubs = dry[n] / (spin**4 + onset**4) ** 0.25
-        found.append(viscous[n] + quadratic * ca.fabs(spin) + rubs)
-    return found
-
-
-def _changed(
-    law: Any, moment: Moment, n: int, load: float, viscous: ca.SX, dry: ca.SX
-) -> tuple[ca.SX, ca.SX]:
-    """Viscous (N m s) and dry (N m) friction of a wheel by one more law."""
-    match law:
-        case Patch():
-            place = moment.layout.wheels[n].place
-            inside = (1 + ca.tanh(law.within.depth(place[0], place[1]) / EDGE)) / 2
-            factor = 1 + (law.times - 1) * inside
-            return viscous * factor, dry * factor
-        case Falling():
-            fall = ca.exp(-((moment.spins[n] / law.rate) ** 2))
-            return viscous, dry + law.torque * (1 + 2 * fall) / 3
-        case Drift():
-            came = 1 - ca.exp(-ca.fmax(moment.t, 0) / law.time)
-            return viscous * (1 + law.change * came), dry
-        case RollingResistance():
-            return viscous, dry + law.mu * law.h * load
-        case Rub():
-            return viscous, dry + (law.torque * _first_fifth(moment.turns[0]) if n == 0 else 0.0)
-    raise InputError(
-        f"The planar engine does not know {type(law).__name__}. Expected a law of the catalogue. "
-        "Take the engine mujoco."
-    )
-
-
-def _first_fifth(turned: ca.SX) -> ca.SX:
-    """1 over the first fifth of each turn, 0 over the rest."""
-    middle = 0.2 * math.pi
-    return (1 + ca.tanh((ca.cos(turned - middle) - math.cos(middle)) / _SOFT)) / 2
-
-
 QUICK = 1000.0
-"""1/s, how fast the motor settles. A robot that is asked for an acceleration of 30 rad/s2 is then
+"""1/s, how fast the motor settles. At a commanded acceleration of 30 rad/s2 it is then
 30/QUICK^2 = 0.03 mrad behind, or up to three times that where its wheels stand in the way."""
+
+HINGE_ONSET = 1e-3
+"""rad/s, over which dry friction of the joint sets in; a joint that sticks creeps by some tenths of
+it, far less than an angle's noise in half a period."""
+
+SLACKENS = 2e-3
+"""s, in which a bent platform straightens: its axle has no mass of its own, so a damper alone says
+how fast."""
+
+RINGS = 0.1
+"""A shifting load's damper over its spring and mass, c/sqrt(k m): it swings some ten times."""
+
+STOPS_QUICK = 1000.0
+"""1/s, how fast what hits a stop comes to rest in it: within some milliseconds."""
+
+GEAR_SETTLES = 5e-3
+"""s, in which a compliant gear that is let go straightens."""
+
+FIRST_ANGLE, FIRST_LENGTH = 1e-5, 1e-6
+"""rad and m, the depth over which a stop's damper fades in; a hundredth of what noise lets see."""
+
+
+def pulls(moment: Moment, rig: Rig) -> Iterator[Pull]:
+    """All that the rig has."""
+    yield _turning(moment, rig)
+    for part in (_hinge, _play, _pin, _bends, _shift, _medium, _cable):
+        yield from part(moment, rig)
 
 
 def motor(rig: Rig) -> Motor:
     """The rig's own, or a stiff one."""
-    return rig.motor or stiff(rig)
+    return rig.motor or _stiff(rig)
 
 
-def stiff(rig: Rig) -> Motor:
+def _stiff(rig: Rig) -> Motor:
     """A motor that follows its command within a tenth of a milliradian, critically damped."""
     inertia = swing_inertia(rig.robot)
     return Motor(inertia * QUICK**2, 2 * inertia * QUICK)
@@ -173,43 +123,90 @@ def turned_by(built: Layout) -> str:
     return "shaft" if "shaft" in built.names else "phi"
 
 
-def turning(moment: Moment, rig: Rig) -> Pull:
+def _turning(moment: Moment, rig: Rig) -> Pull:
     """The motor's torque."""
     made, drive = moment.layout.of(turned_by(moment.layout)), motor(rig)
     pull = spring(moment, made, drive.stiffness, drive.damping, moment.asked)
     return replace(pull, push=pull.push + drive.feedforward * drive.damping * moment.rate)
 
 
-def medium(moment: Moment, rig: Rig) -> list[Pull]:
-    """What a medium makes of the platforms' motion, if there is one: the drag of a box with a drag
-    coefficient of 1 at each of its faces, and of its turning."""
-    if not rig.density:
-        return []
-    pulls = []
-    for body in moment.layout.bodies[:2]:
+def _hinge(moment: Moment, rig: Rig) -> Iterator[Pull]:
+    """Dry friction between the platforms."""
+    if rig.hinge_dry:
+        way = moment.way(moment.layout.of("phi"))
+        rate = way @ moment.w
+        yield Pull(way, rig.hinge_dry / (rate**4 + HINGE_ONSET**4) ** 0.25, 0.0)
+
+
+def _play(moment: Moment, rig: Rig) -> Iterator[Pull]:
+    """The platform runs freely on the shaft, half the play to either side."""
+    if rig.play:
+        ahead = moment.layout.of("phi") - moment.layout.of("shaft")
+        # Otherwise as stiff as the motor against which it is pressed.
+        flank = Motor(rig.gear, GEAR_SETTLES * rig.gear) if rig.gear is not None else _stiff(rig)
+        yield _stop(moment, ahead, rig.play / 2, flank.stiffness, flank.damping, FIRST_ANGLE)
+
+
+def _pin(moment: Moment, rig: Rig) -> Iterator[Pull]:
+    """A round pin in a round hole: free within, pushed back to the middle at the rim."""
+    if rig.pin:
+        across = [moment.layout.of(name) for name in ("pin_ahead", "pin_left")]
+        # The root has no slope in the middle, where nothing is pushed anyway.
+        off = ca.sqrt(across[0] ** 2 + across[1] ** 2 + FIRST_LENGTH**2)
+        one, two = rig.robot.platform1.m, rig.robot.platform2.m
+        mass = one * two / (one + two)
+        stiffness, damping = mass * STOPS_QUICK**2, 2 * mass * STOPS_QUICK
+        yield _stop(moment, off, rig.pin, stiffness, damping, FIRST_LENGTH)
+
+
+def _stop(
+    moment: Moment, off: ca.SX, reach: float, stiffness: float, damping: float, first: float
+) -> Pull:
+    """Stops at `reach` to both sides of 0."""
+    side = ca.sign(off)
+    deep = ca.fmax(ca.fabs(off) - reach, 0)
+    deepens = side * (moment.way(off) @ moment.w)
+    damper = damping * deep / (deep + first)
+    touches = ca.logic_and(deep > 0, stiffness * deep + damper * deepens > 0)
+    return spring(moment, off, touches * stiffness, touches * damper, side * reach)
+
+
+def _bends(moment: Moment, rig: Rig) -> Iterator[Pull]:
+    """Both platforms, sideways."""
+    if rig.spring is not None:
+        for name in ("bend1", "bend2"):
+            yield spring(moment, moment.layout.of(name), rig.spring, SLACKENS * rig.spring)
+
+
+def _shift(moment: Moment, rig: Rig) -> Iterator[Pull]:
+    """A load on its spring."""
+    if rig.load is not None:
+        mass, stiffness = rig.load
+        damping = RINGS * (mass * stiffness) ** 0.5
+        yield spring(moment, moment.layout.of("shift"), stiffness, damping)
+
+
+def _medium(moment: Moment, rig: Rig) -> Iterator[Pull]:
+    """A medium that drags at the platforms: at a box with a drag coefficient of 1 at each of its
+    faces, and at its turning."""
+    for body in moment.layout.bodies[:2] if rig.density else ():
         reach, height = box_of(body.m, body.I)
         ahead, moves = axis(body.heading), moment.way(body.place)
         for way in (ahead.T @ moves, left_of(ahead).T @ moves):
             hold = 2 * rig.density * reach * height * ca.fabs(way @ moment.w)
-            pulls.append(Pull(way, hold, 0.0))
+            yield Pull(way, hold, 0.0)
         turns = moment.way(body.heading)
-        hold = rig.density * height * reach**4 * ca.fabs(turns @ moment.w)
-        pulls.append(Pull(turns, hold, 0.0))
-    return pulls
+        yield Pull(turns, rig.density * height * reach**4 * ca.fabs(turns @ moment.w), 0.0)
 
 
-HINGE_ONSET = 1e-3
-"""rad/s, over which dry friction of the joint sets in; a joint that sticks creeps by some tenths of
-it, far less than an angle's noise in half a period."""
-
-
-def hinge(moment: Moment, rig: Rig) -> list[Pull]:
-    """Dry friction between the platforms, if there is any."""
-    if not rig.hinge_dry:
-        return []
-    way = moment.way(moment.layout.of("phi"))
-    rate = way @ moment.w
-    return [Pull(way, rig.hinge_dry / (rate**4 + HINGE_ONSET**4) ** 0.25, 0.0)]
+def _cable(moment: Moment, rig: Rig) -> Iterator[Pull]:
+    """A cable that axle 2 drags on the floor."""
+    if rig.cable:
+        left, right = moment.layout.wheels[2:]
+        ways = moment.way((left.place + right.place) / 2)
+        speed = ca.norm_2(ca.vertcat(ways @ moment.w, CABLE_ONSET))
+        for n in range(2):
+            yield Pull(ways[n, :], rig.cable / speed, 0.0)
 
 
 def pushed(moment: Moment, rig: Rig, nudge: ca.SX) -> ca.SX:
@@ -230,76 +227,3 @@ def pushed(moment: Moment, rig: Rig, nudge: ca.SX) -> ca.SX:
         taut = rig.tether.stiffness * ca.fmax(length - rig.tether.slack, 0)
         total -= moment.free * taut * moment.way(length).T
     return total
-
-
-SLACKENS = 2e-3
-"""s, in which a bent platform straightens: its axle has no mass of its own, so a damper alone says
-how fast."""
-
-RINGS = 0.1
-"""A shifting load's damper over its spring and mass, c/sqrt(k m): it swings some ten times."""
-
-
-def bent(moment: Moment, rig: Rig) -> list[Pull]:
-    """All that the rig has."""
-    pulls = []
-    if rig.spring is not None:
-        for name in ("bend1", "bend2"):
-            angle = moment.layout.of(name)
-            pulls.append(spring(moment, angle, rig.spring, SLACKENS * rig.spring))
-    if rig.load is not None:
-        mass, stiffness = rig.load
-        damping = RINGS * (mass * stiffness) ** 0.5
-        pulls.append(spring(moment, moment.layout.of("shift"), stiffness, damping))
-    return pulls
-
-
-STOPS_QUICK = 1000.0
-"""1/s, how fast what hits a stop comes to rest in it: within some milliseconds."""
-
-GEAR_SETTLES = 5e-3
-"""s, in which a compliant gear that is let go straightens."""
-
-FIRST_ANGLE, FIRST_LENGTH = 1e-5, 1e-6
-"""rad and m, the depth over which a stop's damper fades in; a hundredth of what noise lets see."""
-
-
-def stops(moment: Moment, rig: Rig) -> list[Pull]:
-    """All that the rig has."""
-    return [*_play(moment, rig), *_pin(moment, rig)]
-
-
-def _play(moment: Moment, rig: Rig) -> list[Pull]:
-    """The platform runs freely on the shaft, half the play to either side."""
-    if not rig.play:
-        return []
-    ahead = moment.layout.of("phi") - moment.layout.of("shaft")
-    # Otherwise as stiff as the motor against which it is pressed.
-    flank = Motor(rig.gear, GEAR_SETTLES * rig.gear) if rig.gear is not None else stiff(rig)
-    return [_stop(moment, ahead, rig.play / 2, flank.stiffness, flank.damping, FIRST_ANGLE)]
-
-
-def _pin(moment: Moment, rig: Rig) -> list[Pull]:
-    """A round pin in a round hole: free within, pushed back to the middle at the rim."""
-    if not rig.pin:
-        return []
-    across = [moment.layout.of(name) for name in ("pin_ahead", "pin_left")]
-    # The root has no slope in the middle, where nothing is pushed anyway.
-    off = ca.sqrt(across[0] ** 2 + across[1] ** 2 + FIRST_LENGTH**2)
-    one, two = rig.robot.platform1.m, rig.robot.platform2.m
-    mass = one * two / (one + two)
-    return [
-        _stop(moment, off, rig.pin, mass * STOPS_QUICK**2, 2 * mass * STOPS_QUICK, FIRST_LENGTH)
-    ]
-
-
-def _stop(
-    moment: Moment, off: ca.SX, reach: float, stiffness: float, damping: float, first: float
-) -> Pull:
-    """Stops at `reach` to both sides of 0."""
-    side = ca.sign(off)
-    deep = ca.fmax(ca.fabs(off) - reach, 0)
-    deepens = side * (moment.way(off) @ moment.w)
-    damper = damping * deep / (deep + first)
-    touches = ca.logic_and(deep > 0, stiffness * deep + damper * deepens > 0)
-    return spring(moment, off, touches * stiffness, touches * damper, side * reach)

@@ -38,7 +38,8 @@ from dataclasses import dataclass, replace
 
 import casadi as ca
 
-from rr_lab.planar.forces import Moment, Pull, bearings, bent, hinge, medium, pushed, stops, turning
+from rr_lab.planar.bearings import bearings
+from rr_lab.planar.forces import Moment, Pull, pulls, pushed
 from rr_lab.planar.layout import Layout, axis, coordinates, layout, left_of
 from rr_lab.rig import WHEELS, Rig, wheel_loads
 
@@ -165,15 +166,13 @@ def _sweep(rig: Rig, dt: float) -> ca.Function:
             zip(wheel_loads(rig), bearings(moment, rig), strict=True)
         )
     ]
-    pulls = [turning(moment, rig), *hinge(moment, rig), *stops(moment, rig), *bent(moment, rig)]
-    pulls += medium(moment, rig)
-    pulls += [pull for wheel in wheels for pull in wheel.pulls]
+    acting = [*pulls(moment, rig), *(pull for wheel in wheels for pull in wheel.pulls)]
     mass, turned = _inertia(built, guess.w)
     left, right = rate * mass, rate * (mass @ kept.w) - turned + pushed(moment, rig, nudge)
-    for pull in pulls:
+    for pull in acting:
         left += pull.hold * (pull.way.T @ pull.way)
         right += pull.push * pull.way.T
-    # Symmetric and positive: every hold is, and what has no mass is held by a damper.
+    # Symmetric and positive: every hold is, and a coordinate without mass has a damper.
     w = ca.ldl_solve(right, *ca.ldl(left))
     spins = ca.vertcat(*(wheel.spin(w) for wheel in wheels))
     return ca.Function("sweep", [*guess.parts, kept.w, kept.spins, signals], [w, spins])

@@ -5,8 +5,8 @@ from __future__ import annotations
 from matplotlib.axes import Axes
 from matplotlib.patches import Rectangle
 
-from rr_lab.report.trial import Proof
-from rr_lab.trial.confusion import Confusion, confusion
+from rr_lab.report.proof import Proof
+from rr_lab.trial.counts import Confusion, confusion
 from rr_opt.report.figures.style import (
     BACKWARD,
     FAINT,

@@ -1,8 +1,9 @@
-"""Rates, intervals, p-values and sizes over many cases."""
+"""Rates, intervals, p-values and quantiles over many cases."""
 
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -10,7 +11,7 @@ from typing import Any
 import numpy as np
 from scipy.stats import binomtest, kstest
 
-from rr_lab.trial.case import Case
+from rr_lab.trial.outcome import Case
 
 
 @dataclass(frozen=True)
@@ -20,6 +21,12 @@ class Rate:
     count: int
     total: int
 
+    @classmethod
+    def of(cls, flags: Iterable[bool]) -> Rate:
+        """How many of the flags are set."""
+        every = list(flags)
+        return cls(sum(every), len(every))
+
     @property
     def fraction(self) -> float | None:
         """None where there is no case."""
@@ -27,7 +34,8 @@ class Rate:
 
     @property
     def interval(self) -> tuple[float, float]:
-        """95 % interval of the chance, Clopper and Pearson's, which covers at least that often."""
+        """95 % interval of the probability by Clopper and Pearson (Biometrika 26, 404, 1934), which
+        covers at least that often."""
         if not self.total:
             return 0.0, 1.0
         found = binomtest(self.count, self.total).proportion_ci(0.95, method="exact")
@@ -40,163 +48,128 @@ class Rate:
         return {**data, "fraction": self.fraction, "ci95": list(self.interval)}
 
 
-def rate(flags: Iterable[bool]) -> Rate:
-    """How many of the flags are set."""
-    every = list(flags)
-    return Rate(sum(every), len(every))
-
-
-@dataclass(frozen=True)
-class Measure:
-    """name: short, for scripts; title: for people; definition: what is counted, of what."""
-
-    name: str
-    title: str
-    definition: str
-    rate: Rate
-
-
-COVERAGE = (
-    "Of the 95 % intervals of the parameters of effects that were named by their own name under "
-    "the verdict `missing_physics`, and of wrong values named under `parameters`, those that "
-    "contain the true value; 95 % of them should. Not counted: edge_x and edge_y of a floor patch, "
-    "as any point on its edge is as good."
-)
 _ANY_POINT = ("edge_x", "edge_y")
+"""Of a floor patch; any point on its edge is as good."""
 
 
 @dataclass(frozen=True)
-class Covered:
-    """One interval and the truth, SI."""
+class Interval:
+    """The interval of a quantity such as `coulomb_friction.force1`, and the true value, SI."""
 
-    case: str
-    name: str
-    parameter: str
+    quantity: str
     true: float
     low: float
     high: float
 
     @property
-    def held(self) -> bool:
-        """Whether the interval holds the true value."""
+    def covers(self) -> bool:
+        """Whether it contains the true value."""
         true = self.true
-        if self.parameter == "normal":  # a direction, the same a turn on
+        if self.quantity.endswith(".normal"):  # a direction, the same a turn on
             true += math.tau * round(((self.low + self.high) / 2 - true) / math.tau)
         return self.low <= true <= self.high
 
-    @property
-    def quantity(self) -> str:
-        """`coulomb_friction.force1`, or the parameter itself."""
-        return self.name if self.name == self.parameter else f"{self.name}.{self.parameter}"
 
-
-def intervals(cases: Iterable[Case]) -> list[Covered]:
-    """Every interval that has a true value to hold."""
+def intervals(cases: Iterable[Case]) -> list[Interval]:
+    """Every interval whose true value is known."""
     return [one for case in cases for one in _of(case)]
 
 
-def by_quantity(every: Sequence[Covered]) -> dict[str, Rate]:
-    """How many hold, for each quantity."""
-    return {
-        quantity: rate(one.held for one in every if one.quantity == quantity)
-        for quantity in sorted({one.quantity for one in every})
-    }
-
-
-def _of(case: Case) -> list[Covered]:
+def _of(case: Case) -> list[Interval]:
     claim, values = case.claim, case.truth.values
     if claim is None or claim.verdict not in ("missing_physics", "parameters"):
         return []
     return [
-        Covered(case.id, one.name, parameter, values[one.name][parameter], low, high)
+        Interval(
+            one.name if one.name == parameter else f"{one.name}.{parameter}",
+            values[one.name][parameter],
+            *ends,
+        )
         for one in claim.named
-        for parameter, (low, high) in one.intervals.items()
+        for parameter, ends in one.intervals.items()
         if parameter in values.get(one.name, {}) and parameter not in _ANY_POINT
     ]
 
 
-P_VALUES = (
-    "Where nothing is hidden the p-values of a test should be uniform between 0 and 1: the "
-    "Kolmogorov-Smirnov distance, its own p-value, and how many are below 0.05."
-)
+def coverage(every: Sequence[Interval]) -> dict[str, Rate]:
+    """How many intervals cover the truth: `all`, then each quantity; empty without intervals."""
+    by_quantity = {
+        name: Rate.of(one.covers for one in every if one.quantity == name)
+        for name in sorted({one.quantity for one in every})
+    }
+    return {"all": Rate.of(one.covers for one in every), **by_quantity} if every else {}
+
 
 FEWEST = 8
 """With fewer p-values nothing is reported."""
 
 
-def evenness(cases: Sequence[Case]) -> dict[str, dict[str, Any]]:
+def uniformity(cases: Sequence[Case]) -> dict[str, dict[str, Any]]:
     """By test: how many nulls have one, the distance, its chance, and how many are below 0.05."""
     found: dict[str, list[float]] = {}
     for case in cases:
-        if case.truth.kind == "null" and case.claim and case.claim.p_values:
+        if case.truth.kind == "null" and case.claim:
             for test, p in case.claim.p_values.items():
                 found.setdefault(test, []).append(p)
-    return {test: _uniformity(values) for test, values in found.items() if len(values) >= FEWEST}
-
-
-def _uniformity(values: list[float]) -> dict[str, Any]:
-    found = kstest(values, "uniform")
-    return {
-        "count": len(values),
-        "distance": float(found.statistic),
-        "chance": float(found.pvalue),
-        "below_005": sum(p < 0.05 for p in values),
-    }
-
-
-HELD_OUT = (
-    "RMS misfit of recordings that took no part in the fit, in units of the noise sigma: "
-    "of the nominal model, with its parameters re-fitted, and with all effects found."
-)
-TIME = "Time of one diagnosis with its page, one process for each case, s."
-
-
-@dataclass(frozen=True)
-class Sizes:
-    """Median, 90 % point and largest of some values; None where there are none."""
-
-    median: float | None
-    most: float | None
-    largest: float | None
-    count: int
-
-    @property
-    def record(self) -> dict[str, Any]:
-        """As plain data."""
-        return {
-            "median": self.median,
-            "quantile90": self.most,
-            "largest": self.largest,
-            "count": self.count,
-        }
-
-
-def sizes(values: Sequence[float | None]) -> Sizes:
-    """Of the values that there are."""
-    known = np.array([value for value in values if value is not None], float)
-    if not known.size:
-        return Sizes(None, None, None, 0)
-    return Sizes(
-        float(np.median(known)), float(np.quantile(known, 0.9)), float(known.max()), known.size
-    )
-
-
-def held_out(cases: Sequence[Case]) -> dict[str, dict[str, Sizes]]:
-    """By kind: before, refitted, after."""
     table = {}
-    for kind in dict.fromkeys(case.truth.kind for case in cases):
-        claims = [case.claim for case in cases if case.truth.kind == kind and case.claim]
-        table[kind] = {
-            "before": sizes([claim.before for claim in claims]),
-            "refitted": sizes([claim.refitted for claim in claims]),
-            "after": sizes([claim.after for claim in claims]),
-        }
+    for test, values in found.items():
+        if len(values) >= FEWEST:
+            against = kstest(values, "uniform")
+            table[test] = {
+                "count": len(values),
+                "distance": float(against.statistic),
+                "chance": float(against.pvalue),
+                "below_005": sum(p < 0.05 for p in values),
+            }
     return table
 
 
-def times(cases: Sequence[Case]) -> dict[str, Sizes]:
-    """Wall and CPU time."""
+SIZES = ("none", "small", "large")
+
+
+def quantiles(values: Iterable[float | None]) -> dict[str, Any]:
+    """Median, 90 % point, largest and count of the values that there are."""
+    known = np.array([value for value in values if value is not None], float)
+    if not known.size:
+        return {"median": None, "quantile90": None, "largest": None, "count": 0}
     return {
-        "wall": sizes([case.wall for case in cases]),
-        "cpu": sizes([case.cpu for case in cases]),
+        "median": float(np.median(known)),
+        "quantile90": float(np.quantile(known, 0.9)),
+        "largest": float(known.max()),
+        "count": known.size,
     }
+
+
+def by_kind(cases: Sequence[Case]) -> dict[str, list[Case]]:
+    """The cases with an answer, by kind, in the order in which kinds first come."""
+    kinds = dict.fromkeys(case.truth.kind for case in cases)
+    return {kind: [c for c in cases if c.truth.kind == kind and c.claim] for kind in kinds}
+
+
+def held_out(cases: Sequence[Case]) -> dict[str, dict[str, dict[str, Any]]]:
+    """By kind: before, refitted, after."""
+    return {
+        kind: {
+            when: quantiles(getattr(case.claim, when) for case in own)
+            for when in ("before", "refitted", "after")
+        }
+        for kind, own in by_kind(cases).items()
+    }
+
+
+def remainders(cases: Sequence[Case]) -> dict[str, dict[str, Any]]:
+    """By kind: how many answers say that none, a small or a large remainder is left, and the median
+    share."""
+    table = {}
+    for kind, own in by_kind(cases).items():
+        claims = [case.claim for case in own if case.claim and case.claim.remainder]
+        counted = Counter(claim.remainder for claim in claims)
+        shares = quantiles(claim.share for claim in claims)
+        if claims:
+            table[kind] = {size: counted[size] for size in SIZES} | {"share": shares["median"]}
+    return table
+
+
+def times(cases: Sequence[Case]) -> dict[str, dict[str, Any]]:
+    """Wall and CPU time."""
+    return {name: quantiles(getattr(case, name) for case in cases) for name in ("wall", "cpu")}

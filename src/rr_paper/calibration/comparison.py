@@ -14,9 +14,9 @@ import numpy as np
 
 from rr_opt.array import Array
 from rr_paper.calibration.fit import Estimator, Fit
-from rr_paper.calibration.intervals import Profile, profiles
 from rr_paper.calibration.likelihood import measured, one_way, row_deviance, simulated
 from rr_paper.calibration.models import AMPLITUDE, Model
+from rr_paper.calibration.profiles import Profile, profiles
 from rr_paper.publication import Column
 
 TABLE_3_ALONE = (~np.isnan(AMPLITUDE)).astype(float)

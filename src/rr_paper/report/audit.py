@@ -11,8 +11,8 @@ from rr_opt.formatting import number
 from rr_opt.model.ballast import Loads, load_count
 from rr_opt.results.fastest import FastestGait
 from rr_paper import publication
+from rr_paper.best_amplitude import Peak
 from rr_paper.consistency import KAPPA, LARGEST_WHEEL, Hypothesis
-from rr_paper.gaits import Peak
 from rr_paper.prototype import BOX, UNITS
 from rr_paper.reproduction import Reproduction
 

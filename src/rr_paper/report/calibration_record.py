@@ -1,4 +1,4 @@
-"""calibration.json, and the CSV files beside it."""
+"""calibration.json and its CSV files."""
 
 from __future__ import annotations
 
@@ -7,31 +7,29 @@ from typing import Any
 import numpy as np
 
 from rr_opt.documents.document import csv_text
-from rr_opt.documents.report import Report
 from rr_opt.files.record import plain
 from rr_opt.version import __version__
-from rr_paper.calibration.calibration import Calibration
 from rr_paper.calibration.comparison import Assessment
 from rr_paper.calibration.likelihood import measured
 from rr_paper.calibration.models import MODELS, READINGS, VISCOUS
+from rr_paper.calibration.result import Calibration
 from rr_paper.calibration.unknowns import UNKNOWNS, values
 from rr_paper.publication import ROWS, T_POINT, Row
-from rr_paper.report.calibration import CAPTIONS, conclusions, document
 
 _DRAWS = 1000
 """Draws of each posterior that are written."""
 
 
-def record(found: Calibration) -> dict[str, Any]:
+def record(found: Calibration, verdict: str, conclusions: tuple[str, ...]) -> dict[str, Any]:
     """The content of calibration.json."""
     covered = found.coverage
     record = {
-        "verdict": conclusions(found).verdict,
-        "conclusions": conclusions(found).follows,
+        "verdict": verdict,
+        "conclusions": conclusions,
         "t_of_the_intervals": T_POINT,
         "reading": READINGS[0].words,
         "unknowns": [
-            {"name": one.name, "unit": one.unit, "box": [one.low, one.high],
+            {"name": one.name, "unit": one.unit, "box": one.box,
              "flat_in": "logarithm" if one.log else "value", "why": one.why}
             for one in UNKNOWNS.values()
         ],
@@ -135,7 +133,7 @@ def tables(found: Calibration) -> dict[str, str]:
 def _interval_rows(found: Calibration) -> _Rows:
     return [
         {"unknown": one.unknown.name, "unit": one.unknown.unit, "column": one.column,
-         **_ends("box", (one.unknown.low, one.unknown.high)),
+         **_ends("box", one.unknown.box),
          "posterior_low": one.posterior[0], "posterior_median": one.median,
          "posterior_high": one.posterior[1],
          **_ends("profile", one.profile.ends(one.unknown)),
@@ -211,17 +209,3 @@ def _posterior_rows(found: Calibration) -> _Rows:
             {"column": column, **{name: of[i] for name, of in at.items()}} for i in range(_DRAWS)
         ]
     return rows
-
-
-REPORT = Report(
-    record,
-    document,
-    "calibration.json",
-    tables=tables,
-    others=(
-        *("intervals.csv", "models.csv", "predictions.csv", "profiles.csv", "posterior.csv"),
-        *("readings.csv", "coverage.csv"),
-    ),
-    figures="rr_paper.report.calibration_figures",
-    captions=CAPTIONS,
-)

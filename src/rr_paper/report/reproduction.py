@@ -11,50 +11,9 @@ from rr_opt.documents.document import Document, Figure, Gallery, Section, csv_te
 from rr_opt.documents.report import Report
 from rr_paper.publication import CITATION, RATE_LIMIT
 from rr_paper.report.audit import findings
+from rr_paper.report.captions import captions
 from rr_paper.reproduction import Reproduction
 from rr_paper.tables import SpeedSurface
-
-CAPTIONS = {
-    "figure3": (
-        "Beside Fig. 3: a start from rest",
-        "The path of the joint from rest, and the average speed rising to its steady value.",
-        "The paper does not say which gait it shows; here it is a row of Table 3. The average is "
-        "the displacement of P over a sliding period, as in the paper.",
-    ),
-    "signs": (
-        "The signs of equation (3)",
-        "Speed of axle 1 over time: three curves on one another, a fourth apart.",
-        "Two derivations and the corrected equation coincide; the printed one does not.",
-    ),
-    "figure4": (
-        "Beside Fig. 4: J20/J10 and amplitude",
-        "A map of speed with Table 2's rows, and their speeds over the amplitude.",
-        "Left: means of Table 2 (mm/s, 95 % intervals) in the colour of their speed, at the "
-        "amplitude that fits best. Right: the same rows over the amplitude that the paper leaves "
-        "out.",
-    ),
-    "figure5": (
-        "Beside Fig. 5: period and amplitude",
-        "A map of speed with Table 3's rows, and cuts through it at 1 s and 2 s.",
-        "Left: means of Table 3 (mm/s, 95 % intervals) in the colour of their speed; where a dot "
-        "is paler than its surroundings, the model is too fast. Right: cuts at the two periods.",
-    ),
-    "figure6": (
-        "Beside Fig. 6: three offsets",
-        "Three circles through one point, the smaller the larger the offset.",
-        "One lap, from rest at the dot. The paper prints no radius to compare these with.",
-    ),
-    "period": (
-        "The effect of the period",
-        "The ratio of speeds at 1 s and 2 s over the amplitude, with intervals.",
-        "With viscous friction every robot is near 4. The intervals allow it; v_exp does not.",
-    ),
-    "readings": (
-        "What the nine averages say about readings",
-        "Chi-square of every reading for both columns.",
-        "p by Student's t of three runs. No definition of J20/J10 stands out.",
-    ),
-}
 
 
 def document(found: Reproduction, figures: Sequence[Figure] = ()) -> Document:
@@ -149,10 +108,9 @@ def record(found: Reproduction) -> dict[str, Any]:
 
 def tables(found: Reproduction) -> dict[str, str]:
     """The curves, and the table of each finding; that of the columns holds Tables 2 and 3."""
-    return curves(found) | {
-        "tables.csv" if one.key == "columns" else f"audit-{one.key}.csv": one.table.csv(digits=9)
-        for one in findings(found)
-    }
+    audit = {f"audit-{one.key}.csv": one.table.csv(digits=9) for one in findings(found)}
+    audit["tables.csv"] = audit.pop("audit-columns.csv")
+    return curves(found) | audit
 
 
 REPORT = Report(
@@ -167,5 +125,5 @@ REPORT = Report(
         *("audit-posture.csv", "audit-period.csv", "audit-amplitude.csv", "audit-turning.csv"),
     ),
     figures="rr_paper.report.figures",
-    captions=CAPTIONS,
+    captions=captions("reproduction"),
 )

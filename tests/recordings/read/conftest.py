@@ -2,22 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
-Write = Callable[..., Path]
+from tests.written import Write, writer
 
 
 @pytest.fixture
 def write(tmp_path: Path) -> Write:
-    """Write a text or bytes to a file of a folder that the test owns."""
-
-    def to_file(content: str | bytes, name: str = "run.csv") -> Path:
-        path = tmp_path / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_bytes(content.encode() if isinstance(content, str) else content)
-        return path
-
-    return to_file
+    return writer(tmp_path, "run.csv")

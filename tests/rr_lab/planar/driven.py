@@ -5,7 +5,7 @@ import numpy as np
 from rr_lab.effects import rig_with
 from rr_lab.planar.drive import STEP, drive
 from rr_lab.rig import Rig
-from rr_lab.run import Outing
+from rr_lab.run import Conditions
 from rr_opt.model.robot import EffectUse
 
 
@@ -14,10 +14,10 @@ def rig(robot, *uses):
     return rig_with(robot, [EffectUse(name, values) for name, values in uses])
 
 
-def driven(what, gait, seconds=3.0, start="running", *uses, step=STEP, **outing):
+def driven(what, gait, seconds=3.0, start="running", *uses, step=STEP, **conditions):
     """The motion of a rig, or of a robot with effects in it."""
     made = what if isinstance(what, Rig) else rig(what, *uses)
-    return drive(made, gait, Outing(seconds, start, **outing), step)
+    return drive(made, gait, Conditions(seconds, start, **conditions), step)
 
 
 def channels(motion):

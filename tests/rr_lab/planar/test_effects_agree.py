@@ -5,10 +5,10 @@ from dataclasses import replace
 import pytest
 
 from rr_lab.case import Plan
+from rr_lab.effect_size import EffectSize
 from rr_lab.effects import EVERY, effect_named
 from rr_lab.engines import ENGINES
 from rr_lab.random_case import bare_case
-from rr_lab.visibility import Gauge
 from rr_opt.model.experiment import Noise
 from rr_opt.model.gait import SineGait
 from rr_opt.model.robot import EffectUse
@@ -23,6 +23,7 @@ USES = (
     ("servo_lag", {"tau": 0.03, "beta": 1e-3}, SMOOTH),
     ("servo_lag/second_order", {"tau": 0.03, "zeta": 0.7}, SMOOTH),
     ("servo_lag/p_loop", {"tau": 0.03, "zeta": 0.7}, SMOOTH),
+    ("servo_lag/delay", {"delay": 0.02}, SMOOTH),
     ("servo_rate_limit", {"rate_limit": 2.5}, SMOOTH),
     ("servo_backlash", {"width": 0.03}, 0.03),
     ("servo_backlash/frictional", {"width": 0.03, "joint_friction": 0.2}, SMOOTH),
@@ -61,13 +62,14 @@ USES = (
     ("compliant_platform", {"give": 0.3}, 0.05),  # its dampers are each engine's own
     ("wheel_fault", {"force": 0.02}, 0.05),
     ("loose_pin", {"clearance": 3e-3}, 0.5),  # a round hole and a square one; it rattles
+    ("dragged_cable", {"force": 8e-3}, SMOOTH),
     ("shifting_load", {"mass": 0.08, "stiffness": 5.0}, 0.03),
 )
 
 
 @pytest.fixture(scope="module")
 def gauges():
-    return {engine: Gauge.of(replace(CASE, engine=engine)) for engine in ENGINES}
+    return {engine: EffectSize.of(replace(CASE, engine=engine)) for engine in ENGINES}
 
 
 def test_none_is_left_out():

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from rr_paper.calibration.fit import Effort, Estimator, estimator
-from rr_paper.calibration.intervals import LEVEL, profiles, sample
 from rr_paper.calibration.likelihood import Data
+from rr_paper.calibration.posterior import sample
+from rr_paper.calibration.profiles import LEVEL, profiles
 
 SPREAD = np.linspace(0.3, 1.3, 9)
 DATA = Data(0.4 * SPREAD + 0.2, 0.25 * np.ones(9))

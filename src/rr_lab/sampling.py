@@ -7,8 +7,8 @@ import math
 import numpy as np
 
 from rr_lab.case import Case, Plan, motion_of
-from rr_lab.effects.hidden import HiddenEffect, Setting
-from rr_lab.visibility import COARSE
+from rr_lab.effect_size import COARSE
+from rr_lab.effects.hidden_effect import HiddenEffect, Setting
 from rr_opt.model.experiment import Noise
 from rr_opt.model.gait import SineGait
 from rr_opt.model.parameters import Uncertainty, parameters_of, with_parameters
@@ -18,7 +18,7 @@ from rr_opt.model.robot import EffectUse, Platform, Robot, Servo
 def draw_effect(rng: np.random.Generator, effect: HiddenEffect, case: Case) -> EffectUse:
     """An effect of about its typical size for a case that does not have it yet.
 
-    Its strength is made right later, by `at_visibility`.
+    `effect_size.scaled_to` corrects its strength later.
     """
 
     def passed() -> tuple[float, float]:
@@ -39,7 +39,7 @@ CLEARANCE = 0.25
 """The least S1 = c1 cos phi + c2 over c1 + c2: a distance from the singular posture."""
 
 SHORTEST = 0.65
-"""Of the longest run's length: people do not record all runs alike."""
+"""Of the longest run's length: people do not record runs of one length."""
 
 
 def draw_plans(rng: np.random.Generator, robot: Robot, seconds: float = 30.0) -> tuple[Plan, ...]:

@@ -2,7 +2,7 @@
 
 import pytest
 
-from rr_lab.trial.measures import breakdown, measures
+from rr_lab.trial.counts import COUNTS, breakdown
 from rr_lab.trial.statistics import Rate
 from tests.rr_lab_trial.made_up import case, said, single, truth
 
@@ -15,11 +15,11 @@ TRIAL = [
     case(NULL, said("consistent")),
     case(truth("null", spread=1.0), said("parameters", "m1")),
     case(NULL, None),
-    single(DRAG, RIGHT, seen=3),
-    single(DRAG, said("missing_physics", SLIP, groups=[(SLIP, DRAG)]), seen=8),
-    single(DRAG, said("missing_physics", DRAG, SLIP), seen=8),
-    single(DRAG, said("consistent"), seen=20),
-    single(DRAG, None, seen=20),
+    single(DRAG, RIGHT, size=3),
+    single(DRAG, said("missing_physics", SLIP, groups=[(SLIP, DRAG)]), size=8),
+    single(DRAG, said("missing_physics", DRAG, SLIP), size=8),
+    single(DRAG, said("consistent"), size=20),
+    single(DRAG, None, size=20),
     single(TILT, said("parameters", "m1"), remains=0.05),
     single(TILT, RIGHT, remains=0.05),
     case(PAIR, said("missing_physics", SLIP, DRAG)),
@@ -79,11 +79,14 @@ def test_breakdown():
 
 
 def test_every_count():
-    assert {one.name: (one.rate.count, one.rate.total) for one in measures(TRIAL)} == BY_HAND
+    assert {
+        one.name: (rate.count, rate.total)
+        for one, rate in ((one, one.rate(TRIAL)) for one in COUNTS)
+    } == BY_HAND
 
 
 def test_each_is_defined_in_a_sentence():
-    for one in measures(TRIAL):
+    for one in COUNTS:
         assert one.definition.startswith("Of ")
         assert one.definition.endswith(".")
 

@@ -64,14 +64,22 @@ class Setting:
     passed: Callable[[], tuple[float, float]]
 
 
-def as_drawn(_: Setting, values: Values) -> Values:
-    """Each parameter of about its typical size."""
-    return values
+Enter = Callable[[Rig, Values], None]
 
 
-def nothing_more(_robot: Robot, _values: Values) -> dict[str, float]:
-    """The catalogue has no other name for what the parameters say."""
-    return {}
+def adds(attribute: str, *names: str) -> Enter:
+    """Adds parameters to an attribute of the rig: one to a number, several to a list in order. One
+    that is not given adds nothing."""
+
+    def enter(rig: Rig, values: Values) -> None:
+        more = [values.get(name, 0.0) for name in names]
+        before = getattr(rig, attribute)
+        if isinstance(before, list):
+            setattr(rig, attribute, [one + by for one, by in zip(before, more, strict=True)])
+        else:
+            setattr(rig, attribute, before + values[names[0]])
+
+    return enter
 
 
 @dataclass(frozen=True)
@@ -84,21 +92,23 @@ class HiddenEffect:
     named        whether it is in the catalogue, so that a diagnosis can name it
     also         parameters that may be given, and are never drawn
     draw         (setting, each parameter of about its typical size, either sign where it may) ->
-                 values that belong together
+                 values that belong together; None: as they are
     derived      (nominal robot, values) -> parameters of the catalogue that follow from them
-    visible      the range of visibilities, sigma, in which it is what it is called; None: any
+    sizes        the range of effect sizes, sigma, in which it is what it is called; None: any
+    same_as      other names of the catalogue for the same motion
     """
 
     name: str
     what: str
     parameters: tuple[Parameter, ...]
-    enter: Callable[[Rig, Values], None]
+    enter: Enter
     realisation: str = ""
     named: bool = True
     also: tuple[Parameter, ...] = ()
-    draw: Callable[[Setting, Values], Values] = as_drawn
-    derived: Callable[[Robot, Values], Mapping[str, float]] = nothing_more
-    visible: tuple[float, float] | None = None
+    draw: Callable[[Setting, Values], Values] | None = None
+    derived: Callable[[Robot, Values], Mapping[str, float]] | None = None
+    sizes: tuple[float, float] | None = None
+    same_as: tuple[str, ...] = ()
 
     @property
     def key(self) -> str:
@@ -110,10 +120,6 @@ class HiddenEffect:
         """By name: every parameter that may be given."""
         return {each.name: each for each in (*self.parameters, *self.also)}
 
-    def parameter(self, name: str) -> Parameter:
-        """By name; raises KeyError."""
-        return self.accepted[name]
-
     def drawn(self, setting: Setting) -> Values:
         """Random values of about their typical size."""
         rng, values = setting.rng, {}
@@ -121,4 +127,4 @@ class HiddenEffect:
             size = each.typical * math.exp(rng.uniform(-0.7, 0.7))
             sign = rng.choice([-1, 1]) if each.signed else 1
             values[each.name] = float(sign * size)
-        return self.draw(setting, values)
+        return self.draw(setting, values) if self.draw else values

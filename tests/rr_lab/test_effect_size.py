@@ -5,9 +5,9 @@ from dataclasses import replace
 
 import pytest
 
+from rr_lab.effect_size import EffectSize, scaled_to, scaled_use
 from rr_lab.engines import record
 from rr_lab.random_case import random_case
-from rr_lab.visibility import Gauge, at_visibility, scaled_use
 from rr_opt.model.experiment import Noise
 from rr_opt.model.robot import EffectUse
 from tests.rr_lab.reduced import fitted
@@ -25,13 +25,13 @@ def test_meets_the_target(power):
     def visibility(tried):
         return 1000 * tried.effects[0].values["offset"] ** power
 
-    found, reached = at_visibility(case, 7.0, visibility)
+    found, reached = scaled_to(case, 7.0, visibility)
     assert reached == pytest.approx(7.0, rel=0.11)
     assert visibility(found) == reached
 
 
 def test_stops_at_what_is_believable():
-    found, reached = at_visibility(case_with("servo_lag", tau=0.1), 50.0, lambda _: 2.0)
+    found, reached = scaled_to(case_with("servo_lag", tau=0.1), 50.0, lambda _: 2.0)
     assert found.effects[0].values["tau"] <= 0.3
     assert reached == 2.0
 
@@ -59,11 +59,11 @@ def test_own_gauge_agrees_with_the_reduced_model():
     # phi is its command, and thus a fourth channel without deviation.
     expected = fitted(case.nominal, plan.gait, seen).rms * math.sqrt(3 / 4)
     assert expected > 0.5
-    assert Gauge.of(case, 1)(case) == pytest.approx(expected, rel=0.06)
+    assert EffectSize.of(case, 1)(case) == pytest.approx(expected, rel=0.06)
 
 
 def test_own_gauge_sees_no_initial_state():
     case = case_with("servo_lag", tau=0.1)
     moved = replace(case.plans[0], pose=(1.0, -2.0, 3.0))
-    gauge = Gauge.of(replace(case, plans=(moved,)), 1)
+    gauge = EffectSize.of(replace(case, plans=(moved,)), 1)
     assert gauge(replace(case, effects=())) < 1e-6

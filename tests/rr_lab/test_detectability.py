@@ -6,16 +6,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from rr_lab.detectability import Detectability, moved_robot
+from rr_lab.effect_size import EffectSize
 from rr_lab.random_case import bare_case
-from rr_lab.trial.refitted import Refit, moved_robot
-from rr_lab.visibility import Gauge
 from rr_opt.model.parameters import with_parameters
 from rr_opt.model.robot import EffectUse
 
 
 @pytest.fixture(scope="module")
 def case():
-    """Three short runs of a robot by lot, two of them to fit."""
+    """Three short runs of a robot drawn at random, two of them to fit."""
     drawn = bare_case(3, 4.0)
     uses = ("fit", "fit", "holdout")
     plans = tuple(
@@ -27,29 +27,29 @@ def case():
 
 @pytest.fixture(scope="module")
 def refit(case):
-    return Refit.of(case)
+    return Detectability.of(case)
 
 
 def test_nothing_leaves_nothing(case, refit):
-    assert refit.left(case) < 1e-6
+    assert refit.remains(case) < 1e-6
 
 
 def test_values_within_what_is_known_leave_nothing(case, refit):
     moved = np.linspace(-0.4, 0.4, len(case.uncertainty))
     other = replace(case, robot=moved_robot(case, moved))
-    seen = Gauge.of(case)(other)
+    seen = EffectSize.of(case)(other)
     assert seen > 0.2
-    assert refit.left(other) < 0.02 * seen
+    assert refit.remains(other) < 0.02 * seen
 
 
 def test_a_value_far_outside_is_not_explained_away(case, refit):
     other = replace(case, robot=with_parameters(case.robot, {"c1": 1.3 * case.robot.platform1.c}))
-    assert refit.left(other) > 1
+    assert refit.remains(other) > 1
 
 
 def test_an_effect_of_another_kind_stays(case, refit):
     tilted = replace(case, effects=(EffectUse("floor_tilt", {"tilt_x": 5e-3, "tilt_y": 0.0}),))
-    assert refit.left(tilted) > 0.3 * Gauge.of(case)(tilted)
+    assert refit.remains(tilted) > 0.3 * EffectSize.of(case)(tilted)
 
 
 @pytest.mark.parametrize(
@@ -64,11 +64,11 @@ def test_an_effect_of_another_kind_stays(case, refit):
 def test_the_step_drops_out(case, refit, use, monkeypatch):
     """What is left is the same with a fifth of the step, and a tenth for the derivatives."""
     hidden = replace(case, effects=(use,))
-    coarse = refit.left(hidden)
+    coarse = refit.remains(hidden)
     assert coarse > 0.5
     for name in ("STEP", "DIRECTIONS"):
-        monkeypatch.setattr(f"rr_lab.trial.refitted.{name}", 1e-3)
-    assert Refit.of(case).left(hidden) == pytest.approx(coarse, rel=0.03)
+        monkeypatch.setattr(f"rr_lab.detectability.{name}", 1e-3)
+    assert Detectability.of(case).remains(hidden) == pytest.approx(coarse, rel=0.03)
 
 
 def test_the_finer_step_of_parts_that_strike_drops_out(case):
@@ -76,7 +76,7 @@ def test_the_finer_step_of_parts_that_strike_drops_out(case):
     than the nominal robot."""
     planar = replace(case, engine="planar")
     hidden = replace(planar, effects=(EffectUse("loose_pin", {"clearance": 1e-9}),))
-    assert Refit.of(planar).left(hidden) < 3e-3
+    assert Detectability.of(planar).remains(hidden) < 3e-3
 
 
 def test_a_friction_of_which_nothing_is_known_may_move_by_its_factor(case):

@@ -1,0 +1,202 @@
+"""The outcome of a blind trial: README.md and page, proof.json, cases.csv, and the figure."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from rr_lab.report.case import hidden_text, page_of, said_text, size_text
+from rr_lab.report.proof_record import cases_csv, proof_record
+from rr_lab.trial import statistics
+from rr_lab.trial.counts import COUNTS, TEXTS, TITLES, breakdown, by_engine
+from rr_lab.trial.outcome import Case
+from rr_lab.trial.statistics import SIZES, Rate
+from rr_lab.trial.trial import OpenedTrial, tidy
+from rr_opt.documents.document import (
+    Block,
+    Document,
+    Fact,
+    Facts,
+    Figure,
+    Gallery,
+    Link,
+    Section,
+    Table,
+    table,
+)
+from rr_opt.documents.report import Progress, Report, quiet
+from rr_opt.formatting import number
+from rr_opt.results.result import Result
+
+_SAYS = TEXTS["tables"]
+SHARE = "share, 95 % interval"
+_KEY = ("false_claims", "single", "pair_both", "parameters", "outside", "no_answer")
+
+
+@dataclass(frozen=True, repr=False)
+class Proof(Result):
+    """The outcome of a trial, in its folder."""
+
+    REPORT = "rr_lab.report.proof"
+
+    opened: OpenedTrial
+
+    def save(
+        self, path: str | Path, *, figures: bool = True, progress: Progress = quiet
+    ) -> list[Path]:
+        """Write the outcome to the trial's folder, and remove what the seed makes again."""
+        written = super().save(path, figures=figures, progress=progress)
+        tidy(Path(path), [case.id for case in self.opened.cases if not case.missed])
+        return written
+
+
+def headline(opened: OpenedTrial) -> str:
+    """The two numbers that matter most."""
+    rates = {one.name: one.rate(opened.cases) for one in COUNTS}
+    words = {"single": "single effects named", "false_claims": "nulls with a false claim"}
+    parts = [f"{_of(rates[name])} {text}" for name, text in words.items() if rates[name].total]
+    return "Blind trial: " + (", ".join(parts) or f"{len(opened.misses)} misses")
+
+
+def proof_document(
+    opened: OpenedTrial, figures: Sequence[Figure] = (), *, linked: bool = False
+) -> Document:
+    """The whole report; linked: the misses lead to their reports, which lie next to the page."""
+    cases = opened.cases
+    rates = {one: one.rate(cases) for one in COUNTS}
+    every = {one: rate for one, rate in rates.items() if rate.total}
+    key = tuple(Fact(one.title, _of(rate)) for one, rate in every.items() if one.name in _KEY)
+    counts = [(one.title, *_cells(rate), one.definition) for one, rate in every.items()]
+    broken_down = [
+        (what, name, *_cells(rate))
+        for what, by_name in breakdown(cases).items()
+        for name, rate in by_name.items()
+    ]
+    covered = statistics.coverage(statistics.intervals(cases))
+    sections = (
+        Section("", (Facts(key, key=True),)),
+        Section("", (Gallery(tuple(figures), wide=True),)),
+        Section("Counts", (table(("what", "count", SHARE, "what is counted"), counts),), False),
+        _section("By engine", TEXTS["engines"], _by_engine(cases)),
+        _section("By effect, realisation and disturbance", _SAYS["breakdown"],
+                 table(("by", "what", "right", SHARE), broken_down)),
+        _section("Coverage of the 95 % intervals", _SAYS["coverage"],
+                 table(("quantity", "count", SHARE),
+                       [(name, *_cells(rate)) for name, rate in covered.items()])),
+        _section("Held-out error, medians", _SAYS["held_out"], _held_out(cases)),
+        _section("Remainder", _SAYS["remainder"], _remainders(cases)),
+        _section("p-values where nothing is hidden", _SAYS["p_values"], _p_values(cases)),
+        _section("Time", _SAYS["time"], _times(cases)),
+        Section("Misses",
+                (TEXTS["again"], _misses(opened, linked)) if opened.misses else ("None.",)),
+        Section("Cases that the laboratory could not make",
+                (Facts(tuple(Fact(case, why) for case, why in opened.failed.items())),)),
+    )  # fmt: skip
+    lead = f"{len(cases)} cases. {TEXTS['isolation']}"
+    lead += f" {TEXTS['changed']}" if opened.changed else ""
+    footer = (f"rr-opt {opened.version}", f"seed `{opened.seed}`", f"code SHA-256 `{opened.code}`")
+    return Document("", "blind trial of the diagnosis", headline(opened), lead, sections,
+                    footer=footer)  # fmt: skip
+
+
+def _section(title: str, definition: str, numbers: Table) -> Section:
+    blocks: tuple[Block, ...] = (definition, numbers) if numbers else ()
+    return Section(title, blocks, brief=False)
+
+
+def _of(one: Rate) -> str:
+    """`17 of 20`."""
+    return f"{one.count} of {one.total}" if one.total else "no case"
+
+
+def _cells(one: Rate) -> tuple[str, str]:
+    """`17 of 20`, and `85 % (62 to 97)`."""
+    if one.fraction is None:
+        return _of(one), "–"
+    low, high = one.interval
+    return _of(one), f"{100 * one.fraction:.0f} % ({100 * low:.0f} to {100 * high:.0f})"
+
+
+def _numbers(values: Iterable[float | None]) -> list[str]:
+    return ["–" if value is None else number(value, 3) for value in values]
+
+
+def _by_engine(cases: Sequence[Case]) -> Table:
+    """A row for each count with a column for each engine; counts without cases are left out."""
+    engines = by_engine(cases)
+    return table(
+        ("what", *(word for name in engines for word in (name, "share"))),
+        [
+            (title, *(cell for rates in engines.values() for cell in _cells(rates[name])))
+            for name, title in TITLES.items()
+            if any(rates[name].total for rates in engines.values())
+        ],
+    )
+
+
+def _held_out(cases: Sequence[Case]) -> Table:
+    rows = [
+        (kind, str(row["after"]["count"]),
+         *_numbers([*(row[when]["median"] for when in row), row["after"]["quantile90"]]))
+        for kind, row in statistics.held_out(cases).items()
+    ]  # fmt: skip
+    head = ("kind", "cases", "nominal", "re-fitted", "corrected", "corrected, 90 % below")
+    return table(head, rows)
+
+
+def _remainders(cases: Sequence[Case]) -> Table:
+    rows = [
+        (kind, *(str(row[size]) for size in SIZES), *_numbers([row["share"]]))
+        for kind, row in statistics.remainders(cases).items()
+    ]
+    return table(("kind", *SIZES, "median share"), rows)
+
+
+def _p_values(cases: Sequence[Case]) -> Table:
+    rows = [
+        (test, str(one["count"]), number(one["distance"], 2), number(one["chance"], 2),
+         str(one["below_005"]))
+        for test, one in statistics.uniformity(cases).items()
+    ]  # fmt: skip
+    return table(("test", "nulls", "distance", "p-value", "below 0.05"), rows)
+
+
+def _times(cases: Sequence[Case]) -> Table:
+    rows = [
+        (f"{name}, s", *_numbers(one[at] for at in ("median", "quantile90", "largest")))
+        for name, one in statistics.times(cases).items()
+    ]
+    return table(("", "median", "90 % below", "most"), rows)
+
+
+def _misses(opened: OpenedTrial, linked: bool) -> Table:
+    head = ("case", "outcome", "engine", "hidden", "size", "said")
+    return table(
+        head,
+        [
+            (Link(case.id, page_of(case)) if linked else case.id, case.outcome, case.truth.engine,
+             hidden_text(case), size_text(case), said_text(case))
+            for case in opened.misses
+        ],
+    )  # fmt: skip
+
+
+class _Report(Report):
+    def page_of(self, result: Proof, document: Document) -> Document:
+        """On the page alone the misses lead to their reports: these are not published."""
+        return proof_document(result.opened, document.figures, linked=True)
+
+
+_MATRIX = "A matrix of counts: what was hidden in rows, what the diagnosis named in columns"
+
+REPORT = _Report(
+    lambda proof: proof_record(proof.opened),
+    lambda proof, figures: proof_document(proof.opened, figures),
+    "proof.json",
+    "README.md",
+    tables=lambda proof: {"cases.csv": cases_csv(proof.opened)},
+    others=("cases.csv",),
+    figures="rr_lab.report.confusion_figure",
+    captions={"confusion": ("Diagnosis against truth", _MATRIX, _SAYS["confusion"])},
+)

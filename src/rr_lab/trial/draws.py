@@ -1,0 +1,210 @@
+"""Random draws of a trial: what each case is, from the trial's seed and its number.
+
+The seed of a published trial is the hash of the commit that it runs on. Nobody can choose it, as it
+changes with every change of the code that is tried.
+
+Cases come in pairs of one kind, one driven by each engine, and kinds in blocks of fixed
+composition, shuffled. A case depends on nothing but seed, kinds and its own number: a trial can be
+extended, and one case can be made again by itself.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import subprocess
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from rr_lab.case import stream
+from rr_lab.disturbances import DISTURBANCES, disturbance_named
+from rr_lab.effects import OUTSIDE_NAMES, REALISATIONS, effect_named
+from rr_lab.engines import ENGINES, Engine
+from rr_lab.random_case import SINGLES, read_kind
+from rr_opt.outcome import InputError
+
+BLOCK = {"null": 3, "single": 7, "pair": 2, "parameters": 2, "outside": 3, "disturbed": 3}
+"""Pairs of cases of each kind in a block of forty cases."""
+
+KINDS = tuple(BLOCK)
+
+STRENGTHS = {"faint": (2.0, 5.0), "medium": (5.0, 15.0), "strong": (15.0, 60.0)}
+"""Effect sizes, sigma; drawn uniformly in their logarithm."""
+
+CODE = tuple(Path(__file__).parents[2] / package for package in ("rr_opt", "rr_lab"))
+"""What is tried, and what tries it."""
+
+_BITS = 48
+
+
+@dataclass(frozen=True)
+class Draw:
+    """What a case is made from.
+
+    kind    as `random_case` takes it: null, parameters, pair, single:EFFECT/REALISATION, ...
+    target  effect size of a single effect, sigma; None: drawn by the laboratory
+    spread  0: the nominal values are true; 1: they are drawn within their uncertainties
+    seed    the case's own
+    engine  what drives it
+    disturbance  of its recordings, by name
+    """
+
+    number: int
+    kind: str
+    target: float | None
+    spread: float
+    seed: int
+    engine: Engine = "mujoco"
+    disturbance: str = ""
+
+    @property
+    def id(self) -> str:
+        """Shows the number, and nothing else."""
+        return f"{self.number:03d}"
+
+
+def draw_case(
+    seed: str, number: int, kinds: tuple[str, ...] = KINDS, engines: tuple[Engine, ...] = ENGINES
+) -> Draw:
+    """Case 1, 2, ... of a trial of these kinds and engines."""
+    entries = [kind for kind in _ordered(kinds) for _ in range(BLOCK[_head(kind)])]
+    pair, second = divmod(number - 1, 2)
+    block, place = divmod(pair, len(entries))
+    order = [entries[k] for k in _stream(seed, "order", block).permutation(len(entries))]
+    kind = order[place]
+    # How many cases of the kind came before: items, engines and strengths take turns by it.
+    turn = 2 * (block * entries.count(kind) + order[:place].count(kind)) + second
+    items = _items(kind)
+    cycle, at = divmod(turn, len(items))
+    # Two cycles in a row have one order, so that the second gives each item the other engine.
+    rng = _stream(seed, "items", kind, cycle // 2)
+    item, disturbance = items[int(rng.permutation(len(items))[at])]
+    engine: Engine = engines[(int(rng.integers(len(engines))) + at + cycle) % len(engines)]
+    own, target = case_seed(seed, number), None
+    if item.startswith("single"):
+        low, high = list(STRENGTHS.values())[turn % len(STRENGTHS)]
+        target = float(np.exp(stream(own, "target").uniform(np.log(low), np.log(high))))
+    # The laboratory changes values of the nominal robot: the others stay true.
+    spread = 0.0 if item == "parameters" else float(turn // 2 % 2)
+    return Draw(number, item, target, spread, own, engine, disturbance)
+
+
+@dataclass(frozen=True)
+class Basis:
+    """What the cases of a trial are drawn from."""
+
+    seed: str
+    kinds: tuple[str, ...]
+    engines: tuple[Engine, ...]
+
+    def draw(self, number: int) -> Draw:
+        """Case 1, 2, ..."""
+        return draw_case(self.seed, number, self.kinds, self.engines)
+
+
+def case_seed(seed: str, number: int) -> int:
+    """The seed of a case: the first 48 bits of the SHA-256 of `SEED/NUMBER`."""
+    digest = hashlib.sha256(f"{seed}/{number}".encode()).digest()
+    return int.from_bytes(digest[: _BITS // 8])
+
+
+def _stream(seed: str, *purpose: object) -> np.random.Generator:
+    return stream(case_seed(seed, 0), *purpose)
+
+
+def _items(kind: str) -> tuple[tuple[str, str], ...]:
+    """Everything that a kind stands for: kind of case and disturbance."""
+    head, _, name = kind.partition(":")
+    if head == "disturbed":
+        names = (name,) if name else tuple(DISTURBANCES)
+        return tuple((hidden, each) for each in names for hidden in ("single", "null"))
+    if head not in ("single", "outside"):
+        return ((kind, ""),)
+    names = (name,) if name else SINGLES if head == "single" else OUTSIDE_NAMES
+    effects = [each for one in names for each in REALISATIONS.get(one, (effect_named(one),))]
+    return tuple((f"{head}:{each.key}", "") for each in effects)
+
+
+def _head(kind: str) -> str:
+    return kind.partition(":")[0]
+
+
+def _ordered(kinds: tuple[str, ...]) -> tuple[str, ...]:
+    """Each once, so that the order in which they are given changes nothing."""
+    return tuple(sorted(set(kinds), key=lambda kind: (KINDS.index(_head(kind)), kind)))
+
+
+def read_kinds(text: str) -> tuple[str, ...]:
+    """Names of kinds from `null, single`; `single:EFFECT`, `pair:EFFECT+EFFECT`, `outside:EFFECT`
+    and `disturbed:DISTURBANCE` are kinds of their own. Raises InputError for an unknown one."""
+    kinds = tuple(part.strip() for part in text.split(",") if part.strip())
+    if not kinds or any(_head(kind) not in BLOCK for kind in kinds):
+        raise InputError(
+            f"--kinds: Read {text!r}. Expected some of {', '.join(BLOCK)}, separated by commas. "
+            "Correct it, or leave --kinds out for all."
+        )
+    for kind in kinds:
+        head, _, name = kind.partition(":")
+        if head == "disturbed":
+            disturbance_named(name)
+        else:
+            read_kind(kind)
+    return _ordered(kinds)
+
+
+def read_seed(text: str) -> str:
+    """A seed of the user's own, hexadecimal digits. Raises InputError for anything else."""
+    word = text.strip().lower().removeprefix("0x")
+    if not word or set(word) - set("0123456789abcdef"):
+        raise InputError(
+            f"--seed: Read {text!r}. Expected hexadecimal digits such as 1f3a, or `commit` for the "
+            "hash of the commit. Correct it."
+        )
+    return word
+
+
+def seed_of_commit(source: Path, results: Path) -> str:
+    """The hash of the commit that the code in `source` is at, 40 hexadecimal digits.
+
+    results: a folder whose changes do not count. Raises InputError if there is no commit, or files
+    differ from it.
+    """
+    try:
+        commit = _git(source, "rev-parse", "HEAD").strip()
+        top = Path(_git(source, "rev-parse", "--show-toplevel").strip())
+        own = []
+        if results.resolve().is_relative_to(top):
+            own = [f":(exclude,top){results.resolve().relative_to(top)}"]
+        changed = _git(top, "status", "--porcelain", "--", ".", *own).splitlines()
+    except (OSError, subprocess.CalledProcessError):
+        raise InputError(
+            f"The code in {source} is in no git repository. Expected a commit, whose hash is the "
+            "seed. Give a seed of your own with --seed."
+        ) from None
+    if changed:
+        more = f" and {len(changed) - 1} more" if len(changed) > 1 else ""
+        raise InputError(
+            f"Read changes that are in no commit: {changed[0].strip()}{more}. Expected the code as "
+            "it was committed, since the commit's hash is the seed. Commit the changes, or give a "
+            "seed of your own with --seed."
+        )
+    return commit
+
+
+def fingerprint(*sources: Path) -> str:
+    """SHA-256 over the names and contents of all files of packages, by default of the diagnosis and
+    the laboratory: C and YAML decide what is computed too. What Python compiled is left out."""
+    sums = hashlib.sha256()
+    for source in sources or CODE:
+        paths = (path for path in source.rglob("*") if path.is_file())
+        for path in sorted(path for path in paths if "__pycache__" not in path.parts):
+            digest = hashlib.sha256(path.read_bytes()).hexdigest()
+            sums.update(f"{path.relative_to(source.parent).as_posix()} {digest}\n".encode())
+    return sums.hexdigest()
+
+
+def _git(folder: Path, *words: str) -> str:
+    return subprocess.run(
+        ["git", "-C", str(folder), *words], capture_output=True, text=True, check=True
+    ).stdout

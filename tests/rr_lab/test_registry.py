@@ -1,0 +1,33 @@
+"""The table of hidden effects and the functions that it names fit together."""
+
+import tomllib
+from pathlib import Path
+
+import pytest
+
+import rr_lab.effects
+from rr_lab.effects import EVERY, actuation, outside, surroundings, wheels
+from rr_lab.rig import Rig
+from tests.rr_lab.reduced import LONG
+
+TABLE = tomllib.loads(Path(rr_lab.effects.__file__).with_name("effects.toml").read_text("utf-8"))
+
+
+def test_every_function_is_named_in_the_table():
+    there = [f.__name__.strip("_") for m in (actuation, outside, surroundings, wheels)
+             for f in m.FUNCTIONS]  # fmt: skip
+    named = {row[key] for row in TABLE["effect"] for key in ("enter", "draw", "derived")
+             if key in row}  # fmt: skip
+    assert set(there) == named
+    assert len(there) == len(set(there))
+
+
+def test_no_effect_stands_twice():
+    assert len({effect.key for effect in EVERY}) == len(EVERY)
+
+
+@pytest.mark.parametrize("effect", EVERY, ids=lambda effect: effect.key)
+def test_every_effect_changes_the_rig(effect):
+    rig, plain = Rig(LONG), Rig(LONG)
+    effect.enter(rig, {each.name: each.typical for each in effect.parameters})
+    assert rig != plain
