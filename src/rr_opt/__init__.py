@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from rr_opt.api.fastest import turn as turn
     from rr_opt.api.inspect import inspect as inspect
     from rr_opt.api.lint import lint as lint
+    from rr_opt.api.lint import schema as schema
     from rr_opt.api.load import InputWarning as InputWarning
     from rr_opt.api.load import RobotWithGait as RobotWithGait
     from rr_opt.api.load import load as load
@@ -49,7 +50,6 @@ if TYPE_CHECKING:
     from rr_opt.api.survey import sweep as sweep
     from rr_opt.api.survey import turn_chart as turn_chart
     from rr_opt.api.template import init as init
-    from rr_opt.files.schemas import schema as schema
     from rr_opt.model.experiment import Experiment as Experiment
     from rr_opt.model.experiment import Noise as Noise
     from rr_opt.model.experiment import Recording as Recording
@@ -86,13 +86,12 @@ _HOMES = {
     "api.drive": "circle export simulate",
     "api.fastest": "maximize_speed shapes turn",
     "api.inspect": "inspect",
-    "api.lint": "lint",
+    "api.lint": "lint schema",
     "api.load": "InputWarning RobotWithGait load load_experiment load_gait load_robot prototype "
     "shipped",
     "api.study": "load_study study",
     "api.survey": "sweep turn_chart",
     "api.template": "init",
-    "files.schemas": "schema",
     "model.experiment": "Experiment Noise Recording Run",
     "model.gait": "FourierGait FreeGait Gait SineGait",
     "model.problem": "GaitBounds Limits Problem RatioChoice",

@@ -29,6 +29,7 @@ class LinearModel:
 
     channels = ("y1", "y2")
     segment_length = correlation_time = 1.0
+    horizon, bandwidth = float("inf"), 2.0
     form_error = 0.0
     catalogue: Mapping[str, EffectInfo] = MappingProxyType({})
     parameters = (

@@ -9,18 +9,21 @@ from types import MappingProxyType
 import numpy as np
 
 from rr_opt.api.identity import identity
+from rr_opt.api.load import load_experiment
+from rr_opt.api.machine import diagnose_machine
 from rr_opt.documents.report import Progress, quiet
 from rr_opt.model.experiment import Experiment, Run
+from rr_opt.model.machine import MachineExperiment
 from rr_opt.outcome import NotConvergedError
 from rr_opt.recordings.clock_fit import at_commanded_rate
-from rr_opt.recordings.experiment import read_experiment
 from rr_opt.recordings.usable import usable
 from rr_opt.results.diagnosis import ExplainedExperiment
+from rr_opt.results.machine_diagnosis import ExplainedMachine
 
 
 def diagnose(
-    experiment: Experiment | str | Path, *, progress: Progress = quiet
-) -> ExplainedExperiment:
+    experiment: Experiment | MachineExperiment | str | Path, *, progress: Progress = quiet
+) -> ExplainedExperiment | ExplainedMachine:
     """What the simulation of a robot leaves out, how strong it is, and how sure that is.
 
     experiment  or its folder
@@ -28,8 +31,10 @@ def diagnose(
     Raises InputError for an experiment that cannot be used, with all reasons, and
     NotConvergedError if no simulation comes near the recordings.
     """
-    if not isinstance(experiment, Experiment):
-        experiment = read_experiment(experiment)
+    if isinstance(experiment, str | Path):
+        experiment = load_experiment(experiment)
+    if isinstance(experiment, MachineExperiment):
+        return diagnose_machine(experiment, progress)
     name, sha256 = identity(experiment)
     trial, left_out = usable(_cleaned(experiment))
     trial = at_commanded_rate(trial)

@@ -23,6 +23,7 @@ from rr_opt.messages import shown
 from rr_opt.model.ballast import inertia_ratio, load_count, with_inertia_ratio, with_load_count
 from rr_opt.model.experiment import Experiment
 from rr_opt.model.gait import Gait, SineGait
+from rr_opt.model.machine import MachineExperiment
 from rr_opt.model.problem import GaitBounds, Problem, RatioChoice
 from rr_opt.model.robot import Robot
 from rr_opt.outcome import InputError
@@ -51,14 +52,16 @@ def load_robot(path: PathLike) -> Robot:
     return read_robot(Path(path))
 
 
-def load_experiment(path: PathLike) -> Experiment:
+def load_experiment(path: PathLike) -> Experiment | MachineExperiment:
     """The experiment of a folder with experiment.yaml and recordings, which are cleaned.
 
     Raises InputError with everything that is wrong in the file and in every recording.
     """
+    from rr_opt.api.machine import load_machine, machine_of
     from rr_opt.recordings.experiment import read_experiment
 
-    return read_experiment(path)
+    machine = machine_of(path)
+    return load_machine(path, machine) if machine else read_experiment(path)
 
 
 def prototype() -> Robot:

@@ -12,6 +12,9 @@ import rr_opt as rr
 
 def schema(
     kind: Annotated[str, typer.Argument(help="Which file: robot, problem, study or experiment.")],
+    machine: Annotated[
+        str, typer.Option(help="Of an experiment: racer, pendulum, servo or car.")
+    ] = "racer",
 ) -> None:
     """Print the JSON Schema of an input file, with which editors complete and check it."""
-    typer.echo(json.dumps(rr.schema(kind), indent=2))
+    typer.echo(json.dumps(rr.schema(kind, machine), indent=2))

@@ -60,6 +60,12 @@ def robot_yaml(robot: Robot, title: str) -> str:
     )
 
 
+def yaml_text(content: Mapping[str, Any], title: str) -> str:
+    """Plain data as YAML under a comment."""
+    text = yaml.safe_dump(dict(content), sort_keys=False, default_flow_style=None)
+    return f"# {title}\n{text}"
+
+
 def _nested(flat: dict[str, str]) -> dict[str, Any]:
     """`{"servo.rate_limit": text}` as mappings in mappings."""
     nested: dict[str, Any] = {}

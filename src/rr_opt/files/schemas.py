@@ -31,7 +31,12 @@ def schema(kind: str) -> dict[str, Any]:
     """
     if kind not in _MODELS:
         raise InputError(unknown_word(kind, get_args(FileKind), "kind of file"))
-    generated = _MODELS[kind].model_json_schema()
+    return schema_of(_MODELS[kind], kind)
+
+
+def schema_of(model: type[BaseModel], kind: str) -> dict[str, Any]:
+    """The JSON Schema of a kind of file with these keys."""
+    generated = model.model_json_schema()
     return {"$schema": _DIALECT, "title": f"rr-opt {kind} file", **_tidied(generated)}
 
 

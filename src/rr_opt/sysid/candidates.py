@@ -162,14 +162,22 @@ def _converted(
 
 
 def evaluated(candidate: Fit, runs: Iterable[int], values: Mapping[str, float]) -> Fit:
-    """Runs predicted whole with these values: their initial states alone are fitted."""
+    """Runs predicted whole, or in windows as long as the machine can be predicted, with these
+    values: initial states alone are fitted."""
     problem = candidate.problem
-    cut = segments({run: problem.model.runs[run] for run in runs})
-    single = replace(problem, quantities=(), segments=cut, values=dict(values), robust=False)
-    begun = {s.run: state for s, state in candidate.states.items() if s.first == 0}
+    cut = segments({run: problem.model.runs[run] for run in runs}, problem.model.horizon)
+    single = replace(
+        problem,
+        quantities=(),
+        segments=cut,
+        values=dict(values),
+        robust=False,
+        q=SETTINGS.most_process_noise,
+    )
+    begun = {(s.run, s.first): state for s, state in candidate.states.items()}
     states = {
-        one: begun[one.run]
-        if one.run in begun
+        one: begun[one.run, one.first]
+        if (one.run, one.first) in begun
         else problem.model.initial_state(one, problem.effects, values)
         for one in cut
     }

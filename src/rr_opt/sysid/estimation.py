@@ -551,11 +551,18 @@ def initial(
 
 
 def whole_runs(fit: Fit) -> Fit:
-    """The same quantities by least squares over whole runs: what the model predicts unaided."""
+    """The same quantities by least squares over whole runs, or windows as long as the machine can
+    be predicted: what the model predicts unaided."""
     problem = fit.problem
-    cut = segments({r: problem.model.runs[r] for r in problem.by_run})
-    states = {one: fit.states[problem.by_run[one.run][0]] for one in cut}
-    single = replace(problem, segments=cut, robust=False)
+    cut = segments({r: problem.model.runs[r] for r in problem.by_run}, problem.model.horizon)
+    begun = {(s.run, s.first): state for s, state in fit.states.items()}
+    states = {
+        one: begun[one.run, one.first]
+        if (one.run, one.first) in begun
+        else problem.model.initial_state(one, problem.effects, fit.values)
+        for one in cut
+    }
+    single = replace(problem, segments=cut, robust=False, q=SETTINGS.most_process_noise)
     # What is left has to be known to a fraction of what would be negligible.
     enough = 0.1 * SETTINGS.negligible**2 * fit.samples
     return solve(single, fit.values, states, tolerance=enough)

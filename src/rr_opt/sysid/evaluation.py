@@ -17,7 +17,8 @@ from rr_opt.sysid.model import Request
 
 @dataclass(frozen=True)
 class Evaluation:
-    """Recordings simulated whole with given values; their initial states alone are fitted."""
+    """Recordings simulated with given values, whole or in windows as long as the machine can be
+    predicted; initial states alone are fitted."""
 
     values: Mapping[str, float]
     misfits: tuple[Misfit, ...]
@@ -57,8 +58,14 @@ def evaluation(fit: Fit, values: Mapping[str, float]) -> Evaluation:
 
 def _misfit(fit: Fit, run: int) -> Misfit:
     model, data = fit.problem.model, fit.problem.model.runs[run]
-    (segment,) = fit.problem.by_run[run]
-    predicted = model.predicted(Request(segment, fit.values, fit.states[segment]), fit.effects)
+    predicted = np.concatenate(
+        [
+            model.predicted(Request(one, fit.values, fit.states[one]), fit.effects)[
+                : one.until - one.first
+            ]
+            for one in fit.problem.by_run[run]
+        ]
+    )
     r = (predicted - data.values) / data.sigma
     channels = {
         name: float(np.sqrt(np.nanmean(r[:, k] ** 2)))

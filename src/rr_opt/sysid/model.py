@@ -185,10 +185,14 @@ class Model(Protocol):
     channels        what is recorded, in order
     runs            recorded
     segment_length  s, over which the machine is simulated as well as it is known
+    horizon         s, over which its simulation says anything: recordings are predicted in windows
+                    of this length, each with its own initial state; inf: whole
+    bandwidth       Hz; what moves slower may be the machine, what is faster is noise
     correlation_time  s, after which errors of the model are independent
     parameters      of the nominal model, with what is known of each
     catalogue       the effects it knows, by name
-    form_error      RMS in sigma by which machines of this kind differ from any model of them
+    form_error      RMS in sigma by which machines of this kind differ from any model of them, and
+                    by which noise of their inputs moves them
     inputs          channels by which an unknown input may enter, and each input in words
     """
 
@@ -198,6 +202,10 @@ class Model(Protocol):
     def runs(self) -> Sequence[Data]: ...  # noqa: D102
     @property
     def segment_length(self) -> float: ...  # noqa: D102
+    @property
+    def horizon(self) -> float: ...  # noqa: D102
+    @property
+    def bandwidth(self) -> float: ...  # noqa: D102
     @property
     def correlation_time(self) -> float: ...  # noqa: D102
     @property

@@ -59,30 +59,34 @@ def noise_in(fit: Fit) -> list[Noise]:
         for run, parts in problem.by_run.items()
     }
     steps = [float(np.median(np.diff(problem.model.runs[run].t))) for run in runs]
+    slow = problem.model.bandwidth
     return [
-        _levelled([left[:, k] for left in runs.values()], steps)
+        _levelled([left[:, k] for left in runs.values()], steps, slow)
         for k in range(len(problem.model.channels))
     ]
 
 
-def _levelled(residuals: Sequence[Array], steps: Sequence[float]) -> Noise:
+def _levelled(residuals: Sequence[Array], steps: Sequence[float], slow: float) -> Noise:
     """The noise in residuals, at their own level where the spectrum may be that far off."""
-    noise = noise_of(residuals, steps)
+    noise = noise_of(residuals, steps, slow)
     every = np.concatenate(residuals)
     rms = float(np.sqrt(np.mean(every[every != 0] ** 2))) if every.any() else noise.level
     far = 1 + SETTINGS.misstated
     return replace(noise, level=min(max(rms, noise.level / far), noise.level * far))
 
 
-def noise_of(residuals: Sequence[Array], steps: Sequence[float]) -> Noise:
+def noise_of(
+    residuals: Sequence[Array], steps: Sequence[float], slowest: float = SETTINGS.slow
+) -> Noise:
     """The noise in residuals (n,) of runs, in the units stated, 0 where there are no data.
 
-    steps  between the samples of each, s
+    steps    between the samples of each, s
+    slowest  Hz; what is slower may be the machine
     """
     fastest = 0.5 / max(steps)
-    if fastest < _NEAR * SETTINGS.slow:
+    if fastest < _NEAR * slowest:
         return Noise()
-    edges = np.geomspace(SETTINGS.slow, fastest, _BINS + 1)
+    edges = np.geomspace(slowest, fastest, _BINS + 1)
     density: list[list[float]] = [[] for _ in range(_BINS)]
     for r, step in zip(residuals, steps, strict=True):
         window = np.hanning(r.size) * (r != 0)
@@ -101,11 +105,11 @@ def noise_of(residuals: Sequence[Array], steps: Sequence[float]) -> Noise:
     known = np.isfinite(seen)
     if known.sum() < _BINS // 2:
         return Noise()
-    near = known & (middle < _NEAR * SETTINGS.slow)
+    near = known & (middle < _NEAR * slowest)
     edge = float(np.median(seen[near]))
     through = np.polyfit(middle[near] ** 2, edge / seen[near], 1)[1]
     slow = edge / float(np.clip(through, 0.5, 1.0))
-    total = slow * SETTINGS.slow + float(np.sum((seen * width)[known])) / known.mean()
+    total = slow * slowest + float(np.sum((seen * width)[known])) / known.mean()
     variance = total / fastest
     return Noise(math.sqrt(variance), max(slow / variance, 1.0))
 

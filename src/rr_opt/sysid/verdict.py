@@ -68,8 +68,9 @@ class Result:
             max((one.surplus for one in found), default=0.0) for found in (self.before, self.after)
         )
         imitated = len(self.best.choices) * after / max(before, gain / 4, 1e-12)
-        left = max(self.final.excess**2 - SETTINGS.none**2, 0.0)
-        unpredicted = left / max(self.refitted.excess**2, 1e-12)
+        floor = self.selection.model.form_error**2
+        left = max(self.final.excess**2 - SETTINGS.none**2 - floor, 0.0)
+        unpredicted = left / max(self.refitted.excess**2 - floor, 1e-12)
         info = self.selection.model.catalogue
         form = max((info[name].form_error for name in self.best.effects), default=math.inf)
         doubt = max(imitated / SETTINGS.imitated, unpredicted / SETTINGS.unpredicted) / form

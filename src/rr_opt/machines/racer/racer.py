@@ -61,6 +61,8 @@ class RollerRacer:
         }
     )
     segment_length = 5.0
+    horizon = math.inf
+    bandwidth = SETTINGS.slow
     correlation_time = SETTINGS.correlation_time
 
     def __init__(

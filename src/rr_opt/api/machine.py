@@ -1,0 +1,55 @@
+"""Experiments with a machine other than the Roller Racer."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from rr_opt.documents.report import Progress, quiet
+from rr_opt.files.issue import InvalidFileError, Issue, has_errors
+from rr_opt.files.machine_file import machine_plan, machine_word, read_machine_plan
+from rr_opt.machines.registry import RACER, machine_named
+from rr_opt.model.machine import Machine, MachineExperiment
+from rr_opt.outcome import InputError, NotConvergedError
+from rr_opt.recordings.machine_run import machine_experiment
+from rr_opt.results.machine_diagnosis import ExplainedMachine
+
+
+def machine_of(path: str | Path) -> Machine | None:
+    """The machine of an experiment; None for a Roller Racer's. Raises InputError."""
+    word = machine_word(path)
+    return None if word == RACER else machine_named(word)
+
+
+def load_machine(path: str | Path, machine: Machine) -> MachineExperiment:
+    """The experiment with its recordings. Raises InvalidFileError with everything wrong."""
+    experiment, issues = machine_experiment(read_machine_plan(path, machine))
+    if has_errors(issues):
+        raise InvalidFileError(issues)
+    return experiment
+
+
+def lint_machine(path: str | Path) -> list[Issue] | None:
+    """All issues of an experiment with another machine; None for anything else."""
+    try:
+        machine = machine_of(path)
+        if machine is None:
+            return None
+        plan, issues = machine_plan(path, machine)
+        return [*issues, *(machine_experiment(plan)[1] if plan else ())]
+    except InvalidFileError as error:
+        return list(error.issues)
+    except InputError as error:
+        return [Issue("error", "machine", str(error), None, str(path))]
+
+
+def diagnose_machine(experiment: MachineExperiment, progress: Progress = quiet) -> ExplainedMachine:
+    """What a machine's model leaves out. Raises NotConvergedError if a simulation diverged."""
+    from rr_opt.machines.ode import OdeModel
+    from rr_opt.sysid.diagnose import diagnose as identify
+
+    model = OdeModel(experiment)
+    found = identify(model, progress)
+    if not (found.before < float("inf") and found.after < float("inf")):
+        raise NotConvergedError("The fits did not converge: a simulation diverged. Expected motion "
+                                "near that of the nominal machine. Check its values.")  # fmt: skip
+    return ExplainedMachine(experiment.name, experiment.sha256, experiment, found, model.horizon)

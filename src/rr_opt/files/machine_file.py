@@ -1,0 +1,209 @@
+"""An experiment file of a machine other than the racer: `machine: pendulum | servo | car`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any
+
+from pydantic import Field, SkipValidation, create_model
+
+from rr_opt.files.experiment_file import experiment_path
+from rr_opt.files.experiment_model import ColumnOf, Uncertain
+from rr_opt.files.fields import FileModel, Key, validate
+from rr_opt.files.gate import unreadable
+from rr_opt.files.issue import InvalidFileError, Issue, has_errors
+from rr_opt.files.source import fingerprint, read_document
+from rr_opt.files.yaml_text import Document
+from rr_opt.messages import shown
+from rr_opt.model.experiment import Column, Use
+from rr_opt.model.machine import Machine, MachineExperiment
+from rr_opt.model.parameters import Spread, Uncertainty
+from rr_opt.units import Quantity
+
+
+@dataclass(frozen=True)
+class _Where:
+    """Reads where a channel is: a Column, or a number that it always is."""
+
+    unit: str
+
+    def read(self, value: object) -> Column | float:
+        """Raises InputError."""
+        if isinstance(value, int | float) and not isinstance(value, bool):
+            return float(value)
+        return ColumnOf(self.unit).read(value)
+
+    def json_schema(self) -> dict[str, Any]:
+        """JSON Schema."""
+        return {"anyOf": [{"type": "number"}, *ColumnOf(self.unit).json_schema()["anyOf"]]}
+
+
+def _section(name: str, doc: str, fields: Mapping[str, Any]) -> Any:
+    return create_model(name, __base__=FileModel, __doc__=doc, **fields)
+
+
+def model_of(machine: Machine) -> Any:
+    """The keys of a machine's experiment file."""
+
+    def quantity(unit: str, example: str = "0.001", above: float | None = None) -> Key:
+        return Key(Quantity(unit, example, above=above))
+
+    parameters = {
+        one.name: (
+            Annotated[float, quantity(one.unit, one.example)],
+            Field(description=f"{one.words[0].upper()}{one.words[1:]}, {one.unit}."),
+        )
+        for one in machine.parameters
+    }
+    known = {
+        one.name: (
+            Annotated[Spread | None, Key(Uncertain(one.unit, one.example))],
+            Field(default=None, description=f"One sigma of the {one.words}, {one.unit}. "
+                                            f"Default: {_spread_words(one.spread, one.unit)}."),
+        )
+        for one in machine.parameters
+    }  # fmt: skip
+    noise = {
+        one.name: (
+            Annotated[float | None, quantity(one.unit, above=0)],
+            Field(default=None, description=f"Of {one.words}, {one.unit}; else from the data."),
+        )
+        for one in machine.channels
+    }
+    where = {
+        name: (
+            Annotated[Any, Key(_Where(unit))],
+            Field(default=None, description=f"Where {words} is, {unit}; or its constant value."),
+        )
+        for name, unit, words in (
+            ("t", "s", "the time"),
+            *((one.name, one.unit, one.words) for one in machine.channels),
+        )
+    }
+    columns = _section("ColumnsModel", "Columns by channel.", where)
+    entry = _section(
+        "RecordingModel",
+        "One recording.",
+        {
+            "file": (str, Field(description="Its file, CSV or JSON, relative to this one.")),
+            "use": (Use, Field(default="fit", description="holdout: kept back, to check the fit.")),
+            "columns": (columns, Field(default_factory=columns, description="Its own columns.")),
+        },
+    )
+    uncertainty = _section("UncertaintyModel", "How well nominal values are known.", known)
+    noises = _section("NoiseModel", "One sigma of what is recorded.", noise)
+    return _section(
+        "ExperimentModel",
+        f"{machine.words[0].upper()}{machine.words[1:]}: {machine.equation}.",
+        {
+            "machine": (str, Field(description="What was recorded.")),
+            "parameters": (
+                _section("ParametersModel", "Nominal values.", parameters),
+                Field(description="Nominal values."),
+            ),
+            "uncertainty": (
+                uncertainty,
+                Field(default_factory=uncertainty, description="How well they are known."),
+            ),
+            "noise": (noises, Field(default_factory=noises, description="How well it is seen.")),
+            "columns": (
+                columns,
+                Field(default_factory=columns, description="Columns of the recordings."),
+            ),
+            "recordings": (
+                Annotated[list[entry], SkipValidation],
+                Field(description="The recordings.", json_schema_extra={"minItems": 1}),
+            ),
+        },
+    ), entry
+
+
+def _spread_words(spread: Spread, unit: str) -> str:
+    if spread.factor or spread.relative:
+        return str(spread)
+    return f"{spread.sigma:g} {unit}".strip()
+
+
+@dataclass(frozen=True)
+class PlannedRecording:
+    """An entry of `recordings`."""
+
+    file: Path
+    use: Use
+    columns: Mapping[str, Column | float]
+
+
+@dataclass(frozen=True)
+class MachinePlan:
+    """What an experiment file says; `experiment` has no runs yet."""
+
+    experiment: MachineExperiment
+    noise: Mapping[str, float]
+    recordings: tuple[PlannedRecording, ...]
+    document: Document
+
+
+def machine_word(path: str | Path) -> str:
+    """What the key `machine` of an experiment file says; `racer` if there is none."""
+    try:
+        word = read_document(experiment_path(Path(path))).data.get("machine", "racer")
+    except InvalidFileError:
+        return "racer"
+    return word if isinstance(word, str) else shown(word)
+
+
+def machine_plan(path: str | Path, machine: Machine) -> tuple[MachinePlan | None, list[Issue]]:
+    """The plan (None if an issue is an error), and all issues; recordings are not read."""
+    file = experiment_path(Path(path))
+    document = read_document(file)
+    whole, entry = model_of(machine)
+    model, issues = validate(whole, document)
+    entries, planned = document.data.get("recordings"), []
+    if isinstance(entries, list):
+        for k, one in enumerate(entries):
+            if not isinstance(one, dict):
+                issues.append(document.issue("error", ("recordings", k), f"Read {shown(one)}. "
+                                             "Expected {file: ...}. Write it so."))  # fmt: skip
+                continue
+            place = Document(document.file, one, document.lines, ("recordings", k))
+            read, found = validate(entry, place)
+            issues += found
+            why = unreadable(file.parent / read.file) if read else ""
+            if read and why:
+                issues.append(place.issue("error", ("file",), f"Read {shown(read.file)}. {why}"))
+            elif read:
+                own = {**_given(model.columns if model else None), **_given(read.columns)}
+                planned.append(PlannedRecording(file.parent / read.file, read.use, own))
+    if not entries or not isinstance(entries, list):
+        message = f"Read {shown(entries)}. Expected a list of recordings."
+        issues.append(document.issue("error", ("recordings",), message))
+    elif not any(one.use == "fit" for one in planned) and not has_errors(issues):
+        message = "No recording is to be fitted. Give at least one `use: fit`."
+        issues.append(document.issue("error", ("recordings",), message))
+    if model is None or has_errors(issues):
+        return None, issues
+    nominal = dict(model.parameters)
+    uncertainty: dict[str, Uncertainty] = {}
+    for one in machine.parameters:
+        spread = getattr(model.uncertainty, one.name) or one.spread
+        known = spread.of(nominal[one.name])
+        if known.sigma or known.factor:
+            uncertainty[one.name] = known
+    sha = fingerprint((file, *(one.file for one in planned)))
+    name = file.absolute().parent.name
+    experiment = MachineExperiment(machine, nominal, uncertainty, (), name, sha)
+    return MachinePlan(experiment, _given(model.noise), tuple(planned), document), issues
+
+
+def _given(model: Any) -> dict[str, Any]:
+    return {} if model is None else {k: v for k, v in dict(model).items() if v is not None}
+
+
+def read_machine_plan(path: str | Path, machine: Machine) -> MachinePlan:
+    """The same. Raises InvalidFileError with all that is wrong."""
+    plan, issues = machine_plan(path, machine)
+    if plan is None:
+        raise InvalidFileError(issues)
+    return plan

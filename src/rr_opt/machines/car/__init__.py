@@ -1,0 +1,117 @@
+"""A car with two axles, as one wheel each; the speed along it is measured.
+
+Wheels press back sideways with 1/compliance per slip angle; without an effect they hardly slip.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import casadi as ca
+
+from rr_opt.machines import laws
+from rr_opt.model.machine import (
+    Add,
+    Channel,
+    Constant,
+    Machine,
+    MachineEffect,
+    MachineParameter,
+    Names,
+)
+from rr_opt.model.parameters import Spread
+
+RIGID = 2e-3
+"""rad/N: so little do wheels slip that are taken not to."""
+
+SLOW = 0.3
+"""m/s: a slip angle is that of a wheel that rolls at least so fast."""
+
+
+def _rates(v: Names, add: Add) -> Mapping[str, Any]:
+    delta = v.gain * v.steering + v.zero + add("steering")
+    lf = v.L * v.mr / (v.mf + v.mr)
+    lr = v.L - lf
+    mass = v.mf + v.mr
+    vx = v.vx * (1 + add("speed"))
+    roll = ca.sqrt(vx**2 + SLOW**2)
+    front = ((v.vy + lf * v.r) * ca.cos(delta) - vx * ca.sin(delta)) / roll
+    rear = (v.vy - lr * v.r) / roll
+    Ff = -front / (RIGID + add("front", slip=front))
+    Fr = -rear / (RIGID + add("rear", slip=rear))
+    inertia = mass * (v.L**2 + 0.08**2) / 12
+    c, s = ca.cos(v.psi), ca.sin(v.psi)
+    # The recorded point is ahead of the rear axle and to the left.
+    ahead = v.ahead - lr
+    sx, sy = vx - v.left * v.r, v.vy + ahead * v.r
+    return {
+        "x": sx * c - sy * s,
+        "y": sx * s + sy * c,
+        "psi": v.r,
+        "vy": (Ff * ca.cos(delta) + Fr) / mass - vx * v.r + add("side"),
+        "r": (lf * Ff * ca.cos(delta) - lr * Fr) / inertia + add("yaw"),
+    }
+
+
+def _compliance(axle: str) -> MachineEffect:
+    return MachineEffect(
+        f"{axle}_slip", "contact", "tyres", axle, f"lateral slip of the {axle} wheels",
+        f"The {axle} wheels slip sideways in proportion to their side force.",
+        (Constant("compliance", "rad/N", lambda _: 0.02, 0.0, 1.0),),
+        lambda _, c: c.compliance,
+    )  # fmt: skip
+
+
+CAR = Machine(
+    name="car",
+    words="a car",
+    equation="wheels that do not slip sideways",
+    states=("x", "y", "psi", "vy", "r"),
+    parameters=(
+        MachineParameter("L", "m", "wheelbase", "0.1735", Spread(2e-3), 1e-3),
+        MachineParameter("mf", "kg", "mass on the front axle", "0.847",
+                         Spread(relative=0.01), 1e-3),
+        MachineParameter("mr", "kg", "mass on the rear axle", "0.733", Spread(relative=0.01), 1e-3),
+        MachineParameter("gain", "rad", "steering angle per unit of the command", "0.35",
+                         Spread(factor=5.0), 1e-3),
+        MachineParameter("zero", "rad", "steering angle at the command 0", "0", Spread(0.05), -1.0),
+        MachineParameter("ahead", "m", "recorded point ahead of the rear axle", "0.115",
+                         Spread(5e-3), -1.0),
+        MachineParameter("left", "m", "recorded point to the left", "-0.01", Spread(5e-3), -1.0),
+    ),
+    inputs=(
+        Channel("vx", "m/s", "the speed along the car"),
+        Channel("steering", "", "the steering command"),
+    ),
+    outputs=(
+        Channel("x", "m", "x"),
+        Channel("y", "m", "y"),
+        Channel("psi", "rad", "the heading", angle=True),
+    ),
+    effects=(
+        _compliance("front"),
+        _compliance("rear"),
+        MachineEffect("steering_curve", "steering", "steering", "steering",
+                      "a steering map that is not straight",
+                      "The steering angle is not proportional to its command.",
+                      (Constant("cubic", "rad", lambda _: 0.05, -1.0, 1.0),),
+                      lambda v, c: c.cubic * v.steering**3),
+        MachineEffect("speed_gain", "measurement", "measurement", "speed",
+                      "a wrong gain of the speed", "The car is faster than its encoder says.",
+                      (Constant("error", "dimensionless", lambda _: 0.05, -0.5, 1.0),),
+                      lambda _, c: c.error),
+        laws.lagging("steering_lag", "the steering", "steering", 0.1),
+        laws.late("speed_delay", "the speed", "vx"),
+        laws.late("steering_delay", "the steering", "steering"),
+    ),
+    rates=_rates,
+    seen=lambda v, _: {"x": v.x, "y": v.y, "psi": v.psi},
+    start=lambda s: {"x": s["x"], "y": s["y"], "psi": s["psi"], "vy": 0.0, "r": s["psi_rate"]},
+    scales=lambda s: {"speed": max(s["vx"], 1e-3)},
+    ports={"yaw": ("yaw", "rad/s^2", "a yaw acceleration"),
+           "tyres": ("side", "m/s^2", "a side acceleration")},
+    variables={"vx": ("speed", "m/s"), "steering": ("steering command", "")},
+    step=2.5e-3,
+    stiff=2,
+)  # fmt: skip

@@ -1,0 +1,157 @@
+"""Effects that machines share: friction of a joint, and what may be wrong with its drive.
+
+A law sees the state and input names of its machine and, of a joint, `w` (rad/s), `drive` and `load`
+(N m), the torques of the motor and of gravity, and `gravity`, the latter as a function of the angle
+q; a signal sees times and inputs.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from rr_opt.array import Array
+from rr_opt.model.machine import Constant, MachineEffect, Names, Signals
+
+G = 9.81
+"""m/s2."""
+
+STICKING = 0.005
+"""sign(w) is smoothed to tanh(w/w0), w0 in rad/s: a joint spends next to no time so slow."""
+
+STRIBECK = 0.5
+"""rad/s, at which the friction of a slow joint has fallen to 1/e."""
+
+_SHARE = 0.1
+"""A torque that is left out is usually such a share of the motor's."""
+
+
+def sign(w: Any) -> Any:
+    """Of a speed, smooth."""
+    return ca.tanh(w / STICKING)
+
+
+def size(x: Any, small: float = 1e-3) -> Any:
+    """|x|, smooth."""
+    return ca.sqrt(x**2 + small**2)
+
+
+def _torque(name: str = "torque", low: float = 0.0) -> Constant:
+    return Constant(name, "N m", lambda s: _SHARE * s["torque"], low, 1e3)
+
+
+def _joint(name: str, words: str, sentence: str, constant: Constant, law: Any, **more: Any):
+    return MachineEffect(name, "bearing", "friction", "torque", words, sentence, (constant,), law,
+                         **more)  # fmt: skip
+
+
+COULOMB = _joint(
+    "coulomb_friction",
+    "Coulomb friction",
+    "The bearing resists with a torque that does not depend on the speed.",
+    _torque(),
+    lambda v, c: -c.torque * sign(v.w),
+)
+STRIBECK_FRICTION = _joint(
+    "stribeck_friction",
+    "friction that is higher while the joint is slow (Stribeck)",
+    "The bearing resists more while it is slow.",
+    _torque(),
+    lambda v, c: -c.torque * sign(v.w) * ca.exp(-((v.w / STRIBECK) ** 2)),
+)
+QUADRATIC_DRAG = _joint(
+    "quadratic_drag",
+    "quadratic drag",
+    "The air resists with a torque that grows with the square of the speed.",
+    Constant("coefficient", "N m s^2", lambda s: _SHARE * s["torque"] / s["speed"] ** 2),
+    lambda v, c: -c.coefficient * v.w * size(v.w),
+)
+LOAD_FRICTION = _joint(
+    "load_friction",
+    "friction that grows with the load on the gears",
+    "The gears resist more, the more torque they transmit.",
+    Constant("share", "dimensionless", lambda _: _SHARE, high=1.0),
+    lambda v, c: -c.share * size(v.drive + v.load) * sign(v.w),
+)
+DIRECTION_FRICTION = _joint(
+    "direction_friction",
+    "Coulomb friction that differs between the directions",
+    "The bearing resists more in one direction than in the other.",
+    _torque("difference", -1e3),
+    lambda v, c: -c.difference / 2 * sign(v.w) ** 2,
+)
+TORQUE_OFFSET = MachineEffect(
+    "torque_offset",
+    "motor",
+    "actuation",
+    "torque",
+    "a torque offset",
+    "The motor always gives more than its reading, by the same torque.",
+    (_torque(low=-1e3),),
+    lambda _, c: c.torque,
+)
+TORQUE_GAIN = MachineEffect(
+    "torque_gain",
+    "motor",
+    "actuation",
+    "torque",
+    "a wrong gain of the torque",
+    "The motor gives another share of its reading.",
+    (Constant("error", "dimensionless", lambda _: _SHARE, -0.9, 9.0),),
+    lambda v, c: c.error * v.drive,
+)
+ANGLE_OFFSET = MachineEffect(
+    "angle_offset",
+    "measurement",
+    "measurement",
+    "torque",
+    "an offset of the angle",
+    "The angle is not zero where the machine hangs.",
+    (Constant("angle", "rad", lambda _: 0.03, -1.0, 1.0),),
+    lambda v, c: v.gravity(v.q) - v.gravity(v.q + c.angle),
+)
+
+
+def delayed(t: Array, u: Array, late: float) -> Array:
+    """A signal, late by so much, s."""
+    return np.interp(t - late, t, u)
+
+
+def lagged(t: Array, u: Array, tau: float) -> Array:
+    """A signal through a first-order lag, straight between samples, exactly."""
+    if tau <= 0:
+        return u
+    h = np.diff(t)
+    decay = np.exp(-h / tau)
+    slope = np.diff(u) / h
+    out = np.empty_like(u)
+    out[0] = now = u[0]
+    for k in range(h.size):
+        ahead = u[k] - slope[k] * tau
+        now = (now - ahead) * decay[k] + ahead + slope[k] * h[k]
+        out[k + 1] = now
+    return out
+
+
+def late(name: str, words: str, *signals: str, low: float = -0.1) -> MachineEffect:
+    """Some inputs are late, or early."""
+
+    def law(t: Array, u: Signals, c: Names) -> Signals:
+        return {one: delayed(t, u[one], c.delay) for one in signals}
+
+    sentence = f"{words[0].upper()}{words[1:]} acts later than it is recorded."
+    return MachineEffect(name, "signal", "actuation", "signal", f"a delay of {words}", sentence,
+                         (Constant("delay", "s", lambda _: 0.01, low, 0.3),), law)  # fmt: skip
+
+
+def lagging(name: str, words: str, signal: str, tau: float) -> MachineEffect:
+    """An input is followed with a first-order lag of about tau, s."""
+
+    def law(t: Array, u: Signals, c: Names) -> Signals:
+        return {signal: lagged(t, u[signal], c.tau)}
+
+    sentence = f"{words[0].upper()}{words[1:]} follows its command late and smoothed."
+    return MachineEffect(name, "signal", "actuation", "signal", f"a lag of {words}", sentence,
+                         (Constant("tau", "s", lambda _: tau, 0.0, 2.0),), law)  # fmt: skip

@@ -1,0 +1,189 @@
+"""A machine that can be diagnosed: its equations, and in words and units all that is in them.
+
+A machine is data. Its equations are functions of names: states, inputs, parameters. Effects enter
+them by ports, each a place where something may be left out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+
+from rr_opt.array import Array
+from rr_opt.model.parameters import Spread, Uncertainty
+
+Names = SimpleNamespace
+"""States, inputs, parameters or constants by name: CasADi's, or arrays."""
+
+Add = Callable[..., Any]
+"""add(port, ...) is what the effects add at a port, where they see the names given beside all."""
+
+Signals = Mapping[str, Array]
+"""Inputs (n,) by name."""
+
+Scales = Mapping[str, float]
+"""Usual sizes, such as of a torque and a speed, by name."""
+
+
+@dataclass(frozen=True)
+class MachineParameter:
+    """A number of the nominal model.
+
+    spread     how well it is usually known
+    low, high  it lies between, SI
+    """
+
+    name: str
+    unit: str
+    words: str
+    example: str
+    spread: Spread
+    low: float = 0.0
+    high: float = np.inf
+
+
+@dataclass(frozen=True)
+class Channel:
+    """What is recorded: an output that is predicted, or an input that drives the machine.
+
+    default  of an input that is not recorded; None: it has to be
+    angle    a whole turn is nothing
+    """
+
+    name: str
+    unit: str
+    words: str
+    default: float | None = None
+    angle: bool = False
+
+
+@dataclass(frozen=True)
+class Constant:
+    """A number of an effect, which vanishes at 0.
+
+    size   its usual size, of the usual sizes of a machine
+    begin  where to look for it first, in usual sizes
+    """
+
+    name: str
+    unit: str
+    size: Callable[[Scales], float]
+    low: float = 0.0
+    high: float = 1e3
+    begin: float = 0.05
+
+
+@dataclass(frozen=True)
+class MachineEffect:
+    """What may be left out of a machine.
+
+    port        where it enters: a port of the equations; "signal", before the inputs drive
+    law         (names, constants) -> what it adds at its port; of a signal
+                (t, inputs, constants) -> the inputs that it changes
+    words       as the object of a sentence
+    smooth      whether it has a derivative by its constants where it vanishes
+    form_error  by what share machines differ from this law
+    """
+
+    name: str
+    family: str
+    channel: str
+    port: str
+    words: str
+    sentence: str
+    constants: tuple[Constant, ...]
+    law: Callable[..., Any]
+    smooth: bool = True
+    form_error: float = 0.1
+
+    def quantity(self, constant: str) -> str:
+        """The full name of a constant."""
+        return f"{self.name}.{constant}"
+
+
+@dataclass(frozen=True)
+class Machine:
+    """A kind of machine.
+
+    states    in order; the last `stiff` of them may settle at once
+    rates     (names, add) -> d(state)/dt by name
+    seen      (names, add) -> outputs by name
+    start     (outputs and their slopes, `q` and `q_rate`, and inputs) -> states where a run begins
+    scales    (parameters, inputs, outputs' rates; RMS each) -> usual sizes for the effects
+    ports     by channel of a fault: port, unit and words of an unknown input there
+    variables what an unknown input may depend on: name of a state or input -> words and unit
+    step      s, of the integration, at most
+    bandwidth Hz; what is faster is noise
+    """
+
+    name: str
+    words: str
+    equation: str
+    states: tuple[str, ...]
+    parameters: tuple[MachineParameter, ...]
+    inputs: tuple[Channel, ...]
+    outputs: tuple[Channel, ...]
+    effects: tuple[MachineEffect, ...]
+    rates: Callable[[Names, Add], Mapping[str, Any]]
+    seen: Callable[[Names, Add], Mapping[str, Any]]
+    start: Callable[[Mapping[str, float]], Mapping[str, float]]
+    scales: Callable[[Mapping[str, float]], Scales]
+    ports: Mapping[str, tuple[str, str, str]]
+    variables: Mapping[str, tuple[str, str]]
+    step: float = 1e-3
+    stiff: int = 1
+    bandwidth: float = 15.0
+
+    @property
+    def channels(self) -> tuple[Channel, ...]:
+        """Inputs and outputs."""
+        return (*self.inputs, *self.outputs)
+
+    def effect(self, name: str) -> MachineEffect:
+        """The effect of a name."""
+        return next(one for one in self.effects if one.name == name)
+
+    def parameter(self, name: str) -> MachineParameter | None:
+        """The parameter of a name."""
+        return next((one for one in self.parameters if one.name == name), None)
+
+
+@dataclass(frozen=True)
+class MachineRun:
+    """A recording of a machine: t (n,) s; inputs and outputs (n,) SI by name, NaN for no data.
+
+    sigma   of the noise of each channel
+    doubts  sentences on what looked wrong in it
+    """
+
+    name: str
+    t: Array
+    inputs: Signals
+    outputs: Signals
+    sigma: Mapping[str, float]
+    held_out: bool = False
+    doubts: tuple[str, ...] = ()
+
+    def __len__(self) -> int:
+        return len(self.t)
+
+
+@dataclass(frozen=True)
+class MachineExperiment:
+    """A machine as it is believed to be, and recordings of it.
+
+    nominal      parameters by name, SI, and what was found to be missing before, as
+                 `coulomb_friction.torque`
+    uncertainty  by parameter; what is not named is exact
+    """
+
+    machine: Machine
+    nominal: Mapping[str, float]
+    uncertainty: Mapping[str, Uncertainty]
+    runs: tuple[MachineRun, ...]
+    name: str = ""
+    sha256: str = ""

@@ -1,0 +1,168 @@
+"""Recordings of any machine: CSV with a header row, or JSON with `entries`."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from rr_opt.array import Array
+from rr_opt.files.gate import LONG, read_content
+from rr_opt.files.issue import Issue, refuse
+from rr_opt.files.machine_file import MachinePlan, PlannedRecording
+from rr_opt.messages import shown
+from rr_opt.model.experiment import Column
+from rr_opt.model.machine import Channel, MachineExperiment, MachineRun
+from rr_opt.outcome import InputError
+from rr_opt.recordings.readers.text import decode, find_header, read_table
+
+_WILD = 8.0
+"""Times its usual distance from its neighbours' median, from which a sample is wild."""
+
+
+def machine_experiment(plan: MachinePlan) -> tuple[MachineExperiment, list[Issue]]:
+    """The experiment with its runs, and all issues of the recordings; nothing is raised."""
+    runs, issues = [], []
+    for k, one in enumerate(plan.recordings):
+        try:
+            run = _run(plan, one)
+        except InputError as error:
+            where = ("recordings", k, "file")
+            issues.append(plan.document.issue("error", where, str(error)))
+            continue
+        runs.append(run)
+        issues += [Issue("warning", "", text, None, str(one.file)) for text in run.doubts]
+    return replace(plan.experiment, runs=tuple(runs)), issues
+
+
+def _run(plan: MachinePlan, one: PlannedRecording) -> MachineRun:
+    machine, table = plan.experiment.machine, read_columns(one.file)
+    t = _channel(one, table, Channel("t", "s", "the time"))
+    keep = np.append(True, np.diff(np.maximum.accumulate(t)) > 0) & np.isfinite(t)
+    doubts = []
+    if not keep.all():
+        doubts.append(f"{(~keep).sum()} rows repeat a time, or fall back, and were left out.")
+    data = {c.name: _channel(one, table, c)[keep] for c in machine.channels}
+    t = t[keep] - t[keep][0]
+    if t.size < 50:
+        raise InputError(f"Read {t.size} rows. Expected 50 or more. Record for longer.")
+    sigma: dict[str, float] = {}
+    for c in machine.channels:
+        y = np.unwrap(data[c.name]) if c.angle else data[c.name]
+        y, wild = _without_wild(y)
+        if wild:
+            doubts.append(f"{c.name}: {wild} wild samples were left out.")
+        inner = c in machine.inputs
+        if inner or c.angle:
+            known = np.isfinite(y)
+            y = np.interp(t, t[known], y[known]) if inner else y
+        data[c.name] = y
+        sigma[c.name] = plan.noise.get(c.name, noise_of(y) if not inner or wild_free(y) else 0.0)
+    doubts += _impossible(machine.inputs, machine.outputs, data)
+    return MachineRun(
+        one.file.name,
+        t,
+        {c.name: data[c.name] for c in machine.inputs},
+        {c.name: data[c.name] for c in machine.outputs},
+        sigma,
+        one.use == "holdout",
+        tuple(doubts),
+    )
+
+
+def wild_free(y: Array) -> bool:
+    """Whether a signal is noisy at all: it changes sign from step to step more often than not."""
+    d = np.diff(y)
+    d = d[d != 0]
+    return d.size > 0.3 * y.size and bool(np.mean(d[1:] * d[:-1] < 0) > 0.5)
+
+
+def noise_of(y: Array) -> float:
+    """One sigma: of a rounded signal its step over sqrt(12), or what its third differences say."""
+    values = np.unique(y[np.isfinite(y)])
+    if values.size < 2:
+        return 1e-6
+    step = float(np.median(np.diff(values))) if values.size < 0.7 * y.size else 0.0
+    third = np.diff(y, 3)
+    rough = float(np.nanmedian(np.abs(third))) / 0.6745 / np.sqrt(20)
+    return max(step / np.sqrt(12), rough, 1e-9 * float(np.ptp(values)))
+
+
+def _without_wild(y: Array) -> tuple[Array, int]:
+    """NaN where a sample is far from the median of five."""
+    wide = np.lib.stride_tricks.sliding_window_view(np.pad(y, 2, mode="edge"), 5)
+    off = np.abs(y - np.median(wide, axis=1))
+    usual = float(np.nanmedian(off[off > 0])) if (off > 0).any() else 0.0
+    wild = off > max(_WILD * usual / 0.6745, 0.05 * float(np.nanstd(y)), 1e-12)
+    return np.where(wild, np.nan, y), int(wild.sum())
+
+
+def _impossible(
+    inputs: tuple[Channel, ...], outputs: tuple[Channel, ...], data: Mapping[str, Array]
+) -> list[str]:
+    """What cannot be as the file says."""
+    said = []
+    for c in outputs:
+        y = data[c.name]
+        if np.nanstd(y) < 20 * noise_of(y):
+            said.append(
+                f"{c.name} hardly moves ({np.nanstd(y):.3g} {c.unit} in all): it says little."
+            )
+        for u in inputs:
+            x = data[u.name]
+            if np.ptp(x) == 0:
+                continue
+            order, known = np.argsort(y), np.isfinite(y)
+            x = (x[order])[known[order]]
+            if x.size > 100 and np.std(np.diff(x)) < 1e-3 * np.std(x) and u.unit == "N m":
+                said.append(
+                    f"{u.name} is a function of {c.name}: a command, and not a measurement?"
+                )
+    return said
+
+
+def read_columns(file: Path) -> dict[str, Array]:
+    """Columns (n,) by name; a number in a JSON file's head is constant. Raises InputError."""
+    content = read_content(file, LONG)
+    if content.lstrip().startswith(b"{"):
+        try:
+            data = json.loads(content)
+            entries = data["entries"]
+            names = list(entries[0])
+            table = {k: np.array([row[k] for row in entries], float) for k in names}
+        except (ValueError, KeyError, TypeError, IndexError, RecursionError) as error:
+            refuse(str(file), f"Read JSON that does not fit: {error!r}. Expected `entries`, a list "
+                   "of mappings from column to number.")  # fmt: skip
+        heads = {k: v for k, v in data.items() if isinstance(v, int | float)}
+        size = len(entries)
+        return {**{k: np.full(size, float(v)) for k, v in heads.items()}, **table}
+    text = decode(content, str(file))
+    header = find_header(text)
+    if header is None:
+        refuse(str(file), "The file holds no rows. Expected a header row and numbers.")
+    table = read_table(text, header.at + 1, len(text.lines), header.separator, header.names)
+    return {name: table.values[:, k] for k, name in enumerate(header.names)}
+
+
+def _channel(one: PlannedRecording, table: Mapping[str, Array], channel: Channel) -> Array:
+    size = len(next(iter(table.values())))
+    where = one.columns.get(channel.name, Column(channel.name))
+    if not isinstance(where, Column):
+        return np.full(size, where)
+    found = {name.strip().casefold(): y for name, y in table.items()}
+    name = where.column.strip().casefold()
+    if name not in found:
+        if channel.default is not None and channel.name not in one.columns:
+            return np.full(size, channel.default)
+        raise InputError(
+            f"{one.file.name}: Read the columns {shown(', '.join(table))}. Expected "
+            f"`{where.column}` for {channel.name} ({channel.words}). "
+            f"Write `columns: {{{channel.name}: ...}}`."
+        )
+    y = found[name]
+    if where.bits:
+        y = np.where(y >= 2 ** (where.bits - 1), y - 2**where.bits, y)
+    return y * where.factor

@@ -1,0 +1,59 @@
+"""A pendulum's dry friction is named from files, with an interval that covers it; none is not."""
+
+import json
+
+import numpy as np
+import pytest
+
+import rr_opt as rr
+from tests.machines.swings import write
+
+
+def test_dry_friction_is_named(tmp_path):
+    found = rr.diagnose(write(tmp_path, dry=0.03))
+    assert found.verdict == "missing_physics"
+    assert [one.name for one in found.effects] == ["coulomb_friction"]
+    torque = found.effects[0].parameters["torque"]
+    assert torque.low <= 0.03 <= torque.high
+    assert torque.high - torque.low < 0.01
+    assert found.found.after < 1.2 < found.found.before
+    written = found.save(tmp_path / "out")
+    assert {"diagnosis.json", "report.html", "machine-corrected.yaml"} <= {f.name for f in written}
+    record = json.loads((tmp_path / "out/diagnosis.json").read_text())
+    assert record["machine"] == "pendulum"
+    errors = record["fit"]["heldout_error"]["q"]
+    assert errors["after"] < 1.2 * 3e-3 < errors["parameters"]
+
+
+def test_none_is_consistent(tmp_path):
+    assert rr.diagnose(write(tmp_path, dry=0.0)).verdict == "consistent"
+
+
+def test_what_is_wrong_is_listed_at_once(tmp_path):
+    folder = write(tmp_path, dry=0.0, runs=2, seconds=2.0)
+    text = (folder / "experiment.yaml").read_text()
+    text = text.replace("u: motor", "u: engine").replace("J: 5 %", "K: 5 %")
+    (folder / "experiment.yaml").write_text(text)
+    issues = [str(one) for one in rr.lint(folder) if one.level == "error"]
+    assert any("uncertainty.K" in one for one in issues)
+    text = text.replace("K: 5 %", "J: 5 %")
+    (folder / "experiment.yaml").write_text(text)
+    issues = [str(one) for one in rr.lint(folder) if one.level == "error"]
+    assert len(issues) == 2
+    assert all("engine" in one for one in issues)
+
+
+def test_times_that_repeat_are_told(tmp_path):
+    folder = write(tmp_path, dry=0.0, runs=2, seconds=2.0)
+    table = np.loadtxt(folder / "run0.csv", delimiter=",", skiprows=1)
+    table[50, 0] = table[49, 0]
+    np.savetxt(folder / "run0.csv", table, "%.9g", ",", header="time,angle,motor", comments="")
+    assert any("repeat a time" in one.message for one in rr.lint(folder))
+
+
+@pytest.mark.parametrize("machine", ["pendulum", "servo", "car"])
+def test_schema(machine):
+    schema = rr.schema("experiment", machine)
+    assert "parameters" in schema["properties"]
+    with pytest.raises(rr.InputError, match="servo"):
+        rr.schema("experiment", "servoo")
