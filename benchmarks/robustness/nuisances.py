@@ -27,7 +27,7 @@ from rr_opt.recordings.inspection import Circumstances, inspect
 from rr_opt.recordings.warnings import Notice
 
 OUT = Path(__file__).parents[2] / "results" / "robustness" / "nuisances.json"
-KINDS = ("null", "single", "null", "pair", "null", "outside", "null", "parameters")
+KINDS = ("null", "parameters", "null", "single", "null", "parameters", "null", "outside")
 ENGINES = ("planar", "planar", "mujoco")
 TRUE = {
     *("clock.offset", "clock.drift", "command.scale", "command.bias"),
@@ -121,17 +121,9 @@ def main() -> None:
                     where.append(f"{name}: {what} not named: {[one.code for one in found]}")
                     print("missed", where[-1], flush=True)
         print(n + 1, clean, dict(false), flush=True)
-    write_json(
-        OUT,
-        {
-            "seed": given.seed,
-            "cases": given.cases,
-            "recordings": clean,
-            "false_alarms": dict(false),
-            "named": {what: [named[what], tried[what]] for what in NUISANCES},
-            "wrong": where,
-        },
-    )
+        record = {"seed": given.seed, "cases": n + 1, "recordings": clean}
+        counts = {what: f"{named[what]} of {tried[what]}" for what in NUISANCES}
+        write_json(OUT, {**record, "false_alarms": false, "named": counts, "wrong": where})
 
 
 def changed(

@@ -137,7 +137,7 @@ def same(one: Study, two: Study) -> str:
         return f"{len(one)} rows, and {len(two)}"
     for left, right in zip(one, two, strict=True):
         for key in left:
-            if any(word in key for word in ("seconds", "starts", "iterations", "warm")):
+            if any(word in key for word in ("seconds", "started")):
                 continue
             if not _close(left[key], right[key]):
                 return f"case {left['case']}: {key} {left[key]} and {right[key]}"
@@ -159,6 +159,16 @@ def fresh() -> Path:
     folder = Path(tempfile.mkdtemp(prefix="chaos-"))
     (folder / "study.yaml").write_text(STUDY)
     return folder
+
+
+def undisturbed(command: Sequence[str], log: Log) -> Study:
+    """The study that nothing disturbs."""
+    folder = fresh()
+    end = ended(begun(command, folder), log, "undisturbed")
+    log.check(end.code == 0, f"undisturbed: {end}")
+    found = study_of(folder)
+    shutil.rmtree(folder)
+    return found
 
 
 def killed(
@@ -292,8 +302,9 @@ def _faketime() -> str:
     return found.stdout.strip()
 
 
-def worker_killed(rounds: int, reference: Study, rng: Random, log: Log) -> None:
+def worker_killed(rounds: int, rng: Random, log: Log) -> None:
     """A worker of a dask cluster is killed at a random moment."""
+    reference = undisturbed((*STUDY_RUN, "--cold"), log)
     address = f"tcp://127.0.0.1:{free_port()}"
     cluster = [begun((sys.executable, *SCHEDULER, address), Path.cwd())]
     try:
@@ -312,8 +323,8 @@ def worker_killed(rounds: int, reference: Study, rng: Random, log: Log) -> None:
             worker.kill()
             found = ended(running, log, "worker killed")
             log.done["worker of a cluster killed"] += 1
-            right = found.code == 0 and not same(study_of(folder), reference)
-            log.check(right, f"worker killed: exit {found.code}: {found.err[-300:]}")
+            other = same(study_of(folder), reference) if found.code == 0 else found.err[-300:]
+            log.check(not other, f"worker killed: exit {found.code}: {other}")
             shutil.rmtree(folder, ignore_errors=True)
     finally:
         for one in cluster:
@@ -342,23 +353,22 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=int(time.time()))
     parser.add_argument("--out", type=Path, help="a JSON file for the counts")
     given = parser.parse_args()
+    # Runs in the background ignore it, and so would all that they start.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     rng, log = np.random.default_rng(given.seed), Log()
-    folder = fresh()
-    log.check(ended(begun(STUDY_RUN, folder), log, "undisturbed").code == 0, "undisturbed")
-    reference = study_of(folder)
-    shutil.rmtree(folder)
+    reference = undisturbed(STUDY_RUN, log)
     begin = time.monotonic()
     scenes: dict[str, Callable[[], None]] = {
-        "two runs": lambda: two_runs(given.rounds, reference, log),
-        "disk full": lambda: disk_full(given.rounds, reference, rng, log),
-        "clock set back": lambda: clock_back(given.rounds, reference, rng, log),
-        "worker killed": lambda: worker_killed(given.rounds, reference, rng, log),
-        "prove killed": lambda: killed(
-            "prove", MAKE_RUN, "made.jsonl", given.kills // 4, rng, log, sealed
-        ),
         "study killed": lambda: killed(
             "study", STUDY_RUN, "journal.jsonl", given.kills - given.kills // 4, rng, log,
             lambda place: same(study_of(place), reference),
+        ),
+        "two runs": lambda: two_runs(given.rounds, reference, log),
+        "disk full": lambda: disk_full(given.rounds, reference, rng, log),
+        "clock set back": lambda: clock_back(given.rounds, reference, rng, log),
+        "worker killed": lambda: worker_killed(given.rounds, rng, log),
+        "prove killed": lambda: killed(
+            "prove", MAKE_RUN, "made.jsonl", given.kills // 4, rng, log, sealed
         ),
     }  # fmt: skip
     for name, scene in scenes.items():

@@ -42,7 +42,8 @@ DONE = {0, 3, 4}
 WRONG, INTERRUPTED = 2, 130
 _PLACE = re.compile(r"(:\d+: )|(: [\w.\[\]'\"-]+: )|(row|line|column|key|frame|byte)s? ")
 _ADVICE = re.compile(
-    r"Expected|Write|Check|Give|Delete|Correct|Name |Export|Save|Cut|Install|Keep|Leave|Add |Record"
+    "Expected|Write|Check|Give|Delete|Correct|Name |Export|Save|Cut|Install|Keep|Leave|Add |Record",
+    re.IGNORECASE,
 )
 _STAGE = re.compile(r" *\d+\.\d s  .*")
 
@@ -262,6 +263,8 @@ def main() -> None:
     parser.add_argument("--only", type=int, help="this input alone, whose folder is kept")
     parser.add_argument("--out", type=Path, help="a JSON file for the counts")
     given = parser.parse_args()
+    # A run in the background ignores it, and so would the verbs.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     warm()
     if given.only is not None:
         folder = Path(tempfile.mkdtemp(prefix="fuzz-"))
