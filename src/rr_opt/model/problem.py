@@ -70,12 +70,20 @@ LARGEST_EXCESS = 1e-4
 """By so much, relative to it, a gait may go over a limit and still counts as keeping it."""
 
 
+GRIP_LIMIT = Quantity("", "0.5", above=0, endless=True)
+
+NEEDS_GRIP = 0.5
+"""Side force over load above which a gait is warned of: rubber on a dry floor has 0.6 to 1, hard
+wheels or dust less."""
+
+
 @data
 class Limits:
     """|phi| <= angle (rad), |dphi/dt| <= rate (rad/s), |torque| <= torque (N m),
-    S1 = c1 cos phi + c2 >= singularity (m).
+    S1 = c1 cos phi + c2 >= singularity (m), |side force of an axle| <= grip * its load.
 
-    A limit that is left out (None) is the robot's servo's; the Problem fills it in.
+    A limit that is left out (None) is the robot's servo's, and of grip there is none; the Problem
+    fills it in.
     """
 
     angle: OptionalSI = declared(ANGLE_LIMIT, "Largest |phi|, rad, below pi.", default=None)
@@ -87,6 +95,13 @@ class Limits:
     )
     singularity: SI = declared(
         Quantity("m", "20 mm", above=0), "The least S1 = c1 cos phi + c2 allowed, m.", default=0.020
+    )
+
+    grip: OptionalSI = declared(
+        GRIP_LIMIT,
+        "Largest side force of an axle over the load on it: the coefficient of friction that its "
+        "wheels may need; .inf: no limit.",
+        default=None,
     )
 
     def worst(self, reached: Mapping[str, float]) -> tuple[str, float]:
@@ -151,6 +166,7 @@ class Problem:
     def __post_init__(self) -> None:
         servo, given = self.robot.servo, self.limits
         able = {"angle": servo.angle_limit, "rate": servo.rate_limit, "torque": servo.torque_limit}
+        able["grip"] = math.inf
         left_out = {name: value for name, value in able.items() if getattr(given, name) is None}
         if left_out:
             object.__setattr__(self, "limits", replace(given, **left_out))

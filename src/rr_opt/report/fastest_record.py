@@ -13,6 +13,7 @@ UNITS = {
     "rate": "rad/s",
     "torque": "N m",
     "singularity": "m",
+    "grip": "1, largest side force of an axle over the load on it",
     "amplitude": "rad",
     "period": "s",
     "offset": "rad",
@@ -56,6 +57,7 @@ def fastest_record(result: FastestGait) -> dict[str, Any]:
             {**plain(row), "unit": UNITS[row.name], "active": row.active if replay else None}
             for row in result.limits.values()
         ],
+        "grip": replay and {"axle1": replay.grip[0], "axle2": replay.grip[1]},
         "bounds": list(result.bounds.values()),
         "check": replay
         and sweep

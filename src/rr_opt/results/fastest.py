@@ -14,7 +14,7 @@ from rr_opt.formatting import direction_text, pace_text
 from rr_opt.messages import listed
 from rr_opt.model.ballast import inertia_ratio, with_load_count
 from rr_opt.model.gait import Gait
-from rr_opt.model.problem import LARGEST_EXCESS, Problem
+from rr_opt.model.problem import LARGEST_EXCESS, NEEDS_GRIP, Problem
 from rr_opt.model.robot import Robot
 from rr_opt.motion.steady_cycle import Cycle
 from rr_opt.outcome import Status
@@ -227,6 +227,7 @@ class FastestGait(Result):
         if best is None:
             return []
         texts = []
+        texts += self._slippery
         if self.climbed:
             texts.append(_climbed(self.climbed, self.optimum))
         if self.driven and self.driven.driven.left_out:
@@ -253,6 +254,16 @@ class FastestGait(Result):
             )
         return texts
 
+    @property
+    def _slippery(self) -> tuple[str, ...]:
+        grip = self.limits["grip"].value
+        if not grip > NEEDS_GRIP:
+            return ()
+        return (
+            f"The wheels need a coefficient of friction of {grip:.2g} not to slip sideways, which "
+            f"few floors have (above {NEEDS_GRIP:g}). `limits.grip` limits it.",
+        )
+
     def _beyond_servo(self, gait: Gait) -> list[str]:
         """Which limits of the robot file's servo the gait exceeds."""
         servo, needed = self.problem.robot.servo, self.replay.reached if self.replay else {}
@@ -268,8 +279,10 @@ class FastestGait(Result):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What the robot does with effects that the optimiser does not know."""
-        return (_climbed(self.climbed, self.optimum),) if self.climbed else ()
+        """What the robot does with effects that the optimiser does not know, and grip that wheels
+        may not have."""
+        climbed = (_climbed(self.climbed, self.optimum),) if self.climbed else ()
+        return (*climbed, *self._slippery)
 
 
 LARGEST_DRIVEN_ERROR = 0.01
