@@ -29,7 +29,7 @@ def test_it_is_kept_and_priced(gait):
 
 
 def test_it_is_reported_and_warned_of():
-    found = rr.maximize_speed(posed(None, rate=12.0))
+    found = rr.maximize_speed(posed(math.inf, rate=12.0))
     row, record = found.limits["grip"], found.record()
     assert (row.limit, row.active) == (math.inf, False)
     assert row.value > 0.5

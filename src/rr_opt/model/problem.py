@@ -82,8 +82,7 @@ class Limits:
     """|phi| <= angle (rad), |dphi/dt| <= rate (rad/s), |torque| <= torque (N m),
     S1 = c1 cos phi + c2 >= singularity (m), |side force of an axle| <= grip * its load.
 
-    A limit that is left out (None) is the robot's servo's, and of grip there is none; the Problem
-    fills it in.
+    A limit that is left out (None) is the robot's servo's; the Problem fills it in.
     """
 
     angle: OptionalSI = declared(ANGLE_LIMIT, "Largest |phi|, rad, below pi.", default=None)
@@ -97,11 +96,11 @@ class Limits:
         Quantity("m", "20 mm", above=0), "The least S1 = c1 cos phi + c2 allowed, m.", default=0.020
     )
 
-    grip: OptionalSI = declared(
+    grip: SI = declared(
         GRIP_LIMIT,
         "Largest side force of an axle over the load on it: the coefficient of friction that its "
         "wheels may need; .inf: no limit.",
-        default=None,
+        default=math.inf,
     )
 
     def worst(self, reached: Mapping[str, float]) -> tuple[str, float]:
@@ -166,7 +165,6 @@ class Problem:
     def __post_init__(self) -> None:
         servo, given = self.robot.servo, self.limits
         able = {"angle": servo.angle_limit, "rate": servo.rate_limit, "torque": servo.torque_limit}
-        able["grip"] = math.inf
         left_out = {name: value for name, value in able.items() if getattr(given, name) is None}
         if left_out:
             object.__setattr__(self, "limits", replace(given, **left_out))
