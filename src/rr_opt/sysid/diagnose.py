@@ -9,7 +9,7 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
-from rr_opt.sysid.candidates import Candidate, refitted
+from rr_opt.sysid.candidates import Candidate, first, refitted
 from rr_opt.sysid.diagnosis import Diagnosis
 from rr_opt.sysid.evaluation import evaluation, mismatch
 from rr_opt.sysid.intervals import estimates, released
@@ -119,21 +119,22 @@ def _answer(result: Result) -> Diagnosis:
 
 
 def identified(model: Model, watch: Stopwatch) -> Result:
-    """Search for what is missing; once more if the noise turns out to be other than stated."""
+    """Search for what is missing, with the noise that the nominal model shows; once more if the
+    answer shows another one."""
     runs = [k for k, run in enumerate(model.runs) if not run.held_out]
-
-    def searched(model: Model) -> tuple[Selection, Candidate]:
-        with watch("fitting the parameters"):
-            selection = Selection(model, runs, watch.progress)
-        with watch("looking for what is missing"):
-            return selection, selection.run()
-
-    selection, best = searched(model)
-    noise = noise_in(best.fit)
-    if any(one.unlike_stated for one in noise):
-        watch.progress("the noise is not as stated; once more")
-        model = model.with_noise(noise)
-        selection, best = searched(model)
+    with watch("fitting the parameters"):
+        base = first(model, runs)
+        if noise := noise_in(base.fit):
+            model = model.with_noise(noise)
+            base = first(model, runs)
+    with watch("looking for what is missing"):
+        selection = Selection(base, watch.progress)
+        best = selection.run()
+        if noise := noise_in(best.fit):
+            watch.progress("the noise is other than it looked; once more")
+            selection = Selection(first(model.with_noise(noise), runs), watch.progress)
+            best = selection.run()
+        model = best.fit.problem.model
     with watch("looking for wrong values"):
         fit = best.fit
         if selection.complete(best) or best.excess <= model.form_error:

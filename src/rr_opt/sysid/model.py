@@ -257,7 +257,7 @@ class Model(Protocol):
         ...
 
     def with_noise(self, noise: Sequence[Noise]) -> Model:
-        """The same machine and runs with other noise in each channel."""
+        """The same machine and runs with other noise in each channel, in units of that here."""
         ...
 
     def unknown_inputs(self, fit: Fit) -> tuple[Sequence[Term], Mapping[Segment, Linearisation]]:

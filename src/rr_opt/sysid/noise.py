@@ -33,7 +33,7 @@ _NEAR = 3.0
 class Noise:
     """The noise of a channel.
 
-    level        standard deviation, in units of that stated
+    level        standard deviation, in units of that assumed
     correlation  its power at low frequencies over that of white noise of this level: as many
                  samples are worth one independent one
     """
@@ -41,28 +41,31 @@ class Noise:
     level: float = 1.0
     correlation: float = 1.0
 
-    @property
-    def unlike_stated(self) -> bool:
-        """Whether it is surely not white noise of the level stated."""
-        return (
-            abs(math.log(self.level)) > SETTINGS.misstated or self.correlation > SETTINGS.correlated
+    def differs(self, correlation: float = 1.0) -> bool:
+        """Whether it surely differs from noise of the level and with the correlation assumed."""
+        longer = abs(math.log(self.correlation / correlation))
+        return abs(math.log(self.level)) > SETTINGS.misstated or longer > math.log(
+            SETTINGS.correlated
         )
 
 
-def noise_in(fit: Fit) -> list[Noise]:
-    """That of each channel, from what a fit leaves."""
+def noise_in(fit: Fit) -> list[Noise] | None:
+    """That of each channel, from what a fit leaves; None if it is as assumed."""
     problem = fit.problem
+    channels = len(problem.model.channels)
+    # How runs are correlated is a property of the channels.
+    assumed = np.broadcast_to(next(iter(problem.model.runs)).correlation, channels)
     runs = {
         run: np.concatenate(
             [fit.linear.made[one].residuals[: one.until - one.first] for one in parts]
         )
+        * np.sqrt(assumed)
         for run, parts in problem.by_run.items()
     }
     steps = [float(np.median(np.diff(problem.model.runs[run].t))) for run in runs]
-    return [
-        _levelled([left[:, k] for left in runs.values()], steps)
-        for k in range(len(problem.model.channels))
-    ]
+    noise = [_levelled([left[:, k] for left in runs.values()], steps) for k in range(channels)]
+    differs = any(one.differs(c) for one, c in zip(noise, assumed.tolist(), strict=True))
+    return noise if differs else None
 
 
 def _levelled(residuals: Sequence[Array], steps: Sequence[float]) -> Noise:

@@ -12,7 +12,7 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from rr_opt.sysid.candidates import Candidate, Choice, first, fitted, polished
+from rr_opt.sysid.candidates import Candidate, Choice, fitted, polished
 from rr_opt.sysid.model import Model
 from rr_opt.sysid.score_test import scores
 from rr_opt.sysid.settings import SETTINGS
@@ -28,15 +28,18 @@ class Selection:
     best  the candidate that was chosen
     """
 
-    model: Model
-    runs: Sequence[int]
+    base: Candidate
     progress: Progress = lambda _: None
     tried: dict[tuple[Choice, ...], Candidate] = field(default_factory=dict)
     _upstream: Sequence[tuple[tuple[Choice, ...], Mapping[str, float]]] = ()
 
     def __post_init__(self) -> None:
-        self.progress("fitting the parameters")
-        self.base = self.best = self.tried[()] = first(self.model, self.runs)
+        self.best = self.tried[()] = self.base
+
+    @property
+    def model(self) -> Model:
+        """What is identified."""
+        return self.base.fit.problem.model
 
     def run(self) -> Candidate:
         """Search; the candidate that was chosen."""
@@ -59,7 +62,9 @@ class Selection:
         much as is none, and than noise leaves by chance."""
         chance = 2 * math.sqrt(2 / max(candidate.fit.samples, 1))
         least = SETTINGS.none if candidate.choices else SETTINGS.negligible
-        return candidate.excess**2 <= least**2 + chance
+        most = least**2 + chance
+        # Segments that need not join leave less than whole runs.
+        return candidate.fit.excess**2 <= 2 * most and candidate.excess**2 <= most
 
     def _better(self, candidate: Candidate, other: Candidate) -> bool:
         """Whether a larger candidate predicts better than one that leaves something."""
@@ -176,8 +181,8 @@ class Selection:
         runs are simulated best: a fit in segments may have stopped in a kink of an effect without
         derivatives."""
         for key, one in [*self.tried.items()]:
-            near = 0 < self.best.elpd - one.elpd < SETTINGS.hopeless
-            if near and len(key) <= len(self.best.choices) and self.complete(one):
+            worse = one.elpd < self.best.elpd
+            if worse and len(key) <= len(self.best.choices) and self.complete(one):
                 again = polished(one)
                 if again.elpd > one.elpd:
                     self.tried[key] = again

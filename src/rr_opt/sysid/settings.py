@@ -21,7 +21,8 @@ class Settings:
     trial_steps           Gauss-Newton steps of the better half of the guesses, of the better half
                           of those, and so on
     first_steps           of a fit, before the process noise is estimated
-    hopeless              of the deviance; a fit so far above another one is not taken to its end
+    patience              steps like its last one after which a fit that is still worse than another
+                          is given up
     steps                 at most, for a fit
     descent_steps         at most, for a fit with less process noise
     negligible            RMS in sigma beyond the noise that the nominal model may leave
@@ -57,7 +58,7 @@ class Settings:
     trial_runs: int = 2
     trial_steps: tuple[int, ...] = (1, 3)
     first_steps: int = 4
-    hopeless: float = 200.0
+    patience: float = 10.0
     steps: int = 15
     descent_steps: int = 8
     negligible: float = 0.1

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property
 from types import MappingProxyType
 
@@ -79,8 +80,12 @@ class RollerRacer:
         self.nominal = nominal(experiment)
 
     def with_noise(self, noise: Sequence[Noise]) -> RollerRacer:
-        """The same with other noise."""
-        return RollerRacer(self.experiment, self._given, noise)
+        """The same with other noise, its levels in units of those here."""
+        of_stated = [
+            replace(new, level=new.level * old.level)
+            for new, old in zip(noise, self._noise, strict=True)
+        ]
+        return RollerRacer(self.experiment, self._given, of_stated)
 
     def beside(self, experiment: Experiment) -> RollerRacer:
         """Another experiment with the same robot, and the same usual sizes of effects."""
