@@ -12,8 +12,9 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from rr_opt.sysid.candidates import Candidate, Choice, fitted, polished
-from rr_opt.sysid.model import Model
+from rr_opt.sysid.candidates import Candidate, fitted, polished
+from rr_opt.sysid.machine import Machine
+from rr_opt.sysid.model import Choice
 from rr_opt.sysid.score_test import scores
 from rr_opt.sysid.settings import SETTINGS
 
@@ -28,6 +29,7 @@ class Selection:
     best  the candidate that was chosen
     """
 
+    model: Machine
     base: Candidate
     progress: Progress = lambda _: None
     tried: dict[tuple[Choice, ...], Candidate] = field(default_factory=dict)
@@ -35,11 +37,6 @@ class Selection:
 
     def __post_init__(self) -> None:
         self.best = self.tried[()] = self.base
-
-    @property
-    def model(self) -> Model:
-        """What is identified."""
-        return self.base.fit.problem.model
 
     def run(self) -> Candidate:
         """Search; the candidate that was chosen."""
@@ -243,7 +240,7 @@ def _more(guess: Mapping[str, float], own: set[str]) -> dict[str, float]:
     return {name: value for name, value in guess.items() if name not in own}
 
 
-def turned(model: Model, candidate: Candidate) -> Candidate:
+def turned(model: Machine, candidate: Candidate) -> Candidate:
     """The candidate with values that predict the same and are nearer to what was believed."""
     values = model.equivalent(candidate.fit.values)
     if values is None:

@@ -155,10 +155,12 @@ def drive_slopes(
     at = np.zeros((*path.at.shape, len(wanted)))
     nodes = np.zeros((*path.nodes.shape, len(wanted)))
     for k, name in moving:
-        step = 1e-3 * _usual_size(name)
-        further = path_at({**given, name: given[name] + step})
-        at[:, :, k] = (further.at - path.at) / step
-        nodes[:, :, :, k] = (further.nodes - path.nodes) / step
+        least, size = _extent(name)
+        step = 1e-3 * size
+        low, high = max(given[name] - step, least), given[name] + step
+        ends = [path_at({**given, name: value}) for value in (low, high)]
+        at[:, :, k] = (ends[1].at - ends[0].at) / (high - low)
+        nodes[:, :, :, k] = (ends[1].nodes - ends[0].nodes) / (high - low)
     if here.smooth and here.rest:
         # How dphi sets in may change at once, and more than a step shows: what the first step
         # integrates to is the change of phi.
@@ -191,6 +193,8 @@ def _of_drive(name: str) -> bool:
     return CATALOGUE[effect].actuate is not None or CATALOGUE[effect].delay == parameter
 
 
-def _usual_size(name: str) -> float:
+def _extent(name: str) -> tuple[float, float]:
+    """The least value of a quantity of an effect, and its usual size."""
     effect, parameter = name.split(".")
-    return next(q.typical for q in CATALOGUE[effect].parameters if q.name == parameter)
+    q = next(q for q in CATALOGUE[effect].parameters if q.name == parameter)
+    return q.bounds[0], q.typical
