@@ -542,7 +542,7 @@ def fitted(
             return fit
     for q in reversed([q for q in grid() if q < fit.problem.q]):
         lower = replace(problem, q=q)
-        lower = solve(lower, fit.values, fit.states, SETTINGS.descent_steps, enough=fit.deviance)
+        lower = solve(lower, fit.values, fit.states, steps, enough=fit.deviance)
         if lower.deviance >= fit.deviance:
             break
         fit = lower

@@ -119,8 +119,8 @@ class Selection:
         parent = self.best
         room = SETTINGS.most_effects - len(parent.choices)
         promising = [s for s in scores(parent.fit, min(room, 2)) if s.gain > 0]
-        singles = [s for s in promising if len(s.choices) == 1][: SETTINGS.singles]
-        pairs = [s for s in promising if len(s.choices) == 2][: SETTINGS.pairs]
+        singles = [s for s in promising if len(s.choices) == 1][: SETTINGS.promising]
+        pairs = [s for s in promising if len(s.choices) == 2][: SETTINGS.promising]
         for one in singles:
             yield self.fitted((*parent.choices, *one.choices), [one.guess], parent)
         best = max(
@@ -140,7 +140,7 @@ class Selection:
             forms = [*self._forms(choice, fuller=True)]
             if not forms:
                 continue
-            others = tuple(c.name for c in rest)
+            others = [name for name in self.model.catalogue if name != choice.name]
             proposed = self.model.proposals(parent.fit, others)
             for form, own in forms:
                 fuller = Choice(choice.name, form)
@@ -227,12 +227,14 @@ class Selection:
                 yield self.fitted((*rest, Choice(choice.name, form)), [{}], candidate)
 
     def _forms(self, choice: Choice, *, fuller: bool) -> Iterator[tuple[int, set[str]]]:
-        """Forms of an effect with more quantities, or fewer; and the quantities of this one."""
+        """The next forms of an effect with more quantities, or fewer; and those of this one."""
         forms = self.model.catalogue[choice.name].forms
-        own = {q.name for q in forms[choice.form].quantities}
-        for k, form in enumerate(forms):
-            names = {q.name for q in form.quantities}
-            if (own < names) if fuller else (names < own):
+        every = [{q.name for q in form.quantities} for form in forms]
+        own = every[choice.form]
+        others = {k: one for k, one in enumerate(every) if (own < one if fuller else one < own)}
+        for k, one in others.items():
+            between = (own < x < one if fuller else one < x < own for x in others.values())
+            if not any(between):
                 yield k, own
 
 
