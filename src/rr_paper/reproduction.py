@@ -15,11 +15,19 @@ from rr_opt.model.robot import Robot
 from rr_opt.results.result import Result
 from rr_paper.best_amplitude import BestAmplitude, audit_best_amplitude
 from rr_paper.consistency import Consistency, audit_hypotheses
-from rr_paper.period import PeriodLaw, audit_period
 from rr_paper.prototype import ABOUT_P, Sensitivity, sensitivities
 from rr_paper.publication import TABLE_3
-from rr_paper.servo import ServoDemand, SingularPosture, servo_demands, singular_posture
 from rr_paper.signs import SignAudit, audit_signs
+from rr_paper.statements import (
+    PeriodLaw,
+    ServoDemand,
+    SingularPosture,
+    Turning,
+    audit_period,
+    audit_turning,
+    servo_demands,
+    singular_posture,
+)
 from rr_paper.tables import (
     SpeedSurface,
     Start,
@@ -29,7 +37,6 @@ from rr_paper.tables import (
     recompute,
     start_from_rest,
 )
-from rr_paper.turning import Turning, audit_turning
 
 _TYPICAL = TABLE_3[1]
 """The row that is driven where the paper does not say which run it shows."""
@@ -104,7 +111,7 @@ def mujoco_speed(robot: Robot, gait: SineGait) -> float | None:
     """The mean speed of a gait in the virtual laboratory, m/s; None without MuJoCo."""
     if find_spec("mujoco") is None:
         return None
-    from rr_lab.engines import record
+    from rr_lab.case import record
 
     seen = record(robot, gait, _SETTLED, "rest")
     x, y, psi = (seen.values[name] for name in ("x", "y", "psi"))

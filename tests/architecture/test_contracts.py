@@ -25,7 +25,7 @@ PLANTED = [
     ("layers", "rr_opt/motion/planted.py", "import rr_opt.files.lint"),
     ("layers", "rr_opt/design/planted.py", "import rr_opt.cli.main"),
     ("layers", "rr_opt/design/planted.py", "import rr_opt.batch.run"),
-    ("layers", "rr_opt/report/planted.py", "import rr_opt.api.fastest"),
+    ("layers", "rr_opt/report/planted.py", "import rr_opt.api.optimise"),
     ("layers", "rr_opt/results/planted.py", "import rr_opt.report.fastest"),
     ("layers", "rr_opt/api/planted.py", "import rr_opt.cli.main"),
     ("layers", "rr_opt/sysid/planted.py", "import rr_opt.machines.racer.racer"),
@@ -49,7 +49,7 @@ PLANTED = [
     ("plain-model", "rr_opt/model/robot.py", "import casadi as ca"),
     ("trial-apart", "rr_lab/trial/planted.py", "import rr_opt.sysid.selection"),
     ("lab-apart", "rr_lab/rig.py", "import rr_opt.motion.steady_cycle"),
-    ("lab-apart", "rr_lab/sampling.py", "import rr_opt.files.lint"),
+    ("lab-apart", "rr_lab/random_case.py", "import rr_opt.files.lint"),
     ("engines-apart", "rr_lab/planar/planted.py", "import rr_lab.mujoco.plant"),
 ]
 PACKAGES = ("rr_opt", "rr_lab", "rr_paper")

@@ -24,9 +24,8 @@ from rr_opt.documents.document import (
     csv_text,
     warnings,
 )
+from rr_opt.documents.rendering import markdown, page, terminal
 from rr_opt.documents.report import Report
-from rr_opt.documents.text import markdown, terminal
-from rr_opt.documents.webpage import page
 
 EVIL = '<script>alert("&")</script>'
 CASES = Table(("speed", "name"), ((0.12344, "a"), (None, Badge("b", "good"))))

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 
-from rr_opt.api.identity import identity
-from rr_opt.api.load import PathLike, problem_of
+from rr_opt.api.load import PathLike, identity, problem_of
 from rr_opt.model.problem import Problem
 from rr_opt.motion.dynamics import require_friction
 from rr_opt.results.result import Progress, quiet

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import rr_opt as rr
 from rr_opt.cli import options
-from rr_opt.cli.show import show
+from rr_opt.cli.options import show
 from rr_opt.cli.steps import Steps
 
 

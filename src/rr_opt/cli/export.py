@@ -3,21 +3,21 @@
 from __future__ import annotations
 
 import rr_opt as rr
-from rr_opt.cli import choices, options
-from rr_opt.cli.show import show
+from rr_opt.cli import options
+from rr_opt.cli.options import show
 from rr_opt.cli.steps import Steps
 
 
 def export(
     source: options.Driven = None,
     *,
-    kind: choices.SetPoints = "csv",
-    rate: choices.PointRate = 125.0,
-    keep_period: choices.KeepPeriod = False,
+    kind: options.SetPoints = "csv",
+    rate: options.PointRate = 125.0,
+    keep_period: options.KeepPeriod = False,
     amplitude: options.Amplitude = None,
     period: options.Period = None,
     offset: options.Offset = None,
-    out: choices.PointFile = None,
+    out: options.PointFile = None,
     json: options.Summary = False,
 ) -> None:
     """Write a gait as set points for a controller.

@@ -6,22 +6,22 @@ from pathlib import Path
 from typing import Annotated
 
 import rr_opt as rr
-from rr_opt.cli import choices, options
-from rr_opt.cli.show import show
+from rr_opt.cli import options
+from rr_opt.cli.options import show
 from rr_opt.cli.steps import Steps
 
 
 def inspect(
-    source: choices.Recorded,
+    source: options.Recorded,
     *,
-    layout: choices.Layout = None,
-    servo_log: choices.ServoLog = None,
-    amplitude: choices.CommandedAmplitude = None,
-    period: choices.CommandedPeriod = None,
-    offset: choices.CommandedOffset = None,
-    start: choices.Start = "running",
+    layout: options.Layout = None,
+    servo_log: options.ServoLog = None,
+    amplitude: options.CommandedAmplitude = None,
+    period: options.CommandedPeriod = None,
+    offset: options.CommandedOffset = None,
+    start: options.Start = "running",
     out: Annotated[Path | None, options.out_option("out/NAME-inspect")] = None,
-    netcdf: choices.NetCDF = None,
+    netcdf: options.NetCDF = None,
     figures: options.Figures = True,
     json: Annotated[bool, options.json_option("inspection.json")] = False,
 ) -> None:

@@ -22,7 +22,7 @@ def lint(
     json: Annotated[bool, typer.Option("--json", help="Print JSON on stdout.")] = False,
 ) -> None:
     """Check input files and list every mistake in them. Exits with 2 if there is an error."""
-    from rr_opt.api import lint as library
+    from rr_opt.api import files as library
     from rr_opt.files.issue import has_errors
 
     checked = {str(file): library.lint(file) for file in files}

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import rr_opt as rr
 from rr_opt.cli import options
-from rr_opt.cli.show import show
+from rr_opt.cli.options import show
 from rr_opt.cli.steps import Steps
 
 

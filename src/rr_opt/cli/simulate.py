@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import rr_opt as rr
-from rr_opt.cli import choices, options
-from rr_opt.cli.show import show
+from rr_opt.cli import options
+from rr_opt.cli.options import show
 from rr_opt.cli.steps import Steps
 
 
@@ -14,12 +14,12 @@ def simulate(
     amplitude: options.Amplitude = None,
     period: options.Period = None,
     offset: options.Offset = None,
-    seconds: choices.Seconds = 10.0,
-    start: choices.From = "rest",
-    rate: choices.Samples = 100.0,
-    out: choices.MotionFolder = None,
-    kind: choices.Trajectory = "csv",
-    animate: choices.Film = None,
+    seconds: options.Seconds = 10.0,
+    start: options.From = "rest",
+    rate: options.Samples = 100.0,
+    out: options.MotionFolder = None,
+    kind: options.Trajectory = "csv",
+    animate: options.Film = None,
     json: options.Summary = False,
 ) -> None:
     """Simulate a gait for some time.

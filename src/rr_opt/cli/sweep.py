@@ -9,7 +9,7 @@ import typer
 
 import rr_opt as rr
 from rr_opt.cli import options
-from rr_opt.cli.show import show
+from rr_opt.cli.options import show
 from rr_opt.cli.steps import Steps
 
 _POINTS = "Approximate number of gaits on the grid; at least two values of each quantity."

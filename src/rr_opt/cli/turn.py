@@ -6,19 +6,19 @@ from pathlib import Path
 from typing import Annotated
 
 import rr_opt as rr
-from rr_opt.cli import choices, options
-from rr_opt.cli.show import show
+from rr_opt.cli import options
+from rr_opt.cli.options import show
 from rr_opt.cli.steps import Steps
 
 
 def turn(
     problem: options.ProblemFile = None,
     *,
-    radius: choices.Radius = None,
-    heading: choices.Heading = None,
-    within: choices.Within = None,
-    length: choices.Length = None,
-    cycles: choices.Cycles = "any",
+    radius: options.Radius = None,
+    heading: options.Heading = None,
+    within: options.Within = None,
+    length: options.Length = None,
+    cycles: options.Cycles = "any",
     out: Annotated[Path | None, options.out_option("out/NAME-turn-...")] = None,
     json: Annotated[bool, options.json_option("result.json")] = False,
     figures: options.Figures = True,

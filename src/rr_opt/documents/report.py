@@ -10,8 +10,7 @@ from typing import Any
 
 from rr_opt.documents import document as doc
 from rr_opt.documents.archive import folder_for_results, remove, write_json, write_text
-from rr_opt.documents.text import markdown, terminal
-from rr_opt.documents.webpage import PAGE, page
+from rr_opt.documents.rendering import PAGE, markdown, page, terminal
 from rr_opt.files.record import plain
 from rr_opt.version import __version__
 

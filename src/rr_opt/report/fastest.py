@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 
 from rr_opt.documents import document as doc
 from rr_opt.documents.report import Report
+from rr_opt.documents.texts import captions
 from rr_opt.formatting import QUANTITIES, counted, number, price_text, with_unit
 from rr_opt.messages import listed
 from rr_opt.model.ballast import inertia_ratio
@@ -14,7 +15,6 @@ from rr_opt.model.parameters import PARAMETERS, parameters_of
 from rr_opt.model.robot import Robot
 from rr_opt.motion.rollout import one_period
 from rr_opt.outcome import Status
-from rr_opt.report.captions import captions
 from rr_opt.report.fastest_record import fastest_record
 from rr_opt.report.gait import gait_facts, signed_fact, speed_fact
 from rr_opt.report.trajectory_file import trajectory_csv

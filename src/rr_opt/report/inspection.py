@@ -13,12 +13,12 @@ import numpy as np
 from rr_opt.documents import document as doc
 from rr_opt.documents.archive import file_for_result, whole
 from rr_opt.documents.report import Progress, Report, quiet
+from rr_opt.documents.texts import captions
 from rr_opt.formatting import counted, number, with_unit
 from rr_opt.model.experiment import Flag
 from rr_opt.recordings.inspection import Inspection
 from rr_opt.recordings.time_axis import time_step
 from rr_opt.recordings.warnings import size_text
-from rr_opt.report.captions import captions
 from rr_opt.report.inspection_record import inspection_record, travelled
 from rr_opt.results.inspection import InspectedRecordings
 

@@ -10,8 +10,8 @@ from typing import Any
 from rr_opt.documents.archive import folder_for_results, remove, write_text
 from rr_opt.documents.document import Fact, facts_alone
 from rr_opt.documents.report import Progress, Report, quiet
+from rr_opt.documents.texts import captions
 from rr_opt.formatting import number, speed_text
-from rr_opt.report.captions import captions
 from rr_opt.report.gait import gait_facts
 from rr_opt.report.trajectory_file import netcdf_writer, trajectory_csv, write_netcdf
 from rr_opt.results.motion import Film, Format, SimulatedMotion

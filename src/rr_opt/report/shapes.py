@@ -8,10 +8,10 @@ from typing import Any
 from rr_opt.documents import document as doc
 from rr_opt.documents.archive import strict_json
 from rr_opt.documents.report import Report
+from rr_opt.documents.texts import captions
 from rr_opt.files.record import plain
 from rr_opt.formatting import direction_text, number, with_unit
 from rr_opt.outcome import Status
-from rr_opt.report.captions import captions
 from rr_opt.results.fastest import FastestGait
 from rr_opt.results.shapes import FastestShapes, family
 

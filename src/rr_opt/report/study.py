@@ -11,9 +11,9 @@ import numpy as np
 
 from rr_opt.documents import document as doc
 from rr_opt.documents.report import Report
+from rr_opt.documents.texts import captions
 from rr_opt.formatting import direction_text, number, speed_text, with_unit
 from rr_opt.outcome import Status
-from rr_opt.report.captions import captions
 from rr_opt.report.study_table import study_columns, study_csv, write_netcdf
 from rr_opt.report.trajectory_file import netcdf_writer
 from rr_opt.results.inputs import axis_words, held_words

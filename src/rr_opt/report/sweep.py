@@ -7,8 +7,8 @@ from typing import Any
 
 from rr_opt.documents import document as doc
 from rr_opt.documents.report import Report
+from rr_opt.documents.texts import captions
 from rr_opt.formatting import number, with_unit
-from rr_opt.report.captions import captions
 from rr_opt.report.gait import gait_facts, speed_fact
 from rr_opt.results.sweep import Sweep
 from rr_opt.verify.evaluate import LIMITS, Found

@@ -9,10 +9,10 @@ from typing import Any
 
 from rr_opt.design.turn import Arc
 from rr_opt.documents import document as doc
+from rr_opt.documents.texts import captions
 from rr_opt.files.record import plain
 from rr_opt.formatting import number, side_text, with_unit
 from rr_opt.report import fastest
-from rr_opt.report.captions import captions
 from rr_opt.results.turn import FastestTurn
 
 UNITS = {

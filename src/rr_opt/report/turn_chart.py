@@ -10,9 +10,9 @@ import numpy as np
 
 from rr_opt.documents import document as doc
 from rr_opt.documents.report import Report
+from rr_opt.documents.texts import captions
 from rr_opt.files.record import plain
 from rr_opt.formatting import number, with_unit
-from rr_opt.report.captions import captions
 from rr_opt.report.gait import speed_fact
 from rr_opt.results.turn_chart import TurnChart, sine_text
 from rr_opt.verify.turn_chart import RadiusClaim, SignClaim

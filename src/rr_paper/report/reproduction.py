@@ -9,9 +9,8 @@ import numpy as np
 
 from rr_opt.documents.document import Document, Figure, Gallery, Section, csv_text, versions
 from rr_opt.documents.report import Report
-from rr_paper.publication import CITATION, RATE_LIMIT
-from rr_paper.report.audit import findings
-from rr_paper.report.captions import captions
+from rr_paper.audit import findings
+from rr_paper.publication import CITATION, RATE_LIMIT, captions
 from rr_paper.reproduction import Reproduction
 from rr_paper.tables import SpeedSurface
 
@@ -124,6 +123,6 @@ REPORT = Report(
         *("audit-signs.csv", "audit-left-out.csv", "audit-readings.csv", "audit-limits.csv"),
         *("audit-posture.csv", "audit-period.csv", "audit-amplitude.csv", "audit-turning.csv"),
     ),
-    figures="rr_paper.report.figures",
+    figures="rr_paper.figures",
     captions=captions("reproduction"),
 )

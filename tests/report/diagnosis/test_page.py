@@ -8,7 +8,7 @@ import subprocess
 
 import pytest
 
-from rr_opt.documents.webpage import page
+from rr_opt.documents.rendering import page
 from rr_opt.report.diagnosis.document import REPORT
 
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))), None)

@@ -7,8 +7,8 @@ from pathlib import Path
 
 from rr_opt.documents import document as doc
 from rr_opt.documents.report import Progress, Report, quiet
+from rr_opt.documents.texts import captions
 from rr_opt.files.record import robot_yaml
-from rr_opt.report.captions import captions
 from rr_opt.report.diagnosis import words
 from rr_opt.report.diagnosis.loss import share_lost
 from rr_opt.report.diagnosis.record import record

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from rr_opt.documents.document import Fact, facts_alone
-from rr_opt.documents.text import terminal
+from rr_opt.documents.rendering import terminal
 from rr_opt.formatting import counted
 from rr_opt.report.diagnosis import words
 from rr_opt.report.diagnosis.loss import loss_line

@@ -1,15 +1,18 @@
-"""Prose with computed numbers in it, kept as text files: Markdown with Jinja2 expressions.
+"""Texts that are kept in files: prose with computed numbers in it, and the captions of figures.
 
-A file has sections `# key: Title`, each of paragraphs. Filters write a number: `n(3)` to three
-significant digits, `f(1)` to one decimal, `e` as a power of ten, `span` as a range.
+Prose is Markdown with Jinja2 expressions: sections `# key: Title`, each of paragraphs. Filters
+write a number: `n(3)` to three significant digits, `f(1)` to one decimal, `e` as a power of ten,
+`span` as a range.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from importlib.resources import files
 from typing import Any
 
+from rr_opt.documents.document import Captions
 from rr_opt.formatting import number
 
 
@@ -57,3 +60,15 @@ def _span(low: float, high: float, digits: int = 3) -> str:
     if math.isinf(high):
         return f"above {number(low, digits)}"
     return f"{number(low, digits)} to {number(high, digits)}"
+
+
+def captions(kind: str) -> Captions:
+    """Of the figures of a kind of result, by name; see the head of texts/figures.md."""
+    text = (files("rr_opt.report") / "texts" / "figures.md").read_text(encoding="utf-8")
+    own = text.partition(f"\n# {kind}\n")[2].partition("\n# ")[0]
+    found = {}
+    for part in own.split("\n## ")[1:]:
+        head, alt, *caption = (" ".join(one.split()) for one in part.strip().split("\n\n"))
+        name, _, title = head.partition(": ")
+        found[name] = (title, alt, " ".join(caption))
+    return found

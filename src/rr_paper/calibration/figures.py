@@ -20,12 +20,11 @@ from rr_opt.report.figures.style import (
     styled,
     svg,
 )
-from rr_paper.calibration.coverage import Coverage
-from rr_paper.calibration.likelihood import measured
-from rr_paper.calibration.models import MODELS, VISCOUS
-from rr_paper.calibration.profiles import LEVEL
+from rr_paper.calibration.comparison import Coverage
+from rr_paper.calibration.fit import measured
+from rr_paper.calibration.intervals import LEVEL
+from rr_paper.calibration.models import MODELS, UNKNOWNS, VISCOUS
 from rr_paper.calibration.result import Calibration, Interval, shipped_values
-from rr_paper.calibration.unknowns import UNKNOWNS
 from rr_paper.publication import COLUMNS, ROWS, T_POINT, Column
 
 _MARKS = {

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from rr_opt.documents.document import Cell, Table, table
-from rr_opt.documents.prose import prose
+from rr_opt.documents.texts import prose
 from rr_opt.formatting import number
 from rr_opt.model.ballast import Loads, load_count
 from rr_opt.results.fastest import FastestGait
@@ -36,7 +36,7 @@ def findings(found: Reproduction) -> tuple[Finding, ...]:
     masses = (publication.TABLE_1[name].value for name in ("m1", "m2"))
     ratios = (*(row.ratio for row in publication.TABLE_2), publication.TABLE_3[0].ratio)
     texts = prose(
-        "rr_paper.report",
+        "rr_paper",
         "audit.md",
         found=found,
         deviation={one.signs.name: one for one in found.signs.deviations},

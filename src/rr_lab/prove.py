@@ -9,7 +9,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from rr_lab.engines import ENGINES, Engine
+from rr_lab.case import ENGINES, Engine
 from rr_lab.mujoco.plant import engine as mujoco
 from rr_lab.report.case import ProvedCase
 from rr_lab.report.proof import Proof
