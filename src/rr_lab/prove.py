@@ -17,8 +17,7 @@ from rr_lab.trial.draws import CODE, KINDS, Basis, read_kinds, read_seed, seed_o
 from rr_lab.trial.trial import again, basis_of, whole_trial
 from rr_opt.batch.run import pool_of, run
 from rr_opt.documents.archive import folder_for_results
-from rr_opt.documents.report import Progress, quiet
-from rr_opt.results.result import Result
+from rr_opt.results.result import Progress, Result, quiet
 
 
 @dataclass(frozen=True, repr=False)

@@ -15,14 +15,13 @@ from rr_lab.formats import drawn_clock
 from rr_lab.random_case import Request
 from rr_opt.api.load import load_robot, prototype, read_arguments
 from rr_opt.documents.archive import file_for_result, folder_for_results, write_bytes, write_text
-from rr_opt.documents.report import Progress, quiet
 from rr_opt.files.experiment_file import FILE_NAME
 from rr_opt.formatting import QUANTITIES
 from rr_opt.model.experiment import Noise
 from rr_opt.model.gait import SineGait
 from rr_opt.model.robot import EffectUse, Robot
 from rr_opt.outcome import InputError
-from rr_opt.results.result import Result
+from rr_opt.results.result import Progress, Result, quiet
 from rr_opt.units import Quantity
 
 STARTS, USES = ("rest", "running"), ("fit", "holdout")

@@ -13,8 +13,8 @@ from matplotlib.ticker import MaxNLocator
 
 from rr_opt.array import Array
 from rr_opt.formatting import number
-from rr_opt.report.figures.path import along_travel
-from rr_opt.report.figures.style import (
+from rr_opt.results.figures.motion import along_travel
+from rr_opt.results.figures.style import (
     BACKWARD,
     FORWARD,
     GREY,

@@ -3,8 +3,8 @@
 import math
 
 from rr_opt.outcome import Status
-from rr_paper.audit import findings
 from rr_paper.publication import ANGLE_LIMIT
+from rr_paper.reproduction import findings
 from rr_paper.signs import CORRECTED
 
 

@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 from rr_opt.cli.main import app
 from rr_paper import reproduction
 from rr_paper.publication import TABLE_2, TABLE_3
-from rr_paper.report.reproduction import REPORT
+from rr_paper.reproduction import REPORT
 
 SVGS = [f"{name}.svg" for name in REPORT.captions]
 

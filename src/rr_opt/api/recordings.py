@@ -11,7 +11,6 @@ import numpy as np
 
 from rr_opt.api.load import identity
 from rr_opt.documents.archive import file_for_result
-from rr_opt.documents.report import Progress, quiet
 from rr_opt.files.experiment_file import read_plan
 from rr_opt.files.source import fingerprint
 from rr_opt.model.experiment import Experiment, Run, Start
@@ -22,6 +21,7 @@ from rr_opt.recordings.experiment import inspect_experiment, is_experiment, read
 from rr_opt.recordings.inspection import inspect_file
 from rr_opt.recordings.usable import usable
 from rr_opt.results.inspection import InspectedRecordings
+from rr_opt.results.result import Progress, quiet
 
 if TYPE_CHECKING:
     from rr_opt.results.diagnosis import ExplainedExperiment

@@ -82,7 +82,7 @@ def results_folder(out: Path | None, name: str) -> Path:
 
 def motion_folder(out: Path | None, source: Path | None, format: Any, film: Any) -> Path:
     """The folder of a motion. Raises InputError also for files that cannot be made here."""
-    from rr_opt.report.motion import check_files
+    from rr_opt.results.motion import check_files
 
     check_files(format, film)
     return results_folder(out, f"{result_name(source)}-motion")
@@ -90,7 +90,7 @@ def motion_folder(out: Path | None, source: Path | None, format: Any, film: Any)
 
 def study_folder(out: Path | None, name: str, *, netcdf: bool) -> Path:
     """The folder of a study. Raises InputError also for a netCDF file that cannot be made here."""
-    from rr_opt.report.study import check_files
+    from rr_opt.results.study import check_files
 
     check_files(netcdf=netcdf)
     return results_folder(out, name)

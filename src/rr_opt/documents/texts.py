@@ -63,8 +63,8 @@ def _span(low: float, high: float, digits: int = 3) -> str:
 
 
 def captions(kind: str) -> Captions:
-    """Of the figures of a kind of result, by name; see the head of texts/figures.md."""
-    text = (files("rr_opt.report") / "texts" / "figures.md").read_text(encoding="utf-8")
+    """Of the figures of a kind of result, by name; see the head of data/captions.md."""
+    text = (files("rr_opt") / "data" / "captions.md").read_text(encoding="utf-8")
     own = text.partition(f"\n# {kind}\n")[2].partition("\n# ")[0]
     found = {}
     for part in own.split("\n## ")[1:]:

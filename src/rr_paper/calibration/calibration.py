@@ -20,7 +20,8 @@ from rr_paper.calibration.models import (
     Reading,
     shares,
 )
-from rr_paper.calibration.result import ASSUMED, Alternative, Calibration, Shipped, shipped_values
+from rr_paper.calibration.report import Calibration
+from rr_paper.calibration.result import ASSUMED, Alternative, Shipped, shipped_values
 from rr_paper.publication import COLUMNS, Column
 
 _CHEAP = Effort(log2_size=15, slices=12, values=25, starts=2, steps=20, sets=200)

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from rr_opt.report.figures.style import (
+from rr_opt.results.figures.style import (
     BACKWARD,
     FAINT,
     FORWARD,
@@ -24,7 +24,7 @@ from rr_paper.calibration.comparison import Coverage
 from rr_paper.calibration.fit import measured
 from rr_paper.calibration.intervals import LEVEL
 from rr_paper.calibration.models import MODELS, UNKNOWNS, VISCOUS
-from rr_paper.calibration.result import Calibration, Interval, shipped_values
+from rr_paper.calibration.result import Findings, Interval, shipped_values
 from rr_paper.publication import COLUMNS, ROWS, T_POINT, Column
 
 _MARKS = {
@@ -48,7 +48,7 @@ _TOP = 12.0
 """Deviance up to which a profile is drawn."""
 
 
-def draw(found: Calibration) -> dict[str, str]:
+def draw(found: Findings) -> dict[str, str]:
     """All figures as SVG texts by name."""
     with styled():
         drawn = {
@@ -59,7 +59,7 @@ def draw(found: Calibration) -> dict[str, str]:
         return {name: svg(one) for name, one in drawn.items()}
 
 
-def unknowns_figure(found: Calibration) -> Figure:
+def unknowns_figure(found: Findings) -> Figure:
     """A column of panels for each unknown: above what is left of the box, below the profiles."""
     intervals = found.intervals()
     names = MODELS[VISCOUS].unknowns
@@ -80,7 +80,7 @@ def unknowns_figure(found: Calibration) -> Figure:
     return drawn
 
 
-def _posterior_panel(ax: Axes, found: Calibration, here: Sequence[Interval]) -> None:
+def _posterior_panel(ax: Axes, found: Findings, here: Sequence[Interval]) -> None:
     """Histograms over the box; the box itself is the flat grey at 1."""
     unknown = here[0].unknown
     edges, top = np.linspace(0, 1, _BINS + 1), 1.4
@@ -113,7 +113,7 @@ def _profile_panel(ax: Axes, here: Sequence[Interval]) -> None:
     ax.set_ylim(0, _TOP)
 
 
-def predictions_figure(found: Calibration) -> Figure:
+def predictions_figure(found: Findings) -> Figure:
     """A panel for each column; a mark for each model and row, in half widths of the interval."""
     drawn = figure(10.2, 6.4)
     axes = drawn.subplots(2, 1, sharex=True)
@@ -131,7 +131,7 @@ def predictions_figure(found: Calibration) -> Figure:
     return drawn
 
 
-def _prediction_panel(ax: Axes, found: Calibration, column: Column) -> None:
+def _prediction_panel(ax: Axes, found: Findings, column: Column) -> None:
     data = measured(column)
     ax.axhspan(-1, 1, color=FAINT, lw=0)
     ax.axhline(0, color=GREY, lw=0.8)

@@ -19,23 +19,23 @@ from rr_opt.documents.document import (
     csv_text,
     table,
 )
-from rr_opt.documents.report import Report
 from rr_opt.documents.texts import prose
 from rr_opt.files.record import plain
 from rr_opt.formatting import number
+from rr_opt.results.result import Result
 from rr_opt.version import __version__
 from rr_paper.calibration.comparison import Assessment
 from rr_paper.calibration.fit import measured
 from rr_paper.calibration.intervals import JOINT_LEVEL
 from rr_paper.calibration.models import DRY, MODELS, READINGS, UNKNOWNS, VISCOUS, values
-from rr_paper.calibration.result import Calibration
+from rr_paper.calibration.result import Findings
 from rr_paper.publication import CITATION, COLUMNS, ROWS, T_POINT, Column, Row, captions
 
 _DRAWS = 1000
 """Draws of each posterior that are written."""
 
 
-def record(found: Calibration, verdict: str, conclusions: tuple[str, ...]) -> dict[str, Any]:
+def record(found: Findings, verdict: str, conclusions: tuple[str, ...]) -> dict[str, Any]:
     """The content of calibration.json."""
     covered = found.coverage
     record = {
@@ -116,7 +116,7 @@ def _scores(one: Assessment) -> dict[str, float | None]:
 _Rows = list[dict[str, Any]]
 
 
-def tables(found: Calibration) -> dict[str, str]:
+def tables(found: Findings) -> dict[str, str]:
     """File name -> CSV text."""
     rows: dict[str, _Rows] = {
         "intervals.csv": _interval_rows(found),
@@ -145,7 +145,7 @@ def tables(found: Calibration) -> dict[str, str]:
     }
 
 
-def _interval_rows(found: Calibration) -> _Rows:
+def _interval_rows(found: Findings) -> _Rows:
     return [
         {"unknown": one.unknown.name, "unit": one.unknown.unit, "column": one.column,
          **_ends("box", one.unknown.box),
@@ -162,7 +162,7 @@ def _ends(name: str, interval: tuple[float, float]) -> dict[str, float]:
     return {f"{name}_low": interval[0], f"{name}_high": interval[1]}
 
 
-def _model_rows(found: Calibration) -> _Rows:
+def _model_rows(found: Findings) -> _Rows:
     rows = []
     for (name, column), one in found.assessments.items():
         boot, best = one.bootstrap, _best(one)
@@ -176,7 +176,7 @@ def _model_rows(found: Calibration) -> _Rows:
     return rows
 
 
-def _prediction_rows(found: Calibration) -> _Rows:
+def _prediction_rows(found: Findings) -> _Rows:
     rows = []
     for (name, column), one in found.assessments.items():
         data = measured(column)
@@ -197,7 +197,7 @@ def _label(row: Row) -> str:
     return f"Table 3, T = {row.period:g} s, α = {row.amplitude:g}"
 
 
-def _profile_rows(found: Calibration) -> _Rows:
+def _profile_rows(found: Findings) -> _Rows:
     rows = []
     for (name, column), one in found.assessments.items():
         profiles = {"student": one.profiles}
@@ -214,7 +214,7 @@ def _profile_rows(found: Calibration) -> _Rows:
     return rows
 
 
-def _posterior_rows(found: Calibration) -> _Rows:
+def _posterior_rows(found: Findings) -> _Rows:
     rows = []
     for column, sample in found.posterior.items():
         chosen = np.linspace(0, len(sample.points) - 1, _DRAWS).astype(int)
@@ -241,7 +241,7 @@ class Conclusions:
     shipped: tuple[str, ...]
 
 
-def conclusions(found: Calibration) -> Conclusions:
+def conclusions(found: Findings) -> Conclusions:
     """What the numbers say."""
     left_out = {key: one.left_out_deviance for key, one in found.assessments.items()}
     helps = all(left_out[DRY, column] < left_out[VISCOUS, column] for column in COLUMNS)
@@ -262,7 +262,7 @@ def conclusions(found: Calibration) -> Conclusions:
     return Conclusions(verdict, *parts)
 
 
-def document(found: Calibration, figures: Sequence[Figure]) -> Document:
+def document(found: Findings, figures: Sequence[Figure]) -> Document:
     """The page and the text for a terminal."""
     drawn = {figure.name: figure for figure in figures}
     said = conclusions(found)
@@ -291,7 +291,7 @@ def document(found: Calibration, figures: Sequence[Figure]) -> Document:
     )
 
 
-def _interval_table(found: Calibration) -> Table:
+def _interval_table(found: Findings) -> Table:
     head = ("Unknown", "Measured", "Box", "Posterior", "Profile, Student", "Profile, normal",
             "Verdict")  # fmt: skip
     return table(
@@ -305,7 +305,7 @@ def _interval_table(found: Calibration) -> Table:
     )  # fmt: skip
 
 
-def _model_table(found: Calibration) -> Table:
+def _model_table(found: Findings) -> Table:
     head = ("Model", "Measured", "Unknowns", "Deviance", "χ², normal", "Degrees of freedom", "AICc",
             "Rows left out", "Table 3 alone: AICc")  # fmt: skip
     return table(
@@ -333,7 +333,7 @@ def _box_table() -> Table:
     )
 
 
-def _reading_table(found: Calibration) -> Table:
+def _reading_table(found: Findings) -> Table:
     deviance = {
         (READINGS[0], name, column): one.student.deviance
         for (name, column), one in found.assessments.items()
@@ -353,7 +353,7 @@ def _reading_table(found: Calibration) -> Table:
     )  # fmt: skip
 
 
-def _sampling(found: Calibration) -> tuple[str, str]:
+def _sampling(found: Findings) -> tuple[str, str]:
     samples = ", ".join(
         f"{len(one.points)} draws with split R-hat {one.rhat:.2f} ({_SHORT[column]})"
         for column, one in found.posterior.items()
@@ -366,20 +366,25 @@ def _sampling(found: Calibration) -> tuple[str, str]:
     )
 
 
-def _record(found: Calibration) -> dict[str, Any]:
-    said = conclusions(found)
-    return record(found, said.verdict, said.follows)
+@dataclass(frozen=True, repr=False)
+class Calibration(Findings, Result):
+    """What the nine rows say, as a report."""
 
-
-REPORT = Report(
-    _record,
-    document,
-    "calibration.json",
-    tables=tables,
-    others=(
+    FILE = "calibration.json"
+    OTHERS = (
         *("intervals.csv", "models.csv", "predictions.csv", "profiles.csv", "posterior.csv"),
         *("readings.csv", "coverage.csv"),
-    ),
-    figures="rr_paper.calibration.figures",
-    captions=captions("calibration"),
-)
+    )
+    DRAW = "rr_paper.calibration.figures.draw"
+    CAPTIONS = captions("calibration")
+
+    def _record(self) -> dict[str, Any]:
+        said = conclusions(self)
+        return record(self, said.verdict, said.follows)
+
+    def _tables(self) -> dict[str, str]:
+        return tables(self)
+
+    def document(self, figures: Sequence[Figure] = ()) -> Document:
+        """The page and the text for a terminal."""
+        return document(self, figures)

@@ -9,7 +9,6 @@ import numpy as np
 
 from rr_opt.array import Array
 from rr_opt.files.problem_file import read_problem
-from rr_opt.results.result import Result
 from rr_paper.calibration.comparison import Assessment, Coverage
 from rr_paper.calibration.fit import Fit
 from rr_paper.calibration.intervals import Posterior, Profile
@@ -92,7 +91,7 @@ class Interval:
 
 
 @dataclass(frozen=True, repr=False)
-class Calibration(Result):
+class Findings:
     """What the nine rows say.
 
     assessments      by model and column
@@ -102,8 +101,6 @@ class Calibration(Result):
     coverage         on data of known robots
     alternatives     other readings of J20/J10
     """
-
-    REPORT = "rr_paper.calibration.report"
 
     assessments: Mapping[tuple[str, Column], Assessment]
     posterior: Mapping[Column, Posterior]

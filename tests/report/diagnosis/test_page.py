@@ -9,7 +9,7 @@ import subprocess
 import pytest
 
 from rr_opt.documents.rendering import page
-from rr_opt.report.diagnosis.document import REPORT
+from rr_opt.results.diagnosis import REPORT
 
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))), None)
 DESK, PHONE = 1200, 412

@@ -2,8 +2,7 @@
 
 from dataclasses import replace
 
-from rr_opt.report.diagnosis.tables import candidates_table
-from rr_opt.report.diagnosis.words import stage_text, total
+from rr_opt.results.diagnosis_tables import candidates_table, stage_text, total
 from rr_opt.sysid.diagnosis import Mismatch, Tried
 
 

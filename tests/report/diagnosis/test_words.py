@@ -4,8 +4,8 @@ import math
 
 import pytest
 
-from rr_opt.report.diagnosis.summary import summary
-from rr_opt.report.diagnosis.words import headline, interval_text, value_text
+from rr_opt.results.diagnosis import summary
+from rr_opt.results.diagnosis_tables import headline, interval_text, value_text
 from rr_opt.sysid.diagnosis import Estimate
 
 

@@ -7,11 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from rr_opt.model.gait import Gait
-from rr_opt.results.diagnosis import ExplainedExperiment
-from rr_opt.results.loss import Loss, LossUnknown
 from rr_opt.sysid.diagnosis import (
     Curve,
+    Diagnosis,
     Estimate,
     Finding,
     Misfit,
@@ -22,17 +20,15 @@ from rr_opt.sysid.diagnosis import (
 )
 
 
-def record(one: ExplainedExperiment) -> dict[str, Any]:
-    """The whole of `diagnosis.json`; what is not finite is null."""
-    found = one.found
+def diagnosis_record(found: Diagnosis, where: str) -> dict[str, Any]:
+    """The content of `diagnosis.json` that is of the diagnosis alone."""
     return {
-        "name": one.name,
         "verdict": found.verdict,
         "summary": found.summary,
         "mismatch": {"rms_beyond_noise": found.mismatch.rms, "p_value": found.mismatch.p_value},
         "location": {
             "channel": found.channel,
-            "where": one.where,
+            "where": where,
             "evidence": [_evidence(stage) for stage in found.stages],
         },
         "effects": [_finding(each, found.verdict == "parameters") for each in found.findings],
@@ -40,26 +36,25 @@ def record(one: ExplainedExperiment) -> dict[str, Any]:
         "remainder": found.remainder,
         "indistinguishable": found.indistinguishable,
         "next_experiment": found.next_experiment and _next(found.next_experiment),
-        "fit": _fit(one),
-        "loss": loss_record(one.loss),
+        "fit": _fit(found),
+        "loss": None,
         "residue": [
             {"kind": r.kind, **_curve(r), "share": r.share, "sentence": r.sentence}
             for r in found.residue
         ],
         "parameters": {name: _estimate(each) for name, each in found.parameters.items()},
         "values": found.values,
-        "left_out": one.left_out,
-        "doubts": one.doubts,
+        "left_out": (),
+        "doubts": (),
         "seconds": found.seconds,
     }
 
 
-def _fit(one: ExplainedExperiment) -> dict[str, Any]:
+def _fit(found: Diagnosis) -> dict[str, Any]:
     """Everything in units of the noise sigma.
 
     Where none is held out, the `heldout` ones are of the fitted recordings.
     """
-    found = one.found
     levels = {"before": found.nominal, "parameters": found.refitted, "after": found.final}
     fitted = {name: [m for m in level if not m.held_out] for name, level in levels.items()}
     held = {name: [m for m in level if m.held_out] for name, level in levels.items()}
@@ -144,24 +139,3 @@ def _next(asked: NextExperiment) -> dict[str, Any]:
     gait = {name: getattr(asked, name) for name in ("amplitude", "period", "offset")}
     names = ("start", "heading", "seconds", "between", "separation", "sentence")
     return {"gait": gait, **{name: getattr(asked, name) for name in names}}
-
-
-def loss_record(one: Loss | LossUnknown | None) -> dict[str, Any] | None:
-    """diagnosis.json's `loss`: null where the robot as believed is right; SI."""
-    if one is None:
-        return None
-    if isinstance(one, LossUnknown):
-        return {"not_told": one.sentence}
-    return {
-        "gait_as_believed": _gait(one.believed),
-        "speed_promised": one.promised,
-        "speed_reached": one.reached,
-        "gait_as_found": _gait(one.best),
-        "speed_as_found": one.speed,
-        "share_lost": one.share,
-        "beyond_what_was_recorded": one.unseen,
-    }
-
-
-def _gait(gait: Gait) -> dict[str, float]:
-    return {name: getattr(gait, name) for name in ("amplitude", "period", "offset")}

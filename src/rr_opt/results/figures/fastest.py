@@ -6,17 +6,18 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
+import numpy as np
 from matplotlib.axes import Axes
 
 from rr_opt.formatting import QUANTITIES, number
 from rr_opt.model.gait import SineGait
 from rr_opt.motion.rollout import repeated
-from rr_opt.report.figures import style
-from rr_opt.report.figures.cycle import cycle
-from rr_opt.report.figures.path import along_travel, cycles_to_show, path
-from rr_opt.report.figures.speed_map import map_data, speed_map
 from rr_opt.results.fastest import FastestGait
+from rr_opt.results.figures import style
+from rr_opt.results.figures.motion import along_travel, cycle, cycles_to_show, path
+from rr_opt.results.figures.speed_map import map_data, speed_map
 from rr_opt.results.limits import BoundRow, LimitRow
+from rr_opt.results.shapes import FastestShapes, family
 from rr_opt.verify.replay import Replay
 
 
@@ -116,3 +117,44 @@ def prices(ax: Axes, lines: Sequence[Gain]) -> Axes:
         xlabel="speed gained by relaxing it by 1 %, mm/s",
     )
     return ax
+
+
+_SAMPLES = 1500
+_SHADES = (0.35, 0.55, 0.75, 1.0)
+
+
+def draw_shapes(compared: FastestShapes) -> dict[str, str]:
+    """The figure as SVG text by its name; nothing if no family has an optimum.
+
+    phi (rad) and its rate (rad/s) over the phase, and a bar for each speed (mm/s).
+    """
+    solved = [(one, one.gait, one.speed) for one in compared.solved]
+    lines = [(one, gait, speed) for one, gait, speed in solved if gait and speed is not None]
+    if not lines:
+        return {}
+    with style.styled():
+        drawn = style.figure(style.WIDTH, 6.4)
+        axes = drawn.subplot_mosaic([["angle"], ["rate"], ["speed"]])
+        angle, rate, bars = (axes[name] for name in ("angle", "rate", "speed"))
+        phase, top = np.linspace(0, 1, _SAMPLES), max(1e3 * abs(speed) for *_, speed in lines)
+        for place, (one, gait, speed) in enumerate(lines):
+            first = place == 0
+            colour = style.GREY if first else style.colour_of(speed)
+            alpha = 1.0 if first else _SHADES[place - len(lines)]
+            line = {"color": colour, "alpha": alpha, "ls": (0, (5, 2)) if first else "-"}
+            angle.plot(phase, gait.angle(phase * gait.period), **line)
+            rate.plot(phase, gait.rate(phase * gait.period), **line)
+            size, gain = 1e3 * abs(speed), compared.gain(one) or 0.0
+            text = f"{size:.0f} mm/s" + ("" if first else f"  {100 * gain:+.0f} %")
+            bars.barh(place, size, height=0.62, color=colour, alpha=alpha)
+            bars.text(size + 0.02 * top, place, text, va="center", color=style.INK)
+        limit = compared.answers[0].problem.limits.rate
+        for value in (limit, -limit) if np.isfinite(limit) else ():
+            rate.axhline(value, color=style.LIMIT, lw=1.2, ls=style.DASHED)
+        angle.set_ylabel("φ, rad")
+        rate.set(ylabel="dφ/dt, rad/s", xlabel="share of the period")
+        for ax in (angle, rate):
+            ax.set_xlim(0, 1)
+        style.lanes(bars, [family(one) for one, *_ in lines])
+        bars.set(xlim=(0, 1.5 * top), xlabel="speed of the best gait, mm/s")
+        return {"shapes": style.svg(drawn)}

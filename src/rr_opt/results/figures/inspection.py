@@ -16,7 +16,7 @@ from rr_opt.recordings.gaps import Gap, bridged
 from rr_opt.recordings.inspection import Inspection
 from rr_opt.recordings.markers.pose import MarkerFit
 from rr_opt.recordings.noise import NoiseEstimate
-from rr_opt.report.figures import style
+from rr_opt.results.figures import style
 
 _MOST = 800
 _DIGITS = re.compile(r"(\.\d\d)\d+")

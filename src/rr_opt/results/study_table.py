@@ -1,9 +1,9 @@
-"""The table of a study: a column for each quantity, a row for each case; CSV and netCDF."""
+"""What a study varies, in words: its keys, and their values in the unit that people think in."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from operator import attrgetter
 from pathlib import Path
@@ -12,11 +12,72 @@ from typing import Any
 import numpy as np
 
 from rr_opt.design.study.row import Optimum, Row
-from rr_opt.documents.document import csv_text
-from rr_opt.formatting import direction_text
-from rr_opt.report.trajectory_file import netcdf_writer, write_dataset
-from rr_opt.results.study import SolvedStudy
+from rr_opt.files.study_axes import Axis
+from rr_opt.files.study_file import Study
+from rr_opt.files.study_keys import Key
+from rr_opt.formatting import QUANTITIES, direction_text, with_unit
+from rr_opt.model.parameters import PARAMETERS, SYMBOLS
+from rr_opt.results.motion import netcdf_writer, write_dataset
 from rr_opt.version import __version__
+
+_LIKE = {"angle_limit": "angle", "rate_limit": "rate", "torque_limit": "torque"}
+_SMALL = {"m": ("mm", 1e3), "N m s": ("µN m s", 1e6)}
+"""SI unit -> the unit shown, and how many of it are one SI unit."""
+
+
+def unit_of(key: Key) -> tuple[str, float]:
+    """The unit, empty for none, and how many of it are one SI unit."""
+    name = str(key.path[-1] if isinstance(key.path[-1], str) else key.path[-2])
+    kind = QUANTITIES.get(_LIKE.get(name, name))
+    unit, factor = kind.common if kind else (key.unit or "", 1.0)
+    return _SMALL.get(unit, (unit, factor))
+
+
+def value_text(key: Key, value: Any, digits: int = 4) -> str:
+    """A value of a key for people: a float, SI, in their unit; infinity is `no limit`."""
+    if not isinstance(value, float):
+        return str(value)
+    unit, factor = unit_of(key)
+    return with_unit(factor * value, unit, digits) if np.isfinite(value) else "no limit"
+
+
+def key_words(key: Key) -> str:
+    """`rate limit` for limits.rate, `mass of platform 1` for robot.platform1.m; else the key."""
+    *above, name = map(str, key.path)
+    for parameter in PARAMETERS.values():
+        if key.path == ("robot", *parameter.key):
+            return parameter.full_words
+    if above == ["limits"]:
+        return "singularity margin" if name == "singularity" else f"{name} limit"
+    if above == ["robot", "servo"]:
+        return f"servo's {name.replace('_', ' ')}"
+    if above in ([], ["gait"]) and name in QUANTITIES:
+        return QUANTITIES[name].words
+    return key.name
+
+
+def axis_words(axis: Axis) -> str:
+    """What varies along an axis: `masses of both platforms`, or the first key and how many more."""
+    keys = [line.key for line in axis.lines]
+    symbol = str(keys[0].path[-1])
+    both = {("robot", f"platform{number}", symbol) for number in (1, 2)}
+    if len(keys) == 2 and {key.path for key in keys} == both and symbol in SYMBOLS:
+        return f"{SYMBOLS[symbol].plural} of both platforms"
+    more = f" and {len(keys) - 1} more" if len(keys) > 1 else ""
+    return key_words(keys[0]) + more
+
+
+def setting_text(words: str, value: str) -> str:
+    """`rate limit 30 rpm`, `no rate limit`."""
+    if value == "no limit" and words.endswith(" limit"):
+        return f"no {words}"
+    return f"{words} {value}"
+
+
+def held_words(held: tuple[str, ...]) -> list[str]:
+    """The active limits and bounds of an optimum in words; `nothing` if there are none."""
+    return [name.replace("inertia_ratio", "J20/J10") for name in held] or ["nothing"]
+
 
 _OF_OPTIMUM = (
     ("speed", "m/s", "mean speed along the path, positive along platform 1"),
@@ -50,10 +111,11 @@ class Column:
     cells: Sequence[Any]
 
 
-def study_columns(result: SolvedStudy) -> list[Column]:
-    """All of them, in order."""
-    rows = result.rows
-    inputs = [result.study.inputs(case) for case in range(len(rows))]
+def study_columns(
+    study: Study, rows: Sequence[Row], branches: Sequence[int | None]
+) -> list[Column]:
+    """All of them, in order; branches: the number of each case's branch of optima."""
+    inputs = [study.inputs(case) for case in range(len(rows))]
 
     def of_rows(name: str, unit: str, meaning: str, cell: Callable[[Row], Any]) -> Column:
         return Column(name, unit, meaning, [cell(row) for row in rows])
@@ -82,11 +144,11 @@ def study_columns(result: SolvedStudy) -> list[Column]:
                 "varied",
                 [one[line.key.name] for one in inputs],
             )
-            for axis in result.study.axes
+            for axis in study.axes
             for line in axis.lines
         ),
         of_rows("status", "", "how the case ended", lambda row: row.status.value),
-        Column("branch", "1", branch, result.branches),
+        Column("branch", "1", branch, branches),
         of_rows("started", "", warm, lambda row: row.started),
         of_optima("drives", "", "which way", lambda one: direction_text(one.speed)),
         *(of_optima(*described, attrgetter(described[0])) for described in _OF_OPTIMUM),
@@ -100,16 +162,8 @@ def study_columns(result: SolvedStudy) -> list[Column]:
     ]
 
 
-def study_csv(result: SolvedStudy) -> str:
-    """A row for each case below the names."""
-    columns = study_columns(result)
-    rows = zip(*(column.cells for column in columns), strict=True)
-    return csv_text([column.name for column in columns], rows, digits=12)
-
-
-def write_netcdf(path: Path, result: SolvedStudy) -> Path:
+def write_netcdf(path: Path, study: Study, columns: Iterable[Column]) -> Path:
     """Write every column over the axes of the study, with units and meanings."""
-    study = result.study
     names = [axis.lines[0].key.name for axis in study.axes]
     inputs = {line.key.name for axis in study.axes for line in axis.lines}
     data = netcdf_writer().Dataset(attrs={"title": study.name, "source": f"rr-opt {__version__}"})
@@ -118,7 +172,7 @@ def write_netcdf(path: Path, result: SolvedStudy) -> Path:
             steps = line.numbers or [str(value) for value in line.values]
             data = data.assign_coords({line.key.name: (name, np.array(steps))})
             data[line.key.name].attrs.update(units=line.key.unit or "1")
-    for column in study_columns(result):
+    for column in columns:
         if column.name not in inputs:
             data[column.name] = (names, _array(column).reshape(study.shape))
             units = {"units": column.unit} if column.unit else {}

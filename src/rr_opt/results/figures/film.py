@@ -17,7 +17,7 @@ from rr_opt.documents.archive import whole
 from rr_opt.model.robot import Robot
 from rr_opt.motion.rollout import Trajectory
 from rr_opt.outcome import InputError, RollerRacerError
-from rr_opt.report.figures.path import frames
+from rr_opt.results.figures.motion import frames
 
 Film = Literal["gif", "mp4"]
 

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from rr_opt.array import Array
 from rr_opt.files.study_axes import Axis
 from rr_opt.formatting import number
-from rr_opt.results.inputs import axis_words, unit_of, value_text
 from rr_opt.results.study import SolvedStudy
+from rr_opt.results.study_table import axis_words, unit_of, value_text
 
 _EVEN = 0.05
 _WIDEST = 60
