@@ -44,11 +44,11 @@ if TYPE_CHECKING:
     from rr_opt.api.optimise import maximize_speed as maximize_speed
     from rr_opt.api.optimise import shapes as shapes
     from rr_opt.api.optimise import study as study
+    from rr_opt.api.optimise import sweep as sweep
     from rr_opt.api.optimise import turn as turn
+    from rr_opt.api.optimise import turn_chart as turn_chart
     from rr_opt.api.recordings import diagnose as diagnose
     from rr_opt.api.recordings import inspect as inspect
-    from rr_opt.api.survey import sweep as sweep
-    from rr_opt.api.survey import turn_chart as turn_chart
     from rr_opt.files.schemas import schema as schema
     from rr_opt.model.experiment import Experiment as Experiment
     from rr_opt.model.experiment import Noise as Noise
@@ -86,9 +86,8 @@ _HOMES = {
     "api.files": "init lint",
     "api.load": "InputWarning RobotWithGait load load_experiment "
     "load_gait load_robot prototype shipped",
-    "api.optimise": "load_study maximize_speed shapes study turn",
+    "api.optimise": "load_study maximize_speed shapes study sweep turn turn_chart",
     "api.recordings": "diagnose inspect",
-    "api.survey": "sweep turn_chart",
     "files.schemas": "schema",
     "model.experiment": "Experiment Noise Recording Run",
     "model.gait": "FourierGait FreeGait Gait SineGait",

@@ -1,7 +1,8 @@
-"""The fastest gait of a problem, of each family of waveforms, of a turn and of a study; checked."""
+"""Gaits of a problem: the fastest, of each waveform, turn and study, checked; and plain sweeps."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from contextlib import closing
 from dataclasses import replace
@@ -21,13 +22,19 @@ from rr_opt.design.turn_target import Target, checked
 from rr_opt.documents.archive import folder_for_results
 from rr_opt.files.study_file import Study, read_study
 from rr_opt.model.problem import Problem
+from rr_opt.motion.dynamics import require_friction
 from rr_opt.results.fastest import FastestGait
 from rr_opt.results.result import Progress, quiet
 from rr_opt.results.shapes import FastestShapes, family_name
 from rr_opt.results.study import SolvedStudy
+from rr_opt.results.sweep import Sweep
 from rr_opt.results.turn import FastestTurn
+from rr_opt.results.turn_chart import TurnChart
+from rr_opt.verify import sweep as verify
+from rr_opt.verify.grid import free_decisions
 from rr_opt.verify.replay import Replay, check_circle, replay
-from rr_opt.verify.sweep import SweepCheck, SweepResult, check_optimum, sweep
+from rr_opt.verify.sweep import SweepCheck, SweepResult, check_optimum
+from rr_opt.verify.turn_chart import radius_claim, sign_claim, tightest, turn_map
 from rr_opt.verify.turn_sweep import check_turn
 from rr_opt.version import __version__
 
@@ -78,7 +85,7 @@ def shapes(problem: Problem | PathLike, *, progress: Progress = quiet) -> Fastes
     if any(one.best for one in optima):
         # One for all: it is a sweep of the sines, whatever the shape.
         progress("sweep of all sines")
-        swept = sweep(problem)
+        swept = verify.sweep(problem)
     answers = []
     for one in optima:
         own = f"{name}, {family_name(one.problem.gait)}"
@@ -200,3 +207,40 @@ def _solved(
                 rows[case] = row
                 progress(f"case {min(len(rows) + 1, total)} of {total}")
     return SolvedStudy(asked, tuple(rows[case] for case in range(total)))
+
+
+def sweep(
+    problem: Problem | PathLike, points: int = 10_000, *, progress: Progress = quiet
+) -> Sweep:
+    """Evaluate about `points` gaits all over the bounds, and refine the best.
+
+    Raises InputError for a robot without friction.
+    """
+    problem = problem_of(problem)
+    require_friction(problem.robot)
+    counts = max(2, math.ceil(points ** (1 / max(len(free_decisions(problem)), 1))))
+    tried = verify.sweep(problem, counts, lambda done, of: progress(f"gait {done} of {of}"))
+    return Sweep(*identity(problem), problem, tried)
+
+
+_DRAWN = (6, 4, 121)
+"""Amplitudes, periods and offsets of the chart."""
+_TESTED = (24, 10, 101)
+"""The same of the map on which the paper's claim is tested."""
+
+
+def turn_chart(problem: Problem | PathLike, *, progress: Progress = quiet) -> TurnChart:
+    """Radius over offset, amplitude and period, and the tightest circle within the limits.
+
+    The inertia ratio is that of the robot as it is. Raises InputError for a robot without friction.
+    """
+    problem = problem_of(problem)
+    require_friction(problem.robot)
+    progress("chart")
+    seen = turn_map(problem, _DRAWN)
+    progress("the paper's claim")
+    fine = turn_map(problem, _TESTED)
+    progress("tightest circle")
+    tight = tightest(problem)
+    claims = sign_claim(fine), radius_claim(fine)
+    return TurnChart(*identity(problem), problem, seen, tight, *claims)

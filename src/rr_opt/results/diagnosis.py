@@ -17,7 +17,6 @@ from rr_opt.files.record import robot_yaml
 from rr_opt.formatting import counted
 from rr_opt.model.experiment import Experiment
 from rr_opt.model.robot import Robot
-from rr_opt.results.corrected_robot import corrected_robot
 from rr_opt.results.diagnosis_record import diagnosis_record
 from rr_opt.results.diagnosis_tables import (
     candidate_words,
@@ -37,6 +36,7 @@ from rr_opt.results.diagnosis_tables import (
 from rr_opt.results.loss import (
     Loss,
     LossUnknown,
+    corrected_robot,
     loss_line,
     loss_of,
     loss_record,

@@ -1,4 +1,4 @@
-"""The speed that the nominal model would cost.
+"""The corrected robot of a diagnosis, and the speed that the nominal model would cost.
 
 The nominal robot's best gait is driven, in steady motion, by the corrected robot and compared with
 that robot's own best gait. Both are optimised within the limits of the robot's servo and the bounds
@@ -8,23 +8,118 @@ of the shipped problem, with the robot's inertias as they are.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 from typing import Any
 
-from rr_opt.effects import CATALOGUE
+import numpy as np
+
+from rr_opt.effects import CATALOGUE, OF_ROBOTS
 from rr_opt.effects.effect import Port
 from rr_opt.files.problem_file import read_problem
 from rr_opt.formatting import number, with_unit
+from rr_opt.mechanics.drive import commanded
 from rr_opt.messages import listed
 from rr_opt.model.experiment import Experiment
-from rr_opt.model.gait import Gait
+from rr_opt.model.gait import FourierGait, Gait
+from rr_opt.model.parameters import PARAMETERS, with_parameters
 from rr_opt.model.problem import Limits, Problem
-from rr_opt.model.robot import Robot
+from rr_opt.model.robot import EffectUse, Robot, Servo
 from rr_opt.motion.dynamics import ignored_in_steady_cycle
+from rr_opt.motion.floor_motion import free_joint
 from rr_opt.motion.steady_cycle import steady_cycle
 from rr_opt.outcome import RollerRacerError
-from rr_opt.results.corrected_robot import servo_made
+from rr_opt.sysid.diagnosis import Diagnosis
 from rr_opt.verify.sweep import TOLERATED, check_optimum
+
+_HARMONICS = 24
+"""The n-th of an angle whose rate jumps falls as 1/n^2: what is left out moves the speed by less
+than a thousandth."""
+_SAMPLES = 2048
+_SETTLED = 20
+"""Periods after which what the servo makes repeats."""
+
+
+def servo_made(robot: Robot, gait: Gait) -> Gait:
+    """The angle made, once it repeats, as a sum of harmonics; the gait itself of a servo without
+    effects."""
+    uses = [use for use in robot.physics if CATALOGUE[use.name].actuate]
+    if not uses:
+        return gait
+    drive, joint = commanded(gait, rest=False), free_joint(robot)
+    for use in uses:
+        actuate = CATALOGUE[use.name].actuate
+        drive = actuate(drive, use.values, joint) if actuate else drive
+    t = gait.period * (_SETTLED + np.arange(_SAMPLES) / _SAMPLES)
+    part = np.fft.rfft(drive.at(t)[0]) / _SAMPLES
+    sizes = part[1 : _HARMONICS + 1]
+    return FourierGait(
+        gait.period,
+        float(part[0].real),
+        tuple((-2 * sizes.imag).tolist()),
+        tuple((2 * sizes.real).tolist()),
+    )
+
+
+_DIGITS = 7
+"""Of a fitted value that are written: more than any recording determines."""
+
+
+def corrected_robot(experiment: Experiment, found: Diagnosis) -> Robot:
+    """The nominal robot with the re-estimated values, the accepted effects, and where from."""
+    robot = experiment.robot
+    fitted = {name: _rounded(value) for name, value in found.values.items()}
+    return replace(
+        with_parameters(robot, {name: v for name, v in fitted.items() if name in PARAMETERS}),
+        servo=_servo(robot.servo, fitted),
+        physics=_physics(robot, fitted),
+        provenance=MappingProxyType({**robot.provenance, **_provenance(experiment, found)}),
+        name=f"{robot.name or experiment.name}, corrected",
+    )
+
+
+def _servo(servo: Servo, fitted: Mapping[str, float]) -> Servo:
+    """The servo, no faster than it was seen to be: gaits are then sought that it can make."""
+    seen = fitted.get("servo_rate_limit.rate_limit", math.inf)
+    return replace(servo, rate_limit=min(servo.rate_limit, seen))
+
+
+def _physics(robot: Robot, fitted: Mapping[str, float]) -> tuple[EffectUse, ...]:
+    """The effects that the robot had, and those that were fitted."""
+    uses = {use.name: dict(use.values) for use in robot.physics}
+    for name, value in fitted.items():
+        effect, dot, parameter = name.partition(".")
+        if dot:
+            uses.setdefault(effect, {})[parameter] = _within(effect, parameter, value)
+    return tuple(EffectUse(name, MappingProxyType(values)) for name, values in uses.items())
+
+
+def _within(effect: str, parameter: str, value: float) -> float:
+    """The value inside its bounds, which rounding may have left."""
+    low, high = next(q.bounds for q in OF_ROBOTS[effect].parameters if q.name == parameter)
+    return min(max(value, low), high)
+
+
+def _provenance(experiment: Experiment, found: Diagnosis) -> dict[str, str]:
+    used = sum(run.use == "fit" for run in experiment.runs)
+    source = f"{used} recording{'s' if used != 1 else ''} of {experiment.name or 'an experiment'}"
+    origins = {}
+    for name, one in found.parameters.items():
+        interval = f"{one.low:.4g} to {one.high:.4g} {one.unit}".removesuffix(" dimensionless")
+        origins[_key(name)] = f"fitted: {interval} (95 %), {source}"
+    return origins
+
+
+def _key(name: str) -> str:
+    """Where a robot file keeps a quantity: `kappa1` under `platform1.kappa`."""
+    if name in PARAMETERS:
+        return ".".join(PARAMETERS[name].key)
+    return f"physics.{name}" if "." in name else name
+
+
+def _rounded(value: float) -> float:
+    return float(f"{value:.{_DIGITS}g}")
 
 
 @dataclass(frozen=True)

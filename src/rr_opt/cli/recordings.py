@@ -1,9 +1,11 @@
-"""`rr-opt inspect FILE`: read a recording, clean it, and list every warning."""
+"""Verbs that read recordings: what looks wrong in them, and why the robot moves differently."""
 
 from __future__ import annotations
 
 from pathlib import Path
 from typing import Annotated
+
+import typer
 
 import rr_opt as rr
 from rr_opt.cli import options
@@ -36,4 +38,28 @@ def inspect(
         given = {"layout": layout, "servo_log": servo_log, "gait": gait, "start": start}
         found = rr.inspect(source, **given, progress=steps)
         files = found.save(folder, figures=figures, netcdf=netcdf, progress=steps)
+    show(found, files, json=json)
+
+
+def diagnose(
+    source: Annotated[
+        Path,
+        typer.Argument(metavar="FOLDER", help="Folder with an experiment.yaml and its recordings."),
+    ],
+    out: Annotated[Path | None, options.out_option("out/NAME-diagnosis")] = None,
+    json: Annotated[bool, options.json_option("diagnosis.json")] = False,
+    page: Annotated[
+        bool, typer.Option("--page/--no-page", help="Draw figures and write report.html.")
+    ] = True,
+) -> None:
+    """Find out why recordings differ from the simulation: where, by which physics, and how sure.
+
+    Writes diagnosis.json, robot-corrected.yaml for the other verbs, and report.html.
+    """
+    with Steps() as steps:
+        steps("reading")
+        experiment = rr.load_experiment(source)
+        folder = options.results_folder(out, f"{experiment.name}-diagnosis")
+        found = rr.diagnose(experiment, progress=steps)
+        files = found.save(folder, figures=page, progress=steps)
     show(found, files, json=json)
