@@ -13,54 +13,22 @@ from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Any
 
-import numpy as np
-
 from rr_opt.effects import CATALOGUE, OF_ROBOTS
 from rr_opt.effects.effect import Port
 from rr_opt.files.problem_file import read_problem
 from rr_opt.formatting import number, with_unit
-from rr_opt.mechanics.drive import commanded
 from rr_opt.messages import listed
 from rr_opt.model.experiment import Experiment
-from rr_opt.model.gait import FourierGait, Gait
+from rr_opt.model.gait import Gait
 from rr_opt.model.parameters import PARAMETERS, with_parameters
 from rr_opt.model.problem import Limits, Problem
 from rr_opt.model.robot import EffectUse, Robot, Servo
 from rr_opt.motion.dynamics import ignored_in_steady_cycle
-from rr_opt.motion.floor_motion import free_joint
+from rr_opt.motion.servo import servo_made
 from rr_opt.motion.steady_cycle import steady_cycle
 from rr_opt.outcome import RollerRacerError
 from rr_opt.sysid.diagnosis import Diagnosis
 from rr_opt.verify.sweep import TOLERATED, check_optimum
-
-_HARMONICS = 24
-"""The n-th of an angle whose rate jumps falls as 1/n^2: what is left out moves the speed by less
-than a thousandth."""
-_SAMPLES = 2048
-_SETTLED = 20
-"""Periods after which what the servo makes repeats."""
-
-
-def servo_made(robot: Robot, gait: Gait) -> Gait:
-    """The angle made, once it repeats, as a sum of harmonics; the gait itself of a servo without
-    effects."""
-    uses = [use for use in robot.physics if CATALOGUE[use.name].actuate]
-    if not uses:
-        return gait
-    drive, joint = commanded(gait, rest=False), free_joint(robot)
-    for use in uses:
-        actuate = CATALOGUE[use.name].actuate
-        drive = actuate(drive, use.values, joint) if actuate else drive
-    t = gait.period * (_SETTLED + np.arange(_SAMPLES) / _SAMPLES)
-    part = np.fft.rfft(drive.at(t)[0]) / _SAMPLES
-    sizes = part[1 : _HARMONICS + 1]
-    return FourierGait(
-        gait.period,
-        float(part[0].real),
-        tuple((-2 * sizes.imag).tolist()),
-        tuple((2 * sizes.real).tolist()),
-    )
-
 
 _DIGITS = 7
 """Of a fitted value that are written: more than any recording determines."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields
+from functools import cached_property
 from pathlib import Path
 from typing import Any, Literal
 
@@ -23,6 +24,7 @@ from rr_opt.model.problem import LARGEST_EXCESS
 from rr_opt.model.robot import Robot
 from rr_opt.motion.circle import Circle, Transient
 from rr_opt.motion.rollout import Measured, Trajectory
+from rr_opt.motion.servo import servo_made
 from rr_opt.results.gait import gait_facts, ignored_effects, speed_fact
 from rr_opt.results.result import Progress, Result, quiet
 from rr_opt.version import __version__
@@ -44,10 +46,15 @@ class GaitResult(Result):
     gait: Gait
     source_status: str | None
 
+    @cached_property
+    def joint(self) -> Gait:
+        """What the servo makes of the gait."""
+        return servo_made(self.robot, self.gait)
+
     @property
     def warnings(self) -> tuple[str, ...]:
         """Which effects of the robot the motion ignores, and which servo limits it exceeds."""
-        return (*ignored_effects(self.robot), *self.beyond_servo)
+        return (*ignored_effects(self.robot, commanded=True), *self.beyond_servo)
 
     @property
     def beyond_servo(self) -> tuple[str, ...]:
@@ -76,8 +83,8 @@ class SimulatedMotion(GaitResult):
         """A sentence on each limit of the servo that the motion exceeds; it is simulated anyway."""
         servo = self.robot.servo
         reached = {
-            "angle": (self.gait.peak_angle, servo.angle_limit),
-            "rate": (self.gait.peak_rate, servo.rate_limit),
+            "angle": (self.joint.peak_angle, servo.angle_limit),
+            "rate": (self.joint.peak_rate, servo.rate_limit),
             "torque": (self.measured.peak_torque, servo.torque_limit),
         }
         return tuple(

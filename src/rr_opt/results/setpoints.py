@@ -137,7 +137,7 @@ def _c_float(value: float) -> str:
 
 MODEL = (
     "The servo is assumed to move at constant speed between set points and to reach each one when "
-    "the next is sent. Its lag is ignored."
+    "the next is sent. What its effects in `physics`, such as a lag, then make of that counts."
 )
 
 

@@ -11,13 +11,13 @@ from rr_opt.model.gait import SineGait
 from rr_opt.model.problem import GaitBounds, Limits, Problem
 from rr_opt.model.robot import EffectUse
 from rr_opt.motion.rollout import rollout
+from rr_opt.motion.servo import servo_made
 from rr_opt.results.loss import (
     Loss,
     LossUnknown,
     corrected_robot,
     loss_of,
     loss_sentences,
-    servo_made,
     share_lost,
 )
 from rr_opt.verify.sweep import sweep
