@@ -201,7 +201,7 @@ class ExplainedExperiment(Result):
         """The verdict, what was found with its intervals, before and after, and what to do next."""
         return terminal(facts_alone(_summary_facts(self), self.found.summary), files)
 
-    def _figures(self, progress: Progress) -> tuple[doc.Figure, ...]:
+    def drawn(self, progress: Progress = quiet) -> tuple[doc.Figure, ...]:
         """The figures, each with the caption that was drawn for it."""
         progress("figures")
         drawn = self._draw(self)

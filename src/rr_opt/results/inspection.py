@@ -57,7 +57,7 @@ class InspectedRecordings(Result):
         written = super().save(path, figures=figures, progress=progress)
         return [*written, _netcdf(Path(netcdf), self.recordings[0])]
 
-    def _figures(self, progress: Progress) -> tuple[doc.Figure, ...]:
+    def drawn(self, progress: Progress = quiet) -> tuple[doc.Figure, ...]:
         """Of several recordings each name begins with the file's."""
         several, figures = len(self.recordings) > 1, []
         for place, one in enumerate(self.recordings, 1):

@@ -120,7 +120,7 @@ class SimulatedMotion(GaitResult):
             written = [write_text(folder / "trajectory.csv", trajectory_csv(self.trajectory))]
         else:
             written = [write_netcdf(folder / "trajectory.nc", self.trajectory)]
-        for one in self._figures(progress):
+        for one in self.drawn(progress):
             written.append(write_text(folder / f"{one.name}.svg", one.svg))
         if film:
             from rr_opt.results.figures.film import write_film

@@ -126,7 +126,7 @@ class Result:
         module, _, function = self.DRAW.rpartition(".")
         return getattr(import_module(module), function)(what) if module else {}
 
-    def _figures(self, progress: Progress) -> tuple[Figure, ...]:
+    def drawn(self, progress: Progress = quiet) -> tuple[Figure, ...]:
         """The figures with their captions."""
         if not self.DRAW:
             return ()
@@ -135,7 +135,7 @@ class Result:
 
     def plot(self) -> Plots:
         """The figures; empty if there is nothing to draw."""
-        return Plots({figure.name: Svg(figure.svg) for figure in self._figures(quiet)})
+        return Plots({figure.name: Svg(figure.svg) for figure in self.drawn()})
 
     def save(
         self, path: str | Path, *, figures: bool = True, progress: Progress = quiet
@@ -148,7 +148,7 @@ class Result:
         folder = folder_for_results(Path(path))
         svgs = (f"{name}.svg" for name in self.CAPTIONS)
         remove(folder, filter(None, (PAGE, self.FILE, self.MARKDOWN, *self.OTHERS, *svgs)))
-        document = self.document(self._figures(progress) if figures else ())
+        document = self.document(self.drawn(progress) if figures else ())
         written = [write_json(folder / self.FILE, self.record())]
         if self.MARKDOWN:
             written.append(write_text(folder / self.MARKDOWN, markdown(document)))
