@@ -155,7 +155,7 @@ class Reproduction(Result):
             "speed is within their interval; Table 2's amplitude and the friction were fitted to "
             "them.",
             (
-                Section("Findings", tuple(f"{one.title}. {one.finding}" for one in audit)),
+                Section("Findings", tuple(map(_sentences, audit))),
                 sections.pop("columns"),
                 gallery("figure4", "figure5", wide=True),
                 gallery("figure3", "signs", "figure6", "period"),
@@ -229,6 +229,11 @@ class Finding:
     finding: str
     sentences: tuple[str, ...]
     table: Table
+
+
+def _sentences(one: Finding) -> str:
+    """Title and finding; a title that is a question ends with its own mark."""
+    return f"{one.title}{'' if one.title.endswith('?') else '.'} {one.finding}"
 
 
 def findings(found: Reproduction) -> tuple[Finding, ...]:

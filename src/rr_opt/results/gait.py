@@ -1,4 +1,4 @@
-"""A gait and its speed as facts."""
+"""A gait, its speed and its robot as facts and tables, and the effects that the gait ignores."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from rr_opt.model.robot import Robot
 from rr_opt.motion.dynamics import ignored_in_steady_cycle
 
 _NEGLIGIBLE = 1e-4
-"""A coefficient this small, relative to the largest, is what an optimiser leaves of 0."""
+"""A smaller coefficient, relative to the largest, is 0 to within the optimiser's tolerance."""
 
 
 def gait_facts(gait: Gait) -> tuple[Fact, ...]:

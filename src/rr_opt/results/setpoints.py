@@ -142,7 +142,7 @@ MODEL = (
 
 
 _NOTHING = 1e-6
-"""A change so small, relative, is that of an optimiser's last digits."""
+"""A smaller relative change is the optimiser's rounding."""
 
 
 _STEPS = {

@@ -187,7 +187,7 @@ def _input_words(channel: str) -> str:
 
 _POINTS = 1500
 _FLAT = 0.6
-"""A path that is lower than this share of its width gets a row of its own."""
+"""A path flatter than this (height over width) gets its own row."""
 
 
 def _paths(one: ExplainedExperiment) -> tuple[Figure, str]:

@@ -102,7 +102,7 @@ def speed_map(
         norm=style.signed(top),
         zorder=1,
     )
-    # Each band gets an edge of its own colour: else thin white seams show between them.
+    # Each band has an edge of its colour, or thin white seams would show between them.
     fill.set(edgecolor="face", linewidth=0.5)
     shares = uses(data, problem, robot, best.offset)
     worst = np.clip(np.max(list(shares.values()), axis=0), 0.0, 2.0)
