@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rr_opt.array import Array
-from rr_opt.mechanics.vectorised import ArrayFunction
+from rr_opt.mechanics.code_generation import ArrayFunction
 from rr_opt.sysid.compiled import Rows
 from rr_opt.sysid.shooting import DrivePath, Path, System, arrays_of, code_of
 
