@@ -128,7 +128,7 @@ def judged(verb: Verb, end: Ended, given: Input, lint: int | None) -> list[str]:
     if "Traceback" in end.err + end.out or "Exception ignored" in end.err:
         wrong.append("traceback")
     allowed = {0, WRONG} | (DONE if name in (*LONG, "simulate", "circle") else set())
-    allowed |= {INTERRUPTED} if name in LONG else set()
+    allowed |= {INTERRUPTED} if name in LONG and lint == 0 else set()
     if end.code not in allowed:
         wrong.append("exit code")
     if end.seconds > SECONDS or end.code == -signal.SIGKILL:
@@ -173,7 +173,7 @@ def tried(
     lint = next((end.code for verb, end in ends if verb[0] == "lint"), None)
     for verb in given.verbs if chance < (share if lint == 0 else _REFUSED) else ():
         if verb[0] in LONG:
-            ends += [(verb, *ended([verb], folder, STOP))]
+            ends += [(verb, *ended([verb], folder, STOP if lint == 0 else None))]
     for verb, end in ends:
         yield kind, verb, end, judged(verb, end, given, lint)
 
