@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from rr_opt.documents.report import Progress, quiet
 from rr_opt.files.issue import InvalidFileError, Issue, has_errors
 from rr_opt.files.machine_file import machine_plan, machine_word, read_machine_plan
 from rr_opt.machines.registry import RACER, machine_named
@@ -12,6 +11,7 @@ from rr_opt.model.machine import Machine, MachineExperiment
 from rr_opt.outcome import InputError, NotConvergedError
 from rr_opt.recordings.machine_run import machine_experiment
 from rr_opt.results.machine_diagnosis import ExplainedMachine
+from rr_opt.results.result import Progress, quiet
 
 
 def machine_of(path: str | Path) -> Machine | None:

@@ -15,15 +15,16 @@ from typing import Any
 from joblib import cpu_count
 from joblib.externals.loky import ProcessPoolExecutor
 
-from rr_opt.batch.processes import ONE_THREAD, held_back
+from rr_opt.batch import ONE_THREAD
+from rr_opt.interrupt import held_back
 
 _LOOK = 1.0  # s
 _HANDED_ON = 1.0
-"""So long the executor may take to hand work on before it is ended, s."""
+"""Time that the executor gets to hand on work before it is ended, s."""
 
 
 class LocalPool:
-    """So many processes of this machine; None: one for each of its cores that may be used.
+    """`workers` processes on this machine; None: one per usable core.
 
     One case takes one core: numerical libraries are kept from starting threads of their own.
     """
@@ -92,8 +93,9 @@ def _begin(parent: int) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
     def watch() -> None:
+        never = threading.Event()
         while os.getppid() == parent:
-            time.sleep(_LOOK)
+            never.wait(_LOOK)
         os._exit(1)
 
     threading.Thread(target=watch, daemon=True).start()

@@ -21,22 +21,22 @@ import numpy as np
 from rr_opt.array import Array
 from rr_opt.model.machine import Constant, Machine, MachineEffect, MachineExperiment, MachineRun
 from rr_opt.model.parameters import Uncertainty
-from rr_opt.sysid.candidates import Choice
 from rr_opt.sysid.diagnosis import Misfit
 from rr_opt.sysid.estimation import Fit
+from rr_opt.sysid.machine import CONSTANT, Term
 from rr_opt.sysid.model import (
+    Choice,
     Data,
     EffectInfo,
     Form,
     Linearisation,
+    Noise,
     Quantity,
     Request,
     Segment,
     Simulation,
     segments,
 )
-from rr_opt.sysid.noise import Noise
-from rr_opt.sysid.remainder import CONSTANT, Term
 from rr_opt.sysid.sensitivities import DriveSlopes, Recorded, Sought, grams
 from rr_opt.sysid.shooting import DrivePath, Path, System, predict_all
 
@@ -108,7 +108,11 @@ class OdeModel:
 
     def with_noise(self, noise: Sequence[Noise]) -> OdeModel:
         """The same with other noise."""
-        other = OdeModel(self.experiment, noise, parted=True)
+        of_stated = [
+            replace(new, level=new.level * old.level)
+            for new, old in zip(noise, self._noise, strict=True)
+        ]
+        other = OdeModel(self.experiment, of_stated, parted=True)
         other.horizon = other.segment_length = self.horizon
         other.correlation_time = self.correlation_time
         return other

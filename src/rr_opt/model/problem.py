@@ -11,6 +11,7 @@ from rr_opt.model.ballast import About, By, Loads, inertia_ratio
 from rr_opt.model.fields import SI, Bounds, Count, Interval, OptionalSI, Range, data, declared
 from rr_opt.model.gait import AMPLITUDE, OFFSET
 from rr_opt.model.robot import ANGLE_LIMIT, RATE_LIMIT, TORQUE_LIMIT, Robot
+from rr_opt.model.servo_command import Command
 from rr_opt.units import Quantity
 
 Direction = Literal["forward", "backward", "either"]
@@ -69,10 +70,17 @@ LARGEST_EXCESS = 1e-4
 """By so much, relative to it, a gait may go over a limit and still counts as keeping it."""
 
 
+GRIP_LIMIT = Quantity("", "0.5", above=0, endless=True)
+
+NEEDS_GRIP = 0.5
+"""Side force over load above which a gait is warned of: rubber on a dry floor has 0.6 to 1, hard
+wheels or dust less."""
+
+
 @data
 class Limits:
     """|phi| <= angle (rad), |dphi/dt| <= rate (rad/s), |torque| <= torque (N m),
-    S1 = c1 cos phi + c2 >= singularity (m).
+    S1 = c1 cos phi + c2 >= singularity (m), |side force of an axle| <= grip * its load.
 
     A limit that is left out (None) is the robot's servo's; the Problem fills it in.
     """
@@ -86,6 +94,13 @@ class Limits:
     )
     singularity: SI = declared(
         Quantity("m", "20 mm", above=0), "The least S1 = c1 cos phi + c2 allowed, m.", default=0.020
+    )
+
+    grip: SI = declared(
+        GRIP_LIMIT,
+        "Largest side force of an axle over the load on it: the coefficient of friction that its "
+        "wheels may need; .inf: no limit.",
+        default=math.inf,
     )
 
     def worst(self, reached: Mapping[str, float]) -> tuple[str, float]:
@@ -133,6 +148,7 @@ class Problem:
 
     `inertia_ratio` None: the robot as it is; `turn` None: straight or on any circle.
 
+    command  None: gaits are what the servo is told; else they are what the joint does
     sha256  fingerprint of the files it was read from; empty if it was made or changed in Python
     """
 
@@ -142,6 +158,7 @@ class Problem:
     inertia_ratio: RatioChoice | None = None
     direction: Direction = "either"
     turn: Turn | None = None
+    command: Command | None = None
     name: str = field(default="", compare=False)
     sha256: str = field(default="", init=False, compare=False, repr=False)
 
@@ -151,6 +168,11 @@ class Problem:
         left_out = {name: value for name, value in able.items() if getattr(given, name) is None}
         if left_out:
             object.__setattr__(self, "limits", replace(given, **left_out))
+
+    @property
+    def bounds_command(self) -> bool:
+        """Whether the amplitude of the command is bounded, and not that of the joint."""
+        return bool(self.command and self.command.servo.lags and self.gait.shape == "sine")
 
     def read_from(self, name: str, sha256: str) -> Problem:
         """The problem with its name and the fingerprint of its files."""
