@@ -44,6 +44,8 @@ if TYPE_CHECKING:
     from rr_opt.api.load import load_robot as load_robot
     from rr_opt.api.load import prototype as prototype
     from rr_opt.api.load import shipped as shipped
+    from rr_opt.api.route import load_route as load_route
+    from rr_opt.api.route import route as route
     from rr_opt.api.study import load_study as load_study
     from rr_opt.api.study import study as study
     from rr_opt.api.survey import sweep as sweep
@@ -66,6 +68,12 @@ if TYPE_CHECKING:
     from rr_opt.model.robot import Platform as Platform
     from rr_opt.model.robot import Robot as Robot
     from rr_opt.model.robot import Servo as Servo
+    from rr_opt.model.route import Arc as Arc
+    from rr_opt.model.route import Pose as Pose
+    from rr_opt.model.route import Route as Route
+    from rr_opt.model.route import Straight as Straight
+    from rr_opt.model.route import Tolerance as Tolerance
+    from rr_opt.model.route import Waypoint as Waypoint
     from rr_opt.outcome import InputError as InputError
     from rr_opt.outcome import NotConvergedError as NotConvergedError
     from rr_opt.outcome import Status as Status
@@ -74,6 +82,7 @@ if TYPE_CHECKING:
     from rr_opt.results.inspection import InspectedRecordings as InspectedRecordings
     from rr_opt.results.motion import DrivenCircle as DrivenCircle
     from rr_opt.results.motion import SimulatedMotion as SimulatedMotion
+    from rr_opt.results.route import DrivenRoute as DrivenRoute
     from rr_opt.results.setpoints import ExportedGait as ExportedGait
     from rr_opt.results.shapes import FastestShapes as FastestShapes
     from rr_opt.results.study import SolvedStudy as SolvedStudy
@@ -89,6 +98,7 @@ _HOMES = {
     "api.lint": "lint",
     "api.load": "InputWarning RobotWithGait load load_experiment load_gait load_robot prototype "
     "shipped",
+    "api.route": "load_route route",
     "api.study": "load_study study",
     "api.survey": "sweep turn_chart",
     "api.template": "init",
@@ -97,11 +107,13 @@ _HOMES = {
     "model.gait": "FourierGait FreeGait Gait SineGait",
     "model.problem": "GaitBounds Limits Problem RatioChoice",
     "model.robot": "EffectUse Platform Robot Servo",
+    "model.route": "Arc Pose Route Straight Tolerance Waypoint",
     "outcome": "InputError NotConvergedError Status",
     "results.diagnosis": "ExplainedExperiment",
     "results.fastest": "FastestGait",
     "results.inspection": "InspectedRecordings",
     "results.motion": "DrivenCircle SimulatedMotion",
+    "results.route": "DrivenRoute",
     "results.setpoints": "ExportedGait",
     "results.shapes": "FastestShapes",
     "results.study": "SolvedStudy",

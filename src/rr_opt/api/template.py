@@ -12,7 +12,7 @@ from rr_opt.documents.archive import file_for_result, write_text
 from rr_opt.files.experiment_file import FILE_NAME, read_plan
 from rr_opt.outcome import InputError
 
-Kind = Literal["robot", "problem", "study", "experiment"]
+Kind = Literal["robot", "problem", "study", "experiment", "route"]
 
 
 def init(kind: Kind, path: str | Path | None = None, *, force: bool = False) -> list[Path]:

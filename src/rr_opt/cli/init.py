@@ -10,13 +10,13 @@ import typer
 import rr_opt as rr
 from rr_opt.cli import options
 
-_KIND = "robot, problem, study or experiment."
+_KIND = "robot, problem, study, experiment or route."
 _OUT = "The file to write; of an experiment its folder."
 
 
 def init(
     kind: Annotated[
-        Literal["robot", "problem", "study", "experiment"], typer.Argument(help=_KIND)
+        Literal["robot", "problem", "study", "experiment", "route"], typer.Argument(help=_KIND)
     ] = "problem",
     out: Annotated[Path | None, options.out_option("KIND.yaml", _OUT)] = None,
     force: Annotated[bool, typer.Option("--force", help="Overwrite existing files.")] = False,

@@ -12,7 +12,7 @@ import typer
 from rr_opt.outcome import EXIT_WRONG_INPUT
 
 _FILES = (
-    "Robot, problem, study or experiment files, or folders with a problem.yaml or an "
+    "Robot, problem, study, route or experiment files, or folders with a problem.yaml or an "
     "experiment.yaml, whose recordings are read too."
 )
 

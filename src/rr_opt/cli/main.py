@@ -21,7 +21,17 @@ from rr_opt.outcome import EXIT_INTERRUPTED, EXIT_WRONG_INPUT, RollerRacerError
 from rr_opt.version import __version__
 
 VERBS = (
-    *("maximize-speed", "shapes", "sweep", "turn", "turn-chart", "circle", "simulate", "export"),
+    *(
+        "maximize-speed",
+        "shapes",
+        "sweep",
+        "turn",
+        "turn-chart",
+        "route",
+        "circle",
+        "simulate",
+        "export",
+    ),
     *("study", "inspect", "diagnose", "init", "lint", "schema"),
 )
 """Each is the function of its name in the module of its name."""

@@ -11,7 +11,9 @@ import rr_opt as rr
 
 
 def schema(
-    kind: Annotated[str, typer.Argument(help="Which file: robot, problem, study or experiment.")],
+    kind: Annotated[
+        str, typer.Argument(help="Which file: robot, problem, study, experiment or route.")
+    ],
 ) -> None:
     """Print the JSON Schema of an input file, with which editors complete and check it."""
     typer.echo(json.dumps(rr.schema(kind), indent=2))
