@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
-from pydantic import Field, SkipValidation, WithJsonSchema
+from pydantic import Field, SkipValidation
 
 from rr_opt.files.fields import FileModel, Section, validate
 from rr_opt.files.issue import InvalidFileError, Issue, has_errors
@@ -33,7 +33,6 @@ class PieceModel(FileModel):
     )
 
 
-_PIECES = {"type": "array", "minItems": 1, "items": PieceModel.model_json_schema()}
 _ONE = "`straight`, `arc` or `to`"
 
 
@@ -48,8 +47,8 @@ class RouteModel(FileModel):
     start: Annotated[Pose, Section()] = Field(
         default_factory=Pose, description="Where the path begins; the robot is at rest there."
     )
-    route: Annotated[list[Any], SkipValidation, WithJsonSchema(_PIECES)] = Field(
-        description=f"The pieces, one after another: each is {_ONE}."
+    route: Annotated[list[PieceModel], SkipValidation] = Field(
+        min_length=1, description=f"The pieces, one after another: each is {_ONE}."
     )
     tolerance: Annotated[Tolerance, Section()] = Field(
         default_factory=Tolerance, description="How exactly the route is driven."

@@ -73,7 +73,7 @@ class Command:
         k = np.clip(np.searchsorted(self.times, t, side="right") - 1, 0, len(self.durations) - 1)
         segment = self.segments[:, k]
         after = t > self.times[-1]
-        s = np.where(after, 1.0, (t - self.times[k]) / segment[7])
+        s = np.where(after, 1.0, np.maximum(t - self.times[k], 0.0) / segment[7])
         path = np.array(blended(s, segment, np.sin, np.cos))
         A, o, w = self.knots[:, -1]
         theta = np.dot(self.durations, self.knots[2, :-1] + self.knots[2, 1:]) / 2
@@ -86,5 +86,4 @@ class Command:
 
     def angle(self, t: ArrayLike) -> Array:
         """phi, rad, in the shape of t (s); before t = 0 that at t = 0."""
-        at = np.maximum(np.asarray(t, float), 0.0)
-        return self.at(at.ravel())[0].reshape(at.shape)
+        return self.at(np.ravel(t))[0].reshape(np.shape(t))

@@ -36,7 +36,7 @@ _UNKNOWNS = 4
 """Of a stage: cycles after the blend, amplitude (rad), offset (rad), frequency (rad/s). Counted in
 cycles, the phases at which blends begin do not depend on the frequencies, and the program is nearly
 linear."""
-_LOOKS = 12
+_LOOKS, _CLOSE = 12, 1e-4
 """Parts of a blend in each of which the largest rate is bounded."""
 _INSIDE = 0.97
 """The program keeps to this share of each tolerance: steps are finite."""
@@ -50,11 +50,14 @@ BROKEN = 1e-3
 _TURNS, _TURN = 6, 0.5
 """Gauss-Newton steps for a stage of the guess, and the longest, in scaled unknowns."""
 _LINEAR, _QUADRATIC = 40, 80
+_LOST = 1e3
+"""What counts as the excess where there is no motion."""
 _PENALTY, _RADIUS, _SMALLEST, _SETTLED = 10.0, 0.5, 1e-5, 1e-5
 """Most steps of either kind; penalty over the time of the guess; trust region of the scaled
 unknowns, at first and at last; gain of time, s, of the last step."""
-_PLACES = 60
-"""At about so many places the distance from the path is bounded."""
+_PLACES, _BETWEEN = 100, 0.93
+"""At about so many places the distance from the path is bounded, by this share of the tolerance:
+between them P swings with the gait."""
 
 
 @dataclass(frozen=True)
@@ -103,8 +106,7 @@ class Look:
     @property
     def violation(self) -> float:
         """The largest share by which a bound is broken."""
-        worst = -float(self.values.min())
-        return max(0.0, worst) if math.isfinite(worst) else math.inf
+        return max(0.0, -float(self.values.min()))
 
     def rank(self) -> tuple[bool, float]:
         """Drives that keep all bounds go first, the fastest of them in front."""
@@ -197,6 +199,10 @@ class Program:
 
     def look(self, x: Array) -> Look:
         """The drive of the scaled unknowns and everything that has to be at least 0."""
+        with np.errstate(over="ignore", invalid="ignore"):
+            return self._look(x)
+
+    def _look(self, x: Array) -> Look:
         z = x * self.scale
         command = self.command(z)
         slopes = self.slopes(command)
@@ -227,14 +233,15 @@ class Program:
                 seen = samples.path[4, peaks], samples.slopes[4, peaks]
                 rows.within("torque", [int(piece)] * _PEAKS, *seen, limits.torque * _TIGHT)
         every = max(1, len(samples.t) // _PLACES)
-        for stage, mine in zip(self.stages, of_segment[1::2], strict=True):
+        for k, stage in enumerate(self.stages):
+            mine = np.concatenate(of_segment[2 * k : 2 * k + 2])
             some = mine[every // 2 :: every]
             off, by_x, by_y = signed_distance(stage.leg, *samples.path[2:4, some])
             gradient = (
                 by_x[:, None] * samples.slopes[2, some] + by_y[:, None] * samples.slopes[3, some]
             )
             of = [stage.leg.piece] * len(some)
-            rows.within("path", of, off, gradient, tolerance.path * _INSIDE)
+            rows.within("path", of, off, gradient, tolerance.path * _BETWEEN)
             if stage.ends:
                 last = stage is self.stages[-1]
                 name, within = (
@@ -246,15 +253,13 @@ class Program:
         rows.within("heading", piece, psi, samples.slopes[1, -1:], tolerance.heading * _INSIDE)
         if self.rest:
             rows.within("speed", piece, end[0], samples.slopes[0, -1:], tolerance.speed * _INSIDE)
-        return Look(
-            command,
-            command.seconds,
-            slopes[7].sum(axis=0),
-            samples,
-            np.concatenate(rows.values),
-            np.vstack(rows.slopes),
-            rows.names,
+        # A step too far may lead through the singular posture, where there is no motion.
+        values = np.nan_to_num(
+            np.concatenate(rows.values), nan=-_LOST, posinf=-_LOST, neginf=-_LOST
         )
+        gradients = np.nan_to_num(np.vstack(rows.slopes), posinf=0.0, neginf=0.0)
+        rising = slopes[7].sum(axis=0)
+        return Look(command, command.seconds, rising, samples, values, gradients, rows.names)
 
     @property
     def bounds(self) -> list[tuple[float, float]]:
@@ -331,6 +336,7 @@ class Program:
             if not stage.ends or stage.coasts or stage.leg is self.stages[-1].leg:
                 continue
             free = np.array([4 * k, 4 * k + 2])
+            most = (reach(self.problem) - stage.amplitude) / self.scale[4 * k + 2]
             if k > 1 and not self.stages[k - 1].ends:
                 free = np.append(free, 4 * k - 2)
             end, beta = stage.leg.end, math.asin(max(-0.9, min(0.9, c1 * stage.leg.curvature)))
@@ -340,6 +346,7 @@ class Program:
             place, move = x[free], np.zeros(len(free))
             for _ in range(_TURNS):
                 x[free] = np.clip(place + move, low[free], high[free])
+                x[free[1:]] = np.clip(x[free[1:]], -most, most)
                 command = self.command(x * self.scale)
                 part = Command(command.durations[: 2 * k + 2], command.knots[:, : 2 * k + 3])
                 slopes = self.slopes(command)[:, : 2 * k + 2]
@@ -399,8 +406,9 @@ class Program:
 def _fastest(blends: Array) -> Array:
     """Where the rate is largest in each of `_LOOKS` equal parts of blends (8, K): (_LOOKS, K).
 
-    A parabola through the ends and the middle of a part has its vertex near the peak, and as the
-    rate is level there, its derivatives at a fixed place are those of the peak.
+    A parabola through the ends and the middle of a part has its vertex near the peak, which a step
+    of Newton's method comes to. The rate is level there, so that its derivatives at a fixed place
+    are those of the peak.
     """
     half = 0.5 / _LOOKS
     s = np.linspace(0, 1, 2 * _LOOKS + 1)[:, None]
@@ -409,7 +417,10 @@ def _fastest(blends: Array) -> Array:
     bend = first - 2 * middle + last
     moved = half / 2 * (first - last) / np.where(bend == 0, 1e-300, bend)
     places = s[1::2] + np.stack([np.full_like(moved, -half), moved, np.full_like(moved, half)])
-    places[1] = np.clip(places[1], places[0], places[2])
+    nearby = blended(places[1] + [[_CLOSE]], blends, np.sin, np.cos)[2]
+    here = blended(places[1], blends, np.sin, np.cos)[2]
+    change = np.where(nearby == here, 1e-300, nearby - here)
+    places[1] = np.clip(places[1] - _CLOSE * here / change, places[0], places[2])
     sizes = np.abs(blended(places, blends, np.sin, np.cos)[1])
     return np.take_along_axis(places, sizes.argmax(axis=0)[None], axis=0)[0]
 
