@@ -7,12 +7,14 @@ from dataclasses import dataclass
 from typing import Any
 
 import casadi as ca
+import numpy as np
 
 from rr_opt.array import Array
 from rr_opt.design.decisions import decisions
 from rr_opt.design.shapes.shape import Bounds, Symbols, Values
 from rr_opt.model.gait import Gait, SineGait
 from rr_opt.model.problem import Interval, Problem
+from rr_opt.model.servo_command import LinearServo
 
 TURN = 2 * math.pi
 
@@ -23,8 +25,8 @@ class SineShape:
 
     decisions = ("amplitude", "offset")
     states = controls = integrals = path = ()
-    limits = ("rate", "angle+", "angle-", "singularity+", "singularity-")
-    checks = 0
+    limits = ("rate", "angle+", "angle-", "singularity+", "singularity-", "command")
+    checks = 2
 
     def angle(self, z: Symbols, local: Symbols, theta: Any, since: Any) -> tuple[Any, Any, Any]:
         """phi and its derivatives in theta."""
@@ -42,7 +44,8 @@ class SineShape:
     def limit_rows(
         self, z: Symbols, means: Symbols, checks: tuple[Any, ...], c1: Any, c2: Any
     ) -> tuple[Any, ...]:
-        """Peak rate, peak angle on either side, least S1 on either side."""
+        """Peak rate, peak angle on either side, least S1 on either side, and the amplitude that the
+        servo is told; checks: its tau and beta."""
         high, low = z["offset"] + z["amplitude"], z["offset"] - z["amplitude"]
         return (
             TURN * z["amplitude"] / z["period"],
@@ -50,11 +53,17 @@ class SineShape:
             -low,
             c1 * ca.cos(high) + c2,
             c1 * ca.cos(low) + c2,
+            z["amplitude"] / LinearServo(*checks).gain(z["period"]),
         )
 
     def path_rows(self, z: Symbols, local: Symbols, theta: Any, width: Any) -> tuple[Any, ...]:
         """None."""
         return ()
+
+    def given(self, problem: Problem, added: Array) -> Array:
+        """tau and beta of the servo."""
+        servo = problem.command.servo if problem.command else LinearServo()
+        return np.array([servo.tau, servo.beta])
 
     def bounds(self, problem: Problem) -> Bounds:
         """Where limits and bounds leave one value there is no inside for the solver to move in:
@@ -71,6 +80,8 @@ class SineShape:
             for side in "+-":
                 rows[f"angle{side}"] = Interval(-math.inf, limits.angle)
                 rows[f"singularity{side}"] = Interval(limits.singularity, math.inf)
+        if problem.command and problem.bounds_command and not amplitude.fixed:
+            rows["command"] = problem.command.amplitude
         return Bounds({"amplitude": amplitude, "offset": offset}, rows)
 
     def start(self, gait: Gait, phases: Array) -> dict[str, Any]:
@@ -92,5 +103,6 @@ class SineShape:
         }
 
     def bound_prices(self, on_bounds: Values, multipliers: Values) -> dict[str, float]:
-        """From the bounds of the decisions."""
-        return {name: float(on_bounds[name]) for name in self.decisions}
+        """From the bounds of the decisions, or of the command."""
+        prices = {name: float(on_bounds[name]) for name in self.decisions}
+        return prices | {"amplitude": prices["amplitude"] + float(multipliers["command"])}
