@@ -21,11 +21,12 @@ HEAD = (
     "| route | way | time, s | end, mm | laboratory, % | CPU, s | glued, s | its end, mm | "
     "brute force, s |"
 )
-NOTES = """`end`: distance of P from its place by CVODES; the tolerance is 20 mm, 5 deg, 50 mm on
-the way, and 2 mm/s. `laboratory`: distance between the ends in the laboratory with nothing hidden (its
-planar engine) and by CVODES, relative to the length of the way. `glued`: steady gaits joined at
-period ends, then coasting, and where that ends. `brute force`: over the gait's period and offset,
-the number of cycles, and coasting; straight routes only. CPU: with the code compiled before."""
+NOTES = """`end`: distance of P from its place by CVODES. The tolerance is 20 mm and 5 deg at the
+end, 50 mm on the way, and 2 mm/s. `laboratory`: distance between the ends in the laboratory with
+nothing hidden (its planar engine) and by CVODES, relative to the length of the way. `glued`: steady
+gaits joined at period ends, then coasting, and where that ends. `brute force`: over the gait's
+period and offset, the number of cycles, and coasting; straight routes only. CPU: with the code
+compiled."""
 
 
 def laboratory(found: DrivenRoute) -> float:
@@ -52,7 +53,7 @@ def row(name: str, route: Route) -> tuple[str, float | None]:
     if found.seconds is None or check is None:
         return f"| {name} | {found.status.words}: {found.message} |||||||| ", None
     hand = glued(plan)
-    by_hand = replay(plan.problem, hand, route.start, plan.legs, plan.turned)
+    by_hand = replay(plan.problem, hand, route.start, plan.legs, plan.turned, plan.heading)
     straight = len(plan.legs) == 1 and plan.legs[0].curvature == 0
     brute = f"{brute_force(plan, route):.2f}" if straight and plan.legs[0].length < 5 else ""
     mark = "" if found.status is rr.Status.OPTIMAL else f" ({found.message})"
@@ -75,7 +76,7 @@ def main() -> None:
             if seconds:
                 took.append(seconds)
         lines.append("")
-    write("route", lines, {"yardstick/CPU": yard / statistics.median(took)})
+        write("route", lines, {"yardstick/CPU": yard / statistics.median(took)})
 
 
 if __name__ == "__main__":

@@ -38,5 +38,5 @@ def route(asked: Route | PathLike, *, progress: Progress = quiet) -> DrivenRoute
     if plan.drive:
         progress("replay by CVODES")
         command = plan.drive.command
-        check = replay(plan.problem, command, asked.start, plan.legs, plan.turned)
+        check = replay(plan.problem, command, asked.start, plan.legs, plan.turned, plan.heading)
     return DrivenRoute(asked.name, asked.sha256 or fingerprint(asked), plan, check)

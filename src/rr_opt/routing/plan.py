@@ -10,13 +10,13 @@ import numpy as np
 
 from rr_opt.design.maximize_speed import maximize_speed
 from rr_opt.model.gait import SineGait
-from rr_opt.model.problem import Problem
+from rr_opt.model.problem import Interval, Problem
 from rr_opt.model.route import Arc, Route
 from rr_opt.motion.dynamics import require_friction
 from rr_opt.outcome import InputError, Status
 from rr_opt.routing.gaits import Chart, Coasting, Way, binding_limits, chart, coasting
 from rr_opt.routing.path import Leg, legs_of
-from rr_opt.routing.program import BROKEN, Drive, Program, Stage
+from rr_opt.routing.program import BROKEN, Drive, Program, Stage, slip
 
 Progress = Callable[[str], None]
 
@@ -25,6 +25,8 @@ _RADII = 8
 _SLOWEST, _SLEWED = 0.9, 0.35
 """A waypoint's circles are driven at no less than this share of the speed straight ahead, and with
 platform 1 at no more than 20 deg to the path."""
+_SWING = 0.4
+"""Of the tolerance of the way, so much is for the swing of P with each period."""
 _ENTRY = 0.1
 """m: a transition between curvatures has unknowns of its own for about so long."""
 _LONGEST = 1.2
@@ -57,6 +59,13 @@ class Plan:
         """Heading of platform 1 against that of the path, rad."""
         return 0.0 if self.way == "forward" else math.pi
 
+    @property
+    def heading(self) -> float:
+        """Of platform 1 at the end, rad: along the path, or as it is in steady motion."""
+        along = self.legs[-1].end.heading + self.turned
+        running = self.route.end == "running"
+        return along + slip(self.problem, self.legs[-1], self.turned) if running else along
+
 
 def plan_route(route: Route, progress: Progress = lambda _: None) -> Plan:
     """The fastest drive found along a route.
@@ -73,6 +82,7 @@ def plan_route(route: Route, progress: Progress = lambda _: None) -> Plan:
         fastest = maximize_speed(problem)
         problem = replace(problem, inertia_ratio=None)
         problem = problem.with_robot(fastest.robot) if fastest.robot else problem
+    problem = _near_the_path(problem, route.tolerance.path)
     ways: tuple[Way, ...] = ("forward", "backward")
     ways = tuple(way for way in ways if route.direction in ("either", way))
     progress("gaits")
@@ -112,6 +122,19 @@ def plan_route(route: Route, progress: Progress = lambda _: None) -> Plan:
         )
         return replace(plan, status=Status.NOT_CONVERGED, message=message)
     return replace(plan, message="A drive that is locally the fastest and keeps every bound.")
+
+
+def _near_the_path(problem: Problem, width: float) -> Problem:
+    """The problem with amplitudes at which P swings by no more than its share of the tolerance.
+
+    Where phi swings fast, platform 1 turns against it by c2/(c1 + c2) of it about its axle, which
+    swings P by c1 of that.
+    """
+    c1, c2 = problem.robot.platform1.c, problem.robot.platform2.c
+    box = problem.gait.amplitude
+    most = max(box.low, min(box.high, _SWING * width * (c1 + c2) / (c1 * c2)))
+    amplitude = Interval(box.low, most)
+    return replace(problem, gait=replace(problem.gait, amplitude=amplitude))
 
 
 def _rank(drive: Drive) -> tuple[bool, float]:
@@ -158,8 +181,14 @@ def _stages(plan: Plan, coast: Coasting | None, *, brakes: bool) -> list[Stage]:
             before = part.curvature
         stages.append(Stage(cycles, *shape, part, ends=True))
     if coast:
-        part, gait, _ = parts[-1]
+        part, gait, speed = parts[-1]
         stages[-1] = replace(stages[-1], ends=False)
+        if part.curvature:
+            # Platform 1 has to turn into the path before the robot stops.
+            cycles = min(0.3 * stages[-1].cycles, _ENTRY / (speed * gait.period))
+            rest = max(stages[-1].cycles - cycles - 1, 0.1)
+            stages.append(replace(stages[-1], cycles=cycles, offset=0.5 * gait.offset))
+            stages[-2] = replace(stages[-2], cycles=rest)
         omega = 2 * math.pi / gait.period
         if brakes:
             shape = 0.1 * gait.amplitude, 0.5 * gait.offset, omega

@@ -42,13 +42,16 @@ _INSIDE = 0.97
 """The program keeps to this share of each tolerance: steps are finite."""
 _PEAKS = 3
 """Largest torques of a segment that are bounded."""
-_TIGHT = 1 - 1e-5
+_TIGHT = 0.999
+"""The program keeps to this share of each limit: its bounds are good to `BROKEN`."""
 _FEWEST = 0.05
 """Cycles of a stage after its blend, at least."""
 BROKEN = 1e-3
 """By so much, relative, a bound may be broken, and the drive counts as keeping it."""
 _TURNS, _TURN = 6, 0.5
 """Gauss-Newton steps for a stage of the guess, and the longest, in scaled unknowns."""
+_TIGHTENED, _DENSE = 3, 0.99
+"""Solutions with the way bounded more tightly, until P stays so near the path at all samples."""
 _LINEAR, _QUADRATIC = 40, 80
 _LOST = 1e3
 """What counts as the excess where there is no motion."""
@@ -164,6 +167,7 @@ class Program:
         self.problem, self.stages, self.tolerance = problem, stages, tolerance
         self.start = (pose.x, pose.y, pose.heading + turned)
         self.turned, self.rest = turned, rest
+        self.width = tolerance.path * _BETWEEN
         guess = np.array([[s.cycles, s.amplitude, s.offset, s.omega] for s in stages])
         self.scale = np.tile([4.0, 0.2, 0.2, 0.0], len(stages))
         self.scale[3::4] = guess[:, 3]
@@ -213,7 +217,7 @@ class Program:
         A, w, unit, room = z[1::4], z[3::4], np.eye(len(z)), reach(self.problem)
         for sign in (1, -1):
             gradient = unit[1::4] + sign * unit[2::4]
-            rows.at_most("angle", pieces, A + sign * z[2::4], gradient, room)
+            rows.at_most("angle", pieces, A + sign * z[2::4], gradient, room * _TIGHT)
         if math.isfinite(limits.rate):
             rate = limits.rate * _TIGHT
             gradient = unit[1::4] * w[:, None] + unit[3::4] * A[:, None]
@@ -241,7 +245,7 @@ class Program:
                 by_x[:, None] * samples.slopes[2, some] + by_y[:, None] * samples.slopes[3, some]
             )
             of = [stage.leg.piece] * len(some)
-            rows.within("path", of, off, gradient, tolerance.path * _BETWEEN)
+            rows.within("path", of, off, gradient, self.width)
             if stage.ends:
                 last = stage is self.stages[-1]
                 name, within = (
@@ -249,7 +253,7 @@ class Program:
                 )
                 rows.near(name, stage.leg, samples, int(mine[-1]), within * _INSIDE)
         end, piece = samples.path[:, -1:], [pieces[-1]]
-        psi = end[1] - self.stages[-1].leg.end.heading - self.turned
+        psi = end[1] - self.heading(self.stages[-1].leg, steady=not self.rest)
         rows.within("heading", piece, psi, samples.slopes[1, -1:], tolerance.heading * _INSIDE)
         if self.rest:
             rows.within("speed", piece, end[0], samples.slopes[0, -1:], tolerance.speed * _INSIDE)
@@ -297,40 +301,54 @@ class Program:
                 seen[key] = self.look(x)
             return seen[key]
 
-        found = minimize(
-            lambda x: (look(x).seconds, look(x).rising * self.scale),
-            x,
-            jac=True,
-            method="SLSQP",
-            bounds=list(zip(low, high, strict=True)),
-            constraints={
-                "type": "ineq",
-                "fun": lambda x: look(x).values,
-                "jac": lambda x: look(x).slopes * self.scale,
-            },
-            callback=step,
-            options={"maxiter": _QUADRATIC, "ftol": _SETTLED},
-        )
-        here = min((look(np.clip(one, low, high)) for one in (x, found.x)), key=Look.rank)
-        worst = int(np.argmin(here.values))
-        return Drive(
-            here.command,
-            here.samples,
-            here.violation,
-            *here.names[worst],
-            steps,
-            bool(found.success),
-        )
+        best, success = look(x), False
+        for _ in range(_TIGHTENED):
+            found = minimize(
+                lambda x: (look(x).seconds, look(x).rising * self.scale),
+                x,
+                jac=True,
+                method="SLSQP",
+                bounds=list(zip(low, high, strict=True)),
+                constraints={
+                    "type": "ineq",
+                    "fun": lambda x: look(x).values,
+                    "jac": lambda x: look(x).slopes * self.scale,
+                },
+                callback=step,
+                options={"maxiter": _QUADRATIC, "ftol": _SETTLED},
+            )
+            here = look(np.clip(found.x, low, high))
+            if here.rank() < best.rank():
+                best, success = here, bool(found.success)
+            # Between the places that are bounded P may swing out.
+            off = self._farthest(best.samples)
+            if best.violation > BROKEN or off <= _DENSE * self.tolerance.path:
+                break
+            self.width *= _DENSE**2 * self.tolerance.path / off
+            seen.clear()
+            x = np.clip(found.x, low, high)
+            best = look(x)
+        worst = int(np.argmin(best.values))
+        return Drive(best.command, best.samples, best.violation, *best.names[worst], steps, success)
+
+    def _farthest(self, samples: Samples) -> float:
+        """The largest distance of P from the leg that it is on, at all samples, m."""
+        off = 0.0
+        for k, stage in enumerate(self.stages):
+            mine = samples.segment // 2 == k
+            found, *_ = signed_distance(stage.leg, *samples.path[2:4, mine])
+            off = max(off, float(np.abs(found).max()))
+        return off
+
+    def heading(self, leg: Leg, *, steady: bool) -> float:
+        """Of platform 1 at the end of a leg, rad: along the path, or as it is in steady motion."""
+        along = leg.end.heading + self.turned
+        return along + slip(self.problem, leg, self.turned) if steady else along
 
     def _steered(self, low: Array, high: Array) -> Array:
         """The guess with cycles and offset of stage after stage changed so that each ends near the
-        end of its leg, by Gauss-Newton steps.
-
-        On a circle P moves at sin(beta) = c1 kappa to the axis of platform 1.
-        """
+        end of its leg, by Gauss-Newton steps."""
         x = np.clip(self.x0, low, high)
-        ahead = 1 if self.turned == 0 else -1
-        c1 = self.problem.robot.platform1.c
         last = np.cumsum(self.steps)[1::2] - 1
         for k, stage in enumerate(self.stages):
             if not stage.ends or stage.coasts or stage.leg is self.stages[-1].leg:
@@ -339,8 +357,8 @@ class Program:
             most = (reach(self.problem) - stage.amplitude) / self.scale[4 * k + 2]
             if k > 1 and not self.stages[k - 1].ends:
                 free = np.append(free, 4 * k - 2)
-            end, beta = stage.leg.end, math.asin(max(-0.9, min(0.9, c1 * stage.leg.curvature)))
-            goal = np.array([end.x, end.y, end.heading + self.turned + ahead * beta])
+            end = stage.leg.end
+            goal = np.array([end.x, end.y, self.heading(stage.leg, steady=True)])
             weight = 1 / np.array([self.tolerance.path, self.tolerance.path, 0.1])
             best = math.inf
             place, move = x[free], np.zeros(len(free))
@@ -401,6 +419,13 @@ class Program:
             elif gained < 0.3 * expected:
                 radius /= 3
         return x
+
+
+def slip(problem: Problem, leg: Leg, turned: float) -> float:
+    """beta of a leg's steady motion, rad: on a circle P moves at sin(beta) = c1 kappa to the axis
+    of platform 1. turned: 0 if platform 1 leads, else pi."""
+    beta = math.asin(max(-0.9, min(0.9, problem.robot.platform1.c * leg.curvature)))
+    return beta if turned == 0 else -beta
 
 
 def _fastest(blends: Array) -> Array:

@@ -47,9 +47,15 @@ class Replay:
 
 
 def replay(
-    problem: Problem, command: Command, start: Pose, legs: tuple[Leg, ...], turned: float
+    problem: Problem,
+    command: Command,
+    start: Pose,
+    legs: tuple[Leg, ...],
+    turned: float,
+    heading: float,
 ) -> Replay:
-    """Simulate a command; turned: heading of platform 1 against that of the path, rad."""
+    """Simulate a command; turned: heading of platform 1 at the start against that of the path, rad;
+    heading: the one it is to have at the end, rad."""
     robot = problem.robot
     driven = simulate(problem, command, start, turned)
     end = legs[-1].end
@@ -64,7 +70,7 @@ def replay(
     return Replay(
         driven,
         math.hypot(driven.x[-1] - end.x, driven.y[-1] - end.y),
-        abs(float(driven.psi[-1]) - end.heading - turned),
+        abs(float(driven.psi[-1]) - heading),
         abs(float(driven.v[-1])),
         float(distances(legs, driven.x, driven.y).max()),
         reached,
