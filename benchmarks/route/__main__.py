@@ -10,8 +10,8 @@ import rr_opt as rr
 from benchmarks.results import machine, write, yardstick
 from benchmarks.route.others import brute_force, glued
 from benchmarks.route.problems import ROBOTS, ROUTES, START
+from rr_lab.case import driven
 from rr_lab.effects import rig_with
-from rr_lab.engines import driven
 from rr_lab.run import Conditions
 from rr_opt.model.route import Route
 from rr_opt.results.route import DrivenRoute

@@ -5,7 +5,7 @@ import math
 import pytest
 
 import rr_opt as rr
-from rr_opt.api.lint import lint
+from rr_opt.api.files import lint
 from rr_opt.files.issue import InvalidFileError
 
 GOOD = """

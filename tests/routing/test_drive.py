@@ -39,9 +39,8 @@ def test_it_is_faster_than_gaits_and_coasting(turned):
 
 
 def test_the_laboratory_ends_at_the_same_place(turned):
+    from rr_lab.case import driven
     from rr_lab.effects import rig_with
-    from rr_lab.engines import driven
-    from rr_lab.rig import Rig  # noqa: F401
     from rr_lab.run import Conditions
 
     conditions = Conditions(turned.seconds, "rest", (0.0, 0.0, math.pi))

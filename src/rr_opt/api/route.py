@@ -5,8 +5,7 @@ from __future__ import annotations
 import warnings
 from pathlib import Path
 
-from rr_opt.api.identity import fingerprint
-from rr_opt.api.load import InputWarning, PathLike
+from rr_opt.api.load import InputWarning, PathLike, fingerprint
 from rr_opt.files.route_file import read_route
 from rr_opt.model.route import Route
 from rr_opt.results.result import Progress, quiet

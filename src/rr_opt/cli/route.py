@@ -9,7 +9,6 @@ import typer
 
 import rr_opt as rr
 from rr_opt.cli import options
-from rr_opt.cli.show import show
 from rr_opt.cli.steps import Steps
 
 
@@ -28,4 +27,4 @@ def route(
         folder = options.results_folder(out, asked.name)
         driven = rr.route(asked, progress=steps)
         files = driven.save(folder, figures=figures, progress=steps)
-    show(driven, files, json=json)
+    options.show(driven, files, json=json)

@@ -3,22 +3,39 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rr_opt.design.decisions import ballast_interval
 from rr_opt.design.maximize_speed import Optimum
 from rr_opt.design.solve import Candidate
-from rr_opt.formatting import direction_text, pace_text
+from rr_opt.design.study.measure import Energy, energy
+from rr_opt.documents import document as doc
+from rr_opt.documents.texts import captions
+from rr_opt.files.record import plain, robot_record
+from rr_opt.formatting import counted, direction_text, number, pace_text, with_unit
 from rr_opt.messages import listed
-from rr_opt.model.ballast import inertia_ratio, with_load_count
+from rr_opt.model.ballast import inertia_ratio, load_count, with_load_count
 from rr_opt.model.gait import Gait
-from rr_opt.model.problem import LARGEST_EXCESS, Problem
+from rr_opt.model.problem import LARGEST_EXCESS, NEEDS_GRIP, Problem
 from rr_opt.model.robot import Robot
+from rr_opt.motion.rollout import one_period
 from rr_opt.motion.steady_cycle import Cycle
 from rr_opt.outcome import Status
-from rr_opt.results.limits import LIMIT_NAMES, BoundRow, LimitRow, bound_rows, limit_row
+from rr_opt.results.gait import gait_facts, robot_table, signed_fact, speed_fact
+from rr_opt.results.limits import (
+    LIMIT_NAMES,
+    BoundRow,
+    LimitRow,
+    bound_rows,
+    bounds_table,
+    limit_row,
+    limited_by,
+    limits_table,
+)
+from rr_opt.results.motion import trajectory_csv
 from rr_opt.results.result import Check, Result
 from rr_opt.verify.replay import Replay
 from rr_opt.verify.sweep import TOLERATED, SweepCheck
@@ -45,7 +62,10 @@ class FastestGait(Result):
                    another inertia ratio; None elsewhere, and if that robot has no such gait
     """
 
-    REPORT = "rr_opt.report.fastest"
+    FILE = "result.json"
+    OTHERS = ("trajectory.csv",)
+    DRAW = "rr_opt.results.figures.fastest.draw"
+    CAPTIONS = captions("fastest")
 
     name: str
     sha256: str
@@ -62,7 +82,7 @@ class FastestGait(Result):
 
     @property
     def gait(self) -> Gait | None:
-        """The fastest gait, as the servo is told it; None if there is none."""
+        """The fastest gait, as commanded; None if there is none."""
         if self.driven:
             return self.driven.gait
         return self.told(self.optimum.best.gait) if self.optimum.best else None
@@ -116,6 +136,15 @@ class FastestGait(Result):
             return self.climbed.driven.cycle
         return self.replay.steady.cycle if self.replay else None
 
+    @cached_property
+    def energy(self) -> Energy | None:
+        """Of the servo per metre of path: the work that it does, without what it could recover
+        where it brakes, the net work, and the cost of transport; None without a gait, and where
+        the motion is not that of the optimiser."""
+        if self.replay is None or self.climbed:
+            return None
+        return energy(self.robot, self.replay.steady)
+
     @property
     def turns(self) -> bool:
         """Whether the robot goes round a circle: a radius of many kilometres is a straight line."""
@@ -164,15 +193,14 @@ class FastestGait(Result):
         if self.replay:
             error, excess = self.replay.error, self.replay.excess
             speed = (
-                f"Replay by CVODES: its speed is {1e3 * self.replay.speed:+.3f} mm/s, "
-                f"{error:.1e} from the optimiser's, relative "
-                f"(at most {LARGEST_REPLAY_ERROR:.0e} allowed)."
+                f"Replay by CVODES: {1e3 * self.replay.speed:+.3f} mm/s, relative error "
+                f"{error:.1e} (tolerance {LARGEST_REPLAY_ERROR:.0e})."
             )
             worst = (
-                f"the worst limit is exceeded by {excess:.1e} of its value "
-                f"(at most {LARGEST_EXCESS:.0e} allowed)."
+                f"the worst is exceeded by {excess:.1e} of its value "
+                f"(tolerance {LARGEST_EXCESS:.0e})."
                 if excess > 0
-                else "no limit is exceeded."
+                else "none is exceeded."
             )
             checks += [
                 Check(error <= LARGEST_REPLAY_ERROR, speed),
@@ -183,9 +211,8 @@ class FastestGait(Result):
             checks.append(Check(self.sweep.gap >= -TOLERATED, better))
             if not math.isnan(self.sweep.error):
                 own = (
-                    f"The sweep's own model gives the optimum {1e3 * self.sweep.speed:+.3f} "
-                    f"mm/s, {self.sweep.error:.1e} from the optimiser's, relative "
-                    f"(at most {TOLERATED:.0e} allowed)."
+                    f"The sweep's own model of the optimum: {1e3 * self.sweep.speed:+.3f} mm/s, "
+                    f"relative error {self.sweep.error:.1e} (tolerance {TOLERATED:.0e})."
                 )
                 checks.append(Check(self.sweep.error <= TOLERATED, own))
         return checks + (_driven_checks(self.driven, self.optimum) if self.driven else [])
@@ -227,11 +254,12 @@ class FastestGait(Result):
         if best is None:
             return []
         texts = []
+        texts += self._slippery
         if self.climbed:
             texts.append(_climbed(self.climbed, self.optimum))
         if self.driven and self.driven.driven.left_out:
             names = listed(self.driven.driven.left_out)
-            texts.append(f"It holds away from {names}, whose place no steady motion has.")
+            texts.append(f"It is valid away from {names}, which no steady motion can include.")
         ties = len(self.optimum.ties)
         if ties:
             texts.append(f"{ties} other gait{'s are' if ties > 1 else ' is'} as fast: a tie.")
@@ -253,6 +281,16 @@ class FastestGait(Result):
             )
         return texts
 
+    @property
+    def _slippery(self) -> tuple[str, ...]:
+        grip = self.limits["grip"].value
+        if not grip > NEEDS_GRIP:
+            return ()
+        return (
+            f"The wheels need a coefficient of friction of {grip:.2g} not to slip sideways, which "
+            f"few floors have (above {NEEDS_GRIP:g}). `limits.grip` limits it.",
+        )
+
     def _beyond_servo(self, gait: Gait) -> list[str]:
         """Which limits of the robot file's servo the gait exceeds."""
         servo, needed = self.problem.robot.servo, self.replay.reached if self.replay else {}
@@ -268,8 +306,124 @@ class FastestGait(Result):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What the robot does with effects that the optimiser does not know."""
-        return (_climbed(self.climbed, self.optimum),) if self.climbed else ()
+        """What the robot does with effects that the optimiser does not know, and grip that wheels
+        may not have."""
+        climbed = (_climbed(self.climbed, self.optimum),) if self.climbed else ()
+        return (*climbed, *self._slippery)
+
+    def _record(self) -> dict[str, Any]:
+        """The content of result.json; the same keys whatever the outcome."""
+        optimum, replay, sweep = self.optimum, self.replay, self.sweep
+        cycle, driven = self.cycle, self.driven
+        return {
+            "status": self.status,
+            "message": self.message,
+            "warnings": self.warnings,
+            "problem": self.name,
+            "gait": self.gait,
+            "joint": self.joint,
+            "inertia_ratio": self.inertia_ratio,
+            "speed": self.speed,
+            "speed_as_built": self.as_built,
+            "cycle": cycle
+            and {
+                "dx": cycle.dx,
+                "dy": cycle.dy,
+                "dpsi": cycle.dpsi,
+                "radius": cycle.radius if self.turns else None,
+            },
+            "energy": self.energy,
+            "limits": [
+                {**plain(row), "unit": UNITS[row.name], "active": row.active if replay else None}
+                for row in self.limits.values()
+            ],
+            "grip": replay and {"axle1": replay.grip[0], "axle2": replay.grip[1]},
+            "bounds": list(self.bounds.values()),
+            "check": replay
+            and sweep
+            and {
+                "sweep_points": sweep.points,
+                "sweep_best": sweep.best_speed,
+                "sweep_gait": sweep.best_gait,
+                "gap": sweep.gap,
+                "sweep_error": sweep.error,
+                "replay_error": replay.error,
+                "replay_speed": replay.speed,
+                "limit_excess": replay.excess,
+            },
+            "driven": driven
+            and {
+                "effects": driven.driven.effects,
+                "beyond_optimiser": driven.beyond,
+                "left_out": driven.driven.left_out,
+                "speeds": driven.driven.speeds,
+                "speed_without": optimum.best and optimum.best.speed,
+            },
+            "solver": {
+                "starts": optimum.starts,
+                "iterations": optimum.iterations,
+                "intervals": optimum.intervals,
+                "distinct_optima": [
+                    {
+                        "speed": one.speed,
+                        "gait": self.told(one.gait),
+                        "inertia_ratio": self.ratio_of(one),
+                    }
+                    for one in optimum.optima
+                ],
+                "ties": len(optimum.ties),
+                "failures": optimum.failures,
+            },
+            "robot": robot_record(self.robot),
+            "loads": _loads(self),
+            "units": UNITS,
+        }
+
+    def document(self, figures: Sequence[doc.Figure] = ()) -> doc.Document:
+        """The report of a fastest gait."""
+        choice, solved = self.problem.inertia_ratio, self.gait is not None
+        chosen = "platform2.I" if choice and choice.by == "inertia" and solved else ""
+        good = self.status is Status.OPTIMAL
+        lead = " ".join(
+            [
+                *([] if self.climbed else ["Every check confirms it."]),
+                *self.remarks,
+                limited_by(self.limits.values(), self.bounds.values()) if self.replay else "",
+            ]
+        )
+        return doc.Document(
+            name=self.name,
+            kind="fastest gait",
+            title=self.headline or _TITLES[self.status],
+            lead=lead if good else self.message,
+            good=good,
+            sections=(
+                doc.Section("", (doc.Facts(tuple(_facts(self)), key=True),)),
+                self._lead(),
+                doc.Section(
+                    "Checks", (doc.checks((one.passed, one.sentence) for one in self.checks),)
+                ),
+                doc.gallery(figures),
+                doc.Section(
+                    "Limits", (limits_table(self.limits.values(), reached=solved),), brief=solved
+                ),
+                doc.Section("Decisions and their bounds", (bounds_table(self.bounds.values()),)),
+                doc.Section("Local optima", (_optima(self),)),
+                doc.Section("Robot", (robot_table(self.robot, chosen),), brief=False),
+                doc.Section("Solver", (_solver(self),), brief=solved),
+            ),
+            footer=doc.versions(self.sha256),
+        )
+
+    def _lead(self) -> doc.Section:
+        """What comes before the checks."""
+        return doc.Section("", ())
+
+    def _tables(self) -> dict[str, str]:
+        """The cycle as CSV; nothing without a gait."""
+        if self.replay is None:
+            return {}
+        return {"trajectory.csv": trajectory_csv(one_period(self.replay.steady))}
 
 
 LARGEST_DRIVEN_ERROR = 0.01
@@ -278,7 +432,7 @@ nothing was climbed."""
 
 
 def _driven_checks(found: DrivenOptimum, optimum: Optimum) -> list[Check]:
-    """The gait as the servo is told it, driven by the simulation that predicts recordings."""
+    """The commanded gait, driven by the simulation that predicts recordings."""
     best, seen = optimum.best, found.driven
     if best is None:
         return []
@@ -289,15 +443,15 @@ def _driven_checks(found: DrivenOptimum, optimum: Optimum) -> list[Check]:
         return [
             Check(
                 excess <= LARGEST_EXCESS,
-                f"Driven with {names}: the limit kept most narrowly is on {worst}, exceeded by "
-                f"{max(excess, 0.0):.1e} of its value (at most {LARGEST_EXCESS:.0e} allowed).",
+                f"Driven with {names}: the tightest limit is that on {worst}, exceeded by "
+                f"{max(excess, 0.0):.1e} of its value (tolerance {LARGEST_EXCESS:.0e}).",
             )
         ]
     return [
         Check(
             error <= LARGEST_DRIVEN_ERROR,
-            f"Driven with {names}, told the gait above: {1e3 * seen.speed:+.3f} mm/s, {error:.1e} "
-            f"from the optimiser's, relative (at most {LARGEST_DRIVEN_ERROR:.0e} allowed).",
+            f"Driven with {names}, the gait above as the command: {1e3 * seen.speed:+.3f} mm/s, "
+            f"relative error {error:.1e} (tolerance {LARGEST_DRIVEN_ERROR:.0e}).",
         )
     ]
 
@@ -308,27 +462,145 @@ def _climbed(found: DrivenOptimum, optimum: Optimum) -> str:
     without = optimum.best.speed if optimum.best else math.nan
     change, gain = speed / without - 1, abs(speed / found.start.speed) - 1
     text = (
-        f"The optimiser does not know {names}: without, its optimum has {1e3 * without:+.2f} mm/s, "
+        f"The optimiser does not know {names}. Without, its optimum is {1e3 * without:+.2f} mm/s, "
         f"which every check confirms; with {'it' if len(found.beyond) == 1 else 'them'} the speed "
-        f"changes by {100 * change:+.2g} %, climbing on included, which gained {100 * gain:.2g} %. "
-        "The gait is a local optimum, checked by no sweep."
+        f"changes by {100 * change:+.2g} %, including the {100 * gain:.2g} % gained by a local "
+        "search. The gait is a local optimum; no sweep checks it."
     )
     if len(found.driven.speeds) > 1:
         low, high = (1e3 * end(found.driven.speeds) for end in (min, max))
-        text += f" By heading it has {low:+.2f} to {high:+.2f} mm/s; this is the mean."
+        text += f" The speed is a mean over headings, {low:+.2f} to {high:+.2f} mm/s."
     return text
 
 
 def _sweep_sentence(sweep: SweepCheck, shape: str) -> str:
     gaits = "gaits" if shape == "sine" else "sines"
     if sweep.best_gait is None:
-        return f"Sweep of {sweep.points} {gaits}: none of them respects every limit."
-    head = f"Sweep of {sweep.points} {gaits}: the best has {1e3 * sweep.best_speed:+.3f} mm/s, "
+        return f"Sweep of {sweep.points} {gaits}: none respects every limit."
+    head = f"Sweep of {sweep.points} {gaits}: the best reaches {1e3 * sweep.best_speed:+.3f} mm/s, "
     if abs(sweep.gap) < 1e-6:
-        return head + "as fast as the optimum to within a millionth."
+        return head + "equal to the optimum to within 1e-6."
     if sweep.gap >= 0:
         return head + f"{100 * sweep.gap:.2g} % slower than the optimum."
     return (
         head + f"{-100 * sweep.gap:.2g} % faster than the optimum "
-        f"(at most {100 * TOLERATED:g} % allowed)."
+        f"(tolerance {100 * TOLERATED:g} %)."
     )
+
+
+_TITLES = {
+    Status.OPTIMAL: "The robot does not move",
+    Status.INFEASIBLE: "No gait respects all limits",
+    Status.NOT_CONVERGED: "No confirmed optimum",
+}
+
+
+def _facts(result: FastestGait) -> Iterator[doc.Fact]:
+    if result.speed is None or result.gait is None or result.cycle is None:
+        return
+    yield speed_fact(result.speed)
+    if result.rebuilt and result.as_built is not None:
+        yield signed_fact("as built", result.as_built, "at best, with I2 unchanged")
+    yield from gait_facts(result.gait)
+    yield _ratio(result)
+    yield _cycle(result.cycle, turning=result.turns)
+    if result.energy:
+        gross, net = (with_unit(one, "J/m") for one in (result.energy.gross, result.energy.net))
+        cost = number(result.energy.cost_of_transport)
+        yield doc.Fact("energy", gross, f"positive work of the servo, net {net}")
+        yield doc.Fact("", cost, "cost of transport: that over the weight")
+
+
+def _ratio(result: FastestGait) -> doc.Fact:
+    """J20/J10, about which point, and how it is realised."""
+    choice, built = result.problem.inertia_ratio, result.problem.robot
+    about = choice.about if choice else "joint"
+    ratio = number(result.inertia_ratio or 0.0)
+    where = f"about {'the joint P' if about == 'joint' else 'the centres of mass'}"
+    if choice is None or not result.rebuilt:
+        return doc.Fact("J20/J10", ratio, f"{where}, the robot as it is")
+    means = ", by loads on platform 2" if choice.by == "loads" else ""
+    return doc.Fact(
+        "J20/J10",
+        ratio,
+        f"{where}{means}: I2 {built.platform2.I:.4g} -> {result.robot.platform2.I:.4g} kg m2 "
+        f"(ratio {number(inertia_ratio(built, about))} -> {ratio})",
+    )
+
+
+def _cycle(cycle: Cycle, *, turning: bool) -> doc.Fact:
+    """What one period does: a step along a line or round a circle."""
+    step = f"{1e3 * math.hypot(cycle.dx, cycle.dy):.1f} mm a period"
+    if not turning:
+        return doc.Fact("cycle", step, "straight")
+    return doc.Fact(
+        "cycle",
+        step,
+        f"round a circle of radius {with_unit(cycle.radius, 'm')}, "
+        f"turning {math.degrees(cycle.dpsi):+.3g} deg a period",
+    )
+
+
+def _optima(result: FastestGait) -> doc.Table:
+    """All local optima; nothing if there is one only."""
+    optimum = result.optimum
+    ties = {id(one) for one in optimum.ties}
+    rows = [
+        [
+            f"{1e3 * one.speed:+.2f} mm/s",
+            with_unit(told.amplitude, "rad"),
+            with_unit(told.period, "s"),
+            with_unit(told.offset, "rad"),
+            number(result.ratio_of(one)),
+            "the optimum" if one is optimum.best else "a tie" if id(one) in ties else "",
+        ]
+        for one, told in ((one, result.told(one.gait)) for one in optimum.optima)
+    ]
+    head = ["Speed", "Amplitude", "Period", "Offset", "J20/J10", "Remark"]
+    return doc.table(head, rows if len(rows) > 1 else [])
+
+
+def _solver(result: FastestGait) -> str:
+    optimum, guesses = result.optimum, ("initial guess", "initial guesses")
+    text = (
+        f"{counted(optimum.starts, *guesses)}, {counted(optimum.iterations, 'iteration')}, "
+        f"{optimum.intervals} intervals a period, "
+        f"{counted(len(optimum.optima), 'distinct optimum', 'distinct optima')}."
+    )
+    failed = len(optimum.failures)
+    return f"{text} {counted(failed, *guesses)} led to no optimum." if failed else text
+
+
+UNITS = {
+    "angle": "rad",
+    "rate": "rad/s",
+    "torque": "N m",
+    "singularity": "m",
+    "grip": "1, largest side force of an axle over the load on it",
+    "amplitude": "rad",
+    "period": "s",
+    "offset": "rad",
+    "inertia_ratio": "1",
+    "speed": "m/s",
+    "speed_as_built": "m/s, of the fastest gait of the robot with its inertia ratio unchanged",
+    "dx": "m",
+    "dy": "m",
+    "dpsi": "rad",
+    "radius": "m",
+    "energy": "J per metre of path: gross, the positive work of the servo, none of it recovered; "
+    "net, what friction takes; cost_of_transport, gross over the weight, 1",
+    "shadow_price": "m/s of |speed| per SI unit by which the limit or bound is raised",
+    "gap": "(|speed| - |sweep_best|)/|speed|",
+    "sweep_error": "|speed by the sweep's model - speed|/|speed|",
+    "replay_error": "|replay speed - speed|/|speed|",
+    "limit_excess": "largest (value - limit)/limit over the replayed cycle",
+}
+
+
+def _loads(result: FastestGait) -> float | None:
+    """How many loads the robot carries, where loads realise the inertia ratio."""
+    choice, ratio = result.problem.inertia_ratio, result.inertia_ratio
+    if choice is None or choice.by != "loads" or ratio is None:
+        return None
+    count = load_count(result.problem.robot, ratio, choice.about, choice.loads)
+    return round(count) if choice.loads.whole else count
