@@ -25,7 +25,7 @@ DEV := $(VENV)/dev-$(call checksum,run dev)
 DOCS := $(VENV)/docs-$(call checksum,run docs)
 BENCH_VENV := .venv-bench
 BENCH := $(BENCH_VENV)/ready-$(call checksum,run bench)
-BENCHMARKS ?= startup optimise turn sweep fit study recordings diagnose
+BENCHMARKS ?= startup optimise turn sweep fit study recordings diagnose effects grip reversal
 MEASURE := OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 $(BENCH_VENV)/bin/python -W ignore
 
 .DEFAULT_GOAL := help
