@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from rr_opt.design.decisions import ballast_interval
 from rr_opt.design.maximize_speed import Optimum
 from rr_opt.design.solve import Candidate
+from rr_opt.design.study.measure import Energy, energy
 from rr_opt.documents import document as doc
 from rr_opt.documents.texts import captions
 from rr_opt.files.record import plain, robot_record
@@ -134,6 +135,15 @@ class FastestGait(Result):
         if self.climbed:
             return self.climbed.driven.cycle
         return self.replay.steady.cycle if self.replay else None
+
+    @cached_property
+    def energy(self) -> Energy | None:
+        """Of the servo per metre of path: the work that it does, without what it could recover
+        where it brakes, the net work, and the cost of transport; None without a gait, and where
+        the motion is not that of the optimiser."""
+        if self.replay is None or self.climbed:
+            return None
+        return energy(self.robot, self.replay.steady)
 
     @property
     def turns(self) -> bool:
@@ -322,6 +332,7 @@ class FastestGait(Result):
                 "dpsi": cycle.dpsi,
                 "radius": cycle.radius if self.turns else None,
             },
+            "energy": self.energy,
             "limits": [
                 {**plain(row), "unit": UNITS[row.name], "active": row.active if replay else None}
                 for row in self.limits.values()
@@ -493,6 +504,11 @@ def _facts(result: FastestGait) -> Iterator[doc.Fact]:
     yield from gait_facts(result.gait)
     yield _ratio(result)
     yield _cycle(result.cycle, turning=result.turns)
+    if result.energy:
+        gross, net = (with_unit(one, "J/m") for one in (result.energy.gross, result.energy.net))
+        cost = number(result.energy.cost_of_transport)
+        yield doc.Fact("energy", gross, f"positive work of the servo, net {net}")
+        yield doc.Fact("", cost, "cost of transport: that over the weight")
 
 
 def _ratio(result: FastestGait) -> doc.Fact:
@@ -571,6 +587,8 @@ UNITS = {
     "dy": "m",
     "dpsi": "rad",
     "radius": "m",
+    "energy": "J per metre of path: gross, the positive work of the servo, none of it recovered; "
+    "net, what friction takes; cost_of_transport, gross over the weight, 1",
     "shadow_price": "m/s of |speed| per SI unit by which the limit or bound is raised",
     "gap": "(|speed| - |sweep_best|)/|speed|",
     "sweep_error": "|speed by the sweep's model - speed|/|speed|",
