@@ -51,7 +51,7 @@ def row(name: str, route: Route) -> tuple[str, float | None]:
     seconds = time.process_time() - begin
     plan, check = found.plan, found.replay
     if found.seconds is None or check is None:
-        return f"| {name} | {found.status.words}: {found.message} |||||||| ", None
+        return f"| {name} | {found.status.words}: {found.message} |" + " |" * 7, None
     hand = glued(plan)
     by_hand = replay(plan.problem, hand, route.start, plan.legs, plan.turned, plan.heading)
     straight = len(plan.legs) == 1 and plan.legs[0].curvature == 0

@@ -317,7 +317,10 @@ class Program:
                 callback=step,
                 options={"maxiter": _QUADRATIC, "ftol": _SETTLED},
             )
-            here = look(np.clip(found.x, low, high))
+            x = np.clip(found.x, low, high)
+            if look(x).violation > BROKEN:
+                x = self._feasible(x, low, high, step)
+            here = look(x)
             if here.rank() < best.rank():
                 best, success = here, bool(found.success)
             # Between the places that are bounded P may swing out.
@@ -326,7 +329,6 @@ class Program:
                 break
             self.width *= _DENSE**2 * self.tolerance.path / off
             seen.clear()
-            x = np.clip(found.x, low, high)
             best = look(x)
         worst = int(np.argmin(best.values))
         return Drive(best.command, best.samples, best.violation, *best.names[worst], steps, success)
