@@ -6,9 +6,9 @@ import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+from rr_opt.design.candidate import Candidate
 from rr_opt.design.decisions import ballast_interval
 from rr_opt.design.maximize_speed import Optimum
-from rr_opt.design.solve import Candidate
 from rr_opt.formatting import direction_text, pace_text
 from rr_opt.messages import listed
 from rr_opt.model.ballast import inertia_ratio, with_load_count
