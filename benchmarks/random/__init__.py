@@ -1,1 +1,1 @@
-"""Problems and turns drawn at random, against a brute force that shares no code with the package."""
+"""Random problems and turns, against a brute force that shares no code with the package."""

@@ -1,4 +1,4 @@
-"""Random problems: robots, bounds, limits, offsets, directions, inertia ratios; and random turns."""
+"""Random problems: robots, bounds, limits, offsets, directions, inertia ratios."""
 
 from __future__ import annotations
 

@@ -31,6 +31,8 @@ _FRACTIONS = np.array([1.0, 0.6, 0.3, 0.1, 0.03])
 _RADIUS = 0.2
 """The longest step, in scales."""
 _ITERATIONS = 60
+_DEAREST = 1e5
+"""The largest penalty, in values of the function: what needs a larger one has no solution near."""
 _REPEATED, _SETTLED = 4, 1e-2
 """Quadratic programs within a step, at most, and the change, relative, that ends them."""
 _ACROSS, _FLAT, _SLIGHT = 10.0, 1e-6, 1e-3
@@ -102,19 +104,21 @@ def ascend(program: Program, start: Array, penalty: float = 10.0) -> Ascent:
 
     penalty: of a violation of 1, in values of the function, to begin with.
     """
-    x, radius, converged, iteration = start, _RADIUS, False, 0
+    x, radius, converged, iterations = start, _RADIUS, False, 0
     stencil, design = _stencil(len(x))
     here = program.look(x[None])
     value, violation = float(here.function[0]), float(program.violation(here.worst)[0])
     prices = Prices(np.zeros(len(here.rows)), *(np.zeros(0) for _ in range(3)))
-    for iteration in range(1, _ITERATIONS + 1):
+    while not converged and iterations < _ITERATIONS:
+        iterations += 1
         function, rows, _ = program.look(x + _STEP * program.scale * stencil)
         models = np.vstack([function, rows]) @ design.T
         if not np.isfinite(models).all():
             break
         size = max(abs(value), program.unit, 1e-300)
         step, prices = _step(program, x, models, radius, penalty * size)
-        penalty = max(penalty, 2 * float(np.abs(prices.rows).max(initial=0.0)) / size)
+        dearest = float(np.abs(prices.rows).max(initial=0.0)) / size
+        penalty = max(penalty, min(2 * dearest, _DEAREST))
         length = float(np.abs(step).max(initial=0.0))
         tried = x + _FRACTIONS[:, None] * program.scale * step
         tried = np.vstack([x, np.clip(tried, program.low, program.high)])
@@ -132,9 +136,7 @@ def ascend(program: Program, start: Array, penalty: float = 10.0) -> Ascent:
         else:
             radius = _FRACTIONS[best - 1] * length
         converged = length <= _LENGTH or (best == 1 and gain <= _GAIN * size)
-        if converged:
-            break
-    return Ascent(x, value, violation, prices, converged, iteration)
+    return Ascent(x, value, violation, prices, converged, iterations)
 
 
 def _step(
@@ -187,7 +189,7 @@ def _convex(bend: Array, least: float, held: Array) -> Array:
     Lagrangian does). What is not convex then is bent up.
     """
     size = max(float(np.abs(bend).max(initial=0.0)), least)
-    unit = held / np.maximum(np.linalg.norm(held, axis=1, keepdims=True), 1e-300)
+    unit = held / np.maximum(np.sqrt((held**2).sum(axis=1, keepdims=True)), 1e-300)
     values, vectors = np.linalg.eigh(bend + _ACROSS * size * unit.T @ unit)
     return (vectors * np.maximum(np.abs(values), _FLAT * size)) @ vectors.T
 
@@ -201,7 +203,7 @@ def _quadratic(curve: Array, slope: Array, G: Array, h: Array, active: Mask) -> 
     L = np.linalg.cholesky(curve / np.outer(size, size))
     # In y = L'(size d) - centre it is the least |y| with normals y + least <= 0.
     centre = -np.linalg.solve(L, slope / size)
-    normals = np.linalg.solve(L, (G / size).T).T
+    normals = np.asarray(np.linalg.solve(L, (G / size).T).T, float)
     least = normals @ centre - h
     u, rest = _nonnegative(np.vstack([-normals.T, least]), active)
     return np.linalg.solve(L.T, centre - rest[:-1] / rest[-1]) / size, u / -rest[-1]
@@ -231,7 +233,7 @@ def _nonnegative(E: Array, active: Mask) -> tuple[Array, Array]:
             if inside.min() > 0:
                 u[at] = inside
                 break
-            falls = np.flatnonzero(inside <= 0)
+            falls = np.flatnonzero(~(inside > 0))
             shares = u[at][falls] / np.maximum(u[at][falls] - inside[falls], 1e-300)
             u[at] += shares.min() * (inside - u[at])
             gone = at[falls[shares <= shares.min()]]
@@ -244,8 +246,8 @@ def _solved(E: Array, f: Array) -> Array:
     Q, R = np.linalg.qr(E)
     pivots = np.abs(np.diag(R))
     if E.shape[1] > len(E) or pivots.min() <= 1e-10 * pivots.max():
-        return np.linalg.lstsq(E, f, rcond=None)[0]
-    return np.linalg.solve(R, Q[-1])
+        return np.asarray(np.linalg.lstsq(E, f, rcond=None)[0], float)
+    return np.asarray(np.linalg.solve(R, Q[-1]), float)
 
 
 @lru_cache
@@ -259,7 +261,8 @@ def _stencil(n: int) -> tuple[Array, Array]:
     for row, (i, j) in enumerate(pairs, start=1 + 2 * n):
         points[row, [i, j]] = 1.0
     crossed = [points[:, [i]] * points[:, [j]] for i, j in pairs]
-    design = np.linalg.inv(np.hstack([np.ones((len(points), 1)), points, points**2 / 2, *crossed]))
+    monomials = np.hstack([np.ones((len(points), 1)), points, points**2 / 2, *crossed])
+    design = np.asarray(np.linalg.inv(monomials), float)
     design[1 : n + 1] /= _STEP
     design[n + 1 :] /= _STEP**2
     return points, design

@@ -66,18 +66,18 @@ def refine(setting: Setting, candidate: Candidate) -> Candidate:
     """Solve again until the mesh claims the true speed and no limit is broken between nodes."""
     if candidate.mesh is None:
         return refine_sine(setting, candidate)
-    iterations = candidate.iterations
+    iterations, mesh = candidate.iterations, candidate.mesh
     for number in range(_REFINEMENTS):
         gait, share = candidate.gait, candidate.share
         seen = dense(setting, gait, share)
         error = abs(abs(candidate.speed) - abs(seen.speed)) / abs(seen.speed)
-        finer = _finer(setting, candidate.mesh, error)
+        finer = _finer(setting, mesh, error)
         if seen.used <= 1 + _PEAK and (finer is None or error <= _CLAIM):
             # With no finer mesh left, the gait is as good as found; its speed is what was seen.
             speed = candidate.speed if error <= _CLAIM else seen.speed
             candidate = replace(candidate, speed=speed)
             break
-        mesh = finer or candidate.mesh
+        mesh = finer or mesh
         if number == _PATIENCE and setting.problem.gait.shape == "fourier":
             mesh = replace(regular(at_least(2 * mesh.intervals)), checks=mesh.checks)
         mesh = mesh.with_torque_at(seen.peaks).with_checks_at(seen.checks)

@@ -14,12 +14,13 @@ from functools import cached_property
 from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rr_opt.array import Array
 from rr_opt.design.climb import Merit
 from rr_opt.design.decisions import Decisions, Setting, TurnRows, reach_before_singularity
 from rr_opt.design.landscape import Cycles
-from rr_opt.design.transcription import TURN
+from rr_opt.design.transcription import ROWS
 from rr_opt.model.problem import Interval
 from rr_opt.sqp import Prices, Program, Seen
 
@@ -41,7 +42,9 @@ _FORWARD = Interval(1e-6, math.inf)
 """Of the forward speed, in sizes of the speed: at 0 a gait goes neither forward nor backward."""
 
 
+LIMITS = ("rate", "angle", "singularity", "torque")
 Aim = Literal["speed", "rows", "turn"]
+Indices = NDArray[np.int_]
 
 
 @dataclass(frozen=True)
@@ -146,7 +149,7 @@ class Terrain:
         return low, high
 
     @cached_property
-    def free(self) -> Array:
+    def free(self) -> Indices:
         """Which of amplitude, period, offset, share are free."""
         low, high = self._bounds
         return np.flatnonzero(low < high)
@@ -230,8 +233,7 @@ class Terrain:
         speed (m/s) and turn (rad per period) of the gait
         """
         limits, robot, period = self.setting.problem.limits, self.setting.problem.robot, gait[1]
-        names = ("rate", "angle", "singularity", "torque", "direction", *TURN)
-        found = dict.fromkeys(names, 0.0)
+        found: dict[str, float] = dict.fromkeys((*LIMITS, *ROWS), 0.0)
         posture = float(prices.linear[:2].sum())
         if limits.angle <= reach_before_singularity(robot, limits.singularity):
             found["angle"] = posture
@@ -245,13 +247,14 @@ class Terrain:
         slopes["direction"] = 1 / max(abs(speed), _SLOWEST)
         for side, price in zip(self._sides, prices.rows, strict=False):
             found[side.name] += side.coefficient * float(price) * slopes[side.name]
-        bounds = dict.fromkeys(("amplitude", "period", "offset", "ballast"), 0.0)
+        names = ("amplitude", "period", "offset", "ballast")
+        bounds: dict[str, float] = dict.fromkeys(names, 0.0)
         for i, up, down in zip(self.free, prices.high, prices.low, strict=True):
-            bounds[list(bounds)[i]] = float(up - down)
+            bounds[names[i]] = float(up - down)
         return found, bounds
 
 
-def _followed(used: Array) -> list[Array]:
+def _followed(used: Array) -> list[Indices]:
     """Where the peaks of the first gait are in each gait: nodes (K,) by peak.
 
     used: share of the limit (N, K)
@@ -264,7 +267,7 @@ def _followed(used: Array) -> list[Array]:
     return [at[used[at].argmax(axis=0)] for at in around]
 
 
-def _heights(used: Array, at: Array) -> Array:
+def _heights(used: Array, at: Indices) -> Array:
     """Heights (K,) of peaks at nodes (K,): of the parabola through each and its neighbours."""
     k, n = np.arange(used.shape[1]), len(used)
     left, here, right = used[at - 1, k], used[at, k], used[(at + 1) % n, k]
