@@ -12,6 +12,7 @@ from rr_opt.model.robot import Robot
 from rr_opt.motion.circle import circle_of, transient
 from rr_opt.motion.dynamics import require_friction
 from rr_opt.motion.rollout import measured, rollout
+from rr_opt.motion.servo import servo_made
 from rr_opt.motion.setpoints import cost, set_points
 from rr_opt.motion.steady_cycle import require_regular, steady_cycle
 from rr_opt.outcome import InputError
@@ -72,9 +73,10 @@ def simulate(
     robot, gait, status = _driven(robot, gait)
     read = read_arguments({"seconds": seconds, "rate": rate})
     progress("simulate by CVODES")
-    driven = rollout(robot, gait, read["seconds"], start, read["rate"])
+    joint = servo_made(robot, gait)
+    driven = rollout(robot, joint, read["seconds"], start, read["rate"])
     progress("measure")
-    return SimulatedMotion(robot, gait, status, start, driven, measured(robot, gait, driven))
+    return SimulatedMotion(robot, gait, status, start, driven, measured(robot, joint, driven))
 
 
 def circle(
@@ -86,9 +88,10 @@ def circle(
     """
     robot, gait, status = _driven(robot, gait)
     require_friction(robot)
-    require_regular(robot, gait)
+    joint = servo_made(robot, gait)
+    require_regular(robot, joint)
     progress("steady cycle")
-    steady = steady_cycle(robot, gait)
+    steady = steady_cycle(robot, joint)
     return DrivenCircle(robot, gait, status, circle_of(steady.cycle), transient(robot, steady))
 
 

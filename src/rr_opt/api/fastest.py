@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from rr_opt.api.arguments import read_arguments
 from rr_opt.api.identity import identity
@@ -20,6 +21,9 @@ from rr_opt.verify.replay import Replay, check_circle, replay
 from rr_opt.verify.sweep import SweepCheck, SweepResult, check_optimum, sweep
 from rr_opt.verify.turn_sweep import check_turn
 
+if TYPE_CHECKING:
+    from rr_opt.machines.racer.driven import DrivenOptimum
+
 
 def maximize_speed(problem: Problem | PathLike, *, progress: Progress = quiet) -> FastestGait:
     """The fastest gait of a problem or its file, checked by simulation and against a plain sweep.
@@ -29,12 +33,24 @@ def maximize_speed(problem: Problem | PathLike, *, progress: Progress = quiet) -
     """
     problem = problem_of(problem)
     optimum = design.maximize_speed(problem, progress)
-    best = FastestGait(*identity(problem), optimum, *_evidence(optimum, progress))
+    evidence = _evidence(optimum, progress)
+    driven = _driven(optimum, progress)
+    best = FastestGait(*identity(problem), optimum, *evidence, driven=driven)
     if optimum.best is None or not best.rebuilt:
         return best
     progress("the robot as built")
     as_built = design.maximize_speed(replace(problem, inertia_ratio=None)).best
     return replace(best, as_built=as_built.speed if as_built else None)
+
+
+def _driven(optimum: Optimum, progress: Progress) -> DrivenOptimum | None:
+    """The optimum driven with all effects of its robot, where the optimiser lacks some."""
+    if not optimum.problem.robot.physics:
+        return None
+    from rr_opt.machines.racer.driven import drive_optimum
+
+    progress("drive with all effects")
+    return drive_optimum(optimum)
 
 
 def _evidence(
@@ -71,7 +87,8 @@ def shapes(problem: Problem | PathLike, *, progress: Progress = quiet) -> Fastes
     answers = []
     for one in optima:
         own = f"{name}, {family_name(one.problem.gait)}"
-        answers.append(FastestGait(own, sha256, one, *_evidence(one, progress, swept)))
+        evidence = _evidence(one, progress, swept)
+        answers.append(FastestGait(own, sha256, one, *evidence, driven=_driven(one, progress)))
     return FastestShapes(name, sha256, tuple(answers))
 
 
@@ -113,4 +130,5 @@ def turn(
     progress("check of the circle")
     wanted = target.turn.curvature
     circle = check_circle(robot, best.gait, wanted.low if wanted.fixed else arc.curvature)
-    return replace(found, replay=replayed, sweep=swept, arc=arc, circle=circle)
+    driven = _driven(optimum, progress)
+    return replace(found, replay=replayed, sweep=swept, arc=arc, circle=circle, driven=driven)

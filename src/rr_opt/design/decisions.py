@@ -31,6 +31,7 @@ from rr_opt.design.landscape import Landscape
 from rr_opt.model.ballast import Loads, load_count, with_load_count
 from rr_opt.model.problem import ANY, Interval, Problem, RatioChoice, Turn
 from rr_opt.model.robot import Robot
+from rr_opt.model.servo_command import Command
 from rr_opt.motion.dynamics import Dynamics, dynamics_of
 
 _LENGTHS = 5.0
@@ -110,6 +111,7 @@ class Decisions:
     ballast          I2 (kg m2) or number of loads
     reach            largest |phi| that angle and singularity allow, rad
     turn             what the problem asks of the turn; it bounds no decision by itself
+    command          bounds of the amplitude as the servo is told it, where it lags
     two_sided        the robot's two sides are alike: gaits at phi0 and -phi0 are mirror images
     """
 
@@ -120,11 +122,14 @@ class Decisions:
     reach: float
     rate: float
     turn: TurnRows | None = None
+    command: Command | None = None
     two_sided: bool = True
 
     @property
     def amplitude_pinned(self) -> bool:
         """The limits leave the amplitude no room above its lower bound."""
+        if self.command:
+            return self.amplitude.fixed
         least_offset = abs(self.offset.clip(0.0))
         most = min(
             self.amplitude.high,
@@ -155,11 +160,12 @@ class Decisions:
         """Unit-box points (K, 4) -> amplitude, period, offset, ballast share, (4, K)."""
         period = self.period.low * (self.period.high / self.period.low) ** unit[:, 0]
         offset = self.offset.low + unit[:, 1] * (self.offset.high - self.offset.low)
+        low, high = self.amplitude.low, self.amplitude.high
+        if self.command:
+            low, high = self.command.joint_amplitude(period)
         most = np.minimum(
-            np.minimum(self.amplitude.high, self.reach - np.abs(offset)),
-            self.rate * period / (2 * math.pi),
+            np.minimum(high, self.reach - np.abs(offset)), self.rate * period / (2 * math.pi)
         )
-        low = self.amplitude.low
         amplitude = low + unit[:, 2] * np.maximum(most - low, 0.0)
         return np.array([amplitude, period, offset, unit[:, 3]])
 
@@ -195,6 +201,7 @@ def decisions(problem: Problem) -> Decisions:
         reach=reach,
         rate=limits.rate,
         turn=turn_rows(problem.turn, problem.robot) if problem.turn else None,
+        command=problem.command if problem.bounds_command else None,
         two_sided=dynamics_of(problem.robot).mirrored,
     )
 

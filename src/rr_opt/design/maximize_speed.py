@@ -18,6 +18,7 @@ from rr_opt.model.ballast import inertia_ratio
 from rr_opt.model.problem import Problem
 from rr_opt.model.robot import Robot
 from rr_opt.motion.dynamics import require_friction
+from rr_opt.motion.servo import for_joint
 from rr_opt.outcome import Status
 
 SAME_SPEED = 1e-5
@@ -32,6 +33,7 @@ COMPARED = (3, 5)
 class Optimum:
     """The answer to a problem.
 
+    problem     about what the joint does, as `best` and `optima` are
     best        the winner; None unless status is OPTIMAL
     robot       the robot with the winner's inertia ratio
     ratio       its J20/J10, in the problem's definition (about P if the problem has none)
@@ -79,6 +81,7 @@ def maximize_speed(problem: Problem, progress: Progress = lambda _: None) -> Opt
     Raises InputError for a robot that has no steady cycle to find.
     """
     require_friction(problem.robot)
+    problem = for_joint(problem)
     if problem.gait.shape == "sine":
         return _answer(problem, find_sines(problem, progress), progress)
     finds = [found for _, found in find_families(problem, progress)]
@@ -89,6 +92,7 @@ def maximize_speed(problem: Problem, progress: Progress = lambda _: None) -> Opt
 def compare_shapes(problem: Problem, progress: Progress = lambda _: None) -> list[Optimum]:
     """The optimum among sines, then among COMPARED harmonics, then among free gaits."""
     require_friction(problem.robot)
+    problem = for_joint(problem)
     free = replace(problem, gait=replace(problem.gait, shape="free"))
     families = find_families(free, progress, COMPARED)
     return [_answer(posed, finds, progress) for posed, finds in families]

@@ -13,7 +13,7 @@ from rr_opt.design.decisions import Setting, decisions, robot_of
 from rr_opt.design.landscape import Cycles, Landscape
 from rr_opt.design.multiple_shooting import shooting
 from rr_opt.design.shapes import shape_of
-from rr_opt.design.shapes.shape import PATH, Shape, path_bounds
+from rr_opt.design.shapes.shape import PATH, path_bounds
 from rr_opt.design.transcription import MEANS, TURN, ZERO, Layout, Mesh
 from rr_opt.model.gait import Gait, SineGait
 from rr_opt.model.problem import Interval
@@ -53,7 +53,7 @@ def solve(setting: Setting, sign: int, gait: Gait, share: float, mesh: Mesh) -> 
             setting.dynamics.values(problem.robot),
             [loads.mass, loads.distance, loads.spread],
             [setting.ballast.low, setting.ballast.high],
-            all_checks(shape, mesh.checks),
+            shape.given(problem, mesh.checks),
             [sign],
             mesh.phases,
             mesh.looks.ravel(),
@@ -93,15 +93,6 @@ def solve(setting: Setting, sign: int, gait: Gait, share: float, mesh: Mesh) -> 
         intervals=mesh.intervals,
         mesh=mesh,
     )
-
-
-def all_checks(shape: Shape, added: Array) -> Array:
-    """The phases that a shape looks at: a regular grid, and the last of the added ones. As long
-    as few are, the grid is twice as fine in part."""
-    half = shape.checks // 2
-    grid = np.arange(half) / max(half, 1)
-    between = grid + 0.5 / max(half, 1)
-    return np.concatenate([grid, np.append(between, added)[len(added) :]])
 
 
 def _start(landscape: Landscape, layout: Layout, gait: Gait, share: float, phases: Array) -> Array:

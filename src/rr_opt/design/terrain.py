@@ -157,8 +157,11 @@ class Terrain:
     @cached_property
     def _sides(self) -> list[_Side]:
         """The rows but for the torque's, equations first."""
+        rows = list(zip(self._named, self.kept[len(self.kept) - len(self._named) :], strict=True))
+        if self.box.command:
+            rows.append(("command", self.box.command.amplitude))
         sides = []
-        for name, kept in zip(self._named, self.kept[-len(self._named) :], strict=False):
+        for name, kept in rows:
             if kept.fixed:
                 sides.append(_Side(name, 1.0, kept.low, True))
                 continue
@@ -187,6 +190,8 @@ class Terrain:
                 values = self._values(cycles, gaits, unit)
                 function = self._function(cycles, gaits)
             known = dict(zip(self._named, values, strict=True))
+            if self.box.command:
+                known["command"] = gaits[0] / self.box.command.servo.gain(gaits[1])
             rows = [side.coefficient * (known[side.name] - side.end) for side in self._sides]
             worst, peaks = rows, []
             if math.isfinite(self._torque):
@@ -233,7 +238,7 @@ class Terrain:
         speed (m/s) and turn (rad per period) of the gait
         """
         limits, robot, period = self.setting.problem.limits, self.setting.problem.robot, gait[1]
-        found: dict[str, float] = dict.fromkeys((*LIMITS, *ROWS), 0.0)
+        found: dict[str, float] = dict.fromkeys((*LIMITS, *ROWS, "command"), 0.0)
         posture = float(prices.linear[:2].sum())
         if limits.angle <= reach_before_singularity(robot, limits.singularity):
             found["angle"] = posture
@@ -245,12 +250,14 @@ class Terrain:
         found["torque"] = float(prices.rows[len(self._sides) :].sum()) / limits.torque
         slopes = self._turn.slopes(speed, turn, period) if self._turn else {}
         slopes["direction"] = 1 / max(abs(speed), _SLOWEST)
+        slopes["command"] = 1.0
         for side, price in zip(self._sides, prices.rows, strict=False):
             found[side.name] += side.coefficient * float(price) * slopes[side.name]
         names = ("amplitude", "period", "offset", "ballast")
         bounds: dict[str, float] = dict.fromkeys(names, 0.0)
         for i, up, down in zip(self.free, prices.high, prices.low, strict=True):
             bounds[names[i]] = float(up - down)
+        bounds["amplitude"] += found.pop("command")
         return found, bounds
 
 

@@ -16,6 +16,7 @@ from rr_opt.design.infeasible import nearest_turn, posture_clashes
 from rr_opt.design.maximize_speed import Optimum, maximize_speed
 from rr_opt.design.turn_target import SURE, Target, posed
 from rr_opt.model.problem import Interval, Problem
+from rr_opt.motion.servo import for_joint
 from rr_opt.motion.steady_cycle import steady_cycle
 from rr_opt.outcome import Status
 
@@ -59,7 +60,7 @@ def fastest_turn(problem: Problem, target: Target, progress: Progress = lambda _
 
     Raises InputError for a robot that has no steady cycle to find.
     """
-    asked, opened = posed(problem, target)
+    asked, opened = posed(for_joint(problem), target)
     optimum = maximize_speed(asked, progress)
     if optimum.status is Status.INFEASIBLE:
         optimum = replace(optimum, message=optimum.message + _sooner(asked, target))

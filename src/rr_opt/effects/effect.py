@@ -13,6 +13,7 @@ import casadi as ca
 from rr_opt.mechanics.drive import Drive, FreeJoint
 from rr_opt.mechanics.kinematics import Mechanism, Observation
 from rr_opt.model.robot import Robot
+from rr_opt.model.servo_command import LinearServo
 
 
 class Port(StrEnum):
@@ -102,6 +103,8 @@ class Effect:
     name to its symbol or its value, SI:
     enter       (mechanism, symbols) -> the mechanism with it: ports constraint, mass and force
     actuate     (command, values, joint) -> what the servo makes of its command: port actuation
+    linear      (values) -> the same as a linear servo, where it is one: gaits are then optimised
+                with it
     observe     (observation, symbols) -> what is recorded: port measurement
     delay       name of the parameter by which the recording's clock lags the command's: port
                 measurement
@@ -125,6 +128,7 @@ class Effect:
     sentence: str
     enter: Callable[[Mechanism, Mapping[str, ca.SX]], Mechanism] | None = None
     actuate: Actuate | None = None
+    linear: Callable[[Mapping[str, float]], LinearServo] | None = None
     observe: Callable[[Observation, Mapping[str, ca.SX]], Observation] | None = None
     delay: str | None = None
     stiff: bool = False

@@ -17,6 +17,7 @@ import numpy as np
 from rr_opt.array import Array
 from rr_opt.effects.effect import Effect, Parameter, Port
 from rr_opt.mechanics.drive import Drive, FreeJoint
+from rr_opt.model.servo_command import LinearServo
 
 _SAMPLES = 512
 _FIRST_ORDER = 1e-6
@@ -77,5 +78,6 @@ EFFECT = Effect(
     ),
     sentence="The servo follows its command late, and with a smaller swing.",
     actuate=_actuate,
+    linear=lambda values: LinearServo(values["tau"], values.get("beta", 0.0)),
     forms=(("tau",), ("tau", "beta")),
 )

@@ -9,6 +9,7 @@ import numpy as np
 
 from rr_opt.effects.effect import Effect, Parameter, Port
 from rr_opt.mechanics.drive import Drive, FreeJoint
+from rr_opt.model.servo_command import LinearServo
 
 
 def _actuate(command: Drive, values: Mapping[str, float], _: FreeJoint | None = None) -> Drive:
@@ -23,4 +24,5 @@ EFFECT = Effect(
     parameters=(Parameter("offset", "rad", (-0.5, 0.5), 0.02),),
     sentence="The servo's zero is off: the angle is the commanded one and a constant.",
     actuate=_actuate,
+    linear=lambda values: LinearServo(shift=values["offset"]),
 )

@@ -16,6 +16,7 @@ import numpy as np
 from rr_opt.array import Array
 from rr_opt.effects.effect import Effect, Parameter, Port
 from rr_opt.mechanics.drive import Drive, FreeJoint
+from rr_opt.model.servo_command import LinearServo
 
 _STEPS = 500
 """Steps per period on which a time is bracketed before it is refined."""
@@ -138,5 +139,6 @@ EFFECT = Effect(
     ),
     sentence="The servo cannot turn faster than a limit, and falls behind its command.",
     actuate=_actuate,
+    linear=lambda values: LinearServo(rate=values["rate_limit"]),
     differentiable=False,
 )

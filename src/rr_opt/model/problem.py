@@ -11,6 +11,7 @@ from rr_opt.model.ballast import About, By, Loads, inertia_ratio
 from rr_opt.model.fields import SI, Bounds, Count, Interval, OptionalSI, Range, data, declared
 from rr_opt.model.gait import AMPLITUDE, OFFSET
 from rr_opt.model.robot import ANGLE_LIMIT, RATE_LIMIT, TORQUE_LIMIT, Robot
+from rr_opt.model.servo_command import Command
 from rr_opt.units import Quantity
 
 Direction = Literal["forward", "backward", "either"]
@@ -133,6 +134,7 @@ class Problem:
 
     `inertia_ratio` None: the robot as it is; `turn` None: straight or on any circle.
 
+    command  None: gaits are what the servo is told; else they are what the joint does
     sha256  fingerprint of the files it was read from; empty if it was made or changed in Python
     """
 
@@ -142,6 +144,7 @@ class Problem:
     inertia_ratio: RatioChoice | None = None
     direction: Direction = "either"
     turn: Turn | None = None
+    command: Command | None = None
     name: str = field(default="", compare=False)
     sha256: str = field(default="", init=False, compare=False, repr=False)
 
@@ -151,6 +154,11 @@ class Problem:
         left_out = {name: value for name, value in able.items() if getattr(given, name) is None}
         if left_out:
             object.__setattr__(self, "limits", replace(given, **left_out))
+
+    @property
+    def bounds_command(self) -> bool:
+        """Whether the amplitude of the command is bounded, and not that of the joint."""
+        return bool(self.command and self.command.servo.lags and self.gait.shape == "sine")
 
     def read_from(self, name: str, sha256: str) -> Problem:
         """The problem with its name and the fingerprint of its files."""

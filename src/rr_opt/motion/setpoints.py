@@ -5,8 +5,8 @@ move at constant speed from each set point to the next, and to be there when the
 a set point its speed changes at a constant acceleration, over an eighth of the time between two
 (straight lines with parabolic blends, as trajectory generators of servos use). A longer or shorter
 blend changes little while each step is a few counts of the servo; many set points per count make
-jerks that no servo follows, as the rate they need shows. A servo that lags moves less; that needs a
-model of the servo and is not counted.
+jerks that no servo follows, as the rate they need shows. What the servo of the robot makes of this
+motion counts if `physics` lists it, such as a lag.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ from rr_opt.array import Array
 from rr_opt.model.gait import FreeGait, Gait
 from rr_opt.model.robot import Robot
 from rr_opt.motion.dynamics import require_friction
+from rr_opt.motion.servo import servo_made
 from rr_opt.motion.steady_cycle import require_regular, steady_cycle
 from rr_opt.outcome import InputError
 
@@ -152,8 +153,8 @@ def cost(robot: Robot, points: SetPoints, *, rounded: bool) -> Cost:
     through the singular posture; NotConvergedError for a gait that does not settle.
     """
     require_friction(robot)
-    require_regular(robot, points.gait)
+    require_regular(robot, servo_made(robot, points.gait))
     angles = [points.angles, *([points.rounded] if rounded else [])]
     gaits = [points.gait, points.played, *(interpolated(each, points.rate) for each in angles)]
-    speeds = [steady_cycle(robot, gait).speed for gait in gaits]
+    speeds = [steady_cycle(robot, servo_made(robot, gait)).speed for gait in gaits]
     return Cost(*speeds[:3], rounded=speeds[3] if rounded else None)

@@ -13,13 +13,13 @@ from rr_opt.model.ballast import inertia_ratio
 from rr_opt.model.parameters import PARAMETERS, parameters_of
 from rr_opt.model.robot import Robot
 from rr_opt.motion.rollout import one_period
+from rr_opt.motion.steady_cycle import Cycle
 from rr_opt.outcome import Status
 from rr_opt.report.captions import captions
 from rr_opt.report.fastest_record import fastest_record
 from rr_opt.report.gait import gait_facts, signed_fact, speed_fact
 from rr_opt.report.trajectory_file import trajectory_csv
 from rr_opt.results.fastest import FastestGait
-from rr_opt.verify.replay import Replay
 
 _TITLES = {
     Status.OPTIMAL: "The robot does not move",
@@ -35,7 +35,8 @@ def fastest_document(
     choice, solved = result.problem.inertia_ratio, result.gait is not None
     chosen = "platform2.I" if choice and choice.by == "inertia" and solved else ""
     good = result.status is Status.OPTIMAL
-    lead = " ".join(["Every check confirms it.", *result.remarks, limited_by(result)])
+    confirmed = [] if result.climbed else ["Every check confirms it."]
+    lead = " ".join([*confirmed, *result.remarks, limited_by(result)])
     return doc.Document(
         name=result.name,
         kind="fastest gait",
@@ -80,14 +81,14 @@ def limited_by(result: FastestGait) -> str:
 
 
 def _facts(result: FastestGait) -> Iterator[doc.Fact]:
-    if result.speed is None or result.gait is None or result.replay is None:
+    if result.speed is None or result.gait is None or result.cycle is None:
         return
     yield speed_fact(result.speed)
     if result.rebuilt and result.as_built is not None:
         yield signed_fact("as built", result.as_built, "at best, with I2 unchanged")
     yield from gait_facts(result.gait)
     yield _ratio(result)
-    yield _cycle(result.replay, turning=result.turns)
+    yield _cycle(result.cycle, turning=result.turns)
 
 
 def _ratio(result: FastestGait) -> doc.Fact:
@@ -107,9 +108,8 @@ def _ratio(result: FastestGait) -> doc.Fact:
     )
 
 
-def _cycle(replay: Replay, *, turning: bool) -> doc.Fact:
+def _cycle(cycle: Cycle, *, turning: bool) -> doc.Fact:
     """What one period does: a step along a line or round a circle."""
-    cycle = replay.steady.cycle
     step = f"{1e3 * math.hypot(cycle.dx, cycle.dy):.1f} mm a period"
     if not turning:
         return doc.Fact("cycle", step, "straight")
@@ -167,13 +167,13 @@ def _optima(result: FastestGait) -> doc.Table:
     rows = [
         [
             f"{1e3 * one.speed:+.2f} mm/s",
-            with_unit(one.gait.amplitude, "rad"),
-            with_unit(one.gait.period, "s"),
-            with_unit(one.gait.offset, "rad"),
+            with_unit(told.amplitude, "rad"),
+            with_unit(told.period, "s"),
+            with_unit(told.offset, "rad"),
             number(result.ratio_of(one)),
             "the optimum" if one is optimum.best else "a tie" if id(one) in ties else "",
         ]
-        for one in optimum.optima
+        for one, told in ((one, result.told(one.gait)) for one in optimum.optima)
     ]
     head = ["Speed", "Amplitude", "Period", "Offset", "J20/J10", "Remark"]
     return doc.table(head, rows if len(rows) > 1 else [])

@@ -34,13 +34,14 @@ UNITS = {
 def fastest_record(result: FastestGait) -> dict[str, Any]:
     """The content of result.json; the same keys whatever the outcome."""
     optimum, replay, sweep = result.optimum, result.replay, result.sweep
-    cycle = replay.steady.cycle if replay else None
+    cycle, driven = result.cycle, result.driven
     return {
         "status": result.status,
         "message": result.message,
         "warnings": result.warnings,
         "problem": result.name,
         "gait": result.gait,
+        "joint": result.joint,
         "inertia_ratio": result.inertia_ratio,
         "speed": result.speed,
         "speed_as_built": result.as_built,
@@ -68,12 +69,24 @@ def fastest_record(result: FastestGait) -> dict[str, Any]:
             "replay_speed": replay.speed,
             "limit_excess": replay.excess,
         },
+        "driven": driven
+        and {
+            "effects": driven.driven.effects,
+            "beyond_optimiser": driven.beyond,
+            "left_out": driven.driven.left_out,
+            "speeds": driven.driven.speeds,
+            "speed_without": optimum.best and optimum.best.speed,
+        },
         "solver": {
             "starts": optimum.starts,
             "iterations": optimum.iterations,
             "intervals": optimum.intervals,
             "distinct_optima": [
-                {"speed": one.speed, "gait": one.gait, "inertia_ratio": result.ratio_of(one)}
+                {
+                    "speed": one.speed,
+                    "gait": result.told(one.gait),
+                    "inertia_ratio": result.ratio_of(one),
+                }
                 for one in optimum.optima
             ],
             "ties": len(optimum.ties),

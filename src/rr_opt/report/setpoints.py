@@ -16,7 +16,7 @@ from rr_opt.version import __version__
 
 MODEL = (
     "The servo is assumed to move at constant speed between set points and to reach each one when "
-    "the next is sent. Its lag is ignored."
+    "the next is sent. What its effects in `physics`, such as a lag, then make of that counts."
 )
 
 _NOTHING = 1e-6

@@ -1,4 +1,4 @@
-"""The robot with what a diagnosis found in it, and the gait that its servo makes."""
+"""The robot with what a diagnosis found in it."""
 
 from __future__ import annotations
 
@@ -7,45 +7,11 @@ from collections.abc import Mapping
 from dataclasses import replace
 from types import MappingProxyType
 
-import numpy as np
-
-from rr_opt.effects import CATALOGUE, OF_ROBOTS
-from rr_opt.mechanics.drive import commanded
+from rr_opt.effects import OF_ROBOTS
 from rr_opt.model.experiment import Experiment
-from rr_opt.model.gait import FourierGait, Gait
 from rr_opt.model.parameters import PARAMETERS, with_parameters
 from rr_opt.model.robot import EffectUse, Robot, Servo
-from rr_opt.motion.floor_motion import free_joint
 from rr_opt.sysid.diagnosis import Diagnosis
-
-_HARMONICS = 24
-"""The n-th of an angle whose rate jumps falls as 1/n^2: what is left out moves the speed by less
-than a thousandth."""
-_SAMPLES = 2048
-_SETTLED = 20
-"""Periods after which what the servo makes repeats."""
-
-
-def servo_made(robot: Robot, gait: Gait) -> Gait:
-    """The angle made, once it repeats, as a sum of harmonics; the gait itself of a servo without
-    effects."""
-    uses = [use for use in robot.physics if CATALOGUE[use.name].actuate]
-    if not uses:
-        return gait
-    drive, joint = commanded(gait, rest=False), free_joint(robot)
-    for use in uses:
-        actuate = CATALOGUE[use.name].actuate
-        drive = actuate(drive, use.values, joint) if actuate else drive
-    t = gait.period * (_SETTLED + np.arange(_SAMPLES) / _SAMPLES)
-    part = np.fft.rfft(drive.at(t)[0]) / _SAMPLES
-    sizes = part[1 : _HARMONICS + 1]
-    return FourierGait(
-        gait.period,
-        float(part[0].real),
-        tuple((-2 * sizes.imag).tolist()),
-        tuple((2 * sizes.real).tolist()),
-    )
-
 
 _DIGITS = 7
 """Of a fitted value that are written: more than any recording determines."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 from rr_opt.design.candidate import Candidate
 from rr_opt.design.decisions import ballast_interval
@@ -15,13 +16,16 @@ from rr_opt.model.ballast import inertia_ratio, with_load_count
 from rr_opt.model.gait import Gait
 from rr_opt.model.problem import LARGEST_EXCESS, Problem
 from rr_opt.model.robot import Robot
-from rr_opt.motion.dynamics import ignored_in_steady_cycle
+from rr_opt.motion.steady_cycle import Cycle
 from rr_opt.outcome import Status
-from rr_opt.results.ignored import ignored_effects
 from rr_opt.results.limits import LIMIT_NAMES, BoundRow, LimitRow, bound_rows, limit_row
 from rr_opt.results.result import Check, Result
 from rr_opt.verify.replay import Replay
 from rr_opt.verify.sweep import TOLERATED, SweepCheck
+
+if TYPE_CHECKING:
+    # Heavy, and needed by few results.
+    from rr_opt.machines.racer.driven import DrivenOptimum
 
 LARGEST_REPLAY_ERROR = 1e-6
 """Of the replayed speed, relative: the optimiser's mesh is refined until it is well below this."""
@@ -35,6 +39,8 @@ class FastestGait(Result):
     optimum        as the optimiser left it
     replay, sweep  the motion simulated by CVODES, and the comparison with a plain sweep; None
                    where there is no optimum to check
+    driven         the gait driven with all effects of the robot, and climbed on where the optimiser
+                   does not know them all; None where the optimum has them all
     as_built       speed of the fastest gait of the robot as it is, m/s, where the optimum has
                    another inertia ratio; None elsewhere, and if that robot has no such gait
     """
@@ -47,6 +53,7 @@ class FastestGait(Result):
     replay: Replay | None = None
     sweep: SweepCheck | None = None
     as_built: float | None = None
+    driven: DrivenOptimum | None = None
 
     @property
     def problem(self) -> Problem:
@@ -55,23 +62,42 @@ class FastestGait(Result):
 
     @property
     def gait(self) -> Gait | None:
-        """The fastest gait; None if there is none."""
-        return self.optimum.best.gait if self.optimum.best else None
+        """The fastest gait, as the servo is told it; None if there is none."""
+        if self.driven:
+            return self.driven.gait
+        return self.told(self.optimum.best.gait) if self.optimum.best else None
+
+    @property
+    def joint(self) -> Gait | None:
+        """What the joint makes of the gait, but for play; None if there is none."""
+        if self.gait is None:
+            return None
+        command = self.problem.command
+        return command.servo.made(self.gait) if command else self.gait
+
+    def told(self, gait: Gait) -> Gait:
+        """The command of which the servo makes a gait of the joint, such as those of `optimum`."""
+        command = self.problem.command
+        return command.servo.told(gait) if command else gait
 
     @property
     def speed(self) -> float | None:
         """Its mean speed, m/s, negative backward; None if there is no gait."""
+        if self.climbed:
+            return self.climbed.driven.speed
         return self.optimum.best.speed if self.optimum.best else None
 
     @property
     def robot(self) -> Robot:
         """The robot, with the optimum's inertia ratio where that was to be chosen."""
+        if self.driven:
+            return self.driven.robot
         return self.optimum.robot or self.problem.robot
 
     @property
     def inertia_ratio(self) -> float | None:
         """J20/J10 of that robot, in the problem's definition; None if there is no gait."""
-        return self.optimum.ratio
+        return self.driven.ratio if self.driven else self.optimum.ratio
 
     @property
     def rebuilt(self) -> bool:
@@ -79,21 +105,38 @@ class FastestGait(Result):
         return self.robot.platform2 != self.problem.robot.platform2
 
     @property
+    def climbed(self) -> DrivenOptimum | None:
+        """The gait driven with effects that the optimiser does not know; None if it knows all."""
+        return self.driven if self.driven and self.driven.beyond else None
+
+    @property
+    def cycle(self) -> Cycle | None:
+        """The rigid motion of a period; None if there is no gait."""
+        if self.climbed:
+            return self.climbed.driven.cycle
+        return self.replay.steady.cycle if self.replay else None
+
+    @property
     def turns(self) -> bool:
         """Whether the robot goes round a circle: a radius of many kilometres is a straight line."""
-        return self.replay is not None and abs(self.replay.steady.cycle.dpsi) > 1e-7
+        return self.cycle is not None and abs(self.cycle.dpsi) > 1e-7
 
     @cached_property
     def limits(self) -> dict[str, LimitRow]:
         """By name (angle, rate, torque, singularity), each with `limit`, `value`, `active` and
         `shadow_price`, SI."""
-        return {name: limit_row(name, self.optimum, self.replay) for name in LIMIT_NAMES}
+        reached = self.replay.reached if self.replay else {}
+        if self.climbed:
+            reached = self.climbed.driven.reached
+        return {name: limit_row(name, self.optimum, reached) for name in LIMIT_NAMES}
 
     @cached_property
     def bounds(self) -> dict[str, BoundRow]:
         """The same of amplitude, period, offset, and the inertia ratio if it is a decision; empty
         without a gait."""
-        return bound_rows(self.optimum)
+        if self.gait is None or self.inertia_ratio is None:
+            return {}
+        return bound_rows(self.optimum, self.gait, self.inertia_ratio)
 
     @property
     def active(self) -> list[str]:
@@ -115,7 +158,8 @@ class FastestGait(Result):
 
     @property
     def checks(self) -> list[Check]:
-        """Replay by CVODES, the limits over the whole cycle, and the sweep."""
+        """Replay by CVODES, the limits over the whole cycle, the sweep, and the gait driven with
+        all effects of the robot."""
         checks = []
         if self.replay:
             error, excess = self.replay.error, self.replay.excess
@@ -144,7 +188,7 @@ class FastestGait(Result):
                     f"(at most {TOLERATED:.0e} allowed)."
                 )
                 checks.append(Check(self.sweep.error <= TOLERATED, own))
-        return checks
+        return checks + (_driven_checks(self.driven, self.optimum) if self.driven else [])
 
     @property
     def status(self) -> Status:
@@ -168,7 +212,8 @@ class FastestGait(Result):
             return "The optimum was not confirmed. " + " ".join(failed)
         if self.speed is None:
             return self.optimum.message
-        first = f"{self._subject} at {pace_text(self.speed)}, and every check confirms it."
+        first = f"{self._subject} at {pace_text(self.speed)}"
+        first += "." if self.climbed else ", and every check confirms it."
         return " ".join([first, *self.remarks])
 
     @property
@@ -182,9 +227,11 @@ class FastestGait(Result):
         if best is None:
             return []
         texts = []
-        ignored = ignored_in_steady_cycle(self.problem.robot)
-        if ignored:
-            texts.append(f"The optimiser and the checks ignore {listed(ignored)}.")
+        if self.climbed:
+            texts.append(_climbed(self.climbed, self.optimum))
+        if self.driven and self.driven.driven.left_out:
+            names = listed(self.driven.driven.left_out)
+            texts.append(f"It holds away from {names}, whose place no steady motion has.")
         ties = len(self.optimum.ties)
         if ties:
             texts.append(f"{ties} other gait{'s are' if ties > 1 else ' is'} as fast: a tie.")
@@ -221,8 +268,55 @@ class FastestGait(Result):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Which effects of the robot the optimum ignores."""
-        return ignored_effects(self.problem.robot)
+        """What the robot does with effects that the optimiser does not know."""
+        return (_climbed(self.climbed, self.optimum),) if self.climbed else ()
+
+
+LARGEST_DRIVEN_ERROR = 0.01
+"""Of the speed with all effects against the optimiser's, relative, where that has them too or
+nothing was climbed."""
+
+
+def _driven_checks(found: DrivenOptimum, optimum: Optimum) -> list[Check]:
+    """The gait as the servo is told it, driven by the simulation that predicts recordings."""
+    best, seen = optimum.best, found.driven
+    if best is None:
+        return []
+    names = listed(seen.effects)
+    error = seen.error(best.speed)
+    if found.beyond and optimum.problem.gait.shape == "sine" and not optimum.problem.turn:
+        worst, excess = optimum.problem.limits.worst(seen.reached)
+        return [
+            Check(
+                excess <= LARGEST_EXCESS,
+                f"Driven with {names}: the limit kept most narrowly is on {worst}, exceeded by "
+                f"{max(excess, 0.0):.1e} of its value (at most {LARGEST_EXCESS:.0e} allowed).",
+            )
+        ]
+    return [
+        Check(
+            error <= LARGEST_DRIVEN_ERROR,
+            f"Driven with {names}, told the gait above: {1e3 * seen.speed:+.3f} mm/s, {error:.1e} "
+            f"from the optimiser's, relative (at most {LARGEST_DRIVEN_ERROR:.0e} allowed).",
+        )
+    ]
+
+
+def _climbed(found: DrivenOptimum, optimum: Optimum) -> str:
+    """What the effects that the optimiser does not know do to the optimum."""
+    names, speed = listed(found.beyond), found.driven.speed
+    without = optimum.best.speed if optimum.best else math.nan
+    change, gain = speed / without - 1, abs(speed / found.start.speed) - 1
+    text = (
+        f"The optimiser does not know {names}: without, its optimum has {1e3 * without:+.2f} mm/s, "
+        f"which every check confirms; with {'it' if len(found.beyond) == 1 else 'them'} the speed "
+        f"changes by {100 * change:+.2g} %, climbing on included, which gained {100 * gain:.2g} %. "
+        "The gait is a local optimum, checked by no sweep."
+    )
+    if len(found.driven.speeds) > 1:
+        low, high = (1e3 * end(found.driven.speeds) for end in (min, max))
+        text += f" By heading it has {low:+.2f} to {high:+.2f} mm/s; this is the mean."
+    return text
 
 
 def _sweep_sentence(sweep: SweepCheck, shape: str) -> str:

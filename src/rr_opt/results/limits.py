@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Literal
 
 from rr_opt.design.decisions import ballast_interval
 from rr_opt.design.maximize_speed import Optimum
+from rr_opt.model.gait import Gait
 from rr_opt.model.problem import Interval, Problem, RatioChoice
-from rr_opt.verify.replay import Replay
 
 ACTIVE = 1e-4
 """A limit is active when the gait comes this near to it, relative to the limit."""
@@ -52,12 +53,12 @@ class BoundRow:
     shadow_price: float | None
 
 
-def limit_row(name: str, optimum: Optimum, replay: Replay | None) -> LimitRow:
-    """A limit by name."""
+def limit_row(name: str, optimum: Optimum, reached: Mapping[str, float]) -> LimitRow:
+    """A limit by name; reached: the extremes over the cycle by limit, empty without a gait."""
     best, limit = optimum.best, getattr(optimum.problem.limits, name)
-    if replay is None or best is None:
+    if not reached or best is None:
         return LimitRow(name, limit)
-    value, price = replay.reached[name], best.prices[name]
+    value, price = reached[name], best.prices[name]
     slack = value - limit if name == "singularity" else limit - value
     active = bool(math.isfinite(limit) and slack <= ACTIVE * abs(limit))
     if optimum.problem.gait.shape != "sine":
@@ -66,22 +67,29 @@ def limit_row(name: str, optimum: Optimum, replay: Replay | None) -> LimitRow:
     return LimitRow(name, limit, value, active, price if active else 0.0)
 
 
-def bound_rows(optimum: Optimum) -> dict[str, BoundRow]:
-    """Amplitude, period, offset, the inertia ratio if it is a decision; empty without a gait."""
+def bound_rows(optimum: Optimum, told: Gait, ratio: float) -> dict[str, BoundRow]:
+    """Amplitude, period, offset, the inertia ratio if it is a decision; empty without a gait.
+
+    told  the gait as the servo is told it
+    """
     best, gait, choice = optimum.best, optimum.problem.gait, optimum.problem.inertia_ratio
-    if best is None or optimum.ratio is None:
+    if best is None:
         return {}
+    boxes = {"amplitude": gait.amplitude, "period": gait.period, "offset": gait.offset}
+    if command := optimum.problem.command:
+        shift = command.servo.shift
+        offset = Interval(gait.offset.low - shift, gait.offset.high - shift)
+        boxes |= {"amplitude": command.amplitude, "offset": offset}
     prices = best.bound_prices
     rows = {
-        name: _bound(name, getattr(best.gait, name), getattr(gait, name), prices[name])
-        for name in ("amplitude", "period", "offset")
+        name: _bound(name, getattr(told, name), box, prices[name]) for name, box in boxes.items()
     }
     if gait.shape != "sine":
         rows["amplitude"] = _swing(rows["amplitude"], prices["amplitude"], best.speed)
     if choice:
         whole = choice.by == "loads" and choice.loads.whole
         price = None if whole else prices["ballast"] * _share_per_ratio(optimum.problem, choice)
-        rows["inertia_ratio"] = _bound("inertia_ratio", optimum.ratio, choice.bounds, price)
+        rows["inertia_ratio"] = _bound("inertia_ratio", ratio, choice.bounds, price)
     return rows
 
 

@@ -19,9 +19,9 @@ from rr_opt.model.gait import Gait
 from rr_opt.model.problem import Limits, Problem
 from rr_opt.model.robot import Robot
 from rr_opt.motion.dynamics import ignored_in_steady_cycle
+from rr_opt.motion.servo import servo_made
 from rr_opt.motion.steady_cycle import steady_cycle
 from rr_opt.outcome import RollerRacerError
-from rr_opt.results.corrected_robot import servo_made
 from rr_opt.verify.sweep import TOLERATED, check_optimum
 
 

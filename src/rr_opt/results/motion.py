@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any, Literal
 
@@ -14,6 +15,7 @@ from rr_opt.model.problem import LARGEST_EXCESS
 from rr_opt.model.robot import Robot
 from rr_opt.motion.circle import Circle, Transient
 from rr_opt.motion.rollout import Measured, Trajectory
+from rr_opt.motion.servo import servo_made
 from rr_opt.results.ignored import ignored_effects
 from rr_opt.results.result import Result
 
@@ -32,10 +34,15 @@ class GaitResult(Result):
     gait: Gait
     source_status: str | None
 
+    @cached_property
+    def joint(self) -> Gait:
+        """What the servo makes of the gait."""
+        return servo_made(self.robot, self.gait)
+
     @property
     def warnings(self) -> tuple[str, ...]:
         """Which effects of the robot the motion ignores, and which servo limits it exceeds."""
-        return (*ignored_effects(self.robot), *self.beyond_servo)
+        return (*ignored_effects(self.robot, told=True), *self.beyond_servo)
 
     @property
     def beyond_servo(self) -> tuple[str, ...]:
@@ -63,8 +70,8 @@ class SimulatedMotion(GaitResult):
         """A sentence on each limit of the servo that the motion exceeds; it is simulated anyway."""
         servo = self.robot.servo
         reached = {
-            "angle": (self.gait.peak_angle, servo.angle_limit),
-            "rate": (self.gait.peak_rate, servo.rate_limit),
+            "angle": (self.joint.peak_angle, servo.angle_limit),
+            "rate": (self.joint.peak_rate, servo.rate_limit),
             "torque": (self.measured.peak_torque, servo.torque_limit),
         }
         return tuple(

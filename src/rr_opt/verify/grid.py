@@ -19,6 +19,8 @@ from rr_opt.model.problem import Interval, Problem, RatioChoice
 from rr_opt.model.robot import Robot
 from rr_opt.motion.dynamics import dynamics_of
 
+_ROUNDING = 1e-8
+
 DECISIONS = ("amplitude", "period", "offset", "ratio")
 
 
@@ -145,7 +147,11 @@ def points(problem: Problem, grid: Grid) -> tuple[Array, Array, Array, Array]:
     offset = phi0[:, None, None]
     ratio = grid.axis("ratio")[:, None]
     amplitude, period, offset, ratio = np.broadcast_arrays(amplitude, period, offset, ratio)
-    return amplitude, np.where(np.isnan(amplitude), np.nan, period), offset, ratio
+    there = ~np.isnan(amplitude)
+    if problem.command and problem.bounds_command:
+        low, high = problem.command.joint_amplitude(period)
+        there &= (amplitude >= low * (1 - _ROUNDING)) & (amplitude <= high * (1 + _ROUNDING))
+    return amplitude, np.where(there, period, np.nan), offset, ratio
 
 
 def _between_or_nan(values: Array, axis: Array) -> Array:

@@ -94,6 +94,13 @@ class FourierShape:
         """None."""
         return ()
 
+    def given(self, problem: Problem, added: Array) -> Array:
+        """The phases: a regular grid, and the last of the added ones. As long as few are, the grid
+        is twice as fine in part."""
+        half = self.checks // 2
+        grid = np.arange(half) / half
+        return np.concatenate([grid, np.append(grid + 0.5 / half, added)[len(added) :]])
+
     def bounds(self, problem: Problem) -> Bounds:
         """The first harmonic is at least the least amplitude."""
         box, gait = decisions(problem), problem.gait

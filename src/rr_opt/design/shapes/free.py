@@ -65,6 +65,10 @@ class FreeShape:
         peak = local["phi"] + width / 2 * local["slope"]
         return peak, peak - z["offset"], local["slope"] / z["period"]
 
+    def given(self, problem: Problem, added: Array) -> Array:
+        """None."""
+        return np.zeros(0)
+
     def bounds(self, problem: Problem) -> Bounds:
         """The first harmonic is at least the least amplitude, and begins at phase 0."""
         box, gait = decisions(problem), problem.gait

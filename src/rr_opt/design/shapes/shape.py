@@ -46,7 +46,7 @@ class Shape(Protocol):
     integrals   means over the period that rows and bounds need
     limits      rows that hold once a period
     path        rows at every node
-    checks      how many phases, given with the numbers, it looks at in `limits`
+    checks      how many numbers it is given, such as phases, that `limits` depend on
     """
 
     @property
@@ -100,6 +100,10 @@ class Shape(Protocol):
 
     def path_rows(self, z: Symbols, local: Symbols, theta: Any, width: Any) -> tuple[Any, ...]:
         """The rows of `path` of the interval from theta to theta + width."""
+        ...
+
+    def given(self, problem: Problem, added: Array) -> Array:
+        """The numbers (checks,) of a problem; added: phases at which limits were broken."""
         ...
 
     def bounds(self, problem: Problem) -> Bounds:

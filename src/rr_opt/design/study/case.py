@@ -16,6 +16,7 @@ from rr_opt.design.study.plan import Foothold, Plan, expected_speed, footholds
 from rr_opt.design.study.row import Row
 from rr_opt.model.ballast import inertia_ratio
 from rr_opt.model.problem import Problem
+from rr_opt.motion.servo import for_joint
 from rr_opt.outcome import NotConvergedError, RollerRacerError, Status
 
 _SURPRISE = 0.01
@@ -39,7 +40,7 @@ def solve_case(task: Task) -> Row:
     """Solve a case. Whatever goes wrong is a row that says so."""
     begun = time.process_time()
     try:
-        row = _solve(task)
+        row = _solve(replace(task, problem=for_joint(task.problem)))
     except RollerRacerError as error:
         row = Row(Status.NOT_CONVERGED, str(error))
     except Exception as error:  # a study of a thousand cases shall not end with one of them

@@ -22,7 +22,7 @@ from rr_opt.verify.replay import Replay
 
 def draw(result: FastestGait) -> dict[str, str]:
     """Draw all figures; none if there is no optimum to show."""
-    replay, gait = result.replay, result.gait
+    replay, gait = result.replay, result.replay and result.replay.steady.gait
     if replay is None or gait is None:
         return {}
     lines = gains(result.limits.values(), result.bounds.values())

@@ -1,0 +1,257 @@
+"""The fastest gait of a robot driven with all its effects, as its servo is told it.
+
+By the same simulation as predicts recordings, so that servo, contact and floor are what a diagnosis
+found them to be. One period is mapped onto the next until the speed repeats. Where the floor is
+tilted the speed depends on the heading: there a heading is kept, for one period is short, and all
+of them are tried. Where it differs from place to place no motion is steady; that effect is left
+out.
+
+Multiple shooting knows no play, slip or tilt. Its optima are where a simplex method starts that
+climbs on the speed of this simulation.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+
+import casadi as ca
+import numpy as np
+
+from rr_opt.array import Array
+from rr_opt.design.decisions import decisions, robot_of, settings_of
+from rr_opt.design.maximize_speed import Optimum
+from rr_opt.effects import CATALOGUE
+from rr_opt.effects.effect import Port
+from rr_opt.machines.racer.drive import drive_path, grain, steps_of
+from rr_opt.machines.racer.simulation import V, driven
+from rr_opt.model.ballast import inertia_ratio
+from rr_opt.model.gait import Gait, SineGait
+from rr_opt.model.problem import LARGEST_EXCESS
+from rr_opt.model.robot import Robot
+from rr_opt.motion.dynamics import steady_effects, values_of
+from rr_opt.motion.floor_motion import FloorMotion, floor_motion
+from rr_opt.motion.servo import linear_servo, servo_drive
+from rr_opt.motion.steady_cycle import Cycle, cycle_of
+from rr_opt.outcome import NotConvergedError
+from rr_opt.sysid.shooting import DrivePath, System, predict
+
+_SAMPLES = 256
+"""Of a period, with a step between two at least."""
+_HEADINGS = 8
+_ROUNDS, _REPEATS = 60, 1e-7
+"""Periods at most, and the change of v over one, relative, that is none."""
+_FIRST = 0.01
+"""m/s, the first change of v whose effect is tried."""
+
+
+@dataclass(frozen=True)
+class DrivenSpeed:
+    """What a gait comes to.
+
+    speeds    m/s, signed, at equally spaced headings; one where all are alike
+    cycle     at the first heading
+    reached   the extreme of what each limit bounds, SI; the torque without the blows of play
+    effects   names of those that were driven; left_out: of those that depend on the place
+    """
+
+    speeds: tuple[float, ...]
+    cycle: Cycle
+    reached: Mapping[str, float]
+    effects: tuple[str, ...]
+    left_out: tuple[str, ...]
+
+    @property
+    def speed(self) -> float:
+        """The mean over the headings."""
+        return float(np.mean(self.speeds))
+
+    def error(self, claimed: float) -> float:
+        """The largest difference from a claimed speed, relative."""
+        return max(abs(speed - claimed) for speed in self.speeds) / abs(claimed)
+
+
+def driven_speed(robot: Robot, gait: Gait) -> DrivenSpeed:
+    """Drive a gait until its speed repeats. Raises NotConvergedError if it never does."""
+    names = [use.name for use in robot.physics]
+    placed = tuple(name for name in names if _depends(floor_motion((name,)), slice(0, 2)))
+    effects = tuple(name for name in names if name not in placed)
+    robot = replace(robot, physics=tuple(u for u in robot.physics if u.name in effects))
+    system, motion = driven(effects)
+    drive, t = servo_drive(robot, gait), np.linspace(0.0, gait.period, _SAMPLES + 1)
+    path = drive_path(drive, steps_of(drive, t, 0.0, **grain(effects)), 0.0)
+    p = values_of(robot, motion.parameters)
+    tried = _HEADINGS if _depends(motion, slice(2, 3)) else 1
+    headings = 2 * math.pi * np.arange(tried) / tried
+    runs = [_steady(system, path, p, float(psi), motion.size) for psi in headings]
+    cycles = [cycle_of(gait.period, *run[:3, :: path.each]) for run in runs]
+    phi, rate, bend = drive.at(t)
+    torque = motion.torque.map(len(t))
+    drives = np.array([phi, rate, bend] if motion.slips else [phi, rate])
+    at_samples = [
+        np.abs(np.asarray(torque(run[:, :: path.each], drives, bend, p))).max() for run in runs
+    ]
+    S1 = robot.platform1.c * np.cos(phi) + robot.platform2.c
+    reached = {
+        "angle": float(np.abs(phi).max()),
+        "rate": linear_servo(robot).made(gait).peak_rate,
+        "torque": float(max(at_samples)),
+        "singularity": float(S1.min()),
+    }
+    speeds = tuple(cycle.speed for cycle in cycles)
+    return DrivenSpeed(speeds, cycles[0], reached, effects, placed)
+
+
+def _depends(motion: FloorMotion, which: slice) -> bool:
+    """Whether the speeds change with part of the pose."""
+    inputs = motion.rates.sx_in()
+    slopes = ca.jacobian(motion.rates(*inputs)[V:], inputs[0])
+    return slopes[:, which].nnz() > 0
+
+
+def _steady(system: System, path: DrivePath, p: Array, psi: float, size: int) -> Array:
+    """The states of the steady period. v at the start is found by secants; side speeds, if any,
+    settle by themselves."""
+    start = np.zeros(size)
+    start[2] = psi
+    before: tuple[float, float] | None = None
+    for _ in range(_ROUNDS):
+        states = predict(system, path, start, p).states
+        v, gap = float(start[V]), float(states[V, -1] - start[V])
+        if not math.isfinite(gap):
+            break
+        if abs(gap) <= _REPEATS * np.abs(states[V]).max():
+            return states
+        slope = (gap - before[1]) / (v - before[0]) if before and v != before[0] else math.nan
+        before = v, gap
+        start[V:] = states[V:, -1]
+        start[V] = v - gap / slope if slope < 0 else v + math.copysign(_FIRST, gap)
+    raise NotConvergedError("Driven with all its effects the robot's speed does not repeat.")
+
+
+@dataclass(frozen=True)
+class DrivenOptimum:
+    """The fastest gait of a robot driven with all its effects.
+
+    beyond        names of the effects that multiple shooting does not know
+    gait          as the servo is told it
+    robot, ratio  with the inertia ratio that goes with it
+    driven        what it comes to
+    start         what the optimum of multiple shooting comes to
+    """
+
+    beyond: tuple[str, ...]
+    gait: Gait
+    robot: Robot
+    ratio: float
+    driven: DrivenSpeed
+    start: DrivenSpeed
+
+
+_STARTS = 3
+"""Optima from which the simplex method starts."""
+_WORTH = 0.7
+"""Those so much slower than the best are left."""
+_PENALTY = 3.0
+"""For an excess of 1 over a limit, in speeds of the gait."""
+
+
+def unsteady_effects(robot: Robot) -> tuple[str, ...]:
+    """The robot's effects on its motion that the equations of a steady cycle do not have."""
+    return tuple(
+        use.name
+        for use in robot.physics
+        if use.name not in steady_effects() and CATALOGUE[use.name].port is not Port.MEASUREMENT
+    )
+
+
+def drive_optimum(optimum: Optimum) -> DrivenOptimum | None:
+    """Drive an optimum, and climb on from it where multiple shooting does not know all effects: not
+    from gaits that are no sines, nor round a turn.
+
+    None without an optimum, and where the optimum has all effects. Raises NotConvergedError as
+    `driven_speed`.
+    """
+    best, robot, ratio = optimum.best, optimum.robot, optimum.ratio
+    if best is None or robot is None or ratio is None or not unsteady_effects(robot):
+        return None
+    problem = optimum.problem
+    told = problem.command.servo.told if problem.command else lambda gait: gait
+    start = driven_speed(robot, told(best.gait))
+    beyond = tuple(name for name in unsteady_effects(robot) if not CATALOGUE[name].linear)
+    here = DrivenOptimum(beyond, told(best.gait), robot, ratio, start, start)
+    if not beyond or not isinstance(best.gait, SineGait) or problem.turn:
+        return here
+    box = decisions(problem)
+    setting = settings_of(problem, box)[0]
+    choice = problem.inertia_ratio
+    whole = choice is not None and choice.by == "loads" and choice.loads.whole
+    free = [k for k in box.free if not (k == _SHARE and whole)]
+
+    def driven_at(point: Array) -> tuple[Robot, Gait, DrivenSpeed]:
+        amplitude, period, offset, share = map(float, box.physical(point[None])[:, 0])
+        built, command = robot_of(setting, share), told(SineGait(amplitude, period, offset))
+        return built, command, driven_speed(built, command)
+
+    for one in optimum.optima[:_STARTS]:
+        if abs(one.speed) < _WORTH * abs(best.speed):
+            break
+
+        def value(point: Array, sign: int = one.sign) -> float:
+            try:
+                seen = driven_at(point)[2]
+            except NotConvergedError:
+                return -math.inf
+            _, excess = problem.limits.worst(seen.reached)
+            return sign * seen.speed * (1 - _PENALTY * max(excess - LARGEST_EXCESS / 2, 0.0))
+
+        gait = one.gait
+        point = box.unit(gait.amplitude, gait.period, gait.offset, one.share)
+        top, _ = _polished(value, point, free)
+        built, command, seen = driven_at(top)
+        kept = problem.limits.worst(seen.reached)[1] <= LARGEST_EXCESS
+        if kept and abs(seen.speed) > abs(here.driven.speed) * (1 + _GAIN):
+            about = choice.about if choice else "joint"
+            here = DrivenOptimum(beyond, command, built, inertia_ratio(built, about), seen, start)
+    return here
+
+
+_SHARE = 3
+"""Where the ballast stands among the decisions."""
+_GAIN = 1e-6
+
+
+_FIRST, _RESTARTS, _GAIN = 0.05, 6, 1e-5
+_WORST = 1e9
+
+
+def _polished(
+    value: Callable[[Array], float], point: Array, free: list[int]
+) -> tuple[Array, float]:
+    """The point (4,) that the simplex method leads to along the free coordinates, begun anew
+    until it gains nothing, and its value."""
+    from scipy.optimize import minimize  # compiled code does without
+
+    best, top = point.copy(), value(point)
+
+    def cost(x: Array) -> float:
+        there = best.copy()
+        there[free] = x
+        # A number, or the simplex cannot be ordered.
+        return min(-value(there), _WORST)
+
+    for _ in range(_RESTARTS if free else 0):
+        corner = best[free]
+        simplex = corner + np.vstack([np.zeros(len(free)), _FIRST * np.eye(len(free))])
+        simplex = np.where(simplex > 1, 2 * corner - simplex, simplex)
+        how = {"initial_simplex": simplex, "xatol": 1e-6, "fatol": 1e-8, "maxfev": 300}
+        bounds = [(0.0, 1.0)] * len(free)
+        found = minimize(cost, corner, method="Nelder-Mead", bounds=bounds, options=how)
+        gain = -float(found.fun) - top
+        if gain > 0:
+            top += gain
+            best[free] = found.x
+        if gain <= _GAIN * max(abs(top), 1e-3):
+            break
+    return best, top

@@ -1,0 +1,102 @@
+"""What the servo of a robot makes of its command, and a problem as one about what the joint does.
+
+Gaits are optimised as the angle of the joint, in which lag, zero and rate limit of the servo are
+bounds and no physics. Only play is more: where its stops are depends on how the robot moves.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import reduce
+
+import numpy as np
+
+from rr_opt.effects import CATALOGUE
+from rr_opt.mechanics.drive import Drive, commanded
+from rr_opt.model.gait import FourierGait, Gait
+from rr_opt.model.problem import Interval, Problem
+from rr_opt.model.robot import Robot
+from rr_opt.model.servo_command import Command, LinearServo
+from rr_opt.motion.floor_motion import free_joint
+
+_PERIODS = 257
+"""Of a range of periods at which its least and largest gain are looked for."""
+_ROOM = 1e-3
+"""By which the bounds of the joint enclose what the servo makes, so that only its own are met."""
+
+
+def linear_servo(robot: Robot) -> LinearServo:
+    """The robot's servo but for its play."""
+    uses = [(CATALOGUE[use.name].linear, use.values) for use in robot.physics]
+    parts = (linear(values) for linear, values in uses if linear)
+    return reduce(_in_series, parts, LinearServo())
+
+
+def _in_series(one: LinearServo, other: LinearServo) -> LinearServo:
+    # A robot lists each effect once, so at most one of them lags.
+    return LinearServo(
+        one.tau + other.tau,
+        one.beta + other.beta,
+        one.shift + other.shift,
+        min(one.rate, other.rate),
+    )
+
+
+def for_joint(problem: Problem) -> Problem:
+    """The problem as one about what the joint does; itself where the servo does what it is told."""
+    servo = linear_servo(problem.robot)
+    if problem.command or servo == LinearServo():
+        return problem
+    gait, limits = problem.gait, problem.limits
+    amplitude = gait.amplitude
+    if servo.lags and gait.shape == "sine":
+        gains = servo.gain(np.geomspace(gait.period.low, gait.period.high, _PERIODS))
+        room = 0.0 if amplitude.fixed and gait.period.fixed else _ROOM
+        amplitude = Interval(
+            amplitude.low * float(gains.min()) * (1 - room),
+            amplitude.high * float(gains.max()) * (1 + room),
+        )
+    offset = Interval(gait.offset.low + servo.shift, gait.offset.high + servo.shift)
+    return replace(
+        problem,
+        gait=replace(gait, amplitude=amplitude, offset=offset),
+        limits=replace(limits, rate=min(limits.rate, servo.rate)),
+        command=Command(gait.amplitude, servo),
+    ).read_from(problem.name, problem.sha256)
+
+
+_HARMONICS = 24
+"""The n-th of an angle whose rate jumps falls as 1/n^2: what is left out moves the speed by less
+than a thousandth."""
+_SAMPLES = 2048
+_SETTLED = 20
+"""Periods after which what the servo makes repeats."""
+
+
+def servo_drive(robot: Robot, gait: Gait, *, rest: bool = False) -> Drive:
+    """phi(t) as the servo makes it of a gait, each effect in its turn."""
+    drive, joint = commanded(gait, rest), free_joint(robot)
+    for use in robot.physics:
+        actuate = CATALOGUE[use.name].actuate
+        drive = actuate(drive, use.values, joint) if actuate else drive
+    return drive
+
+
+def servo_made(robot: Robot, gait: Gait) -> Gait:
+    """What the servo makes of a gait once that repeats: the gait itself of a servo without effects,
+    a gait of the same shape of one that is linear, else a sum of harmonics."""
+    uses = [use for use in robot.physics if CATALOGUE[use.name].actuate]
+    servo = linear_servo(robot)
+    if all(CATALOGUE[use.name].linear for use in uses):
+        made = servo.made(gait) if uses else gait
+        if max(made.peak_rate, gait.peak_rate) <= servo.rate:
+            return made
+    t = gait.period * (_SETTLED + np.arange(_SAMPLES) / _SAMPLES)
+    part = np.fft.rfft(servo_drive(robot, gait).at(t)[0]) / _SAMPLES
+    sizes = part[1 : _HARMONICS + 1]
+    return FourierGait(
+        gait.period,
+        float(part[0].real),
+        tuple((-2 * sizes.imag).tolist()),
+        tuple((2 * sizes.real).tolist()),
+    )
