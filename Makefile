@@ -29,7 +29,7 @@ BENCHMARKS ?= startup optimise turn sweep fit study recordings diagnose
 MEASURE := OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 $(BENCH_VENV)/bin/python -W ignore
 
 .DEFAULT_GOAL := help
-.PHONY: help run test check format-check lint types contracts format readme results fuzz bench real prove demo docs pins clean
+.PHONY: help run test check format-check lint types contracts format readme results fuzz bench real prove settings demo docs pins clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/\1|\2/p' $(MAKEFILE_LIST) | \
@@ -86,6 +86,9 @@ real: $(DEV) ## diagnose a real pendulum (DATA=/path/to/data_measured.csv)
 
 prove: $(DEV) ## try the diagnosis on 100 sealed cases, of the commit's own seed (an hour)
 	$(BIN)/rr-opt prove --workers $(WORKERS) --out results/proof
+
+settings: $(DEV) ## halve and double each number of the diagnosis, on 40 cases (a night)
+	$(BIN)/python -m benchmarks.settings --workers $(WORKERS)
 
 demo: $(DEV) ## record, diagnose, open the seal, correct, predict: some minutes (SEED=5)
 	$(BIN)/python docs/demonstration.py --seed $(SEED)

@@ -14,9 +14,8 @@ from pathlib import Path
 import numpy as np
 from scipy.optimize import least_squares
 
-from rr_lab.case import stream
-from rr_lab.engines import ENGINES, Engine, record
-from rr_lab.sampling import draw_gait, draw_robot
+from rr_lab.case import ENGINES, Engine, record, stream
+from rr_lab.random_case import draw_gait, draw_robot
 from rr_opt.documents.archive import write_text
 from rr_opt.model.experiment import Recording
 from rr_opt.model.gait import SineGait

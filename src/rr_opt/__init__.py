@@ -27,15 +27,11 @@ from typing import TYPE_CHECKING, Any
 from rr_opt.version import __version__
 
 if TYPE_CHECKING:
-    from rr_opt.api.diagnose import diagnose as diagnose
     from rr_opt.api.drive import circle as circle
     from rr_opt.api.drive import export as export
     from rr_opt.api.drive import simulate as simulate
-    from rr_opt.api.fastest import maximize_speed as maximize_speed
-    from rr_opt.api.fastest import shapes as shapes
-    from rr_opt.api.fastest import turn as turn
-    from rr_opt.api.inspect import inspect as inspect
-    from rr_opt.api.lint import lint as lint
+    from rr_opt.api.files import init as init
+    from rr_opt.api.files import lint as lint
     from rr_opt.api.load import InputWarning as InputWarning
     from rr_opt.api.load import RobotWithGait as RobotWithGait
     from rr_opt.api.load import load as load
@@ -44,11 +40,15 @@ if TYPE_CHECKING:
     from rr_opt.api.load import load_robot as load_robot
     from rr_opt.api.load import prototype as prototype
     from rr_opt.api.load import shipped as shipped
-    from rr_opt.api.study import load_study as load_study
-    from rr_opt.api.study import study as study
-    from rr_opt.api.survey import sweep as sweep
-    from rr_opt.api.survey import turn_chart as turn_chart
-    from rr_opt.api.template import init as init
+    from rr_opt.api.optimise import load_study as load_study
+    from rr_opt.api.optimise import maximize_speed as maximize_speed
+    from rr_opt.api.optimise import shapes as shapes
+    from rr_opt.api.optimise import study as study
+    from rr_opt.api.optimise import sweep as sweep
+    from rr_opt.api.optimise import turn as turn
+    from rr_opt.api.optimise import turn_chart as turn_chart
+    from rr_opt.api.recordings import diagnose as diagnose
+    from rr_opt.api.recordings import inspect as inspect
     from rr_opt.files.schemas import schema as schema
     from rr_opt.model.experiment import Experiment as Experiment
     from rr_opt.model.experiment import Noise as Noise
@@ -82,16 +82,12 @@ if TYPE_CHECKING:
     from rr_opt.results.turn_chart import TurnChart as TurnChart
 
 _HOMES = {
-    "api.diagnose": "diagnose",
     "api.drive": "circle export simulate",
-    "api.fastest": "maximize_speed shapes turn",
-    "api.inspect": "inspect",
-    "api.lint": "lint",
-    "api.load": "InputWarning RobotWithGait load load_experiment load_gait load_robot prototype "
-    "shipped",
-    "api.study": "load_study study",
-    "api.survey": "sweep turn_chart",
-    "api.template": "init",
+    "api.files": "init lint",
+    "api.load": "InputWarning RobotWithGait load load_experiment "
+    "load_gait load_robot prototype shipped",
+    "api.optimise": "load_study maximize_speed shapes study sweep turn turn_chart",
+    "api.recordings": "diagnose inspect",
     "files.schemas": "schema",
     "model.experiment": "Experiment Noise Recording Run",
     "model.gait": "FourierGait FreeGait Gait SineGait",

@@ -1,6 +1,6 @@
 """Ctrl-C, remembered: compiled code may swallow the exception that Python raises for it.
 
-A run that is asked to end (SIGTERM) ends in the same way, so that nothing half written is left.
+SIGTERM ends a run in the same way, so that no file is left half written.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ def watch() -> None:
 
 
 def ignore() -> None:
-    """From now on let the run end undisturbed: its work is done, or it has said why not."""
+    """Ignore interrupts from now on: the work is done, or its failure is reported."""
     for number in _SIGNALS:
         signal.signal(number, signal.SIG_IGN)
 

@@ -8,15 +8,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rr_opt.api.fastest import maximize_speed
+from rr_opt.api.optimise import maximize_speed
 from rr_opt.model.problem import GaitBounds, Interval, Problem
 from rr_opt.model.robot import Robot
 from rr_opt.outcome import Status
 from rr_opt.results.fastest import FastestGait
 from rr_paper.consistency import Hypothesis
-from rr_paper.equation3 import CORRECTED, Signs, steady_cycle
 from rr_paper.prototype import ABOUT_P, prototype, random_prototype
 from rr_paper.publication import ANGLE_LIMIT, FIGURE_4, FIGURE_5, RATE_LIMIT
+from rr_paper.signs import CORRECTED, Signs, steady_cycle
 from rr_paper.tables import NO_LIMITS
 
 _STEP, _NEAREST = 0.02, 0.97

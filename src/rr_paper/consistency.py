@@ -23,9 +23,9 @@ from scipy.stats.qmc import LatinHypercube
 from rr_opt.array import Array
 from rr_opt.model.robot import Robot
 from rr_opt.outcome import InputError
-from rr_paper.equation3 import CORRECTED, PRINTED, Signs, steady_cycle
 from rr_paper.prototype import ABOUT_P, BOX, DEFINITIONS, RatioDefinition, box_grid, prototype
 from rr_paper.publication import COLUMNS, RATIOS, ROWS, RUNS, TABLE_1, Column
+from rr_paper.signs import CORRECTED, PRINTED, Signs, steady_cycle
 
 _SCREENED, _STARTS, _SPACING, _SEED = 400, 8, 0.6, 1
 """Screened points; of the best, how many are started from for each sign, and their least distance

@@ -18,8 +18,8 @@ import numpy as np
 from rr_opt.model.ballast import inertia_ratio, with_inertia_ratio
 from rr_opt.model.robot import Platform, Robot
 from rr_opt.outcome import InputError
-from rr_paper.equation3 import steady_cycle
 from rr_paper.publication import TABLE_1, Row
+from rr_paper.signs import steady_cycle
 
 BOX = MappingProxyType(
     {

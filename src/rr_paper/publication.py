@@ -11,7 +11,7 @@ Known errata and omissions:
 - Table 2 does not state its amplitude.
 - J20/J10 of Tables 2 and 3 is not I20/I10 of Table 1 (0.453); see `rr_opt.model.ballast`.
 - Section 3.1 sets J20/J10 to 0.08, 0.14, 0.17, 0.19 and 0.2; Table 2 has 0.16, 0.18 and 0.2.
-- The signs of equation (3) contradict equations (1), (2) and (4); see `rr_paper.equation3`.
+- The signs of equation (3) contradict equations (1), (2) and (4); see `rr_paper.signs`.
 
 The points of the paper's figures are not printed as numbers, so none of them is here.
 """
@@ -25,6 +25,8 @@ from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
 from scipy.special import stdtrit
+
+from rr_opt.documents.document import Captions
 
 CITATION = (
     "Kilin, Karavaev, Yefremov: Experimental Investigations of the Controlled Motion of the "
@@ -135,3 +137,11 @@ class Circles:
 FIGURE_6 = Circles(**_PAPER["figure_6"] | {"offsets": tuple(_PAPER["figure_6"]["offsets"])})
 BEST_AMPLITUDE = _PAPER["text"]["best_amplitude"]
 """rad, up to which speed increases by the paper's conclusion."""
+
+
+def captions(of: str) -> Captions:
+    """Those of the calibration or of the reproduction, by the figure's name."""
+    return {
+        name: (one["title"], one["alt"], one["caption"])
+        for name, one in read_data(f"{of}_figures.toml").items()
+    }

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 
-from rr_lab.engines import record
+from rr_lab.case import record
 from rr_opt.effects import CATALOGUE
 from rr_opt.mechanics.drive import commanded
 from rr_opt.model.gait import SineGait

@@ -24,9 +24,8 @@ from rr_opt.documents.document import (
     csv_text,
     warnings,
 )
-from rr_opt.documents.report import Report
-from rr_opt.documents.text import markdown, terminal
-from rr_opt.documents.webpage import page
+from rr_opt.documents.rendering import markdown, page, terminal
+from rr_opt.results.result import Result
 
 EVIL = '<script>alert("&")</script>'
 CASES = Table(("speed", "name"), ((0.12344, "a"), (None, Badge("b", "good"))))
@@ -113,8 +112,13 @@ def test_the_terminal_gets_the_brief_sections_and_the_files(tmp_path):
 
 
 def test_the_page_leads_the_files_and_the_figures_end_them(tmp_path):
-    report = Report(lambda _: {}, lambda *_: document(), "record.json")
-    written = report.save(None, tmp_path)
+    class Drawn(Result):
+        FILE = "record.json"
+
+        def document(self, figures=()):
+            return document()
+
+    written = Drawn().save(tmp_path)
     assert [path.name for path in written] == ["report.html", "record.json", "drawn.svg"]
 
 

@@ -5,10 +5,9 @@ import pytest
 from matplotlib.figure import Figure
 
 from rr_opt.motion.rollout import repeated
-from rr_opt.report.figures.cycle import cycle
-from rr_opt.report.figures.fastest import draw, gains, prices
-from rr_opt.report.figures.path import along_travel, instants, path
-from rr_opt.report.figures.speed_map import MapData, allowed, speed_map
+from rr_opt.results.figures.fastest import draw, gains, prices
+from rr_opt.results.figures.motion import along_travel, cycle, instants, path
+from rr_opt.results.figures.speed_map import MapData, allowed, speed_map
 
 
 @pytest.fixture

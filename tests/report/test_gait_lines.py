@@ -3,7 +3,7 @@
 import pytest
 
 from rr_opt.model.gait import FourierGait
-from rr_opt.report.gait import gait_facts
+from rr_opt.results.gait import gait_facts
 
 
 @pytest.mark.parametrize("scale", [1.0, -1e-3])

@@ -5,7 +5,7 @@ from dataclasses import replace
 from html.parser import HTMLParser
 
 from rr_opt.documents.document import Figure
-from rr_opt.documents.webpage import page as page_of
+from rr_opt.documents.rendering import page as page_of
 
 FIGURE = Figure("path", "Path", "<svg/>", "the path")
 

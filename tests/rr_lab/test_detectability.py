@@ -6,8 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rr_lab.detectability import Detectability, moved_robot
-from rr_lab.effect_size import EffectSize
+from rr_lab.effect_size import Detectability, EffectSize, moved_robot
 from rr_lab.random_case import bare_case
 from rr_opt.model.parameters import with_parameters
 from rr_opt.model.robot import EffectUse
@@ -67,7 +66,7 @@ def test_the_step_drops_out(case, refit, use, monkeypatch):
     coarse = refit.remains(hidden)
     assert coarse > 0.5
     for name in ("STEP", "DIRECTIONS"):
-        monkeypatch.setattr(f"rr_lab.detectability.{name}", 1e-3)
+        monkeypatch.setattr(f"rr_lab.effect_size.{name}", 1e-3)
     assert Detectability.of(case).remains(hidden) == pytest.approx(coarse, rel=0.03)
 
 

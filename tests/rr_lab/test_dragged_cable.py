@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rr_lab.engines import ENGINES, record
+from rr_lab.case import ENGINES, record
 from rr_opt.model.gait import SineGait
 from rr_opt.model.robot import EffectUse
 from tests.rr_lab.reduced import LONG

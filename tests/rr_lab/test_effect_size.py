@@ -5,8 +5,8 @@ from dataclasses import replace
 
 import pytest
 
+from rr_lab.case import record
 from rr_lab.effect_size import EffectSize, scaled_to, scaled_use
-from rr_lab.engines import record
 from rr_lab.random_case import random_case
 from rr_opt.model.experiment import Noise
 from rr_opt.model.robot import EffectUse

@@ -4,7 +4,7 @@ import sys
 
 import pytest
 
-from rr_lab.engines import record
+from rr_lab.case import record
 from rr_opt.model.gait import SineGait
 from rr_opt.model.robot import EffectUse
 from rr_opt.outcome import InputError, NotConvergedError

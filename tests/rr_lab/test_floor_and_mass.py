@@ -5,10 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from rr_lab.case import ENGINES, record
 from rr_lab.effects import rig_with
-from rr_lab.engines import ENGINES, record
-from rr_lab.mujoco.model_text import spin_inertia
-from rr_lab.mujoco.plant import Plant
+from rr_lab.mujoco.plant import Plant, spin_inertia
 from rr_opt.model.gait import SineGait
 from rr_opt.model.robot import EffectUse
 from tests.rr_lab.reduced import LONG

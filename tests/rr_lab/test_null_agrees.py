@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rr_lab.engines import record
+from rr_lab.case import record
 from rr_opt.model.gait import SineGait
 from tests.rr_lab.reduced import LONG, SHORT, fitted
 

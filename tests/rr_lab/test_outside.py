@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from rr_lab.case import record
 from rr_lab.effect_size import scaled_use
 from rr_lab.effects import OUTSIDE_NAMES, effect_named
-from rr_lab.engines import record
 from rr_opt.model.gait import SineGait
 from rr_opt.model.robot import EffectUse
 from tests.rr_lab.reduced import LONG

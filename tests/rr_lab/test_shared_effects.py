@@ -2,7 +2,7 @@
 
 import pytest
 
-from rr_lab.engines import record
+from rr_lab.case import record
 from rr_opt.model.gait import SineGait
 from rr_opt.model.robot import EffectUse
 from tests.rr_lab.reduced import LONG, fitted, with_physics

@@ -2,7 +2,7 @@
 
 import math
 
-from rr_lab.engines import record
+from rr_lab.case import record
 from rr_opt.model.gait import SineGait
 from tests.rr_lab.reduced import LONG, fitted
 

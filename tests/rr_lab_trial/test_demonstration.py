@@ -5,10 +5,10 @@ import math
 import pytest
 
 from docs.demonstration import effect_text, mean_speed
-from rr_lab.api.arguments import read_effects
 from rr_lab.effects import EVERY
 from rr_lab.files import answer
 from rr_lab.random_case import random_case
+from rr_lab.record import read_effects
 
 NAMED = [effect for effect in EVERY if effect.named]
 

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import pytest
 
+from rr_lab.case import ENGINES
 from rr_lab.disturbances import DISTURBANCES
 from rr_lab.effects import OUTSIDE_NAMES, REALISATIONS
-from rr_lab.engines import ENGINES
 from rr_lab.random_case import SINGLES
 from rr_lab.trial.draws import BLOCK, KINDS, STRENGTHS, case_seed, draw_case, read_kinds
 from rr_opt.outcome import InputError

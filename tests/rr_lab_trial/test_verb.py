@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 from typer.testing import CliRunner
 
-from rr_lab.engines import ENGINES
+from rr_lab.case import ENGINES
 from rr_lab.trial import trial as one
 from rr_lab.trial.draws import KINDS, draw_case
 from rr_lab.trial.isolation import diagnose_apart

@@ -3,9 +3,9 @@
 import math
 
 from rr_opt.outcome import Status
-from rr_paper.equation3 import CORRECTED
 from rr_paper.publication import ANGLE_LIMIT
-from rr_paper.report.audit import findings
+from rr_paper.reproduction import findings
+from rr_paper.signs import CORRECTED
 
 
 def test_signs(found):

@@ -12,9 +12,9 @@ from rr_opt.model.gait import SineGait
 from rr_opt.motion.steady_cycle import steady_cycle
 from rr_paper import consistency
 from rr_paper.consistency import Hypothesis, predicted
-from rr_paper.equation3 import CORRECTED
 from rr_paper.prototype import ABOUT_P, DEFINITIONS, prototype
 from rr_paper.publication import ROWS
+from rr_paper.signs import CORRECTED
 from tests.mechanics.cases import REPEATABLE, numbers
 
 TRUTH = {"a1": 0.01, "a2": -0.005, "b": 0.05, "k": 0.12}

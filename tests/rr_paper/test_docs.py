@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 from rr_opt.formatting import number
-from rr_paper.equation3 import CORRECTED, PRINTED
 from rr_paper.prototype import ABOUT_P
+from rr_paper.signs import CORRECTED, PRINTED
 
 TEXT = " ".join(
     (Path(__file__).parents[2] / "docs" / "paper.md").read_text(encoding="utf-8").split()

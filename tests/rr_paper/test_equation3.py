@@ -6,8 +6,7 @@ from hypothesis import find, given
 
 from rr_opt.model.gait import SineGait
 from rr_opt.motion.steady_cycle import steady_cycle as integrated
-from rr_paper.equation3 import CORRECTED, PRINTED, VARIANTS, equation3, steady_cycle
-from rr_paper.signs import energy_of
+from rr_paper.signs import CORRECTED, PRINTED, VARIANTS, energy_of, equation3, steady_cycle
 from tests.mechanics.cases import FIRST_FOUND, REPEATABLE, cases, motion
 from tests.robots import BENCHMARK
 

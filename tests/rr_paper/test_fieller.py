@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from rr_paper.period import fieller
+from rr_paper.statements import fieller
 
 
 @pytest.mark.parametrize("spread", [0.05, 0.3])

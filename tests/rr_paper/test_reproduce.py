@@ -10,9 +10,9 @@ from typer.testing import CliRunner
 from rr_opt.cli.main import app
 from rr_paper import reproduction
 from rr_paper.publication import TABLE_2, TABLE_3
-from rr_paper.report.reproduction import REPORT
+from rr_paper.reproduction import Reproduction
 
-SVGS = [f"{name}.svg" for name in REPORT.captions]
+SVGS = [f"{name}.svg" for name in Reproduction.CAPTIONS]
 
 
 @pytest.fixture
@@ -38,7 +38,7 @@ def test_the_folder(run, tmp_path):
         "report.html",
         "audit.md",
         "tables.csv",
-        *(f"{one}.svg" for one in REPORT.captions),
+        *(f"{one}.svg" for one in Reproduction.CAPTIONS),
     } <= names
     assert {f"figure{n}.csv" for n in (3, 4, 5, 6)} <= names
     assert {f"audit-{key}.csv" for key in record["sections"] if key != "columns"} <= names

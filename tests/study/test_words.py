@@ -3,7 +3,7 @@
 import pytest
 
 from rr_opt.files.study_keys import key_of
-from rr_opt.results.inputs import axis_words, key_words, value_text
+from rr_opt.results.study_table import axis_words, key_words, value_text
 
 
 @pytest.mark.parametrize(

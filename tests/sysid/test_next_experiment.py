@@ -7,7 +7,8 @@ import pytest
 
 from rr_opt.machines.racer.next_experiment import _plans, next_experiment
 from rr_opt.machines.racer.racer import RollerRacer
-from rr_opt.sysid.candidates import Choice, fitted
+from rr_opt.sysid.candidates import fitted
+from rr_opt.sysid.model import Choice
 from tests.sysid.made_up import ROBOT, base_of, with_effect
 
 FRICTION = {"coulomb_friction.force1": 0.003, "coulomb_friction.force2": 0.003}

@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 from scipy.signal import butter, lfilter, sosfiltfilt
 
+from rr_opt.sysid.model import Noise
 from rr_opt.sysid.noise import noise_of
+from tests.sysid.made_up import with_effect
 
 STEP, SAMPLES, RUNS = 0.01, 3000, 6
 
@@ -50,8 +52,8 @@ def test_level_and_worth(make, level, worth, lacking):
 
 
 def test_twice_the_noise_is_not_as_stated():
-    assert estimated(lambda rng: 2 * white(rng)).unlike_stated
-    assert not estimated(white, lacking=True).unlike_stated
+    assert estimated(lambda rng: 2 * white(rng)).differs()
+    assert not estimated(white, lacking=True).differs()
 
 
 def test_missing_samples_take_no_part():
@@ -59,3 +61,11 @@ def test_missing_samples_take_no_part():
         return white(rng) * (rng.uniform(size=SAMPLES) > 0.2)
 
     assert estimated(gaps).level == pytest.approx(1.0, rel=0.05)
+
+
+def test_other_noise_is_in_units_of_that_assumed():
+    model = with_effect({}, ())
+    twice = (Noise(2.0), Noise(1.0, 9.0), Noise(), Noise())
+    (before, after) = model.runs[0], model.with_noise(twice).with_noise(twice).runs[0]
+    assert after.sigma[0] / before.sigma[0] == pytest.approx([4.0, 1.0, 1.0, 1.0])
+    assert after.correlation == pytest.approx([1.0, 9.0, 1.0, 1.0])

@@ -41,7 +41,8 @@ def test_its_column_is_that_of_the_effect(name):
     data.values[:] += 0.5 * data.sigma * np.sin(np.arange(data.values.size)).reshape(-1, 4)
     model.simulator._seen.clear()
     (linear,) = model.linearise([request], effects, (name,))
-    gram, end = linearised_inputs(model, request, (), (), pushes)
+    (pushed,) = linearised_inputs(model, [request], (), (), [pushes])
+    gram, end = pushed.gram, pushed.end
     size = np.sqrt(np.diag(linear.gram))
     assert np.abs(gram - linear.gram) / np.outer(size, size) == pytest.approx(0.0, abs=0.02)
     assert end[:, -1] == pytest.approx(
@@ -54,7 +55,8 @@ def test_where_nothing_is_wanted_it_is_the_plain_linearisation():
     request = Request(SEGMENT, {}, model.initial_state(SEGMENT, (), {}))
     names = ("m1", "kappa2")
     (linear,) = model.linearise([request], (), names)
-    gram, end = linearised_inputs(model, request, (), names, np.zeros((0, 7, 300)))
+    (pushed,) = linearised_inputs(model, [request], (), names, [np.zeros((0, 7, 300))])
+    gram, end = pushed.gram, pushed.end
     size = np.sqrt(np.diag(linear.gram))
     assert (gram - linear.gram) / np.outer(size, size) == pytest.approx(0.0, abs=1e-3)
     assert end == pytest.approx(linear.end, abs=1e-3 * np.abs(linear.end).max())

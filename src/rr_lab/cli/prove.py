@@ -7,8 +7,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from rr_opt.cli.options import Scheduler, Workers, out_option
-from rr_opt.cli.show import show
+from rr_opt.cli.options import Scheduler, Workers, out_option, show
 from rr_opt.cli.steps import Steps
 
 
@@ -65,7 +64,7 @@ def prove(
     An interrupted run resumes when the same command is repeated.
     """
     with Steps() as steps:
-        from rr_lab.api import prove as trial
+        from rr_lab import prove as trial
 
         folder, basis = trial.basis(
             out or Path("out/proof"), seed=seed, kinds=kinds, engine=engine,

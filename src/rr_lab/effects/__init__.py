@@ -7,17 +7,11 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from rr_lab.effects import actuation, outside, surroundings, wheels
+from rr_lab.effects import catalogue
 from rr_lab.effects.hidden_effect import HiddenEffect, Parameter, adds
 from rr_lab.rig import Rig
 from rr_opt.model.robot import EffectUse, Robot
 from rr_opt.outcome import InputError
-
-_FUNCTIONS = {
-    function.__name__.strip("_"): function
-    for module in (actuation, outside, surroundings, wheels)
-    for function in module.FUNCTIONS
-}
 
 
 def _parameter(name: str, row: Mapping[str, Any]) -> Parameter:
@@ -34,7 +28,7 @@ def _effect(row: Mapping[str, Any]) -> HiddenEffect:
         own[key] = tuple(_parameter(*item) for item in own.get(key, {}).items())
     for key in ("enter", "draw", "derived"):
         if key in own:
-            own[key] = _FUNCTIONS[own[key]]
+            own[key] = getattr(catalogue, f"_{own[key]}")
     if "adds" in own:
         own["enter"] = adds(*own.pop("adds"))
     for key in ("sizes", "same_as"):

@@ -11,8 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rr_lab.mujoco.model_text import longest_step
-from rr_lab.mujoco.plant import Plant, stepped
+from rr_lab.mujoco.plant import Plant, longest_step, stepped
 from rr_lab.rig import Rig
 from rr_lab.run import Conditions, Motion, asked_angle
 from rr_opt.array import Array

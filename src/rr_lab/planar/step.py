@@ -38,8 +38,7 @@ from dataclasses import dataclass, replace
 
 import casadi as ca
 
-from rr_lab.planar.bearings import bearings
-from rr_lab.planar.forces import Moment, Pull, pulls, pushed
+from rr_lab.planar.forces import Moment, Pull, bearings, pulls, pushed
 from rr_lab.planar.layout import Layout, axis, coordinates, layout, left_of
 from rr_lab.rig import WHEELS, Rig, wheel_loads
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from rr_lab.trial.outcome import Case
-from rr_opt.documents.text import columns
+from rr_opt.documents.rendering import columns
 from rr_opt.formatting import number
 from rr_opt.results.result import Result
 

@@ -7,7 +7,7 @@ from matplotlib.patches import Rectangle
 
 from rr_lab.report.proof import Proof
 from rr_lab.trial.counts import Confusion, confusion
-from rr_opt.report.figures.style import (
+from rr_opt.results.figures.style import (
     BACKWARD,
     FAINT,
     FORWARD,

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from rr_lab.report.case import hidden_text, page_of, said_text, size_text
 from rr_lab.report.proof_record import cases_csv, proof_record
@@ -25,9 +26,8 @@ from rr_opt.documents.document import (
     Table,
     table,
 )
-from rr_opt.documents.report import Progress, Report, quiet
 from rr_opt.formatting import number
-from rr_opt.results.result import Result
+from rr_opt.results.result import Progress, Result, quiet
 
 _SAYS = TEXTS["tables"]
 SHARE = "share, 95 % interval"
@@ -38,9 +38,33 @@ _KEY = ("false_claims", "single", "pair_both", "parameters", "outside", "no_answ
 class Proof(Result):
     """The outcome of a trial, in its folder."""
 
-    REPORT = "rr_lab.report.proof"
+    FILE = "proof.json"
+    MARKDOWN = "README.md"
+    OTHERS = ("cases.csv",)
+    DRAW = "rr_lab.report.confusion_figure.draw"
+    CAPTIONS = {  # noqa: RUF012
+        "confusion": (
+            "Diagnosis against truth",
+            "A matrix of counts: what was hidden in rows, what the diagnosis named in columns",
+            _SAYS["confusion"],
+        )
+    }
 
     opened: OpenedTrial
+
+    def _record(self) -> dict[str, Any]:
+        return proof_record(self.opened)
+
+    def _tables(self) -> dict[str, str]:
+        return {"cases.csv": cases_csv(self.opened)}
+
+    def document(self, figures: Sequence[Figure] = ()) -> Document:
+        """Counts, breakdowns and misses."""
+        return proof_document(self.opened, figures)
+
+    def _page(self, document: Document) -> Document:
+        """On the page alone the misses lead to their reports: these are not published."""
+        return proof_document(self.opened, document.figures, linked=True)
 
     def save(
         self, path: str | Path, *, figures: bool = True, progress: Progress = quiet
@@ -180,23 +204,3 @@ def _misses(opened: OpenedTrial, linked: bool) -> Table:
             for case in opened.misses
         ],
     )  # fmt: skip
-
-
-class _Report(Report):
-    def page_of(self, result: Proof, document: Document) -> Document:
-        """On the page alone the misses lead to their reports: these are not published."""
-        return proof_document(result.opened, document.figures, linked=True)
-
-
-_MATRIX = "A matrix of counts: what was hidden in rows, what the diagnosis named in columns"
-
-REPORT = _Report(
-    lambda proof: proof_record(proof.opened),
-    lambda proof, figures: proof_document(proof.opened, figures),
-    "proof.json",
-    "README.md",
-    tables=lambda proof: {"cases.csv": cases_csv(proof.opened)},
-    others=("cases.csv",),
-    figures="rr_lab.report.confusion_figure",
-    captions={"confusion": ("Diagnosis against truth", _MATRIX, _SAYS["confusion"])},
-)

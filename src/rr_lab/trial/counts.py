@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from rr_lab.engines import ENGINES
+from rr_lab.case import ENGINES
 from rr_lab.random_case import SINGLES
 from rr_lab.trial.draws import STRENGTHS
 from rr_lab.trial.outcome import FLOOR, SURE, Case

@@ -17,10 +17,9 @@ from pathlib import Path
 
 import numpy as np
 
-from rr_lab.case import stream
+from rr_lab.case import ENGINES, Engine, stream
 from rr_lab.disturbances import DISTURBANCES, disturbance_named
 from rr_lab.effects import OUTSIDE_NAMES, REALISATIONS, effect_named
-from rr_lab.engines import ENGINES, Engine
 from rr_lab.random_case import SINGLES, read_kind
 from rr_opt.outcome import InputError
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from rr_lab.case import Case, stream
-from rr_lab.detectability import Detectability
+from rr_lab.effect_size import Detectability
 from rr_lab.effects import effect_named
 from rr_lab.files import Delivery, answer, folder_of, seal_of
 from rr_lab.random_case import random_case

@@ -5,8 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Literal, Protocol
 
-from rr_opt.api.arguments import read_arguments
-from rr_opt.api.load import PathLike, load_gait
+from rr_opt.api.load import PathLike, load_gait, read_arguments
 from rr_opt.model.gait import Gait
 from rr_opt.model.robot import Robot
 from rr_opt.motion.circle import circle_of, transient

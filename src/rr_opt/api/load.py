@@ -1,16 +1,19 @@
-"""What files hold: a problem, a robot, an experiment, a study, or a gait to drive."""
+"""What users give, files and numbers with units, as objects with a name and a fingerprint."""
 
 from __future__ import annotations
 
+import dataclasses
+import hashlib
 import math
 import shlex
 import warnings
-from collections.abc import Container
+from collections.abc import Container, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from rr_opt.api.arguments import read_arguments
+import numpy as np
+
 from rr_opt.files.gait_record import gait_from
 from rr_opt.files.issue import InvalidFileError
 from rr_opt.files.lint import lint_file
@@ -22,10 +25,68 @@ from rr_opt.formatting import with_unit
 from rr_opt.messages import shown
 from rr_opt.model.ballast import inertia_ratio, load_count, with_inertia_ratio, with_load_count
 from rr_opt.model.experiment import Experiment
-from rr_opt.model.gait import Gait, SineGait
+from rr_opt.model.gait import AMPLITUDE, OFFSET, PERIOD, Gait, SineGait
 from rr_opt.model.problem import GaitBounds, Problem, RatioChoice
 from rr_opt.model.robot import Robot
 from rr_opt.outcome import InputError
+from rr_opt.units import Quantity
+
+
+def identity(asked: Problem | Experiment) -> tuple[str, str]:
+    """Its name, and the SHA-256 of its files, or of its values where there is no file."""
+    name = asked.name or asked.robot.name or type(asked).__name__.lower()
+    return name, asked.sha256 or fingerprint(asked)
+
+
+def fingerprint(value: Any) -> str:
+    """SHA-256, in hex, over the values; equal objects have equal ones."""
+    return hashlib.sha256(_canonical(value)).hexdigest()
+
+
+def _canonical(value: Any) -> bytes:
+    if dataclasses.is_dataclass(value):
+        parts = [(one.name, getattr(value, one.name)) for one in dataclasses.fields(value)]
+        return type(value).__name__.encode() + _canonical(dict(parts))
+    if isinstance(value, Mapping):
+        return b"{" + b"".join(_canonical(key) + _canonical(value[key]) for key in value) + b"}"
+    if isinstance(value, np.ndarray):
+        return f"{value.dtype}{value.shape}".encode() + value.tobytes()
+    if isinstance(value, tuple | list):
+        return b"(" + b"".join(map(_canonical, value)) + b")"
+    return f"{value!r},".encode()
+
+
+QUANTITIES = {
+    "amplitude": AMPLITUDE,
+    "period": PERIOD,
+    "offset": OFFSET,
+    "seconds": Quantity("s", "10", above=0),
+    "rate": Quantity("1/s", "100", above=0),
+    "radius": Quantity("m", "1.5 m"),
+    "heading": Quantity("rad", "90 deg"),
+    "within": Quantity("s", "4 s", above=0),
+    "length": Quantity("m", "80 cm", above=0),
+}
+"""By the argument's name."""
+
+
+def read_arguments(given: Mapping[str, float | str | None], prefix: str = "") -> dict[str, float]:
+    """The arguments in SI, those that are None left out.
+
+    prefix: of the names in messages, `--` for options. Raises InputError with everything that is
+    wrong with all of them.
+    """
+    values, wrong = {}, []
+    for name, value in given.items():
+        if value is not None:
+            try:
+                values[name] = QUANTITIES[name].read(value)
+            except InputError as error:
+                wrong.append(f"{prefix}{name}: {error}")
+    if wrong:
+        raise InputError("\n".join(wrong))
+    return values
+
 
 PathLike = str | Path
 

@@ -19,11 +19,11 @@ from rr_opt.batch.processes import ONE_THREAD, held_back
 
 _LOOK = 1.0  # s
 _HANDED_ON = 1.0
-"""So long the executor may take to hand work on before it is ended, s."""
+"""Time that the executor gets to hand on work before it is ended, s."""
 
 
 class LocalPool:
-    """So many processes of this machine; None: one for each of its cores that may be used.
+    """`workers` processes on this machine; None: one per usable core.
 
     One case takes one core: numerical libraries are kept from starting threads of their own.
     """

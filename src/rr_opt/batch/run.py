@@ -43,7 +43,7 @@ class Pool(Protocol):
 
 
 def pool_of(workers: int | None, scheduler: str | None) -> Pool:
-    """So many processes here (None: one for each core), or those of a dask cluster."""
+    """`workers` processes on this machine (None: one per core), or those of a dask cluster."""
     if scheduler:
         from rr_opt.batch.cluster import ClusterPool
 

@@ -1,1 +1,1 @@
-"""The command line: one file per verb. A verb parses, calls and prints; it computes nothing."""
+"""The command line. A verb parses, calls and prints; it computes nothing."""

@@ -20,11 +20,14 @@ from rr_opt.cli.steps import silence
 from rr_opt.outcome import EXIT_INTERRUPTED, EXIT_WRONG_INPUT, RollerRacerError
 from rr_opt.version import __version__
 
-VERBS = (
-    *("maximize-speed", "shapes", "sweep", "turn", "turn-chart", "circle", "simulate", "export"),
-    *("study", "inspect", "diagnose", "init", "lint", "schema"),
-)
-"""Each is the function of its name in the module of its name."""
+VERBS = {
+    **dict.fromkeys(("maximize-speed", "shapes", "sweep", "turn", "turn-chart"), "optimise"),
+    **dict.fromkeys(("circle", "simulate", "export"), "drive"),
+    "study": "optimise",
+    **dict.fromkeys(("inspect", "diagnose"), "recordings"),
+    **dict.fromkeys(("init", "lint", "schema"), "files"),
+}
+"""Each verb with its module, in the order of the help; its function has its name."""
 
 
 _SHORT_HELP = {"help_option_names": ["-h", "--help"]}
@@ -41,7 +44,7 @@ class Verbs(TyperGroup):
         """A verb, loaded now; None if there is none of that name."""
         if cmd_name in VERBS:
             name = cmd_name.replace("-", "_")
-            verb = getattr(import_module(f"rr_opt.cli.{name}"), name)
+            verb = getattr(import_module(f"rr_opt.cli.{VERBS[cmd_name]}"), name)
         else:
             other = _others().get(cmd_name)
             if other is None:

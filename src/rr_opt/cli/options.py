@@ -4,19 +4,20 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
 from rr_opt.cli.steps import silent
-from rr_opt.outcome import InputError
+from rr_opt.outcome import InputError, Status
 
 if TYPE_CHECKING:
     from rr_opt.api.load import RobotWithGait
     from rr_opt.model.gait import Gait
     from rr_opt.model.problem import Problem
+    from rr_opt.results.result import Result
 
 
 def place(text: str) -> Path:
@@ -81,7 +82,7 @@ def results_folder(out: Path | None, name: str) -> Path:
 
 def motion_folder(out: Path | None, source: Path | None, format: Any, film: Any) -> Path:
     """The folder of a motion. Raises InputError also for files that cannot be made here."""
-    from rr_opt.report.motion import check_files
+    from rr_opt.results.motion import check_files
 
     check_files(format, film)
     return results_folder(out, f"{result_name(source)}-motion")
@@ -89,7 +90,7 @@ def motion_folder(out: Path | None, source: Path | None, format: Any, film: Any)
 
 def study_folder(out: Path | None, name: str, *, netcdf: bool) -> Path:
     """The folder of a study. Raises InputError also for a netCDF file that cannot be made here."""
-    from rr_opt.report.study import check_files
+    from rr_opt.results.study import check_files
 
     check_files(netcdf=netcdf)
     return results_folder(out, name)
@@ -97,7 +98,7 @@ def study_folder(out: Path | None, name: str, *, netcdf: bool) -> Path:
 
 def inspection_folder(out: Path | None, source: Path, netcdf: Path | None) -> Path:
     """The folder of an inspection. Raises InputError also for an impossible netCDF file."""
-    from rr_opt.api.inspect import check_files, name_of
+    from rr_opt.api.recordings import check_files, name_of
 
     check_files(source, netcdf)
     return results_folder(out, f"{name_of(source)}-inspect")
@@ -122,7 +123,7 @@ def setpoints_file(out: Path | None, source: Path | None, format: Any) -> Path:
 
 def read_options(**given: str | float | None) -> dict[str, float]:
     """The options that were given, in SI. Raises InputError with all that is wrong with them."""
-    from rr_opt.api.arguments import read_arguments
+    from rr_opt.api.load import read_arguments
 
     return read_arguments(given, prefix="--")
 
@@ -185,3 +186,86 @@ def warn(sentences: Iterable[str]) -> None:
     if not silent():
         for sentence in sentences:
             typer.echo(f"warning: {sentence}", err=True)
+
+
+Radius = Annotated[
+    str | None,
+    typer.Option(help="Radius of the circle in m, or with a unit; positive to the left."),
+]
+Heading = Annotated[
+    str | None,
+    typer.Option(help="Change of heading in rad, or with a unit: '90 deg'; positive to the left."),
+]
+Within = Annotated[str | None, typer.Option(help="Longest time for the change of heading, s.")]
+Length = Annotated[str | None, typer.Option(help="Longest path for the change of heading, m.")]
+Cycles = Annotated[
+    Literal["any", "whole"],
+    typer.Option(help="whole: the change of heading takes a whole number of periods."),
+]
+
+SetPoints = Annotated[
+    Literal["csv", "c-header", "servo"],
+    typer.Option(
+        "--format",
+        help="csv: time and angle in rad and degrees; c-header: a C array; "
+        "servo: counts of the servo CDS5516.",
+    ),
+]
+KeepPeriod = Annotated[
+    bool, typer.Option("--keep-period", help="Adjust the rate instead of the period.")
+]
+
+Trajectory = Annotated[Literal["csv", "netcdf"], typer.Option("--format", help="Trajectory file.")]
+Film = Annotated[Literal["gif", "mp4"] | None, typer.Option(help="Also make an animation.")]
+From = Annotated[
+    Literal["rest", "steady"], typer.Option(help="From rest, or from the steady state.")
+]
+
+Seconds = Annotated[float, typer.Option(help="Simulated time, s.")]
+Samples = Annotated[float, typer.Option(help="Samples per second.")]
+PointRate = Annotated[float, typer.Option(help="Set points per second.")]
+PointFile = Annotated[Path | None, out_option("out/NAME-...", "The file to write.", "FILE")]
+MotionFolder = Annotated[Path | None, out_option("out/NAME-motion", "Folder for the files.")]
+
+Recorded = Annotated[
+    Path,
+    typer.Argument(
+        metavar="FILE|FOLDER",
+        help="A recording (plain CSV, Vicon CSV, C3D, TRC or netCDF), or the folder of an "
+        "experiment.",
+    ),
+]
+Layout = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="YAML", help="Position of each marker; default: estimated from the recording."
+    ),
+]
+ServoLog = Annotated[
+    Path | None, typer.Option(metavar="CSV", help="The servo's log, on its own clock.")
+]
+CommandedAmplitude = Annotated[
+    str | None, typer.Option(help="Commanded amplitude in rad, or with a unit.")
+]
+CommandedPeriod = Annotated[str | None, typer.Option(help="Commanded period, s.")]
+CommandedOffset = Annotated[str | None, typer.Option(help="Commanded offset, rad.")]
+Start = Annotated[
+    Literal["rest", "running"],
+    typer.Option(help="Whether the robot stood still until t = 0 or was already running."),
+]
+NetCDF = Annotated[
+    Path | None,
+    typer.Option(metavar="FILE", help="Also write the recording, with its flags, as netCDF."),
+]
+
+
+def show(result: Result, files: Sequence[Path] = (), *, json: bool) -> None:
+    """Print a result and its warnings. Ends the command if it is not what was asked for."""
+    from rr_opt.documents.archive import strict_json
+
+    warn(result.warnings)
+    text = strict_json(result.record(files)) if json else result.summary(files)
+    typer.echo(text, nl=False)
+    if result.status is not Status.OPTIMAL:
+        typer.echo(result.message, err=True)
+        raise typer.Exit(result.status.exit_code)

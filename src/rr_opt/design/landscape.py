@@ -22,9 +22,8 @@ import casadi as ca
 import numpy as np
 
 from rr_opt.array import Array
-from rr_opt.mechanics.code_generation import in_stages, source_file
+from rr_opt.mechanics.code_generation import ArrayFunction, in_stages, over_arrays, source_file
 from rr_opt.mechanics.compile_cache import library
-from rr_opt.mechanics.vectorised import ArrayFunction, over_arrays
 from rr_opt.model.ballast import By, Loads, hang
 from rr_opt.model.problem import Interval
 from rr_opt.model.robot import Robot

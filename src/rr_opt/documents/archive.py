@@ -106,6 +106,27 @@ def write_json(path: Path, data: Mapping[str, Any]) -> Path:
     return write_text(path, strict_json(data))
 
 
+def netcdf_writer() -> Any:
+    """The module xarray. Raises InputError if it, h5netcdf or h5py is not installed."""
+    try:
+        import h5netcdf  # noqa: F401
+        import h5py  # noqa: F401  # pyright: ignore[reportMissingImports]
+        import xarray
+    except ImportError:
+        raise InputError(
+            "netCDF files need xarray, h5netcdf and h5py, which are not all installed. "
+            "Run `pip install 'rr-opt[netcdf]'`, or write CSV with --format csv."
+        ) from None
+    return xarray
+
+
+def write_dataset(path: Path, data: Any) -> Path:
+    """Write a dataset of xarray, whole."""
+    with whole(path) as temporary:
+        data.to_netcdf(temporary, engine="h5netcdf")
+    return path
+
+
 def remove(folder: Path, names: Iterable[str]) -> None:
     """Remove the named files of an earlier run, so that none is taken for one of this run.
 

@@ -38,7 +38,7 @@ class Link:
 
 Item = TypeVar("Item")
 Cell = str | float | bool | Badge | Link | None
-"""None: there is no such thing. Numbers are SI."""
+"""None: not applicable. Numbers are SI."""
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ class Table:
         return [dict(zip(self.head, map(_finite, row), strict=True)) for row in self.rows]
 
     def csv(self, digits: int = 12) -> str:
-        """The table for scripts: headings, then rows, with empty cells where there is nothing."""
+        """The table for scripts: headings, then rows, with empty cells for None."""
         return csv_text(self.head, self.rows, digits)
 
     def __bool__(self) -> bool:
@@ -87,7 +87,7 @@ def cell_text(cell: Cell) -> str:
 
 
 def csv_text(names: Sequence[str], rows: Iterable[Sequence[Any]], digits: int = 9) -> str:
-    """Rows as CSV under a header row: numbers to `digits` digits, nothing for None and NaN."""
+    """Rows as CSV under a header row: numbers to `digits` digits, empty for None and NaN."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(names)
@@ -117,7 +117,7 @@ def _finite(value: Any) -> Any:
 
 @dataclass(frozen=True)
 class Fact:
-    """A value with its label, and what else there is to say of it: `(30 deg)`, `to the left`."""
+    """A value with its label and a detail: `(30 deg)`, `to the left`."""
 
     label: str
     value: str

@@ -8,44 +8,51 @@ once for all iterates of the speed; in a diagnosis what the parameters determine
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from importlib.resources import files
 from itertools import accumulate
+from typing import Any
 
 import casadi as ca
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 _BINARY = {
-    ca.OP_ADD: "{} + {}",
-    ca.OP_SUB: "{} - {}",
-    ca.OP_MUL: "{} * {}",
-    ca.OP_DIV: "{} * {}",
-    ca.OP_POW: "v_pow({}, {})",
-    ca.OP_CONSTPOW: "v_pow({}, {})",
-    ca.OP_ATAN2: "v_atan2({}, {})",
-    ca.OP_FMIN: "v_min({}, {})",
-    ca.OP_FMAX: "v_max({}, {})",
-    ca.OP_LT: "pick({} < {}, all(1.0), all(0.0))",
-    ca.OP_LE: "pick({} <= {}, all(1.0), all(0.0))",
-    ca.OP_IF_ELSE_ZERO: "pick({} != all(0.0), {}, all(0.0))",
+    ca.OP_ADD: (np.add, "{} + {}"),
+    ca.OP_SUB: (np.subtract, "{} - {}"),
+    ca.OP_MUL: (np.multiply, "{} * {}"),
+    ca.OP_DIV: (np.divide, "{} * {}"),
+    ca.OP_POW: (np.power, "v_pow({}, {})"),
+    ca.OP_CONSTPOW: (np.power, "v_pow({}, {})"),
+    ca.OP_ATAN2: (np.arctan2, "v_atan2({}, {})"),
+    ca.OP_FMIN: (np.minimum, "v_min({}, {})"),
+    ca.OP_FMAX: (np.maximum, "v_max({}, {})"),
+    ca.OP_LT: (np.less, "pick({} < {}, all(1.0), all(0.0))"),
+    ca.OP_LE: (np.less_equal, "pick({} <= {}, all(1.0), all(0.0))"),
+    ca.OP_IF_ELSE_ZERO: (
+        lambda condition, x: np.where(condition, x, 0.0),
+        "pick({} != all(0.0), {}, all(0.0))",
+    ),
 }
 _UNARY = {
-    ca.OP_ASSIGN: "{}",
-    ca.OP_NEG: "-{}",
-    ca.OP_SQRT: "v_sqrt({})",
-    ca.OP_SQ: "{0} * {0}",
-    ca.OP_SIN: "v_sin({})",
-    ca.OP_COS: "v_cos({})",
-    ca.OP_TAN: "v_tan({})",
-    ca.OP_TANH: "v_tanh({})",
-    ca.OP_EXP: "v_exp({})",
-    ca.OP_LOG: "v_log({})",
-    ca.OP_FABS: "v_abs({})",
-    ca.OP_SIGN: "v_sign({})",
-    ca.OP_INV: "1.0 / {}",
-    ca.OP_NOT: "pick({} == all(0.0), all(1.0), all(0.0))",
-    ca.OP_TWICE: "{0} + {0}",
+    ca.OP_ASSIGN: (np.positive, "{}"),
+    ca.OP_NEG: (np.negative, "-{}"),
+    ca.OP_SQRT: (np.sqrt, "v_sqrt({})"),
+    ca.OP_SQ: (np.square, "{0} * {0}"),
+    ca.OP_SIN: (np.sin, "v_sin({})"),
+    ca.OP_COS: (np.cos, "v_cos({})"),
+    ca.OP_TAN: (np.tan, "v_tan({})"),
+    ca.OP_TANH: (np.tanh, "v_tanh({})"),
+    ca.OP_EXP: (np.exp, "v_exp({})"),
+    ca.OP_LOG: (np.log, "v_log({})"),
+    ca.OP_FABS: (np.abs, "v_abs({})"),
+    ca.OP_SIGN: (np.sign, "v_sign({})"),
+    ca.OP_INV: (np.reciprocal, "1.0 / {}"),
+    ca.OP_NOT: (np.logical_not, "pick({} == all(0.0), all(1.0), all(0.0))"),
+    ca.OP_TWICE: (lambda x: x + x, "{0} + {0}"),
 }
+"""What an operation is over arrays, and in C."""
 
 
 @dataclass
@@ -153,10 +160,59 @@ def _values(function: ca.Function, stages: Sequence[int]) -> tuple[list[_Value],
                     stage = max(0, values[divisor].stage)
                     values.append(_Value("1.0 / {}", (divisor,), stage))
                 needs = (needs[0], inverse[divisor])
-            text = _BINARY.get(code) or _UNARY[code]
+            text = (_BINARY.get(code) or _UNARY[code])[1]
             value = _Value(text, needs, max(0, *(values[need].stage for need in needs)))
         else:
             raise NotImplementedError(f"operation {code} of {function.name()} has no C here")
         register[out[0]] = len(values)
         values.append(value)
     return values, outputs
+
+
+_READ, _CONSTANT, _WRITE = object(), object(), object()
+
+ArrayFunction = Callable[..., list[NDArray[np.float64]]]
+
+
+def over_arrays(function: ca.Function) -> ArrayFunction:
+    """An SX function as a function of arrays: one argument per scalar entry of its inputs.
+
+    It takes `function.nnz_in()` arrays that broadcast and returns one array per nonzero of the
+    outputs. Raises NotImplementedError for an operation that has no array form here.
+    """
+    starts = np.cumsum([0, *(function.nnz_in(i) for i in range(function.n_in()))])
+    ends = np.cumsum([0, *(function.nnz_out(i) for i in range(function.n_out()))])
+    steps: list[tuple[Any, int, tuple[int, ...], float]] = []
+    for k in range(function.n_instructions()):
+        code = function.instruction_id(k)
+        out, args = function.instruction_output(k), function.instruction_input(k)
+        if code == ca.OP_INPUT:
+            steps.append((_READ, out[0], (int(starts[args[0]] + args[1]),), 0.0))
+        elif code == ca.OP_CONST:
+            steps.append((_CONSTANT, out[0], (), function.instruction_constant(k)))
+        elif code == ca.OP_OUTPUT:
+            steps.append((_WRITE, int(ends[out[0]] + out[1]), (args[0],), 0.0))
+        elif code in _BINARY:
+            steps.append((_BINARY[code][0], out[0], (args[0], args[1]), 0.0))
+        elif code in _UNARY:
+            steps.append((_UNARY[code][0], out[0], (args[0],), 0.0))
+        else:
+            raise NotImplementedError(f"operation {code} of {function.name()} has no array form")
+
+    # CasADi reuses a register as soon as its value is not needed any more, so that few arrays are
+    # alive at a time and they stay in the processor's cache.
+    def evaluate(*arguments: ArrayLike) -> list[NDArray[np.float64]]:
+        register: list = [None] * function.sz_w()
+        results: list = [np.float64(0.0)] * int(ends[-1])
+        for apply, where, sources, number in steps:
+            if apply is _READ:
+                register[where] = arguments[sources[0]]
+            elif apply is _CONSTANT:
+                register[where] = np.float64(number)
+            elif apply is _WRITE:
+                results[where] = register[sources[0]]
+            else:
+                register[where] = apply(*[register[source] for source in sources])
+        return results
+
+    return evaluate

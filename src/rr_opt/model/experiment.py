@@ -46,7 +46,7 @@ class Column:
 
     column  its name there
     factor  SI per number
-    bits    numbers are counts of so many bits, the highest of which is the sign; None: as written
+    bits    numbers are signed counts of this many bits; None: as written
     """
 
     column: str
@@ -181,7 +181,7 @@ class Noise:
 class Run:
     """One recording and how it was made.
 
-    gait   what the servo was told, its clock starting at the recording's t = 0
+    gait   the command, its clock starting at the recording's t = 0
     start  `rest`: the robot stood still until t = 0 and the command began there; `running`: the
            command began a whole number of periods earlier
     use    `fit` or `holdout`

@@ -76,7 +76,7 @@ class Range:
 
 @dataclass(frozen=True)
 class Series:
-    """A sequence of at least so many numbers of one quantity."""
+    """A sequence of numbers of one quantity, with a least length."""
 
     quantity: Quantity
     least: int = 1

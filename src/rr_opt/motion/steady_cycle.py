@@ -139,7 +139,7 @@ class SteadyCycle:
 
 
 def steady_cycle(robot: Robot, gait: Gait, *, steps: int = 512) -> SteadyCycle:
-    """The steady cycle by at least so many fixed steps of order 6.
+    """The steady cycle by at least `steps` fixed steps of order 6.
 
     Raises NotConvergedError if there is none: without friction, or through the singular posture.
     """

@@ -1,19 +1,51 @@
-"""The diagnosis of an experiment."""
+"""The diagnosis of an experiment: what was found, the corrected robot, and the report."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
-from rr_opt.documents.report import Progress, quiet
+from rr_opt.documents import document as doc
+from rr_opt.documents.document import Fact, facts_alone
+from rr_opt.documents.rendering import terminal
+from rr_opt.documents.texts import captions
 from rr_opt.effects import CATALOGUE
+from rr_opt.files.record import robot_yaml
+from rr_opt.formatting import counted
 from rr_opt.model.experiment import Experiment
 from rr_opt.model.robot import Robot
-from rr_opt.results.corrected_robot import corrected_robot
-from rr_opt.results.loss import Loss, LossUnknown, loss_of, unknown
-from rr_opt.results.result import Result
+from rr_opt.results.diagnosis_record import diagnosis_record
+from rr_opt.results.diagnosis_tables import (
+    candidate_words,
+    candidates_table,
+    effects_table,
+    headline,
+    misfit_table,
+    parameters_table,
+    recordings_table,
+    remainder_text,
+    share_text,
+    stage_name,
+    stage_text,
+    stage_words,
+    value_text,
+)
+from rr_opt.results.loss import (
+    Loss,
+    LossUnknown,
+    corrected_robot,
+    loss_line,
+    loss_of,
+    loss_record,
+    share_lost,
+    unknown,
+)
+from rr_opt.results.result import Progress, Result, quiet
 from rr_opt.sysid.diagnosis import Diagnosis, Finding, Stage
+from rr_opt.version import __version__
 
 _PREDICTS = 1.2
 """An empirical term accounts for what is missing if it leaves no more than this, in sigma."""
@@ -34,7 +66,10 @@ class ExplainedExperiment(Result):
     left_out         sentences on the recordings that could not be used
     """
 
-    REPORT = "rr_opt.report.diagnosis.document"
+    FILE = "diagnosis.json"
+    OTHERS = ("robot-corrected.yaml",)
+    DRAW = "rr_opt.results.figures.diagnosis.draw"
+    CAPTIONS = captions("diagnosis")
 
     name: str
     sha256: str
@@ -101,7 +136,7 @@ class ExplainedExperiment(Result):
 
     @property
     def proven_on(self) -> str:
-        """Which recordings the misfits before and after refer to, in words."""
+        """Which recordings the misfits before and after refer to, in"""
         if self.marked:
             return "held-out recordings"
         several = len(self.found.final) > 1
@@ -123,3 +158,190 @@ class ExplainedExperiment(Result):
         """Write diagnosis.json, robot-corrected.yaml, the figures and the page."""
         progress("the best gait, as believed and as found")
         return super().save(path, figures=figures, progress=progress)
+
+    def document(self, figures: Sequence[doc.Figure] = ()) -> doc.Document:
+        """The report of a diagnosis."""
+        found, loss = self.found, self.loss
+        steps = ", ".join(f"{step} {time:.1f} s" for step, time in found.seconds.items())
+        return doc.Document(
+            name=self.name,
+            kind="diagnosis",
+            title=headline(found),
+            lead=found.summary,
+            good=found.verdict == "consistent",
+            sections=(
+                doc.Section("Where it goes wrong", (chain(self), chain_note(self))),
+                doc.Section("", (doc.Facts(tuple(_key_facts(self)), key=True),)),
+                doc.gallery(figures),
+                doc.Section("What was found", (effects_table(found),)),
+                doc.Section(
+                    "What the wrong model would cost",
+                    (loss.sentence if isinstance(loss, LossUnknown) else "",),
+                ),
+                doc.Section("What remains open, and what to record next", tuple(_open(self))),
+                doc.Section("What was tried", (candidates_table(found),)),
+                doc.Section("The robot's parameters", (parameters_table(found, self.experiment),)),
+                doc.Section("Misfit by channel, before → after, σ", (misfit_table(found),)),
+                doc.Section(
+                    "Recordings",
+                    (
+                        recordings_table(self.experiment),
+                        doc.warnings((*self.left_out, *self.doubts)),
+                    ),
+                ),
+            ),
+            footer=(
+                *doc.versions(self.sha256),
+                steps,
+                "the corrected robot is in `robot-corrected.yaml`, all numbers in `diagnosis.json`",
+            ),
+        )
+
+    def summary(self, files: Sequence[Path] = ()) -> str:
+        """The verdict, what was found with its intervals, before and after, and what to do next."""
+        return terminal(facts_alone(_summary_facts(self), self.found.summary), files)
+
+    def drawn(self, progress: Progress = quiet) -> tuple[doc.Figure, ...]:
+        """The figures, each with the caption that was drawn for it."""
+        progress("figures")
+        drawn = self._draw(self)
+        return tuple(
+            doc.Figure(name, title, drawn[name][0], alt, drawn[name][1])
+            for name, (title, alt, _) in self.CAPTIONS.items()
+            if name in drawn
+        )
+
+    def _record(self) -> dict[str, Any]:
+        """The content of `diagnosis.json`."""
+        own = {"loss": loss_record(self.loss), "left_out": self.left_out, "doubts": self.doubts}
+        return {"name": self.name, **diagnosis_record(self.found, self.where), **own}
+
+    def _tables(self) -> dict[str, str]:
+        """The corrected robot as a robot file."""
+        title = f"{headline(self.found)}.\nFrom {self.name} by rr-opt {__version__} diagnose."
+        return {self.OTHERS[0]: robot_yaml(self.corrected_robot, title)}
+
+
+_PLACES = (
+    ("measurement", ("measurement",)),
+    ("actuation", ("actuation",)),
+    ("axles", ("constraint_axle1", "constraint_axle2")),
+    ("rolling, yaw, mass", ("rolling", "yaw", "mass")),
+    ("floor", ("floor",)),
+)
+"""Where an effect can act, upstream first."""
+
+
+_STATES = {
+    "fault": ("fault", "✗ fault"),
+    "clear": ("clear", "✓ clear"),
+    "affected": ("after", "affected"),
+}
+
+
+def chain(one: ExplainedExperiment) -> doc.Chain:
+    """The stages; without tests of them, where the accepted effect acts."""
+    stages, channel = one.found.stages, one.found.channel
+    if stages:
+        marked = zip(stages, stage_words(stages), strict=True)
+        return doc.Chain(
+            tuple(
+                doc.Step(stage_name(stage), *_STATES[word], stage_text(stage, one.found))
+                for stage, word in marked
+            )
+        )
+    return doc.Chain(
+        tuple(
+            doc.Step(name, "fault", "✗ the effect acts here")
+            if channel in channels
+            else doc.Step(name, "untested", "–")
+            for name, channels in _PLACES
+        )
+    )
+
+
+def chain_note(one: ExplainedExperiment) -> str:
+    """What is lit in the chain, and where the fault shows."""
+    if not one.found.stages:
+        lit = "" if one.found.channel == "none" else " Lit: where the accepted effect acts."
+        return f"The stages were not tested one by one.{lit}"
+    where = f"{one.where[0].upper()}{one.where[1:].removesuffix('.')}. " if one.where else ""
+    if not one.guilty:
+        return f"{where or 'No channel has a significant fault. '}{_SIGMA}"
+    return (
+        f"{where}Lit: where an unknown input would explain most of the misfit of the nominal "
+        f"model; the motion passes the fault on to the other channels. {_SIGMA}"
+    )
+
+
+_SIGMA = (
+    "Percentages: the share of the misfit that an unknown input there would explain, with the "
+    "robot's values re-fitted. All misfits on this page are RMS in σ, one standard deviation of "
+    "the noise, so 1 is the noise alone."
+)
+
+
+def _key_facts(one: ExplainedExperiment) -> Iterator[doc.Fact]:
+    found = one.found
+    yield doc.Fact("misfit before", f"{found.before:.2f} σ", one.proven_on)
+    yield doc.Fact("misfit now", f"{found.after:.2f} σ", "1 is the noise alone")
+    for finding in found.findings[:3]:
+        if found.verdict == "missing_physics":
+            name = candidate_words([finding.name])
+            beyond = "of the misfit beyond the noise"
+            yield doc.Fact(f"explained by {name}", share_text(finding), beyond)
+        for name, each in list(finding.parameters.items())[:2]:
+            value, _, interval = value_text(each).partition(" [")
+            yield doc.Fact(name.replace("_", " "), value, f"95 %: {interval.rstrip(']')}")
+    if isinstance(one.loss, Loss):
+        lost = share_lost(one.loss)
+        yield doc.Fact("speed lost", lost, "by driving the best gait of the nominal model")
+
+
+def _open(one: ExplainedExperiment) -> Iterator[str]:
+    found = one.found
+    for group in found.indistinguishable:
+        names = " from ".join(candidate_words([name]) for name in group)
+        yield f"These recordings cannot distinguish {names}."
+    if found.verdict != "consistent":
+        yield f"Remainder: {remainder_text(found.remainder)}. {found.remainder.matters}"
+    yield from (each.sentence for each in found.residue)
+    if found.next_experiment is not None:
+        yield found.next_experiment.sentence
+
+
+def _summary_facts(one: ExplainedExperiment) -> Iterator[Fact]:
+    found = one.found
+    yield Fact("verdict", f"{found.verdict}: {headline(found)}")
+    if found.channel != "none":
+        yield Fact("  shows in", found.channel.replace("_", " "))
+    if one.where:
+        yield Fact("  where", one.where)
+    for finding in found.findings:
+        yield from _finding(finding, found.verdict)
+    proof = counted(len(one.proof), "held out recording") if one.marked else one.proven_on
+    misfit = f"{found.before:.2f} before, {found.after:.2f} after, in units of the noise"
+    yield Fact("misfit", f"{misfit} ({proof})")
+    for stage, word in zip(found.stages, stage_words(found.stages), strict=True):
+        text = f"{word}, {stage_text(stage, found)}"
+        yield Fact(f"channel {stage_name(stage)}", text)
+    for group in found.indistinguishable:
+        yield Fact("indistinguishable", " or ".join(name.replace("_", " ") for name in group))
+    if found.verdict != "consistent":
+        yield Fact("remainder", remainder_text(found.remainder))
+    for each in found.residue:
+        yield Fact("left over", each.sentence)
+    if one.loss is not None:
+        yield Fact("lost speed", loss_line(one.loss))
+    if found.next_experiment is not None:
+        yield Fact("record next", found.next_experiment.sentence)
+    yield Fact("took", f"{sum(found.seconds.values()):.0f} s")
+
+
+def _finding(finding: Finding, verdict: str) -> Iterator[Fact]:
+    if verdict != "parameters":
+        minor = ", minor" if finding.minor else ""
+        head = f"confidence {finding.confidence:.2f}, explains {share_text(finding)}{minor}"
+        yield Fact(candidate_words([finding.name]), head)
+    for name, value in finding.parameters.items():
+        yield Fact(f"  {name}", value_text(value))

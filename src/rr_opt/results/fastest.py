@@ -3,22 +3,38 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rr_opt.design.candidate import Candidate
 from rr_opt.design.decisions import ballast_interval
 from rr_opt.design.maximize_speed import Optimum
-from rr_opt.formatting import direction_text, pace_text
+from rr_opt.documents import document as doc
+from rr_opt.documents.texts import captions
+from rr_opt.files.record import plain, robot_record
+from rr_opt.formatting import counted, direction_text, number, pace_text, with_unit
 from rr_opt.messages import listed
-from rr_opt.model.ballast import inertia_ratio, with_load_count
+from rr_opt.model.ballast import inertia_ratio, load_count, with_load_count
 from rr_opt.model.gait import Gait
 from rr_opt.model.problem import LARGEST_EXCESS, Problem
 from rr_opt.model.robot import Robot
+from rr_opt.motion.rollout import one_period
 from rr_opt.motion.steady_cycle import Cycle
 from rr_opt.outcome import Status
-from rr_opt.results.limits import LIMIT_NAMES, BoundRow, LimitRow, bound_rows, limit_row
+from rr_opt.results.gait import gait_facts, robot_table, signed_fact, speed_fact
+from rr_opt.results.limits import (
+    LIMIT_NAMES,
+    BoundRow,
+    LimitRow,
+    bound_rows,
+    bounds_table,
+    limit_row,
+    limited_by,
+    limits_table,
+)
+from rr_opt.results.motion import trajectory_csv
 from rr_opt.results.result import Check, Result
 from rr_opt.verify.replay import Replay
 from rr_opt.verify.sweep import TOLERATED, SweepCheck
@@ -45,7 +61,10 @@ class FastestGait(Result):
                    another inertia ratio; None elsewhere, and if that robot has no such gait
     """
 
-    REPORT = "rr_opt.report.fastest"
+    FILE = "result.json"
+    OTHERS = ("trajectory.csv",)
+    DRAW = "rr_opt.results.figures.fastest.draw"
+    CAPTIONS = captions("fastest")
 
     name: str
     sha256: str
@@ -271,6 +290,118 @@ class FastestGait(Result):
         """What the robot does with effects that the optimiser does not know."""
         return (_climbed(self.climbed, self.optimum),) if self.climbed else ()
 
+    def _record(self) -> dict[str, Any]:
+        """The content of result.json; the same keys whatever the outcome."""
+        optimum, replay, sweep = self.optimum, self.replay, self.sweep
+        cycle, driven = self.cycle, self.driven
+        return {
+            "status": self.status,
+            "message": self.message,
+            "warnings": self.warnings,
+            "problem": self.name,
+            "gait": self.gait,
+            "joint": self.joint,
+            "inertia_ratio": self.inertia_ratio,
+            "speed": self.speed,
+            "speed_as_built": self.as_built,
+            "cycle": cycle
+            and {
+                "dx": cycle.dx,
+                "dy": cycle.dy,
+                "dpsi": cycle.dpsi,
+                "radius": cycle.radius if self.turns else None,
+            },
+            "limits": [
+                {**plain(row), "unit": UNITS[row.name], "active": row.active if replay else None}
+                for row in self.limits.values()
+            ],
+            "bounds": list(self.bounds.values()),
+            "check": replay
+            and sweep
+            and {
+                "sweep_points": sweep.points,
+                "sweep_best": sweep.best_speed,
+                "sweep_gait": sweep.best_gait,
+                "gap": sweep.gap,
+                "sweep_error": sweep.error,
+                "replay_error": replay.error,
+                "replay_speed": replay.speed,
+                "limit_excess": replay.excess,
+            },
+            "driven": driven
+            and {
+                "effects": driven.driven.effects,
+                "beyond_optimiser": driven.beyond,
+                "left_out": driven.driven.left_out,
+                "speeds": driven.driven.speeds,
+                "speed_without": optimum.best and optimum.best.speed,
+            },
+            "solver": {
+                "starts": optimum.starts,
+                "iterations": optimum.iterations,
+                "intervals": optimum.intervals,
+                "distinct_optima": [
+                    {
+                        "speed": one.speed,
+                        "gait": self.told(one.gait),
+                        "inertia_ratio": self.ratio_of(one),
+                    }
+                    for one in optimum.optima
+                ],
+                "ties": len(optimum.ties),
+                "failures": optimum.failures,
+            },
+            "robot": robot_record(self.robot),
+            "loads": _loads(self),
+            "units": UNITS,
+        }
+
+    def document(self, figures: Sequence[doc.Figure] = ()) -> doc.Document:
+        """The report of a fastest gait."""
+        choice, solved = self.problem.inertia_ratio, self.gait is not None
+        chosen = "platform2.I" if choice and choice.by == "inertia" and solved else ""
+        good = self.status is Status.OPTIMAL
+        lead = " ".join(
+            [
+                *([] if self.climbed else ["Every check confirms it."]),
+                *self.remarks,
+                limited_by(self.limits.values(), self.bounds.values()) if self.replay else "",
+            ]
+        )
+        return doc.Document(
+            name=self.name,
+            kind="fastest gait",
+            title=self.headline or _TITLES[self.status],
+            lead=lead if good else self.message,
+            good=good,
+            sections=(
+                doc.Section("", (doc.Facts(tuple(_facts(self)), key=True),)),
+                self._lead(),
+                doc.Section(
+                    "Checks", (doc.checks((one.passed, one.sentence) for one in self.checks),)
+                ),
+                doc.gallery(figures),
+                doc.Section(
+                    "Limits", (limits_table(self.limits.values(), reached=solved),), brief=solved
+                ),
+                doc.Section("Decisions and their bounds", (bounds_table(self.bounds.values()),)),
+                doc.Section("Local optima", (_optima(self),)),
+                doc.Section("Robot", (robot_table(self.robot, chosen),), brief=False),
+                doc.Section("Solver", (_solver(self),), brief=solved),
+            ),
+            footer=doc.versions(self.sha256),
+        )
+
+    def _lead(self) -> doc.Section:
+        """What comes before the checks."""
+        return doc.Section("", ())
+
+    def _tables(self) -> dict[str, str]:
+        """The cycle as CSV; nothing without a gait."""
+        if self.replay is None:
+            return {}
+        return {"trajectory.csv": trajectory_csv(one_period(self.replay.steady))}
+
 
 LARGEST_DRIVEN_ERROR = 0.01
 """Of the speed with all effects against the optimiser's, relative, where that has them too or
@@ -332,3 +463,113 @@ def _sweep_sentence(sweep: SweepCheck, shape: str) -> str:
         head + f"{-100 * sweep.gap:.2g} % faster than the optimum "
         f"(at most {100 * TOLERATED:g} % allowed)."
     )
+
+
+_TITLES = {
+    Status.OPTIMAL: "The robot does not move",
+    Status.INFEASIBLE: "No gait respects all limits",
+    Status.NOT_CONVERGED: "No confirmed optimum",
+}
+
+
+def _facts(result: FastestGait) -> Iterator[doc.Fact]:
+    if result.speed is None or result.gait is None or result.cycle is None:
+        return
+    yield speed_fact(result.speed)
+    if result.rebuilt and result.as_built is not None:
+        yield signed_fact("as built", result.as_built, "at best, with I2 unchanged")
+    yield from gait_facts(result.gait)
+    yield _ratio(result)
+    yield _cycle(result.cycle, turning=result.turns)
+
+
+def _ratio(result: FastestGait) -> doc.Fact:
+    """J20/J10, about which point, and how it is realised."""
+    choice, built = result.problem.inertia_ratio, result.problem.robot
+    about = choice.about if choice else "joint"
+    ratio = number(result.inertia_ratio or 0.0)
+    where = f"about {'the joint P' if about == 'joint' else 'the centres of mass'}"
+    if choice is None or not result.rebuilt:
+        return doc.Fact("J20/J10", ratio, f"{where}, the robot as it is")
+    means = ", by loads on platform 2" if choice.by == "loads" else ""
+    return doc.Fact(
+        "J20/J10",
+        ratio,
+        f"{where}{means}: I2 {built.platform2.I:.4g} -> {result.robot.platform2.I:.4g} kg m2 "
+        f"(ratio {number(inertia_ratio(built, about))} -> {ratio})",
+    )
+
+
+def _cycle(cycle: Cycle, *, turning: bool) -> doc.Fact:
+    """What one period does: a step along a line or round a circle."""
+    step = f"{1e3 * math.hypot(cycle.dx, cycle.dy):.1f} mm a period"
+    if not turning:
+        return doc.Fact("cycle", step, "straight")
+    return doc.Fact(
+        "cycle",
+        step,
+        f"round a circle of radius {with_unit(cycle.radius, 'm')}, "
+        f"turning {math.degrees(cycle.dpsi):+.3g} deg a period",
+    )
+
+
+def _optima(result: FastestGait) -> doc.Table:
+    """All local optima; nothing if there is one only."""
+    optimum = result.optimum
+    ties = {id(one) for one in optimum.ties}
+    rows = [
+        [
+            f"{1e3 * one.speed:+.2f} mm/s",
+            with_unit(told.amplitude, "rad"),
+            with_unit(told.period, "s"),
+            with_unit(told.offset, "rad"),
+            number(result.ratio_of(one)),
+            "the optimum" if one is optimum.best else "a tie" if id(one) in ties else "",
+        ]
+        for one, told in ((one, result.told(one.gait)) for one in optimum.optima)
+    ]
+    head = ["Speed", "Amplitude", "Period", "Offset", "J20/J10", "Remark"]
+    return doc.table(head, rows if len(rows) > 1 else [])
+
+
+def _solver(result: FastestGait) -> str:
+    optimum, guesses = result.optimum, ("initial guess", "initial guesses")
+    text = (
+        f"{counted(optimum.starts, *guesses)}, {counted(optimum.iterations, 'iteration')}, "
+        f"{optimum.intervals} intervals a period, "
+        f"{counted(len(optimum.optima), 'distinct optimum', 'distinct optima')}."
+    )
+    failed = len(optimum.failures)
+    return f"{text} {counted(failed, *guesses)} led to no optimum." if failed else text
+
+
+UNITS = {
+    "angle": "rad",
+    "rate": "rad/s",
+    "torque": "N m",
+    "singularity": "m",
+    "amplitude": "rad",
+    "period": "s",
+    "offset": "rad",
+    "inertia_ratio": "1",
+    "speed": "m/s",
+    "speed_as_built": "m/s, of the fastest gait of the robot with its inertia ratio unchanged",
+    "dx": "m",
+    "dy": "m",
+    "dpsi": "rad",
+    "radius": "m",
+    "shadow_price": "m/s of |speed| per SI unit by which the limit or bound is raised",
+    "gap": "(|speed| - |sweep_best|)/|speed|",
+    "sweep_error": "|speed by the sweep's model - speed|/|speed|",
+    "replay_error": "|replay speed - speed|/|speed|",
+    "limit_excess": "largest (value - limit)/limit over the replayed cycle",
+}
+
+
+def _loads(result: FastestGait) -> float | None:
+    """How many loads the robot carries, where loads realise the inertia ratio."""
+    choice, ratio = result.problem.inertia_ratio, result.inertia_ratio
+    if choice is None or choice.by != "loads" or ratio is None:
+        return None
+    count = load_count(result.problem.robot, ratio, choice.about, choice.loads)
+    return round(count) if choice.loads.whole else count

@@ -2,12 +2,26 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from pathlib import Path
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path, PurePath
+from typing import Any
 
-from rr_opt.documents.report import Progress, quiet
+import numpy as np
+
+from rr_opt.documents import document as doc
+from rr_opt.documents.archive import file_for_result, whole
+from rr_opt.documents.texts import captions
+from rr_opt.formatting import counted, number, with_unit
+from rr_opt.model.experiment import Flag, Recording
+from rr_opt.recordings.clock_fit import ClockFit
 from rr_opt.recordings.inspection import Inspection
-from rr_opt.results.result import Result
+from rr_opt.recordings.markers.pose import MarkerFit
+from rr_opt.recordings.servo_clock import Synchrony
+from rr_opt.recordings.time_axis import time_step
+from rr_opt.recordings.warnings import size_text
+from rr_opt.results.result import Progress, Result, quiet
 
 
 @dataclass(frozen=True, repr=False)
@@ -18,7 +32,11 @@ class InspectedRecordings(Result):
                 markers' fit and the clock against the command
     """
 
-    REPORT = "rr_opt.report.inspection"
+    FILE = "inspection.json"
+    DRAW = "rr_opt.results.figures.inspection.draw"
+    CAPTIONS = captions("inspection")
+    # They are in the page alone: there may be dozens.
+    SVGS = False
 
     name: str
     sha256: str
@@ -33,5 +51,275 @@ class InspectedRecordings(Result):
         netcdf: str | Path | None = None,
     ) -> list[Path]:
         """Write inspection.json and the page; netcdf: a file for the one recording."""
-        options = {"figures": figures, "progress": progress, "netcdf": netcdf}
-        return self.report.save(self, path, **options)
+        if netcdf is None:
+            return super().save(path, figures=figures, progress=progress)
+        file_for_result(Path(netcdf))
+        written = super().save(path, figures=figures, progress=progress)
+        return [*written, _netcdf(Path(netcdf), self.recordings[0])]
+
+    def drawn(self, progress: Progress = quiet) -> tuple[doc.Figure, ...]:
+        """Of several recordings each name begins with the file's."""
+        several, figures = len(self.recordings) > 1, []
+        for place, one in enumerate(self.recordings, 1):
+            progress(f"figures {place} of {len(self.recordings)}" if several else "figures")
+            for figure in doc.captioned(self.CAPTIONS, self._draw(one)):
+                own = {
+                    "name": f"{stem_of(one)}-{figure.name}",
+                    "title": f"{one.name}: {figure.title}",
+                }
+                figures.append(replace(figure, **own) if several else figure)
+        return tuple(figures)
+
+    def _record(self) -> dict[str, Any]:
+        """The content of inspection.json."""
+        return {"name": self.name, "recordings": [_recording(one) for one in self.recordings]}
+
+    def document(self, figures: Sequence[doc.Figure] = ()) -> doc.Document:
+        """Every recording with its warnings and figures."""
+        found = self.recordings
+        several, count = len(found) > 1, sum(len(one.doubts) for one in found)
+        what = f"{len(found)} recordings" if several else "A recording"
+        sections = [doc.Section("Recordings", (_table(found),), brief=False)] if several else []
+        for one in found:
+            doubts = doc.warnings(one.doubts) if one.doubts else "No warnings."
+            own = (f for f in figures if not several or f.name.rpartition("-")[0] == stem_of(one))
+            sections.append(doc.Section(one.name, (doc.Facts(tuple(_facts(one))), doubts)))
+            sections.append(doc.gallery(own))
+        return doc.Document(
+            name=self.name,
+            kind="recordings",
+            title=f"{what} with {counted(count, 'warning')}"
+            if count
+            else f"{what} without warnings",
+            lead="Read each warning before using the recording. Nothing was filled in or dropped."
+            if count
+            else "Nothing looks wrong in the recordings.",
+            good=not count,
+            sections=tuple(sections),
+            footer=doc.versions(self.sha256),
+        )
+
+
+def stem_of(one: Inspection) -> str:
+    """The name of a recording's file, without its ending."""
+    return PurePath(one.name).stem
+
+
+def _facts(found: Inspection) -> Iterator[doc.Fact]:
+    recording = found.recording
+    t = recording.t
+    yield doc.Fact("format", str(recording.source.get("format", "recording")))
+    length, start = with_unit(float(t[-1] - t[0]), "s"), with_unit(float(t[0]), "s")
+    rate = with_unit(1 / time_step(t), "Hz")
+    yield doc.Fact("length", f"{length} from t = {start}", f"{len(recording)} samples at {rate}")
+    yield doc.Fact("path", _path_text(found))
+    yield doc.Fact("phi", _phi_text(found))
+    yield doc.Fact("noise", ", ".join(_noise_text(found, name) for name in recording.channels))
+    sigma = {name: float(np.median(one)) for name, one in recording.sigma.items()}
+    yield doc.Fact("sigma used", ", ".join(f"{n} {size_text(n, s)}" for n, s in sigma.items()))
+    yield doc.Fact("flagged", _flagged_text(found))
+    if found.markers is not None:
+        fit = found.markers
+        yield doc.Fact(
+            "markers",
+            f"{len(fit.bodies.labels)} on two rigid platforms, with {1e3 * fit.noise:.3g} mm of "
+            "noise per coordinate",
+        )
+    if found.command is not None:
+        fit = found.command
+        yield doc.Fact(
+            "command",
+            f"phi's clock {1e3 * fit.offset:+.2f} +- {1.96e3 * fit.sigma[0]:.2g} ms, "
+            f"scale {fit.scale:.4f} +- {1.96 * fit.sigma[2]:.1g}, "
+            f"{1e3 * fit.bias:+.2f} mrad; residual {1e3 * fit.residual:.3g} mrad",
+        )
+    if found.synchrony is not None and found.synchrony.shift is not None:
+        shift = found.synchrony.shift
+        yield doc.Fact(
+            "servo log",
+            f"the command's clock is {1e3 * shift.offset:+.3f} +- {1.96e3 * shift.sigma[0]:.2g} ms "
+            "ahead of the recording's: "
+            f"{'put on the command clock' if shift.applied else 'not shifted'}",
+        )
+
+
+def _path_text(found: Inspection) -> str:
+    """How far, how fast, and how much it turned."""
+    path = travelled(found.recording)
+    if path["net"] is None:
+        return "no data"
+    turned = "" if path["turn"] is None else f", turned by {math.degrees(path['turn']):+.1f} deg"
+    speed = f", {1e3 * path['speed']:.1f} mm/s" if path["speed"] is not None else ""
+    return f"{with_unit(path['net'], 'm')} from start to end{speed}{turned}"
+
+
+def _phi_text(found: Inspection) -> str:
+    phi = found.recording.data("phi")
+    if not np.isfinite(phi).any():
+        return "no data"
+    return f"{number(float(np.nanmin(phi)))} to {number(float(np.nanmax(phi)))} rad"
+
+
+def _noise_text(found: Inspection, channel: str) -> str:
+    noise = found.cleaned.noise[channel]
+    if not math.isfinite(noise.sigma):
+        return f"{channel} ?"
+    return f"{channel} {size_text(channel, noise.sigma)}"
+
+
+def _flagged_text(found: Inspection) -> str:
+    """How many samples of which channels are not taken as data, and why."""
+    recording = found.recording
+    texts = []
+    for channel in recording.channels:
+        flags = recording.flags[channel]
+        counts = [
+            f"{int((flags & flag > 0).sum())} {str(flag.name).lower().replace('_', ' ')}"
+            for flag in Flag
+            if (flags & flag).any()
+        ]
+        if counts:
+            texts.append(f"{channel}: {', '.join(counts)}")
+    return "; ".join(texts) or "nothing"
+
+
+def _table(found: Sequence[Inspection]) -> doc.Table:
+    head = ["Recording", "Samples", "Length", "Noise of x", "Noise of phi", "Warnings"]
+    rows = []
+    for one in found:
+        noise, t, count = one.cleaned.noise, one.recording.t, len(one.doubts)
+        rows.append(
+            [
+                one.name,
+                str(len(t)),
+                f"{t[-1] - t[0]:.4g} s",
+                size_text("x", noise["x"].sigma),
+                size_text("phi", noise["phi"].sigma),
+                doc.Badge(str(count), "warn") if count else doc.Badge("none", "good"),
+            ]
+        )
+    return doc.table(head, rows)
+
+
+def _netcdf(path: Path, found: Inspection) -> Path:
+    """Write the cleaned recording, whole. Raises InputError without the extra."""
+    from rr_opt.recordings.readers.netcdf import write_netcdf
+
+    with whole(path) as temporary:
+        write_netcdf(temporary, replace(found.recording, doubts=found.doubts), found.gait)
+    return path
+
+
+def travelled(recording: Recording) -> dict[str, float | None]:
+    """How far and how fast the joint went: net, m, m/s, and the turn of platform 1, rad."""
+    x, y, psi = (recording.data(channel) for channel in ("x", "y", "psi"))
+    both = np.flatnonzero(np.isfinite(x) & np.isfinite(y))
+    headed = np.flatnonzero(np.isfinite(psi))
+    if len(both) < 2:
+        return {"net": None, "speed": None, "turn": None}
+    first, last = both[0], both[-1]
+    net = math.hypot(x[last] - x[first], y[last] - y[first])
+    time = float(recording.t[last] - recording.t[first])
+    turn = float(psi[headed[-1]] - psi[headed[0]]) if len(headed) else None
+    return {"net": net, "speed": net / time if time > 0 else None, "turn": turn}
+
+
+def _recording(found: Inspection) -> dict[str, Any]:
+    recording, cleaned = found.recording, found.cleaned
+    t = recording.t
+    jumps = {
+        channel: [{"t": t[jump.row], "size": jump.size} for jump in several]
+        for channel, several in cleaned.jumps.items()
+        if several
+    }
+    return {
+        "file": found.name,
+        "source": dict(recording.source),
+        "samples": len(recording),
+        "rate": 1 / time_step(t),
+        "start": t[0],
+        "seconds": t[-1] - t[0],
+        "channels": {one: _channel(found, one) for one in recording.channels},
+        "gaps": cleaned.gaps,
+        "jumps": jumps,
+        "path": travelled(recording),
+        "gait": found.gait,
+        "command": _clock(found.command),
+        "servo_log": _servo_log(found.synchrony),
+        "markers": _markers(found.markers),
+        "doubts": list(found.doubts),
+    }
+
+
+def _channel(found: Inspection, channel: str) -> dict[str, Any]:
+    recording, noise = found.recording, found.cleaned.noise[channel]
+    flags, data = recording.flags[channel], recording.data(channel)
+    some = np.isfinite(data).any()
+    return {
+        "low": np.nanmin(data) if some else None,
+        "high": np.nanmax(data) if some else None,
+        "flagged": {flag.name.lower(): (flags & flag > 0).sum() for flag in Flag if flag.name},
+        "sigma": np.median(recording.sigma[channel]),
+        "noise": {
+            "sigma": noise.sigma,
+            "sigma_error": noise.error,
+            "at_half_frequency": noise.slower,
+            "p_white": noise.p_white,
+        },
+    }
+
+
+def _clock(fit: ClockFit | None) -> dict[str, Any] | None:
+    return fit and {
+        **{
+            name: {"value": getattr(fit, name), "ci95": fit.interval(i)}
+            for i, name in enumerate(("offset", "drift", "scale", "bias"))
+        },
+        "t_mid": fit.t_mid,
+        "residual_rms": fit.residual,
+    }
+
+
+def _servo_log(found: Synchrony | None) -> dict[str, Any] | None:
+    """phi against the log, the log's goal against the gait, and what the two make together."""
+    if found is None:
+        return None
+    shift = found.shift
+    return {
+        "phi": _clock(found.log),
+        "goal": _clock(found.goal),
+        "shift": shift
+        and {
+            "offset": {"value": shift.offset, "ci95": shift.interval()},
+            "drift": {"value": shift.drift, "ci95": shift.interval(1)},
+            "t_mid": shift.t_mid,
+            "applied": shift.applied,
+        },
+    }
+
+
+def _markers(fit: MarkerFit | None) -> dict[str, Any] | None:
+    return fit and {
+        "noise": fit.noise,
+        "by_marker": [
+            {
+                "name": name,
+                "platform": fit.bodies.platform[i] + 1,
+                "place": fit.bodies.places[i],
+                "moved": fit.shift[i],
+                "residual_rms": fit.whose[i],
+                "left_out": fit.ghosts.out[:, i].sum(),
+            }
+            for i, name in enumerate(fit.bodies.labels)
+        ],
+        "swaps": [
+            {
+                "names": [fit.bodies.labels[i] for i in swap.members],
+                "frames": len(swap.frames),
+                "first": fit.recording.t[swap.frames[0]],
+                "last": fit.recording.t[swap.frames[-1]],
+            }
+            for swap in fit.swaps
+        ],
+        "frames_that_do_not_fit": len(fit.ghosts.lost),
+    }

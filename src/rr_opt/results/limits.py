@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Literal
 
 from rr_opt.design.decisions import ballast_interval
 from rr_opt.design.maximize_speed import Optimum
+from rr_opt.documents import document as doc
+from rr_opt.formatting import QUANTITIES, number, price_text, with_unit
+from rr_opt.messages import listed
 from rr_opt.model.gait import Gait
 from rr_opt.model.problem import Interval, Problem, RatioChoice
 
@@ -133,3 +136,60 @@ def _share_per_ratio(problem: Problem, choice: RatioChoice) -> float:
     if span.fixed:
         return 0.0
     return (amount(high) - amount(high * (1 - 1e-6))) / (high * 1e-6) / (span.high - span.low)
+
+
+def limited_by(limits: Iterable[LimitRow], bounds: Iterable[BoundRow]) -> str:
+    """`It is limited by the rate limit and the lower bound of the period.`"""
+    active = [
+        "the singularity margin" if row.name == "singularity" else f"the {row.name} limit"
+        for row in limits
+        if row.active
+    ]
+    active += [
+        f"the {'lower' if row.active == 'low' else 'upper'} bound of the "
+        f"{QUANTITIES[row.name].words}"
+        for row in bounds
+        if row.active in ("low", "high")
+    ]
+    if not active:
+        return "No limit or bound is active: it is an interior optimum."
+    return f"It is limited by {listed(active)}."
+
+
+def limits_table(rows: Iterable[LimitRow], *, reached: bool) -> doc.Table:
+    """Each limit: what is reached, what is allowed, and its shadow price."""
+    kinds = [(QUANTITIES[row.name], row) for row in rows]
+    if not reached:
+        return doc.table(["Limit", "Allowed"], [[k.words, k.both(row.limit)] for k, row in kinds])
+    return doc.table(
+        ["Limit", "Reached", "Allowed", "State", "Shadow price"],
+        [
+            [
+                kind.words,
+                kind.both(row.value),
+                kind.both(row.limit),
+                doc.Badge("active", "good") if row.active else doc.Badge("not active"),
+                price_text(row.name, row.shadow_price) if row.active else None,
+            ]
+            for kind, row in kinds
+        ],
+    )
+
+
+def bounds_table(bounds: Iterable[BoundRow]) -> doc.Table:
+    """Each decision, its range, and the shadow price of its active bound."""
+    states = {
+        "low": doc.Badge("at lower bound", "good"),
+        "high": doc.Badge("at upper bound", "good"),
+        "fixed": doc.Badge("fixed"),
+        None: doc.Badge("inside"),
+    }
+    rows = []
+    for row in bounds:
+        kind, fixed = QUANTITIES[row.name], row.active == "fixed"
+        span = "fixed" if fixed else f"{number(row.low)} to {with_unit(row.high, kind.unit)}"
+        price = None
+        if row.active in ("low", "high") and row.shadow_price is not None:
+            price = price_text(row.name, row.shadow_price)
+        rows.append([kind.words, kind.both(row.value), span, states[row.active], price])
+    return doc.table(["Decision", "Value", "Range", "State", "Shadow price"], rows)

@@ -1,4 +1,4 @@
-"""The speed that the nominal model would cost.
+"""The corrected robot of a diagnosis, and the speed that the nominal model would cost.
 
 The nominal robot's best gait is driven, in steady motion, by the corrected robot and compared with
 that robot's own best gait. Both are optimised within the limits of the robot's servo and the bounds
@@ -8,21 +8,86 @@ of the shipped problem, with the robot's inertias as they are.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from types import MappingProxyType
+from typing import Any
 
-from rr_opt.effects import CATALOGUE
+from rr_opt.effects import CATALOGUE, OF_ROBOTS
 from rr_opt.effects.effect import Port
 from rr_opt.files.problem_file import read_problem
+from rr_opt.formatting import number, with_unit
 from rr_opt.messages import listed
 from rr_opt.model.experiment import Experiment
 from rr_opt.model.gait import Gait
+from rr_opt.model.parameters import PARAMETERS, with_parameters
 from rr_opt.model.problem import Limits, Problem
-from rr_opt.model.robot import Robot
+from rr_opt.model.robot import EffectUse, Robot, Servo
 from rr_opt.motion.dynamics import ignored_in_steady_cycle
 from rr_opt.motion.servo import servo_made
 from rr_opt.motion.steady_cycle import steady_cycle
 from rr_opt.outcome import RollerRacerError
+from rr_opt.sysid.diagnosis import Diagnosis
 from rr_opt.verify.sweep import TOLERATED, check_optimum
+
+_DIGITS = 7
+"""Of a fitted value that are written: more than any recording determines."""
+
+
+def corrected_robot(experiment: Experiment, found: Diagnosis) -> Robot:
+    """The nominal robot with the re-estimated values, the accepted effects, and where from."""
+    robot = experiment.robot
+    fitted = {name: _rounded(value) for name, value in found.values.items()}
+    return replace(
+        with_parameters(robot, {name: v for name, v in fitted.items() if name in PARAMETERS}),
+        servo=_servo(robot.servo, fitted),
+        physics=_physics(robot, fitted),
+        provenance=MappingProxyType({**robot.provenance, **_provenance(experiment, found)}),
+        name=f"{robot.name or experiment.name}, corrected",
+    )
+
+
+def _servo(servo: Servo, fitted: Mapping[str, float]) -> Servo:
+    """The servo, no faster than it was seen to be: gaits are then sought that it can make."""
+    seen = fitted.get("servo_rate_limit.rate_limit", math.inf)
+    return replace(servo, rate_limit=min(servo.rate_limit, seen))
+
+
+def _physics(robot: Robot, fitted: Mapping[str, float]) -> tuple[EffectUse, ...]:
+    """The effects that the robot had, and those that were fitted."""
+    uses = {use.name: dict(use.values) for use in robot.physics}
+    for name, value in fitted.items():
+        effect, dot, parameter = name.partition(".")
+        if dot:
+            uses.setdefault(effect, {})[parameter] = _within(effect, parameter, value)
+    return tuple(EffectUse(name, MappingProxyType(values)) for name, values in uses.items())
+
+
+def _within(effect: str, parameter: str, value: float) -> float:
+    """The value inside its bounds, which rounding may have left."""
+    low, high = next(q.bounds for q in OF_ROBOTS[effect].parameters if q.name == parameter)
+    return min(max(value, low), high)
+
+
+def _provenance(experiment: Experiment, found: Diagnosis) -> dict[str, str]:
+    used = sum(run.use == "fit" for run in experiment.runs)
+    source = f"{used} recording{'s' if used != 1 else ''} of {experiment.name or 'an experiment'}"
+    origins = {}
+    for name, one in found.parameters.items():
+        interval = f"{one.low:.4g} to {one.high:.4g} {one.unit}".removesuffix(" dimensionless")
+        origins[_key(name)] = f"fitted: {interval} (95 %), {source}"
+    return origins
+
+
+def _key(name: str) -> str:
+    """Where a robot file keeps a quantity: `kappa1` under `platform1.kappa`."""
+    if name in PARAMETERS:
+        return ".".join(PARAMETERS[name].key)
+    return f"physics.{name}" if "." in name else name
+
+
+def _rounded(value: float) -> float:
+    return float(f"{value:.{_DIGITS}g}")
 
 
 @dataclass(frozen=True)
@@ -103,3 +168,76 @@ def _problem(robot: Robot) -> Problem:
         servo.angle_limit, servo.rate_limit, servo.torque_limit, shipped.limits.singularity
     )
     return replace(shipped, robot=robot, limits=limits, inertia_ratio=None)
+
+
+_NONE = 5e-4
+"""A smaller share of the speed is not reported as a loss."""
+
+
+def share_lost(one: Loss) -> str:
+    """`12 %`; `less than 0.05 %`; `more than all` where the robot goes the other way."""
+    if one.share > 1:
+        return "more than all"
+    if one.share < _NONE:
+        return f"less than {100 * _NONE:g} %"
+    return f"{number(100 * one.share, 2)} %"
+
+
+def pace(speed: float) -> str:
+    """`298.3 mm/s forward`."""
+    return f"{1e3 * abs(speed):.1f} mm/s {'forward' if speed > 0 else 'backward'}"
+
+
+def loss_sentences(one: Loss | LossUnknown | None) -> str:
+    """A few sentences; nothing where the robot as believed is right."""
+    if one is None:
+        return ""
+    if isinstance(one, LossUnknown):
+        return one.sentence
+    text = (
+        f"The best gait of the robot as believed ({gait_words(one.believed)}) promises "
+        f"{pace(one.promised)}; the robot as found reaches {pace(one.reached)} with it. Its own "
+        f"best gait ({gait_words(one.best)}) reaches {pace(one.speed)}. "
+        f"Speed lost through the wrong model: {share_lost(one)}"
+        f"{', as it drives the robot the other way' if one.share > 1 else ''}."
+    )
+    if one.unseen:
+        text += " These gaits demand more than any recorded one: this is a prediction."
+    return text
+
+
+def loss_line(one: Loss | LossUnknown) -> str:
+    """The same in a line."""
+    if isinstance(one, LossUnknown):
+        return one.sentence
+    return (
+        f"{share_lost(one)}: the best gait as believed promises {pace(one.promised)} and reaches "
+        f"{pace(one.reached)}; the best as found reaches {pace(one.speed)}"
+    )
+
+
+def gait_words(gait: Gait) -> str:
+    """`1.51 rad, 1.73 s`, and an offset if there is one."""
+    text = f"{with_unit(gait.amplitude, 'rad', 3)}, {with_unit(gait.period, 's', 3)}"
+    return f"{text}, offset {with_unit(gait.offset, 'rad', 3)}" if gait.offset else text
+
+
+def loss_record(one: Loss | LossUnknown | None) -> dict[str, Any] | None:
+    """diagnosis.json's `loss`: null where the robot as believed is right; SI."""
+    if one is None:
+        return None
+    if isinstance(one, LossUnknown):
+        return {"not_told": one.sentence}
+    return {
+        "gait_as_believed": _gait(one.believed),
+        "speed_promised": one.promised,
+        "speed_reached": one.reached,
+        "gait_as_found": _gait(one.best),
+        "speed_as_found": one.speed,
+        "share_lost": one.share,
+        "beyond_what_was_recorded": one.unseen,
+    }
+
+
+def _gait(gait: Gait) -> dict[str, float]:
+    return {name: getattr(gait, name) for name in ("amplitude", "period", "offset")}

@@ -1,25 +1,37 @@
-"""What driving a given gait gives: a simulated motion, and the circle that it goes round."""
+"""What driving a gait gives: a simulated motion and its files, and the circle of the gait."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, fields
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Literal
 
-from rr_opt.documents.report import Progress, quiet
-from rr_opt.formatting import QUANTITIES
+from rr_opt.documents.archive import (
+    folder_for_results,
+    netcdf_writer,
+    remove,
+    write_dataset,
+    write_text,
+)
+from rr_opt.documents.document import Document, Fact, Figure, csv_text, facts_alone
+from rr_opt.documents.texts import captions
+from rr_opt.formatting import QUANTITIES, number, side_text, speed_text, with_unit
 from rr_opt.model.gait import Gait
 from rr_opt.model.problem import LARGEST_EXCESS
 from rr_opt.model.robot import Robot
 from rr_opt.motion.circle import Circle, Transient
 from rr_opt.motion.rollout import Measured, Trajectory
 from rr_opt.motion.servo import servo_made
-from rr_opt.results.ignored import ignored_effects
-from rr_opt.results.result import Result
+from rr_opt.results.gait import gait_facts, ignored_effects, speed_fact
+from rr_opt.results.result import Progress, Result, quiet
+from rr_opt.version import __version__
 
 Format = Literal["csv", "netcdf"]
+
+
 Film = Literal["gif", "mp4"]
 
 
@@ -42,7 +54,7 @@ class GaitResult(Result):
     @property
     def warnings(self) -> tuple[str, ...]:
         """Which effects of the robot the motion ignores, and which servo limits it exceeds."""
-        return (*ignored_effects(self.robot, told=True), *self.beyond_servo)
+        return (*ignored_effects(self.robot, commanded=True), *self.beyond_servo)
 
     @property
     def beyond_servo(self) -> tuple[str, ...]:
@@ -59,7 +71,8 @@ class SimulatedMotion(GaitResult):
     measured    speed and peak torque over the last period
     """
 
-    REPORT = "rr_opt.report.motion"
+    DRAW = "rr_opt.results.figures.motion.draw_motion"
+    CAPTIONS = captions("motion")
 
     start: str
     trajectory: Trajectory
@@ -99,15 +112,158 @@ class SimulatedMotion(GaitResult):
 
         Returns the files. Raises InputError for a file that cannot be made here.
         """
-        options = {"figures": figures, "progress": progress, "format": format, "film": film}
-        return self.report.save(self, path, **options)
+        check_files(format, film)
+        folder = folder_for_results(Path(path))
+        films = [f"motion.{kind}" for kind in ("gif", "mp4")]
+        remove(folder, ("trajectory.csv", "trajectory.nc", "motion.svg", *films))
+        if format == "csv":
+            written = [write_text(folder / "trajectory.csv", trajectory_csv(self.trajectory))]
+        else:
+            written = [write_netcdf(folder / "trajectory.nc", self.trajectory)]
+        for one in self.drawn(progress):
+            written.append(write_text(folder / f"{one.name}.svg", one.svg))
+        if film:
+            from rr_opt.results.figures.film import write_film
+
+            place = folder / f"motion.{film}"
+            written.append(write_film(place, self.robot, self.trajectory, film, progress))
+        return written
+
+    def document(self, figures: Sequence[Figure] = ()) -> Document:
+        """Gait, distance, speed and torque, for a terminal."""
+        return facts_alone(_facts(self))
+
+    def _record(self) -> dict[str, Any]:
+        """Distance, turn, speed and torque, SI."""
+        driven, measured = self.trajectory, self.measured
+        return {
+            "gait": self.gait,
+            "status": self.source_status,
+            "start": self.start,
+            "seconds": driven.t[-1],
+            "distance": math.hypot(driven.x[-1] - driven.x[0], driven.y[-1] - driven.y[0]),
+            "turned": driven.psi[-1] - driven.psi[0],
+            "last_speed": measured.mean_v,
+            "last_circle_speed": measured.speed,
+            "peak_torque": measured.peak_torque,
+        }
 
 
 @dataclass(frozen=True, repr=False)
 class DrivenCircle(GaitResult):
     """The circle that a gait drives, and how a start from rest converges to it."""
 
-    REPORT = "rr_opt.report.circle"
-
     circle: Circle
     transient: Transient
+
+    def _record(self) -> dict[str, Any]:
+        """Radius, centre, speed and the transient, SI; null for what a straight gait lacks."""
+        circle, start = self.circle, self.transient
+        return {
+            "gait": self.gait,
+            "speed": circle.speed,
+            "curvature": circle.curvature,
+            "radius": circle.radius,
+            "centre": circle.centre,
+            "heading_per_period": circle.heading,
+            "yaw_rate": circle.yaw_rate,
+            "time_for_full_turn": circle.time_round,
+            "periods_for_full_turn": circle.periods_round,
+            "from_rest": {
+                "time_constant": start.constant,
+                "factor_per_period": start.factor,
+                "distance_lost": start.lost,
+                "delay": start.delay,
+            },
+        }
+
+    def document(self, figures: Sequence[Figure] = ()) -> Document:
+        """The circle and the start from rest, for a terminal."""
+        return facts_alone(_circle_facts(self))
+
+
+_COLUMNS = {
+    "t": ("s", "time"),
+    "x": ("m", "joint P along the floor's x axis"),
+    "y": ("m", "joint P along the floor's y axis"),
+    "psi": ("rad", "heading of platform 1"),
+    "phi": ("rad", "angle of platform 2 relative to platform 1"),
+    "v": ("m/s", "speed of axle 1 along platform 1"),
+    "torque": ("N m", "servo torque on platform 2"),
+}
+
+
+def trajectory_csv(trajectory: Trajectory) -> str:
+    """t,x,y,psi,phi,v,torque in SI units under a header row."""
+    names = [field.name for field in fields(Trajectory)]
+    columns = (getattr(trajectory, name).tolist() for name in names)
+    return csv_text(names, zip(*columns, strict=True))
+
+
+def write_netcdf(path: Path, trajectory: Trajectory) -> Path:
+    """Write the same as netCDF variables over t, with their units and meanings."""
+    data = netcdf_writer().Dataset(
+        {name: ("t", getattr(trajectory, name)) for name in _COLUMNS if name != "t"},
+        coords={"t": trajectory.t},
+        attrs={"title": "Roller Racer trajectory", "source": f"rr-opt {__version__}"},
+    )
+    for name, (unit, meaning) in _COLUMNS.items():
+        data[name].attrs.update(units=unit, long_name=meaning)
+    return write_dataset(path, data)
+
+
+def _facts(motion: SimulatedMotion) -> Iterator[Fact]:
+    data, measured = motion._record(), motion.measured
+    begun = "rest" if motion.start == "rest" else "the steady state"
+    degrees = number(math.degrees(data["turned"]))
+    mean = f"{speed_text(measured.mean_v)}, mean v of axle 1"
+    yield from gait_facts(motion.gait)
+    yield Fact("time", f"{number(data['seconds'])} s from {begun}")
+    yield Fact("moved", f"{number(data['distance'])} m, turned by {degrees} deg")
+    if measured.speed is None:
+        yield Fact("speed", f"{mean}, less than a period")
+    else:
+        circle = f"{speed_text(measured.speed)}, along the mean circle of the last period"
+        yield Fact("speed", circle)
+        yield Fact("", f"{mean} over the last period")
+    yield Fact("torque", f"{number(measured.peak_torque)} N m at most")
+
+
+def check_files(format: Format, film: Film | None) -> None:
+    """Raise InputError, before anything is computed, for a file that cannot be made here."""
+    if format == "netcdf":
+        netcdf_writer()
+    if film:
+        from rr_opt.results.figures.film import check_film
+
+        check_film(film)
+
+
+def _circle_facts(driven: DrivenCircle) -> Iterator[Fact]:
+    circle, start = driven.circle, driven.transient
+    yield from gait_facts(driven.gait)
+    yield speed_fact(circle.speed)
+    if circle.centre is None:
+        yield Fact("circle", f"straight: it turns by {circle.heading:.1e} rad a period")
+    else:
+        x, y = (with_unit(value, "m") for value in circle.centre)
+        degrees, rate = (number(math.degrees(a)) for a in (circle.heading, circle.yaw_rate))
+        radius, side = with_unit(circle.radius, "m"), side_text(circle.heading)
+        periods = f"{number(circle.periods_round, 6)} periods"
+        at = f"x = {x}, y = {y} in platform 1's axes at phase 0, P at the origin"
+        yield Fact("circle", f"radius {radius}", f"to the {side}")
+        yield Fact("curvature", f"{number(circle.curvature)} 1/m")
+        yield Fact("centre", at)
+        yield Fact("heading", f"{degrees} deg a period", f"{rate} deg/s")
+        yield Fact("full turn", with_unit(circle.time_round, "s"), periods)
+    yield Fact(
+        "from rest",
+        f"the deviation falls to 1/e in {with_unit(start.constant, 's')}, by "
+        f"{number(100 * (1 - start.factor), 3)} % a period",
+    )
+    ahead = "behind" if start.lost >= 0 else "ahead of"
+    yield Fact(
+        "lost",
+        f"{with_unit(abs(start.lost), 'm')} {ahead} a robot that is steady from the start, "
+        f"{with_unit(abs(start.delay), 's')}",
+    )

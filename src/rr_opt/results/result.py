@@ -2,16 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
 from typing import Any, ClassVar
 
-from rr_opt.documents.archive import write_text
-from rr_opt.documents.document import Document, Figure
-from rr_opt.documents.report import Progress, Report, quiet
+from rr_opt.documents.archive import folder_for_results, remove, write_json, write_text
+from rr_opt.documents.document import Captions, Document, Figure, captioned
+from rr_opt.documents.rendering import PAGE, markdown, page, terminal
+from rr_opt.files.record import plain
 from rr_opt.outcome import Status
+from rr_opt.version import __version__
+
+Progress = Callable[[str], None]
+"""Called with every step, such as `start 3 of 8`."""
+
+
+def quiet(_: str) -> None:
+    """Progress that is not shown."""
 
 
 class Svg(str):
@@ -57,14 +66,15 @@ class Result:
     warnings  sentences on what the result leaves out, or what to beware of
     """
 
-    REPORT: ClassVar[str] = "rr_opt.documents.report"
-    """The module whose REPORT shows this kind of result. It knows the result, and not the other way
-    round, so it is found by its name when the result is shown."""
-
-    @property
-    def report(self) -> Report:
-        """How this kind of result is shown."""
-        return import_module(self.REPORT).REPORT
+    # What a kind of result overrides, if it has it: the name of its record's file, of the report as
+    # Markdown, and of all other files; what draws its figures, their captions, and whether they are
+    # files too, beside the page.
+    FILE: ClassVar[str] = ""
+    MARKDOWN: ClassVar[str] = ""
+    OTHERS: ClassVar[tuple[str, ...]] = ()
+    DRAW: ClassVar[str] = ""
+    CAPTIONS: ClassVar[Captions] = {}
+    SVGS: ClassVar[bool] = True
 
     @property
     def status(self) -> Status:
@@ -88,19 +98,44 @@ class Result:
 
     def record(self, files: Sequence[Path] = ()) -> dict[str, Any]:
         """The result as plain data, SI: the content of its JSON file."""
-        return self.report.stamped(self)
+        sha256 = getattr(self, "sha256", "")
+        stamp = {"version": __version__, "input_sha256": sha256} if sha256 else {}
+        return plain(self._record()) | stamp
+
+    def _record(self) -> dict[str, Any]:
+        return {}
 
     def document(self, figures: Sequence[Figure] = ()) -> Document:
         """The result as a report, from which the page and the text are made."""
-        return self.report.document(self, figures)
+        return Document("", "", "", "", ())
+
+    def _page(self, document: Document) -> Document:
+        """What the page shows, if it is not the document itself."""
+        return document
+
+    def _tables(self) -> Mapping[str, str]:
+        """Text files beside the record, by name."""
+        return {}
 
     def summary(self, files: Sequence[Path] = ()) -> str:
         """The result as text, with the names of its files."""
-        return self.report.text(self, files)
+        return terminal(self.document(), files)
+
+    def _draw(self, what: Any) -> Mapping[str, Any]:
+        """SVG texts by name; matplotlib is loaded only now."""
+        module, _, function = self.DRAW.rpartition(".")
+        return getattr(import_module(module), function)(what) if module else {}
+
+    def drawn(self, progress: Progress = quiet) -> tuple[Figure, ...]:
+        """The figures with their captions."""
+        if not self.DRAW:
+            return ()
+        progress("figures")
+        return captioned(self.CAPTIONS, self._draw(self))
 
     def plot(self) -> Plots:
         """The figures; empty if there is nothing to draw."""
-        return Plots({figure.name: Svg(figure.svg) for figure in self.report.drawn(self)})
+        return Plots({figure.name: Svg(figure.svg) for figure in self.drawn()})
 
     def save(
         self, path: str | Path, *, figures: bool = True, progress: Progress = quiet
@@ -110,7 +145,19 @@ class Result:
         Files that an earlier result left there under the same names are replaced. Raises
         InputError if the folder cannot be written to.
         """
-        return self.report.save(self, path, figures=figures, progress=progress)
+        folder = folder_for_results(Path(path))
+        svgs = (f"{name}.svg" for name in self.CAPTIONS)
+        remove(folder, filter(None, (PAGE, self.FILE, self.MARKDOWN, *self.OTHERS, *svgs)))
+        document = self.document(self.drawn(progress) if figures else ())
+        written = [write_json(folder / self.FILE, self.record())]
+        if self.MARKDOWN:
+            written.append(write_text(folder / self.MARKDOWN, markdown(document)))
+        written += [write_text(folder / name, text) for name, text in self._tables().items()]
+        if not figures:
+            return written
+        drawn = document.figures if self.SVGS else ()
+        svg = [write_text(folder / f"{one.name}.svg", one.svg) for one in drawn]
+        return [write_text(folder / PAGE, page(self._page(document))), *written, *svg]
 
     def __str__(self) -> str:
         return self.summary()

@@ -1,9 +1,9 @@
-"""A gait as set points for a controller, and their file."""
+"""A gait as set points for a controller, their file, and what they cost in speed."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
@@ -11,15 +11,17 @@ from typing import Any, Literal
 import numpy as np
 
 from rr_opt.documents.archive import file_for_result, write_text
-from rr_opt.documents.document import csv_text
-from rr_opt.documents.report import Progress, quiet
-from rr_opt.formatting import QUANTITIES
+from rr_opt.documents.document import Document, Fact, Figure, csv_text, facts_alone
+from rr_opt.formatting import QUANTITIES, number, speed_text, with_unit
 from rr_opt.model.problem import LARGEST_EXCESS
-from rr_opt.motion.setpoints import CENTRE, Cost, SetPoints, interpolated
+from rr_opt.motion.setpoints import CENTRE, COUNT, Cost, SetPoints, interpolated
+from rr_opt.results.gait import gait_facts
 from rr_opt.results.motion import GaitResult
+from rr_opt.results.result import Progress, quiet
 from rr_opt.version import __version__
 
 Format = Literal["csv", "c-header", "servo"]
+
 
 ENDINGS: dict[Format, str] = {"csv": "-angles.csv", "c-header": ".h", "servo": "-counts.csv"}
 """What the name of a file ends with, unless the user gives another name."""
@@ -28,8 +30,6 @@ ENDINGS: dict[Format, str] = {"csv": "-angles.csv", "c-header": ".h", "servo": "
 @dataclass(frozen=True, repr=False)
 class ExportedGait(GaitResult):
     """A gait as set points: `points` has them as arrays, `cost` what they lose in speed."""
-
-    REPORT = "rr_opt.report.setpoints"
 
     points: SetPoints
     cost: Cost
@@ -62,6 +62,28 @@ class ExportedGait(GaitResult):
     ) -> list[Path]:
         """Write the file for the controller."""
         return [write_text(file_for_result(Path(path)), self.text)]
+
+    def _record(self) -> dict[str, Any]:
+        """Rate, period, and the speed lost (negative) or gained by each step, SI."""
+        points, cost = self.points, self.cost
+        return {
+            "gait": points.gait,
+            "status": self.source_status,
+            "format": self.format,
+            "rate": points.rate,
+            "points": len(points.angles),
+            "period": points.played.period,
+            "speed": cost.nominal,
+            "speed_left": cost.final,
+            "cost": {"period": 0.0, "holding": 0.0, "rounding": None, **cost.steps},
+            "model": MODEL,
+            "file": None,
+            "version": __version__,
+        }
+
+    def document(self, figures: Sequence[Figure] = ()) -> Document:
+        """The set points and their cost, for a terminal."""
+        return facts_alone(_facts(self), MODEL)
 
 
 def text_of(points: SetPoints, format: Format) -> str:
@@ -111,3 +133,51 @@ def _c_float(value: float) -> str:
     """A float literal of C; rounding to nothing has no sign."""
     text = f"{0.0 if math.isclose(value, 0.0, abs_tol=1e-12) else value:.9g}"
     return (text if any(mark in text for mark in ".e") else f"{text}.0") + "f"
+
+
+MODEL = (
+    "The servo is assumed to move at constant speed between set points and to reach each one when "
+    "the next is sent. What its effects in `physics`, such as a lag, then make of that counts."
+)
+
+
+_NOTHING = 1e-6
+"""A smaller relative change is the optimiser's rounding."""
+
+
+_STEPS = {
+    "period": "by the changed period",
+    "holding": "by moving in straight lines between set points",
+    "rounding": f"by rounding to counts of {1e3 * COUNT:.2f} mrad",
+}
+
+
+def _facts(result: ExportedGait) -> Iterator[Fact]:
+    points, cost = result.points, result.cost
+    rate = f"{with_unit(points.rate, '', 6)} a second, one every {number(1e3 / points.rate)} ms"
+    yield from gait_facts(points.gait)
+    yield Fact("set points", f"{len(points.angles)} a period, {rate}")
+    yield Fact("  period", _period_text(points))
+    yield Fact("speed", f"{speed_text(cost.nominal)}, of the gait itself")
+    for name, change in cost.steps.items():
+        yield Fact(f"  {name}", f"{_change_text(change, cost.nominal)} {_STEPS[name]}")
+    total = _change_text(sum(cost.steps.values()), cost.nominal)
+    yield Fact("  left", f"{speed_text(cost.final)}, {total}")
+
+
+def _period_text(points: SetPoints) -> str:
+    asked, played = points.gait.period, points.played.period
+    if math.isclose(asked, played, rel_tol=_NOTHING):
+        return f"{with_unit(asked, 's')}, as asked"
+    return (
+        f"{with_unit(played, 's', 6)}, changed from {with_unit(asked, 's', 6)} "
+        f"({100 * (played / asked - 1):+.2f} %), a whole number of set points"
+    )
+
+
+def _change_text(change: float, nominal: float) -> str:
+    """`-0.36 mm/s (-0.28 %)`: a change of a speed."""
+    if abs(change) <= _NOTHING * abs(nominal):
+        return "0 mm/s"
+    share = f" ({100 * change / abs(nominal):+.2f} %)" if nominal else ""
+    return f"{'+' if change > 0 else ''}{number(1e3 * change, 3)} mm/s{share}"

@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Any
 
+from rr_opt.documents import document as doc
+from rr_opt.documents.archive import strict_json
+from rr_opt.documents.texts import captions
+from rr_opt.files.record import plain
+from rr_opt.formatting import direction_text, number, with_unit
 from rr_opt.model.problem import GaitBounds
 from rr_opt.outcome import Status
 from rr_opt.results.fastest import FastestGait
@@ -23,7 +30,10 @@ class FastestShapes(Result):
               the one before
     """
 
-    REPORT = "rr_opt.report.shapes"
+    FILE = "shapes.json"
+    OTHERS = ("shapes.csv", "sine.json", "fourier-3.json", "fourier-5.json", "free.json")
+    DRAW = "rr_opt.results.figures.fastest.draw_shapes"
+    CAPTIONS = captions("shapes")
 
     name: str
     sha256: str
@@ -77,6 +87,49 @@ class FastestShapes(Result):
                 )
         return text
 
+    def _record(self) -> dict[str, Any]:
+        """The content of shapes.json: each row of shapes.csv with the whole result."""
+        return {
+            "status": self.status.value,
+            "message": self.message,
+            "problem": self.name,
+            "shapes": [
+                {**plain(_row(self, one)), "file": _file(one), "result": one.record()}
+                for one in self.answers
+            ],
+        }
+
+    def _tables(self) -> dict[str, str]:
+        """shapes.csv, and the record of each family."""
+        rows = [_row(self, one) for one in self.answers]
+        text = doc.csv_text(list(rows[0]), [list(row.values()) for row in rows], digits=12)
+        return {"shapes.csv": text} | {_file(o): strict_json(o.record()) for o in self.answers}
+
+    def document(self, figures: Sequence[doc.Figure] = ()) -> doc.Document:
+        """The families side by side, and every check."""
+        results = [(family(one), check) for one in self.answers for check in one.checks]
+        passed = sum(check.passed for _, check in results)
+        every = doc.checks((check.passed, f"{name}: {check.sentence}") for name, check in results)
+        count = f"{passed} of {len(results)} passed: replay, limits, and a sweep of all sines."
+        title = "Waveforms"
+        if len(self.solved) > 1:
+            gain = self.gain(self.solved[-1]) or 0.0
+            title = f"A free gait is {100 * gain:.0f} % faster than the best sine"
+        return doc.Document(
+            name=self.name,
+            kind="waveforms",
+            title=title,
+            lead=self.message,
+            good=self.status is Status.OPTIMAL,
+            sections=(
+                doc.gallery(figures),
+                doc.Section("Families", (_families(self),)),
+                doc.Section("Checks", (count,)),
+                doc.Section("", (every,), brief=False),
+            ),
+            footer=doc.versions(self.sha256),
+        )
+
 
 def family(answer: FastestGait) -> str:
     """`sine`, `3 harmonics` or `free`."""
@@ -91,3 +144,47 @@ def family_name(gait: GaitBounds) -> str:
 def _with(answer: FastestGait) -> str:
     shape = answer.problem.gait.shape
     return {"free": "a free gait", "sine": "a sine"}.get(shape, family(answer))
+
+
+def _row(result: FastestShapes, answer: FastestGait) -> dict[str, Any]:
+    gait, replay = answer.gait, answer.replay
+    solved = gait is not None and replay is not None
+    reached = replay.reached if replay else {}
+    return {
+        "shape": family(answer),
+        "status": answer.status.value,
+        "speed": answer.speed if solved else None,
+        "gain": result.gain(answer) if solved else None,
+        **{name: getattr(gait, name, None) for name in ("amplitude", "period", "offset")},
+        "inertia_ratio": answer.inertia_ratio if solved else None,
+        **{f"peak_{name}": reached.get(name) for name in ("angle", "rate", "torque")},
+        "held_by": " ".join(answer.active) if solved else None,
+        "message": answer.message,
+    }
+
+
+def _file(answer: FastestGait) -> str:
+    """The name of its result file: `fourier-3.json`."""
+    return "-".join(reversed(family(answer).replace("harmonics", "fourier").split())) + ".json"
+
+
+def _families(result: FastestShapes) -> doc.Table:
+    head = ["Shape", "Speed", "Gain over the sine", "Amplitude", "Period", "J20/J10", "Limited by"]
+    rows = []
+    for one in result.answers:
+        gait, speed, gain = one.gait, one.speed, result.gain(one)
+        if gait is None or speed is None or one.status is not Status.OPTIMAL:
+            rows.append([family(one), doc.Badge(one.status.words), *[None] * 5])
+            continue
+        rows.append(
+            [
+                family(one),
+                f"{1e3 * abs(speed):.1f} mm/s {direction_text(speed)}",
+                f"{100 * gain:+.1f} %" if gain else None,
+                with_unit(gait.amplitude, "rad"),
+                with_unit(gait.period, "s"),
+                number(one.inertia_ratio or 0.0),
+                ", ".join(one.active) or "no limit",
+            ]
+        )
+    return doc.table(head, rows)

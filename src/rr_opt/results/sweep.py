@@ -1,15 +1,20 @@
-"""A plain sweep: every gait tried, and the best of them."""
+"""A plain sweep: every gait tried, the best of them, and a row for each as CSV."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
-from rr_opt.formatting import direction_text, pace_text
+from rr_opt.documents import document as doc
+from rr_opt.documents.texts import captions
+from rr_opt.formatting import direction_text, number, pace_text, with_unit
 from rr_opt.model.problem import Problem
 from rr_opt.outcome import Status
-from rr_opt.results.ignored import ignored_effects
+from rr_opt.results.gait import gait_facts, ignored_effects, speed_fact
 from rr_opt.results.result import Result
-from rr_opt.verify.evaluate import Found
+from rr_opt.verify.evaluate import LIMITS, Found
+from rr_opt.verify.grid import DECISIONS
 from rr_opt.verify.sweep import SweepResult
 
 
@@ -17,7 +22,10 @@ from rr_opt.verify.sweep import SweepResult
 class Sweep(Result):
     """Gaits all over the bounds: `found` has all of them as arrays, `best` the fastest."""
 
-    REPORT = "rr_opt.report.sweep"
+    FILE = "sweep.json"
+    OTHERS = ("sweep.csv",)
+    DRAW = "rr_opt.results.figures.speed_map.draw_sweep"
+    CAPTIONS = captions("sweep")
 
     name: str
     sha256: str
@@ -49,3 +57,62 @@ class Sweep(Result):
     def warnings(self) -> tuple[str, ...]:
         """Which effects of the robot the sweep ignores."""
         return ignored_effects(self.problem.robot)
+
+    def _record(self) -> dict[str, Any]:
+        """The content of sweep.json. status: `swept`, as a sweep proves no optimum."""
+        found = self.found
+        return {
+            "status": "swept" if self.best else self.status.value,
+            "message": self.message,
+            "problem": self.name,
+            "points": found.points,
+            "feasible": found.found.feasible.sum(),
+            "failed": found.found.failed,
+            "best": _found(self.best),
+            "best_of_grid": _found(found.best),
+        }
+
+    def _tables(self) -> dict[str, str]:
+        """A row for each gait of the grid, SI; 1 in the column of a limit that it respects.
+
+        An empty ratio is the robot as it is; an empty speed, a gait at or past the limits on
+        the angle.
+        """
+        found = self.found.found
+        names = (*DECISIONS, "speed", "peak_torque", *(f"keeps_{name}" for name in LIMITS))
+        kept = [found.keeps[name].astype(int) for name in LIMITS]
+        columns = [*found.decisions, found.speed, found.peak_torque, *kept]
+        rows = zip(*(column.tolist() for column in columns), strict=True)
+        return {"sweep.csv": doc.csv_text(names, rows)}
+
+    def document(self, figures: Sequence[doc.Figure] = ()) -> doc.Document:
+        """The best gait and the grid."""
+        best, grid = self.best, self.found.found
+        facts: list[doc.Fact] = []
+        if best:
+            ratio = "the robot as it is" if best.ratio is None else number(best.ratio)
+            facts = [
+                *gait_facts(best.gait),
+                doc.Fact("J20/J10", ratio),
+                speed_fact(best.speed),
+                doc.Fact("torque", f"{with_unit(best.peak_torque, 'N m')} at most"),
+            ]
+        kept = f"{len(grid.speed)} gaits, of which {int(grid.feasible.sum())} respect all limits"
+        return doc.Document(
+            self.name,
+            "sweep",
+            self.message if best else "No gait respects every limit",
+            "" if best else self.message,
+            (doc.Section("", (doc.Facts((*facts, doc.Fact("grid", kept))),)), doc.gallery(figures)),
+            good=best is not None,
+            footer=doc.versions(self.sha256),
+        )
+
+
+def _found(one: Found | None) -> dict[str, Any] | None:
+    return one and {
+        "gait": one.gait,
+        "inertia_ratio": one.ratio,
+        "speed": one.speed,
+        "peak_torque": one.peak_torque,
+    }

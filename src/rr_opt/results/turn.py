@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, ClassVar
 
 from rr_opt.design.turn import Arc
 from rr_opt.design.turn_target import Target
+from rr_opt.documents import document as doc
+from rr_opt.documents.texts import captions
+from rr_opt.files.record import plain
 from rr_opt.formatting import direction_text, number, side_text, with_unit
 from rr_opt.model.problem import ANY
 from rr_opt.outcome import Status
@@ -25,7 +30,8 @@ class FastestTurn(FastestGait):
     circle   whether the robot stays on the circle, and comes to it from rest; None likewise
     """
 
-    REPORT = "rr_opt.report.turn"
+    DRAW = "rr_opt.results.figures.turn.draw_turn"
+    CAPTIONS: ClassVar = {**FastestGait.CAPTIONS, **captions("turn")}
 
     target: Target = field(default_factory=Target)
     opened: bool = False
@@ -87,6 +93,41 @@ class FastestTurn(FastestGait):
             f"{number(bounds.low)} to {number(bounds.high)} rad.",
         ]
 
+    def _record(self) -> dict[str, Any]:
+        """The content of result.json: that of any fastest gait, and `turn`."""
+        record, target, circle = super()._record(), self.target, self.circle
+        own = {
+            "asked": {
+                "heading": target.heading,
+                "radius": target.radius,
+                "within": target.within,
+                "length": target.length,
+                "cycles": "whole" if target.whole else "any",
+            },
+            "offset_opened": self.opened,
+            "arc": self.arc and {**plain(self.arc), "radius": self.radius},
+            "prices": self.turn_prices,
+            "circle_check": circle
+            and {
+                "ends": circle.ends,
+                "mean": circle.mean,
+                "rest": circle.rest,
+                "rest_periods": circle.periods,
+                "time_constant": circle.transient.constant,
+                "distance_lost": circle.transient.lost,
+                "delay": circle.transient.delay,
+            },
+        }
+        return record | {"turn": plain(own), "units": {**record["units"], **UNITS}}
+
+    def document(self, figures: Sequence[doc.Figure] = ()) -> doc.Document:
+        """The report of a fastest gait, with its arc."""
+        return replace(super().document(figures), kind="fastest turn")
+
+    def _lead(self) -> doc.Section:
+        facts = tuple(_facts(self, self.arc)) if self.arc else ()
+        return doc.Section("Turn", (doc.Facts(facts),))
+
 
 def _circle_checks(circle: CircleCheck) -> list[Check]:
     """Whether P stays on the circle, and whether a start from rest converges to it."""
@@ -108,3 +149,35 @@ def _circle_checks(circle: CircleCheck) -> list[Check]:
             f"{with_unit(abs(start.lost), 'm')} {ahead} one that is steady from the start.",
         ),
     ]
+
+
+UNITS = {
+    "heading": "rad, positive to the left",
+    "curvature": "1/m, heading per metre of the mean circle",
+    "yaw_rate": "rad/s",
+    "length": "m, along the mean circle",
+    "time": "s",
+    "price of curvature, yaw_rate, heading": "m/s of |speed| per SI unit by which it is raised",
+}
+
+
+def _facts(turn: FastestTurn, arc: Arc) -> Iterator[doc.Fact]:
+    """The arc, or the full circle, and what a slightly easier turn would gain."""
+    name = "circle" if turn.target.heading is None else "arc"
+    degrees = abs(math.degrees(arc.heading))
+    yield doc.Fact(name, f"{number(degrees)} deg to the {side_text(arc.heading)}")
+    yield doc.Fact("radius", with_unit(turn.radius or math.inf, "m"))
+    periods = f"{number(arc.periods, 6)} periods, steady motion"
+    yield doc.Fact("time", with_unit(arc.time, "s"), periods)
+    yield doc.Fact("length", f"{with_unit(arc.length, 'm')} along the mean circle")
+    yield doc.Fact("yaw rate", f"{number(math.degrees(arc.yaw_rate))} deg/s")
+    asked = {
+        "curvature": (arc.curvature, "a radius 1 % wider"),
+        "yaw_rate": (arc.yaw_rate, "a yaw rate 1 % lower"),
+        "heading": (arc.heading / arc.periods, "a heading per period 1 % less"),
+    }
+    for name, price in turn.turn_prices.items():
+        value, words = asked[name]
+        gain = -0.01 * value * price
+        if abs(gain) > 1e-9:
+            yield doc.Fact("price", f"{1e3 * gain:+.3g} mm/s for {words}")

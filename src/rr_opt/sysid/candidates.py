@@ -12,16 +12,8 @@ import numpy as np
 from rr_opt.array import Array
 from rr_opt.sysid import estimation
 from rr_opt.sysid.estimation import Fit, Problem
-from rr_opt.sysid.model import Model, Quantity, Request, Segment, segments
+from rr_opt.sysid.model import Choice, Model, Quantity, Request, Segment, segments
 from rr_opt.sysid.settings import SETTINGS
-
-
-@dataclass(frozen=True, order=True)
-class Choice:
-    """An effect, in one of its forms."""
-
-    name: str
-    form: int = 0
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,15 +9,15 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
-from rr_opt.sysid.candidates import Candidate, refitted
+from rr_opt.sysid.candidates import Candidate, first, refitted
 from rr_opt.sysid.diagnosis import Diagnosis
 from rr_opt.sysid.evaluation import evaluation, mismatch
 from rr_opt.sysid.intervals import estimates, released
 from rr_opt.sysid.location import residues, stages, where
-from rr_opt.sysid.model import Model
+from rr_opt.sysid.machine import Machine
 from rr_opt.sysid.noise import noise_in
 from rr_opt.sysid.remainder import dependences
-from rr_opt.sysid.selection import Selection
+from rr_opt.sysid.selection import Selection, turned
 from rr_opt.sysid.summary import summary_of
 from rr_opt.sysid.verdict import (
     Result,
@@ -58,7 +58,7 @@ class _Timed:
         self.watch.seconds[self.step] = self.watch.seconds.get(self.step, 0.0) + spent
 
 
-def diagnose(model: Model, progress: Callable[[str], None] = lambda _: None) -> Diagnosis:
+def diagnose(model: Machine, progress: Callable[[str], None] = lambda _: None) -> Diagnosis:
     """Diagnose any machine from its runs; progress is told each step."""
     watch = Stopwatch(progress)
     result = identified(model, watch)
@@ -88,8 +88,8 @@ def _answer(result: Result) -> Diagnosis:
         last = min(levels, key=lambda one: one.rms)
         fit = best.fit if last is result.final else base.fit
     remainder = remainder_of(result)
-    if remainder.size != "none" and result.left:
-        remainder = replace(remainder, depends_on=where(result.left[0], model.inputs))
+    if remainder.size != "none" and result.after:
+        remainder = replace(remainder, depends_on=where(result.after[0], model.inputs))
     return Diagnosis(
         verdict=verdict,
         summary="",
@@ -105,7 +105,7 @@ def _answer(result: Result) -> Diagnosis:
         tried=tried(selection, best if verdict != "unexplained" else None),
         indistinguishable=alike(result) if verdict == "missing_physics" else (),
         next_experiment=None,
-        residue=tuple(residues(result.left, model.inputs)) if verdict == "unexplained" else (),
+        residue=tuple(residues(result.after, model.inputs)) if verdict == "unexplained" else (),
         nominal=result.nominal.misfits,
         refitted=result.refitted.misfits,
         final=last.misfits,
@@ -118,22 +118,24 @@ def _answer(result: Result) -> Diagnosis:
     )
 
 
-def identified(model: Model, watch: Stopwatch) -> Result:
-    """Search for what is missing; once more if the noise turns out to be other than stated."""
+def identified(model: Machine, watch: Stopwatch) -> Result:
+    """Search for what is missing, with the noise that the nominal model shows; once more if the
+    answer shows another one."""
     runs = [k for k, run in enumerate(model.runs) if not run.held_out]
-
-    def searched(model: Model) -> tuple[Selection, Candidate]:
-        with watch("fitting the parameters"):
-            selection = Selection(model, runs, watch.progress)
-        with watch("looking for what is missing"):
-            return selection, selection.run()
-
-    selection, best = searched(model)
-    noise = noise_in(best.fit)
-    if any(one.unlike_stated for one in noise):
-        watch.progress("the noise is not as stated; once more")
-        model = model.with_noise(noise)
-        selection, best = searched(model)
+    with watch("fitting the parameters"):
+        base = first(model, runs)
+        if noise := noise_in(base.simulated):
+            model = model.with_noise(noise)
+            base = first(model, runs)
+    with watch("looking for what is missing"):
+        selection = Selection(model, base, watch.progress)
+        best = selection.run()
+        if noise := noise_in(best.simulated):
+            watch.progress("the noise is other than it looked; once more")
+            model = model.with_noise(noise)
+            selection = Selection(model, first(model, runs), watch.progress)
+            best = selection.run()
+        best = turned(model, best)
     with watch("looking for wrong values"):
         fit = best.fit
         if selection.complete(best) or best.excess <= model.form_error:
@@ -153,6 +155,4 @@ def identified(model: Model, watch: Stopwatch) -> Result:
     with watch("locating the fault"):
         before = dependences(base, *model.unknown_inputs(base))
         after = dependences(fit, *model.unknown_inputs(fit)) if best.choices else before
-        last = everywhere.fit
-        left = dependences(last, *model.unknown_inputs(last)) if last is not fit else after
-    return Result(selection, best, everywhere, *levels, before, after, left)
+    return Result(selection, best, everywhere, *levels, before, after)

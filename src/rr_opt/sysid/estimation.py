@@ -332,32 +332,21 @@ class Fit:
     @cached_property
     def deviance(self) -> float:
         """-2 log of the marginal likelihood of all runs."""
-        H, _, value = self.information()
-        return value + self._volume(H)
-
-    def _volume(self, H: Array) -> float:
-        if not self.u.size:
-            return 0.0
-        return _log_det(H) - float(np.sum(np.log(self.problem.prior)))
+        return _deviance(self.problem, self.evidences, self.u)
 
     def _without(self, run: int) -> float:
         """The deviance of the others, at their own best."""
-        H, g, value = self.information([r for r in self.evidences if r != run])
+        problem = self.problem
+        H, g, value = _summed(problem, _but(self.evidences, run), self.u)
         if not self.u.size:
             return value
-        low, high = self.problem.box
+        low, high = problem.box
         d = bounded_minimum(H, g, low - self.u, high - self.u)
-        return value + float(2 * g @ d + d @ H @ d) + self._volume(H)
+        return value + float(2 * g @ d + d @ H @ d) + _volume(problem, H)
 
-    def information(self, runs: Iterable[int] | None = None) -> tuple[Array, Array, float]:
+    def information(self) -> tuple[Array, Array, float]:
         """H, g and value of the runs with the prior: of value + 2 g'd + d'Hd."""
-        problem, some = self.problem, [*self.evidences] if runs is None else [*runs]
-        H, g = np.diag(problem.prior), problem.prior * self.u
-        value = float(problem.prior @ self.u**2)
-        for run in some:
-            e = self.evidences[run]
-            H, g, value = H + e.H, g + e.g, value + e.value + e.log
-        return H, g, value
+        return _summed(self.problem, self.evidences, self.u)
 
     @cached_property
     def predictive(self) -> Mapping[int, float]:
@@ -376,8 +365,21 @@ class Fit:
         return math.sqrt(max(beyond + len(self.problem.names), 0.0) / max(self.samples, 1))
 
 
-def _log_det(H: Array) -> float:
-    return 2 * float(np.sum(np.log(np.diag(root(H)))))
+def _but(evidences: Mapping[int, Evidence], run: int) -> dict[int, Evidence]:
+    return {other: e for other, e in evidences.items() if other != run}
+
+
+def _deviance(problem: Problem, evidences: Mapping[int, Evidence], u: Array) -> float:
+    """-2 log of the marginal likelihood of runs."""
+    H, _, value = _summed(problem, evidences, u)
+    return value + _volume(problem, H)
+
+
+def _volume(problem: Problem, H: Array) -> float:
+    """Of the prior over that of the posterior, -2 log of their ratio."""
+    if not problem.quantities:
+        return 0.0
+    return 2 * float(np.sum(np.log(np.diag(root(H))))) - float(np.sum(np.log(problem.prior)))
 
 
 def solve(
@@ -386,16 +388,20 @@ def solve(
     states: States,
     steps: int = SETTINGS.steps,
     tolerance: float = SETTINGS.tolerance,
+    enough: float = math.inf,
 ) -> Fit:
     """The best values and states, by Gauss-Newton steps within the quantities' bounds and a
-    trust region."""
+    trust region.
+
+    enough  deviance that is of interest; a fit that would not come there at its pace is given up
+    """
     low, high = problem.box
     u = np.clip(problem.scaled(values), low, high)
     here = _Point.of(problem, u, states)
     radius, converged = SETTINGS.stride, False
     linear = here.linear()
     evidences = linear.evidences(problem.q)
-    for _ in range(steps):
+    for step in range(steps):
         H, g, _ = _summed(problem, evidences, here.u)
         better, share = None, 1.0
         for _ in range(6):
@@ -416,16 +422,21 @@ def solve(
         if gain < tolerance:
             converged = True
             break
+        lacking = _deviance(problem, evidences, here.u) - enough
+        if step + 1 >= SETTINGS.first_steps and lacking > SETTINGS.patience * gain:
+            break
     return Fit(problem, problem.valued(here.u), here.states, linear, evidences, converged)
 
 
 def _summed(
     problem: Problem, evidences: Mapping[int, Evidence], u: Array
 ) -> tuple[Array, Array, float]:
+    """H, g and value of the runs with the prior: of value + 2 g'd + d'Hd."""
     H, g = np.diag(problem.prior), problem.prior * u
+    value = float(problem.prior @ u**2)
     for e in evidences.values():
-        H, g = H + e.H, g + e.g
-    return H, g, 0.0
+        H, g, value = H + e.H, g + e.g, value + e.value + e.log
+    return H, g, value
 
 
 def _step(H: Array, g: Array, radius: float, u: Array, box: tuple[Array, Array]) -> Array:
@@ -517,19 +528,21 @@ def fitted(
 
     First with that of the guess, then as long as less of it makes the recordings likelier.
 
-    enough  deviance, well above which the fit need not be taken to its end
+    enough  deviance; a fit that will not come there need not be taken to its end
     """
     if all(len(parts) == 1 for parts in problem.by_run.values()):
         return solve(problem, values, states, steps)
     fit = solve(problem, values, states, SETTINGS.first_steps)
     for _ in range(3):
         q = most_likely(fit)
-        if q == fit.problem.q and (fit.converged or fit.deviance > enough + SETTINGS.hopeless):
+        if q == fit.problem.q and fit.converged:
             break
-        fit = solve(replace(problem, q=q), fit.values, fit.states, steps)
-    smaller = [q for q in grid() if q < fit.problem.q]
-    for q in reversed(smaller):
-        lower = solve(replace(problem, q=q), fit.values, fit.states, SETTINGS.descent_steps)
+        fit = solve(replace(problem, q=q), fit.values, fit.states, steps, enough=enough)
+        if not fit.converged and fit.deviance > enough:
+            return fit
+    for q in reversed([q for q in grid() if q < fit.problem.q]):
+        lower = replace(problem, q=q)
+        lower = solve(lower, fit.values, fit.states, steps, enough=fit.deviance)
         if lower.deviance >= fit.deviance:
             break
         fit = lower

@@ -87,14 +87,14 @@ def wrong(fit: Fit) -> list[Quantity]:
 def released(fit: Fit) -> Fit:
     """With nothing believed any more of the values that are certainly wrong, one after the other:
     many small surprises are likelier than a large one, so each draws others with it."""
-    for _ in range(SETTINGS.most_released):
+    for _ in range(SETTINGS.most_effects):
         held = np.array([not q.free for q in fit.problem.quantities], bool)
         size = np.abs(surprises(fit)) * held
         if not size.size or size.max() <= limit(fit):
             break
         worst = int(np.argmax(size))
         quantities = tuple(
-            replace(q, scale=q.scale * SETTINGS.release, free=True) if k == worst else q
+            replace(q, scale=q.scale * SETTINGS.effect_prior, free=True) if k == worst else q
             for k, q in enumerate(fit.problem.quantities)
         )
         problem = replace(fit.problem, quantities=quantities)

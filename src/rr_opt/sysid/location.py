@@ -11,7 +11,8 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 
 from rr_opt.sysid.diagnosis import Residue, Stage
-from rr_opt.sysid.remainder import CONSTANT, Dependence
+from rr_opt.sysid.machine import CONSTANT
+from rr_opt.sysid.remainder import Dependence
 
 
 def stages(

@@ -7,21 +7,15 @@ own, so that a fit never has to simulate for longer than the model can be truste
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 import numpy as np
 
 from rr_opt.array import Array
 from rr_opt.sysid.settings import SETTINGS
-
-if TYPE_CHECKING:
-    from rr_opt.sysid.candidates import Choice
-    from rr_opt.sysid.diagnosis import Misfit, NextExperiment
-    from rr_opt.sysid.estimation import Fit
-    from rr_opt.sysid.noise import Noise
-    from rr_opt.sysid.remainder import Term
 
 
 @dataclass(frozen=True)
@@ -85,6 +79,34 @@ class EffectInfo:
     smooth: bool = True
     upstream: bool = False
     form_error: float = 0.02
+
+
+@dataclass(frozen=True, order=True)
+class Choice:
+    """An effect, in one of its forms."""
+
+    name: str
+    form: int = 0
+
+
+@dataclass(frozen=True)
+class Noise:
+    """The noise of a channel.
+
+    level        standard deviation, in units of that assumed
+    correlation  its power at low frequencies over that of white noise of this level: as many
+                 samples are worth one independent one
+    """
+
+    level: float = 1.0
+    correlation: float = 1.0
+
+    def differs(self, correlation: float = 1.0) -> bool:
+        """Whether it surely differs from noise of the level and with the correlation assumed."""
+        longer = abs(math.log(self.correlation / correlation))
+        return abs(math.log(self.level)) > SETTINGS.misstated or longer > math.log(
+            SETTINGS.correlated
+        )
 
 
 @dataclass(frozen=True)
@@ -189,7 +211,6 @@ class Model(Protocol):
     parameters      of the nominal model, with what is known of each
     catalogue       the effects it knows, by name
     form_error      RMS in sigma by which machines of this kind differ from any model of them
-    inputs          channels by which an unknown input may enter, and each input in words
     """
 
     @property
@@ -206,8 +227,6 @@ class Model(Protocol):
     def catalogue(self) -> Mapping[str, EffectInfo]: ...  # noqa: D102
     @property
     def form_error(self) -> float: ...  # noqa: D102
-    @property
-    def inputs(self) -> Mapping[str, str]: ...  # noqa: D102
 
     def initial_state(
         self, segment: Segment, effects: tuple[str, ...], values: Mapping[str, float]
@@ -243,42 +262,4 @@ class Model(Protocol):
 
     def predicted(self, request: Request, effects: tuple[str, ...]) -> Array:
         """What would be recorded of a segment (n, channels)."""
-        ...
-
-    def upstream(self) -> Sequence[tuple[tuple[Choice, ...], Mapping[str, float]]]:
-        """Sets of effects of the drive, and their values, that explain its own recording; the
-        simplest first among equals. One empty set where the nominal drive does."""
-        ...
-
-    def proposals(
-        self, fit: Fit, complete: Sequence[str]
-    ) -> Sequence[tuple[Choice, Mapping[str, float]]]:
-        """Initial guesses of effects that a score test cannot see, beside a fit without them."""
-        ...
-
-    def with_noise(self, noise: Sequence[Noise]) -> Model:
-        """The same machine and runs with other noise in each channel."""
-        ...
-
-    def unknown_inputs(self, fit: Fit) -> tuple[Sequence[Term], Mapping[Segment, Linearisation]]:
-        """What may push the machine that a fit lacks, as functions of what it may depend on; and
-        the fit's segments linearised in the quantities and in these functions."""
-        ...
-
-    def equivalent(self, values: Mapping[str, float]) -> Mapping[str, float] | None:
-        """Values that predict the same and are nearer to what was believed, if there are any."""
-        ...
-
-    def next_experiment(self, best: Fit, rival: tuple[str, Fit] | None) -> NextExperiment | None:
-        """The recording that would tell the answer from its rival, the candidate that comes next,
-        with its name; or that would narrow most the value known worst."""
-        ...
-
-    def worth(self, before: Sequence[Misfit], after: Sequence[Misfit]) -> str:
-        """What the answer is worth in the machine's own terms, as the beginning of a sentence: `the
-        simulated place was 8 mm off and is 1 mm off now; `."""
-        ...
-
-    def accuracy(self, misfits: Sequence[Misfit]) -> str:
-        """How well the corrected model predicts, in the machine's own terms, as a sentence."""
         ...

@@ -14,12 +14,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from rr_opt.array import Array
 from rr_opt.sysid.estimation import Fit
+from rr_opt.sysid.model import Noise
 from rr_opt.sysid.settings import SETTINGS
 
 _BINS = 48
@@ -29,49 +30,33 @@ _NEAR = 3.0
 """Times the slow band's edge, up to which the spectrum is extrapolated from."""
 
 
-@dataclass(frozen=True)
-class Noise:
-    """The noise of a channel.
-
-    level        standard deviation, in units of that stated
-    correlation  its power at low frequencies over that of white noise of this level: as many
-                 samples are worth one independent one
-    """
-
-    level: float = 1.0
-    correlation: float = 1.0
-
-    @property
-    def unlike_stated(self) -> bool:
-        """Whether it is surely not white noise of the level stated."""
-        return (
-            abs(math.log(self.level)) > SETTINGS.misstated or self.correlation > SETTINGS.correlated
-        )
-
-
-def noise_in(fit: Fit) -> list[Noise]:
-    """That of each channel, from what a fit leaves."""
+def noise_in(fit: Fit) -> list[Noise] | None:
+    """That of each channel, from what a fit of whole runs leaves, as seams of segments would look
+    like noise; None if it is as assumed."""
     problem = fit.problem
+    channels = len(problem.model.channels)
+    # How runs are correlated is a property of the channels.
+    assumed = np.broadcast_to(next(iter(problem.model.runs)).correlation, channels)
     runs = {
         run: np.concatenate(
             [fit.linear.made[one].residuals[: one.until - one.first] for one in parts]
         )
+        * np.sqrt(assumed)
         for run, parts in problem.by_run.items()
     }
     steps = [float(np.median(np.diff(problem.model.runs[run].t))) for run in runs]
-    return [
-        _levelled([left[:, k] for left in runs.values()], steps)
-        for k in range(len(problem.model.channels))
-    ]
+    noise = [_levelled([left[:, k] for left in runs.values()], steps) for k in range(channels)]
+    differs = any(one.differs(c) for one, c in zip(noise, assumed.tolist(), strict=True))
+    return noise if differs else None
 
 
 def _levelled(residuals: Sequence[Array], steps: Sequence[float]) -> Noise:
-    """The noise in residuals, at their own level where the spectrum may be that far off."""
+    """The noise in residuals, at their own level where that is as near as spectra tell."""
     noise = noise_of(residuals, steps)
     every = np.concatenate(residuals)
     rms = float(np.sqrt(np.mean(every[every != 0] ** 2))) if every.any() else noise.level
-    far = 1 + SETTINGS.misstated
-    return replace(noise, level=min(max(rms, noise.level / far), noise.level * far))
+    near = abs(math.log(rms / noise.level)) < SETTINGS.misstated
+    return replace(noise, level=rms) if near else noise
 
 
 def noise_of(residuals: Sequence[Array], steps: Sequence[float]) -> Noise:

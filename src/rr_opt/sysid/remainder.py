@@ -17,28 +17,9 @@ from scipy.stats import chi2
 from rr_opt.array import Array
 from rr_opt.sysid.diagnosis import Curve
 from rr_opt.sysid.estimation import Fit, Linear, bounded_minimum
+from rr_opt.sysid.machine import Term
 from rr_opt.sysid.model import Linearisation, Segment
 from rr_opt.sysid.settings import SETTINGS
-
-CONSTANT = "nothing"
-"""The variable of an input that is constant."""
-
-
-@dataclass(frozen=True)
-class Term:
-    """An unknown input in a channel as functions of a variable.
-
-    columns  of the linearisation that are its own, counted behind the quantities
-    unit     of the variable;  at (k,) where the input is shown;  shapes (k, columns) there, so that
-             amounts times shapes is the input
-    """
-
-    channel: str
-    variable: str
-    columns: tuple[int, ...]
-    unit: str
-    at: Array
-    shapes: Array
 
 
 @dataclass(frozen=True)

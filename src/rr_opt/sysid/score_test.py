@@ -14,9 +14,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rr_opt.array import Array
-from rr_opt.sysid.candidates import Choice
 from rr_opt.sysid.estimation import Fit, Linear, bounded_minimum, root
-from rr_opt.sysid.model import Request
+from rr_opt.sysid.model import Choice, Request
 
 
 @dataclass(frozen=True)

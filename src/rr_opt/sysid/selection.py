@@ -12,8 +12,9 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from rr_opt.sysid.candidates import Candidate, Choice, first, fitted, polished
-from rr_opt.sysid.model import Model
+from rr_opt.sysid.candidates import Candidate, fitted, polished
+from rr_opt.sysid.machine import Machine
+from rr_opt.sysid.model import Choice
 from rr_opt.sysid.score_test import scores
 from rr_opt.sysid.settings import SETTINGS
 
@@ -28,15 +29,14 @@ class Selection:
     best  the candidate that was chosen
     """
 
-    model: Model
-    runs: Sequence[int]
+    model: Machine
+    base: Candidate
     progress: Progress = lambda _: None
     tried: dict[tuple[Choice, ...], Candidate] = field(default_factory=dict)
     _upstream: Sequence[tuple[tuple[Choice, ...], Mapping[str, float]]] = ()
 
     def __post_init__(self) -> None:
-        self.progress("fitting the parameters")
-        self.base = self.best = self.tried[()] = first(self.model, self.runs)
+        self.best = self.tried[()] = self.base
 
     def run(self) -> Candidate:
         """Search; the candidate that was chosen."""
@@ -59,7 +59,9 @@ class Selection:
         much as is none, and than noise leaves by chance."""
         chance = 2 * math.sqrt(2 / max(candidate.fit.samples, 1))
         least = SETTINGS.none if candidate.choices else SETTINGS.negligible
-        return candidate.excess**2 <= least**2 + chance
+        most = least**2 + chance
+        # Segments that need not join leave less than whole runs.
+        return candidate.fit.excess**2 <= 2 * most and candidate.excess**2 <= most
 
     def _better(self, candidate: Candidate, other: Candidate) -> bool:
         """Whether a larger candidate predicts better than one that leaves something."""
@@ -117,8 +119,8 @@ class Selection:
         parent = self.best
         room = SETTINGS.most_effects - len(parent.choices)
         promising = [s for s in scores(parent.fit, min(room, 2)) if s.gain > 0]
-        singles = [s for s in promising if len(s.choices) == 1][: SETTINGS.singles]
-        pairs = [s for s in promising if len(s.choices) == 2][: SETTINGS.pairs]
+        singles = [s for s in promising if len(s.choices) == 1][: SETTINGS.promising]
+        pairs = [s for s in promising if len(s.choices) == 2][: SETTINGS.promising]
         for one in singles:
             yield self.fitted((*parent.choices, *one.choices), [one.guess], parent)
         best = max(
@@ -138,7 +140,7 @@ class Selection:
             forms = [*self._forms(choice, fuller=True)]
             if not forms:
                 continue
-            others = tuple(c.name for c in rest)
+            others = [name for name in self.model.catalogue if name != choice.name]
             proposed = self.model.proposals(parent.fit, others)
             for form, own in forms:
                 fuller = Choice(choice.name, form)
@@ -176,8 +178,8 @@ class Selection:
         runs are simulated best: a fit in segments may have stopped in a kink of an effect without
         derivatives."""
         for key, one in [*self.tried.items()]:
-            near = 0 < self.best.elpd - one.elpd < SETTINGS.hopeless
-            if near and len(key) <= len(self.best.choices) and self.complete(one):
+            worse = one.elpd < self.best.elpd
+            if worse and len(key) <= len(self.best.choices) and self.complete(one):
                 again = polished(one)
                 if again.elpd > one.elpd:
                     self.tried[key] = again
@@ -225,12 +227,14 @@ class Selection:
                 yield self.fitted((*rest, Choice(choice.name, form)), [{}], candidate)
 
     def _forms(self, choice: Choice, *, fuller: bool) -> Iterator[tuple[int, set[str]]]:
-        """Forms of an effect with more quantities, or fewer; and the quantities of this one."""
+        """The next forms of an effect with more quantities, or fewer; and those of this one."""
         forms = self.model.catalogue[choice.name].forms
-        own = {q.name for q in forms[choice.form].quantities}
-        for k, form in enumerate(forms):
-            names = {q.name for q in form.quantities}
-            if (own < names) if fuller else (names < own):
+        every = [{q.name for q in form.quantities} for form in forms]
+        own = every[choice.form]
+        others = {k: one for k, one in enumerate(every) if (own < one if fuller else one < own)}
+        for k, one in others.items():
+            between = (own < x < one if fuller else one < x < own for x in others.values())
+            if not any(between):
                 yield k, own
 
 
@@ -238,7 +242,7 @@ def _more(guess: Mapping[str, float], own: set[str]) -> dict[str, float]:
     return {name: value for name, value in guess.items() if name not in own}
 
 
-def turned(model: Model, candidate: Candidate) -> Candidate:
+def turned(model: Machine, candidate: Candidate) -> Candidate:
     """The candidate with values that predict the same and are nearer to what was believed."""
     values = model.equivalent(candidate.fit.values)
     if values is None:

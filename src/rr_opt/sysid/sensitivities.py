@@ -11,18 +11,22 @@ start, by what is asked for, any further columns, and last what the prediction i
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rr_opt.array import Array
-from rr_opt.mechanics.vectorised import ArrayFunction
+from rr_opt.mechanics.code_generation import ArrayFunction
 from rr_opt.sysid.compiled import Rows
 from rr_opt.sysid.shooting import DrivePath, Path, System, arrays_of, code_of
 
 Jacobian = tuple[Array, Array, Array]
+
+_STEPS_AT_ONCE = 4000
+"""Over which arrays are evaluated: fewer cost more calls, more of them memory."""
 
 
 @dataclass(frozen=True)
@@ -74,34 +78,67 @@ class Linear:
     by_wanted: Array
 
 
-def linear(
-    system: System,
-    path: DrivePath,
-    made: Path,
-    p: Array,
-    wanted: Array,
-    drive_by: DriveSlopes | None,
-    hats: Hats | None = None,
-) -> Linear:
-    """The motion linearised along a predicted path.
+@dataclass(frozen=True)
+class Part:
+    """A predicted path to linearise along, how the drive changes with what is asked for (None if it
+    does not), and what else moves the drive."""
 
-    wanted    (np, nw) how p changes with what is asked for
-    drive_by  how the drive does; None if it does not
+    path: DrivePath
+    made: Path
+    drive_by: DriveSlopes | None
+    hats: Hats | None = None
+
+
+def linear(system: System, parts: Sequence[Part], p: Array, wanted: Array) -> Iterator[Linear]:
+    """The motion linearised along predicted paths, of all or of none of which the drive changes,
+    and likewise with hats.
+
+    wanted  (np, nw) how p changes with what is asked for
     """
-    size, nd = made.states.shape[0], path.at.shape[0]
+    for some in _at_once(parts):
+        yield from _linear(system, some, p, wanted)
+
+
+def _at_once(parts: Sequence[Part]) -> Iterator[Sequence[Part]]:
+    """As many as fill an array that is worth a call, and no more memory than there is."""
+    some, steps = [], 0
+    for one in parts:
+        some.append(one)
+        steps += one.path.h.size
+        if steps > _STEPS_AT_ONCE:
+            yield some
+            some, steps = [], 0
+    if some:
+        yield some
+
+
+def _linear(system: System, parts: Sequence[Part], p: Array, wanted: Array) -> Iterator[Linear]:
+    size, nd = parts[0].made.states.shape[0], parts[0].path.at.shape[0]
     how = _frozen if system.stiff else _stages
-    A, B = how(_Along(system, path, made, p, wanted, drive_by, hats))
-    for _ in range(int(np.log2(path.each))):
-        A, B = A[1::2] @ A[::2], A[1::2] @ B[::2] + B[1::2]
-    samples, channels = path.at.shape[1], made.seen.shape[1]
-    at = made.states[:, :: path.each]
+    A, B = how(_Along(system, parts, p, wanted))
+    at = np.hstack([one.made.states[:, :: one.path.each] for one in parts])
+    drive = np.hstack([one.path.at for one in parts])
+    channels = parts[0].made.seen.shape[1]
     by_state, by_drive, by_p = _split(
-        arrays_of(system, "seen_by")(*at, *path.at, *p), channels, nd, p.size, samples, size
+        arrays_of(system, "seen_by")(*at, *drive, *p), channels, nd, p.size, at.shape[1], size
     )
     by_wanted = by_p @ wanted
-    if drive_by is not None:
-        by_wanted = by_wanted + np.einsum("sid,dsw->siw", by_drive, drive_by.at)
-    return Linear(A, B, by_state, by_drive, by_wanted)
+    if parts[0].drive_by is not None:
+        moved = _joined([one.drive_by.at for one in parts if one.drive_by], 1)
+        by_wanted = by_wanted + np.einsum("sid,dsw->siw", by_drive, moved)
+    step = sample = 0
+    for one in parts:
+        steps, samples = one.path.h.size, one.path.at.shape[1]
+        during, seen = slice(step, step + steps), slice(sample, sample + samples)
+        a, b = A[during], B[during]
+        for _ in range(int(np.log2(one.path.each))):
+            a, b = a[1::2] @ a[::2], a[1::2] @ b[::2] + b[1::2]
+        yield Linear(a, b, by_state[seen], by_drive[seen], by_wanted[seen])
+        step, sample = step + steps, sample + samples
+
+
+def _joined(arrays: Sequence[Array], axis: int) -> Array:
+    return arrays[0] if len(arrays) == 1 else np.concatenate(arrays, axis)
 
 
 def slopes(
@@ -113,7 +150,7 @@ def slopes(
     drive_by: DriveSlopes | None,
 ) -> Slopes:
     """How what is seen along a predicted path changes; see `linear`."""
-    by = linear(system, path, made, p, wanted, drive_by)
+    (by,) = linear(system, [Part(path, made, drive_by)], p, wanted)
     (samples, _, size), nw = by.by_state.shape, wanted.shape[1]
     carried = np.empty((samples, size, size + nw))
     carried[0] = np.eye(size, size + nw)
@@ -127,15 +164,40 @@ def slopes(
 
 @dataclass(frozen=True)
 class _Along:
-    """What is linearised, and by what."""
+    """What is linearised, path after path, and by what."""
 
     system: System
-    path: DrivePath
-    made: Path
+    parts: Sequence[Part]
     p: Array
     wanted: Array
-    drive_by: DriveSlopes | None
-    hats: Hats | None
+
+    @cached_property
+    def ends(self) -> tuple[Array, Array]:
+        """The states at the beginning and at the end of each step (size, steps)."""
+        states = [one.made.states for one in self.parts]
+        return np.hstack([x[:, :-1] for x in states]), np.hstack([x[:, 1:] for x in states])
+
+    @cached_property
+    def h(self) -> Array:
+        """Of each step, s."""
+        return np.concatenate([one.path.h for one in self.parts])
+
+    @cached_property
+    def nodes(self) -> Array:
+        """The drive (size, 3, steps)."""
+        return _joined([one.path.nodes for one in self.parts], 2)
+
+    @cached_property
+    def drive_by(self) -> Array | None:
+        """How the drive changes (size, 3, steps, nw)."""
+        some = [one.drive_by.nodes for one in self.parts if one.drive_by]
+        return _joined(some, 2) if some else None
+
+    @cached_property
+    def hats(self) -> Hats | None:
+        """Of all paths."""
+        some = [one.hats for one in self.parts if one.hats]
+        return Hats(some[0].rows, np.hstack([one.passed for one in some])) if some else None
 
     def jacobian(self, at: Array, drive: Array) -> Jacobian:
         """By state, drive and p, (n, size, ...) each, at states and drives (..., n)."""
@@ -147,7 +209,7 @@ class _Along:
         fx, fd, fp = jacobian
         force = fp @ self.wanted
         if self.drive_by is not None:
-            force = force + np.einsum("sid,dsw->siw", fd, self.drive_by.nodes[:, node])
+            force = force + np.einsum("sid,dsw->siw", fd, self.drive_by[:, node])
         if self.hats is None:
             return np.concatenate([fx, force], axis=2)
         hat = fd[:, :, self.hats.rows]
@@ -165,16 +227,16 @@ def _stages(along: _Along) -> tuple[Array, Array]:
 
     Where a force sets in within a step, those of the motion between its ends are others.
     """
-    path, x, h = along.path, along.made.states[:, :-1], along.path.h
+    x, h = along.ends[0], along.h
     slopes = [np.zeros_like(x)]
     for node, reach in ((0, 0.0), (1, 0.5), (1, 0.5)):
         at = x + reach * h * slopes[-1]
-        slope = along.rates(*at, *path.nodes[:, node], *along.p)
+        slope = along.rates(*at, *along.nodes[:, node], *along.p)
         slopes.append(np.array(np.broadcast_arrays(*slope)))
 
     def both(k: int, reach: float) -> Array:
         node = (k + 1) // 2
-        return along.both(along.jacobian(x + reach * h * slopes[k], path.nodes[:, node]), node)
+        return along.both(along.jacobian(x + reach * h * slopes[k], along.nodes[:, node]), node)
 
     return _combined(h, len(x), both)
 
@@ -207,10 +269,9 @@ def _frozen(along: _Along) -> tuple[Array, Array]:
     The matrix z = h fx of the middle of the step is taken for all of it; exp(z) as its Pade
     approximant (1 + z/3)/(1 - 2z/3 + z^2/6), which damps what settles at once.
     """
-    states, h = along.made.states, along.path.h[:, None, None]
-    size = len(states)
-    middle = (states[:, 1:] + states[:, :-1]) / 2
-    both = along.both(along.jacobian(middle, along.path.nodes[:, 1]), 1)
+    (before, after), h = along.ends, along.h[:, None, None]
+    size = len(before)
+    both = along.both(along.jacobian((before + after) / 2, along.nodes[:, 1]), 1)
     eye, z = np.eye(size), both[:, :, :size] * h
     push = (eye - z / 6) @ (both[:, :, size:] * h)
     left = eye - 2 / 3 * z + z @ z / 6

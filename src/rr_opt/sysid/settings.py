@@ -1,6 +1,6 @@
 """Every number of the identification that was chosen, and why.
 
-`docs/diagnosis-method.md` shows what changes when each is halved or doubled.
+`make settings` halves and doubles each on the same cases; `results/settings` shows what changes.
 """
 
 from __future__ import annotations
@@ -12,7 +12,8 @@ from dataclasses import dataclass
 class Settings:
     """correlation_time      s; errors of a model are taken as independent after this long: about
                           the period of a gait
-    effect_prior          an effect's quantities are expected within so many of their usual sizes
+    effect_prior          an effect's quantities are expected within so many of their usual sizes,
+                          a value that is certainly wrong within so many of its sigmas
     least_process_noise   of the grid, half decades: less is as good as none
     most_process_noise    of the grid: segments are as good as independent
     stride                in scales; a step in a quantity is no longer
@@ -21,9 +22,9 @@ class Settings:
     trial_steps           Gauss-Newton steps of the better half of the guesses, of the better half
                           of those, and so on
     first_steps           of a fit, before the process noise is estimated
-    hopeless              of the deviance; a fit so far above another one is not taken to its end
+    patience              steps like its last one after which a fit that is still worse than another
+                          is given up
     steps                 at most, for a fit
-    descent_steps         at most, for a fit with less process noise
     negligible            RMS in sigma beyond the noise that the nominal model may leave
     none                  the same beside an effect, from which machines differ
     small                 share of the first excess misfit: what remains is small
@@ -37,15 +38,13 @@ class Settings:
     misstated             relative; a level of the noise that differs by more is not as stated
     correlated            as many samples worth one are more than white noise has by chance
     certain               chance of so much by noise, below which an unknown input is there
-    most_effects          that are looked for at once
-    singles, pairs        candidates of a score test that are fitted
+    most_effects          that are looked for at once; and values that may be wrong
+    promising             candidates of a score test that are fitted, of one effect and of two
     evidence              nats by which an effect has to improve the predictions of recordings
+    standard_errors       and by so many standard errors over recordings
     named                 confidence above which an effect is named
     false_alarm           chance that any value is called wrong where all are right
     identifiable          standard deviation over that believed, above which data say nothing
-    most_released         values that may be wrong at once
-    release               by how many of its sigmas a wrong value is then uncertain
-    standard_errors       and by so many standard errors over recordings
     """
 
     correlation_time: float = 1.0
@@ -57,9 +56,8 @@ class Settings:
     trial_runs: int = 2
     trial_steps: tuple[int, ...] = (1, 3)
     first_steps: int = 4
-    hopeless: float = 200.0
+    patience: float = 10.0
     steps: int = 15
-    descent_steps: int = 8
     negligible: float = 0.1
     none: float = 0.2
     small: float = 0.01
@@ -71,15 +69,12 @@ class Settings:
     correlated: float = 1.5
     certain: float = 1e-6
     most_effects: int = 3
-    singles: int = 4
-    pairs: int = 3
+    promising: int = 4
     evidence: float = 5.0
     standard_errors: float = 0.5
     named: float = 0.5
     false_alarm: float = 0.01
     identifiable: float = 0.999
-    most_released: int = 4
-    release: float = 30.0
 
 
 SETTINGS = Settings()

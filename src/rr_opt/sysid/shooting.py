@@ -16,7 +16,7 @@ import casadi as ca
 import numpy as np
 
 from rr_opt.array import Array
-from rr_opt.mechanics.vectorised import ArrayFunction, over_arrays
+from rr_opt.mechanics.code_generation import ArrayFunction, over_arrays
 from rr_opt.sysid.compiled import Compiled, found, source_of
 
 _FEW, _PAYS = 10_000, 100_000

@@ -14,10 +14,11 @@ from functools import cached_property
 
 import numpy as np
 
-from rr_opt.sysid.candidates import Candidate, Choice, weights
+from rr_opt.sysid.candidates import Candidate, weights
 from rr_opt.sysid.diagnosis import Finding, Remainder, Tried, Verdict
 from rr_opt.sysid.evaluation import Evaluation
 from rr_opt.sysid.intervals import estimates, named, wrong
+from rr_opt.sysid.model import Choice
 from rr_opt.sysid.remainder import Dependence
 from rr_opt.sysid.selection import Selection
 from rr_opt.sysid.settings import SETTINGS
@@ -30,8 +31,7 @@ class Result:
     best      the candidate that was chosen, with values that are wrong released
     everywhere  the same fitted to all recordings, also those that are held out
     nominal, refitted, final   as believed; with the parameters fitted; with what is missing
-    before, after, left  what unknown inputs would explain beside the nominal model, beside the
-                     answer, and beside the answer fitted to all recordings
+    before, after  what unknown inputs would explain beside the nominal model and beside the answer
     """
 
     selection: Selection
@@ -42,7 +42,6 @@ class Result:
     final: Evaluation
     before: Sequence[Dependence]
     after: Sequence[Dependence]
-    left: Sequence[Dependence]
 
     @cached_property
     def confidences(self) -> Mapping[str, float]:
@@ -99,7 +98,7 @@ class Result:
             return True
         most = max(one.excess for one in both)
         noisier = (1 + SETTINGS.misstated) ** 2 - 1
-        return most**2 <= noisier and not any(one.certain for one in self.left)
+        return most**2 <= noisier and not any(one.certain for one in self.after)
 
     @property
     def share(self) -> float:

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rr_opt.array import Array
-from rr_opt.mechanics.vectorised import over_arrays
+from rr_opt.mechanics.code_generation import over_arrays
 from rr_opt.motion.dynamics import Dynamics
 from rr_opt.verify.compiled_cycles import CompiledCycles, Steady, compiled
 from rr_opt.verify.fourier import derivative, integral, peak, refined, solve, solve_stiff, tail

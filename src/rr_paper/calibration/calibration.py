@@ -7,15 +7,21 @@ from dataclasses import replace
 
 import numpy as np
 
-from rr_paper.calibration.comparison import Assessment, assess
-from rr_paper.calibration.coverage import coverage
-from rr_paper.calibration.fit import Effort, Estimator, estimator
-from rr_paper.calibration.likelihood import Data, measured
-from rr_paper.calibration.models import DRY, MODELS, READINGS, VISCOUS, Model, Reading
-from rr_paper.calibration.posterior import Posterior, sample
-from rr_paper.calibration.profiles import Profile, profiles
-from rr_paper.calibration.result import ASSUMED, Alternative, Calibration, Shipped, shipped_values
-from rr_paper.calibration.unknowns import UNKNOWNS, shares
+from rr_paper.calibration.comparison import Assessment, assess, coverage
+from rr_paper.calibration.fit import Data, Effort, Estimator, estimator, measured
+from rr_paper.calibration.intervals import Posterior, Profile, profiles, sample
+from rr_paper.calibration.models import (
+    DRY,
+    MODELS,
+    READINGS,
+    UNKNOWNS,
+    VISCOUS,
+    Model,
+    Reading,
+    shares,
+)
+from rr_paper.calibration.report import Calibration
+from rr_paper.calibration.result import ASSUMED, Alternative, Shipped, shipped_values
 from rr_paper.publication import COLUMNS, Column
 
 _CHEAP = Effort(log2_size=15, slices=12, values=25, starts=2, steps=20, sets=200)

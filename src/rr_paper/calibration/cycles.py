@@ -31,12 +31,12 @@ import numpy as np
 
 from rr_opt.array import Array
 from rr_opt.effects.coulomb_friction import SMOOTHING_SPEED
+from rr_opt.mechanics.code_generation import ArrayFunction, over_arrays
 from rr_opt.mechanics.kinematics import ROBOT_PARAMETERS, mechanism
-from rr_opt.mechanics.vectorised import ArrayFunction, over_arrays
 from rr_opt.motion.dynamics import derive
 from rr_opt.verify.fourier import solve
-from rr_paper.equation3 import Angle, mean_speed, sine
 from rr_paper.publication import RATE_LIMIT
+from rr_paper.signs import Angle, mean_speed, sine
 
 
 class Coefficients(NamedTuple):

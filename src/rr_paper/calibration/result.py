@@ -9,14 +9,10 @@ import numpy as np
 
 from rr_opt.array import Array
 from rr_opt.files.problem_file import read_problem
-from rr_opt.results.result import Result
-from rr_paper.calibration.comparison import Assessment
-from rr_paper.calibration.coverage import Coverage
+from rr_paper.calibration.comparison import Assessment, Coverage
 from rr_paper.calibration.fit import Fit
-from rr_paper.calibration.models import MODELS, VISCOUS, Model, Reading
-from rr_paper.calibration.posterior import Posterior
-from rr_paper.calibration.profiles import Profile
-from rr_paper.calibration.unknowns import UNKNOWNS, Unknown
+from rr_paper.calibration.intervals import Posterior, Profile
+from rr_paper.calibration.models import MODELS, UNKNOWNS, VISCOUS, Model, Reading, Unknown
 from rr_paper.publication import COLUMNS, Column
 
 _PINNED = 0.25
@@ -95,7 +91,7 @@ class Interval:
 
 
 @dataclass(frozen=True, repr=False)
-class Calibration(Result):
+class Findings:
     """What the nine rows say.
 
     assessments      by model and column
@@ -105,8 +101,6 @@ class Calibration(Result):
     coverage         on data of known robots
     alternatives     other readings of J20/J10
     """
-
-    REPORT = "rr_paper.report.calibration"
 
     assessments: Mapping[tuple[str, Column], Assessment]
     posterior: Mapping[Column, Posterior]

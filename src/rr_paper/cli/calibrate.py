@@ -5,8 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
-from rr_opt.cli.options import json_option, out_option, results_folder
-from rr_opt.cli.show import show
+from rr_opt.cli.options import json_option, out_option, results_folder, show
 from rr_opt.cli.steps import Steps
 
 

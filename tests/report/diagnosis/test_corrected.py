@@ -9,7 +9,7 @@ from rr_opt.effects import OF_ROBOTS
 from rr_opt.files.lint import lint_file
 from rr_opt.files.record import robot_yaml
 from rr_opt.files.robot_file import read_robot
-from rr_opt.results.corrected_robot import corrected_robot
+from rr_opt.results.loss import corrected_robot
 
 
 def written(robot, folder):

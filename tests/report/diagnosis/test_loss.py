@@ -12,9 +12,14 @@ from rr_opt.model.problem import GaitBounds, Limits, Problem
 from rr_opt.model.robot import EffectUse
 from rr_opt.motion.rollout import rollout
 from rr_opt.motion.servo import servo_made
-from rr_opt.report.diagnosis.loss import loss_sentences, share_lost
-from rr_opt.results.corrected_robot import corrected_robot
-from rr_opt.results.loss import Loss, LossUnknown, loss_of
+from rr_opt.results.loss import (
+    Loss,
+    LossUnknown,
+    corrected_robot,
+    loss_of,
+    loss_sentences,
+    share_lost,
+)
 from rr_opt.verify.sweep import sweep
 
 

@@ -8,8 +8,7 @@ import subprocess
 
 import pytest
 
-from rr_opt.documents.webpage import page
-from rr_opt.report.diagnosis.document import REPORT
+from rr_opt.documents.rendering import page
 
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))), None)
 DESK, PHONE = 1200, 412
@@ -45,9 +44,7 @@ frame.addEventListener("load", () => {{
 @pytest.fixture(scope="module")
 def texts(every):
     """The page of each verdict."""
-    return {
-        verdict: page(REPORT.document(one, REPORT.drawn(one))) for verdict, one in every.items()
-    }
+    return {verdict: page(one.document(one.drawn())) for verdict, one in every.items()}
 
 
 def shown(text, width, folder):

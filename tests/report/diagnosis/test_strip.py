@@ -2,8 +2,8 @@
 
 from dataclasses import replace
 
-from rr_opt.report.diagnosis.document import chain_note
-from rr_opt.report.diagnosis.words import stage_words
+from rr_opt.results.diagnosis import chain_note
+from rr_opt.results.diagnosis_tables import stage_words
 
 
 def test_a_stage_that_is_not_lit_but_sees_something_is_not_called_clear(missing):

@@ -2,8 +2,7 @@
 
 from dataclasses import replace
 
-from rr_opt.report.diagnosis.tables import candidates_table
-from rr_opt.report.diagnosis.words import stage_text, total
+from rr_opt.results.diagnosis_tables import candidates_table, stage_text, total
 from rr_opt.sysid.diagnosis import Mismatch, Tried
 
 
@@ -18,15 +17,13 @@ def test_forms_of_one_effect_are_reported_apart_by_their_parameters(missing):
         Tried(("floor_patch",), 0.1, score, values, False)
         for score, values in ((1.0, disc), (2.0, edge))
     )
-    rows = column(
-        candidates_table(replace(missing, found=replace(missing.found, tried=tried))), "Effects"
-    )
+    rows = column(candidates_table(replace(missing.found, tried=tried)), "Effects")
     assert rows == ["floor patch (x, radius)", "floor patch (normal)"]
 
 
 def test_misfits_are_1_for_the_noise_alone(missing):
     assert total(0.0) == 1.0
-    assert "1.00 σ" in column(candidates_table(missing), "Misfit")
+    assert "1.00 σ" in column(candidates_table(missing.found), "Misfit")
 
 
 def test_a_stage_explains_a_share_of_the_misfit(missing):

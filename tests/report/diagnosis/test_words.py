@@ -4,8 +4,7 @@ import math
 
 import pytest
 
-from rr_opt.report.diagnosis.summary import summary
-from rr_opt.report.diagnosis.words import headline, interval_text, value_text
+from rr_opt.results.diagnosis_tables import headline, interval_text, value_text
 from rr_opt.sysid.diagnosis import Estimate
 
 
@@ -39,7 +38,7 @@ def test_headlines_say_the_verdict(every):
 
 @pytest.mark.parametrize("verdict", ["consistent", "parameters", "missing_physics", "unexplained"])
 def test_the_terminal_gets_the_verdict_first(every, verdict):
-    text = summary(every[verdict], [])
+    text = every[verdict].summary()
     assert text.startswith("verdict")
     assert verdict in text.splitlines()[0]
     assert "8.10 before, 1.00 after" in text
@@ -47,10 +46,10 @@ def test_the_terminal_gets_the_verdict_first(every, verdict):
 
 def test_the_terminal_tells_what_remains(missing, unexplained):
     def row(one):
-        return next(line for line in summary(one, []).splitlines() if line.startswith("remainder"))
+        return next(line for line in one.summary().splitlines() if line.startswith("remainder"))
 
     assert row(missing).split() == ["remainder", "none"]
     # Of the noise alone 1, and 7.90 beyond it.
     assert "large: misfit 7.96 σ, 97 % of the initial excess over the noise" in row(unexplained)
-    assert "depends on the speed" in summary(unexplained, [])
-    assert any(line.startswith("indistinguishable") for line in summary(missing, []).splitlines())
+    assert "depends on the speed" in unexplained.summary()
+    assert any(line.startswith("indistinguishable") for line in missing.summary().splitlines())

@@ -4,10 +4,9 @@ from dataclasses import replace
 
 import pytest
 
-from rr_lab.case import Plan
+from rr_lab.case import ENGINES, Plan
 from rr_lab.effect_size import EffectSize
 from rr_lab.effects import EVERY, effect_named
-from rr_lab.engines import ENGINES
 from rr_lab.random_case import bare_case
 from rr_opt.model.experiment import Noise
 from rr_opt.model.gait import SineGait

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rr_lab.planar.bearings import DRY_ONSET
+from rr_lab.planar.forces import DRY_ONSET
 from rr_opt.model.gait import SineGait
 from tests.rr_lab.planar.driven import driven
 from tests.rr_lab.reduced import LONG

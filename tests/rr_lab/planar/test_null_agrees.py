@@ -5,8 +5,7 @@ import sys
 import numpy as np
 import pytest
 
-from rr_lab.case import play
-from rr_lab.engines import record
+from rr_lab.case import play, record
 from rr_lab.random_case import random_case
 from rr_opt.model.gait import SineGait
 from tests.rr_lab.planar.driven import channels, driven

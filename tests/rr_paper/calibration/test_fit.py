@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import least_squares
 
-from rr_paper.calibration.fit import Effort, descend, estimator
-from rr_paper.calibration.likelihood import Data, measured, one_way
+from rr_paper.calibration.fit import Data, Effort, descend, estimator, measured, one_way
 from rr_paper.calibration.models import MODELS, READINGS, VISCOUS
 
 DATA = measured("mean")

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.stats import norm, t
 
-from rr_paper.calibration.likelihood import measured, row_deviance, simulated, weight
+from rr_paper.calibration.fit import measured, row_deviance, simulated, weight
 from rr_paper.publication import COLUMNS, ROWS
 
 Z = np.linspace(-6, 6, 25)

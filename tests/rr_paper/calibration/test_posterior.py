@@ -5,10 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from rr_paper.calibration.fit import Effort, Estimator, estimator
-from rr_paper.calibration.likelihood import Data
-from rr_paper.calibration.posterior import sample
-from rr_paper.calibration.profiles import LEVEL, profiles
+from rr_paper.calibration.fit import Data, Effort, Estimator, estimator
+from rr_paper.calibration.intervals import LEVEL, profiles, sample
 
 SPREAD = np.linspace(0.3, 1.3, 9)
 DATA = Data(0.4 * SPREAD + 0.2, 0.25 * np.ones(9))

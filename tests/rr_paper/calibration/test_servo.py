@@ -7,8 +7,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from rr_paper.calibration.cycles import TAU, limited
-from rr_paper.equation3 import sine
 from rr_paper.publication import RATE_LIMIT
+from rr_paper.signs import sine
 
 N = 256
 AMPLITUDES, PERIODS = np.array([0.25, 0.8, 1.4]), np.array([2.0, 1.0, 1.0])

@@ -11,12 +11,11 @@ from rr_opt.model.ballast import Loads, with_inertia_ratio
 from rr_opt.model.gait import SineGait
 from rr_opt.model.robot import EffectUse, Platform, Robot
 from rr_opt.motion.steady_cycle import steady_cycle
-from rr_paper.calibration.likelihood import measured
-from rr_paper.calibration.models import MODELS, READINGS, Reading
-from rr_paper.calibration.unknowns import values
-from rr_paper.equation3 import PRINTED
-from rr_paper.equation3 import steady_cycle as by_equation3
+from rr_paper.calibration.fit import measured
+from rr_paper.calibration.models import MODELS, READINGS, Reading, values
 from rr_paper.publication import ROWS
+from rr_paper.signs import PRINTED
+from rr_paper.signs import steady_cycle as by_equation3
 
 TRIED = (0, 4, 8)
 

@@ -75,7 +75,7 @@ def test_noise_that_drowns_the_motion(tmp_path):
 
 
 def test_what_is_refused_is_no_clean_bill_of_lint(tmp_path):
-    from rr_opt.api.lint import lint
+    from rr_opt.api.files import lint
 
     assert not has_errors(lint(written(tmp_path / "right")))
     assert has_errors(lint(written(tmp_path / "mm", lambda table: table * [1, 1e3, 1e3, 1, 1])))

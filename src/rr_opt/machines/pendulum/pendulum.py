@@ -20,21 +20,21 @@ import numpy as np
 from rr_opt.array import Array
 from rr_opt.machines.pendulum.effects import EXTRAS, Extra
 from rr_opt.model.experiment import Uncertainty
-from rr_opt.sysid.candidates import Choice
 from rr_opt.sysid.diagnosis import Misfit
 from rr_opt.sysid.estimation import Fit
+from rr_opt.sysid.machine import Term
 from rr_opt.sysid.model import (
+    Choice,
     Data,
     EffectInfo,
     Form,
     Linearisation,
+    Noise,
     Quantity,
     Request,
     Segment,
     Simulation,
 )
-from rr_opt.sysid.noise import Noise
-from rr_opt.sysid.remainder import Term
 from rr_opt.sysid.sensitivities import DriveSlopes, Recorded, Sought, grams
 from rr_opt.sysid.settings import SETTINGS
 from rr_opt.sysid.shooting import DrivePath, Path, System, predict

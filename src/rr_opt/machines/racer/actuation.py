@@ -12,20 +12,16 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
 from rr_opt.array import Array
-from rr_opt.sysid.candidates import Choice
+from rr_opt.machines.racer.model import RacerModel
 from rr_opt.sysid.estimation import robust
-from rr_opt.sysid.model import Quantity
+from rr_opt.sysid.model import Choice, Quantity
 from rr_opt.sysid.settings import SETTINGS
-
-if TYPE_CHECKING:
-    from rr_opt.machines.racer.racer import RollerRacer
 
 _SAMPLES = 6000
 """Of all runs together: more say no more."""
@@ -46,7 +42,7 @@ class _Angle:
     at  samples of each run that are looked at
     """
 
-    racer: RollerRacer
+    racer: RacerModel
     at: Mapping[int, NDArray[np.intp]]
 
     def residuals(self, values: Mapping[str, float], effects: tuple[str, ...]) -> dict[int, Array]:
@@ -97,30 +93,35 @@ class _Set:
 
 
 def actuation_sets(
-    racer: RollerRacer, runs: Sequence[int]
+    racer: RacerModel, runs: Sequence[int]
 ) -> list[tuple[tuple[Choice, ...], Mapping[str, float]]]:
     """Sets of effects that explain the recorded angle about equally well, the best first."""
     seen = {run: np.flatnonzero(np.isfinite(racer.runs[run].values[:, -1])) for run in runs}
     every = max(sum(k.size for k in seen.values()) // _SAMPLES, 1)
     angle = _Angle(racer, {run: k[::every] for run, k in seen.items() if k.size})
     free = tuple(q for q in racer.parameters if q.name == "phi_zero")
-    choices = [
-        Choice(name, form)
-        for name, info in racer.catalogue.items()
-        if info.upstream
-        for form in range(len(info.forms))
-    ]
+    upstream = {name: info for name, info in racer.catalogue.items() if info.upstream}
+    plain = [Choice(name) for name in upstream]
+    fuller = [Choice(name, k) for name, info in upstream.items() for k in range(1, len(info.forms))]
     none = _fitted(angle, racer, (), free, [{}])
     if angle.explained(none):
         return [((), {})]
-    alone = [_fitted(angle, racer, (one,), free, _guesses(racer, one)) for one in choices]
-    alone.sort(key=lambda one: one.score)
-    sets = [none, *alone]
-    # Where one effect leaves next to nothing, pairs are tried that cost next to nothing.
+
+    def tried(choices: Sequence[Choice]) -> list[_Set]:
+        return [_fitted(angle, racer, (one,), free, _guesses(racer, one)) for one in choices]
+
+    def best_first(sets: Sequence[_Set]) -> list[_Set]:
+        return sorted(sets, key=lambda one: one.score)
+
+    alone = best_first(tried(plain))
+    # Where one effect leaves next to nothing, only what costs next to nothing is tried beside it.
     quick = angle.explained(alone[0])
+    if not quick:
+        alone = best_first([*alone, *tried(fuller)])
+    sets = [none, *alone]
     names = list(dict.fromkeys(one.choices[0].name for one in alone))[:_PAIRED]
     leading = [next(one for one in alone if one.choices[0].name == name) for name in names]
-    for one, other in itertools.product(leading, choices):
+    for one, other in itertools.product(leading, [*plain, *fuller]):
         pair = tuple(sorted((one.choices[0], other)))
         if other.name == one.choices[0].name or any(s.choices == pair for s in sets):
             continue
@@ -128,10 +129,10 @@ def actuation_sets(
             continue
         guesses = [{**one.values, **guess} for guess in _guesses(racer, other)]
         sets.append(_fitted(angle, racer, pair, free, guesses))
-    sets.sort(key=lambda one: one.score)
+    sets = best_first(sets)
     open_ = [one for one in sets if one.score < sets[0].score + 2 * SETTINGS.evidence]
     # What one effect does, a pair with it does too: the pair has to pay.
-    plain = [
+    paying = [
         one
         for one in open_
         if not any(
@@ -140,10 +141,10 @@ def actuation_sets(
             for less in open_
         )
     ]
-    return [(one.choices, one.values) for one in plain[:_OPEN]]
+    return [(one.choices, one.values) for one in paying[:_OPEN]]
 
 
-def _guesses(racer: RollerRacer, choice: Choice) -> list[dict[str, float]]:
+def _guesses(racer: RacerModel, choice: Choice) -> list[dict[str, float]]:
     form = racer.catalogue[choice.name].forms[choice.form]
     if racer.catalogue[choice.name].smooth:
         return [dict(form.guesses[0])]
@@ -156,7 +157,7 @@ def _guesses(racer: RollerRacer, choice: Choice) -> list[dict[str, float]]:
 
 def _fitted(
     angle: _Angle,
-    racer: RollerRacer,
+    racer: RacerModel,
     choices: tuple[Choice, ...],
     free: tuple[Quantity, ...],
     guesses: Sequence[Mapping[str, float]],

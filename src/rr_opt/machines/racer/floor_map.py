@@ -14,7 +14,6 @@ import itertools
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,13 +21,11 @@ from scipy.optimize import minimize
 
 from rr_opt.array import Array
 from rr_opt.effects.floor_patch import BORDER
+from rr_opt.machines.racer.model import RacerModel
 from rr_opt.machines.racer.observed import Along, observed
 from rr_opt.machines.racer.unknown_input import PUSHES, linearised_inputs
 from rr_opt.sysid.estimation import Fit
 from rr_opt.sysid.settings import SETTINGS
-
-if TYPE_CHECKING:
-    from rr_opt.machines.racer.racer import RollerRacer
 
 _MOMENTS = 50
 """In each piece, at most."""
@@ -100,7 +97,7 @@ class FloorMap:
         return np.array([-more * (2 * slope + bend * more), 1.0 + more])
 
 
-def floor_map(racer: RollerRacer, fit: Fit) -> FloorMap:
+def floor_map(racer: RacerModel, fit: Fit) -> FloorMap:
     """The map beside a fit, over its segments, each with an initial state of its own."""
     problem, values = fit.problem, fit.values
     nq, given = len(problem.names), racer.simulator.given(values)
@@ -113,12 +110,12 @@ def floor_map(racer: RollerRacer, fit: Fit) -> FloorMap:
     scale[size : size + nq] = problem.scale
     bends, onto, slopes = [], [], []
     shared, g = np.diag(problem.prior), problem.prior * fit.u
-    for one, seen in zip(requests, along, strict=True):
-        pushes = _pushes(seen, k, count)
-        gram, _ = linearised_inputs(racer, one, fit.effects, problem.names, pushes)
+    pushes = [_pushes(seen, k, count) for seen in along]
+    linear = linearised_inputs(racer, requests, fit.effects, problem.names, pushes)
+    for one, part in zip(requests, linear, strict=True):
         evidence = fit.evidences[one.segment.run]
         weight = 1 / (1 + max(evidence.excess, 0) / problem.correlation_times(one.segment.run))
-        gram = weight * gram * scale * scale[:, None]
+        gram = weight * part.gram * scale * scale[:, None]
         if not np.isfinite(gram).all():  # A motion that diverged says nothing.
             gram = np.zeros_like(gram)
         inner = np.linalg.pinv(gram[:size, :size], hermitian=True)
@@ -280,7 +277,7 @@ STRAIGHT = Shape(
 )
 
 
-def patches(racer: RollerRacer, fit: Fit) -> list[tuple[int, Mapping[str, float]]]:
+def patches(racer: RacerModel, fit: Fit) -> list[tuple[int, Mapping[str, float]]]:
     """Patches that would gain most, by their form: round ones and straight edges; best first."""
     floor = floor_map(racer, fit)
     found = [

@@ -8,21 +8,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
 import casadi as ca
 import numpy as np
 
 from rr_opt.effects.lateral_slip import wheel_loads
+from rr_opt.machines.racer.model import RacerModel
 from rr_opt.machines.racer.parameters import values_of
 from rr_opt.machines.racer.simulation import driven
 from rr_opt.mechanics.kane import equations
 from rr_opt.mechanics.kinematics import ROBOT_PARAMETERS
 from rr_opt.motion.dynamics import assembled
 from rr_opt.sysid.estimation import Fit
-
-if TYPE_CHECKING:
-    from rr_opt.machines.racer.racer import RollerRacer
 
 _FRACTIONS = (0.97, 0.9, 0.8, 0.65, 0.45, 0.25)
 """Of the largest grip needed, that are tried: just grazed, to hardly any."""
@@ -42,7 +39,7 @@ def _needed() -> ca.Function:
     return ca.Function("grip_needed", inputs, [grip])
 
 
-def grip_needed(racer: RollerRacer, fit: Fit) -> float:
+def grip_needed(racer: RacerModel, fit: Fit) -> float:
     """The largest side force over load of an axle that does not slip, over all recordings."""
     simulator = racer.simulator
     _, motion = driven(simulator.every(fit.effects))
@@ -63,7 +60,7 @@ def grip_needed(racer: RollerRacer, fit: Fit) -> float:
     return worst
 
 
-def slips(racer: RollerRacer, fit: Fit) -> Sequence[tuple[int, Mapping[str, float]]]:
+def slips(racer: RacerModel, fit: Fit) -> Sequence[tuple[int, Mapping[str, float]]]:
     """Values to begin with, by the form of `lateral_slip`."""
     forms = racer.catalogue["lateral_slip"].forms
     (creep,) = forms[0].quantities

@@ -12,19 +12,16 @@ import itertools
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rr_opt.array import Array
+from rr_opt.machines.racer.model import RacerModel
 from rr_opt.model.experiment import CHANNELS, Recording, Run, Start
 from rr_opt.model.gait import SineGait
 from rr_opt.sysid.diagnosis import NextExperiment
 from rr_opt.sysid.estimation import Fit, Linear, Problem, bounded_minimum
 from rr_opt.sysid.model import Request, Segment, Simulation
-
-if TYPE_CHECKING:
-    from rr_opt.machines.racer.racer import RollerRacer
 
 _AMPLITUDES = (0.25, 0.45, 0.7, 1.0, 1.3)
 _PERIODS = (0.6, 0.9, 1.3, 1.9, 2.8)
@@ -45,7 +42,7 @@ _STATE_STEPS = 3
 
 
 def next_experiment(
-    racer: RollerRacer, best: Fit, rival: tuple[str, Fit] | None
+    racer: RacerModel, best: Fit, rival: tuple[str, Fit] | None
 ) -> NextExperiment | None:
     """The recording to make next.
 
@@ -102,7 +99,7 @@ def _names(fit: Fit) -> str:
     return " and ".join(fit.effects) or "the nominal model"
 
 
-def _plans(racer: RollerRacer) -> list[_Plan]:
+def _plans(racer: RacerModel) -> list[_Plan]:
     """Every gait that the robot can make, as long as the recordings there are."""
     robot, runs = racer.experiment.robot, racer.experiment.runs
     seconds = round(float(np.median([run.recording.t[-1] - run.recording.t[0] for run in runs])))
@@ -122,8 +119,8 @@ def _plans(racer: RollerRacer) -> list[_Plan]:
 
 
 def _planned(
-    racer: RollerRacer, best: Fit, plans: Sequence[_Plan]
-) -> tuple[RollerRacer, Mapping[Segment, Array]]:
+    racer: RacerModel, best: Fit, plans: Sequence[_Plan]
+) -> tuple[RacerModel, Mapping[Segment, Array]]:
     """The racer with the plans' recordings, as the best candidate predicts them, and the initial
     states."""
     noise = racer.experiment.noise
@@ -138,7 +135,7 @@ def _planned(
             {name: np.zeros(t.size, np.uint8) for name in CHANNELS},
         )
 
-    def made(values: Sequence[Array]) -> RollerRacer:
+    def made(values: Sequence[Array]) -> RacerModel:
         runs = tuple(
             Run(recording(t, one), plan.gait, "fit", plan.start)
             for plan, t, one in zip(plans, times, values, strict=True)
@@ -159,9 +156,7 @@ def _whole(times: Sequence[Array]) -> list[Segment]:
     return [Segment(k, 0, t.size, t.size - 1) for k, t in enumerate(times)]
 
 
-def _begun(
-    racer: RollerRacer, best: Fit, empty: RollerRacer, segment: Segment, plan: _Plan
-) -> Array:
+def _begun(racer: RacerModel, best: Fit, empty: RacerModel, segment: Segment, plan: _Plan) -> Array:
     """In the middle of the floor there is; running robots are as fast as the recorded ones."""
     ends = np.vstack([run.values[np.isfinite(run.values[:, 0])][:, :2] for run in racer.runs])
     middle = (np.nanmin(ends, axis=0) + np.nanmax(ends, axis=0)) / 2
@@ -171,7 +166,7 @@ def _begun(
 
 
 def _linearised(
-    planned: RollerRacer, fit: Fit, begun: Mapping[Segment, Array] | None = None
+    planned: RacerModel, fit: Fit, begun: Mapping[Segment, Array] | None = None
 ) -> tuple[Problem, Mapping[int, tuple[Array, float, Array]]]:
     """H, g and value of every plan for the fit's quantities, its initial state eliminated.
 
@@ -198,7 +193,7 @@ def _linearised(
     return problem, {run: (e.H, e.excess + e.samples, e.g) for run, e in evidences.items()}
 
 
-def _separations(planned: RollerRacer, rival: Fit) -> Array:
+def _separations(planned: RacerModel, rival: Fit) -> Array:
     """RMS in sigma that the rival leaves of each plan's recording after refitting, linearised."""
     problem, plans = _linearised(planned, rival)
     H0, _, _ = rival.information()
@@ -215,7 +210,7 @@ def _separations(planned: RollerRacer, rival: Fit) -> Array:
 
 
 def _narrowed(
-    planned: RollerRacer, best: Fit, begun: Mapping[Segment, Array]
+    planned: RacerModel, best: Fit, begun: Mapping[Segment, Array]
 ) -> tuple[int, str, float, float] | None:
     """The plan that narrows most the value known worst, that value, by how much, and the size of
     what it shows, RMS in sigma."""

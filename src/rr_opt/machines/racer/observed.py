@@ -4,19 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
 import casadi as ca
 import numpy as np
 from scipy.signal import savgol_filter
 
 from rr_opt.array import Array
+from rr_opt.machines.racer.model import RacerModel
 from rr_opt.machines.racer.simulation import driven
 from rr_opt.motion.dynamics import assembled
 from rr_opt.sysid.model import Request
-
-if TYPE_CHECKING:
-    from rr_opt.machines.racer.racer import RollerRacer
 
 _WINDOW = 0.5
 """What the prediction is off changes little over so long a time, s."""
@@ -51,7 +48,7 @@ class Along:
         return (self.u[::2] + self.u[1::2]) / 2
 
 
-def observed(racer: RollerRacer, request: Request, effects: tuple[str, ...]) -> Along:
+def observed(racer: RacerModel, request: Request, effects: tuple[str, ...]) -> Along:
     """The motion that was recorded: the prediction, and the smooth part of what it is off."""
     simulator, segment = racer.simulator, request.segment
     mechanical = simulator.every(effects)

@@ -8,27 +8,25 @@ in one pass, the same way as it answers to the servo's drive.
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
 import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
 from rr_opt.array import Array
+from rr_opt.machines.racer.model import RacerModel
 from rr_opt.machines.racer.parameters import values_by, values_of
 from rr_opt.machines.racer.simulation import stiff_states
 from rr_opt.mechanics.kane import equations
 from rr_opt.mechanics.kinematics import Force, Frame, Mechanism
 from rr_opt.motion.dynamics import Assembly, assembled
 from rr_opt.motion.floor_motion import FloorMotion, solved
-from rr_opt.sysid.model import Request
-from rr_opt.sysid.sensitivities import DriveSlopes, Hats, Linear, gram_of, linear
+from rr_opt.sysid.model import Linearisation, Request
+from rr_opt.sysid.sensitivities import DriveSlopes, Hats, Linear, Part, gram_of, linear
 from rr_opt.sysid.shooting import DrivePath, System, predict
-
-if TYPE_CHECKING:
-    from rr_opt.machines.racer.racer import RollerRacer
 
 PUSHES = ("wheel1l", "wheel1r", "wheel2l", "wheel2r", "side1", "side2", "angle")
 """Rolling force at each wheel (N), side speed of each axle (m/s), error of the angle (rad)."""
@@ -96,42 +94,46 @@ _ANGLE = 6
 
 
 def linearised_inputs(
-    racer: RollerRacer,
-    request: Request,
+    racer: RacerModel,
+    requests: Sequence[Request],
     effects: tuple[str, ...],
     wanted: tuple[str, ...],
-    inputs: Array,
-) -> tuple[Array, Array]:
-    """A segment linearised where none of the inputs acts, by further columns.
+    inputs: Sequence[Array],
+) -> Iterator[Linearisation]:
+    """Segments, all with the same values, linearised where none of the inputs acts: in the start,
+    in what is wanted and in the inputs.
 
-    inputs  (k, 7, n), rows as PUSHES
-
-    Returns J'J, J = [by the state | by `wanted` | by the inputs | residual] in sigmas, and the
-    derivatives of the last state by the same.
+    inputs  (k, 7, n) of each segment, rows as PUSHES
     """
-    simulator, segment = racer.simulator, request.segment
+    simulator = racer.simulator
     mechanical = simulator.every(effects)
     system, motion = pushed_motion(mechanical)
-    given = simulator.given(request.values)
+    given = simulator.given(requests[0].values)
     names = motion.parameters[:-FURTHER]
-    p = values_of(given, names)
-    t = racer.runs[segment.run].t[segment.span]
-    path = simulator.drive_path(segment, given, mechanical)
-    drives = _drives(inputs, t)
-    moments = _moments(path, t)
-    plain = _with_drives(path, np.zeros(drives.shape[1:]), moments)
-    made = predict(system, plain, request.state, p)
-    by = values_by(given, names, wanted)
-    own = simulator.drive_slopes(segment, given, mechanical, wanted)
-    rows = len(path.at)
-    hats = Hats(np.append(rows + np.arange(FURTHER), (0, 1)), _passed(moments, path.each))
-    how = linear(system, plain, made, p, by, own and _widened(own), hats)
-    seen, end = _carried(how, len(wanted), hats.rows, drives)
-    recorded = simulator.recorded(segment)
-    weight = recorded.weight.ravel()
-    columns = (seen.reshape(weight.size, -1) * weight[:, None])[weight > 0]
-    residual = recorded.off(made.seen).ravel()[weight > 0]
-    return gram_of(columns, residual), end
+    p, by = values_of(given, names), values_by(given, names, wanted)
+    every, parts = [], []
+    for request, pushes in zip(requests, inputs, strict=True):
+        segment = request.segment
+        t = racer.runs[segment.run].t[segment.span]
+        path = simulator.drive_path(segment, given, mechanical)
+        drives = _drives(pushes, t)
+        moments = _moments(path, t)
+        plain = _with_drives(path, np.zeros(drives.shape[1:]), moments)
+        made = predict(system, plain, request.state, p)
+        own = simulator.drive_slopes(segment, given, mechanical, wanted)
+        rows = np.append(len(path.at) + np.arange(FURTHER), (0, 1))
+        hats = Hats(rows, _passed(moments, path.each))
+        every.append(drives)
+        parts.append(Part(plain, made, own and _widened(own), hats))
+    how = linear(system, parts, p, by)
+    for request, part, drives, one in zip(requests, parts, every, how, strict=True):
+        assert part.hats is not None
+        seen, end = _carried(one, len(wanted), part.hats.rows, drives)
+        recorded = simulator.recorded(request.segment)
+        weight = recorded.weight.ravel()
+        columns = (seen.reshape(weight.size, -1) * weight[:, None])[weight > 0]
+        residual = recorded.off(part.made.seen).ravel()[weight > 0]
+        yield Linearisation(gram_of(columns, residual), end)
 
 
 def _carried(

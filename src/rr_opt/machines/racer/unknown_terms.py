@@ -9,19 +9,16 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rr_opt.array import Array
+from rr_opt.machines.racer.model import RacerModel
 from rr_opt.machines.racer.observed import Along, observed
-from rr_opt.machines.racer.unknown_input import PUSHES, linearised_inputs
+from rr_opt.machines.racer.unknown_input import linearised_inputs
 from rr_opt.sysid.estimation import Fit
+from rr_opt.sysid.machine import CONSTANT, Term
 from rr_opt.sysid.model import Linearisation, Segment
-from rr_opt.sysid.remainder import CONSTANT, Term
-
-if TYPE_CHECKING:
-    from rr_opt.machines.racer.racer import RollerRacer
 
 CHANNELS: Mapping[str, tuple[float, ...]] = {
     "rolling": (1, 1, 1, 1, 0, 0, 0),
@@ -102,36 +99,39 @@ _VARIABLES: Mapping[str, _Variable] = {
 
 
 def unknown_terms(
-    racer: RollerRacer, fit: Fit
+    racer: RacerModel, fit: Fit
 ) -> tuple[Sequence[Term], Mapping[Segment, Linearisation]]:
     """The terms, and the fit's segments linearised in the quantities and in the terms."""
     given = racer.simulator.given(fit.values)
     drag = (given["kappa1"] + given["kappa2"]) / 2 / given["h"] ** 2 * racer.setting.speed
     sizes = np.array([drag] * 4 + [_SIDE * racer.setting.speed] * 2 + [_ANGLE])
-    terms: list[Term] = []
     usual = max(racer.setting.speed, 1e-6)
-    out = {}
-    for request in fit.problem.requests(fit.values, fit.states):
+    requests, every, terms = fit.problem.requests(fit.values, fit.states), [], []
+    for request in requests:
         along = observed(racer, request, fit.effects)
         gait = racer.experiment.runs[request.segment.run].gait
         moving = _Moving(along, 2 * math.pi * along.t / gait.period, usual)
-        columns, terms = [], []
-        for channel, pushes in CHANNELS.items():
-            shape = sizes * np.array(pushes)
-            size = float(np.abs(shape).max())
-            for name, variable in _VARIABLES.items():
-                first, x = len(columns), variable.of(moving)
-                columns += [shape[:, None] * f(x, moving) for f in variable.functions]
-                own = tuple(range(first, len(columns)))
-                # A curve that is shown is of the variable alone, so that the path does not matter.
-                alone = np.zeros((0, len(own)))
-                if variable.grid.size:
-                    shown = [size * f(variable.grid, moving) for f in variable.functions]
-                    alone = np.array(shown).T
-                terms.append(Term(channel, name, own, variable.unit, variable.grid, alone))
-        inputs = np.array(columns).reshape(len(columns), len(PUSHES), along.t.size)
-        names = fit.problem.names
-        out[request.segment] = Linearisation(
-            *linearised_inputs(racer, request, fit.effects, names, inputs)
-        )
-    return terms, out
+        terms, columns = _terms(moving, sizes)
+        every.append(columns)
+    parts = linearised_inputs(racer, requests, fit.effects, fit.problem.names, every)
+    return terms, {one.segment: part for one, part in zip(requests, parts, strict=True)}
+
+
+def _terms(moving: _Moving, sizes: Array) -> tuple[list[Term], Array]:
+    """Of every channel and variable, and their inputs along a path (columns, 7, n)."""
+    terms: list[Term] = []
+    columns: list[Array] = []
+    for channel, pushes in CHANNELS.items():
+        shape = sizes * np.array(pushes)
+        size = float(np.abs(shape).max())
+        for name, variable in _VARIABLES.items():
+            first, x = len(columns), variable.of(moving)
+            columns += [shape[:, None] * f(x, moving) for f in variable.functions]
+            own = tuple(range(first, len(columns)))
+            # A curve that is shown is of the variable alone, so that the path does not matter.
+            alone = np.zeros((0, len(own)))
+            if variable.grid.size:
+                shown = [size * f(variable.grid, moving) for f in variable.functions]
+                alone = np.array(shown).T
+            terms.append(Term(channel, name, own, variable.unit, variable.grid, alone))
+    return terms, np.array(columns)

@@ -1,0 +1,131 @@
+"""The blind trial of the diagnosis on sealed cases."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import closing
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from rr_lab.case import ENGINES, Engine
+from rr_lab.mujoco.plant import engine as mujoco
+from rr_lab.report.case import ProvedCase
+from rr_lab.report.proof import Proof
+from rr_lab.trial.draws import CODE, KINDS, Basis, read_kinds, read_seed, seed_of_commit
+from rr_lab.trial.trial import again, basis_of, whole_trial
+from rr_opt.batch.run import pool_of, run
+from rr_opt.documents.archive import folder_for_results
+from rr_opt.results.result import Progress, Result, quiet
+
+
+@dataclass(frozen=True, repr=False)
+class MadeCases(Result):
+    """Cases that were made and sealed, to be diagnosed later."""
+
+    folder: Path
+    cases: int
+
+    def record(self, files: Sequence[Path] = ()) -> dict[str, Any]:  # noqa: ARG002
+        """As plain data."""
+        return {"status": "made", "cases": self.cases, "folder": str(self.folder)}
+
+    def summary(self, files: Sequence[Path] = ()) -> str:  # noqa: ARG002
+        """Where they are."""
+        cases, answers = self.folder / "cases", self.folder / "answers"
+        return f"{self.cases} cases in {cases}, their answers in {answers}\n"
+
+    def save(self, *_: Any, **__: Any) -> list[Path]:
+        """The files are there already."""
+        return []
+
+
+def prove(
+    folder: Path,
+    basis: Basis,
+    cases: int = 100,
+    *,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    restart: bool = False,
+    make_only: bool = False,
+    progress: Progress = quiet,
+) -> Proof | MadeCases:
+    """Make and seal cases, diagnose each blind, then open and score them.
+
+    Called again with the same arguments, an interrupted trial resumes. Raises InputError if the
+    folder has another trial, or an answer that was changed.
+    """
+    with closing(pool_of(workers, scheduler)) as pool:
+        opened = whole_trial(
+            folder,
+            basis,
+            cases,
+            run=partial(run, pool),
+            follow=partial(_follow, total=cases, progress=progress),
+            restart=restart,
+            make_only=make_only,
+        )
+    return Proof(opened) if opened else MadeCases(folder, cases)
+
+
+def _follow(words: str, steps: Iterator[int], done: int, total: int, progress: Progress) -> None:
+    """Carry the steps out and show how many are done."""
+    if done:
+        progress(f"{done} of {total} cases were {words} in an earlier run.")
+    try:
+        progress(f"case {min(done + 1, total)} of {total}")
+        for _ in steps:
+            done += 1
+            progress(f"case {min(done + 1, total)} of {total}")
+    except KeyboardInterrupt:
+        kept = f"{done} of {total} cases are {words}"
+        raise KeyboardInterrupt(f"{kept} and kept. Repeat the command to resume.") from None
+
+
+def prove_case(
+    folder: Path, basis: Basis, number: int, *, progress: Callable[[str], None] = quiet
+) -> ProvedCase:
+    """Make one case of a trial again and diagnose it."""
+    draw = basis.draw(number)
+    place = folder / "again" / draw.id
+    return ProvedCase(again(draw, place, progress), place)
+
+
+def basis(
+    folder: str | Path,
+    *,
+    seed: str | None = None,
+    kinds: str | None = None,
+    engine: str | None = None,
+    resumed: bool = False,
+) -> tuple[Path, Basis]:
+    """The trial's folder, and what its cases are drawn from.
+
+    seed     hexadecimal; None: the hash of the commit
+    kinds    `null, single:EFFECT, ...`; None: all
+    engine   mujoco, planar or both; None: both
+    resumed  what is left out is as in the trial that is in the folder
+
+    Raises InputError for what cannot be drawn, and for an engine that is not installed.
+    """
+    place = folder_for_results(Path(folder))
+    begun = basis_of(place) if resumed else None
+    chosen = read_kinds(kinds) if kinds is not None else None
+    if begun and seed is None:
+        word = begun.seed
+    elif seed in (None, "commit"):
+        word = seed_of_commit(CODE[-1], place)
+    else:
+        word = read_seed(seed)
+    # With another seed it is another trial.
+    known = begun if begun and begun.seed == word else Basis(word, KINDS, ENGINES)
+    one: dict[str | None, tuple[Engine, ...]] = {"mujoco": ("mujoco",), "planar": ("planar",)}
+    found = Basis(
+        word, chosen or known.kinds, {"both": ENGINES, None: known.engines, **one}[engine]
+    )
+    # A missing engine is reported once, before any case.
+    if "mujoco" in found.engines:
+        mujoco()
+    return place, found

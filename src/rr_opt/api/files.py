@@ -1,0 +1,93 @@
+"""Input files: what is wrong in them, and new ones to fill in."""
+
+from __future__ import annotations
+
+from importlib.resources import files
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+
+from rr_opt.documents.archive import file_for_result, write_text
+from rr_opt.files.experiment_file import FILE_NAME, read_plan
+from rr_opt.files.issue import Issue
+from rr_opt.files.lint import experiment_file, lint_file
+from rr_opt.outcome import InputError
+
+
+def lint(path: str | Path) -> list[Issue]:
+    """Everything that is wrong or looks wrong in an input file and the files that it names.
+
+    A robot, problem, study or experiment file, or the folder of a problem or an experiment, whose
+    recordings are read too. An Issue has `level` (`error` or `warning`), `message`, `file`, `line`
+    and `path`, the key. Nothing is raised.
+    """
+    experiment = experiment_file(path)
+    if experiment is None:
+        return lint_file(path)
+    from rr_opt.recordings.experiment import experiment_of
+    from rr_opt.recordings.usable import checked
+
+    read, issues = experiment_of(experiment)
+    if read is not None:
+        found, place = checked(read), str(experiment)
+        issues += [Issue("error", "", text, file=place) for text in found.wrong]
+        issues += [Issue("warning", "", text, file=place) for text in found.left_out.values()]
+    return issues
+
+
+Kind = Literal["robot", "problem", "study", "experiment"]
+
+
+def init(kind: Kind, path: str | Path | None = None, *, force: bool = False) -> list[Path]:
+    """Write a commented input file, which can be used as it is; returns the files.
+
+    kind   an experiment is a folder with simulated recordings, to be replaced by real ones
+    path   of the file, KIND.yaml if left out; of an experiment the folder, `experiment`
+    force  write over what is there
+
+    Raises InputError for a file that exists, unless force.
+    """
+    text = (files("rr_opt") / "data" / "templates" / f"{kind}.yaml").read_text(encoding="utf-8")
+    if kind != "experiment":
+        place = Path(path or f"{kind}.yaml")
+        _require_new([place], force)
+        return [write_text(place, text)]
+    folder = Path(path or kind)
+    places = [folder / FILE_NAME, *(folder / f"run{number}.csv" for number in (1, 2, 3))]
+    _require_new(places, force)
+    # The recordings go first: the experiment file names them.
+    for place in places[1:]:
+        write_text(place, "t,x,y,psi,phi\n")
+    write_text(places[0], text)
+    _record(folder)
+    return places
+
+
+def _require_new(places: list[Path], force: bool) -> None:
+    for place in places:
+        file_for_result(place)
+        if place.exists() and not force:
+            raise InputError(
+                f"{place}: The file exists. Expected a new name. Give another with --out, or "
+                "--force to write over it."
+            )
+
+
+_SECONDS, _RATE = 12.0, 50.0
+
+
+def _record(folder: Path) -> None:
+    """Simulate the recordings of an experiment, with its noise."""
+    from rr_opt.motion.rollout import rollout
+
+    plan, _ = read_plan(folder)
+    draw = np.random.default_rng(1)
+    for run in plan.runs:
+        driven = rollout(plan.robot, run.gait, _SECONDS, "steady", _RATE)
+        columns = [driven.t]
+        for name in ("x", "y", "psi", "phi"):
+            exact = getattr(driven, name)
+            columns.append(exact + plan.noise.of(name) * draw.normal(size=len(exact)))
+        rows = (",".join(f"{value:.6g}" for value in row) for row in np.column_stack(columns))
+        write_text(run.file, "\n".join(["t,x,y,psi,phi", *rows]) + "\n")

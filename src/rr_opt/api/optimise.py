@@ -1,0 +1,264 @@
+"""Gaits of a problem: the fastest, of each waveform, turn and study, checked; and plain sweeps."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from contextlib import closing
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rr_opt.api.load import PathLike, identity, problem_of, read_arguments
+from rr_opt.batch.journal import Journal
+from rr_opt.batch.run import Pool, pool_of, run
+from rr_opt.design import maximize_speed as design
+from rr_opt.design.maximize_speed import Optimum
+from rr_opt.design.study.case import solve_case, solve_study
+from rr_opt.design.study.plan import plan
+from rr_opt.design.study.row import Row, row_from, row_record
+from rr_opt.design.turn import fastest_turn
+from rr_opt.design.turn_target import Target, checked
+from rr_opt.documents.archive import folder_for_results
+from rr_opt.files.study_file import Study, read_study
+from rr_opt.model.problem import Problem
+from rr_opt.motion.dynamics import require_friction
+from rr_opt.results.fastest import FastestGait
+from rr_opt.results.result import Progress, quiet
+from rr_opt.results.shapes import FastestShapes, family_name
+from rr_opt.results.study import SolvedStudy
+from rr_opt.results.sweep import Sweep
+from rr_opt.results.turn import FastestTurn
+from rr_opt.results.turn_chart import TurnChart
+from rr_opt.verify import sweep as verify
+from rr_opt.verify.grid import free_decisions
+from rr_opt.verify.replay import Replay, check_circle, replay
+from rr_opt.verify.sweep import SweepCheck, SweepResult, check_optimum
+from rr_opt.verify.turn_chart import radius_claim, sign_claim, tightest, turn_map
+from rr_opt.verify.turn_sweep import check_turn
+from rr_opt.version import __version__
+
+if TYPE_CHECKING:
+    from rr_opt.machines.racer.driven import DrivenOptimum
+
+
+def maximize_speed(problem: Problem | PathLike, *, progress: Progress = quiet) -> FastestGait:
+    """The fastest gait of a problem or its file, checked by simulation and against a plain sweep.
+
+    Where no gait respects every limit, or a check fails, the result's `status` and `message` say
+    so. Raises InputError for a robot without friction, which has no steady speed.
+    """
+    problem = problem_of(problem)
+    optimum = design.maximize_speed(problem, progress)
+    evidence = _evidence(optimum, progress)
+    driven = _driven(optimum, progress)
+    best = FastestGait(*identity(problem), optimum, *evidence, driven=driven)
+    if optimum.best is None or not best.rebuilt:
+        return best
+    progress("the robot as built")
+    as_built = design.maximize_speed(replace(problem, inertia_ratio=None)).best
+    return replace(best, as_built=as_built.speed if as_built else None)
+
+
+def _driven(optimum: Optimum, progress: Progress) -> DrivenOptimum | None:
+    """The optimum driven with all effects of its robot, where the optimiser lacks some."""
+    if not optimum.problem.robot.physics:
+        return None
+    from rr_opt.machines.racer.driven import drive_optimum
+
+    progress("drive with all effects")
+    return drive_optimum(optimum)
+
+
+def _evidence(
+    optimum: Optimum, progress: Progress, swept: SweepResult | None = None
+) -> tuple[Replay | None, SweepCheck | None]:
+    """The replay of an optimum and the sweep against it; None and None if there is no optimum.
+
+    swept  a sweep of the whole problem, where that is done already
+    """
+    best, robot, ratio = optimum.best, optimum.robot, optimum.ratio
+    if best is None or robot is None or ratio is None:
+        return None, None
+    progress("replay by CVODES")
+    replayed = replay(robot, best.gait, optimum.problem.limits, best.speed)
+    progress("check against a sweep")
+    check = check_optimum(optimum.problem, best.gait, ratio, best.speed, everywhere=swept)
+    return replayed, check
+
+
+def shapes(problem: Problem | PathLike, *, progress: Progress = quiet) -> FastestShapes:
+    """The fastest sine, compared with the fastest gaits of 3 and 5 harmonics and of free shape.
+
+    All respect the limits of the problem, whose own shape is ignored, and each is checked. Raises
+    InputError for a robot without friction.
+    """
+    problem = problem_of(problem)
+    name, sha256 = identity(problem)
+    optima = design.compare_shapes(problem, progress)
+    swept = None
+    if any(one.best for one in optima):
+        # One for all: it is a sweep of the sines, whatever the shape.
+        progress("sweep of all sines")
+        swept = verify.sweep(problem)
+    answers = []
+    for one in optima:
+        own = f"{name}, {family_name(one.problem.gait)}"
+        evidence = _evidence(one, progress, swept)
+        answers.append(FastestGait(own, sha256, one, *evidence, driven=_driven(one, progress)))
+    return FastestShapes(name, sha256, tuple(answers))
+
+
+def turn(
+    problem: Problem | PathLike,
+    *,
+    radius: float | str | None = None,
+    heading: float | str | None = None,
+    within: float | str | None = None,
+    length: float | str | None = None,
+    whole: bool = False,
+    progress: Progress = quiet,
+) -> FastestTurn:
+    """The fastest gait round a circle or through a change of heading, checked.
+
+    radius   of the circle, m, positive to the left
+    heading  change of heading, rad, positive to the left; with radius, within or length
+    within   longest time for the change of heading, s
+    length   longest path for it, m
+    whole    make it in a whole number of periods
+
+    Each is a number in SI or a text with its unit. Where the problem fixes the offset, it is freed.
+    Raises InputError for what is no turn.
+    """
+    asked = {"radius": radius, "heading": heading, "within": within, "length": length}
+    target = checked(Target(**read_arguments(asked), whole=whole))
+    problem = problem_of(problem)
+    name, sha256 = identity(problem)
+    turned = fastest_turn(problem, target, progress)
+    optimum, arc = turned.optimum, turned.arc
+    best, robot, ratio = optimum.best, optimum.robot, optimum.ratio
+    found = FastestTurn(name, sha256, optimum, target=target, opened=turned.opened)
+    if best is None or robot is None or ratio is None or arc is None:
+        return found
+    progress("replay by CVODES")
+    replayed = replay(robot, best.gait, optimum.problem.limits, best.speed)
+    progress("check against a sweep")
+    swept = check_turn(optimum.problem, best.gait, ratio, best.speed)
+    progress("check of the circle")
+    wanted = target.turn.curvature
+    circle = check_circle(robot, best.gait, wanted.low if wanted.fixed else arc.curvature)
+    driven = _driven(optimum, progress)
+    return replace(found, replay=replayed, sweep=swept, arc=arc, circle=circle, driven=driven)
+
+
+JOURNAL = "journal.jsonl"
+
+
+def load_study(path: str | Path) -> Study:
+    """The study of a file. Raises InputError with everything that is wrong in any case."""
+    return read_study(path)[0]
+
+
+def study(
+    asked: Study | str | Path,
+    *,
+    folder: str | Path | None = None,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    cold: bool = False,
+    restart: bool = False,
+    progress: Progress = quiet,
+) -> SolvedStudy:
+    """Solve every case of a study, or of a study file; each begins at its neighbours' optima.
+
+    folder     where finished rows are kept, so that the same call resumes after an interruption
+    workers    processes here; None: one for each core. A script that uses more than one keeps its
+               own work under `if __name__ == "__main__":`
+    scheduler  of a dask cluster to work on instead, `tcp://HOST:PORT`
+    cold       solve every case from cold starts alone
+    restart    discard the rows of an earlier run
+
+    Raises InputError for a folder with the rows of another study.
+    """
+    if not isinstance(asked, Study):
+        asked = load_study(asked)
+    pool = partial(pool_of, workers, scheduler)
+    if folder is None:
+        return _solved(asked, {}, lambda *_: None, pool, progress, cold=cold)
+    identity = {"input_sha256": asked.sha256, "version": __version__, "cold": cold}
+    path, cases = folder_for_results(Path(folder)) / JOURNAL, len(asked.problems)
+    with Journal(path, identity, read=row_from, cases=cases, restart=restart) as journal:
+        rows = journal.rows
+        if rows:
+            progress(f"{len(rows)} of {cases} rows were solved in an earlier run.")
+
+        def keep(case: int, row: Row) -> None:
+            journal.append(case, row_record(row))
+
+        try:
+            return _solved(asked, rows, keep, pool, progress, cold=cold)
+        except KeyboardInterrupt:
+            raise KeyboardInterrupt(
+                f"{len(rows)} of {cases} rows are kept. Repeat the command to resume."
+            ) from None
+
+
+def _solved(
+    asked: Study,
+    rows: dict[int, Row],
+    keep: Callable[[int, Row], object],
+    open_pool: Callable[[], Pool],
+    progress: Progress,
+    *,
+    cold: bool,
+) -> SolvedStudy:
+    """With the rows that are not there yet solved, each kept as soon as it is."""
+    rows, total = dict(rows), len(asked.problems)
+    if len(rows) < total:
+        planned = plan([axis.numbers for axis in asked.axes], asked.shape)
+        with closing(open_pool()) as pool:
+            progress(f"case {len(rows) + 1} of {total}")
+            solve = partial(run, pool, solve_case)
+            for case, row in solve_study(asked.problems, planned, rows, solve, cold=cold):
+                keep(case, row)
+                rows[case] = row
+                progress(f"case {min(len(rows) + 1, total)} of {total}")
+    return SolvedStudy(asked, tuple(rows[case] for case in range(total)))
+
+
+def sweep(
+    problem: Problem | PathLike, points: int = 10_000, *, progress: Progress = quiet
+) -> Sweep:
+    """Evaluate about `points` gaits all over the bounds, and refine the best.
+
+    Raises InputError for a robot without friction.
+    """
+    problem = problem_of(problem)
+    require_friction(problem.robot)
+    counts = max(2, math.ceil(points ** (1 / max(len(free_decisions(problem)), 1))))
+    tried = verify.sweep(problem, counts, lambda done, of: progress(f"gait {done} of {of}"))
+    return Sweep(*identity(problem), problem, tried)
+
+
+_DRAWN = (6, 4, 121)
+"""Amplitudes, periods and offsets of the chart."""
+_TESTED = (24, 10, 101)
+"""The same of the map on which the paper's claim is tested."""
+
+
+def turn_chart(problem: Problem | PathLike, *, progress: Progress = quiet) -> TurnChart:
+    """Radius over offset, amplitude and period, and the tightest circle within the limits.
+
+    The inertia ratio is that of the robot as it is. Raises InputError for a robot without friction.
+    """
+    problem = problem_of(problem)
+    require_friction(problem.robot)
+    progress("chart")
+    seen = turn_map(problem, _DRAWN)
+    progress("the paper's claim")
+    fine = turn_map(problem, _TESTED)
+    progress("tightest circle")
+    tight = tightest(problem)
+    claims = sign_claim(fine), radius_claim(fine)
+    return TurnChart(*identity(problem), problem, seen, tight, *claims)

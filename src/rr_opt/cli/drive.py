@@ -1,0 +1,79 @@
+"""Verbs that drive a given gait: its motion, its circle, its set points for a controller."""
+
+from __future__ import annotations
+
+import rr_opt as rr
+from rr_opt.cli import options
+from rr_opt.cli.options import show
+from rr_opt.cli.steps import Steps
+
+
+def simulate(
+    source: options.Driven = None,
+    *,
+    amplitude: options.Amplitude = None,
+    period: options.Period = None,
+    offset: options.Offset = None,
+    seconds: options.Seconds = 10.0,
+    start: options.From = "rest",
+    rate: options.Samples = 100.0,
+    out: options.MotionFolder = None,
+    kind: options.Trajectory = "csv",
+    animate: options.Film = None,
+    json: options.Summary = False,
+) -> None:
+    """Simulate a gait for some time.
+
+    Writes the trajectory, a figure and, on request, an animation.
+    """
+    with Steps() as steps:
+        gait = {"amplitude": amplitude, "period": period, "offset": offset}
+        driven = options.read_gait(source, **gait, seconds=seconds, rate=rate)
+        folder = options.motion_folder(out, source, kind, animate)
+        motion = rr.simulate(driven, None, seconds, start=start, rate=rate, progress=steps)
+        files = motion.save(folder, format=kind, film=animate, progress=steps)
+    show(motion, files, json=json)
+
+
+def circle(
+    source: options.Driven = None,
+    *,
+    amplitude: options.Amplitude = None,
+    period: options.Period = None,
+    offset: options.Offset = None,
+    json: options.Summary = False,
+) -> None:
+    """Compute the circle of a gait: radius, centre, speed, time for a full turn.
+
+    Also shows how a start from rest approaches it. Left is positive, seen from above.
+    """
+    with Steps() as steps:
+        gait = {"amplitude": amplitude, "period": period, "offset": offset}
+        answer = rr.circle(options.read_gait(source, **gait), progress=steps)
+    show(answer, json=json)
+
+
+def export(
+    source: options.Driven = None,
+    *,
+    kind: options.SetPoints = "csv",
+    rate: options.PointRate = 125.0,
+    keep_period: options.KeepPeriod = False,
+    amplitude: options.Amplitude = None,
+    period: options.Period = None,
+    offset: options.Offset = None,
+    out: options.PointFile = None,
+    json: options.Summary = False,
+) -> None:
+    """Write a gait as set points for a controller.
+
+    A period holds a whole number of set points. The loss of speed is reported separately for
+    the adjusted period, the straight lines between set points, and rounding to counts.
+    """
+    with Steps() as steps:
+        gait = {"amplitude": amplitude, "period": period, "offset": offset}
+        driven = options.read_gait(source, **gait, rate=rate)
+        file = options.setpoints_file(out, source, kind)
+        points = rr.export(driven, format=kind, rate=rate, keep_period=keep_period, progress=steps)
+        files = points.save(file)
+    show(points, files, json=json)

@@ -1,0 +1,142 @@
+"""Verbs that look for gaits: by the optimiser, over a study, and by plain sweeps."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+import rr_opt as rr
+from rr_opt.cli import options
+from rr_opt.cli.options import show
+from rr_opt.cli.steps import Steps
+
+
+def maximize_speed(
+    problem: options.ProblemFile = None,
+    out: Annotated[Path | None, options.out_option("out/NAME")] = None,
+    json: Annotated[bool, options.json_option("result.json")] = False,
+    figures: options.Figures = True,
+) -> None:
+    """Find the fastest gait of a problem.
+
+    The answer is checked by a simulation and a sweep, and reported with its active limits.
+    """
+    with Steps() as steps:
+        posed = options.read_problem(problem)
+        folder = options.results_folder(out, posed.name)
+        best = rr.maximize_speed(posed, progress=steps)
+        files = best.save(folder, figures=figures, progress=steps)
+    show(best, files, json=json)
+
+
+def shapes(
+    problem: options.ProblemFile = None,
+    out: Annotated[Path | None, options.out_option("out/NAME-shapes")] = None,
+    json: Annotated[bool, options.json_option("shapes.json")] = False,
+    figures: options.Figures = True,
+) -> None:
+    """Compare the fastest sine with other waveforms: 3 and 5 harmonics, and a free gait.
+
+    All satisfy the same limits, and each is checked. The problem's own shape is ignored.
+    """
+    with Steps() as steps:
+        posed = options.read_problem(problem)
+        folder = options.results_folder(out, f"{posed.name}-shapes")
+        compared = rr.shapes(posed, progress=steps)
+        files = compared.save(folder, figures=figures, progress=steps)
+    show(compared, files, json=json)
+
+
+def turn(
+    problem: options.ProblemFile = None,
+    *,
+    radius: options.Radius = None,
+    heading: options.Heading = None,
+    within: options.Within = None,
+    length: options.Length = None,
+    cycles: options.Cycles = "any",
+    out: Annotated[Path | None, options.out_option("out/NAME-turn-...")] = None,
+    json: Annotated[bool, options.json_option("result.json")] = False,
+    figures: options.Figures = True,
+) -> None:
+    """Find the fastest gait for a turn.
+
+    Give --radius; or --heading with --radius, --within or --length. Left is positive, seen from
+    above, in either direction of travel. The problem sets the direction of travel.
+    """
+    with Steps() as steps:
+        asked = options.read_options(radius=radius, heading=heading, within=within, length=length)
+        posed = options.read_problem(problem)
+        folder = options.turn_folder(out, posed.name, asked, cycles)
+        turned = rr.turn(posed, **asked, whole=cycles == "whole", progress=steps)
+        files = turned.save(folder, figures=figures, progress=steps)
+    show(turned, files, json=json)
+
+
+_COLD = "Solve every case from scratch, not from its neighbours."
+_RESTART = "Discard the rows of an earlier run."
+
+
+def study(
+    study: Annotated[Path, typer.Argument(help="Study file: a problem and what is varied.")],
+    out: Annotated[Path | None, options.out_option("out/NAME")] = None,
+    workers: options.Workers = None,
+    scheduler: options.Scheduler = None,
+    cold: Annotated[bool, typer.Option("--cold", help=_COLD)] = False,
+    restart: Annotated[bool, typer.Option("--restart", help=_RESTART)] = False,
+    netcdf: Annotated[bool, typer.Option("--netcdf", help="Also write study.nc.")] = False,
+    json: Annotated[bool, options.json_option("study.json")] = False,
+    figures: options.Figures = True,
+) -> None:
+    """Solve a problem for many values of its keys: limits, robot parameters, bounds.
+
+    An interrupted run resumes when the same command is repeated.
+    """
+    with Steps() as steps:
+        asked = rr.load_study(study)
+        folder = options.study_folder(out, asked.name, netcdf=netcdf)
+        given = {"workers": workers, "scheduler": scheduler, "cold": cold, "restart": restart}
+        solved = rr.study(asked, folder=folder, **given, progress=steps)
+        files = solved.save(folder, figures=figures, netcdf=netcdf, progress=steps)
+    show(solved, files, json=json)
+
+
+_POINTS = "Approximate number of gaits on the grid; at least two values of each quantity."
+
+
+def sweep(
+    problem: options.ProblemFile = None,
+    points: Annotated[int, typer.Option(help=_POINTS, min=1, max=5_000_000)] = 10_000,
+    out: Annotated[Path | None, options.out_option("out/NAME-sweep")] = None,
+    json: Annotated[bool, options.json_option("sweep.json")] = False,
+) -> None:
+    """Evaluate a grid of gaits within the bounds.
+
+    Writes every gait, the best one and a figure. No solver is involved.
+    """
+    with Steps() as steps:
+        posed = options.read_problem(problem)
+        folder = options.results_folder(out, f"{posed.name}-sweep")
+        swept = rr.sweep(posed, points, progress=steps)
+        files = swept.save(folder, progress=steps)
+    show(swept, files, json=json)
+
+
+def turn_chart(
+    problem: options.ProblemFile = None,
+    out: Annotated[Path | None, options.out_option("out/NAME-turn-chart")] = None,
+    json: Annotated[bool, options.json_option("turn-chart.json")] = False,
+) -> None:
+    """Chart the circles of a robot: radius over offset, amplitude and period.
+
+    Finds the tightest circle within the limits, and reports where the offset alone does not
+    determine the circle. The inertia ratio is the robot's own.
+    """
+    with Steps() as steps:
+        posed = options.read_problem(problem)
+        folder = options.results_folder(out, f"{posed.name}-turn-chart")
+        chart = rr.turn_chart(posed, progress=steps)
+        files = chart.save(folder, progress=steps)
+    show(chart, files, json=json)

@@ -1,0 +1,180 @@
+"""A document rendered: for a terminal, as Markdown, and as one HTML file that opens anywhere."""
+
+from __future__ import annotations
+
+import base64
+import re
+import textwrap
+from collections.abc import Iterable, Sequence
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rr_opt.documents import document as doc
+
+if TYPE_CHECKING:
+    from jinja2 import Template
+    from markupsafe import Markup
+
+
+_WIDTH = 100
+
+
+def terminal(document: doc.Document, files: Iterable[Path] = ()) -> str:
+    """The brief sections as text, and the files that were written."""
+    head = f"{document.name}: {document.title}" if document.name else document.title
+    # Why there is no result goes to stderr.
+    lead = f". {document.lead}" if document.lead and document.good else ""
+    parts = [_wrapped(head + lead)] if head else []
+    parts += [_section(section) for section in document.sections if section.brief]
+    parts.append(columns([("files" if not k else "", str(file)) for k, file in enumerate(files)]))
+    return "\n\n".join("\n".join(lines) for lines in parts if lines) + "\n"
+
+
+def _section(section: doc.Section) -> list[str]:
+    lines = [line for block in section.blocks if block for line in _lines(block)]
+    if not lines or not section.title:
+        return lines
+    return [section.title, *(f"  {line}" if line else line for line in lines)]
+
+
+def _lines(block: doc.Block) -> list[str]:
+    match block:
+        case str():
+            return _wrapped(block)
+        case doc.Facts():
+            return _hanging([(fact.label, fact.text) for fact in block.items])
+        case doc.Table():
+            return columns(_cells(block)) + _wrapped(block.note)
+        case doc.Checks():
+            return _hanging(block.items)
+        case doc.Chain():
+            return columns([(step.name, f"{step.mark}  {step.detail}") for step in block.items])
+        case doc.Gallery():
+            return []
+
+
+def _cells(block: doc.Table) -> list[list[str]]:
+    return [list(block.head), *([doc.cell_text(cell) for cell in row] for row in block.rows)]
+
+
+def columns(rows: Sequence[Sequence[str]]) -> list[str]:
+    """Rows of cells in columns as wide as their widest cell, at least 8."""
+    if not rows:
+        return []
+    count = max(len(row) for row in rows)
+    widths = [max([6, *(len(row[i]) for row in rows if i < len(row) - 1)]) for i in range(count)]
+    return ["  ".join(map(str.ljust, row, widths)).rstrip() for row in rows]
+
+
+def _hanging(rows: Sequence[tuple[str, str]]) -> list[str]:
+    """Labels with their texts; a long text continues with a hanging indent."""
+    width = max([6, *(len(label) for label, _ in rows)]) + 2
+    return [
+        line
+        for label, words in rows
+        for line in _wrapped(words, label.ljust(width), " " * width) or [label]
+    ]
+
+
+def _wrapped(words: str, first: str = "", later: str = "") -> list[str]:
+    wrapper = textwrap.TextWrapper(
+        _WIDTH, first, later, break_long_words=False, break_on_hyphens=False
+    )
+    return wrapper.wrap(words)
+
+
+def markdown(document: doc.Document) -> str:
+    """Every section as Markdown, the figures as links to files beside it."""
+    parts = [f"# {document.title}", document.lead]
+    for section in document.sections:
+        blocks = [_marked(block) for block in section.blocks if block]
+        parts += [f"## {section.title}" if blocks and section.title else "", *blocks]
+    return "\n\n".join(part for part in (*parts, *document.footer) if part) + "\n"
+
+
+def _marked(block: doc.Block) -> str:
+    match block:
+        case str():
+            return block
+        case doc.Facts():
+            return "\n".join(f"- **{fact.label}**: {fact.text}" for fact in block.items)
+        case doc.Table():
+            return "\n\n".join(filter(None, (_marked_table(block), block.note)))
+        case doc.Checks():
+            return "\n".join(f"- {state}: {sentence}" for state, sentence in block.items)
+        case doc.Chain():
+            return "\n".join(f"- {s.name}: {s.mark} {s.detail}".rstrip() for s in block.items)
+        case doc.Gallery():
+            return "\n\n".join(f"![{figure.alt}]({figure.name}.svg)" for figure in block.items)
+
+
+def _marked_table(block: doc.Table) -> str:
+    """Padded, so that it reads well as plain text too."""
+    head, *rows = _cells(block)
+    for cells, row in zip(rows, block.rows, strict=True):
+        for k, cell in enumerate(row):
+            if isinstance(cell, doc.Link):
+                cells[k] = f"[{cell.text}]({cell.target})"
+    widths = [max(3, *(len(row[k]) for row in (head, *rows))) for k in range(len(head))]
+    lines = ["| " + " | ".join(map(str.ljust, row, widths)) + " |" for row in (head, *rows)]
+    lines.insert(1, "|" + "|".join("-" * (width + 2) for width in widths) + "|")
+    return "\n".join(lines)
+
+
+PAGE = "report.html"
+
+_KINDS = {
+    doc.Facts: "facts",
+    doc.Table: "table",
+    doc.Checks: "checks",
+    doc.Chain: "chain",
+    doc.Gallery: "gallery",
+}
+
+
+def page(document: doc.Document) -> str:
+    """The whole page; every text is escaped."""
+    return _template().render(document=document)
+
+
+@cache
+def _template() -> Template:
+    # Here and not above: without a page Jinja2 need not be loaded.
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+
+    environment = Environment(
+        loader=PackageLoader("rr_opt.documents"),
+        autoescape=True,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        undefined=StrictUndefined,
+    )
+    environment.filters |= {
+        "code": _code,
+        "cell_text": doc.cell_text,
+        "data_uri": _data_uri,
+        "kind": _kind,
+    }
+    environment.tests |= {
+        "badge": lambda cell: isinstance(cell, doc.Badge),
+        "link": lambda cell: isinstance(cell, doc.Link),
+        "gallery": lambda block: isinstance(block, doc.Gallery),
+        "tiles": lambda block: isinstance(block, doc.Facts) and block.key,
+    }
+    return environment.get_template("document.html")
+
+
+def _code(text: str) -> Markup:
+    """The text escaped, and what stands in backticks as code."""
+    from markupsafe import Markup, escape
+
+    return Markup(re.sub("`([^`]+)`", r"<code>\1</code>", str(escape(text))))
+
+
+def _data_uri(svg: str) -> str:
+    return f"data:image/svg+xml;base64,{base64.b64encode(svg.encode()).decode()}"
+
+
+def _kind(block: doc.Block) -> str:
+    return _KINDS.get(type(block), "text")

@@ -1,0 +1,228 @@
+"""The Roller Racer as a model that can be identified; answers `sysid.model.Model`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from functools import cached_property
+from typing import Self
+
+import numpy as np
+
+from rr_opt.array import Array
+from rr_opt.effects import CATALOGUE
+from rr_opt.effects.effect import OperatingRange
+from rr_opt.machines.racer.parameters import ZERO_OFFSET, ZEROS, effect_info, nominal, uncertain
+from rr_opt.machines.racer.simulation import Simulator, side_speeds, slips
+from rr_opt.model.experiment import CHANNELS, Experiment, Run
+from rr_opt.sysid.model import (
+    Data,
+    EffectInfo,
+    Linearisation,
+    Noise,
+    Quantity,
+    Request,
+    Segment,
+    Simulation,
+)
+from rr_opt.sysid.settings import SETTINGS
+
+SETTLING = 0.05
+"""After a start from rest the motor saturates for some 20 ms; that much, s, is left out."""
+
+
+FORM_ERROR = 1e-4
+"""Of the way travelled, by which even a fine simulation of wheels that press on a floor is off."""
+
+
+_SETTLED = 0.02
+"""s, in which a side speed of a wheel that creeps is gone."""
+
+
+class RacerModel:
+    """An experiment with a Roller Racer: what was recorded, and what a simulation says of it."""
+
+    channels = CHANNELS
+    segment_length = 5.0
+    correlation_time = SETTINGS.correlation_time
+
+    def __init__(
+        self,
+        experiment: Experiment,
+        setting: OperatingRange | None = None,
+        noise: Sequence[Noise] = (Noise(),) * len(CHANNELS),
+    ) -> None:
+        """The model of an experiment.
+
+        setting  what was asked of the robot; left out, it is seen from the runs
+        noise    of each channel, against what the experiment states
+        """
+        self.experiment = experiment
+        self._given, self._noise = setting, noise
+        self.nominal = nominal(experiment)
+
+    def with_noise(self, noise: Sequence[Noise]) -> Self:
+        """The same with other noise, its levels in units of those here."""
+        of_stated = [
+            replace(new, level=new.level * old.level)
+            for new, old in zip(noise, self._noise, strict=True)
+        ]
+        return type(self)(self.experiment, self._given, of_stated)
+
+    def beside(self, experiment: Experiment) -> Self:
+        """Another experiment with the same robot, and the same usual sizes of effects."""
+        return type(self)(experiment, self.setting, self._noise)
+
+    @property
+    def runs(self) -> Sequence[Data]:
+        """The recorded runs."""
+        return self._runs
+
+    @cached_property
+    def _runs(self) -> Sequence[Data]:
+        return [_data(run, self._noise) for run in self.experiment.runs]
+
+    @property
+    def form_error(self) -> float:
+        """RMS in sigma over all channels by which robots of this kind differ from any model."""
+        return self._form_error
+
+    @cached_property
+    def _form_error(self) -> float:
+        squares = [
+            np.nanmean((FORM_ERROR * _travelled(run)[:, None] / run.sigma[:, :2]) ** 2)
+            for run in self.runs
+        ]
+        # In x and y together as much as along the way, in psi and phi nothing.
+        return float(np.sqrt(np.mean(squares) / len(CHANNELS)))
+
+    @property
+    def parameters(self) -> tuple[Quantity, ...]:
+        """The robot's parameters that are not known exactly."""
+        return self._parameters
+
+    @cached_property
+    def _parameters(self) -> tuple[Quantity, ...]:
+        return uncertain(self.experiment, self.setting)
+
+    @property
+    def catalogue(self) -> Mapping[str, EffectInfo]:
+        """The effects of physics beyond the paper's model."""
+        return self._catalogue
+
+    @cached_property
+    def _catalogue(self) -> Mapping[str, EffectInfo]:
+        return {
+            name: effect_info(effect, self.setting)
+            for name, effect in CATALOGUE.items()
+            if name not in self.simulator.built_in and effect.candidate
+        }
+
+    @property
+    def setting(self) -> OperatingRange:
+        """What was asked of the robot, for the usual sizes of the effects."""
+        return self._given or self._told
+
+    @cached_property
+    def _told(self) -> OperatingRange:
+        gaits = [run.gait for run in self.experiment.runs]
+        distances = [
+            np.nanmedian(np.hypot(*(np.diff(d.values[:: len(d.t) // 20, k]) for k in (0, 1))))
+            / np.median(np.diff(d.t[:: len(d.t) // 20]))
+            for d in self.runs
+        ]
+        fastest = max(gait.peak_rate for gait in gaits)
+        places = np.vstack([d.values[:, :2] for d in self.runs])
+        room = float(np.max(np.nanmax(places, axis=0) - np.nanmin(places, axis=0)))
+        speed = max(float(np.median(distances)), 1e-3)
+        return OperatingRange(self.experiment.robot, fastest, speed, room)
+
+    def initial_state(
+        self, segment: Segment, effects: tuple[str, ...], values: Mapping[str, float]
+    ) -> Array:
+        """x, y, psi as first recorded; for z, which swings less than v, the mean of v; side speeds
+        as they look in the first moments."""
+        data, run = self.runs[segment.run], self.experiment.runs[segment.run]
+        t, recorded = data.t[segment.span], data.values[segment.span]
+        first = [column[np.isfinite(column)][0] for column in recorded.T[:3]]
+        # The mean speed along the axis over the first period is near enough to begin with.
+        seen = recorded[(t - t[0] <= run.gait.period) & np.isfinite(recorded[:, :3]).all(axis=1)]
+        took = max(min(run.gait.period, t[-1] - t[0]), 1e-9)
+        dx, dy = seen[-1, :2] - seen[0, :2] if len(seen) else (0.0, 0.0)
+        heading = seen[:, 2].mean() if len(seen) else 0.0
+        v = (dx * np.cos(heading) + dy * np.sin(heading)) / took
+        plain = Request(segment, values, np.array([*first, v]))
+        state = self.simulator.converted(plain, (), effects)
+        if state.size > plain.state.size:
+            state[-2:] = side_speeds(self.experiment.robot, run.gait, t, recorded)
+        return state
+
+    def converted(
+        self, request: Request, before: tuple[str, ...], effects: tuple[str, ...]
+    ) -> Array:
+        """The state with other effects."""
+        return self.simulator.converted(request, before, effects)
+
+    def state_scale(self, effects: tuple[str, ...]) -> Array:
+        """As much as the noise; in speeds, as much as that makes in a second, or in the moment for
+        which a side speed lasts."""
+        place, heading = self._stated
+        sides = [place / _SETTLED] * 2 if slips(self.simulator.every(effects)) else []
+        return np.array([place, place, heading, place, *sides])
+
+    @cached_property
+    def _stated(self) -> tuple[float, float]:
+        """The noise of the place, m, and of the heading, rad."""
+        place, heading = (float(np.nanmedian(self.runs[0].sigma[:, k])) for k in (0, 2))
+        return place, heading
+
+    def state_prior(self, effects: tuple[str, ...]) -> Array:
+        """Side speeds are about 0: what they do to the motion is of the order of the noise."""
+        scale = self.state_scale(effects)
+        return np.array([*[np.inf] * 4, *scale[4:]])
+
+    def simulate(
+        self, requests: Sequence[Request], effects: tuple[str, ...]
+    ) -> Sequence[Simulation]:
+        """Simulate segments."""
+        return self.simulator.simulate(requests, effects)
+
+    def linearise(
+        self, requests: Sequence[Request], effects: tuple[str, ...], wanted: tuple[str, ...]
+    ) -> Sequence[Linearisation]:
+        """Linearise segments."""
+        return self.simulator.linearise(requests, effects, wanted)
+
+    def predicted(self, request: Request, effects: tuple[str, ...]) -> Array:
+        """What would be recorded of a segment."""
+        ((_, made, _, _),) = self.simulator.paths([request], effects)
+        return made.seen
+
+    @cached_property
+    def simulator(self) -> Simulator:
+        """Of its runs."""
+        given = frozenset(use.name for use in self.experiment.robot.physics)
+        if any(name in self.experiment.uncertainty for name in ZEROS.values()):
+            given |= {ZERO_OFFSET}
+        return Simulator(self.experiment.runs, self.runs, self.nominal, given)
+
+
+def _travelled(data: Data) -> Array:
+    """The way so far, m (n,), from places half a second apart, so that noise does not count."""
+    seen = np.isfinite(data.values[:, :2]).all(axis=1)
+    at = np.arange(data.t[0], data.t[-1], 0.5)
+    x, y = (np.interp(at, data.t[seen], data.values[seen, k]) for k in (0, 1))
+    way = np.append(0.0, np.cumsum(np.hypot(np.diff(x), np.diff(y))))
+    return np.interp(data.t, at, way)
+
+
+def _data(run: Run, noise: Sequence[Noise]) -> Data:
+    recording = run.recording
+    values = np.column_stack([recording.data(name) for name in CHANNELS])
+    if run.start == "rest":
+        values[(recording.t >= 0) & (recording.t < SETTLING)] = np.nan
+    sigma = np.column_stack([recording.sigma[name] for name in CHANNELS])
+    sigma = sigma * [one.level for one in noise]
+    correlation = np.array([one.correlation for one in noise])
+    held_out = run.use == "holdout"
+    return Data(run.name, recording.t, values, sigma, held_out, correlation=correlation)

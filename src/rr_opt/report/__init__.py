@@ -1,1 +1,0 @@
-"""What a run leaves for people and scripts: JSON, text, figures and a page."""

@@ -1,0 +1,1 @@
+"""The figures of results, as SVG text; everything that imports matplotlib."""

@@ -1,0 +1,80 @@
+"""A machine: a model that also knows where to look for what it lacks, and what that is worth."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+from rr_opt.array import Array
+from rr_opt.sysid.diagnosis import Misfit, NextExperiment
+from rr_opt.sysid.estimation import Fit
+from rr_opt.sysid.model import Choice, Linearisation, Model, Noise, Segment
+
+CONSTANT = "nothing"
+"""The variable of an input that is constant."""
+
+
+@dataclass(frozen=True)
+class Term:
+    """An unknown input in a channel as functions of a variable.
+
+    columns  of the linearisation that are its own, counted behind the quantities
+    unit     of the variable;  at (k,) where the input is shown;  shapes (k, columns) there, so that
+             amounts times shapes is the input
+    """
+
+    channel: str
+    variable: str
+    columns: tuple[int, ...]
+    unit: str
+    at: Array
+    shapes: Array
+
+
+class Machine(Model, Protocol):
+    """A model with ways to propose what is missing from it.
+
+    inputs          channels by which an unknown input may enter, and each input in words
+    """
+
+    @property
+    def inputs(self) -> Mapping[str, str]: ...  # noqa: D102
+
+    def upstream(self) -> Sequence[tuple[tuple[Choice, ...], Mapping[str, float]]]:
+        """Sets of effects of the drive, and their values, that explain its own recording; the
+        simplest first among equals. One empty set where the nominal drive does."""
+        ...
+
+    def proposals(
+        self, fit: Fit, complete: Sequence[str]
+    ) -> Sequence[tuple[Choice, Mapping[str, float]]]:
+        """Initial guesses of effects that a score test cannot see, beside a fit without them."""
+        ...
+
+    def with_noise(self, noise: Sequence[Noise]) -> Machine:
+        """The same machine and runs with other noise in each channel, in units of that here."""
+        ...
+
+    def unknown_inputs(self, fit: Fit) -> tuple[Sequence[Term], Mapping[Segment, Linearisation]]:
+        """What may push the machine that a fit lacks, as functions of what it may depend on; and
+        the fit's segments linearised in the quantities and in these functions."""
+        ...
+
+    def equivalent(self, values: Mapping[str, float]) -> Mapping[str, float] | None:
+        """Values that predict the same and are nearer to what was believed, if there are any."""
+        ...
+
+    def next_experiment(self, best: Fit, rival: tuple[str, Fit] | None) -> NextExperiment | None:
+        """The recording that would tell the answer from its rival, the candidate that comes next,
+        with its name; or that would narrow most the value known worst."""
+        ...
+
+    def worth(self, before: Sequence[Misfit], after: Sequence[Misfit]) -> str:
+        """What the answer is worth in the machine's own terms, as the beginning of a sentence: `the
+        simulated place was 8 mm off and is 1 mm off now; `."""
+        ...
+
+    def accuracy(self, misfits: Sequence[Misfit]) -> str:
+        """How well the corrected model predicts, in the machine's own terms, as a sentence."""
+        ...

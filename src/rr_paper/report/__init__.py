@@ -1,1 +1,0 @@
-"""The reproduction and the calibration as documents, records and figures."""
