@@ -36,6 +36,7 @@ QUANTITIES = {
     "rate": Quantity("largest joint rate", "rad/s", "rpm", 30 / math.pi),
     "torque": Quantity("largest servo torque", "N m"),
     "singularity": Quantity("least S1 = c1 cos φ + c2", "m", "mm", 1e3),
+    "grip": Quantity("largest side force over load", ""),
     "amplitude": Quantity("amplitude", "rad", "deg", _DEGREES),
     "period": Quantity("period", "s"),
     "offset": Quantity("offset", "rad", "deg", _DEGREES),

@@ -42,11 +42,13 @@ of the function; and the least of those, relative to the penalty."""
 
 class Seen(NamedTuple):
     """Of K points: the function (K,); rows (R, K), smooth along the points, those of maxima over a
-    curve along the first point's maxima; worst (W, K), the same of each point for itself."""
+    curve along the first point's maxima; worst (W, K), the same of each point for itself; names
+    of the rows."""
 
     function: Array
     rows: Array
     worst: Array
+    names: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -89,12 +91,13 @@ class Prices:
 @dataclass(frozen=True)
 class Ascent:
     """Where a climb led: the point (n,), the function there, the violation of the row that fails
-    most, prices; and whether no step gains anything more."""
+    most, prices, of rows with these names; and whether no step gains anything more."""
 
     x: Array
     value: float
     violation: float
     prices: Prices
+    names: tuple[str, ...]
     converged: bool
     iterations: int
 
@@ -108,10 +111,10 @@ def ascend(program: Program, start: Array, penalty: float = 10.0) -> Ascent:
     stencil, design = _stencil(len(x))
     here = program.look(x[None])
     value, violation = float(here.function[0]), float(program.violation(here.worst)[0])
-    prices = Prices(np.zeros(len(here.rows)), *(np.zeros(0) for _ in range(3)))
+    names, prices = here.names, Prices(np.zeros(len(here.rows)), *(np.zeros(0) for _ in range(3)))
     while not converged and iterations < _ITERATIONS:
         iterations += 1
-        function, rows, _ = program.look(x + _STEP * program.scale * stencil)
+        function, rows, _, names = program.look(x + _STEP * program.scale * stencil)
         models = np.vstack([function, rows]) @ design.T
         if not np.isfinite(models).all():
             break
@@ -136,7 +139,7 @@ def ascend(program: Program, start: Array, penalty: float = 10.0) -> Ascent:
         else:
             radius = _FRACTIONS[best - 1] * length
         converged = length <= _LENGTH or (best == 1 and gain <= _GAIN * size)
-    return Ascent(x, value, violation, prices, converged, iterations)
+    return Ascent(x, value, violation, prices, names, converged, iterations)
 
 
 def _step(

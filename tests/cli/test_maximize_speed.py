@@ -32,7 +32,7 @@ def test_result_has_the_promised_keys(solved, tmp_path):
     assert result["check"].keys() >= {"sweep_points", "sweep_best", "gap", "replay_error"}
     assert result["solver"].keys() >= {"starts", "iterations", "distinct_optima"}
     assert [limit["name"] for limit in result["limits"]] == [
-        *("angle", "rate", "torque", "singularity")
+        *("angle", "rate", "torque", "singularity", "grip")
     ]
     for limit in result["limits"]:
         assert limit.keys() >= {"name", "value", "limit", "active", "shadow_price"}

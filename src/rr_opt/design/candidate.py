@@ -21,7 +21,7 @@ class Candidate:
     feasible     every row holds within FEASIBLE
     success      the solver says it is an optimum
     sentence     the same in words
-    prices       speed gained per unit of each limit, m/s per unit: rate, angle, torque,
+    prices       speed gained per unit of each limit, m/s per unit: rate, angle, torque, grip,
                  singularity, direction, and curvature, yaw_rate, heading of the turn
     bound_prices speed gained per unit by which an active bound moves up: amplitude, period,
                  offset, ballast

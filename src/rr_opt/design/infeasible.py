@@ -82,7 +82,8 @@ def clash(problem: Problem, box: Decisions, settings: list[Setting]) -> str | At
 
     found = seek(("torque",), "rows", 0)
     if found.excess > FEASIBLE:
-        return f"{_told([_torque(problem, found)])} {_evidence(found, box)}"
+        name = Terrain(found.setting, box, 0).dearest(found.gait, _NODES)
+        return f"{_told([_load(problem, name, found)])} {_evidence(found, box)}"
     if way:
         found = seek(("torque", "direction"), "rows", way)
         if found.excess > FEASIBLE:
@@ -112,12 +113,12 @@ def _evidence(found: Attempt, box: Decisions) -> str:
     )
 
 
-def _torque(problem: Problem, found: Attempt) -> str:
-    limit = problem.limits.torque
+def _load(problem: Problem, name: str, found: Attempt) -> str:
+    limit, unit = getattr(problem.limits, name), " N m" if name == "torque" else ""
     return (
-        f"Limit `torque` ({limit:.6g} N m) conflicts with the gait's bounds: among the gaits that "
-        "keep the other limits, the least peak torque is "
-        f"{_up(limit * (1 + found.excess) * _ENOUGH)} N m. Raise the limit to that, "
+        f"Limit `{name}` ({limit:.6g}{unit}) conflicts with the gait's bounds: among the gaits that "
+        f"keep the other limits, the least peak {name} is "
+        f"{_up(limit * (1 + found.excess) * _ENOUGH)}{unit}. Raise the limit to that, "
         "or allow longer periods or smaller amplitudes."
     )
 

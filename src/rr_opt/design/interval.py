@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import casadi as ca
 
 from rr_opt.design.shapes.shape import Shape
-from rr_opt.design.transcription import COMMON, DYNAMIC, MEANS, PeriodTerms, named
+from rr_opt.design.transcription import COMMON, DYNAMIC, GRIPS, MEANS, PeriodTerms, named
 from rr_opt.mechanics.compile_cache import externals
 from rr_opt.mechanics.runge_kutta import Tableau
 from rr_opt.model.ballast import By, hang
@@ -59,10 +59,16 @@ class Code:
 
 @lru_cache
 def interval_of(
-    effects: tuple[str, ...], by: By, shape: Shape, looks: int, substeps: int, method: Tableau
+    effects: tuple[str, ...],
+    by: By,
+    shape: Shape,
+    looks: int,
+    substeps: int,
+    method: Tableau,
+    loads: tuple[str, ...],
 ) -> IntervalTerms:
     """The terms for these effects, this way of changing the inertia, shape and method."""
-    return IntervalTerms(effects, by, shape, looks, substeps, method)
+    return IntervalTerms(effects, by, shape, looks, substeps, method, loads)
 
 
 class IntervalTerms:
@@ -83,6 +89,7 @@ class IntervalTerms:
         looks: int,
         substeps: int,
         method: Tableau,
+        loads: tuple[str, ...],
     ):
         parameters = derive(effects).parameters
         z = ca.SX.sym("z", len(COMMON + shape.decisions))
@@ -102,7 +109,7 @@ class IntervalTerms:
                 *shape.angle(decided, interval.here, theta + width, width)[: len(shape.states)],
                 end[2:],
                 *shape.path_rows(decided, interval.here, theta, width),
-                *interval.torque(end, ca.vertsplit(places)),
+                *interval.along(loads, end, ca.vertsplit(places)),
             )
         )
         inner = ca.vertcat(local, z)
@@ -135,13 +142,18 @@ class _Interval:
     theta: ca.SX
     width: ca.SX
 
-    def motion(self, fraction: Any, v: ca.SX) -> Any:
-        """vdot, w, side, torque and what is integrated, at a fraction of the interval."""
+    def angle(self, fraction: float | ca.SX) -> tuple[Any, tuple[Any, Any, Any]]:
+        """The phase, and phi, dphi, ddphi, at a fraction of the interval."""
         T, since = self.decided["period"], fraction * self.width
         at = self.theta + since
         phi, slope, bend = self.shape.angle(self.decided, self.here, at, since)
-        moved = self.dynamics.motion(v, phi, slope / T, bend / T**2, self.values)
-        return *moved, self.shape.integrands(phi, at)
+        return at, (phi, slope / T, bend / T**2)
+
+    def motion(self, fraction: float, v: ca.SX) -> Any:
+        """vdot, w, side, torque and what is integrated, at a fraction of the interval."""
+        at, angle = self.angle(fraction)
+        moved = self.dynamics.motion(v, *angle, self.values)
+        return *moved, self.shape.integrands(angle[0], at)
 
     def rhs(self, fraction: float, y: ca.SX) -> ca.SX:
         """Derivative in theta of v, chi, V, E and the shape's integrals."""
@@ -163,15 +175,21 @@ class _Interval:
             )
         return y
 
-    def torque(self, end: ca.SX, places: list[ca.SX]) -> list[ca.SX]:
-        """At the node, at places within the interval and, where it jumps at nodes, at the end."""
+    def along(self, loads: tuple[str, ...], end: ca.SX, places: list[ca.SX]) -> list[ca.SX]:
+        """Each load at the node, at places within the interval and, where it jumps at nodes, at the
+        end."""
         start = ca.vertcat(self.here["v"], self.here["chi"])
         v0, v1 = start[0], end[0]
         d0, d1 = (self.width * self.rhs(at, y)[0] for at, y in ((0.0, start), (1.0, end)))
-        speeds = [_cubic(at, v0, v1, d0, d1) for at in places]
-        torque = [self.motion(0.0, v0)[3]]
-        torque += [self.motion(at, v)[3] for at, v in zip(places, speeds, strict=True)]
-        return [*torque, self.motion(1.0, v1)[3]] if self.shape.controls else torque
+        seen = [(0.0, v0), *((at, _cubic(at, v0, v1, d0, d1)) for at in places)]
+        seen += [(1.0, v1)] if self.shape.controls else []
+        known = [self._loads(at, v) for at, v in seen]
+        return [each[load] for load in loads for each in known]
+
+    def _loads(self, fraction: float | ca.SX, v: ca.SX) -> dict[str, ca.SX]:
+        inputs = (v, *self.angle(fraction)[1], self.values)
+        grips = zip(GRIPS, self.dynamics.grip(*inputs), strict=True)
+        return {"torque": self.dynamics.motion(*inputs)[3], **dict(grips)}
 
 
 def _cubic(at: ca.SX, v0: ca.SX, v1: ca.SX, d0: ca.SX, d1: ca.SX) -> ca.SX:

@@ -96,10 +96,11 @@ def shooting(
     looks: int = 0,
     substeps: int = 1,
     method: Tableau = BUTCHER6,
+    loads: tuple[str, ...] = ("torque",),
 ) -> Shooting:
     """The program for robots with these effects and this way of changing the inertia."""
-    terms = interval_of(effects, by, shape, looks, substeps, method)
-    return Shooting(Layout(shape, intervals, looks), terms)
+    terms = interval_of(effects, by, shape, looks, substeps, method, loads)
+    return Shooting(Layout(shape, intervals, looks, loads), terms)
 
 
 class _Program:

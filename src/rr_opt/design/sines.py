@@ -83,7 +83,7 @@ def _candidate(terrain: Terrain, start: Array, nodes: int) -> Candidate:
     ascent, end = climbed(terrain, start, nodes)
     cycles, sign = terrain.setting.landscape.cycles(end[:, None], nodes), terrain.way
     speed = float(cycles.speed[0])
-    prices, bound_prices = terrain.prices(end, speed, float(cycles.turn[0]), ascent.prices)
+    prices, bound_prices = terrain.prices(end, speed, float(cycles.turn[0]), ascent)
     feasible = ascent.violation <= FEASIBLE
     return Candidate(
         sign=sign or int(math.copysign(1, speed)),

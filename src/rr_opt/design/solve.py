@@ -14,10 +14,10 @@ from rr_opt.design.landscape import Cycles, Landscape
 from rr_opt.design.multiple_shooting import shooting
 from rr_opt.design.shapes import shape_of
 from rr_opt.design.shapes.shape import PATH, path_bounds
-from rr_opt.design.transcription import MEANS, TURN, ZERO, Layout, Mesh
+from rr_opt.design.transcription import GRIPS, MEANS, TURN, ZERO, Layout, Mesh
 from rr_opt.model.gait import Gait, SineGait
 from rr_opt.model.problem import Interval
-from rr_opt.motion.steady_cycle import steady_cycle
+from rr_opt.motion.steady_cycle import grip_after, steady_cycle
 
 _SENTENCES = {
     "Solve_Succeeded": "A local optimum within the solver's tolerance.",
@@ -46,7 +46,9 @@ def solve(setting: Setting, sign: int, gait: Gait, share: float, mesh: Mesh) -> 
     by = problem.inertia_ratio.by if problem.inertia_ratio else "inertia"
     shape = shape_of(problem.gait)
     size = mesh.intervals, mesh.looks.shape[1], mesh.substeps
-    program = shooting(setting.dynamics.effects, by, shape, *size)
+    grip = problem.limits.grip
+    held = ("torque", *GRIPS) if math.isfinite(grip) else ("torque",)
+    program = shooting(setting.dynamics.effects, by, shape, *size, loads=held)
     layout, loads = program.layout, setting.landscape.loads
     p = np.concatenate(
         [
@@ -70,7 +72,10 @@ def solve(setting: Setting, sign: int, gait: Gait, share: float, mesh: Mesh) -> 
     status = stats["return_status"]
     values, rows, multipliers = layout.unknowns(x), layout.rows(g), layout.rows(lam_g)
     on_bounds = layout.unknowns(lam_x)
-    torque = sum(np.abs(multipliers[name]).sum() for name in layout.torque)
+    priced = {
+        load: float(sum(np.abs(multipliers[row]).sum() for row in layout.along(load)))
+        for load in held
+    }
     return Candidate(
         sign=sign,
         gait=shape.gait(values),
@@ -82,7 +87,8 @@ def solve(setting: Setting, sign: int, gait: Gait, share: float, mesh: Mesh) -> 
         iterations=int(stats["iter_count"]),
         prices={
             **shape.prices(problem, multipliers),
-            "torque": float(torque),
+            "torque": priced["torque"],
+            "grip": sum(priced.get(load, 0.0) for load in GRIPS),
             **{name: float(multipliers[name]) for name in ("direction", *TURN)},
         },
         bound_prices={
@@ -137,15 +143,17 @@ def _bounds(setting: Setting, layout: Layout, margin: float) -> tuple[Array, Arr
         share = 0.0
     box = decisions(problem)
     period = box.period if box.period.fixed else problem.gait.period
-    most = problem.limits.torque * (1 - margin)
-    torque = Interval(-most, most)
+    limits = {"torque": problem.limits.torque, **dict.fromkeys(GRIPS, problem.limits.grip)}
     own = layout.shape.bounds(problem)
     unknowns = {
         "period": period,
         "ballast": Interval(0.0, 1.0) if share is None else Interval(share, share),
         **own.unknowns,
     }
-    rows = {"direction": Interval(_AHEAD, np.inf), **dict.fromkeys(layout.torque, torque)}
+    rows = {"direction": Interval(_AHEAD, np.inf)}
+    for load in layout.loads:
+        most = limits[load] * (1 - margin)
+        rows |= dict.fromkeys(layout.along(load), Interval(-most, most))
     if problem.turn:
         rows |= {name: getattr(problem.turn, name) for name in TURN}
     lbx, ubx = layout.bounds(unknowns)
@@ -165,7 +173,7 @@ class Dense:
 
     speed   m/s, signed
     used    the largest share that it uses of a limit
-    peaks   phases in [0, 1) at which the torque peaks near its limit
+    peaks   phases in [0, 1) at which torque or grip peak near their limits
     checks  phases at which angle or rate do, where a shape checks these at some phases
     """
 
@@ -180,13 +188,21 @@ def dense(setting: Setting, gait: Gait, share: float) -> Dense:
     smooth = gait.pieces == 1
     if setting.landscape.linear and smooth:
         cycle = cycle_along(setting.landscape, gait, share, _SAMPLES)
-        speed, torque = float(cycle.speed[0]), cycle.torque[:, 0]
+        speed, torque, v = float(cycle.speed[0]), cycle.torque[:, 0], cycle.v[:, 0]
     else:
         steps = 4 * gait.pieces * -(-_SAMPLES // gait.pieces)
         steady = steady_cycle(robot_of(setting, share), gait, steps=steps)
-        speed, torque = steady.speed, steady.torque[:-1]
-    used, peaks = _peaks(np.abs(torque / setting.problem.limits.torque), smooth)
-    checks = np.zeros(0)
+        speed, torque, v = steady.speed, steady.torque[:-1], steady.v[:-1]
+    limits = setting.problem.limits
+    shares = [torque / limits.torque]
+    if math.isfinite(limits.grip):
+        t = np.arange(len(v)) / len(v) * gait.period
+        grips = grip_after(robot_of(setting, share), gait, t, v)
+        shares += [grip / limits.grip for grip in grips]
+    used, peaks, checks = 0.0, np.zeros(0), np.zeros(0)
+    for load in shares:
+        height, at = _peaks(np.abs(load), smooth)
+        used, peaks = max(used, height), np.append(peaks, at)
     for shares in _path_shares(setting, gait):
         height, at = _peaks(np.abs(shares), smooth)
         used, checks = max(used, height), np.append(checks, at)

@@ -22,7 +22,7 @@ from rr_opt.design.decisions import Decisions, Setting, TurnRows, reach_before_s
 from rr_opt.design.landscape import Cycles
 from rr_opt.design.transcription import ROWS
 from rr_opt.model.problem import Interval
-from rr_opt.sqp import Prices, Program, Seen
+from rr_opt.sqp import Ascent, Program, Seen
 
 _UNSETTLED = 10.0
 """What a gait uses of each limit that has no steady cycle."""
@@ -42,7 +42,7 @@ _FORWARD = Interval(1e-6, math.inf)
 """Of the forward speed, in sizes of the speed: at 0 a gait goes neither forward nor backward."""
 
 
-LIMITS = ("rate", "angle", "singularity", "torque")
+LIMITS = ("rate", "angle", "singularity", "torque", "grip")
 Aim = Literal["speed", "rows", "turn"]
 Indices = NDArray[np.int_]
 
@@ -74,8 +74,21 @@ class Terrain:
     aim: Aim = "speed"
 
     @cached_property
-    def _torque(self) -> float:
-        return self.setting.problem.limits.torque if "torque" in self.rows else math.inf
+    def _loads(self) -> dict[str, float]:
+        """Limits of what loads the robot along the cycle, by name."""
+        limits = {name: getattr(self.setting.problem.limits, name) for name in ("torque", "grip")}
+        counted = "torque" in self.rows
+        return {name: one for name, one in limits.items() if counted and math.isfinite(one)}
+
+    def _used(self, cycles: Cycles, gaits: Array) -> list[tuple[str, Array]]:
+        """Shares that each load uses of its limit at the phases, (N, K)."""
+        used = []
+        if "torque" in self._loads:
+            used.append(("torque", np.abs(cycles.torque) / self._loads["torque"]))
+        if "grip" in self._loads:
+            grips = self.setting.landscape.grips(cycles, gaits)
+            used += [("grip", np.abs(grip) / self._loads["grip"]) for grip in grips]
+        return used
 
     @cached_property
     def _turn(self) -> TurnRows | None:
@@ -88,13 +101,13 @@ class Terrain:
     @cached_property
     def kept(self) -> tuple[Interval, ...]:
         """The interval of each row: torque over its limit, forward speed, those of the turn."""
-        torque = () if math.isinf(self._torque) else (Interval(-math.inf, 1.0),)
+        torque = (Interval(-math.inf, 1.0),) if self._loads else ()
         ahead = (_FORWARD,) if self._ahead else ()
         return (*torque, *ahead, *(self._turn.intervals if self._turn else ()))
 
     def merit(self, unit: float, torque: float, turn: float) -> Merit:
         """The speed less penalties, in a unit (m/s), for what is off by 1."""
-        heavy = () if math.isinf(self._torque) else (torque * unit,)
+        heavy = (torque * unit,) if self._loads else ()
         ahead = (torque,) if self._ahead else ()
         rest = len(self.kept) - len(heavy) - len(ahead)
         return Merit(self.kept, (*heavy, *ahead, *(turn * unit,) * rest))
@@ -104,7 +117,8 @@ class Terrain:
         gaits = self.box.physical(points)
         with np.errstate(all="ignore"):
             cycles = self.setting.landscape.cycles(gaits, nodes)
-            torque = () if math.isinf(self._torque) else (cycles.peak_torque / self._torque,)
+            used = [one.max(axis=0) for _, one in self._used(cycles, gaits)]
+            torque = (np.max(used, axis=0),) if used else ()
             values = self._values(cycles, gaits, 1.0)
             seen = np.array([self._function(cycles, gaits), *torque, *values])
         lost = ~np.isfinite(seen).all(axis=0)
@@ -193,13 +207,15 @@ class Terrain:
             if self.box.command:
                 known["command"] = gaits[0] / self.box.command.servo.gain(gaits[1])
             rows = [side.coefficient * (known[side.name] - side.end) for side in self._sides]
-            worst, peaks = rows, []
-            if math.isfinite(self._torque):
-                used = np.abs(cycles.torque) / self._torque
-                worst = [*rows, _heights(used, used.argmax(axis=0)) - 1]
+            with np.errstate(all="ignore"):
+                loads = self._used(cycles, gaits)
+            worst, names = list(rows), [side.name for side in self._sides]
+            for name, used in loads:
+                worst.append(_heights(used, used.argmax(axis=0)) - 1)
                 peaks = [_heights(used, at) - 1 for at in _followed(used)]
+                rows, names = rows + peaks, names + [name] * len(peaks)
             shape = (-1, len(points))
-            return Seen(function, np.reshape([*rows, *peaks], shape), np.reshape(worst, shape))
+            return Seen(function, np.reshape(rows, shape), np.reshape(worst, shape), tuple(names))
 
         program = Program(
             low=low[free],
@@ -223,6 +239,11 @@ class Terrain:
         gait[self.free] = x
         return gait
 
+    def dearest(self, gait: Array, nodes: int) -> str:
+        """The load that uses most of its limit."""
+        used = self._used(self.setting.landscape.cycles(gait[:, None], nodes), gait[:, None])
+        return max(used, key=lambda one: float(one[1].max()))[0]
+
     def measured(self, gait: Array, nodes: int) -> tuple[float, float]:
         """Mean speed, m/s, and peak torque, N m, of a gait (4,)."""
         with np.errstate(all="ignore"):
@@ -231,7 +252,7 @@ class Terrain:
         return float(cycle.speed[0]), float(_heights(torque, torque.argmax(axis=0))[0])
 
     def prices(
-        self, gait: Array, speed: float, turn: float, prices: Prices
+        self, gait: Array, speed: float, turn: float, ascent: Ascent
     ) -> tuple[dict[str, float], dict[str, float]]:
         """Speed gained per unit of each limit, and per unit by which an active bound moves up.
 
@@ -239,19 +260,21 @@ class Terrain:
         """
         limits, robot, period = self.setting.problem.limits, self.setting.problem.robot, gait[1]
         found: dict[str, float] = dict.fromkeys((*LIMITS, *ROWS, "command"), 0.0)
-        posture = float(prices.linear[:2].sum())
+        posture = float(ascent.prices.linear[:2].sum())
         if limits.angle <= reach_before_singularity(robot, limits.singularity):
             found["angle"] = posture
         else:
             # c1 cos(edge) + c2 = margin, so a wider margin brings the edge closer.
             found["singularity"] = -posture / (robot.platform1.c * math.sin(self.box.reach))
+        sides, prices = self._sides, ascent.prices
         if math.isfinite(limits.rate):
             found["rate"] = float(prices.linear[2]) * period / (2 * math.pi)
-        found["torque"] = float(prices.rows[len(self._sides) :].sum()) / limits.torque
+        for name, price in zip(ascent.names[len(sides) :], prices.rows[len(sides) :], strict=True):
+            found[name] += float(price) / getattr(limits, name)
         slopes = self._turn.slopes(speed, turn, period) if self._turn else {}
         slopes["direction"] = 1 / max(abs(speed), _SLOWEST)
         slopes["command"] = 1.0
-        for side, price in zip(self._sides, prices.rows, strict=False):
+        for side, price in zip(sides, prices.rows, strict=False):
             found[side.name] += side.coefficient * float(price) * slopes[side.name]
         names = ("amplitude", "period", "offset", "ballast")
         bounds: dict[str, float] = dict.fromkeys(names, 0.0)

@@ -30,6 +30,9 @@ from rr_opt.model.problem import Interval
 LADDER = (16, 20, 24, 30, 36, 48, 72, 96, 144, 192, 288, 384, 768)
 """Numbers of intervals to choose from, so that few programs are ever built."""
 
+GRIPS = ("grip1", "grip2")
+"""Side forces of both axles over the loads on them."""
+
 LOOKS = np.array([2, 1, 3]) / 4
 """Places of an interval at which the torque is held; the first one always."""
 _REGULAR = 1
@@ -117,11 +120,12 @@ ZERO = Interval(0.0, 0.0)
 @dataclass(frozen=True)
 class Layout:
     """Unknowns and rows of the program of a shape with `intervals` intervals, in each of which
-    the torque is held at `looks` places beside the node."""
+    what loads the robot, as named, is held at `looks` places beside the node."""
 
     shape: Shape
     intervals: int
     looks: int
+    loads: tuple[str, ...] = ("torque",)
 
     @property
     def decisions(self) -> tuple[str, ...]:
@@ -151,13 +155,12 @@ class Layout:
     @property
     def path(self) -> tuple[str, ...]:
         """Rows of every node."""
-        return self.shape.path + self.torque
+        return self.shape.path + tuple(row for load in self.loads for row in self.along(load))
 
-    @property
-    def torque(self) -> tuple[str, ...]:
-        """The torque at the node, at the looks and, where it jumps at nodes, at the end."""
-        looks = tuple(f"torque{k}" for k in range(self.looks))
-        return ("torque", *looks, "torque_end") if self.shape.controls else ("torque", *looks)
+    def along(self, load: str) -> tuple[str, ...]:
+        """A load at the node, at the looks and, where it jumps at nodes, at the end."""
+        looks = tuple(f"{load}@{k}" for k in range(self.looks))
+        return (load, *looks, f"{load}@end") if self.shape.controls else (load, *looks)
 
     def first(self, name: str) -> int:
         """Where among the unknowns the first of a local one is."""

@@ -32,21 +32,13 @@ from dataclasses import replace
 import casadi as ca
 
 from rr_opt.effects.effect import Effect, Parameter, Port
-from rr_opt.mechanics.kinematics import Force, G, Mechanism
+from rr_opt.mechanics.kinematics import Force, Mechanism, wheel_loads
 
 SMOOTHING_SPEED = 2.5e-4
 """s0, m/s."""
 _ITERATIONS = 4
 """Of Newton's method for u, from 0. They do not overshoot, and end within 1 % of u as long as a
 wheel's resistance is at most 0.9 of what its contact can hold."""
-
-
-def wheel_loads(p: Mapping[str, ca.SX]) -> dict[int, ca.SX]:
-    """Force, N, with which each wheel of platform 1 and of platform 2 presses on the floor."""
-    length = p["c1"] + p["c2"]
-    on1 = (p["m1"] * (length - p["a1"]) + p["m2"] * p["a2"]) / length
-    on2 = p["m1"] + p["m2"] - on1
-    return {1: G * on1 / 2, 2: G * on2 / 2}
 
 
 def _enter(mechanism: Mechanism, values: Mapping[str, ca.SX]) -> Mechanism:

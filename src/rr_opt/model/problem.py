@@ -70,10 +70,17 @@ LARGEST_EXCESS = 1e-4
 """By so much, relative to it, a gait may go over a limit and still counts as keeping it."""
 
 
+GRIP_LIMIT = Quantity("", "0.5", above=0, endless=True)
+
+NEEDS_GRIP = 0.5
+"""Side force over load above which a gait is warned of: rubber on a dry floor has 0.6 to 1, hard
+wheels or dust less."""
+
+
 @data
 class Limits:
     """|phi| <= angle (rad), |dphi/dt| <= rate (rad/s), |torque| <= torque (N m),
-    S1 = c1 cos phi + c2 >= singularity (m).
+    S1 = c1 cos phi + c2 >= singularity (m), |side force of an axle| <= grip * its load.
 
     A limit that is left out (None) is the robot's servo's; the Problem fills it in.
     """
@@ -87,6 +94,13 @@ class Limits:
     )
     singularity: SI = declared(
         Quantity("m", "20 mm", above=0), "The least S1 = c1 cos phi + c2 allowed, m.", default=0.020
+    )
+
+    grip: SI = declared(
+        GRIP_LIMIT,
+        "Largest side force of an axle over the load on it: the coefficient of friction that its "
+        "wheels may need; .inf: no limit.",
+        default=math.inf,
     )
 
     def worst(self, reached: Mapping[str, float]) -> tuple[str, float]:

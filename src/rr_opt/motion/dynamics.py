@@ -29,6 +29,7 @@ from rr_opt.mechanics.kinematics import (
     Observation,
     mechanism,
     robot_values,
+    wheel_loads,
 )
 from rr_opt.model.robot import Robot
 from rr_opt.outcome import InputError
@@ -116,6 +117,7 @@ class Dynamics:
              1's axis (m/s), servo torque (N m). P moves at v along the axis.
     energy   (v, phi, dphi, p) -> kinetic (J), dissipation (W, the paper's 2R)
     sides    (v, phi, dphi, ddphi, p) -> F1, F2: side forces on the axles, N
+    grip     (v, phi, dphi, ddphi, p) -> the same over the loads on the axles: the friction needed
     linear   vdot is affine in v, so the steady cycle is one linear fixed point
     mirrored the mirror image of a motion is a motion: gaits at offsets phi0 and -phi0 are alike
     """
@@ -125,6 +127,7 @@ class Dynamics:
     motion: ca.Function
     energy: ca.Function
     sides: ca.Function
+    grip: ca.Function
     linear: bool
     mirrored: bool
 
@@ -186,7 +189,7 @@ def _derived(effects: tuple[str, ...]) -> Dynamics:
     )
     inputs = [v, phi, dphi, ddphi, p]
     names = ["v", "phi", "dphi", "ddphi", "p"]
-    outputs = _tidy(solved, w, side, needed[3])
+    outputs, loads = _tidy(solved, w, side, needed[3]), wheel_loads(robot.parameters)
     motion = ca.Function("motion", inputs, outputs, names, ["vdot", "w", "side", "torque"])
     return Dynamics(
         effects=effects,
@@ -200,6 +203,13 @@ def _derived(effects: tuple[str, ...]) -> Dynamics:
             ["kinetic", "dissipation"],
         ),
         sides=ca.Function("sides", inputs, _tidy(needed[1], needed[2]), names, ["F1", "F2"]),
+        grip=ca.Function(
+            "grip",
+            inputs,
+            _tidy(*(needed[axle] / (2 * load) for axle, load in loads.items())),
+            names,
+            ["grip1", "grip2"],
+        ),
         linear=_is_affine(ca.Function("vdot", inputs, [solved])),
         mirrored=_is_mirrored(motion),
     )

@@ -23,6 +23,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
+import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.interpolate import CubicSpline
@@ -77,6 +78,22 @@ _JUST_BEFORE = 1e-6
 """Where the left side of a jump is evaluated, in lengths of a piece."""
 
 
+def grip_after(robot: Robot, gait: Gait, t: Array, v: Array) -> list[Array]:
+    """Side force over load of axles 1 and 2, (N,) each, at times t (N,) in s with speeds v (N,) in
+    m/s; where it jumps, the value after the jump."""
+    return _along(dynamics_of(robot).grip, robot, gait, t, v, gait.acceleration(t))
+
+
+def grip_needed(steady: SteadyCycle, robot: Robot) -> tuple[float, float]:
+    """Of axles 1 and 2 the largest side force over the load on them."""
+    gait, t, v = steady.gait, steady.t, steady.v
+    just_before = t - _JUST_BEFORE * gait.period / gait.pieces
+    after = grip_after(robot, gait, t, v)
+    before = _along(dynamics_of(robot).grip, robot, gait, t, v, gait.acceleration(just_before))
+    one, two = (_peak(gait.pieces, *sides) for sides in zip(after, before, strict=True))
+    return one, two
+
+
 def torque_after(robot: Robot, gait: Gait, t: Array, v: Array) -> Array:
     """Torque on platform 2, N m, at times t (N,) in s with speeds v (N,) in m/s; where it jumps,
     the value after the jump."""
@@ -90,10 +107,16 @@ def torque_before(robot: Robot, gait: Gait, t: Array, v: Array) -> Array:
 
 
 def _torque(robot: Robot, gait: Gait, t: Array, v: Array, acceleration: Array) -> Array:
-    dynamics = dynamics_of(robot)
-    values = np.tile(dynamics.values(robot)[:, None], len(t))
+    return _along(dynamics_of(robot).motion, robot, gait, t, v, acceleration)[3]
+
+
+def _along(
+    function: ca.Function, robot: Robot, gait: Gait, t: Array, v: Array, acceleration: Array
+) -> list[Array]:
+    """A function of (v, phi, dphi, ddphi, p) along a gait: (N,) for each of its outputs."""
+    values = np.tile(dynamics_of(robot).values(robot)[:, None], len(t))
     inputs = (v[None], gait.angle(t)[None], gait.rate(t)[None], acceleration[None], values)
-    return np.asarray(dynamics.motion(*inputs)[3]).ravel()
+    return [np.asarray(out).ravel() for out in function(*inputs)]
 
 
 def require_regular(robot: Robot, gait: Gait) -> None:
@@ -195,10 +218,14 @@ BETWEEN = 16
 
 def peak_torque(steady: SteadyCycle) -> float:
     """Largest |torque|, N m, by a spline on each piece between jumps."""
-    pieces = steady.gait.pieces
-    each = (len(steady.t) - 1) // pieces
-    inside = steady.torque[:-1].reshape(pieces, each)
-    ends = steady.torque_before[each::each, None]
+    return _peak(steady.gait.pieces, steady.torque, steady.torque_before)
+
+
+def _peak(pieces: int, after: Array, before: Array) -> float:
+    """Largest size of what has these values after and before the jumps between pieces."""
+    each = (len(after) - 1) // pieces
+    inside = after[:-1].reshape(pieces, each)
+    ends = before[each::each, None]
     at = np.arange(each + 1)
     spline = CubicSpline(at, np.hstack([inside, ends]), axis=1)
     return float(np.abs(spline(np.linspace(0, each, BETWEEN * each + 1))).max())

@@ -18,7 +18,7 @@ from rr_opt.formatting import counted, direction_text, number, pace_text, with_u
 from rr_opt.messages import listed
 from rr_opt.model.ballast import inertia_ratio, load_count, with_load_count
 from rr_opt.model.gait import Gait
-from rr_opt.model.problem import LARGEST_EXCESS, Problem
+from rr_opt.model.problem import LARGEST_EXCESS, NEEDS_GRIP, Problem
 from rr_opt.model.robot import Robot
 from rr_opt.motion.rollout import one_period
 from rr_opt.motion.steady_cycle import Cycle
@@ -246,6 +246,7 @@ class FastestGait(Result):
         if best is None:
             return []
         texts = []
+        texts += self._slippery
         if self.climbed:
             texts.append(_climbed(self.climbed, self.optimum))
         if self.driven and self.driven.driven.left_out:
@@ -272,6 +273,16 @@ class FastestGait(Result):
             )
         return texts
 
+    @property
+    def _slippery(self) -> tuple[str, ...]:
+        grip = self.limits["grip"].value
+        if not grip > NEEDS_GRIP:
+            return ()
+        return (
+            f"The wheels need a coefficient of friction of {grip:.2g} not to slip sideways, which "
+            f"few floors have (above {NEEDS_GRIP:g}). `limits.grip` limits it.",
+        )
+
     def _beyond_servo(self, gait: Gait) -> list[str]:
         """Which limits of the robot file's servo the gait exceeds."""
         servo, needed = self.problem.robot.servo, self.replay.reached if self.replay else {}
@@ -287,8 +298,10 @@ class FastestGait(Result):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What the robot does with effects that the optimiser does not know."""
-        return (_climbed(self.climbed, self.optimum),) if self.climbed else ()
+        """What the robot does with effects that the optimiser does not know, and grip that wheels
+        may not have."""
+        climbed = (_climbed(self.climbed, self.optimum),) if self.climbed else ()
+        return (*climbed, *self._slippery)
 
     def _record(self) -> dict[str, Any]:
         """The content of result.json; the same keys whatever the outcome."""
@@ -315,6 +328,7 @@ class FastestGait(Result):
                 {**plain(row), "unit": UNITS[row.name], "active": row.active if replay else None}
                 for row in self.limits.values()
             ],
+            "grip": replay and {"axle1": replay.grip[0], "axle2": replay.grip[1]},
             "bounds": list(self.bounds.values()),
             "check": replay
             and sweep
@@ -548,6 +562,7 @@ UNITS = {
     "rate": "rad/s",
     "torque": "N m",
     "singularity": "m",
+    "grip": "1, largest side force of an axle over the load on it",
     "amplitude": "rad",
     "period": "s",
     "offset": "rad",

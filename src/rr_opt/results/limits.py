@@ -18,7 +18,7 @@ from rr_opt.model.problem import Interval, Problem, RatioChoice
 ACTIVE = 1e-4
 """A limit is active when the gait comes this near to it, relative to the limit."""
 
-LIMIT_NAMES = ("angle", "rate", "torque", "singularity")
+LIMIT_NAMES = ("angle", "rate", "torque", "singularity", "grip")
 
 
 @dataclass(frozen=True)

@@ -92,11 +92,15 @@ _OF_OPTIMUM = (
     ("peak_rate", "rad/s", "largest |dphi/dt|"),
     ("peak_torque", "N m", "largest |torque| of the servo"),
     ("least_s1", "m", "smallest S1 = c1 cos phi + c2"),
+    ("peak_grip", "1", "largest side force of an axle over the load on it"),
     ("energy_per_metre", "J/m", "positive work of the servo per metre of path, without recovery"),
     ("net_energy_per_metre", "J/m", "net work of the servo per metre: what friction takes"),
     ("cost_of_transport", "1", "energy_per_metre over the weight"),
 )
-_LIMITS = (("angle", "rad"), ("rate", "rad/s"), ("torque", "N m"), ("singularity", "m"))
+_LIMITS = (
+    *(("angle", "rad"), ("rate", "rad/s"), ("torque", "N m")),
+    *(("singularity", "m"), ("grip", "")),
+)
 _BOUNDS = (("amplitude", "rad"), ("period", "s"), ("offset", "rad"), ("inertia_ratio", ""))
 
 

@@ -13,13 +13,13 @@ from rr_opt.array import Array
 from rr_opt.model.gait import SineGait
 from rr_opt.model.problem import Problem
 from rr_opt.verify.grid import DECISIONS, Grid, boxes, points
-from rr_opt.verify.speeds import least_S1, speeds
+from rr_opt.verify.speeds import grips, least_S1, speeds
 
 Mask = NDArray[np.bool_]
 Progress = Callable[[int, int], None]
 """Called with the points done and the points in all."""
 
-LIMITS = ("rate", "angle", "singularity", "torque", "direction")
+LIMITS = ("rate", "angle", "singularity", "torque", "grip", "direction")
 
 _SLACK = 1e-8
 """By so much, relative, a limit may be broken: by rounding."""
@@ -128,18 +128,26 @@ def _keeps(
     amplitude: Array,
     period: Array,
     offset: Array,
-    _ratio: Array,
+    ratio: Array,
     speed: Array,
     torque: Array,
 ) -> dict[str, Mask]:
     limits = problem.limits
     ahead = {"forward": speed > 0, "backward": speed < 0, "either": np.isfinite(speed)}
-    return {
+    kept = {
         "rate": np.abs(amplitude) * 2 * math.pi / period <= limits.rate * (1 + _SLACK),
         **_geometry(problem, amplitude, offset),
         "torque": torque <= limits.torque * (1 + _SLACK),
         "direction": ahead[problem.direction],
     }
+    kept["grip"] = np.ones(len(speed), bool)
+    if math.isfinite(limits.grip):
+        # The model of the speeds leaves it out; only points that keep all else are looked at.
+        asked = np.flatnonzero(np.logical_and.reduce(list(kept.values())))
+        ratios = None if np.isnan(ratio).all() else ratio[asked]
+        found = grips(problem, amplitude[asked], period[asked], offset[asked], ratios)
+        kept["grip"][asked] = found <= limits.grip * (1 + _SLACK)
+    return kept
 
 
 def _torque_line(

@@ -23,6 +23,7 @@ from rr_opt.motion.steady_cycle import (
     Cycle,
     SteadyCycle,
     cycle_of,
+    grip_needed,
     peak_torque,
     reference_cycle,
     steady_cycle,
@@ -36,7 +37,8 @@ class Replay:
     speed      m/s, signed
     error      |speed - claimed| / |claimed|
     reached    extreme of each limited quantity over the cycle: rate (rad/s), angle (rad),
-               torque (N m), singularity (least S1, m)
+               torque (N m), singularity (least S1, m), grip (largest of both axles)
+    grip       of each axle: largest side force over the load on it
     excess     by how much the worst limit is broken, relative to it; negative if all are kept
     """
 
@@ -45,6 +47,7 @@ class Replay:
     reached: dict[str, float]
     excess: float
     steady: SteadyCycle
+    grip: tuple[float, float]
 
 
 def replay(robot: Robot, gait: Gait, limits: Limits, claimed: float) -> Replay:
@@ -56,14 +59,17 @@ def replay(robot: Robot, gait: Gait, limits: Limits, claimed: float) -> Replay:
     dense = np.linspace(0.0, gait.period, BETWEEN * (len(steady.t) - 1) + 1)
     phi = gait.angle(dense)
     S1 = robot.platform1.c * np.cos(phi) + robot.platform2.c
+    grip = grip_needed(steady, robot)
     reached = {
         "rate": float(np.abs(gait.rate(dense)).max()),
         "angle": float(np.abs(phi).max()),
         "torque": peak_torque(steady),
         "singularity": float(S1.min()),
+        "grip": max(grip),
     }
     _, excess = limits.worst(reached)
-    return Replay(steady.speed, abs(steady.speed - claimed) / abs(claimed), reached, excess, steady)
+    error = abs(steady.speed - claimed) / abs(claimed)
+    return Replay(steady.speed, error, reached, excess, steady, grip)
 
 
 PERIODS = 50

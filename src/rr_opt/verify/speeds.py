@@ -225,6 +225,25 @@ def _parameters(problem: Problem, ratio: Array | None) -> tuple[NDArray[np.int_]
     return (None, p) if len(values) == 1 else (which, p)
 
 
+_GRIP_SAMPLES, _GRIP_BLOCK = 256, 64
+
+
+def grips(
+    problem: Problem, amplitude: Array, period: Array, offset: Array, ratio: Array | None
+) -> Array:
+    """The largest side force of an axle over the load on it, (K,), of sines as of `speeds`."""
+    which, p = _parameters(problem, ratio)
+    theta = np.arange(_GRIP_SAMPLES)[:, None] * (2 * math.pi / _GRIP_SAMPLES)
+    found = np.full(len(amplitude), np.nan)
+    for at in range(0, len(amplitude), _GRIP_BLOCK):
+        here = slice(at, at + _GRIP_BLOCK)
+        swing, rate = amplitude[here] * np.sin(theta), amplitude[here] * np.cos(theta)
+        angle = swing + offset[here], rate, -swing
+        robots = p if which is None else p[:, which[here]]
+        found[here] = model_of(problem.robot).grip(angle, period[here], robots)
+    return found
+
+
 _SAMPLES, _MOST = 256, 8192
 _SETTLED = 1e-6
 

@@ -95,6 +95,7 @@ class SteadyFourier:
         self.mirrored = dynamics.mirrored
         self._motion = over_arrays(motion)
         self._tangent = over_arrays(motion.factory("tangent", names, ["vdot", "jac:vdot:v"]))
+        self._grip = over_arrays(dynamics.grip)
         self._dynamics, self._asked = dynamics, 0
         self._compiled: CompiledCycles | None = None
 
@@ -165,6 +166,19 @@ class SteadyFourier:
             results = (speed, turn, peak(torque, straight), error, scale)
             parts.append([result.reshape(T.shape) for result in results])
         return Steady(*(np.concatenate(results) for results in zip(*parts, strict=True)))
+
+    @np.errstate(divide="ignore", over="ignore", invalid="ignore")
+    def grip(self, angle: tuple[Array, Array, Array], period: Array, p: Array) -> Array:
+        """The largest side force of an axle over the load on it, (K,), of a whole period of gaits
+        given as in `along`, one period (s) each."""
+        here = _Angle(*angle, 2 * math.pi / period[:, None])
+        if self.viscous:
+            v = _by_powers(self._powers(angle[0], p), here, period)[0]
+        else:
+            v = self._by_newton(p, here, period, 1e-6)[0]
+        omega = 2 * math.pi / period
+        sides = self._grip(v, angle[0], angle[1] * omega, angle[2] * omega**2, *p)
+        return np.maximum(*(peak(np.broadcast_to(side, v.shape), False) for side in sides))
 
     def _by_newton(self, p: Array, gaits: _Angle, span: Array, tolerance: float) -> _Motion:
         periods, omega = gaits.omega.shape[1], gaits.omega.ravel()

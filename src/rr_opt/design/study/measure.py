@@ -22,21 +22,23 @@ from rr_opt.design.decisions import ballast_interval
 from rr_opt.design.study.row import Optimum, Row, gait_record
 from rr_opt.model.problem import LARGEST_EXCESS, Interval, Problem, RatioChoice
 from rr_opt.model.robot import Robot
-from rr_opt.motion.steady_cycle import SteadyCycle, peak_torque, steady_cycle
+from rr_opt.motion.steady_cycle import SteadyCycle, grip_needed, peak_torque, steady_cycle
 from rr_opt.outcome import Status
 
-UNITS = {"angle": "rad", "rate": "rad/s", "torque": "N m", "singularity": "m"}
+UNITS = {"angle": "rad", "rate": "rad/s", "torque": "N m", "singularity": "m", "grip": ""}
 """Of each limit, by its name in the problem."""
 
 
 def reached(robot: Robot, steady: SteadyCycle) -> dict[str, float]:
-    """The extreme of what each limit bounds, SI: largest |phi|, |dphi/dt|, |torque|, least S1."""
+    """The extreme of what each limit bounds, SI: largest |phi|, |dphi/dt|, |torque|, least S1,
+    largest side force over load."""
     gait = steady.gait
     return {
         "angle": gait.peak_angle,
         "rate": gait.peak_rate,
         "torque": peak_torque(steady),
         "singularity": robot.platform1.c * math.cos(gait.peak_angle) + robot.platform2.c,
+        "grip": max(grip_needed(steady, robot)),
     }
 
 
@@ -57,7 +59,7 @@ class Held:
 
 
 def held(problem: Problem, best: Candidate, reached: Mapping[str, float], ratio: float) -> Held:
-    """What holds a candidate; reached: the extremes of angle, rate, torque, singularity."""
+    """What holds a candidate; reached: the extremes of what the limits bound."""
     prices = {
         name: best.prices[name]
         for name, value in reached.items()
@@ -223,6 +225,7 @@ def measured(problem: Problem, best: Candidate, robot: Robot, ratio: float) -> R
         peak_rate=extremes["rate"],
         peak_torque=extremes["torque"],
         least_s1=extremes["singularity"],
+        peak_grip=extremes["grip"],
         energy_per_metre=work.gross,
         net_energy_per_metre=work.net,
         cost_of_transport=work.cost_of_transport,

@@ -24,7 +24,7 @@ class Optimum:
     ratio           J20/J10 in the problem's definition (about P if it has none)
     cycle_length    of the path per period, m; turn: heading gained per period, rad
     radius          of the circle, m; None if the robot goes straight
-    peak_*          largest |phi|, |dphi/dt|, |torque|; least_s1: smallest S1
+    peak_*          largest |phi|, |dphi/dt|, |torque|, side force over load; least_s1: smallest S1
     energy          see `study_energy`, J/m and dimensionless
     held            names of the limits and bounds it stands on, `rate` or `least period`
     prices          speed gained per unit by which a limit that holds it is raised
@@ -47,6 +47,7 @@ class Optimum:
     peak_rate: float
     peak_torque: float
     least_s1: float
+    peak_grip: float
     energy_per_metre: float
     net_energy_per_metre: float
     cost_of_transport: float

@@ -30,7 +30,7 @@ from rr_opt.model.ballast import inertia_ratio
 from rr_opt.model.gait import Gait, SineGait
 from rr_opt.model.problem import LARGEST_EXCESS
 from rr_opt.model.robot import Robot
-from rr_opt.motion.dynamics import steady_effects, values_of
+from rr_opt.motion.dynamics import dynamics_of, steady_effects, values_of
 from rr_opt.motion.floor_motion import FloorMotion, floor_motion
 from rr_opt.motion.servo import linear_servo, servo_drive
 from rr_opt.motion.steady_cycle import Cycle, cycle_of
@@ -92,12 +92,18 @@ def driven_speed(robot: Robot, gait: Gait) -> DrivenSpeed:
     at_samples = [
         np.abs(np.asarray(torque(run[:, :: path.each], drives, bend, p))).max() for run in runs
     ]
+    speeds = motion.speeds.map(len(t))
+    own = dynamics_of(robot)
+    grip, values = own.grip.map(len(t)), own.values(robot)
+    ahead = [speeds(run[:, :: path.each], drives, p)[0, :] for run in runs]
+    needed = [np.abs(np.array(grip(v, phi, rate, bend, values))) for v in ahead]
     S1 = robot.platform1.c * np.cos(phi) + robot.platform2.c
     reached = {
         "angle": float(np.abs(phi).max()),
         "rate": linear_servo(robot).made(gait).peak_rate,
         "torque": float(max(at_samples)),
         "singularity": float(S1.min()),
+        "grip": float(max(one.max() for one in needed)),
     }
     speeds = tuple(cycle.speed for cycle in cycles)
     return DrivenSpeed(speeds, cycles[0], reached, effects, placed)

@@ -12,12 +12,11 @@ from functools import lru_cache
 import casadi as ca
 import numpy as np
 
-from rr_opt.effects.lateral_slip import wheel_loads
 from rr_opt.machines.racer.model import RacerModel
 from rr_opt.machines.racer.parameters import values_of
 from rr_opt.machines.racer.simulation import driven
 from rr_opt.mechanics.kane import equations
-from rr_opt.mechanics.kinematics import ROBOT_PARAMETERS
+from rr_opt.mechanics.kinematics import ROBOT_PARAMETERS, wheel_loads
 from rr_opt.motion.dynamics import assembled
 from rr_opt.sysid.estimation import Fit
 
