@@ -116,8 +116,8 @@ def _evidence(found: Attempt, box: Decisions) -> str:
 def _load(problem: Problem, name: str, found: Attempt) -> str:
     limit, unit = getattr(problem.limits, name), " N m" if name == "torque" else ""
     return (
-        f"Limit `{name}` ({limit:.6g}{unit}) conflicts with the gait's bounds: among the gaits that "
-        f"keep the other limits, the least peak {name} is "
+        f"Limit `{name}` ({limit:.6g}{unit}) conflicts with the gait's bounds: among the gaits "
+        f"that keep the other limits, the least peak {name} is "
         f"{_up(limit * (1 + found.excess) * _ENOUGH)}{unit}. Raise the limit to that, "
         "or allow longer periods or smaller amplitudes."
     )
