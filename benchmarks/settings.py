@@ -20,7 +20,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from rr_lab.engines import ENGINES
+from rr_lab.case import ENGINES
 from rr_lab.trial.draws import KINDS, Basis, fingerprint, read_seed
 from rr_lab.trial.isolation import opened_case
 from rr_lab.trial.outcome import Case

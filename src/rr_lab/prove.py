@@ -11,7 +11,7 @@ from typing import Any
 
 from rr_lab.case import ENGINES, Engine
 from rr_lab.mujoco.plant import engine as mujoco
-from rr_lab.report.case import ProvedCase
+from rr_lab.report.cases import ProvedCase
 from rr_lab.report.proof import Proof
 from rr_lab.trial.draws import CODE, KINDS, Basis, read_kinds, read_seed, seed_of_commit
 from rr_lab.trial.trial import again, basis_of, whole_trial

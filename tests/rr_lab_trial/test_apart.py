@@ -7,10 +7,9 @@ from pathlib import Path
 import pytest
 
 from rr_lab.random_case import Request
-from rr_lab.trial import sealing
-from rr_lab.trial.draws import Draw
+from rr_lab.trial import draws
+from rr_lab.trial.draws import Draw, make
 from rr_lab.trial.isolation import COMMAND, Task, diagnose_apart
-from rr_lab.trial.sealing import make
 
 STUB = str(Path(__file__).parent / "stub.py")
 DRAW = Draw(17, "single:coulomb_friction", 10.0, 0.0, 987654321012345, "planar")
@@ -24,7 +23,7 @@ def command(how):
 def made():
     """A case with dry friction, of runs of 3 s; how detectable it is does not matter here."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(sealing, "_remains", lambda case: {"coulomb_friction": 1.0})
+        patch.setattr(draws, "_remains", lambda case: {"coulomb_friction": 1.0})
         return make(DRAW, seconds=3.0)
 
 
@@ -71,7 +70,7 @@ def test_experiment_yaml_is_that_of_the_same_case_with_nothing_hidden(made):
 
 def test_the_answer_has_a_random_word_so_that_a_guess_cannot_be_checked(made):
     case = Request(seed=DRAW.seed, seconds=1.0).case()
-    texts = {sealing._answer_text(case, DRAW) for _ in range(3)}
+    texts = {draws._answer_text(case, DRAW) for _ in range(3)}
     assert len(texts) == 3
 
 

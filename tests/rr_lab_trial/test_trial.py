@@ -11,8 +11,7 @@ from pathlib import Path
 import pytest
 
 from rr_lab.files import seal_of
-from rr_lab.trial.draws import Basis, draw_case
-from rr_lab.trial.sealing import SealedCase
+from rr_lab.trial.draws import Basis, SealedCase, draw_case
 from rr_lab.trial.trial import MADE, SAID, SEALS, Trial, basis_of, tidy
 from rr_opt.batch.journal import Journal
 from rr_opt.outcome import InputError

@@ -7,7 +7,7 @@ import time
 import pytest
 
 from rr_opt.batch.local import LocalPool
-from rr_opt.batch.processes import held_back
+from rr_opt.interrupt import held_back
 
 
 def wait_for_it(seconds):

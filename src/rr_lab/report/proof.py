@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from rr_lab.report.case import hidden_text, page_of, said_text, size_text
-from rr_lab.report.proof_record import cases_csv, proof_record
+from rr_lab.report.cases import cases_csv, hidden_text, page_of, proof_record, said_text, size_text
 from rr_lab.trial import statistics
 from rr_lab.trial.counts import COUNTS, TEXTS, TITLES, breakdown, by_engine
 from rr_lab.trial.outcome import Case

@@ -1,4 +1,4 @@
-"""Random draws of a trial: what each case is, from the trial's seed and its number.
+"""The cases of a trial, drawn from its seed and their numbers; each driven, recorded and sealed.
 
 The seed of a published trial is the hash of the commit that it runs on. Nobody can choose it, as it
 changes with every change of the code that is tried.
@@ -11,17 +11,24 @@ extended, and one case can be made again by itself.
 from __future__ import annotations
 
 import hashlib
+import json
+import secrets
 import subprocess
-from dataclasses import dataclass
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from rr_lab.case import ENGINES, Engine, stream
+from rr_lab.case import ENGINES, Case, Engine, stream
 from rr_lab.disturbances import DISTURBANCES, disturbance_named
+from rr_lab.effect_size import Detectability
 from rr_lab.effects import OUTSIDE_NAMES, REALISATIONS, effect_named
-from rr_lab.random_case import SINGLES, read_kind
-from rr_opt.outcome import InputError
+from rr_lab.files import Delivery, answer, folder_of, seal_of
+from rr_lab.random_case import SINGLES, random_case, read_kind
+from rr_opt.outcome import InputError, NotConvergedError
 
 BLOCK = {"null": 3, "single": 7, "pair": 2, "parameters": 2, "outside": 3, "disturbed": 3}
 """Pairs of cases of each kind in a block of forty cases."""
@@ -207,3 +214,65 @@ def _git(folder: Path, *words: str) -> str:
     return subprocess.run(
         ["git", "-C", str(folder), *words], capture_output=True, text=True, check=True
     ).stdout
+
+
+TORQUE = 0.3
+"""The share of cases whose recordings have the servo's torque."""
+
+
+@dataclass(frozen=True)
+class SealedCase:
+    """files by name; answer, a JSON text with a random word in it; seal, its SHA-256; seconds of
+    CPU. Where the laboratory failed, why, and nothing else."""
+
+    files: Mapping[str, bytes]
+    answer: str
+    seal: str
+    seconds: float
+    failed: str = ""
+
+
+def make(draw: Draw, seconds: float = 30.0) -> SealedCase:
+    """Drive and record a case; seconds: length of each run.
+
+    If the engine fails, `failed` says why; nothing is raised.
+    """
+    began = time.process_time()
+    try:
+        case = random_case(
+            draw.seed, draw.kind, target=draw.target, spread=draw.spread, seconds=seconds,
+            engine=draw.engine, disturbance=draw.disturbance,
+        )  # fmt: skip
+        text = _answer_text(case, draw)
+        with_torque = stream(draw.seed, "torque").random() < TORQUE
+        files = dict(folder_of(case, Delivery(torque=bool(with_torque))))
+    except NotConvergedError as error:
+        return SealedCase({}, "", "", time.process_time() - began, str(error))
+    return SealedCase(files, text, seal_of(text), time.process_time() - began)
+
+
+def _answer_text(case: Case, draw: Draw) -> str:
+    """The laboratory's answer, what was drawn, and how detectable each effect is."""
+    data: dict[str, Any] = {
+        "number": draw.number,
+        "kind": "disturbed" if draw.disturbance else draw.kind.partition(":")[0],
+        "hidden": [effect_named(use.name).name for use in case.effects],
+        "spread": draw.spread,
+        **answer(case),
+        "stays_visible": _remains(case),
+        # So that the seal of a guess never matches.
+        "salt": secrets.token_hex(16),
+    }
+    return json.dumps(data, indent=2) + "\n"
+
+
+def _remains(case: Case) -> dict[str, float]:
+    """RMS in sigma that each effect alone leaves after the parameters are re-fitted."""
+    if not case.effects:
+        return {}
+    case = replace(case, disturbance="")
+    refit, nominal = Detectability.of(case), replace(case, robot=case.nominal)
+    return {
+        effect_named(use.name).name: float(f"{refit.remains(replace(nominal, effects=(use,))):.4g}")
+        for use in case.effects
+    }

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from rr_lab.files import seal_of
-from rr_lab.trial.draws import Basis, Draw, fingerprint
+from rr_lab.trial.draws import Basis, Draw, SealedCase, fingerprint, make
 from rr_lab.trial.isolation import (
     COMMAND,
     OUTPUT,
@@ -27,7 +27,6 @@ from rr_lab.trial.isolation import (
     opened_case,
 )
 from rr_lab.trial.outcome import Case
-from rr_lab.trial.sealing import SealedCase, make
 from rr_opt.batch.journal import Journal
 from rr_opt.documents.archive import write_bytes
 from rr_opt.outcome import InputError, NotConvergedError

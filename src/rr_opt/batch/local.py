@@ -15,7 +15,8 @@ from typing import Any
 from joblib import cpu_count
 from joblib.externals.loky import ProcessPoolExecutor
 
-from rr_opt.batch.processes import ONE_THREAD, held_back
+from rr_opt.batch import ONE_THREAD
+from rr_opt.interrupt import held_back
 
 _LOOK = 1.0  # s
 _HANDED_ON = 1.0

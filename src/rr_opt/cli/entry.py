@@ -16,7 +16,7 @@ def main() -> None:
     """
     try:
         interrupt.watch()
-        from rr_opt.batch.processes import ONE_THREAD
+        from rr_opt.batch import ONE_THREAD
 
         for name, count in ONE_THREAD.items():
             os.environ.setdefault(name, count)

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from rr_opt.design.candidate import Candidate
 from rr_opt.design.decisions import ballast_interval
 from rr_opt.design.maximize_speed import Optimum
+from rr_opt.design.study.measure import Energy, energy
 from rr_opt.documents import document as doc
 from rr_opt.documents.texts import captions
 from rr_opt.files.record import plain, robot_record
@@ -81,7 +82,7 @@ class FastestGait(Result):
 
     @property
     def gait(self) -> Gait | None:
-        """The fastest gait, as the servo is told it; None if there is none."""
+        """The fastest gait, as commanded; None if there is none."""
         if self.driven:
             return self.driven.gait
         return self.told(self.optimum.best.gait) if self.optimum.best else None
@@ -135,6 +136,15 @@ class FastestGait(Result):
             return self.climbed.driven.cycle
         return self.replay.steady.cycle if self.replay else None
 
+    @cached_property
+    def energy(self) -> Energy | None:
+        """Of the servo per metre of path: the work that it does, without what it could recover
+        where it brakes, the net work, and the cost of transport; None without a gait, and where
+        the motion is not that of the optimiser."""
+        if self.replay is None or self.climbed:
+            return None
+        return energy(self.robot, self.replay.steady)
+
     @property
     def turns(self) -> bool:
         """Whether the robot goes round a circle: a radius of many kilometres is a straight line."""
@@ -183,15 +193,14 @@ class FastestGait(Result):
         if self.replay:
             error, excess = self.replay.error, self.replay.excess
             speed = (
-                f"Replay by CVODES: its speed is {1e3 * self.replay.speed:+.3f} mm/s, "
-                f"{error:.1e} from the optimiser's, relative "
-                f"(at most {LARGEST_REPLAY_ERROR:.0e} allowed)."
+                f"Replay by CVODES: {1e3 * self.replay.speed:+.3f} mm/s, relative error "
+                f"{error:.1e} (tolerance {LARGEST_REPLAY_ERROR:.0e})."
             )
             worst = (
-                f"the worst limit is exceeded by {excess:.1e} of its value "
-                f"(at most {LARGEST_EXCESS:.0e} allowed)."
+                f"the worst is exceeded by {excess:.1e} of its value "
+                f"(tolerance {LARGEST_EXCESS:.0e})."
                 if excess > 0
-                else "no limit is exceeded."
+                else "none is exceeded."
             )
             checks += [
                 Check(error <= LARGEST_REPLAY_ERROR, speed),
@@ -202,9 +211,8 @@ class FastestGait(Result):
             checks.append(Check(self.sweep.gap >= -TOLERATED, better))
             if not math.isnan(self.sweep.error):
                 own = (
-                    f"The sweep's own model gives the optimum {1e3 * self.sweep.speed:+.3f} "
-                    f"mm/s, {self.sweep.error:.1e} from the optimiser's, relative "
-                    f"(at most {TOLERATED:.0e} allowed)."
+                    f"The sweep's own model of the optimum: {1e3 * self.sweep.speed:+.3f} mm/s, "
+                    f"relative error {self.sweep.error:.1e} (tolerance {TOLERATED:.0e})."
                 )
                 checks.append(Check(self.sweep.error <= TOLERATED, own))
         return checks + (_driven_checks(self.driven, self.optimum) if self.driven else [])
@@ -251,7 +259,7 @@ class FastestGait(Result):
             texts.append(_climbed(self.climbed, self.optimum))
         if self.driven and self.driven.driven.left_out:
             names = listed(self.driven.driven.left_out)
-            texts.append(f"It holds away from {names}, whose place no steady motion has.")
+            texts.append(f"It is valid away from {names}, which no steady motion can include.")
         ties = len(self.optimum.ties)
         if ties:
             texts.append(f"{ties} other gait{'s are' if ties > 1 else ' is'} as fast: a tie.")
@@ -324,6 +332,7 @@ class FastestGait(Result):
                 "dpsi": cycle.dpsi,
                 "radius": cycle.radius if self.turns else None,
             },
+            "energy": self.energy,
             "limits": [
                 {**plain(row), "unit": UNITS[row.name], "active": row.active if replay else None}
                 for row in self.limits.values()
@@ -423,7 +432,7 @@ nothing was climbed."""
 
 
 def _driven_checks(found: DrivenOptimum, optimum: Optimum) -> list[Check]:
-    """The gait as the servo is told it, driven by the simulation that predicts recordings."""
+    """The commanded gait, driven by the simulation that predicts recordings."""
     best, seen = optimum.best, found.driven
     if best is None:
         return []
@@ -434,15 +443,15 @@ def _driven_checks(found: DrivenOptimum, optimum: Optimum) -> list[Check]:
         return [
             Check(
                 excess <= LARGEST_EXCESS,
-                f"Driven with {names}: the limit kept most narrowly is on {worst}, exceeded by "
-                f"{max(excess, 0.0):.1e} of its value (at most {LARGEST_EXCESS:.0e} allowed).",
+                f"Driven with {names}: the tightest limit is that on {worst}, exceeded by "
+                f"{max(excess, 0.0):.1e} of its value (tolerance {LARGEST_EXCESS:.0e}).",
             )
         ]
     return [
         Check(
             error <= LARGEST_DRIVEN_ERROR,
-            f"Driven with {names}, told the gait above: {1e3 * seen.speed:+.3f} mm/s, {error:.1e} "
-            f"from the optimiser's, relative (at most {LARGEST_DRIVEN_ERROR:.0e} allowed).",
+            f"Driven with {names}, the gait above as the command: {1e3 * seen.speed:+.3f} mm/s, "
+            f"relative error {error:.1e} (tolerance {LARGEST_DRIVEN_ERROR:.0e}).",
         )
     ]
 
@@ -453,29 +462,29 @@ def _climbed(found: DrivenOptimum, optimum: Optimum) -> str:
     without = optimum.best.speed if optimum.best else math.nan
     change, gain = speed / without - 1, abs(speed / found.start.speed) - 1
     text = (
-        f"The optimiser does not know {names}: without, its optimum has {1e3 * without:+.2f} mm/s, "
+        f"The optimiser does not know {names}. Without, its optimum is {1e3 * without:+.2f} mm/s, "
         f"which every check confirms; with {'it' if len(found.beyond) == 1 else 'them'} the speed "
-        f"changes by {100 * change:+.2g} %, climbing on included, which gained {100 * gain:.2g} %. "
-        "The gait is a local optimum, checked by no sweep."
+        f"changes by {100 * change:+.2g} %, including the {100 * gain:.2g} % gained by a local "
+        "search. The gait is a local optimum; no sweep checks it."
     )
     if len(found.driven.speeds) > 1:
         low, high = (1e3 * end(found.driven.speeds) for end in (min, max))
-        text += f" By heading it has {low:+.2f} to {high:+.2f} mm/s; this is the mean."
+        text += f" The speed is a mean over headings, {low:+.2f} to {high:+.2f} mm/s."
     return text
 
 
 def _sweep_sentence(sweep: SweepCheck, shape: str) -> str:
     gaits = "gaits" if shape == "sine" else "sines"
     if sweep.best_gait is None:
-        return f"Sweep of {sweep.points} {gaits}: none of them respects every limit."
-    head = f"Sweep of {sweep.points} {gaits}: the best has {1e3 * sweep.best_speed:+.3f} mm/s, "
+        return f"Sweep of {sweep.points} {gaits}: none respects every limit."
+    head = f"Sweep of {sweep.points} {gaits}: the best reaches {1e3 * sweep.best_speed:+.3f} mm/s, "
     if abs(sweep.gap) < 1e-6:
-        return head + "as fast as the optimum to within a millionth."
+        return head + "equal to the optimum to within 1e-6."
     if sweep.gap >= 0:
         return head + f"{100 * sweep.gap:.2g} % slower than the optimum."
     return (
         head + f"{-100 * sweep.gap:.2g} % faster than the optimum "
-        f"(at most {100 * TOLERATED:g} % allowed)."
+        f"(tolerance {100 * TOLERATED:g} %)."
     )
 
 
@@ -495,6 +504,11 @@ def _facts(result: FastestGait) -> Iterator[doc.Fact]:
     yield from gait_facts(result.gait)
     yield _ratio(result)
     yield _cycle(result.cycle, turning=result.turns)
+    if result.energy:
+        gross, net = (with_unit(one, "J/m") for one in (result.energy.gross, result.energy.net))
+        cost = number(result.energy.cost_of_transport)
+        yield doc.Fact("energy", gross, f"positive work of the servo, net {net}")
+        yield doc.Fact("", cost, "cost of transport: that over the weight")
 
 
 def _ratio(result: FastestGait) -> doc.Fact:
@@ -573,6 +587,8 @@ UNITS = {
     "dy": "m",
     "dpsi": "rad",
     "radius": "m",
+    "energy": "J per metre of path: gross, the positive work of the servo, none of it recovered; "
+    "net, what friction takes; cost_of_transport, gross over the weight, 1",
     "shadow_price": "m/s of |speed| per SI unit by which the limit or bound is raised",
     "gap": "(|speed| - |sweep_best|)/|speed|",
     "sweep_error": "|speed by the sweep's model - speed|/|speed|",

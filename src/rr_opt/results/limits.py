@@ -73,7 +73,7 @@ def limit_row(name: str, optimum: Optimum, reached: Mapping[str, float]) -> Limi
 def bound_rows(optimum: Optimum, told: Gait, ratio: float) -> dict[str, BoundRow]:
     """Amplitude, period, offset, the inertia ratio if it is a decision; empty without a gait.
 
-    told  the gait as the servo is told it
+    told  the commanded gait
     """
     best, gait, choice = optimum.best, optimum.problem.gait, optimum.problem.inertia_ratio
     if best is None:

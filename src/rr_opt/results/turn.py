@@ -131,7 +131,7 @@ class FastestTurn(FastestGait):
 
 def _circle_checks(circle: CircleCheck) -> list[Check]:
     """Whether P stays on the circle, and whether a start from rest converges to it."""
-    tail = f"(at most {LARGEST:.0e} allowed)."
+    tail = f"(tolerance {LARGEST:.0e})."
     start = circle.transient
     ahead = "behind" if start.lost >= 0 else "ahead of"
     return [
@@ -143,7 +143,7 @@ def _circle_checks(circle: CircleCheck) -> list[Check]:
         ),
         Check(
             circle.rest <= LARGEST,
-            f"From rest, after {circle.periods} periods by CVODES: the radius differs by "
+            f"From rest by CVODES, after {circle.periods} periods: the radius differs by "
             f"{circle.rest:.1e} {tail} The deviation falls to 1/e in "
             f"{with_unit(start.constant, 's')}, and the robot stays "
             f"{with_unit(abs(start.lost), 'm')} {ahead} one that is steady from the start.",

@@ -120,7 +120,7 @@ def _answer(result: Result) -> Diagnosis:
 
 def identified(model: Machine, watch: Stopwatch) -> Result:
     """Search for what is missing, with the noise that the nominal model shows; once more if the
-    answer shows another one."""
+    answer shows less."""
     runs = [k for k, run in enumerate(model.runs) if not run.held_out]
     with watch("fitting the parameters"):
         base = first(model, runs)
@@ -130,8 +130,9 @@ def identified(model: Machine, watch: Stopwatch) -> Result:
     with watch("looking for what is missing"):
         selection = Selection(model, base, watch.progress)
         best = selection.run()
-        if noise := noise_in(best.simulated):
-            watch.progress("the noise is other than it looked; once more")
+        noise = noise_in(best.simulated)
+        if noise and any(one.quieter for one in noise):
+            watch.progress("the noise is less than it looked; once more")
             model = model.with_noise(noise)
             selection = Selection(model, first(model, runs), watch.progress)
             best = selection.run()

@@ -101,6 +101,11 @@ class Noise:
     level: float = 1.0
     correlation: float = 1.0
 
+    @property
+    def quieter(self) -> bool:
+        """Whether its level is surely less than that assumed."""
+        return math.log(self.level) < -SETTINGS.misstated
+
     def differs(self, correlation: float = 1.0) -> bool:
         """Whether it surely differs from noise of the level and with the correlation assumed."""
         longer = abs(math.log(self.correlation / correlation))
