@@ -7,12 +7,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from rr_opt.model.ballast import Loads, inertia_ratio, with_inertia_ratio
+from rr_opt.model.ballast import About, By, Loads, inertia_ratio, with_inertia_ratio
 from rr_opt.model.gait import SineGait
-from rr_opt.model.problem import GaitBounds, Interval, Limits, Problem, RatioChoice
+from rr_opt.model.problem import Direction, GaitBounds, Interval, Limits, Problem, RatioChoice
 from rr_opt.model.robot import Platform, Robot
 from rr_opt.motion.steady_cycle import peak_torque, steady_cycle
 from rr_opt.outcome import InputError, NotConvergedError
+
+_DIRECTIONS: tuple[Direction, ...] = ("forward", "backward", "either")
 
 
 def draw(seed: str, number: int) -> np.random.Generator:
@@ -35,9 +37,7 @@ def problem(rng: np.random.Generator) -> Problem:
         Interval(shortest, _four(shortest * rng.uniform(2.0, 5.0))),
         _offset(rng),
     )
-    posed = Problem(
-        robot, limits, gait, _ratio(rng, robot), str(rng.choice(["forward", "backward", "either"]))
-    )
+    posed = Problem(robot, limits, gait, _ratio(rng, robot), _DIRECTIONS[int(rng.integers(3))])
     return replace(posed, limits=replace(limits, torque=_torque(rng, posed)))
 
 
@@ -79,8 +79,10 @@ def _offset(rng: np.random.Generator) -> Interval:
 
 
 def _ratio(rng: np.random.Generator, robot: Robot) -> RatioChoice | None:
-    kind, by = rng.integers(3), str(rng.choice(["inertia", "inertia", "loads"]))
-    about = str(rng.choice(["joint", "centre"]))
+    kind = rng.integers(3)
+    ways: tuple[By, ...] = ("inertia", "inertia", "loads")
+    centres: tuple[About, ...] = ("joint", "centre")
+    by, about = ways[int(rng.integers(3))], centres[int(rng.integers(2))]
     own = inertia_ratio(robot, about)
     low = _four(own * (1.0 if by == "loads" else rng.uniform(0.8, 1.2)))
     high = _four(low * rng.uniform(1.3, 3.0))
