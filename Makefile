@@ -25,11 +25,11 @@ DEV := $(VENV)/dev-$(call checksum,run dev)
 DOCS := $(VENV)/docs-$(call checksum,run docs)
 BENCH_VENV := .venv-bench
 BENCH := $(BENCH_VENV)/ready-$(call checksum,run bench)
-BENCHMARKS ?= startup optimise turn sweep fit study recordings diagnose
+BENCHMARKS ?= startup optimise turn sweep fit study recordings diagnose effects grip reversal
 MEASURE := OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 $(BENCH_VENV)/bin/python -W ignore
 
 .DEFAULT_GOAL := help
-.PHONY: help run test check format-check lint types contracts format readme results fuzz bench real prove settings demo docs pins clean
+.PHONY: help run test check format-check lint types contracts format readme results fuzz chaos bench real prove settings demo docs dist pins clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/\1|\2/p' $(MAKEFILE_LIST) | \
@@ -73,8 +73,11 @@ results: $(DEV) ## write the results that are kept in results/
 	$(BIN)/rr-opt reproduce --out results/paper
 	$(BIN)/rr-opt calibrate --out results/calibration
 
-fuzz: $(DEV) ## spoil thousands of files, others each time (FUZZ=2000)
-	FUZZ=$(or $(FUZZ),2000) SEED=$${SEED:-$$(date +%s)} $(BIN)/python -m pytest -n $(WORKERS) tests/test_fuzz.py
+fuzz: $(DEV) ## spoil thousands of files, others each time (FUZZ=20000)
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.robustness.fuzz --inputs $(or $(FUZZ),20000)
+
+chaos: $(DEV) ## kill, starve and cross runs at random moments (KILLS=200)
+	$(BIN)/python -m tests.robustness.chaos --kills $(or $(KILLS),200)
 
 bench: $(BENCH) ## measure against other ways to the same answer, into results/bench (an hour)
 	@for name in $(BENCHMARKS); do \
@@ -112,6 +115,12 @@ pins: $(RUN) ## pin the newest dependencies that pyproject.toml allows
 
 docs: $(DOCS) ## build the documentation's site, into out/site
 	$(BIN)/python -m mkdocs build --quiet --strict --site-dir out/site
+
+dist: $(DEV) ## build the source distribution and the wheel, into dist/
+	rm -rf dist build
+	$(BIN)/python -W ignore -c 'from setuptools import build_meta as b; b.build_sdist("dist")' >/dev/null
+	$(PIP) wheel -qq --no-deps --no-build-isolation --wheel-dir dist dist/*.tar.gz
+	cd dist && sha256sum *
 
 clean: ## remove the environment and everything temporary
 	rm -rf $(VENV) $(BENCH_VENV) build dist out .pytest_cache .hypothesis .ruff_cache .import_linter_cache

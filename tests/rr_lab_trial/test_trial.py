@@ -12,7 +12,7 @@ import pytest
 
 from rr_lab.files import seal_of
 from rr_lab.trial.draws import Basis, SealedCase, draw_case
-from rr_lab.trial.trial import MADE, SAID, SEALS, Trial, basis_of, tidy
+from rr_lab.trial.trial import MADE, SAID, SEALS, Trial, basis_of, made_row, said_row, tidy
 from rr_opt.batch.journal import Journal
 from rr_opt.outcome import InputError
 
@@ -180,3 +180,41 @@ def test_after_a_kill_it_goes_on(tmp_path):
     # Both were kept before the third was asked for.
     assert then == [3, 4, 5]
     assert len(opened.cases) == 5
+
+
+@pytest.mark.parametrize(
+    ("name", "change", "words"),
+    [
+        (MADE, {"seal": None}, "line 2: its seal is None"),
+        (MADE, {"seconds": "1"}, "line 2: its seconds is '1'"),
+        (SAID, {"exit_code": 0.5}, "line 2: its exit_code is 0.5"),
+        (SAID, {"claim": {"verdict": 1}}, "line 2: its claim cannot be read"),
+        (SAID, {"claim": []}, r"line 2: its claim is \[\]"),
+    ],
+)
+def test_a_row_that_parses_and_is_wrong_is_refused(tmp_path, name, change, words):
+    tried(tmp_path)
+    path = tmp_path / name
+    heading, first, *others = path.read_text().splitlines()
+    row = json.dumps(json.loads(first) | change)
+    path.write_text("\n".join([heading, row, *others]) + "\n")
+    read = {MADE: made_row, SAID: said_row}
+    for other in {MADE, SAID} - {name}:
+        Journal(tmp_path / other, IDENTITY, read=read[other]).__exit__(None, None, None)
+    with pytest.raises(InputError, match=words):
+        Journal(path, IDENTITY, read=read[name])
+    for key in json.loads(first):
+        path.write_text(
+            f"{heading}\n{json.dumps({k: v for k, v in json.loads(first).items() if k != key})}\n"
+        )
+        with pytest.raises(InputError, match=f"it has no '{key}'"):
+            Journal(path, IDENTITY, read=read[name])
+
+
+@pytest.mark.parametrize(
+    "heading", ["no\n", "[]\n", '{"seed": 1}\n', '{"seed": "1", "kinds": 2}\n']
+)
+def test_a_heading_that_is_wrong_is_refused(tmp_path, heading):
+    (tmp_path / MADE).write_text(heading)
+    with pytest.raises(InputError, match=r"damaged in line 1.*--restart"):
+        basis_of(tmp_path)

@@ -26,7 +26,7 @@ from rr_lab.trial.isolation import (
     diagnose_apart,
     opened_case,
 )
-from rr_lab.trial.outcome import Case
+from rr_lab.trial.outcome import Case, Claim
 from rr_opt.batch.journal import Journal
 from rr_opt.documents.archive import write_bytes
 from rr_opt.outcome import InputError, NotConvergedError
@@ -182,12 +182,44 @@ def basis_of(folder: Path) -> Basis | None:
     journal = folder / MADE
     if not journal.is_file():
         return None
-    with journal.open(encoding="utf-8") as lines:
+    with journal.open(encoding="utf-8", errors="replace") as lines:
         text = lines.readline()
     if not text.endswith("\n"):
         return None
-    head = json.loads(text)
-    return Basis(head["seed"], tuple(head["kinds"]), tuple(head["engines"]))
+    try:
+        head = json.loads(text)
+        return Basis(head["seed"], tuple(head["kinds"]), tuple(head["engines"]))
+    except (ValueError, KeyError, TypeError, RecursionError):
+        raise InputError(
+            f"The journal {journal} is damaged in line 1. Expected the seed, the kinds and the "
+            "engines of a trial. Begin anew with --restart."
+        ) from None
+
+
+def made_row(record: Mapping[str, Any]) -> Mapping[str, Any]:
+    """The row of a case that was made. Raises KeyError or ValueError if it is not one."""
+    _require(record, seal=str, failed=str)
+    if not record["failed"]:
+        _require(record, seconds=(int, float))
+    return record
+
+
+def said_row(record: Mapping[str, Any]) -> Mapping[str, Any]:
+    """The row of a case that was diagnosed. Raises KeyError or ValueError if it is not one."""
+    numbers = {"wall": (int, float), "cpu": (int, float)}
+    _require(record, exit_code=int, timed_out=bool, **numbers, claim=(dict, type(None)))
+    if record["claim"] is not None:
+        try:
+            Claim.of(record["claim"])
+        except (AttributeError, KeyError, TypeError, ValueError) as error:
+            raise ValueError(f"its claim cannot be read ({error!r})") from None
+    return record
+
+
+def _require(record: Mapping[str, Any], **kinds: type | tuple[type, ...]) -> None:
+    for key, kind in kinds.items():
+        if not isinstance(record[key], kind):
+            raise ValueError(f"its {key} is {record[key]!r}")
 
 
 Follow = Callable[[str, Iterator[int], int], None]
@@ -215,8 +247,8 @@ def whole_trial(
     identity = {**drawn, "code": code, "version": __version__}
     trial = Trial(folder, [basis.draw(number) for number in numbers])
     with (
-        Journal(folder / MADE, identity, restart=restart) as made,
-        Journal(folder / SAID, identity, restart=restart) as said,
+        Journal(folder / MADE, identity, read=made_row, restart=restart) as made,
+        Journal(folder / SAID, identity, read=said_row, restart=restart) as said,
     ):
         begun = sum(number in made.rows for number in numbers)
         follow("made and sealed", trial.make(made, run), begun)

@@ -93,8 +93,9 @@ def _begin(parent: int) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
     def watch() -> None:
+        never = threading.Event()
         while os.getppid() == parent:
-            time.sleep(_LOOK)
+            never.wait(_LOOK)
         os._exit(1)
 
     threading.Thread(target=watch, daemon=True).start()

@@ -144,6 +144,8 @@ _EXPECTED = {
     "string_type": "a text",
     "bool_type": "true or false",
     "list_type": "a list",
+    "int_type": "a whole number",
+    "int_from_float": "a whole number",
 }
 
 
@@ -177,7 +179,9 @@ def _message(model: type[BaseModel], found: Any) -> str:
         )
     if kind in _EXPECTED:
         return f"Read {shown(value)}. Expected {_EXPECTED[kind]}. Write it, or delete the key."
-    return f"Read {shown(value)}. {found['msg']}."
+    expected = found["msg"].removeprefix("Input should be ")
+    expected = f"a number {expected}" if expected.startswith(("greater", "less")) else expected
+    return f"Read {shown(value)}. Expected {expected}. Correct it."
 
 
 def _model_at(model: type[BaseModel], path: tuple[str | int, ...]) -> type[BaseModel]:

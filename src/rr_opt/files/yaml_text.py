@@ -110,12 +110,17 @@ class _Reading:
         except yaml.MarkedYAMLError as error:
             mark = error.problem_mark or error.context_mark
             why = ": ".join(part for part in (error.context, error.problem) if part)
-            self._stop(f"The text is not YAML: {why}.", mark.line + 1 if mark else None)
+            self._stop(
+                f"The text is not YAML: {why}. Correct the text there.",
+                mark.line + 1 if mark else None,
+            )
         except yaml.reader.ReaderError as error:
             code = error.character if isinstance(error.character, int) else ord(error.character)
-            self._stop(f"The text has a character (code {code}) that YAML does not allow.")
+            self._stop(
+                f"The text has a character (code {code}) that YAML does not allow. Delete it."
+            )
         except (yaml.YAMLError, ValueError, OverflowError) as error:
-            self._stop(f"The text is not YAML: {shown(str(error))}.")
+            self._stop(f"The text is not YAML: {shown(str(error))}. Correct it.")
         if not isinstance(data, dict):
             # Not what it says: the file may be any file.
             kind = (
@@ -169,7 +174,9 @@ class _Reading:
     def _scalar(self, event: Any, path: KeyPath) -> Any:
         text: str = event.value
         if any("\ud800" <= letter <= "\udfff" for letter in text):
-            self._note("The text holds half a character.", event.start_mark.line + 1, path)
+            self._note(
+                "The text holds half a character. Write it again.", event.start_mark.line + 1, path
+            )
             return None
         if event.style is not None:
             return text

@@ -23,6 +23,7 @@ from rr_opt.mechanics.runge_kutta import BUTCHER6, Tableau
 from rr_opt.model.gait import FourierGait, FreeGait, Gait, SineGait
 from rr_opt.model.robot import Robot
 from rr_opt.motion.dynamics import derive, dynamics_of
+from rr_opt.outcome import NotConvergedError
 
 STATE = ("v", "psi", "x", "y", "s")
 
@@ -101,7 +102,10 @@ def fixed_steps(
 
 
 def cvodes(robot: Robot, gait: Gait, v0: float, times: ArrayLike) -> Array:
-    """States (5, len(times)) at `times` (s, increasing from 0) by CVODES at 1e-12, relative."""
+    """States (5, len(times)) at `times` (s, increasing from 0) by CVODES at 1e-12, relative.
+
+    Raises NotConvergedError where it cannot go on.
+    """
     times = np.asarray(times, float)
     dynamics = dynamics_of(robot)
     form, coefficients = _pieces(gait)
@@ -118,7 +122,14 @@ def cvodes(robot: Robot, gait: Gait, v0: float, times: ArrayLike) -> Array:
         grid += () if grid and grid[-1] == 1.0 else (1.0,)
         integrator = _cvodes(dynamics.effects, form, grid)
         p = np.concatenate([[length], coefficients[:, k % gait.pieces], values])
-        out = np.asarray(integrator(x0=state, p=p)["xf"])
+        try:
+            out = np.asarray(integrator(x0=state, p=p)["xf"])
+        except RuntimeError as error:
+            raise NotConvergedError(
+                f"The motion cannot be integrated from t = {k * length:.4g} s to "
+                f"{(k + 1) * length:.4g} s: it is too fast or has no end. Expected a robot of "
+                "believable size. `rr-opt lint` shows which values are not."
+            ) from error
         states.append(out[:, : inside.stop - inside.start])
         state = out[:, -1]
     return np.hstack(states)

@@ -70,7 +70,7 @@ def misses(
     """
     at = np.flatnonzero(good)
     place = np.searchsorted(at, rows)
-    after = place + ((place < len(at)) & (at[np.minimum(place, len(at) - 1)] == rows))
+    after = place + good[rows]
     left = place[:, None] - _NEIGHBOURS + np.arange(_NEIGHBOURS)
     right = after[:, None] + np.arange(_NEIGHBOURS)
     return _off(u, y, at, left, rows, noise), _off(u, y, at, right, rows, noise)

@@ -179,9 +179,8 @@ push.surge           warning  The robot was pushed, or held, at t = {t:.4g} s, w
     and y = {y:.3g} m: it drove {far:.3g} mm more or less than in the periods before and after. =>
     Cut the recording there.
 start.running        warning  The recording is said to start from rest, but at t = 0 the robot
-    drives already, at a speed comparable to that of later periods, which begin at {later:.3g} mm/s.
-    Expected it to stand still at t = 0. => Write `start: running`, or cut the recording where the
-    command begins.
+    drives already, at about {speed:.3g} mm/s. Expected it to stand still at t = 0. => Write `start:
+    running`, or cut the recording where the command begins.
 command.still        warning  phi cannot be matched with its command: it does not move.
 command.other        warning  phi does not follow its command: {scale:.2g} of its amplitude. Another
     gait, degrees, or the wrong file?

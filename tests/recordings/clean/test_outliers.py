@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rr_opt.model.gait import SineGait
-from rr_opt.recordings.outliers import outliers
+from rr_opt.recordings.outliers import misses, outliers
 from tests.recordings.clean.world import motion
 
 NOISE = {"x": 1e-3, "y": 1e-3, "psi": 3e-3, "phi": 3e-3}
@@ -67,3 +67,10 @@ def test_two_next_to_each_other_are_both_found():
     y[902] += 0.3
     found = outliers(t, y, np.full(len(t), 3e-3)).outlier
     assert np.flatnonzero(found).tolist() == [500, 501, 900, 902]
+
+
+def test_where_no_sample_is_good_nothing_is_foretold():
+    u, y = np.arange(20.0), np.zeros(20)
+    before, after = misses(u, y, np.zeros(20, bool), np.arange(5), np.ones(20))
+    assert np.isinf(before).all()
+    assert np.isinf(after).all()

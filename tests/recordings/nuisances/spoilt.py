@@ -29,6 +29,7 @@ def recording(name="run.csv", seed=0, turned=0.0, gait=GAIT, start="running", ch
     if change:
         change(values)
     t = values.pop("t")
+    n = len(t)
     return Recording(
         name,
         t,

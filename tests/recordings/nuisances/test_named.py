@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rr_opt.model.gait import SineGait
-from tests.recordings.nuisances.spoilt import GAIT, recording, told
+from tests.recordings.nuisances.spoilt import GAIT, ROBOT, recording, told
 
 
 def exchanged(v):
@@ -125,6 +125,34 @@ def test_a_push(seconds, direction):
 def test_a_start_from_rest_of_a_robot_that_drives():
     assert told(recording(), start="rest")[0] == {"start.running"}
     assert told(recording(start="rest"), start="rest")[0] == set()
+
+
+@pytest.mark.parametrize("robot", [ROBOT, None])
+def test_the_same_without_a_robot_to_compare_with(robot):
+    assert told(recording(), robot=robot, start="rest")[0] == {"start.running"}
+    assert told(recording(start="rest"), robot=robot, start="rest")[0] == set()
+
+
+@pytest.mark.parametrize("periods", [1, 2, 5])
+@pytest.mark.parametrize("gait", [GAIT, SineGait(0.6, 1.2, 0.0), SineGait(0.9, 1.1, 0.1)])
+def test_a_robot_that_has_driven_for_a_few_periods_does_not_stand(periods, gait):
+    def later(v):
+        kept = v["t"] >= periods * gait.period - 1e-9
+        for name in v:
+            v[name] = v[name][kept]
+        v["t"] = v["t"] - periods * gait.period
+
+    whole = recording(gait=gait, start="rest")
+    assert told(whole, gait=gait, start="rest")[0] == set()
+    spoilt = recording(gait=gait, start="rest", change=later)
+    codes, text = told(spoilt, gait=gait, start="rest")
+    assert codes == {"start.running"}
+    at = float(re.search(r"about (-?[\d.]+) mm/s", text)[1]) / 1e3
+    seen = spoilt.values
+    near = slice(0, 15)
+    v0 = np.polyfit(spoilt.t[near], seen["x"][near] * np.cos(seen["psi"][0])
+                    + seen["y"][near] * np.sin(seen["psi"][0]), 2)[1]  # fmt: skip
+    assert abs(at - v0) < 0.05
 
 
 @pytest.mark.parametrize("factor", [0.5, 2.0, 1.2])

@@ -7,6 +7,7 @@ import re
 
 import numpy as np
 import pytest
+from scipy.integrate import cumulative_trapezoid
 from typer.testing import CliRunner
 
 from rr_opt.cli.main import app
@@ -36,10 +37,21 @@ GAIT = "gait: {amplitude: 0.5, period: 1.0, offset: 0.1}"
 
 
 def motion(n=300):
-    """t, x, y, psi, phi at 100 Hz, noise-free."""
+    """t, x, y, psi, phi at 100 Hz, noise-free, of wheels that roll at 0.1 m/s."""
     t = np.arange(n) / 100
-    phi = 0.5 * np.sin(2 * np.pi * t) + 0.1
-    return t, 0.3 + 0.1 * t, -0.2 + 0.02 * np.sin(3 * t), 0.7 + 0.4 * t, phi
+    fine = np.linspace(0, t[-1], 20 * n + 1)
+
+    def angle(t):
+        return 0.5 * np.sin(2 * np.pi * t) + 0.1
+
+    c1, c2, v = 0.206, 0.0641, 0.1
+    phi, rate = angle(fine), np.pi * np.cos(2 * np.pi * fine)
+    turn = -(v * np.sin(phi) + c2 * rate) / (c1 * np.cos(phi) + c2)
+    psi = 0.7 + cumulative_trapezoid(turn, fine, initial=0)
+    speed = (v - 1j * c1 * turn) * np.exp(1j * psi)
+    place = 0.3 - 0.2j + cumulative_trapezoid(speed, fine, initial=0)
+    place, psi = np.interp(t, fine, place), np.interp(t, fine, psi)
+    return t, place.real, place.imag, psi, angle(t)
 
 
 def plain(moved, noise=1.0):
@@ -220,8 +232,9 @@ def test_lint_reads_the_recordings_too(write, tmp_path):
 
 def test_a_heading_that_is_kept_within_a_turn_is_right_for_all_verbs(write, tmp_path):
     t, x, y, psi, phi = motion(600)
-    wrapped = (psi + 2.0 + np.pi) % (2 * np.pi) - np.pi
-    turned = (x + 1j * y) * np.exp(2j)
+    more = np.pi - 0.7
+    wrapped = (psi + more + np.pi) % (2 * np.pi) - np.pi
+    turned = (x + 1j * y) * np.exp(1j * more)
     write(plain((t, turned.real, turned.imag, wrapped, phi)), "one.csv")
     write(f"{HEAD}recordings:\n- {{file: one.csv, {GAIT}}}\n", "experiment.yaml")
     experiment, issues = experiment_of(tmp_path)

@@ -1,14 +1,39 @@
-"""A start from rest that is said of a robot that drives already."""
+"""A start from rest that is said of a robot that drives already.
+
+Friction hardly matters in the first half period. So the nominal robot says how axle 1 drives from
+rest, and what an initial speed adds; the speed that fits best is nil, or what the jump of the
+joint's rate gives to a robot whose joint is not straight.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
 import numpy as np
+from scipy.integrate import cumulative_trapezoid
 
 from rr_opt.array import Array
+from rr_opt.model.gait import Gait
+from rr_opt.model.robot import Robot
+from rr_opt.motion.dynamics import dynamics_of
+from rr_opt.motion.integrators import fixed_steps
+from rr_opt.recordings.gaps import bridged
 from rr_opt.recordings.nuisances.evidence import CLEAN, Evidence
 from rr_opt.recordings.warnings import Notice, notice
+
+_BEGINNING = 0.5
+"""Of a period, in which the motion depends on inertia much more than on friction."""
+_UNSEEN = 0.2
+"""Gaps that are bridged, s."""
+_ACCURACY, _DELAY = 0.3, 0.05
+"""By how much the nominal robot may be wrong, of its speed, and the servo late, s; 1 sigma."""
+_OTHER = 2.0
+"""Beyond so many of these sigmas the model says nothing of the robot."""
+_SURE_SPEED, _PLAIN = 6.0, 0.3
+"""An initial speed is reported beyond this in sigma, and in parts of the largest speed from rest.
+Of starts from rest that were tried none was beyond 0.2 where it was sure."""
+_STEPS, _SPEED = 200, 0.1
+"""Of a period, and an initial speed with which the model is driven, m/s."""
 
 _PART = 0.25
 """Of a period whose length of way is compared."""
@@ -18,6 +43,8 @@ _MOST = 0.4
 friction is strong, and 0.44 where the centres of mass are 3 cm off the axes. A robot that has
 driven for a few periods only lacks as much, and is not noticed."""
 _FEWEST = 4
+_FASTEST = 1e3
+"""What goes farther or faster is not the motion of a robot, m or m/s."""
 
 
 def _look(given: Evidence) -> Iterator[Notice]:
@@ -29,11 +56,55 @@ def _look(given: Evidence) -> Iterator[Notice]:
     if given.slip.size > CLEAN:
         # Not the joint itself is seen, or the wheels slide: how far axle 1 rolls does not show.
         return
-    ways, speeds = _periods(given, given.gait.period)
+    if given.robot is not None:
+        yield from _against_model(given, given.robot, given.gait)
+    else:
+        yield from _against_later(given, given.gait.period)
+
+
+def _against_model(given: Evidence, robot: Robot, gait: Gait) -> Iterator[Notice]:
+    n = int(np.searchsorted(given.t, _BEGINNING * gait.period))
+    t = given.t[:n]
+    x, y, psi = (bridged(given.t, one, _UNSEEN)[:n] for one in given.motion[:3])
+    heading = (psi[1:] + psi[:-1]) / 2
+    rolled = np.cos(heading) * np.diff(x) + np.sin(heading) * np.diff(y)
+    rest, driving = (fixed_steps(robot, gait, v0, steps=_STEPS)[0] for v0 in (0.0, _SPEED))
+    sizes = (*rolled, *rest, *driving)
+    if n < _FEWEST or not np.isfinite(sizes).all() or np.abs(sizes).max() > _FASTEST:
+        return
+    grid = np.linspace(0.0, gait.period, len(rest))
+    speed = np.interp(t, grid, rest)
+    way = np.interp(t, grid, cumulative_trapezoid(rest, grid, initial=0))
+    more = np.interp(t, grid, cumulative_trapezoid(driving - rest, grid, initial=0)) / _SPEED
+    A = np.column_stack([more, way, speed, np.ones(n)]) / given.sigma[0]
+    b = (np.concatenate([[0.0], np.cumsum(rolled)]) - way) / given.sigma[0]
+    known = np.diag([0.0, 1 / _ACCURACY, 1 / _DELAY, 0.0])
+    A, b = np.vstack([A, known]), np.concatenate([b, np.zeros(4)])
+    v0, off = (float(one) for one in np.linalg.lstsq(A, b, rcond=None)[0][:2])
+    sigma = float(np.sqrt(np.linalg.pinv(A.T @ A)[0, 0]))
+    low, high = sorted((0.0, _jump(robot, gait)))
+    beyond = max(low - v0, v0 - high)
+    if abs(off) > _OTHER * _ACCURACY:
+        return  # it is not that robot
+    if beyond > max(_SURE_SPEED * sigma, _PLAIN * float(np.abs(speed).max())):
+        yield notice("start.running", speed=1e3 * v0)
+
+
+def _jump(robot: Robot, gait: Gait) -> float:
+    """The speed that axle 1 has from rest when the joint has taken its rate at once, m/s."""
+    dynamics = dynamics_of(robot)
+    phi, p = float(gait.angle([0.0])[0]), dynamics.values(robot)
+    with_, without = (float(dynamics.motion(0.0, phi, 0.0, one, p)[0]) for one in (1.0, 0.0))
+    return (with_ - without) * float(gait.rate([0.0])[0])
+
+
+def _against_later(given: Evidence, period: float) -> Iterator[Notice]:
+    """Where no robot is known: against the way in later periods."""
+    ways, speeds = _periods(given, period)
     if len(ways) < _FEWEST:
         return
     late = slice(len(ways) // 2, None)
-    part = _PART * given.gait.period
+    part = _PART * period
     # From rest the speed lacks, all along, what the robot has later when a period begins.
     lacking = float(np.median(speeds[late])) * part
     first = float(ways[0] - np.median(ways[late]))
@@ -41,7 +112,7 @@ def _look(given: Evidence) -> Iterator[Notice]:
     if not abs(lacking) > _SURE * max(np.sqrt(2) * given.sigma[0], spread):
         return
     if -first / lacking < _MOST:
-        yield notice("start.running", later=1e3 * lacking / part)
+        yield notice("start.running", speed=1e3 * (lacking + first) / part)
 
 
 def _periods(given: Evidence, period: float) -> tuple[Array, Array]:
