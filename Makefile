@@ -25,7 +25,7 @@ DEV := $(VENV)/dev-$(call checksum,run dev)
 DOCS := $(VENV)/docs-$(call checksum,run docs)
 BENCH_VENV := .venv-bench
 BENCH := $(BENCH_VENV)/ready-$(call checksum,run bench)
-BENCHMARKS ?= startup optimise turn sweep fit study recordings diagnose effects grip reversal
+BENCHMARKS ?= startup optimise turn route sweep fit study recordings diagnose effects grip reversal
 MEASURE := OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 $(BENCH_VENV)/bin/python -W ignore
 
 .DEFAULT_GOAL := help
@@ -68,6 +68,7 @@ results: $(DEV) ## write the results that are kept in results/
 	$(BIN)/rr-opt maximize-speed problems/turning --out results/turning
 	$(BIN)/rr-opt shapes --out results/shapes
 	$(BIN)/rr-opt turn-chart --out results/turn-chart
+	$(BIN)/rr-opt route problems/routes/around.yaml --out results/route
 	$(BIN)/rr-opt study problems/studies/servo.yaml --restart --out results/servo
 	$(BIN)/python -m benchmarks.lab_agreement
 	$(BIN)/rr-opt reproduce --out results/paper

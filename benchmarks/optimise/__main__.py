@@ -24,7 +24,7 @@ from benchmarks.optimise.peers import tables
 from benchmarks.optimise.peers.posed import eligible
 from benchmarks.optimise.peers.race import race
 from benchmarks.optimise.problems import PROBLEMS
-from benchmarks.optimise.profiled import operations, shares
+from benchmarks.optimise.profiled import shares
 from benchmarks.results import machine, write
 from rr_opt.design.maximize_speed import maximize_speed
 
@@ -114,19 +114,9 @@ def table(rows: dict[str, dict[str, float]], runs: int) -> list[str]:
 
 
 def costs(names: list[str]) -> list[str]:
-    """Where warm time goes, and what the work is at least."""
+    """Where warm time goes."""
     spent = ", ".join(f"{part} {share:.0%}" for part, share in shares(names).items())
-    cycles, intervals = operations(_FIRST)
-    return [
-        f"Where warm time goes: {spent}.",
-        "",
-        f"The floor: an answer of `{_FIRST}` is {cycles:.0f} million operations for the cycles "
-        f"of the scan and the climbs, and {intervals:.0f} million for the intervals of multiple "
-        "shooting with both derivatives, all in the processor's cache. The cycles run in vector "
-        "registers, at several operations a ns; the intervals at about one, as they are compiled "
-        "without optimisation, which takes a second and not ten. What would get further: the "
-        "intervals in vector registers too, and the climbs' quadratics compiled.",
-    ]
+    return [f"Where warm time goes (cycles are part of the others): {spent}."]
 
 
 def main() -> None:

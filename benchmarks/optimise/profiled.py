@@ -1,4 +1,4 @@
-"""Where the package's warm time goes, and how few operations the work is made of."""
+"""Where the package's warm time goes."""
 
 from __future__ import annotations
 
@@ -9,46 +9,35 @@ from contextlib import contextmanager
 from typing import Any
 
 from benchmarks.optimise.problems import PROBLEMS
-from rr_opt.design import climb, solve
-from rr_opt.design import search as refine
-from rr_opt.design import search as sines
-from rr_opt.design.interval import interval_of
+from rr_opt import sqp
+from rr_opt.design import climb, maximize_speed, search
 from rr_opt.design.landscape import Landscape
-from rr_opt.design.maximize_speed import maximize_speed
-from rr_opt.design.shapes.sine import SineShape
-from rr_opt.mechanics.runge_kutta import BUTCHER6
-from rr_opt.motion.dynamics import derive
 
 _PARTS = {
-    "scan and climbs, their cycles": [(sines, "find_seeds")],
+    "scan and climbs": [(search, "tops")],
     "climbs' quadratics": [(climb, "_best_step")],
-    "IPOPT with its functions": [(refine, "solve")],
-    "looks at a gait, fine and on a mesh": [(refine, "dense"), (refine, "steady_cycle")],
-    "starts passed over": [(sines, "leads_to")],
-    "a start's cycle": [(solve, "_start")],
+    "ends of climbs": [(search, "solve_sine"), (maximize_speed, "refine")],
+    "their quadratic programs": [(sqp, "_step")],
+    "cycles": [(Landscape, "cycles")],
 }
-_WITHIN = {
-    "climbs' quadratics": "scan and climbs, their cycles",
-    "a start's cycle": "IPOPT with its functions",
-}
-"""Parts whose seconds are counted in another one too."""
+_WITHIN = {"climbs' quadratics": "scan and climbs", "their quadratic programs": "ends of climbs"}
+"""Parts whose seconds are counted in another one too; cycles are in all of them."""
 
 
 def shares(names: list[str], runs: int = 5) -> dict[str, float]:
     """Of all CPU seconds of warm runs of these problems."""
     spent: Counter[str] = Counter()
     for name in names:
-        maximize_speed(PROBLEMS[name])
+        maximize_speed.maximize_speed(PROBLEMS[name])
         with _watched(spent):
             for _ in range(runs):
                 begun = time.process_time()
-                maximize_speed(PROBLEMS[name])
+                maximize_speed.maximize_speed(PROBLEMS[name])
                 spent["all"] += time.process_time() - begun
     for part, whole in _WITHIN.items():
         spent[whole] -= spent[part]
     total = spent.pop("all")
-    found = {part: seconds / total for part, seconds in spent.most_common()}
-    return {**found, "the rest": 1 - sum(found.values())}
+    return {part: seconds / total for part, seconds in spent.most_common()}
 
 
 @contextmanager
@@ -74,27 +63,3 @@ def _watched(spent: Counter[str]) -> Iterator[None]:
     finally:
         for place, name, call in before:
             setattr(place, name, call)
-
-
-def operations(name: str) -> tuple[float, float]:
-    """Floating point operations of an answer, in millions: of the landscape's cycles, and of the
-    intervals of multiple shooting with their derivatives."""
-    cycles: Counter[str] = Counter()
-    run = Landscape.cycles
-
-    def counted(self: Landscape, gaits: Any, nodes: int) -> Any:
-        cycles["phases"] += gaits.shape[1] * nodes
-        return run(self, gaits, nodes)
-
-    Landscape.cycles = counted
-    try:
-        found = maximize_speed(PROBLEMS[name])
-    finally:
-        Landscape.cycles = run
-    choice = PROBLEMS[name].inertia_ratio
-    by = choice.by if choice else "inertia"
-    terms = interval_of((), by, SineShape(), 0, 1, BUTCHER6)
-    each = sum(one.n_instructions() for one in terms.code.functions)
-    motion = derive().motion.n_instructions()
-    # Lines are laid at a phase and halfway to the next, and the torque is told at the phase.
-    return 3e-6 * motion * cycles["phases"], 1e-6 * each * found.intervals * found.iterations

@@ -97,14 +97,14 @@ class Turning(Local):
         return z, float(values[0]) if met and np.isfinite(values[0]) else -np.inf
 
 
-def starts(box: Box, seed: int = 0) -> Array:
+def starts(box: Box, seed: int = 0, points: int = POINTS) -> Array:
     """The best points of a Sobol set, no two in one region, as gaits (4, starts)."""
     rng, size = np.random.default_rng(seed), len(box.free)
-    unit = qmc.Sobol(size, rng=seed).random(POINTS)
-    edge = (rng.random(unit.shape) < 0.4) & (np.arange(POINTS) % 2 == 0)[:, None]
+    unit = qmc.Sobol(size, rng=seed).random(points)
+    edge = (rng.random(unit.shape) < 0.4) & (np.arange(points) % 2 == 0)[:, None]
     unit[edge] = rng.integers(0, 2, edge.sum())
     values = []
-    for part in np.array_split(unit, POINTS // CHUNK):
+    for part in np.array_split(unit, max(1, points // CHUNK)):
         gaits, lost = box.gaits(box.low + part * (box.high - box.low))
         gain, done = box.drive(gaits, 64)
         rows = rows_of(box.problem, gaits, done.speed, done.turn)
@@ -113,7 +113,7 @@ def starts(box: Box, seed: int = 0) -> Array:
         value = gain - np.abs(gain) * (2 * off + 2 * np.nan_to_num(heavy, nan=9.0))
         values.append(np.where((lost > 0) | ~np.isfinite(value), -np.inf, value))
     order, kept = np.argsort(-np.concatenate(values)), []
-    for x in unit[order[: POINTS // 4]]:
+    for x in unit[order[: points // 4]]:
         if all(np.max(np.abs(x - y)) > APART for y in kept):
             kept.append(x)
         if len(kept) == BEST:

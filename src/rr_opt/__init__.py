@@ -50,6 +50,8 @@ if TYPE_CHECKING:
     from rr_opt.api.optimise import turn_chart as turn_chart
     from rr_opt.api.recordings import diagnose as diagnose
     from rr_opt.api.recordings import inspect as inspect
+    from rr_opt.api.route import load_route as load_route
+    from rr_opt.api.route import route as route
     from rr_opt.model.experiment import Experiment as Experiment
     from rr_opt.model.experiment import Noise as Noise
     from rr_opt.model.experiment import Recording as Recording
@@ -66,6 +68,12 @@ if TYPE_CHECKING:
     from rr_opt.model.robot import Platform as Platform
     from rr_opt.model.robot import Robot as Robot
     from rr_opt.model.robot import Servo as Servo
+    from rr_opt.model.route import Arc as Arc
+    from rr_opt.model.route import Pose as Pose
+    from rr_opt.model.route import Route as Route
+    from rr_opt.model.route import Straight as Straight
+    from rr_opt.model.route import Tolerance as Tolerance
+    from rr_opt.model.route import Waypoint as Waypoint
     from rr_opt.outcome import InputError as InputError
     from rr_opt.outcome import NotConvergedError as NotConvergedError
     from rr_opt.outcome import Status as Status
@@ -74,6 +82,7 @@ if TYPE_CHECKING:
     from rr_opt.results.inspection import InspectedRecordings as InspectedRecordings
     from rr_opt.results.motion import DrivenCircle as DrivenCircle
     from rr_opt.results.motion import SimulatedMotion as SimulatedMotion
+    from rr_opt.results.route import DrivenRoute as DrivenRoute
     from rr_opt.results.setpoints import ExportedGait as ExportedGait
     from rr_opt.results.shapes import FastestShapes as FastestShapes
     from rr_opt.results.study import SolvedStudy as SolvedStudy
@@ -88,15 +97,18 @@ _HOMES = {
     "load_gait load_robot prototype shipped",
     "api.optimise": "load_study maximize_speed shapes study sweep turn turn_chart",
     "api.recordings": "diagnose inspect",
+    "api.route": "load_route route",
     "model.experiment": "Experiment Noise Recording Run",
     "model.gait": "FourierGait FreeGait Gait SineGait",
     "model.problem": "GaitBounds Limits Problem RatioChoice",
     "model.robot": "EffectUse Platform Robot Servo",
+    "model.route": "Arc Pose Route Straight Tolerance Waypoint",
     "outcome": "InputError NotConvergedError Status",
     "results.diagnosis": "ExplainedExperiment",
     "results.fastest": "FastestGait",
     "results.inspection": "InspectedRecordings",
     "results.motion": "DrivenCircle SimulatedMotion",
+    "results.route": "DrivenRoute",
     "results.setpoints": "ExportedGait",
     "results.shapes": "FastestShapes",
     "results.study": "SolvedStudy",

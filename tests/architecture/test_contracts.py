@@ -26,7 +26,7 @@ PLANTED = [
     ("layers", "rr_opt/design/planted.py", "import rr_opt.cli.main"),
     ("layers", "rr_opt/design/planted.py", "import rr_opt.batch.run"),
     ("layers", "rr_opt/results/planted.py", "import rr_opt.api.optimise"),
-    ("layers", "rr_opt/results/planted.py", "import rr_opt.results.fastest"),
+    ("layers", "rr_opt/documents/planted.py", "import rr_opt.results.fastest"),
     ("layers", "rr_opt/api/planted.py", "import rr_opt.cli.main"),
     ("layers", "rr_opt/sysid/planted.py", "import rr_opt.machines.racer.racer"),
     ("packages", "rr_opt/results/planted.py", "import rr_lab.rig"),

@@ -7,14 +7,14 @@ import pytest
 
 from rr_opt.design import interval as machine
 from rr_opt.design.interval import IntervalTerms
-from rr_opt.design.shapes.sine import SineShape
+from rr_opt.design.shapes.fourier import FourierShape
 from rr_opt.mechanics.runge_kutta import BUTCHER6
 
 
 @pytest.fixture
 def code(monkeypatch, tmp_path):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    return IntervalTerms((), "inertia", SineShape(), 0, 1, BUTCHER6).code
+    return IntervalTerms((), "inertia", FourierShape(1), 0, 1, BUTCHER6).code
 
 
 def _given(function):

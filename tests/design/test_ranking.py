@@ -1,7 +1,6 @@
 """Candidates are ranked by feasibility, then success, then speed."""
 
-from rr_opt.design.solve import Candidate
-from rr_opt.design.transcription import regular
+from rr_opt.design.candidate import Candidate
 from rr_opt.model.gait import SineGait
 
 
@@ -18,7 +17,7 @@ def candidate(feasible, success, speed):
         prices={},
         bound_prices={},
         violation=0.0,
-        mesh=regular(16),
+        intervals=16,
     )
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from benchmarks.optimise.problems import PROBLEMS
 from rr_opt.design.decisions import decisions, settings_of
-from rr_opt.design.search import refine, solve_from
+from rr_opt.design.families import refine, solve_from
 from rr_opt.model.gait import Gait, SineGait
 from rr_opt.model.problem import GaitBounds, Problem
 

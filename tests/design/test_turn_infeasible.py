@@ -39,7 +39,7 @@ def test_offsets_of_one_sign_turn_to_one_side():
 def test_a_direction_that_stands_in_the_way():
     message = refused(turning(SHORT, round_(0.5), direction="backward"))
     assert "drives forward" in message
-    assert "A gait that drives forward achieves it." in message
+    assert "Allow `direction: forward`" in message
 
 
 def test_too_soon_tells_the_time_that_it_takes():

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from rr_opt.design.decisions import decisions, robot_of, settings_of
-from rr_opt.design.search import solve_from
+from rr_opt.design.families import solve_from
 from rr_opt.design.study.measure import held, reached
 from rr_opt.files.problem_file import read_problem
 from rr_opt.model.gait import SineGait

@@ -55,7 +55,7 @@ def lint(path: str | Path) -> list[Issue]:
     return issues
 
 
-Kind = Literal["robot", "problem", "study", "experiment"]
+Kind = Literal["robot", "problem", "study", "experiment", "route"]
 
 
 def init(kind: Kind, path: str | Path | None = None, *, force: bool = False) -> list[Path]:

@@ -14,13 +14,13 @@ import rr_opt as rr
 from rr_opt.cli import options
 from rr_opt.outcome import EXIT_WRONG_INPUT
 
-_KIND = "robot, problem, study or experiment."
+_KIND = "robot, problem, study, experiment or route."
 _OUT = "The file to write; of an experiment its folder."
 
 
 def init(
     kind: Annotated[
-        Literal["robot", "problem", "study", "experiment"], typer.Argument(help=_KIND)
+        Literal["robot", "problem", "study", "experiment", "route"], typer.Argument(help=_KIND)
     ] = "problem",
     out: Annotated[Path | None, options.out_option("KIND.yaml", _OUT)] = None,
     force: Annotated[bool, typer.Option("--force", help="Overwrite existing files.")] = False,
@@ -34,7 +34,7 @@ def init(
 
 
 _FILES = (
-    "Robot, problem, study or experiment files, or folders with a problem.yaml or an "
+    "Robot, problem, study, route or experiment files, or folders with a problem.yaml or an "
     "experiment.yaml, whose recordings are read too."
 )
 
@@ -63,7 +63,7 @@ def lint(
 
 
 def schema(
-    kind: Annotated[str, typer.Argument(help="Which file: robot, problem, study or experiment.")],
+    kind: Annotated[str, typer.Argument(help=f"Which file: {_KIND}")],
     machine: Annotated[
         str, typer.Option(help="Of an experiment: racer, pendulum, servo or car.")
     ] = "racer",

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar
 
 import typer
 
@@ -17,7 +17,10 @@ if TYPE_CHECKING:
     from rr_opt.api.load import RobotWithGait
     from rr_opt.model.gait import Gait
     from rr_opt.model.problem import Problem
+    from rr_opt.model.route import Route
     from rr_opt.results.result import Result
+
+Read = TypeVar("Read")
 
 
 def place(text: str) -> Path:
@@ -130,17 +133,30 @@ def read_options(**given: str | float | None) -> dict[str, float]:
 
 def read_problem(path: Path | None) -> Problem:
     """The problem of a file (None: the shipped one); what looks wrong goes to stderr."""
-    from rr_opt.api.load import InputWarning, load, shipped
+    from rr_opt.api.load import load, shipped
 
     if path is None:
         return shipped()
+    return _warned(lambda: load(path))
+
+
+def read_route(path: Path) -> Route:
+    """The route of a file; what looks wrong goes to stderr."""
+    from rr_opt.api.route import load_route
+
+    return _warned(lambda: load_route(path))
+
+
+def _warned(read: Callable[[], Read]) -> Read:
+    from rr_opt.api.load import InputWarning
+
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", InputWarning)
-        problem = load(path)
+        found = read()
     if not silent():
         for warning in caught:
             typer.echo(str(warning.message), err=True)
-    return problem
+    return found
 
 
 def read_command(**sizes: str | None) -> Gait | None:

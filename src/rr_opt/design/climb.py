@@ -5,16 +5,10 @@ fits one quadratic to the speed and one to each row: the torque, and the turn if
 What is maximised is the speed less a penalty for rows outside their intervals: that has a kink
 where an interval ends, often right where the optimum is, so it is formed from the quadratics and
 not fitted itself.
-
-From a point of the unit box to the best near it, one by one, where a climb stops short.
-
-The simplex method needs no slopes: it follows ridges and the kinks where limits begin, and takes
-some hundred times as long as a climb's share of a batch.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import combinations
@@ -33,8 +27,8 @@ _SAMPLES = 256
 class Terrain(Protocol):
     """What is climbed."""
 
-    def __call__(self, points: Array, sign: Array, /) -> Array:
-        """points (K, 4), directions (K,) -> speed that way and R rows, (1 + R, K)."""
+    def __call__(self, points: Array, /) -> Array:
+        """points (K, 4) -> speed and R rows, (1 + R, K)."""
         ...
 
 
@@ -69,17 +63,16 @@ class Merit:
 
 
 def climb(
-    x: Array, sign: Array, free: list[int], terrain: Terrain, merit: Merit, effort: Effort
-) -> tuple[Array, Array, Array]:
-    """Climb from x (K, 4) along the free coordinates; the tops, their directions and their merit,
-    best first.
+    x: Array, free: list[int], terrain: Terrain, merit: Merit, effort: Effort
+) -> tuple[Array, Array]:
+    """Climb from x (K, 4) along the free coordinates; the tops and their merit, best first.
 
     A climber that comes next to a better one gives up: both are on their way to the same top.
     """
-    best = merit(terrain(x, sign))
+    best = merit(terrain(x))
     d = len(free)
     if not d:
-        return x, sign, best
+        return x, best
     stencil, design = _stencil(d)
     size = np.full(len(x), effort.first)
     for _ in range(effort.iterations):
@@ -87,10 +80,10 @@ def climb(
         centre = np.clip(x[:, free], size[:, None], 1 - size[:, None])
         trial = np.repeat(x[:, None, :], len(stencil) + 1, axis=1)
         trial[:, :-1, free] = centre[:, None, :] + size[:, None, None] * stencil
-        around = _each(terrain, trial[:, :-1], sign)
+        around = _each(terrain, trial[:, :-1])
         models = around @ design.T
         trial[:, -1, free] = centre + size[:, None] * _best_step(models, centre, size, merit)
-        last = _each(terrain, trial[:, -1:], sign)
+        last = _each(terrain, trial[:, -1:])
         values = merit(np.concatenate([around, last], axis=-1))
         rows, top = np.arange(len(x)), values.argmax(axis=1)
         gain = np.maximum(values[rows, top] - best, 0.0)
@@ -100,17 +93,17 @@ def climb(
         size = np.where(moved > 1.5 * size, 1.4 * size, np.maximum(moved / 1.5, size / 4))
         size = np.clip(size, _SMALLEST, _LARGEST)
         x, best = aim, best + gain
-        kept = _apart(x, best, sign)
-        x, sign, best, size = x[kept], sign[kept], best[kept], size[kept]
+        kept = _apart(x, best)
+        x, best, size = x[kept], best[kept], size[kept]
         if done.all():
             break
     order = np.argsort(-best)
-    return x[order], sign[order], best[order]
+    return x[order], best[order]
 
 
-def _each(terrain: Terrain, trial: Array, sign: Array) -> Array:
+def _each(terrain: Terrain, trial: Array) -> Array:
     """Speed and rows of (K, M, 4) points, (1 + R, K, M)."""
-    values = terrain(trial.reshape(-1, 4), np.repeat(sign, trial.shape[1]))
+    values = terrain(trial.reshape(-1, 4))
     return values.reshape(-1, *trial.shape[:2])
 
 
@@ -170,43 +163,10 @@ def spread(count: int, d: int) -> Array:
     return (0.5 + np.outer(np.arange(1, count + 1), steps)) % 1.0
 
 
-def _apart(x: Array, values: Array, sign: Array) -> list[int]:
+def _apart(x: Array, values: Array) -> list[int]:
     """Indices of climbers that are not next to a better one."""
     kept: list[int] = []
     for i in np.argsort(-values):
-        if all(sign[i] != sign[j] or np.abs(x[i] - x[j]).max() > _NEXT_TO for j in kept):
+        if all(np.abs(x[i] - x[j]).max() > _NEXT_TO for j in kept):
             kept.append(int(i))
     return kept
-
-
-_FIRST, _RESTARTS, _GAIN = 0.05, 6, 1e-5
-_WORST = 1e9
-
-
-def polished(value: Callable[[Array], float], point: Array, free: list[int]) -> tuple[Array, float]:
-    """The point (4,) that the simplex method leads to along the free coordinates, begun anew
-    until it gains nothing, and its value."""
-    from scipy.optimize import minimize  # compiled code does without
-
-    best, top = point.copy(), value(point)
-
-    def cost(x: Array) -> float:
-        there = best.copy()
-        there[free] = x
-        # A number, or the simplex cannot be ordered.
-        return min(-value(there), _WORST)
-
-    for _ in range(_RESTARTS if free else 0):
-        corner = best[free]
-        simplex = corner + np.vstack([np.zeros(len(free)), _FIRST * np.eye(len(free))])
-        simplex = np.where(simplex > 1, 2 * corner - simplex, simplex)
-        how = {"initial_simplex": simplex, "xatol": 1e-6, "fatol": 1e-8, "maxfev": 300}
-        bounds = [(0.0, 1.0)] * len(free)
-        found = minimize(cost, corner, method="Nelder-Mead", bounds=bounds, options=how)
-        gain = -float(found.fun) - top
-        if gain > 0:
-            top += gain
-            best[free] = found.x
-        if gain <= _GAIN * max(abs(top), 1e-3):
-            break
-    return best, top

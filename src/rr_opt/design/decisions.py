@@ -45,6 +45,12 @@ class TurnRows:
     length: float
 
     @property
+    def names(self) -> tuple[str, ...]:
+        """The quantity of each row."""
+        asked = self.turn
+        return tuple(n for n in ("curvature", "yaw_rate", "heading") if getattr(asked, n) != ANY)
+
+    @property
     def intervals(self) -> tuple[Interval, ...]:
         """The interval of each row."""
         rows = []
@@ -67,6 +73,12 @@ class TurnRows:
             rows.append(turn / _size(self.turn.heading))
         return rows
 
+    def slopes(self, speed: float, turn: float, period: float) -> dict[str, float]:
+        """What a row gains per unit of its quantity, at a gait."""
+        tangent = turn / period / abs(speed) * self.length
+        found = {name: 1 / _size(getattr(self.turn, name)) for name in self.names}
+        return found | {"curvature": self.length / (1 + tangent**2)}
+
 
 def turn_rows(turn: Turn, robot: Robot) -> TurnRows:
     """The rows of a turn that this robot is to make."""
@@ -78,7 +90,7 @@ def turn_rows(turn: Turn, robot: Robot) -> TurnRows:
 def _size(asked: Interval) -> float:
     """The size of what is asked; 1 if that is nothing but straight."""
     ends = [abs(end) for end in (asked.low, asked.high) if math.isfinite(end)]
-    return max(ends) or 1.0
+    return max(ends, default=0.0) or 1.0
 
 
 SQUARE = math.pi / 4

@@ -1,28 +1,39 @@
 """Why no gait respects all limits, and how far each must change, in sentences.
 
 Angle, rate and singularity bound the amplitude alone, so their conflicts with the gait's bounds
-are known exactly. For the torque the smallest peak that any allowed gait has is searched, and for
-a turn the nearest that any allowed gait makes.
+are known exactly. For the torque the smallest peak that any allowed gait has is sought, and for
+a turn the nearest that any allowed gait makes: by a scan whose resolution is reported, and climbs.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from rr_opt.array import Array
-from rr_opt.design.climb import Merit
-from rr_opt.design.decisions import Decisions, reach_before_singularity
-from rr_opt.design.landscape import Cycles, Landscape
-from rr_opt.design.scan import search
-from rr_opt.design.seeds import least_torque
-from rr_opt.design.turn_target import SURE, Nearest, asked_text, reached_text
+from rr_opt.design.decisions import (
+    Decisions,
+    Setting,
+    reach_before_singularity,
+    scanned,
+    settings_of,
+)
+from rr_opt.design.seeds import THOROUGH, tops
+from rr_opt.design.sines import FEASIBLE, FEWEST, WAYS, climbed
+from rr_opt.design.terrain import Aim, Terrain
+from rr_opt.design.turn_target import Nearest, asked_text, reached_text
 from rr_opt.model.gait import SineGait
-from rr_opt.model.problem import Interval, Problem
+from rr_opt.model.problem import Interval, Problem, Turn
 
 _ROUNDING = 1 + 1e-9
+_ENOUGH = 1 + 1e-5
+"""What a limit is raised to beyond the least that was found."""
+_NODES = 768
+_NEAR = 0.01
+_OPPOSITE = {"forward": "backward", "backward": "forward"}
 
 
 def posture_clashes(problem: Problem, box: Decisions) -> str:
@@ -30,25 +41,94 @@ def posture_clashes(problem: Problem, box: Decisions) -> str:
     return _told(_angle(problem) + _rate(problem) + _ballast(box))
 
 
-def torque_clash(problem: Problem, box: Decisions, landscapes: list[Landscape]) -> str:
-    """Why no gait that keeps the other limits keeps the torque's, or none that keeps them all
-    turns as asked; empty if some do."""
-    heavy = _torque(problem, box, landscapes)
-    return _told(heavy) or " ".join(turn_clashes(problem, box, landscapes))
+@dataclass(frozen=True)
+class Attempt:
+    """The gait (4,) that comes nearest to what is asked, on a setting; by how much it misses it;
+    and how many gaits were scanned for it."""
+
+    setting: Setting
+    gait: Array
+    excess: float
+    scanned: int
 
 
-def direction_clash(problem: Problem, fastest: float) -> str:
-    """Why no gait goes the way it should; `fastest` is the best speed that way in a scan, m/s,
-    of gaits that turn as asked if a turn is asked for: then it says nothing about the others."""
-    if problem.direction == "either" or fastest > 0 or problem.turn:
-        return ""
-    other = "backward" if problem.direction == "forward" else "forward"
-    return _told(
-        [
-            f"`direction: {problem.direction}` conflicts with the bounds: every gait tried that "
-            f"respects the other limits drives {other}, the slowest at {abs(fastest):.3g} m/s. "
-            f"Allow `direction: {other}` or `either`, or widen the gait's bounds."
-        ]
+def attempt(terrains: list[Terrain]) -> Attempt:
+    """The best of all gaits, or the first that misses nothing."""
+    best, count = Attempt(terrains[0].setting, np.zeros(4), math.inf, 0), 0
+    for terrain in terrains:
+        points, more = tops(terrain, THOROUGH)
+        count += more
+        for start in terrain.box.physical(points).T:
+            found = _climbed(terrain, start, FEWEST)
+            if found.excess < best.excess:
+                best = _climbed(terrain, found.gait, _NODES)
+            if best.excess <= FEASIBLE:
+                return best
+    return replace(best, scanned=count)
+
+
+def _climbed(terrain: Terrain, start: Array, nodes: int) -> Attempt:
+    ascent, gait = climbed(terrain, start, nodes)
+    return Attempt(terrain.setting, gait, max(ascent.violation, -ascent.value), 0)
+
+
+def clash(problem: Problem, box: Decisions, settings: list[Setting]) -> str | Attempt:
+    """Why no gait that keeps angle, rate and singularity keeps the other limits too and turns as
+    asked; or one that does."""
+    way = WAYS[problem.direction]
+
+    def seek(rows: tuple[str, ...], aim: Aim, way: int) -> Attempt:
+        return attempt([Terrain(one, scanned(one, box), way, rows, aim) for one in settings])
+
+    found = seek(("torque",), "rows", 0)
+    if found.excess > FEASIBLE:
+        name = Terrain(found.setting, box, 0).dearest(found.gait, _NODES)
+        return f"{_told([_load(problem, name, found)])} {_evidence(found, box)}"
+    if way:
+        found = seek(("torque", "direction"), "rows", way)
+        if found.excess > FEASIBLE:
+            return f"{_told([_direction(problem)])} {_evidence(found, box)}"
+    if problem.turn:
+        found = seek(("torque", "direction"), "turn", way)
+        if found.excess > FEASIBLE:
+            other = seek(("torque", "direction"), "turn", -way) if way else found
+            return " ".join([*_turn(problem, box, found, other), _evidence(found, box)])
+    return found
+
+
+def nearest_turn(problem: Problem, box: Decisions) -> Nearest:
+    """What the gait does that comes nearest to the turn within all other limits."""
+    terrains = [
+        Terrain(one, scanned(one, box), WAYS[problem.direction], ("torque", "direction"), "turn")
+        for one in settings_of(problem, box)
+    ]
+    return _nearest(attempt(terrains))
+
+
+def _evidence(found: Attempt, box: Decisions) -> str:
+    apart = found.scanned ** (-1 / max(len(box.free), 1))
+    return (
+        f"This rests on {found.scanned} gaits all over the bounds, neighbours {apart:.1%} of each "
+        "range apart, and on climbs from the best of them."
+    )
+
+
+def _load(problem: Problem, name: str, found: Attempt) -> str:
+    limit, unit = getattr(problem.limits, name), " N m" if name == "torque" else ""
+    return (
+        f"Limit `{name}` ({limit:.6g}{unit}) conflicts with the gait's bounds: among the gaits "
+        f"that keep the other limits, the least peak {name} is "
+        f"{_up(limit * (1 + found.excess) * _ENOUGH)}{unit}. Raise the limit to that, "
+        "or allow longer periods or smaller amplitudes."
+    )
+
+
+def _direction(problem: Problem) -> str:
+    other = _OPPOSITE[problem.direction]
+    return (
+        f"`direction: {problem.direction}` conflicts with the bounds: every gait that respects the "
+        f"other limits drives {other}. Allow `direction: {other}` or `either`, or widen the gait's "
+        "bounds."
     )
 
 
@@ -143,56 +223,9 @@ def _ballast(box: Decisions) -> list[str]:
     return ["The inertia ratio's bounds lie below what the robot has without loads."]
 
 
-def _torque(problem: Problem, box: Decisions, landscapes: list[Landscape]) -> list[str]:
-    limit = problem.limits.torque
-    if math.isinf(limit):
-        return []
-    least = min(least_torque(landscape, box) for landscape in landscapes)
-    if least <= limit:
-        return []
-    # The search for it is good to a few parts in ten thousand.
-    enough = _up(1.001 * least)
-    return [
-        f"Limit `torque` ({limit:.6g} N m) conflicts with the gait's bounds: among the gaits that "
-        f"keep the other limits, the least peak torque is {enough} N m. Raise the limit to that, "
-        "or allow longer periods or smaller amplitudes."
-    ]
-
-
-_NODES = 192
-OUT_OF_REACH = 30.0
-"""A limit exceeded by 1 % weighs as much as a turn that is off by 30 %; a distance as large as
-this is that of gaits that all drive the other way."""
-
-_NEAR = 0.01
-_OPPOSITE = {"forward": "backward", "backward": "forward"}
-
-
-def nearest_turn(
-    problem: Problem, box: Decisions, landscapes: list[Landscape], direction: str
-) -> Nearest:
-    """The nearest of all gaits that drive in this direction."""
-    signs = {"forward": (1,), "backward": (-1,), "either": (1, -1)}[direction]
-    rows = box.turn
-    if rows is None:
-        raise ValueError("the problem asks for no turn")
-    off = Merit(rows.intervals, (1.0,) * len(rows.intervals))
-
-    def look(cycles: Cycles, gaits: Array, sign: Array) -> Array:
-        turned = np.array(rows.values(cycles.speed, cycles.turn, gaits[1]))
-        distance = -off(np.concatenate([np.zeros((1, len(sign))), turned]))
-        torque = cycles.peak_torque / problem.limits.torque
-        return np.array([-distance, torque, sign * np.sign(cycles.speed)])
-
-    kept = (Interval(-math.inf, 1.0), Interval(0.0, math.inf))
-    found = [
-        (search(landscape, box, look, Merit(kept, (OUT_OF_REACH, OUT_OF_REACH)), signs), landscape)
-        for landscape in landscapes
-    ]
-    (point, _, merit), landscape = max(found, key=lambda pair: pair[0][2])
-    gaits = box.physical(point[None])
-    cycle = landscape.cycles(gaits, _NODES)
-    amplitude, period, offset, share = (float(value) for value in gaits[:, 0])
+def _nearest(found: Attempt) -> Nearest:
+    cycle = found.setting.landscape.cycles(found.gait[:, None], _NODES)
+    amplitude, period, offset, share = found.gait.tolist()
     turn, speed = float(cycle.turn[0]), abs(float(cycle.speed[0]))
     return Nearest(
         gait=SineGait(amplitude, period, offset),
@@ -201,38 +234,25 @@ def nearest_turn(
         yaw_rate=turn / period,
         heading=turn,
         torque=float(cycle.peak_torque[0]),
-        distance=-merit,
+        distance=found.excess,
     )
 
 
-def turn_clashes(problem: Problem, box: Decisions, landscapes: list[Landscape]) -> list[str]:
-    """Why no gait that keeps the limits turns as asked; empty if some do, as far as is known."""
-    turn, direction = problem.turn, problem.direction
-    if turn is None:
-        return []
-    nearest = nearest_turn(problem, box, landscapes, direction)
-    if nearest.distance <= SURE:
-        return []
-    sentences = [f"The requested turn, {asked_text(turn)}, is infeasible."]
-    if nearest.distance >= OUT_OF_REACH:
-        sentences.append(
-            f"Every gait tried that satisfies the limits drives {_OPPOSITE[direction]}; others "
-            "may not."
-        )
-    else:
-        gait, held = nearest.gait, held_by(problem, box, nearest)
-        listed = " and ".join([", ".join(held[:-1]), held[-1]] if len(held) > 1 else held)
-        held_text = listed or "no limit: the robot itself turns no closer to it"
-        sentences.append(
-            f"The closest feasible one is {reached_text(turn, nearest)}, with amplitude "
-            f"{gait.amplitude:.4g} rad, period {gait.period:.4g} s, offset {gait.offset:.4g} rad. "
-            f"It is limited by {held_text}."
-        )
-    if direction != "either":
-        other = nearest_turn(problem, box, landscapes, _OPPOSITE[direction])
-        if other.distance <= SURE:
-            sentences.append(f"A gait that drives {_OPPOSITE[direction]} achieves it.")
-    return [" ".join([*sentences, "Ask for a feasible turn, or relax what limits it."])]
+def _turn(problem: Problem, box: Decisions, found: Attempt, other: Attempt) -> list[str]:
+    """Why no gait turns as asked; other: the nearest that drives the other way."""
+    turn, nearest = problem.turn or Turn(), _nearest(found)
+    gait, held = nearest.gait, held_by(problem, box, nearest)
+    listed = " and ".join([", ".join(held[:-1]), held[-1]] if len(held) > 1 else held)
+    held_text = listed or "no limit: the robot itself turns no closer to it"
+    sentences = [
+        f"The requested turn, {asked_text(turn)}, is infeasible.",
+        f"The closest feasible one is {reached_text(turn, nearest)}, with amplitude "
+        f"{gait.amplitude:.4g} rad, period {gait.period:.4g} s, offset {gait.offset:.4g} rad. "
+        f"It is limited by {held_text}.",
+    ]
+    if other.excess <= FEASIBLE:
+        sentences.append(f"A gait that drives {_OPPOSITE[problem.direction]} achieves it.")
+    return [*sentences, "Ask for a feasible turn, or relax what limits it."]
 
 
 def held_by(problem: Problem, box: Decisions, nearest: Nearest) -> list[str]:

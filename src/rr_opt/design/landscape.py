@@ -132,7 +132,7 @@ class Landscape:
         self._rates, self._torque, self._affine, self._tangent = functions
         self._code = _code(dynamics.effects) if dynamics.linear else None
         self._values = list(dynamics.values(robot))
-        self._names = dynamics.parameters
+        self._names, self._effects = dynamics.parameters, dynamics.effects
         self.linear = dynamics.linear
         self._robot, self._by, self._range = robot, by, (ballast.low, ballast.high)
         self.loads = loads
@@ -187,6 +187,15 @@ class Landscape:
         (torque,) = self._torque(v, *at_nodes, *p)
         return _summary(v, w, side, torque, period)
 
+    def grips(self, cycles: Cycles, gaits: Array) -> Array:
+        """Side force of each axle over its load, (2, N, K), on the cycles of these gaits (4, K)."""
+        amplitude, period, offset, share = gaits
+        theta = 2 * math.pi * np.arange(len(cycles.v))[:, None] / len(cycles.v)
+        omega, sine = 2 * math.pi / period, amplitude * np.sin(theta)
+        angle = (sine + offset, amplitude * omega * np.cos(theta), -(omega**2) * sine)
+        found = _grip(self._effects)(cycles.v, *angle, *self._parameters(share))
+        return np.array(np.broadcast_arrays(*found))
+
     def _parameters(self, share: Array) -> list:
         low, high = self._range
         amount = low + share * (high - low)
@@ -238,6 +247,11 @@ def _array_functions(effects: tuple[str, ...]) -> tuple[ArrayFunction, ...]:
         over_arrays(_affine(motion)),
         over_arrays(motion.factory("tangent", names, ["vdot", "jac:vdot:v"])),
     )
+
+
+@lru_cache
+def _grip(effects: tuple[str, ...]) -> ArrayFunction:
+    return over_arrays(derive(effects).grip)
 
 
 @lru_cache

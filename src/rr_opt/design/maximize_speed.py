@@ -10,9 +10,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from rr_opt.design.candidate import Candidate, Finds, distinct
 from rr_opt.design.decisions import robot_of
-from rr_opt.design.search import Finds, Progress, distinct, find_families, find_sines, refine
-from rr_opt.design.solve import Candidate
+from rr_opt.design.families import find_families, refine
+from rr_opt.design.search import Progress, find_sines
 from rr_opt.model.ballast import inertia_ratio
 from rr_opt.model.problem import Problem
 from rr_opt.model.robot import Robot
@@ -133,7 +134,7 @@ def _answer(problem: Problem, finds: Finds, progress: Progress) -> Optimum:
             starts=starts,
             iterations=iterations,
             failures=failures,
-            intervals=refined.mesh.intervals,
+            intervals=refined.intervals,
         )
     message = finds.clash or "No start led to an optimum. " + " ".join(dict.fromkeys(failures))
     return Optimum(

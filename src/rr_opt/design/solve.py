@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
 from rr_opt.array import Array
+from rr_opt.design.candidate import Candidate
 from rr_opt.design.decisions import Setting, decisions, robot_of
 from rr_opt.design.landscape import Cycles, Landscape
 from rr_opt.design.multiple_shooting import shooting
@@ -38,42 +38,6 @@ _AHEAD = 1e-6
 
 FEASIBLE = 1e-6
 """Largest violation of a row that still counts as kept."""
-
-
-@dataclass(frozen=True)
-class Candidate:
-    """What one start led to.
-
-    sign         +1 forward, -1 backward
-    gait, share  the gait, and the ballast's share of its range
-    speed        signed, m/s
-    feasible     every row holds within FEASIBLE
-    success      the solver says it is an optimum
-    sentence     the same in words
-    prices       speed gained per unit of each limit, m/s per unit: rate, angle, torque, grip,
-                 singularity, direction, and curvature, yaw_rate, heading of the turn
-    bound_prices speed gained per unit by which an active bound moves up: amplitude, period,
-                 offset, ballast
-    mesh         on which it was solved
-    """
-
-    sign: int
-    gait: Gait
-    share: float
-    speed: float
-    feasible: bool
-    success: bool
-    sentence: str
-    iterations: int
-    prices: Mapping[str, float]
-    bound_prices: Mapping[str, float]
-    violation: float
-    mesh: Mesh = field(repr=False)
-
-    @property
-    def rank(self) -> tuple[bool, bool, float]:
-        """Sort key: infeasible last, then unsuccessful, then slow."""
-        return (not self.feasible, not self.success, -abs(self.speed))
 
 
 def solve(setting: Setting, sign: int, gait: Gait, share: float, mesh: Mesh) -> Candidate:
@@ -132,6 +96,7 @@ def solve(setting: Setting, sign: int, gait: Gait, share: float, mesh: Mesh) -> 
             **{name: float(on_bounds[name]) for name in ("period", "ballast")},
         },
         violation=violation,
+        intervals=mesh.intervals,
         mesh=mesh,
     )
 

@@ -5,7 +5,7 @@ The mesh of a program: its nodes, and where between them limits are held.
 A limit that holds at every node can be broken between two, and where a shape has many
 coefficients the solver sees to it that its peaks lie there. So phases at which an answer breaks a
 limit are added to those at which it is held, and it is solved again, until its peaks have nowhere
-to go. Only a sine's peaks are as good as known: a node moved onto one is enough.
+to go.
 
 The order of unknowns and rows in the program: names in, names out.
 
@@ -61,15 +61,6 @@ class Mesh:
     def intervals(self) -> int:
         """N."""
         return len(self.phases)
-
-    def with_nodes_at(self, peaks: Array) -> Mesh:
-        """With equal intervals but for the nodes that are nearest to these phases of [0, 1), which
-        are moved there. The first may come to lie just before 0."""
-        phases = np.arange(self.intervals) / self.intervals
-        for peak in peaks:
-            nearest = round(peak * self.intervals)
-            phases[nearest % self.intervals] = peak - nearest // self.intervals
-        return replace(self, phases=phases)
 
     def with_torque_at(self, peaks: Array) -> Mesh:
         """With the torque held at these phases of [0, 1) too.

@@ -11,8 +11,8 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from rr_opt.design.decisions import decisions, settings_of
-from rr_opt.design.infeasible import OUT_OF_REACH, nearest_turn, posture_clashes
+from rr_opt.design.decisions import decisions
+from rr_opt.design.infeasible import nearest_turn, posture_clashes
 from rr_opt.design.maximize_speed import Optimum, maximize_speed
 from rr_opt.design.turn_target import SURE, Target, posed
 from rr_opt.model.problem import Interval, Problem
@@ -74,10 +74,9 @@ def _sooner(problem: Problem, target: Target) -> str:
     box = decisions(problem)
     if target.heading is None or target.radius is not None or posture_clashes(problem, box):
         return ""
-    landscapes = [setting.landscape for setting in settings_of(problem, box)]
-    nearest = nearest_turn(problem, box, landscapes, problem.direction)
+    nearest = nearest_turn(problem, box)
     reached = nearest.yaw_rate if target.within is not None else nearest.curvature
-    if nearest.distance >= OUT_OF_REACH or reached * target.heading <= 0:
+    if reached * target.heading <= 0:
         return ""
     needed = target.heading / reached * (1 + SURE)
     unit, what = ("s", "within") if target.within is not None else ("m", "length")

@@ -9,6 +9,7 @@ from rr_opt.files.experiment_file import experiment_path, plan_from
 from rr_opt.files.issue import InvalidFileError, Issue
 from rr_opt.files.problem_file import kind_of, problem_from, problem_sources
 from rr_opt.files.robot_file import robot_from, singular_posture
+from rr_opt.files.route_file import route_from
 from rr_opt.files.source import problem_path, read_document
 from rr_opt.files.study_file import study_from
 from rr_opt.files.yaml_text import Document
@@ -29,6 +30,8 @@ def lint_file(path: str | Path) -> list[Issue]:
             return _robot_issues(document)
         if kind == "study":
             return study_from(document, Path(path))[1]
+        if kind == "route":
+            return route_from(document, file)[1]
         if kind == "experiment":
             return plan_from(document, file)[1]
         return problem_from(problem_sources(file))[1]

@@ -19,7 +19,7 @@ from rr_opt.model.problem import GaitBounds, Problem, RatioChoice, reachable
 from rr_opt.model.robot import Robot
 from rr_opt.outcome import InputError
 
-Kind = Literal["robot", "problem", "study", "experiment", "result"]
+Kind = Literal["robot", "problem", "study", "experiment", "route", "result"]
 
 _EXPERIMENT = ("recordings", "noise", "uncertainty")
 _STUDY = ("vary", "together", "problem")
@@ -31,6 +31,8 @@ def kind_of(document: Document) -> Kind:
         return "result"
     if any(key in document.data for key in _EXPERIMENT):
         return "experiment"
+    if "route" in document.data:
+        return "route"
     if any(key in document.data for key in _STUDY):
         return "study"
     robot, problem = list(RobotModel.model_fields), list(ProblemModel.model_fields)
@@ -126,6 +128,8 @@ _READ_ELSEWHERE = {
     "Experiments are read by `rr-opt diagnose`.",
     "study": "Read the keys of a study. Expected a problem or a robot. "
     "Studies are solved by `rr-opt study`.",
+    "route": "Read the keys of a route. Expected a problem or a robot. "
+    "Routes are driven by `rr-opt route`.",
     "result": "Read a result, which rr-opt has written. Expected an input file: a problem or a "
     "robot. Results are read by `rr-opt simulate` and `rr-opt export`.",
 }
@@ -174,6 +178,21 @@ def with_robot(problem: Document, file: Path, paths: tuple[Path, ...] = ()) -> S
         )
         robot, issues = None, [problem.issue("error", ("robot",), message)]
     return Sources((*paths, *named), problem, robot, tuple(issues))
+
+
+def base_sources(document: Document, file: Path) -> Sources:
+    """The problem of a study or a route file. Raises InvalidFileError if it cannot be read."""
+    entry = document.data.get("problem")
+    if isinstance(entry, dict):
+        return with_robot(document.section("problem"), file)
+    if "problem" not in document.data:
+        return problem_sources(None)
+    expected = "the name of a problem file, or the problem itself"
+    expected += ". Without this key the problem is the paper's prototype"
+    _, paths, issues = linked(document, "problem", file.parent, expected)
+    if issues:
+        raise InvalidFileError(issues)
+    return problem_sources(paths[0])
 
 
 def read_problem(path: str | Path | None = None) -> Problem:

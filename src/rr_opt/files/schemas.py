@@ -9,10 +9,11 @@ from pydantic import BaseModel
 from rr_opt.files.experiment_model import ExperimentModel
 from rr_opt.files.problem_model import ProblemModel, StudyModel
 from rr_opt.files.robot_file import RobotModel
+from rr_opt.files.route_file import RouteModel
 from rr_opt.messages import unknown_word
 from rr_opt.outcome import InputError
 
-FileKind = Literal["robot", "problem", "study", "experiment"]
+FileKind = Literal["robot", "problem", "study", "experiment", "route"]
 
 _DIALECT = "https://json-schema.org/draft/2020-12/schema"
 _MODELS: dict[str, type[BaseModel]] = {
@@ -20,11 +21,12 @@ _MODELS: dict[str, type[BaseModel]] = {
     "problem": ProblemModel,
     "study": StudyModel,
     "experiment": ExperimentModel,
+    "route": RouteModel,
 }
 
 
 def schema(kind: str) -> dict[str, Any]:
-    """The JSON Schema (2020-12) of a kind of file: robot, problem, study or experiment.
+    """The JSON Schema (2020-12) of a kind of file: robot, problem, study, experiment or route.
 
     Every field carries a description with its unit; the SI unit alone is under `x-unit`.
     Raises InputError for any other kind.

@@ -12,11 +12,11 @@ from typing import Any
 
 from rr_opt.files.fields import validate
 from rr_opt.files.issue import InvalidFileError, Issue, has_errors
-from rr_opt.files.problem_file import kind_of, problem_from
+from rr_opt.files.problem_file import base_sources, kind_of, problem_from
 from rr_opt.files.problem_model import StudyModel
 from rr_opt.files.source import fingerprint, read_document
 from rr_opt.files.study_axes import Axis, Line, axes_of
-from rr_opt.files.study_keys import Setting, base_sources, with_values
+from rr_opt.files.study_keys import Setting, with_values
 from rr_opt.files.yaml_text import Document
 from rr_opt.files.yaml_text import KeyPath as Keys
 from rr_opt.messages import shown

@@ -10,11 +10,10 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from rr_opt.files.issue import InvalidFileError, Issue
-from rr_opt.files.problem_file import Sources, problem_sources, with_robot
+from rr_opt.files.issue import Issue
+from rr_opt.files.problem_file import Sources, with_robot
 from rr_opt.files.schemas import schema
-from rr_opt.files.source import linked
-from rr_opt.files.yaml_text import Document, KeyPath, path_text
+from rr_opt.files.yaml_text import KeyPath, path_text
 from rr_opt.messages import shown, unknown_word
 from rr_opt.outcome import InputError
 
@@ -120,21 +119,6 @@ Setting = tuple[KeyPath, Any]
 
 class _CannotSetError(Exception):
     """A value has no place in the problem; says why."""
-
-
-def base_sources(document: Document, file: Path) -> Sources:
-    """The problem of a study file. Raises InvalidFileError if it cannot be read."""
-    entry = document.data.get("problem")
-    if isinstance(entry, dict):
-        return with_robot(document.section("problem"), file)
-    if "problem" not in document.data:
-        return problem_sources(None)
-    expected = "the name of a problem file, or the problem itself"
-    expected += ". Without this key the problem is the paper's prototype"
-    _, paths, issues = linked(document, "problem", file.parent, expected)
-    if issues:
-        raise InvalidFileError(issues)
-    return problem_sources(paths[0])
 
 
 def with_values(

@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+from rr_opt.design.candidate import Candidate
 from rr_opt.design.decisions import ballast_interval
 from rr_opt.design.maximize_speed import Optimum
-from rr_opt.design.solve import Candidate
 from rr_opt.design.study.measure import Energy, energy
 from rr_opt.documents import document as doc
 from rr_opt.documents.texts import captions

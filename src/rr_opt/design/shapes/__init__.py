@@ -5,12 +5,11 @@ from __future__ import annotations
 from rr_opt.design.shapes.fourier import FourierShape
 from rr_opt.design.shapes.free import FreeShape
 from rr_opt.design.shapes.shape import Shape
-from rr_opt.design.shapes.sine import SineShape
 from rr_opt.model.problem import GaitBounds
 
 
 def shape_of(gait: GaitBounds) -> Shape:
-    """The shape that a problem asks for."""
+    """The shape that a problem asks for, which is no sine."""
     if gait.shape == "fourier":
         return FourierShape(gait.harmonics)
-    return FreeShape() if gait.shape == "free" else SineShape()
+    return FreeShape()

@@ -7,10 +7,10 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from rr_opt.design.candidate import Candidate, distinct
 from rr_opt.design.decisions import Setting, decisions, robot_of, settings_of
+from rr_opt.design.families import refine, solve_from
 from rr_opt.design.maximize_speed import maximize_speed
-from rr_opt.design.search import distinct, refine, solve_from
-from rr_opt.design.solve import Candidate
 from rr_opt.design.study.measure import measured
 from rr_opt.design.study.plan import Foothold, Plan, expected_speed, footholds
 from rr_opt.design.study.row import Row

@@ -17,8 +17,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from rr_opt.design.candidate import Candidate
 from rr_opt.design.decisions import ballast_interval
-from rr_opt.design.solve import Candidate
 from rr_opt.design.study.row import Optimum, Row, gait_record
 from rr_opt.model.problem import LARGEST_EXCESS, Interval, Problem, RatioChoice
 from rr_opt.model.robot import Robot

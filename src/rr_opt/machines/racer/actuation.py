@@ -118,8 +118,8 @@ def actuation_sets(
     alone = best_first(tried(plain))
     # Where one effect leaves next to nothing, only what costs next to nothing is tried beside it.
     quick = angle.explained(alone[0])
-    if not quick:
-        alone = best_first([*alone, *tried(fuller)])
+    cheap = [one for one in fuller if racer.catalogue[one.name].smooth]
+    alone = best_first([*alone, *tried(cheap if quick else fuller)])
     sets = [none, *alone]
     names = list(dict.fromkeys(one.choices[0].name for one in alone))[:_PAIRED]
     leading = [next(one for one in alone if one.choices[0].name == name) for name in names]

@@ -13,14 +13,13 @@ climbs on the speed of this simulation.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 import casadi as ca
 import numpy as np
 
 from rr_opt.array import Array
-from rr_opt.design.climb import polished
 from rr_opt.design.decisions import decisions, robot_of, settings_of
 from rr_opt.design.maximize_speed import Optimum
 from rr_opt.effects import CATALOGUE
@@ -215,7 +214,7 @@ def drive_optimum(optimum: Optimum) -> DrivenOptimum | None:
 
         gait = one.gait
         point = box.unit(gait.amplitude, gait.period, gait.offset, one.share)
-        top, _ = polished(value, point, free)
+        top, _ = _polished(value, point, free)
         built, command, seen = driven_at(top)
         kept = problem.limits.worst(seen.reached)[1] <= LARGEST_EXCESS
         if kept and abs(seen.speed) > abs(here.driven.speed) * (1 + _GAIN):
@@ -227,3 +226,38 @@ def drive_optimum(optimum: Optimum) -> DrivenOptimum | None:
 _SHARE = 3
 """Where the ballast stands among the decisions."""
 _GAIN = 1e-6
+
+
+_FIRST, _RESTARTS, _GAIN = 0.05, 6, 1e-5
+_WORST = 1e9
+
+
+def _polished(
+    value: Callable[[Array], float], point: Array, free: list[int]
+) -> tuple[Array, float]:
+    """The point (4,) that the simplex method leads to along the free coordinates, begun anew
+    until it gains nothing, and its value."""
+    from scipy.optimize import minimize  # compiled code does without
+
+    best, top = point.copy(), value(point)
+
+    def cost(x: Array) -> float:
+        there = best.copy()
+        there[free] = x
+        # A number, or the simplex cannot be ordered.
+        return min(-value(there), _WORST)
+
+    for _ in range(_RESTARTS if free else 0):
+        corner = best[free]
+        simplex = corner + np.vstack([np.zeros(len(free)), _FIRST * np.eye(len(free))])
+        simplex = np.where(simplex > 1, 2 * corner - simplex, simplex)
+        how = {"initial_simplex": simplex, "xatol": 1e-6, "fatol": 1e-8, "maxfev": 300}
+        bounds = [(0.0, 1.0)] * len(free)
+        found = minimize(cost, corner, method="Nelder-Mead", bounds=bounds, options=how)
+        gain = -float(found.fun) - top
+        if gain > 0:
+            top += gain
+            best[free] = found.x
+        if gain <= _GAIN * max(abs(top), 1e-3):
+            break
+    return best, top

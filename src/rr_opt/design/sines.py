@@ -1,0 +1,101 @@
+"""The best sines: climbs from all over the box, each ended by sequential quadratic programming.
+
+A sine has four decisions, and its steady cycle is known as a function of them, so a program in the
+decisions alone is all it takes. Shapes with dozens of coefficients are left to multiple shooting.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from rr_opt.array import Array
+from rr_opt.design.candidate import Candidate
+from rr_opt.design.decisions import Setting, decisions, robot_of
+from rr_opt.design.terrain import Terrain
+from rr_opt.model.gait import SineGait
+from rr_opt.motion.steady_cycle import steady_cycle
+from rr_opt.outcome import NotConvergedError
+from rr_opt.sqp import Ascent, ascend
+
+WAYS = {"forward": 1, "backward": -1, "either": 0}
+
+FEASIBLE = 1e-7
+"""Largest violation of a row that still counts as kept."""
+FEWEST, _MOST = 96, 3072
+"""Phases of a cycle."""
+_ORDER = 4
+_ERROR = {True: 1e-9, False: 1e-7}
+"""Wanted of speed and peak torque, relative; where friction is viscous (True) or not."""
+_SENTENCES = {
+    (True, True): "A local optimum within the solver's tolerance.",
+    (True, False): "The solver stopped short of an optimum.",
+    (False, True): "No gait near this start respects all limits.",
+    (False, False): "The solver stopped short of gaits that keep the limits.",
+}
+"""By feasible, converged."""
+
+
+def climbed(terrain: Terrain, start: Array, nodes: int = FEWEST) -> tuple[Ascent, Array]:
+    """The end of a climb from a gait (4,): amplitude, period, offset, share; and that gait."""
+    program, x = terrain.program(start, nodes)
+    ascent = ascend(program, x)
+    return ascent, terrain.gait_at(start, ascent.x)
+
+
+def solve_sine(setting: Setting, sign: int, start: Array) -> Candidate:
+    """Maximise the speed in direction `sign`, 0 for either, from amplitude, period, offset and the
+    ballast's share (4,), with the fewest phases."""
+    return _candidate(Terrain(setting, decisions(setting.problem), sign), start, FEWEST)
+
+
+def refine_sine(setting: Setting, candidate: Candidate) -> Candidate:
+    """The same with more and more phases, until more of them change nothing."""
+    terrain = Terrain(setting, decisions(setting.problem), candidate.sign)
+    wanted, nodes = _ERROR[setting.landscape.linear], candidate.intervals
+    iterations = candidate.iterations
+    while True:
+        gait = candidate.gait
+        end = np.array([gait.amplitude, gait.period, gait.offset, candidate.share])
+        seen, finer = (terrain.measured(end, n) for n in (nodes, 2 * nodes))
+        error = max(abs(a - b) / max(abs(b), 1e-12) for a, b in zip(seen, finer, strict=True))
+        if not error > wanted or nodes >= _MOST:
+            return _settled(setting, replace(candidate, iterations=iterations))
+        nodes = min(nodes * 2 ** max(1, math.ceil(math.log2(error / wanted) / _ORDER)), _MOST)
+        candidate = _candidate(terrain, end, nodes)
+        iterations += candidate.iterations
+
+
+def _settled(setting: Setting, candidate: Candidate) -> Candidate:
+    """Where friction is not viscous the lines by which a cycle is closed may agree on none."""
+    if setting.landscape.linear:
+        return candidate
+    try:
+        speed = steady_cycle(robot_of(setting, candidate.share), candidate.gait, steps=_MOST).speed
+    except NotConvergedError as error:
+        return replace(candidate, success=False, sentence=str(error))
+    return replace(candidate, speed=speed)
+
+
+def _candidate(terrain: Terrain, start: Array, nodes: int) -> Candidate:
+    ascent, end = climbed(terrain, start, nodes)
+    cycles, sign = terrain.setting.landscape.cycles(end[:, None], nodes), terrain.way
+    speed = float(cycles.speed[0])
+    prices, bound_prices = terrain.prices(end, speed, float(cycles.turn[0]), ascent)
+    feasible = ascent.violation <= FEASIBLE
+    return Candidate(
+        sign=sign or int(math.copysign(1, speed)),
+        gait=SineGait(*end[:3].tolist()),
+        share=float(end[3]),
+        speed=speed,
+        feasible=feasible,
+        success=ascent.converged,
+        sentence=_SENTENCES[feasible, ascent.converged],
+        iterations=ascent.iterations,
+        prices=prices,
+        bound_prices=bound_prices,
+        violation=ascent.violation,
+        intervals=nodes,
+    )

@@ -1,0 +1,306 @@
+"""What is climbed among sines: speed, torque, direction and turn of gaits, many at once.
+
+Over the unit box of the decisions for the scan and the climbs, and as a program in amplitude,
+period, offset and ballast for the end of a climb. There each peak of the torque is a row of its
+own that follows the peak along the cycle: held at fixed phases instead, the torque would peak
+beside them, and along a limit the gaits are so alike that an optimum can slide far.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rr_opt.array import Array
+from rr_opt.design.climb import Merit
+from rr_opt.design.decisions import Decisions, Setting, TurnRows, reach_before_singularity
+from rr_opt.design.landscape import Cycles
+from rr_opt.design.transcription import ROWS
+from rr_opt.model.problem import Interval
+from rr_opt.sqp import Ascent, Program, Seen
+
+_UNSETTLED = 10.0
+"""What a gait uses of each limit that has no steady cycle."""
+_SEEN_FROM = 0.5
+"""Share of the torque's limit from which a peak is a row."""
+_WITHIN = 3
+"""Nodes to either side within which a peak is followed."""
+_WIDE = 0.05
+"""Smallest amplitude by which a stencil is scaled, rad."""
+_SLOWEST = 1e-12
+"""A speed below it, m/s, counts as this where something is divided by it."""
+_MARGIN = 0.05
+"""Of a stencil's reach in the robot's size, below which it shrinks with the singular margin."""
+
+
+_FORWARD = Interval(1e-6, math.inf)
+"""Of the forward speed, in sizes of the speed: at 0 a gait goes neither forward nor backward."""
+
+
+LIMITS = ("rate", "angle", "singularity", "torque", "grip")
+Aim = Literal["speed", "rows", "turn"]
+Indices = NDArray[np.int_]
+
+
+@dataclass(frozen=True)
+class _Side:
+    """A row of a program: coefficient (value - end) <= 0, or = 0."""
+
+    name: str
+    coefficient: float
+    end: float
+    equal: bool
+
+
+@dataclass(frozen=True)
+class Terrain:
+    """The gaits of a setting.
+
+    way   +1 forward, -1 backward, 0 either
+    rows  which rows count, of torque, direction and turn
+    aim   what is maximised: the speed; how nearly the rows are kept; or how near a gait comes to
+          the turn that is asked for
+    """
+
+    setting: Setting
+    box: Decisions
+    way: int
+    rows: tuple[str, ...] = ("torque", "direction", "turn")
+    aim: Aim = "speed"
+
+    @cached_property
+    def _loads(self) -> dict[str, float]:
+        """Limits of what loads the robot along the cycle, by name."""
+        limits = {name: getattr(self.setting.problem.limits, name) for name in ("torque", "grip")}
+        counted = "torque" in self.rows
+        return {name: one for name, one in limits.items() if counted and math.isfinite(one)}
+
+    def _used(self, cycles: Cycles, gaits: Array) -> list[tuple[str, Array]]:
+        """Shares that each load uses of its limit at the phases, (N, K)."""
+        used = []
+        if "torque" in self._loads:
+            used.append(("torque", np.abs(cycles.torque) / self._loads["torque"]))
+        if "grip" in self._loads:
+            grips = self.setting.landscape.grips(cycles, gaits)
+            used += [("grip", np.abs(grip) / self._loads["grip"]) for grip in grips]
+        return used
+
+    @cached_property
+    def _turn(self) -> TurnRows | None:
+        return self.box.turn if "turn" in self.rows else None
+
+    @cached_property
+    def _ahead(self) -> bool:
+        return self.way != 0 and "direction" in self.rows
+
+    @cached_property
+    def kept(self) -> tuple[Interval, ...]:
+        """The interval of each row: torque over its limit, forward speed, those of the turn."""
+        torque = (Interval(-math.inf, 1.0),) if self._loads else ()
+        ahead = (_FORWARD,) if self._ahead else ()
+        return (*torque, *ahead, *(self._turn.intervals if self._turn else ()))
+
+    def merit(self, unit: float, torque: float, turn: float) -> Merit:
+        """The speed less penalties, in a unit (m/s), for what is off by 1."""
+        heavy = (torque * unit,) if self._loads else ()
+        ahead = (torque,) if self._ahead else ()
+        rest = len(self.kept) - len(heavy) - len(ahead)
+        return Merit(self.kept, (*heavy, *ahead, *(turn * unit,) * rest))
+
+    def over(self, points: Array, nodes: int) -> Array:
+        """Speed and rows at points (K, 4) of the unit box, (1 + R, K)."""
+        gaits = self.box.physical(points)
+        with np.errstate(all="ignore"):
+            cycles = self.setting.landscape.cycles(gaits, nodes)
+            used = [one.max(axis=0) for _, one in self._used(cycles, gaits)]
+            torque = (np.max(used, axis=0),) if used else ()
+            values = self._values(cycles, gaits, 1.0)
+            seen = np.array([self._function(cycles, gaits), *torque, *values])
+        lost = ~np.isfinite(seen).all(axis=0)
+        seen[:, lost], seen[0, lost] = 0.0, -_UNSETTLED if self.aim == "turn" else 0.0
+        for row, kept in zip(seen[1:], self.kept, strict=True):
+            far = kept.high + _UNSETTLED if math.isfinite(kept.high) else kept.low - _UNSETTLED
+            row[lost] = far
+        return seen
+
+    def _function(self, cycles: Cycles, gaits: Array) -> Array:
+        """What is maximised. Of the speed it is the size, which is smooth where forward turns into
+        backward: a row knows the way."""
+        if self.aim == "speed":
+            return np.abs(cycles.speed)
+        turn = self.box.turn
+        if self.aim == "rows" or turn is None:
+            return np.zeros_like(cycles.speed)
+        values = np.array(
+            [np.zeros_like(cycles.speed), *turn.values(cycles.speed, cycles.turn, gaits[1])]
+        )
+        return Merit(turn.intervals, (1.0,) * len(turn.intervals))(values)
+
+    def _values(self, cycles: Cycles, gaits: Array, unit: float) -> list[Array]:
+        """Forward speed in a unit (m/s), then the turn's rows."""
+        V, E = cycles.mean[:2], cycles.mean[2:]
+        ahead = [self.way * (V * E).sum(axis=0) / unit] if self._ahead else []
+        turn = self._turn.values(cycles.speed, cycles.turn, gaits[1]) if self._turn else []
+        return [*ahead, *turn]
+
+    @cached_property
+    def _bounds(self) -> tuple[Array, Array]:
+        """Of amplitude, period, offset, share of the ballast."""
+        box, gait = self.box, self.setting.problem.gait
+        share = 0.0 if box.ballast.fixed else self.setting.fixed_share
+        boxes = (
+            Interval(*[gait.amplitude.low] * 2) if box.amplitude_pinned else gait.amplitude,
+            box.period if box.period.fixed else gait.period,
+            box.offset if box.offset.fixed else gait.offset,
+            Interval(0.0, 1.0) if share is None else Interval(share, share),
+        )
+        low, high = np.array([(one.low, one.high) for one in boxes]).T
+        return low, high
+
+    @cached_property
+    def free(self) -> Indices:
+        """Which of amplitude, period, offset, share are free."""
+        low, high = self._bounds
+        return np.flatnonzero(low < high)
+
+    @cached_property
+    def _sides(self) -> list[_Side]:
+        """The rows but for the torque's, equations first."""
+        rows = list(zip(self._named, self.kept[len(self.kept) - len(self._named) :], strict=True))
+        if self.box.command:
+            rows.append(("command", self.box.command.amplitude))
+        sides = []
+        for name, kept in rows:
+            if kept.fixed:
+                sides.append(_Side(name, 1.0, kept.low, True))
+                continue
+            ends = ((-1.0, kept.low), (1.0, kept.high))
+            sides += [_Side(name, *end, False) for end in ends if math.isfinite(end[1])]
+        return sorted(sides, key=lambda side: not side.equal)
+
+    def program(self, start: Array, nodes: int) -> tuple[Program, Array]:
+        """The program from a gait (4,), amplitude, period, offset, share, and its start."""
+        free, (low, high), limits = self.free, self._bounds, self.setting.problem.limits
+        start = np.clip(start, low, high)
+        size = min(1.0, limits.singularity / (_MARGIN * self.setting.problem.robot.platform1.c))
+        scale = np.array([size * max(start[0], _WIDE), start[1], 0.5 * size, 1.0])
+        matrix, most = np.array([[1.0, 0.0, 1.0, 0.0], [1.0, 0.0, -1.0, 0.0]]), [self.box.reach] * 2
+        if math.isfinite(limits.rate):
+            matrix = np.vstack([matrix, [1.0, -limits.rate / (2 * math.pi), 0.0, 0.0]])
+            most.append(0.0)
+        fixed = np.setdiff1d(np.arange(4), free)
+
+        def look(points: Array) -> Seen:
+            gaits = np.repeat(start[:, None], len(points), axis=1)
+            gaits[free] = points.T
+            with np.errstate(all="ignore"):
+                cycles = self.setting.landscape.cycles(gaits, nodes)
+                unit = max(float(np.abs(cycles.speed[0])), _SLOWEST)
+                values = self._values(cycles, gaits, unit)
+                function = self._function(cycles, gaits)
+            known = dict(zip(self._named, values, strict=True))
+            if self.box.command:
+                known["command"] = gaits[0] / self.box.command.servo.gain(gaits[1])
+            rows = [side.coefficient * (known[side.name] - side.end) for side in self._sides]
+            with np.errstate(all="ignore"):
+                loads = self._used(cycles, gaits)
+            worst, names = list(rows), [side.name for side in self._sides]
+            for name, used in loads:
+                worst.append(_heights(used, used.argmax(axis=0)) - 1)
+                peaks = [_heights(used, at) - 1 for at in _followed(used)]
+                rows, names = rows + peaks, names + [name] * len(peaks)
+            shape = (-1, len(points))
+            return Seen(function, np.reshape(rows, shape), np.reshape(worst, shape), tuple(names))
+
+        program = Program(
+            low=low[free],
+            high=high[free],
+            scale=scale[free],
+            matrix=matrix[:, free],
+            most=most - matrix[:, fixed] @ start[fixed],
+            look=look,
+            equal=sum(side.equal for side in self._sides),
+            unit=0.0 if self.aim == "speed" else 1.0,
+        )
+        return program, start[free]
+
+    @cached_property
+    def _named(self) -> tuple[str, ...]:
+        return (*(("direction",) if self._ahead else ()), *(self._turn.names if self._turn else ()))
+
+    def gait_at(self, start: Array, x: Array) -> Array:
+        """Amplitude, period, offset, share (4,) at a point of the program from `start`."""
+        gait = np.clip(start, *self._bounds)
+        gait[self.free] = x
+        return gait
+
+    def dearest(self, gait: Array, nodes: int) -> str:
+        """The load that uses most of its limit."""
+        used = self._used(self.setting.landscape.cycles(gait[:, None], nodes), gait[:, None])
+        return max(used, key=lambda one: float(one[1].max()))[0]
+
+    def measured(self, gait: Array, nodes: int) -> tuple[float, float]:
+        """Mean speed, m/s, and peak torque, N m, of a gait (4,)."""
+        with np.errstate(all="ignore"):
+            cycle = self.setting.landscape.cycles(gait[:, None], nodes)
+        torque = np.abs(cycle.torque)
+        return float(cycle.speed[0]), float(_heights(torque, torque.argmax(axis=0))[0])
+
+    def prices(
+        self, gait: Array, speed: float, turn: float, ascent: Ascent
+    ) -> tuple[dict[str, float], dict[str, float]]:
+        """Speed gained per unit of each limit, and per unit by which an active bound moves up.
+
+        speed (m/s) and turn (rad per period) of the gait
+        """
+        limits, robot, period = self.setting.problem.limits, self.setting.problem.robot, gait[1]
+        found: dict[str, float] = dict.fromkeys((*LIMITS, *ROWS, "command"), 0.0)
+        posture = float(ascent.prices.linear[:2].sum())
+        if limits.angle <= reach_before_singularity(robot, limits.singularity):
+            found["angle"] = posture
+        else:
+            # c1 cos(edge) + c2 = margin, so a wider margin brings the edge closer.
+            found["singularity"] = -posture / (robot.platform1.c * math.sin(self.box.reach))
+        sides, prices = self._sides, ascent.prices
+        if math.isfinite(limits.rate):
+            found["rate"] = float(prices.linear[2]) * period / (2 * math.pi)
+        for name, price in zip(ascent.names[len(sides) :], prices.rows[len(sides) :], strict=True):
+            found[name] += float(price) / getattr(limits, name)
+        slopes = self._turn.slopes(speed, turn, period) if self._turn else {}
+        slopes["direction"] = 1 / max(abs(speed), _SLOWEST)
+        slopes["command"] = 1.0
+        for side, price in zip(sides, prices.rows, strict=False):
+            found[side.name] += side.coefficient * float(price) * slopes[side.name]
+        names = ("amplitude", "period", "offset", "ballast")
+        bounds: dict[str, float] = dict.fromkeys(names, 0.0)
+        for i, up, down in zip(self.free, prices.high, prices.low, strict=True):
+            bounds[names[i]] = float(up - down)
+        bounds["amplitude"] += found.pop("command")
+        return found, bounds
+
+
+def _followed(used: Array) -> list[Indices]:
+    """Where the peaks of the first gait are in each gait: nodes (K,) by peak.
+
+    used: share of the limit (N, K)
+    """
+    first, n = used[:, 0], len(used)
+    peaks = np.flatnonzero(
+        (first >= np.roll(first, 1)) & (first > np.roll(first, -1)) & (first > _SEEN_FROM)
+    )
+    around = (peaks[:, None] + np.arange(-_WITHIN, _WITHIN + 1)) % n
+    return [at[used[at].argmax(axis=0)] for at in around]
+
+
+def _heights(used: Array, at: Indices) -> Array:
+    """Heights (K,) of peaks at nodes (K,): of the parabola through each and its neighbours."""
+    k, n = np.arange(used.shape[1]), len(used)
+    left, here, right = used[at - 1, k], used[at, k], used[(at + 1) % n, k]
+    bend, slope = left - 2 * here + right, (left - right) / 2
+    shift = np.where(bend < 0, slope / np.where(bend < 0, bend, -1.0), 0.0)
+    return here - 0.5 * slope * np.clip(shift, -1.0, 1.0)

@@ -1,0 +1,236 @@
+"""A driven route: the drive that was found, and its replay."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from rr_opt.documents import document as doc
+from rr_opt.documents.texts import captions
+from rr_opt.files.record import plain
+from rr_opt.formatting import number, with_unit
+from rr_opt.model.command import Command
+from rr_opt.model.problem import LARGEST_EXCESS
+from rr_opt.model.robot import Robot
+from rr_opt.motion.setpoints import CENTRE, COUNT
+from rr_opt.outcome import Status
+from rr_opt.results.gait import ignored_effects
+from rr_opt.results.motion import trajectory_csv
+from rr_opt.results.result import Check, Result
+from rr_opt.routing.plan import Plan
+from rr_opt.routing.replay import Replay
+
+_RATE = 125.0
+"""Set points a second."""
+
+
+@dataclass(frozen=True, repr=False)
+class DrivenRoute(Result):
+    """The fastest drive found along a route.
+
+    plan    path, gaits and drive; `plan.drive.command` is the servo's angle over time
+    replay  the drive by CVODES from rest; None if there is no drive
+    """
+
+    FILE = "route.json"
+    OTHERS = ("trajectory.csv", "setpoints.csv")
+    DRAW = "rr_opt.results.figures.route.draw_route"
+    CAPTIONS = captions("route")
+
+    name: str
+    sha256: str
+    plan: Plan
+    replay: Replay | None
+
+    @property
+    def robot(self) -> Robot:
+        """The robot that drives."""
+        return self.plan.problem.robot
+
+    @property
+    def command(self) -> Command | None:
+        """The servo's angle over time; None if there is no drive."""
+        return self.plan.drive.command if self.plan.drive else None
+
+    @property
+    def seconds(self) -> float | None:
+        """Time of the drive, s."""
+        return self.command.seconds if self.command else None
+
+    @property
+    def status(self) -> Status:
+        """OPTIMAL if a drive was found that passes every check."""
+        if self.plan.status is Status.OPTIMAL and not all(check.passed for check in self.checks):
+            return Status.NOT_CONVERGED
+        return self.plan.status
+
+    @property
+    def message(self) -> str:
+        """The outcome in a sentence."""
+        if self.plan.status is not Status.OPTIMAL or self.seconds is None:
+            return self.plan.message
+        failed = [check.sentence for check in self.checks if not check.passed]
+        if failed:
+            return "The drive failed a check: " + " ".join(failed)
+        length = sum(leg.length for leg in self.plan.legs)
+        return (
+            f"The fastest drive found goes {self.plan.way} and takes "
+            f"{with_unit(self.seconds, 's')} for {with_unit(length, 'm')}."
+        )
+
+    @property
+    def checks(self) -> list[Check]:
+        """Of the replay: the end, the way, and the limits."""
+        replay, asked = self.replay, self.plan.route.tolerance
+        if replay is None:
+            return []
+        end = replay.position <= asked.position and replay.heading <= asked.heading
+        checks = [
+            Check(
+                end,
+                f"End by CVODES: P is {1e3 * replay.position:.1f} mm from its place (at most "
+                f"{1e3 * asked.position:.4g}), platform 1 {math.degrees(replay.heading):.2f} deg "
+                f"from its heading (at most {math.degrees(asked.heading):.4g}).",
+            ),
+            Check(
+                replay.path <= asked.path,
+                f"Way by CVODES: P stays within {1e3 * replay.path:.1f} mm of the path (at most "
+                f"{1e3 * asked.path:.4g}).",
+            ),
+            Check(
+                replay.excess <= LARGEST_EXCESS,
+                "Limits: rate, angle, torque and singularity are kept throughout "
+                f"(worst {100 * replay.excess:+.2f} % of its limit).",
+            ),
+        ]
+        if self.plan.route.end == "rest":
+            speed = (
+                f"Rest: the robot is slower than {1e3 * asked.speed:.4g} mm/s at the end "
+                f"({1e3 * replay.speed:.2f})."
+            )
+            checks.append(Check(replay.speed <= asked.speed, speed))
+        return checks
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Which effects of the robot the drive ignores."""
+        return tuple(ignored_effects(self.robot))
+
+    def _record(self) -> dict[str, Any]:
+        """The content of route.json, SI."""
+        plan, replay, command = self.plan, self.replay, self.command
+        return {
+            "status": self.status,
+            "message": self.message,
+            "seconds": self.seconds,
+            "direction": plan.way,
+            "length": sum(leg.length for leg in plan.legs),
+            "path": [plain(leg) for leg in plan.legs],
+            "gaits": [
+                {
+                    "amplitude": gait.amplitude,
+                    "period": gait.period,
+                    "offset": gait.offset,
+                    "speed": v,
+                }
+                for gait, v in zip(plan.gaits, plan.speeds, strict=True)
+            ],
+            "coasting_alone": plain(plan.coasting) if plan.coasting else None,
+            "command": command
+            and {
+                "durations": command.durations.tolist(),
+                "amplitude": command.knots[0].tolist(),
+                "offset": command.knots[1].tolist(),
+                "omega": command.knots[2].tolist(),
+            },
+            "check": replay
+            and {
+                "position": replay.position,
+                "heading": replay.heading,
+                "speed": replay.speed,
+                "path": replay.path,
+                "reached": replay.reached,
+                "excess": replay.excess,
+            },
+            "solver": plan.drive
+            and {"steps": plan.drive.iterations, "converged": plan.drive.success},
+            "tolerance": plain(plan.route.tolerance),
+            "robot": plain(self.robot),
+        }
+
+    def document(self, figures: Sequence[doc.Figure] = ()) -> doc.Document:
+        """The report."""
+        sections = [doc.Section("", (doc.Facts(tuple(_facts(self))),))]
+        if self.plan.legs:
+            sections.append(doc.Section("Path", (_legs(self),)))
+        if self.checks:
+            checks = doc.checks((check.passed, check.sentence) for check in self.checks)
+            sections.append(doc.Section("Checks", (checks,)))
+        good = self.status is Status.OPTIMAL
+        title = self.message if good else f"No drive: {self.status.words}"
+        return doc.Document(
+            self.name,
+            "route",
+            title,
+            "" if good else self.message,
+            (*sections, doc.gallery(figures)),
+            good=good,
+            footer=doc.versions(self.sha256),
+        )
+
+    def _tables(self) -> Mapping[str, str]:
+        """trajectory.csv, and set points of the whole drive."""
+        command = self.command
+        if self.replay is None or command is None:
+            return {}
+        t = np.arange(math.ceil(command.seconds * _RATE) + 1) / _RATE
+        phi = command.angle(np.minimum(t, command.seconds))
+        counts = np.round(CENTRE + phi / COUNT).astype(int)
+        columns = (t.tolist(), phi.tolist(), np.degrees(phi).tolist(), counts.tolist())
+        points = doc.csv_text(("t", "phi", "phi_deg", "count"), zip(*columns, strict=True))
+        return {"trajectory.csv": trajectory_csv(self.replay.trajectory), "setpoints.csv": points}
+
+
+def _facts(result: DrivenRoute) -> Iterator[doc.Fact]:
+    plan, replay = result.plan, result.replay
+    if replay is None or result.seconds is None:
+        return
+    length = sum(leg.length for leg in plan.legs)
+    yield doc.Fact("time", with_unit(result.seconds, "s"), f"{number(length)} m of path")
+    leads = "platform 1 leads" if plan.way == "forward" else "platform 2 leads"
+    yield doc.Fact("direction", plan.way, leads)
+    yield doc.Fact("end", f"{1e3 * replay.position:.1f} mm from its place")
+    yield doc.Fact("", f"{math.degrees(replay.heading):.2f} deg from its heading")
+    yield doc.Fact("way", f"within {1e3 * replay.path:.1f} mm of the path")
+    if plan.route.end == "rest":
+        yield doc.Fact("speed at the end", f"{1e3 * replay.speed:.2f} mm/s")
+        coast = plan.coasting
+        if coast:
+            text = f"{number(coast.seconds)} s and {number(coast.distance)} m to stop"
+            yield doc.Fact("coasting alone", text)
+
+
+def _legs(result: DrivenRoute) -> doc.Table:
+    rows = []
+    plan = result.plan
+    for leg, gait, speed in zip(plan.legs, plan.gaits, plan.speeds, strict=True):
+        way = (
+            "straight"
+            if leg.curvature == 0
+            else f"radius {number(1 / abs(leg.curvature))} m, "
+            f"{number(math.degrees(abs(leg.curvature) * leg.length))} deg to the "
+            + ("left" if leg.curvature > 0 else "right")
+        )
+        rows.append(
+            (
+                str(leg.piece + 1), way, leg.length, gait.amplitude, gait.period, gait.offset,
+                1e3 * speed,
+            )
+        )  # fmt: skip
+    head = ("piece", "way", "m", "amplitude, rad", "period, s", "offset, rad", "mm/s, steady")
+    note = "Steady gaits that the drive begins from; the drive changes them together."
+    return doc.table(head, rows, note)

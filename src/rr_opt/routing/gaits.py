@@ -1,0 +1,155 @@
+"""Which gait goes round a circle fastest: a chart of steady gaits, and what coasting does."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from rr_opt.array import Array
+from rr_opt.model.gait import SineGait
+from rr_opt.model.problem import Problem
+from rr_opt.motion.dynamics import dynamics_of
+from rr_opt.verify.grid import reach
+from rr_opt.verify.speeds import speeds
+
+Way = Literal["forward", "backward"]
+
+_PERIODS, _RATES, _OFFSETS = 8, 8, 81
+_ROUNDING = 1e-9
+_TRIES, _NEAR = 20, 0.05
+
+
+@dataclass(frozen=True)
+class Chart:
+    """Steady gaits that keep all limits and drive one way: rows of gaits that differ in their
+    offset alone. All (rows, offsets): gaits (3, ...) with amplitude (rad), offset (rad) and period
+    (s); speed (m/s, above 0); curvature (1/m, positive to the left); NaN where there is no gait."""
+
+    problem: Problem
+    way: Way
+    gaits: Array
+    speed: Array
+    curvature: Array
+
+    def fastest(self, curvature: float) -> tuple[SineGait, float] | None:
+        """The fastest gait on a circle, between those of the chart, and its speed, m/s."""
+        below = self.curvature - curvature
+        before, after = below[:, :-1], below[:, 1:]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            share = before / (before - after)
+            speed = self.speed[:, :-1] * (1 - share) + self.speed[:, 1:] * share
+            speed = np.where((share >= 0) & (share <= 1), speed, 0.0)
+        for _ in range(_TRIES):
+            i, j = np.unravel_index(np.argmax(speed), speed.shape)
+            if speed[i, j] == 0:
+                return None
+            ends = self.gaits[:, i, j : j + 2]
+            amplitude, offset, period = map(float, ends @ [1 - share[i, j], share[i, j]])
+            # Where a gait spins on the spot the curvature changes sign through infinity.
+            seen = speeds(self.problem, amplitude, period, offset, None, 1e-4)
+            made = float(seen.turn) / (period * abs(float(seen.speed)))
+            if abs(made - curvature) <= _NEAR * (abs(curvature) + self.widest):
+                return SineGait(amplitude, period, offset), float(speed[i, j])
+            speed[i, j] = 0.0
+        return None
+
+    @property
+    def widest(self) -> float:
+        """The curvature of a circle as wide as the robot is long, 1/m."""
+        robot = self.problem.robot
+        return 1 / (robot.platform1.c + robot.platform2.c)
+
+    def cost(self, curvature: float) -> float:
+        """Time per metre, s/m, at a curvature; inf where no gait goes so."""
+        found = self.fastest(curvature)
+        return 1 / found[1] if found else math.inf
+
+    @property
+    def tightest(self) -> tuple[float, float]:
+        """The curvatures between which there are gaits, 1/m."""
+        if not np.isfinite(self.curvature).any():
+            return 0.0, 0.0
+        return float(np.nanmin(self.curvature)), float(np.nanmax(self.curvature))
+
+
+def chart(problem: Problem, way: Way) -> Chart:
+    """The chart of a problem's robot, with the offset free as far as the limits allow."""
+    box, limits = problem.gait, problem.limits
+    room = reach(problem)
+    parts = []
+    for period in np.unique(np.geomspace(box.period.low, box.period.high, _PERIODS)):
+        most = min(limits.rate * period / (2 * math.pi), box.amplitude.high, room)
+        if most < box.amplitude.low:
+            continue
+        amplitude = np.linspace(max(box.amplitude.low, most / _RATES), most, _RATES)[:, None]
+        offset = (room - amplitude) * np.linspace(-1, 1, _OFFSETS)
+        seen = speeds(problem, amplitude, period, offset, None, 1e-4)
+        sign = 1 if way == "forward" else -1
+        kept = seen.converged & (sign * seen.speed > 0)
+        kept &= seen.peak_torque <= limits.torque * (1 + _ROUNDING)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            curvature = seen.turn / (period * np.abs(seen.speed))
+        gaits = np.broadcast_arrays(amplitude, offset, period)
+        parts.append(
+            (
+                np.stack(gaits),
+                *(np.where(kept, part, np.nan) for part in (np.abs(seen.speed), curvature)),
+            )
+        )
+    if not parts:
+        return Chart(problem, way, np.zeros((3, 1, 2)), *np.full((2, 1, 2), np.nan))
+    gaits, speed, curvature = zip(*parts, strict=True)
+    return Chart(
+        problem, way, np.concatenate(gaits, axis=1), np.vstack(speed), np.vstack(curvature)
+    )
+
+
+@dataclass(frozen=True)
+class Coasting:
+    """The joint held straight: time, s, and way, m, until the robot is slower than at rest."""
+
+    seconds: float
+    distance: float
+
+
+_LONGEST = 600.0
+
+
+def coasting(problem: Problem, speed: float, rest: float) -> Coasting:
+    """From a speed of axle 1, m/s, signed, to one that counts as rest; at most ten minutes."""
+    if abs(speed) <= rest:
+        return Coasting(0.0, 0.0)
+    dynamics = dynamics_of(problem.robot)
+    p = dynamics.values(problem.robot)
+
+    def slope(_: float, state: Array) -> list[float]:
+        return [float(dynamics.motion(state[0], 0, 0, 0, p)[0]), abs(state[0])]
+
+    def slow(_: float, state: Array) -> float:
+        return abs(state[0]) - rest
+
+    slow.terminal = True  # pyright: ignore[reportFunctionMemberAccess] - as solve_ivp wants it
+    out = solve_ivp(slope, (0, _LONGEST), [speed, 0.0], events=slow, rtol=1e-8, atol=1e-10)
+    return Coasting(float(out.t[-1]), float(out.y[1, -1]))
+
+
+_RELAXED = 1.5
+
+
+def binding_limits(problem: Problem, way: Way, curvature: float) -> list[str]:
+    """The limits of which any one, relaxed by half, lets the robot go round a circle."""
+    limits, box = problem.limits, problem.gait
+    wider = {
+        name: replace(problem, limits=replace(limits, **{name: getattr(limits, name) * _RELAXED}))
+        for name in ("angle", "rate", "torque")
+    }
+    wider["singularity"] = replace(
+        problem, limits=replace(limits, singularity=limits.singularity / _RELAXED)
+    )
+    most = replace(box.amplitude, high=box.amplitude.high * _RELAXED)
+    wider["amplitude"] = replace(problem, gait=replace(box, amplitude=most))
+    return [name for name, one in wider.items() if chart(one, way).fastest(curvature)]

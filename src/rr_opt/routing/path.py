@@ -1,0 +1,151 @@
+"""The path of a route: arcs of constant curvature, one after another.
+
+A waypoint is reached by a Dubins path: with a bounded curvature the shortest one is an arc, a
+straight line and an arc, or three arcs (Dubins, 1957). The six kinds are solved in the frame in
+which the start is the origin and lengths are in radii.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from rr_opt.array import Array
+from rr_opt.model.route import Arc, Pose, Route, Straight
+
+_SHORT = 1e-9
+
+
+@dataclass(frozen=True)
+class Leg:
+    """A part of the path: from `start`, `length` m at a curvature of 1/m, positive to the left.
+
+    piece  number of the route's piece that it belongs to, from 0
+    """
+
+    piece: int
+    start: Pose
+    length: float
+    curvature: float
+
+    def at(self, distance: float) -> Pose:
+        """The pose after some distance, m."""
+        turned = self.curvature * distance
+        # The chord of an arc, which has the mean heading.
+        chord = distance * float(np.sinc(turned / (2 * math.pi)))
+        mean = self.start.heading + turned / 2
+        return Pose(
+            self.start.x + chord * math.cos(mean),
+            self.start.y + chord * math.sin(mean),
+            self.start.heading + turned,
+        )
+
+    @property
+    def end(self) -> Pose:
+        """The pose at its end."""
+        return self.at(self.length)
+
+    def parts(self, longest: float) -> list[Leg]:
+        """The leg in equal parts of at most this length, m, and at most a quarter turn."""
+        turned = abs(self.curvature) * self.length
+        count = max(1, math.ceil(self.length / longest - 1e-6), math.ceil(turned / 1.6))
+        length = self.length / count
+        return [Leg(self.piece, self.at(k * length), length, self.curvature) for k in range(count)]
+
+
+def legs_of(route: Route, cost: Callable[[float], float], radii: Array) -> list[Leg]:
+    """The path of a route.
+
+    cost   time per metre, s/m, at a curvature, 1/m
+    radii  m, among which those of waypoints' arcs are chosen so that they take the least time
+    """
+    pose, legs = route.start, list[Leg]()
+    for number, piece in enumerate(route.pieces):
+        match piece:
+            case Straight():
+                added = [Leg(number, pose, piece.length, 0.0)]
+            case Arc():
+                curvature = math.copysign(1 / piece.radius, piece.angle)
+                added = [Leg(number, pose, piece.radius * abs(piece.angle), curvature)]
+            case _:
+                candidates = (
+                    path for radius in radii for path in _dubins(number, pose, piece.pose, radius)
+                )
+                added = min(
+                    candidates,
+                    key=lambda path: sum(leg.length * cost(leg.curvature) for leg in path),
+                )
+        legs += [leg for leg in added if leg.length > _SHORT]
+        pose = legs[-1].end if legs else pose
+    return legs
+
+
+def _dubins(piece: int, start: Pose, end: Pose, radius: float) -> Iterator[list[Leg]]:
+    """The Dubins paths of a radius, m, of all kinds that exist."""
+    dx, dy = (end.x - start.x) / radius, (end.y - start.y) / radius
+    cos, sin = math.cos(start.heading), math.sin(start.heading)
+    ahead, left, turn = cos * dx + sin * dy, cos * dy - sin * dx, end.heading - start.heading
+    # The centres of the circles to the left (+1) and right (-1) of both poses.
+    for first, last in itertools.product((1, -1), repeat=2):
+        a = complex(0, first)
+        b = complex(ahead, left) + last * 1j * complex(math.cos(turn), math.sin(turn))
+        apart, towards = abs(b - a), math.atan2((b - a).imag, (b - a).real)
+        if first == last:
+            headings = [(first, towards, 0)]
+        elif apart >= 2:
+            headings = [(first, towards + first * math.asin(2 / apart), 0)]
+        else:
+            headings = []
+        if first == last and 0 < apart <= 4:
+            bend = math.acos(apart / 4)
+            # The middle circle touches both; two places for it.
+            headings += [
+                (first, towards + side * bend + first * math.pi / 2, -first) for side in (1, -1)
+            ]
+        for sign, heading, middle in headings:
+            yield from _joined(piece, start, radius, (sign, heading, middle, last, turn, a, b))
+
+
+def _joined(piece: int, start: Pose, radius: float, path: tuple) -> Iterator[list[Leg]]:
+    first, heading, middle, last, turn, a, b = path
+    k = 1 / radius
+    around = 2 * math.pi
+    if middle == 0:
+        arc = (first * heading) % around
+        length = math.sqrt(max(abs(b - a) ** 2 - (0 if first == last else 4), 0.0))
+        parts = [(first * k, arc), (0.0, length), (last * k, (last * (turn - heading)) % around)]
+    else:
+        # At the first tangent point the heading is across the line between the centres.
+        arc = (first * heading) % around
+        centre = a + 2 * complex(
+            math.cos(heading - first * math.pi / 2), math.sin(heading - first * math.pi / 2)
+        )
+        to = (b - centre) / 2
+        out = math.atan2(to.imag, to.real) + middle * math.pi / 2
+        parts = [
+            (first * k, arc),
+            (middle * k, (middle * (out - heading)) % around),
+            (last * k, (last * (turn - out)) % around),
+        ]
+    legs, pose = list[Leg](), start
+    for curvature, radii in parts:
+        # A whole turn that rounding made of none.
+        length = 0.0 if curvature and around - radii < 1e-9 else radii
+        legs.append(Leg(piece, pose, length * radius, curvature))
+        pose = legs[-1].end
+    yield legs
+
+
+def signed_distance(leg: Leg, x: Array, y: Array) -> tuple[Array, Array, Array]:
+    """Distance of points to the left of the circle or line of a leg, m, and its derivatives by x
+    and y: with a ahead and b to the left of the leg's start and q = 2 b - kappa (a^2 + b^2), it is
+    q/(1 + sqrt(1 - kappa q))."""
+    k, cos, sin = leg.curvature, math.cos(leg.start.heading), math.sin(leg.start.heading)
+    dx, dy = x - leg.start.x, y - leg.start.y
+    q = 2 * (cos * dy - sin * dx) - k * (dx * dx + dy * dy)
+    root = np.sqrt(np.maximum(1 - k * q, 1e-12))
+    return q / (1 + root), (-sin - k * dx) / root, (cos - k * dy) / root

@@ -1,0 +1,281 @@
+"""Sequential quadratic programming for a few variables, with derivatives from differences.
+
+A smooth function of some four variables is maximised within bounds, linear constraints and rows.
+Each iteration lays a small stencil around the point, evaluates it in one call, and has of it the
+gradient and the Hessian of the function and of every row. The quadratic program for the step is
+solved as a least-distance problem by non-negative least squares, as SLSQP does it (Lawson and
+Hanson, Solving Least Squares Problems, 1974, chapter 23).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
+from itertools import combinations
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rr_opt.array import Array
+
+Mask = NDArray[np.bool_]
+
+_STEP = 1e-3
+"""Of the stencil, in the variables' scales: differences lose some 1e-7 of a slope."""
+_GAIN, _LENGTH = 1e-10, 1e-7
+"""A step that gains less, relative, or that is shorter, in scales, is the last."""
+_FRACTIONS = np.array([1.0, 0.6, 0.3, 0.1, 0.03])
+"""Of a step that are tried, all in one call."""
+_RADIUS = 0.2
+"""The longest step, in scales."""
+_ITERATIONS = 60
+_DEAREST = 1e5
+"""The largest penalty, in values of the function: what needs a larger one has no solution near."""
+_REPEATED, _SETTLED = 4, 1e-2
+"""Quadratic programs within a step, at most, and the change, relative, that ends them."""
+_ACROSS, _FLAT, _SLIGHT = 10.0, 1e-6, 1e-3
+"""Curvature across rows that hold, and least curvature, relative to the largest curvature or slope
+of the function; and the least of those, relative to the penalty."""
+
+
+class Seen(NamedTuple):
+    """Of K points: the function (K,); rows (R, K), smooth along the points, those of maxima over a
+    curve along the first point's maxima; worst (W, K), the same of each point for itself; names
+    of the rows."""
+
+    function: Array
+    rows: Array
+    worst: Array
+    names: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Program:
+    """Maximise the function that is seen where rows are <= 0.
+
+    low, high, scale   bounds (n,), and a small step of each variable (n,)
+    matrix, most       linear constraints: matrix x <= most
+    look               points (K, n) -> Seen
+    equal              the first so many of rows and of worst must be 0
+    unit               a small value of the function
+    """
+
+    low: Array
+    high: Array
+    scale: Array
+    matrix: Array
+    most: Array
+    look: Callable[[Array], Seen]
+    equal: int = 0
+    unit: float = 0.0
+
+    def violation(self, worst: Array) -> Array:
+        """Of the row that fails most, (K,)."""
+        size = np.concatenate([np.abs(worst[: self.equal]), worst[self.equal :]])
+        return size.max(axis=0, initial=0.0)
+
+
+@dataclass(frozen=True)
+class Prices:
+    """Value gained per unit by which each row, each linear constraint, each upper bound is raised,
+    and each lower bound lowered; 0 where it does not hold."""
+
+    rows: Array
+    linear: Array
+    high: Array
+    low: Array
+
+
+@dataclass(frozen=True)
+class Ascent:
+    """Where a climb led: the point (n,), the function there, the violation of the row that fails
+    most, prices, of rows with these names; and whether no step gains anything more."""
+
+    x: Array
+    value: float
+    violation: float
+    prices: Prices
+    names: tuple[str, ...]
+    converged: bool
+    iterations: int
+
+
+def ascend(program: Program, start: Array, penalty: float = 10.0) -> Ascent:
+    """Climb from a start within the bounds.
+
+    penalty: of a violation of 1, in values of the function, to begin with.
+    """
+    x, radius, converged, iterations = start, _RADIUS, False, 0
+    stencil, design = _stencil(len(x))
+    here = program.look(x[None])
+    value, violation = float(here.function[0]), float(program.violation(here.worst)[0])
+    names, prices = here.names, Prices(np.zeros(len(here.rows)), *(np.zeros(0) for _ in range(3)))
+    while not converged and iterations < _ITERATIONS:
+        iterations += 1
+        function, rows, _, names = program.look(x + _STEP * program.scale * stencil)
+        models = np.vstack([function, rows]) @ design.T
+        if not np.isfinite(models).all():
+            break
+        size = max(abs(value), program.unit, 1e-300)
+        step, prices = _step(program, x, models, radius, penalty * size)
+        dearest = float(np.abs(prices.rows).max(initial=0.0)) / size
+        penalty = max(penalty, min(2 * dearest, _DEAREST))
+        length = float(np.abs(step).max(initial=0.0))
+        tried = x + _FRACTIONS[:, None] * program.scale * step
+        tried = np.vstack([x, np.clip(tried, program.low, program.high)])
+        there = program.look(tried)
+        off = program.violation(there.worst)
+        merit = there.function - penalty * size * off
+        merit = np.where(np.isfinite(merit), merit, -np.inf)
+        best = int(merit.argmax())
+        gain = merit[best] - merit[0]
+        x, value, violation = tried[best], float(there.function[best]), float(off[best])
+        if best == 0:
+            radius = 0.3 * _FRACTIONS[-1] * min(radius, length)
+        elif best == 1:
+            radius = min(2 * radius, _RADIUS)
+        else:
+            radius = _FRACTIONS[best - 1] * length
+        converged = length <= _LENGTH or (best == 1 and gain <= _GAIN * size)
+    return Ascent(x, value, violation, prices, names, converged, iterations)
+
+
+def _step(
+    program: Program, x: Array, models: Array, radius: float, penalty: float
+) -> tuple[Array, Prices]:
+    """The step, in scales, to the best of the quadratic models, and the prices.
+
+    The models of the rows bend too, so quadratic programs follow each other within the step: along
+    a curved limit linear rows would let it go no further than their error. A last variable is by
+    how much rows may fail: where their slopes contradict each other they do.
+    """
+    n, scale, equal = len(x), program.scale, program.equal
+    values, slopes, bends = _parts(models, n)
+    rows, straight = len(slopes) - 1, program.matrix * scale
+    room = np.maximum(program.most - program.matrix @ x, 0.0)
+    upper, lower = (program.high - x) / scale, (x - program.low) / scale
+    high, low = np.clip(upper, 0.0, radius), np.clip(lower, 0.0, radius)
+    column = np.append(-np.ones(rows + equal), np.zeros(len(straight) + 2 * n))
+    sides = np.vstack([straight, np.eye(n), -np.eye(n)])
+    curve, price, step = np.zeros((n + 1, n + 1)), np.zeros(rows), np.zeros(n)
+    curve[n, n] = penalty
+    found = np.zeros(rows + equal + len(sides) + 1)
+    for _ in range(_REPEATED):
+        bent = bends @ step
+        here, tangents = values + (slopes + bent / 2) @ step, slopes + bent
+        normals = np.vstack([tangents[1:], -tangents[1 : 1 + equal], sides])
+        G = np.vstack([np.column_stack([normals, column]), np.append(np.zeros(n), -1.0)])
+        at = np.concatenate([room - straight @ step, high - step, low + step, [0.0]])
+        h = np.concatenate([-here[1:], here[1 : 1 + equal], np.maximum(at, 0.0)])
+        bend = np.tensordot(price, bends[1:], 1) - bends[0]
+        least = max(np.abs(slopes[0]).max(initial=0.0), _SLIGHT * penalty)
+        curve[:n, :n] = _convex(bend, least, normals[found[:-1] > 0])
+        change, found = _quadratic(curve, np.append(-tangents[0], penalty), G, h, found > 0)
+        price = found[:rows].copy()
+        price[:equal] -= found[rows : rows + equal]
+        step = step + change[:n]
+        if np.abs(change[:n]).max(initial=0.0) <= _SETTLED * np.abs(step).max(initial=0.0):
+            break
+    parts = np.cumsum([rows + equal, len(straight), n])
+    _, linear, at_high, at_low = np.split(found[:-1], parts)
+    # What holds the radius alone is no bound of the program.
+    at_high, at_low = at_high * (upper <= radius) / scale, at_low * (lower <= radius) / scale
+    return step, Prices(price, linear, at_high, at_low)
+
+
+def _convex(bend: Array, least: float, held: Array) -> Array:
+    """A curvature that is convex, and the same along what is held by these normals.
+
+    Across them the step is settled by the rows: there curvature is added (as an augmented
+    Lagrangian does). What is not convex then is bent up.
+    """
+    size = max(float(np.abs(bend).max(initial=0.0)), least)
+    unit = held / np.maximum(np.sqrt((held**2).sum(axis=1, keepdims=True)), 1e-300)
+    values, vectors = np.linalg.eigh(bend + _ACROSS * size * unit.T @ unit)
+    return (vectors * np.maximum(np.abs(values), _FLAT * size)) @ vectors.T
+
+
+def _quadratic(curve: Array, slope: Array, G: Array, h: Array, active: Mask) -> tuple[Array, Array]:
+    """min d'curve d/2 + slope'd with G d <= h, and the multipliers, as a least distance.
+
+    active: rows that are likely to hold
+    """
+    size = np.sqrt(np.diag(curve))
+    L = np.linalg.cholesky(curve / np.outer(size, size))
+    # In y = L'(size d) - centre it is the least |y| with normals y + least <= 0.
+    centre = -np.linalg.solve(L, slope / size)
+    normals = np.asarray(np.linalg.solve(L, (G / size).T).T, float)
+    least = normals @ centre - h
+    u, rest = _nonnegative(np.vstack([-normals.T, least]), active)
+    return np.linalg.solve(L.T, centre - rest[:-1] / rest[-1]) / size, u / -rest[-1]
+
+
+def _nonnegative(E: Array, active: Mask) -> tuple[Array, Array]:
+    """u >= 0 with the least |E u - f|, f the last unit vector, and E u - f; active: where u > 0 is
+    likely."""
+    f = np.zeros(len(E))
+    f[-1] = 1.0
+    length = np.maximum(np.sqrt((E * E).sum(axis=0)), 1e-300)
+    E = E / length
+    u, active = np.zeros(E.shape[1]), active.copy()
+    if active.any():
+        u[active] = _solved(E[:, active], f)
+        if u.min() < 0:
+            u[:], active[:] = 0.0, False
+    for _ in range(3 * E.shape[1]):
+        pull = np.where(active, -np.inf, E.T @ (f - E @ u))
+        enter = int(pull.argmax())
+        if pull[enter] <= 1e-13:
+            break
+        active[enter] = True
+        while active.any():
+            at = np.flatnonzero(active)
+            inside = _solved(E[:, at], f)
+            if inside.min() > 0:
+                u[at] = inside
+                break
+            falls = np.flatnonzero(~(inside > 0))
+            shares = u[at][falls] / np.maximum(u[at][falls] - inside[falls], 1e-300)
+            u[at] += shares.min() * (inside - u[at])
+            gone = at[falls[shares <= shares.min()]]
+            u[gone], active[gone] = 0.0, False
+    return u / length, E @ u - f
+
+
+def _solved(E: Array, f: Array) -> Array:
+    """The least |E u - f|, whatever the signs."""
+    Q, R = np.linalg.qr(E)
+    pivots = np.abs(np.diag(R))
+    if E.shape[1] > len(E) or pivots.min() <= 1e-10 * pivots.max():
+        return np.asarray(np.linalg.lstsq(E, f, rcond=None)[0], float)
+    return np.asarray(np.linalg.solve(R, Q[-1]), float)
+
+
+@lru_cache
+def _stencil(n: int) -> tuple[Array, Array]:
+    """Points (M, n), the first in the middle, in stencils, and what makes of values at them those
+    of a quadratic, its slopes and its second derivatives, in scales."""
+    pairs = list(combinations(range(n), 2))
+    points = np.zeros((1 + 2 * n + len(pairs), n))
+    for i in range(n):
+        points[1 + 2 * i, i], points[2 + 2 * i, i] = 1.0, -1.0
+    for row, (i, j) in enumerate(pairs, start=1 + 2 * n):
+        points[row, [i, j]] = 1.0
+    crossed = [points[:, [i]] * points[:, [j]] for i, j in pairs]
+    monomials = np.hstack([np.ones((len(points), 1)), points, points**2 / 2, *crossed])
+    design = np.asarray(np.linalg.inv(monomials), float)
+    design[1 : n + 1] /= _STEP
+    design[n + 1 :] /= _STEP**2
+    return points, design
+
+
+def _parts(models: Array, n: int) -> tuple[Array, Array, Array]:
+    """Values (R,), slopes (R, n) and second derivatives (R, n, n)."""
+    bends = np.zeros((len(models), n, n))
+    for i in range(n):
+        bends[:, i, i] = models[:, 1 + n + i]
+    for k, (i, j) in enumerate(combinations(range(n), 2), start=1 + 2 * n):
+        bends[:, i, j] = bends[:, j, i] = models[:, k]
+    return models[:, 0], models[:, 1 : n + 1], bends

@@ -1,0 +1,84 @@
+"""A route is driven from rest to rest within its tolerance; the laboratory agrees; what cannot be
+driven is named."""
+
+import json
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import rr_opt as rr
+from rr_opt.model.ballast import with_inertia_ratio
+
+PROBLEM = replace(rr.shipped(), inertia_ratio=None).with_robot(
+    with_inertia_ratio(rr.prototype(), 0.3)
+)
+
+
+@pytest.fixture(scope="module")
+def turned():
+    pieces = (rr.Straight("50 cm"), rr.Arc("60 cm", "90 deg"))
+    return rr.route(rr.Route(PROBLEM, pieces))
+
+
+def test_every_check_passes(turned):
+    assert turned.status is rr.Status.OPTIMAL, turned.message
+    assert len(turned.checks) == 4
+    assert turned.replay.position <= 0.02
+    assert turned.replay.speed <= 0.002
+    assert turned.replay.heading <= math.radians(5)
+    assert turned.plan.way == "backward"
+
+
+def test_it_is_faster_than_gaits_and_coasting(turned):
+    """Steady gaits all the way would take as long, without start and stop."""
+    plan = turned.plan
+    steady = sum(leg.length / v for leg, v in zip(plan.legs, plan.speeds, strict=True))
+    assert steady < turned.seconds < steady + plan.coasting.seconds + 3
+
+
+def test_the_laboratory_ends_at_the_same_place(turned):
+    from rr_lab.case import driven
+    from rr_lab.effects import rig_with
+    from rr_lab.run import Conditions
+
+    conditions = Conditions(turned.seconds, "rest", (0.0, 0.0, math.pi))
+    motion = driven("planar", rig_with(turned.robot, ()), turned.command, conditions)
+    replayed = turned.replay.trajectory
+    k = -1
+    at = (
+        float(np.interp(motion.t[k], replayed.t, replayed.x)),
+        float(np.interp(motion.t[k], replayed.t, replayed.y)),
+    )
+    length = sum(leg.length for leg in turned.plan.legs)
+    assert math.dist(motion.one[k, :2], at) < 0.01 * length
+
+
+def test_what_cannot_be_driven_is_named():
+    found = rr.route(rr.Route(PROBLEM, (rr.Straight(1), rr.Arc(0.1, 1.0))))
+    assert found.status is rr.Status.INFEASIBLE
+    assert "piece 2" in found.message
+    assert "radius of" in found.message
+    assert found.command is None
+
+
+def test_a_route_that_runs_out_is_faster(turned):
+    asked = replace(turned.plan.route, end="running")
+    assert rr.route(asked).seconds < turned.seconds - 2
+
+
+def test_files(turned, tmp_path):
+    names = {file.name for file in turned.save(tmp_path)}
+    assert names >= {"route.json", "trajectory.csv", "setpoints.csv", "report.html", "way.svg"}
+    record = json.loads((tmp_path / "route.json").read_text())
+    assert record["status"] == "optimal"
+    assert record["seconds"] == pytest.approx(turned.seconds)
+    points = np.genfromtxt(tmp_path / "setpoints.csv", delimiter=",", names=True)
+    assert points["phi"] == pytest.approx(turned.command.angle(points["t"]), abs=1e-6)
+    assert np.abs(np.diff(points["phi"])).max() <= PROBLEM.limits.rate / 125 * 1.001
+
+
+def test_without_pieces():
+    with pytest.raises(rr.InputError, match="at least one"):
+        rr.route(rr.Route(PROBLEM, ()))

@@ -1,0 +1,62 @@
+"""The rollout of a command agrees with CVODES, and its derivatives with differences."""
+
+import math
+
+import numpy as np
+import pytest
+
+import rr_opt as rr
+from rr_opt.model.command import Command
+from rr_opt.model.problem import Problem
+from rr_opt.model.route import Pose, Tolerance
+from rr_opt.routing.path import Leg
+from rr_opt.routing.program import Program, Stage
+from rr_opt.routing.replay import simulate
+
+DRY = rr.EffectUse("coulomb_friction", {"force1": 0.005, "force2": 0.005})
+
+
+def program(robot: rr.Robot) -> Program:
+    leg = Leg(0, Pose(0.1, 0.2, 0.3), 1.0, 0.5)
+    sizes = [(2.3, 0.2, 0.05, 15.0), (7.1, 0.15, 0.3, 20.0), (3.4, 0.0, -0.1, 18.0)]
+    stages = [Stage(*size, leg, ends=True) for size in sizes]
+    return Program(Problem(robot), stages, Tolerance(), leg.start, math.pi, True)
+
+
+@pytest.mark.parametrize("effects", [(), (DRY,)], ids=["viscous", "dry"])
+def test_derivatives(effects):
+    from dataclasses import replace
+
+    one = program(replace(rr.prototype(), physics=effects))
+    seen = one.look(one.x0)
+    for k in range(len(one.x0)):
+        h = np.zeros(len(one.x0))
+        h[k] = 1e-6
+        there, back = one.look(one.x0 + h), one.look(one.x0 - h)
+        scale = one.scale[k] * 2e-6
+        change = (there.samples.path[:4, -1] - back.samples.path[:4, -1]) / scale
+        assert seen.samples.slopes[:4, -1, k] == pytest.approx(change, rel=1e-4, abs=1e-6)
+        assert seen.rising[k] == pytest.approx((there.seconds - back.seconds) / scale, abs=1e-6)
+        change = (there.values - back.values) / scale
+        # Where the torque peaks may change places.
+        smooth = np.array([name != "torque" for name, _ in seen.names])
+        assert seen.slopes[smooth, k] == pytest.approx(change[smooth], rel=1e-3, abs=1e-3)
+
+
+def test_the_end_is_that_of_cvodes():
+    one = program(rr.prototype())
+    seen = one.look(one.x0)
+    driven = simulate(one.problem, seen.command, Pose(0.1, 0.2, 0.3), math.pi)
+    end = [part[-1] for part in (driven.v, driven.psi, driven.x, driven.y)]
+    assert seen.samples.path[:4, -1] == pytest.approx(end, abs=1e-6)
+    assert driven.t[-1] == pytest.approx(seen.command.seconds)
+
+
+def test_a_command_has_no_jump_of_angle_or_rate():
+    knots = np.array([[0.0, 0.2, 0.2, 0.1, 0.1], [0.0, 0.3, 0.3, -0.2, -0.2], [15, 15, 15, 20, 20]])
+    command = Command(np.array([0.4, 1.1, 0.35, 0.8]), knots.astype(float))
+    t = np.linspace(-0.1, command.seconds + 0.3, 40_001)
+    phi, rate, bend = command.at(t)
+    assert np.diff(phi) / np.diff(t) == pytest.approx((rate[1:] + rate[:-1]) / 2, abs=1e-3)
+    assert np.abs(np.diff(rate)).max() <= 1.1 * np.abs(bend).max() * (t[1] - t[0])
+    assert rate[0] == 0
