@@ -1,4 +1,4 @@
-"""Each machine moves as by SciPy from equations written here, and is linearised as by differences."""
+"""Each machine moves as SciPy says, and its linearisation is that of differences."""
 
 from dataclasses import replace
 
