@@ -14,7 +14,7 @@ from rr_opt.mechanics.runge_kutta import BUTCHER6
 @pytest.fixture
 def code(monkeypatch, tmp_path):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    return IntervalTerms((), "inertia", FourierShape(1), 0, 1, BUTCHER6).code
+    return IntervalTerms((), "inertia", FourierShape(1), 0, 1, BUTCHER6, ("torque",)).code
 
 
 def _given(function):

@@ -26,7 +26,7 @@ def simulate(
 
     Writes the trajectory, a figure and, on request, an animation.
     """
-    with Steps() as steps:
+    with Steps() as steps, options.naming(source):
         gait = {"amplitude": amplitude, "period": period, "offset": offset}
         driven = options.read_gait(source, **gait, seconds=seconds, rate=rate)
         folder = options.motion_folder(out, source, kind, animate)
@@ -47,7 +47,7 @@ def circle(
 
     Also shows how a start from rest approaches it. Left is positive, seen from above.
     """
-    with Steps() as steps:
+    with Steps() as steps, options.naming(source):
         gait = {"amplitude": amplitude, "period": period, "offset": offset}
         answer = rr.circle(options.read_gait(source, **gait), progress=steps)
     show(answer, json=json)
@@ -70,7 +70,7 @@ def export(
     A period holds a whole number of set points. The loss of speed is reported separately for
     the adjusted period, the straight lines between set points, and rounding to counts.
     """
-    with Steps() as steps:
+    with Steps() as steps, options.naming(source):
         gait = {"amplitude": amplitude, "period": period, "offset": offset}
         driven = options.read_gait(source, **gait, rate=rate)
         file = options.setpoints_file(out, source, kind)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar
 
@@ -21,6 +22,17 @@ if TYPE_CHECKING:
     from rr_opt.results.result import Result
 
 Read = TypeVar("Read")
+
+
+@contextmanager
+def naming(source: Path | None) -> Iterator[None]:
+    """An error says which file it is about, as its gait may come from there."""
+    try:
+        yield
+    except InputError as error:
+        if source is None or str(source) in str(error):
+            raise
+        raise InputError(f"{source}: {error}") from None
 
 
 def place(text: str) -> Path:
