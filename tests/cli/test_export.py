@@ -111,7 +111,7 @@ def test_wrong_input_writes_nothing(run, tmp_path, arguments, word):
 def test_a_gait_that_does_not_move_is_refused(run, result, tmp_path, gait):
     done = run("export", result(gait), "--amplitude", "0")
     assert done.exit_code == 2
-    assert done.stderr.startswith("Read a gait with the amplitude 0. Expected one that moves")
+    assert "Read a gait with the amplitude 0. Expected one that moves" in done.stderr
     assert not (tmp_path / "out").exists()
 
 

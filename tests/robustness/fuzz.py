@@ -42,7 +42,8 @@ DONE = {0, 3, 4}
 WRONG, INTERRUPTED = 2, 130
 _PLACE = re.compile(r"(:\d+: )|(: [\w.\[\]'\"-]+: )|(row|line|column|key|frame|byte)s? ")
 _ADVICE = re.compile(
-    "Expected|Write|Check|Give|Delete|Correct|Name |Export|Save|Cut|Install|Keep|Leave|Add |Record",
+    "Expected|Lower |Write|Check|Give|Delete|Correct|Name |Export|Save|Cut|Install|Keep|Leave|"
+    "Add |Record",
     re.IGNORECASE,
 )
 _STAGE = re.compile(r" *\d+\.\d s  .*")
