@@ -144,7 +144,7 @@ class OdeModel:
                     self._made(asked, ()), other, self._starts(asked), strict=True
                 ):
                     one, _, _ = plain
-                    off = ((moved[2].seen - one_seen(plain)) * self._recorded(one).weight).ravel()
+                    off = ((moved[2].seen - plain[2].seen) * self._recorded(one).weight).ravel()
                     off = np.where(np.isfinite(off), off, 0.0)
                     off -= by @ np.linalg.lstsq(by, off, rcond=None)[0]
                     left, count = left + float(off @ off), count + off.size
@@ -332,7 +332,7 @@ class OdeModel:
     def _system(self, effects: tuple[str, ...]) -> tuple[System, tuple[str, ...]]:
         every = {*effects, *self._given}
         own = tuple(one.name for one in self.machine.effects if one.name in every)
-        return _system(_ByIdentity(self.machine), own)
+        return _system(self.machine, own)
 
     def _signals(self, effects: tuple[str, ...]) -> list[MachineEffect]:
         every = {*effects, *self._given}
@@ -458,28 +458,9 @@ class OdeModel:
         return out
 
 
-def one_seen(made: tuple[Request, DrivePath, Path]) -> Array:
-    """What is seen of a prediction."""
-    return made[2].seen
-
-
-class _ByIdentity:
-    """A machine as a key: what it consists of cannot be hashed."""
-
-    def __init__(self, machine: Machine) -> None:
-        self.machine = machine
-
-    def __hash__(self) -> int:
-        return hash(self.machine.name)
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _ByIdentity) and other.machine is self.machine
-
-
 @lru_cache
-def _system(key: _ByIdentity, effects: tuple[str, ...]) -> tuple[System, tuple[str, ...]]:
+def _system(machine: Machine, effects: tuple[str, ...]) -> tuple[System, tuple[str, ...]]:
     """The motion with some effects in it, and the names of its parameters."""
-    machine = key.machine
     own = [machine.effect(name) for name in effects]
     inside = [one for one in own if one.port != "signal"]
     x = {name: ca.SX.sym(name) for name in machine.states}

@@ -105,7 +105,7 @@ class MachineEffect:
         return f"{self.name}.{constant}"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Machine:
     """A kind of machine.
 

@@ -136,7 +136,7 @@ class ExplainedExperiment(Result):
 
     @property
     def proven_on(self) -> str:
-        """Which recordings the misfits before and after refer to, in"""
+        """Which recordings the misfits before and after refer to."""
         if self.marked:
             return "held-out recordings"
         several = len(self.found.final) > 1
