@@ -32,6 +32,7 @@ def every_operation():
         a + b, a * x - y, x / b + y / b, ca.sqrt(ca.fabs(x)), ca.sin(x) + ca.cos(y), ca.tan(a * x),
         ca.tanh(x / a), ca.exp(-x), ca.log(ca.fabs(y) + b), ca.sign(x), ca.fmin(x, y),
         ca.fmax(a, y), ca.atan2(x, y), ca.if_else(x < y, a, b), ca.if_else(x <= a, x, 2.0),
+        ca.if_else(ca.logic_or(ca.logic_and(x < y, a < x), b < y), x, b),
         ca.power(ca.fabs(x), 1.5), ca.power(b, x), 1 / x, 2 * x, x**2, -y, a, ca.SX(3.0),
     ]  # fmt: skip
     return ca.Function("every", [second, first], [ca.vertcat(*outputs)])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Protocol
@@ -78,6 +78,11 @@ class Parameter:
         return self.typical_for(operated) if self.typical_for else self.typical
 
 
+ActuateAll = Callable[
+    [Sequence[Drive], Sequence[Mapping[str, float]], FreeJoint | None], list[Drive]
+]
+
+
 class Actuate(Protocol):
     """How a servo with the effect follows its command."""
 
@@ -103,6 +108,7 @@ class Effect:
     name to its symbol or its value, SI:
     enter       (mechanism, symbols) -> the mechanism with it: ports constraint, mass and force
     actuate     (command, values, joint) -> what the servo makes of its command: port actuation
+    actuate_all  the same of several commands with their values, where that is faster
     linear      (values) -> the same as a linear servo, where it is one: gaits are then optimised
                 with it
     observe     (observation, symbols) -> what is recorded: port measurement
@@ -128,6 +134,7 @@ class Effect:
     sentence: str
     enter: Callable[[Mechanism, Mapping[str, ca.SX]], Mechanism] | None = None
     actuate: Actuate | None = None
+    actuate_all: ActuateAll | None = None
     linear: Callable[[Mapping[str, float]], LinearServo] | None = None
     observe: Callable[[Observation, Mapping[str, ca.SX]], Observation] | None = None
     delay: str | None = None
@@ -138,3 +145,15 @@ class Effect:
     candidate: bool = True
     forms: tuple[tuple[str, ...], ...] = ()
     form_error: float = 0.02
+
+    def actuated(
+        self,
+        commands: Sequence[Drive],
+        values: Sequence[Mapping[str, float]],
+        joint: FreeJoint | None,
+    ) -> list[Drive]:
+        """What the servo makes of each command, with the values of each."""
+        if self.actuate_all:
+            return self.actuate_all(commands, values, joint)
+        actuate = self.actuate or (lambda command, *_: command)
+        return [actuate(one, own, joint) for one, own in zip(commands, values, strict=True)]

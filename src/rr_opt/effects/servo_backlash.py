@@ -16,9 +16,9 @@ extrapolated to; from rest it is integrated over many periods, the last of which
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import casadi as ca
 import numpy as np
@@ -26,8 +26,8 @@ from numpy.typing import NDArray
 
 from rr_opt.array import Array
 from rr_opt.effects.effect import Effect, Parameter, Port
-from rr_opt.mechanics.compile_cache import OftenUsed
 from rr_opt.mechanics.drive import Drive, FreeJoint
+from rr_opt.mechanics.recurrence import Course, Recurrence
 
 _STEPS = 240
 """Per period."""
@@ -36,8 +36,6 @@ _PERIODS, _FROM_REST = 2, 30
 _EXTRAPOLATIONS, _CLOSED = 3, 1e-6
 """Extrapolations to the periodic z at most, whose error falls like a power of the decay over a
 period; and the change of z over a period, m/s, that is none."""
-_LOOK, _PAYS = 5, 50_000
-"""Calls after which the compile cache is looked into; steps after which compiling pays."""
 _INERTIA = 1e-3
 """Of the joint of a robot of which nothing is known, kg m2."""
 _RIGID = 1e-9
@@ -87,17 +85,30 @@ class _Play:
 
 
 def _actuate(command: Drive, values: Mapping[str, float], joint: FreeJoint | None = None) -> Drive:
-    half, friction = values["width"] / 2, values.get("joint_friction", 0.0)
-    gear = half, friction, values.get("compliance", 0.0)
-    if half <= 0:
-        return command
-    dt = command.period / _STEPS
-    if command.rest:
-        before = np.append(command.at(np.array([-1.0]))[:2, 0], 0.0)
-        play, _ = _integrated(command, gear, joint, before, _FROM_REST)
-    else:
-        play = _periodic(command, gear, joint)
-    last = play.hit.size - _STEPS
+    return _actuate_all([command], [values], joint)[0]
+
+
+def _actuate_all(
+    commands: Sequence[Drive], values: Sequence[Mapping[str, float]], joint: FreeJoint | None = None
+) -> list[Drive]:
+    """Several at once, which are integrated side by side."""
+    gears = [
+        (one["width"] / 2, one.get("joint_friction", 0.0), one.get("compliance", 0.0))
+        for one in values
+    ]
+    loose = [k for k, (half, _, _) in enumerate(gears) if half > 0]
+    out = list(commands)
+    for rest in (True, False):
+        some = [k for k in loose if commands[k].rest == rest]
+        runs = [_Servo.of(commands[k], gears[k]) for k in some]
+        plays = _from_rest(runs, joint) if rest else _periodic(runs, joint)
+        for k, play in zip(some, plays, strict=True):
+            out[k] = _driven(commands[k], play, gears[k][0])
+    return out
+
+
+def _driven(command: Drive, play: _Play, half: float) -> Drive:
+    dt, last = play.dt, play.hit.size - _STEPS
 
     def at(t: Array) -> Array:
         t = np.asarray(t, float)
@@ -116,37 +127,91 @@ def _actuate(command: Drive, values: Mapping[str, float], joint: FreeJoint | Non
     return replace(command, at=at, jumps=np.union1d(own, others))
 
 
-def _periodic(command: Drive, gear: _Gear, joint: FreeJoint | None) -> _Play:
+@dataclass(frozen=True)
+class _Servo:
+    """Its angle and rate (2, steps + 1) at the ends of the steps of the periods, their length, s,
+    and its gear; and what it begins from: phi, dphi and z."""
+
+    path: Array
+    dt: float
+    gear: _Gear
+    first: Array
+
+    @classmethod
+    def of(cls, command: Drive, gear: _Gear) -> _Servo:
+        """That follows a command."""
+        dt = command.period / _STEPS
+        periods = _FROM_REST if command.rest else _PERIODS
+        path = command.at(dt * np.arange(periods * _STEPS + 1.0))[:2]
+        first = command.at(np.array([-1.0]))[:2, 0] if command.rest else path[:, 0]
+        return cls(path, dt, gear, np.append(first, 0.0))
+
+    @cached_property
+    def inputs(self) -> Array:
+        """Of each step (steps, 8)."""
+        given = np.broadcast_to([self.dt, *self.gear], (self.path.shape[1] - 1, 4))
+        return np.column_stack([self.path[:, :-1].T, self.path[:, 1:].T, given])
+
+    def play(self, before: Array, states: Array) -> _Play:
+        """From phi, dphi and z before, and the states after each step."""
+        lead = np.vstack([before[:2], states[:, :2]]) - self.path.T
+        return _Play(self.dt, lead[:, 0], lead[:, 1], states[:, 3])
+
+
+def _from_rest(servos: Sequence[_Servo], joint: FreeJoint | None) -> list[_Play]:
+    before = [one.first for one in servos]
+    return [
+        servo.play(start, states)
+        for servo, start, states in zip(
+            servos, before, _integrated(servos, joint, before), strict=True
+        )
+    ]
+
+
+def _periodic(servos: Sequence[_Servo], joint: FreeJoint | None) -> list[_Play]:
     """Periodic motion: z at the ends of periods is extrapolated by Aitken's delta-squared."""
-    before = np.append(command.at(np.zeros(1))[:2, 0], 0.0)
-    play, ends = _integrated(command, gear, joint, before, _PERIODS)
+    before = [one.first for one in servos]
+    states = _integrated(servos, joint, before)
     for _ in range(_EXTRAPOLATIONS):
-        first, second = np.diff([before[2], *ends[2]])
-        if abs(second) <= _CLOSED:
+        moving = []
+        for k, path in enumerate(states):
+            ends = path[_STEPS - 1 :: _STEPS, 2]
+            first, second = np.diff([before[k][2], *ends])
+            if abs(second) <= _CLOSED:
+                continue
+            before[k] = path[-1, :3].copy()
+            converges = 0 < second / first < 1 if first else False
+            before[k][2] += second**2 / (first - second) if converges else 0.0
+            moving.append(k)
+        if not moving:
             break
-        before = ends[:, -1]
-        converges = 0 < second / first < 1 if first else False
-        before[2] += second**2 / (first - second) if converges else 0.0
-        play, ends = _integrated(command, gear, joint, before, _PERIODS)
+        again = _integrated([servos[k] for k in moving], joint, [before[k] for k in moving])
+        for k, path in zip(moving, again, strict=True):
+            states[k] = path
     # The last period is closed: what is left to converge is spread over it.
-    last = play.hit.size - _STEPS
-    lead = play.lead.copy()
-    lead[last:] -= (lead[-1] - lead[last]) * np.arange(_STEPS + 1) / _STEPS
-    return replace(play, lead=lead)
+    out = []
+    for servo, start, path in zip(servos, before, states, strict=True):
+        play = servo.play(start, path)
+        last = play.hit.size - _STEPS
+        lead = play.lead.copy()
+        lead[last:] -= (lead[-1] - lead[last]) * np.arange(_STEPS + 1) / _STEPS
+        out.append(replace(play, lead=lead))
+    return out
 
 
 def _integrated(
-    command: Drive, gear: _Gear, joint: FreeJoint | None, before: Array, periods: int
-) -> tuple[_Play, Array]:
-    """The play over some periods from phi, dphi and z before, and these at the end of each."""
-    dt = command.period / _STEPS
-    servo = command.at(dt * np.arange(periods * _STEPS + 1.0))[:2]
+    servos: Sequence[_Servo], joint: FreeJoint | None, before: Sequence[Array]
+) -> list[Array]:
+    """phi, dphi, z and the fraction at which a stop is hit (steps, 4) after each step, from phi,
+    dphi and z before."""
     swing, p = (joint.swing, joint.p) if joint else (_coasting(), ())
-    n = periods * _STEPS
-    given = np.vstack([servo[:, :-1], servo[:, 1:], np.full((4, n), [[dt], *([x] for x in gear)])])
-    path = _stepper(swing, n)(np.append(before, _MISSED), given, p)
-    lead = np.column_stack([before[:2] - servo[:, 0], path[:2] - servo[:, 1:]])
-    return _Play(dt, lead[0], lead[1], path[3]), path[:3, _STEPS - 1 :: _STEPS]
+    own = np.array(p, float)
+    return _stepper(swing)(
+        [
+            Course(np.append(start, _MISSED), servo.inputs, own)
+            for servo, start in zip(servos, before, strict=True)
+        ]
+    )
 
 
 @lru_cache
@@ -157,7 +222,7 @@ def _coasting() -> ca.Function:
 
 
 @lru_cache
-def _stepper(swing: ca.Function, steps: int) -> OftenUsed:
+def _stepper(swing: ca.Function) -> Recurrence:
     """The joint (phi, dphi, z) from step to step, and the fraction of the step at which it hits a
     stop; given the servo's angle and rate at both ends, the step, and the gear."""
     joint, given = ca.SX.sym("joint", 4), ca.SX.sym("given", 8)
@@ -205,7 +270,7 @@ def _stepper(swing: ca.Function, steps: int) -> OftenUsed:
     at_stop = ca.vertcat(stop + side + outward * past, rate + outward * speed)
     end = ca.vertcat(ca.if_else(stopped, at_stop, ca.vertcat(phi, dphi)), z, hit)
     step = ca.Function("play_step", [joint, given, p], [ca.cse(end)])
-    return OftenUsed(step.mapaccum(steps), _LOOK, max(_PAYS // steps, _LOOK + 1))
+    return Recurrence(step)
 
 
 EFFECT = Effect(
@@ -221,6 +286,7 @@ EFFECT = Effect(
     ),
     sentence="There is play between the servo and the platform that it turns.",
     actuate=_actuate,
+    actuate_all=_actuate_all,
     backdrivable=True,
     differentiable=False,
     form_error=0.05,

@@ -30,6 +30,8 @@ _BINARY = {
     ca.OP_FMAX: (np.maximum, "v_max({}, {})"),
     ca.OP_LT: (np.less, "pick({} < {}, all(1.0), all(0.0))"),
     ca.OP_LE: (np.less_equal, "pick({} <= {}, all(1.0), all(0.0))"),
+    ca.OP_AND: (np.logical_and, "pick({} != all(0.0), {}, all(0.0))"),
+    ca.OP_OR: (np.logical_or, "pick({0} != all(0.0), {0}, {1})"),
     ca.OP_IF_ELSE_ZERO: (
         lambda condition, x: np.where(condition, x, 0.0),
         "pick({} != all(0.0), {}, all(0.0))",

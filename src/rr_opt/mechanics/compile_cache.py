@@ -27,8 +27,6 @@ from pathlib import Path
 from typing import Generic, TypeVar
 
 import casadi as ca
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 _COMPILE_SECONDS = 60
 """A compiler that takes longer is stopped. The largest source here takes some ten seconds."""
@@ -208,27 +206,3 @@ class WhenItPays(Generic[Code]):
         ):
             self._code = self._build(self._work > self._pays)
         return self._code
-
-
-_EXACT = ("-O1", "-ffp-contract=off", "-fPIC", "-shared")
-"""No operation is done otherwise than by CasADi's virtual machine: the numbers are the same."""
-
-
-class OftenUsed:
-    """A CasADi function of one output, compiled if it is called often.
-
-    look, pays  calls, as of `WhenItPays`
-    """
-
-    def __init__(self, function: ca.Function, look: int, pays: int) -> None:
-        self._function = function
-        self._compiled = WhenItPays(self._externals, look=look, pays=pays)
-
-    def _externals(self, make: bool) -> tuple[ca.Function, ...] | None:
-        return externals(self._function.name(), (self._function,), _EXACT, make=make)
-
-    def __call__(self, *args: ArrayLike) -> NDArray[np.float64]:
-        """Evaluate the function."""
-        compiled = self._compiled.code(1)
-        function = compiled[0] if compiled else self._function
-        return np.asarray(function(*args))

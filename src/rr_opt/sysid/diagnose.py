@@ -15,6 +15,7 @@ from rr_opt.sysid.evaluation import evaluation, mismatch
 from rr_opt.sysid.intervals import estimates, released
 from rr_opt.sysid.location import residues, stages, where
 from rr_opt.sysid.machine import Machine
+from rr_opt.sysid.model import Noise
 from rr_opt.sysid.noise import noise_in
 from rr_opt.sysid.remainder import dependences
 from rr_opt.sysid.selection import Selection, turned
@@ -118,6 +119,12 @@ def _answer(result: Result) -> Diagnosis:
     )
 
 
+def _quieter(selection: Selection) -> list[Noise] | None:
+    """The noise, if a search shows less than was assumed."""
+    noise = noise_in(selection.best.simulated)
+    return noise if noise and any(one.quieter for one in noise) else None
+
+
 def identified(model: Machine, watch: Stopwatch) -> Result:
     """Search for what is missing, with the noise that the nominal model shows; once more if the
     answer shows less."""
@@ -129,12 +136,16 @@ def identified(model: Machine, watch: Stopwatch) -> Result:
             base = first(model, runs)
     with watch("looking for what is missing"):
         selection = Selection(model, base, watch.progress)
-        best = selection.run()
-        noise = noise_in(best.simulated)
-        if noise and any(one.quieter for one in noise):
-            watch.progress("the noise is less than it looked; once more")
-            model = model.with_noise(noise)
+        selection.drive()
+        if quieter := _quieter(selection):
+            model = model.with_noise(quieter)
             selection = Selection(model, first(model, runs), watch.progress)
+            selection.drive()
+        best = selection.run()
+        if quieter := _quieter(selection):
+            watch.progress("the noise is less than it looked; once more")
+            model = model.with_noise(quieter)
+            selection = selection.again(model, first(model, runs))
             best = selection.run()
         best = turned(model, best)
     with watch("looking for wrong values"):

@@ -38,9 +38,18 @@ class Selection:
     def __post_init__(self) -> None:
         self.best = self.tried[()] = self.base
 
+    def again(self, model: Machine, base: Candidate) -> Selection:
+        """A search with the same machine and other noise, begun where this one ended: at the
+        candidates that predict best."""
+        other = Selection(model, base, self.progress, _upstream=self._upstream)
+        leading = sorted(self.tried.values(), key=lambda one: -one.elpd)[: SETTINGS.promising]
+        for one in dict.fromkeys((self.best, *leading)):
+            other.fitted(one.choices, [{}], one)
+        other.best = other.tried[tuple(sorted(self.best.choices))]
+        return other
+
     def run(self) -> Candidate:
         """Search; the candidate that was chosen."""
-        self._drive()
         seen: list[Candidate] = []
         while self.best not in seen and not self.complete(self.best):
             seen.append(self.best)
@@ -85,7 +94,8 @@ class Selection:
             self.tried[key] = fitted(self.model, key, (parent or self.best).fit, guesses, enough)
         return self.tried[key]
 
-    def _drive(self) -> None:
+    def drive(self) -> None:
+        """Effects of the drive, from its own recording."""
         self.progress("looking at the drive")
         self._upstream = [one for one in self.model.upstream() if one[0]]
         for choices, values in self._upstream:

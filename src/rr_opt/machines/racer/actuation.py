@@ -29,6 +29,8 @@ _TRIED = 14
 """Initial values of an effect without derivatives, between next to nothing and a lot."""
 _PAIRED = 2
 """Of the effects alone, how many are tried in pairs."""
+_DIFFERENCE = 1e-4
+"""Relative step of a difference quotient."""
 _SCANNED = 3
 """Runs on which initial values are compared."""
 _OPEN = 4
@@ -47,12 +49,21 @@ class _Angle:
 
     def residuals(self, values: Mapping[str, float], effects: tuple[str, ...]) -> dict[int, Array]:
         """In sigma, of each run."""
+        self.prepared([values], effects)
         out = {}
         for run, k in self.at.items():
             data = self.racer.runs[run]
             phi = self.racer.simulator.angle(run, values, effects)[k]
             out[run] = (phi - data.values[k, -1]) / data.weighted_sigma[k, -1]
         return out
+
+    def prepared(self, every: Sequence[Mapping[str, float]], effects: tuple[str, ...]) -> None:
+        """Have the servo's angles ready for several values at once."""
+        simulator = self.racer.simulator
+        given = [simulator.given(values) for values in every]
+        simulator.drives.every(
+            [(run, one) for one in given for run in self.at], simulator.every(effects)
+        )
 
     def samples(self, run: int) -> float:
         """Independent ones of a run."""
@@ -169,26 +180,39 @@ def _fitted(
     effects = tuple(one.name for one in choices)
     scale = np.array([q.scale for q in quantities])
 
+    def valued(u: Array) -> dict[str, float]:
+        return dict(zip((q.name for q in quantities), (u * scale).tolist(), strict=True))
+
     def left(u: Array, of: _Angle = angle) -> Array:
-        values = dict(zip((q.name for q in quantities), (u * scale).tolist(), strict=True))
+        values = valued(u)
         known = [u[k] - q.centre / q.scale for k, q in enumerate(free)]
         return np.concatenate([*of.residuals(values, effects).values(), known])
 
     def poor(u: Array) -> float:
         return float(np.sum(left(u, angle.scanned) ** 2))
 
+    def slopes(u: Array, *_: object) -> Array:
+        step = _DIFFERENCE * np.maximum(np.abs(u), _DIFFERENCE)
+        step = np.where(u + step > high, -step, step)
+        beside = [u + one for one in np.diag(step)]
+        angle.prepared([valued(one) for one in (u, *beside)], effects)
+        here = left(u)
+        return np.column_stack(
+            [(left(one) - here) / by for one, by in zip(beside, step, strict=True)]
+        )
+
     starts = [
         np.array([guess.get(q.name, q.value) for q in quantities]) / scale for guess in guesses
     ]
+    if len(starts) > 1:
+        angle.scanned.prepared([valued(u) for u in starts], effects)
     u = min(starts, key=poor) if len(starts) > 1 else starts[0]
+    low, high = (np.array([getattr(q, end) for q in quantities]) / scale for end in ("low", "high"))
     if quantities:
-        low, high = (
-            np.array([getattr(q, end) for q in quantities]) / scale for end in ("low", "high")
-        )
         u = least_squares(
-            left, np.clip(u, low, high), bounds=(low, high + 1e-12), diff_step=1e-4, max_nfev=12
+            left, np.clip(u, low, high), slopes, bounds=(low, high + 1e-12), max_nfev=12
         ).x
-    values = dict(zip((q.name for q in quantities), (u * scale).tolist(), strict=True))
+    values = valued(u)
     residuals = angle.residuals(values, effects)
     excess = angle.excess(residuals)
     own_values = {q.name: values[q.name] for q in own}

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 
@@ -24,6 +23,8 @@ _APART = 1e-6
 """A jump of dphi so near to an end of a step, s, is at it."""
 _MOST = 3
 """Between two samples; more of them are in a gap of the recording."""
+_KEPT = 512
+"""Drives."""
 
 
 @dataclass(frozen=True)
@@ -80,14 +81,23 @@ def drive_path(drive: Drive, steps: Steps, late: float, *, mean: bool = False) -
         nodes[1] = np.diff(at_edges[0]) / h
     elif not drive.smooth:
         # Inside of the step, as dphi may jump at its ends.
-        nodes[1, 0] = drive.at(edges[:-1] + _APART / 10)[1]
-        nodes[1, 2] = drive.at(edges[1:] - _APART / 10)[1]
+        jumps = drive.jumps_within(edges[0] - _APART, edges[-1] + _APART)
+        after = np.searchsorted(jumps, edges)
+        near = np.append(jumps, np.inf)[after] - edges < 2 * _APART
+        near |= edges - np.append(-np.inf, jumps)[after] < 2 * _APART
+        begins, ends = np.flatnonzero(near[:-1]), np.flatnonzero(near[1:])
+        nodes[1, 0, begins] = drive.at(edges[begins] + _APART / 10)[1]
+        nodes[1, 2, ends] = drive.at(edges[ends + 1] - _APART / 10)[1]
     at = at_edges[:, :: steps.each]
     if steps.stiff:
         acceleration = np.diff(at_edges[1]) / h
         nodes = np.concatenate([nodes, np.tile(acceleration, (1, 3, 1))])
         at = np.vstack([at, np.append(acceleration, acceleration[-1])[:: steps.each]])
     return DrivePath(h, nodes, at, steps.each)
+
+
+Made = tuple[int, tuple[tuple[str, tuple[tuple[str, float], ...]], ...]]
+"""A run, and the effects of its servo with their values."""
 
 
 class Drives:
@@ -100,30 +110,37 @@ class Drives:
     def __init__(self, runs: Sequence[Run], nominal: Mapping[str, float]) -> None:
         self._runs = runs
         self._joint = joint_of(nominal)
-        self._of = lru_cache(maxsize=256)(self._made)
+        self._kept: dict[Made, Drive] = {}
 
     def of(self, run: int, given: Mapping[str, float], effects: tuple[str, ...]) -> Drive:
         """What the servo makes of the gait that it is told in a run."""
-        own = tuple(
-            (name, tuple((q.name, given[f"{name}.{q.name}"]) for q in CATALOGUE[name].parameters))
-            for name in effects
-            if CATALOGUE[name].actuate
-        )
-        loose = any(CATALOGUE[name].backdrivable for name, _ in own)
-        return self._of(run, own, self._joint if loose else None)
+        return self.every([(run, given)], effects)[0]
 
-    def _made(
-        self,
-        run: int,
-        own: tuple[tuple[str, tuple[tuple[str, float], ...]], ...],
-        joint: FreeJoint | None,
-    ) -> Drive:
-        drive = commanded(self._runs[run].gait, self._runs[run].start == "rest")
-        for name, values in own:
-            actuate = CATALOGUE[name].actuate
-            if actuate:
-                drive = actuate(drive, dict(values), joint)
-        return drive
+    def every(
+        self, asked: Sequence[tuple[int, Mapping[str, float]]], effects: tuple[str, ...]
+    ) -> list[Drive]:
+        """The same of several runs with their values; faster at once than one by one."""
+        moving = [name for name in effects if CATALOGUE[name].actuate]
+        keys: list[Made] = [
+            (
+                run,
+                tuple(
+                    (name, tuple((q.name, given[f"{name}.{q.name}"]) for q in effect.parameters))
+                    for name, effect in ((name, CATALOGUE[name]) for name in moving)
+                ),
+            )
+            for run, given in asked
+        ]
+        new = [key for key in dict.fromkeys(keys) if key not in self._kept]
+        drives = [commanded(self._runs[k].gait, self._runs[k].start == "rest") for k, _ in new]
+        for n, name in enumerate(moving):
+            values = [dict(own[n][1]) for _, own in new]
+            drives = CATALOGUE[name].actuated(drives, values, self._joint)
+        self._kept |= dict(zip(new, drives, strict=True))
+        found = [self._kept[key] for key in keys]
+        for oldest in list(self._kept)[: max(len(self._kept) - _KEPT, 0)]:
+            del self._kept[oldest]
+        return found
 
 
 def drive_slopes(
@@ -135,11 +152,7 @@ def drive_slopes(
     wanted: tuple[str, ...],
 ) -> DriveSlopes | None:
     """How the drive changes with what is wanted; None if it does not."""
-    moving = [
-        (k, name)
-        for k, name in enumerate(wanted)
-        if "." in name and name.split(".")[0] in effects and _of_drive(name)
-    ]
+    moving = [(k, name) for k, name in enumerate(wanted) if _moves(name, effects)]
     if not moving:
         return None
     here = drives.of(run, given, effects)
@@ -155,9 +168,7 @@ def drive_slopes(
     at = np.zeros((*path.at.shape, len(wanted)))
     nodes = np.zeros((*path.nodes.shape, len(wanted)))
     for k, name in moving:
-        least, size = _extent(name)
-        step = 1e-3 * size
-        low, high = max(given[name] - step, least), given[name] + step
+        low, high = _ends(name, given)
         ends = [path_at({**given, name: value}) for value in (low, high)]
         at[:, :, k] = (ends[1].at - ends[0].at) / (high - low)
         nodes[:, :, :, k] = (ends[1].nodes - ends[0].nodes) / (high - low)
@@ -188,13 +199,29 @@ def grain(effects: Sequence[str]) -> dict[str, bool]:
     }
 
 
-def _of_drive(name: str) -> bool:
-    effect, parameter = name.split(".")
+def neighbours(
+    given: Mapping[str, float], effects: tuple[str, ...], wanted: tuple[str, ...]
+) -> list[dict[str, float]]:
+    """The values whose drives `drive_slopes` compares."""
+    return [
+        {**given, name: value}
+        for name in wanted
+        if _moves(name, effects)
+        for value in _ends(name, given)
+    ]
+
+
+def _moves(name: str, effects: Sequence[str]) -> bool:
+    """Whether a quantity moves the drive of a robot with some effects."""
+    effect, _, parameter = name.partition(".")
+    if not parameter or effect not in effects:
+        return False
     return CATALOGUE[effect].actuate is not None or CATALOGUE[effect].delay == parameter
 
 
-def _extent(name: str) -> tuple[float, float]:
-    """The least value of a quantity of an effect, and its usual size."""
+def _ends(name: str, given: Mapping[str, float]) -> tuple[float, float]:
+    """Values of an effect's quantity to either side of its own, for a difference quotient."""
     effect, parameter = name.split(".")
     q = next(q for q in CATALOGUE[effect].parameters if q.name == parameter)
-    return q.bounds[0], q.typical
+    step = 1e-3 * q.typical
+    return max(given[name] - step, q.bounds[0]), given[name] + step

@@ -13,7 +13,15 @@ import numpy as np
 
 from rr_opt.array import Array
 from rr_opt.effects import CATALOGUE
-from rr_opt.machines.racer.drive import Drives, drive_path, drive_slopes, grain, lateness, steps_of
+from rr_opt.machines.racer.drive import (
+    Drives,
+    drive_path,
+    drive_slopes,
+    grain,
+    lateness,
+    neighbours,
+    steps_of,
+)
 from rr_opt.machines.racer.parameters import ZERO_OFFSET, ZEROS, values_by, values_of
 from rr_opt.mechanics.drive import Drive
 from rr_opt.mechanics.kinematics import ROBOT_PARAMETERS
@@ -161,10 +169,18 @@ class Simulator:
         """Linearise segments; see `sysid.model.Model`."""
         mechanical = self.every(effects)
         system, motion = driven(mechanical)
-        sought = []
-        for one, (path, made, p, given) in zip(
-            requests, self.paths(requests, effects), strict=True
-        ):
+        sought, paths = [], self.paths(requests, effects)
+        known = {
+            (one.segment.run, id(each[3])): each[3]
+            for one, each in zip(requests, paths, strict=True)
+        }
+        beside = [
+            (run, values)
+            for (run, _), given in known.items()
+            for values in neighbours(given, mechanical, wanted)
+        ]
+        self.drives.every(beside, mechanical)
+        for one, (path, made, p, given) in zip(requests, paths, strict=True):
             by = values_by(given, motion.parameters, wanted)
             drive_by = self.drive_slopes(one.segment, given, mechanical, wanted)
             sought.append(Sought(path, made, p, by, drive_by, self.recorded(one.segment)))
@@ -181,6 +197,8 @@ class Simulator:
         for values in {id(one.values): one.values for one in requests}.values():
             given = self.given(values)
             known[id(values)] = given, values_of(given, motion.parameters)
+        asked = {(one.segment.run, id(one.values)) for one in requests}
+        self.drives.every([(run, known[values][0]) for run, values in asked], mechanical)
         ready = []
         for one in requests:
             given, p = known[id(one.values)]
