@@ -12,7 +12,7 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from rr_opt.sysid.candidates import Candidate, fitted, polished
+from rr_opt.sysid.candidates import Candidate, fitted, polished, quantities_of
 from rr_opt.sysid.machine import Machine
 from rr_opt.sysid.model import Choice
 from rr_opt.sysid.score_test import scores
@@ -91,8 +91,19 @@ class Selection:
         if key not in self.tried:
             self.progress("fitting " + (" and ".join(c.name for c in key) or "the parameters"))
             enough = min(one.fit.deviance for one in self.tried.values())
-            self.tried[key] = fitted(self.model, key, (parent or self.best).fit, guesses, enough)
+            begun = [*guesses, *self._nested(key)]
+            self.tried[key] = fitted(self.model, key, (parent or self.best).fit, begun, enough)
         return self.tried[key]
+
+    def _nested(self, key: Sequence[Choice]) -> Sequence[Mapping[str, float]]:
+        """The values of the best candidate of which this one is an extension, so that it fits no
+        worse."""
+        names = {q.name for q in quantities_of(self.model, key)}
+        nested = [
+            one for one in self.tried.values() if one.choices and names > set(one.fit.problem.names)
+        ]
+        best = min(nested, key=lambda one: one.fit.deviance, default=None)
+        return [{q: best.fit.values[q] for q in best.fit.problem.names}] if best else []
 
     def drive(self) -> None:
         """Effects of the drive, from its own recording."""

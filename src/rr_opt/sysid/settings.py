@@ -30,11 +30,10 @@ class Settings:
     small                 share of the first excess misfit: what remains is small
     accounted             share of what is left without an effect that it has to account for
     slow                  Hz; what moves slower may be the machine, what is faster is noise
-    imitated              in units of an effect's form error: share of what an unknown input
-                          explains that is left with the effects, at which they are as likely an
-                          imitation as not
-    unpredicted           in units of an effect's form error: share of the misfit in recordings that
-                          were not fitted, that is left with the effects, with the same meaning
+    shown                 of what is known of a combination of values: a recording that brings less
+                          says nothing of it
+    inconstant            by as large a factor, at most, an imitation's values vary more between
+                          recordings than their uncertainty (mean square)
     misstated             relative; a level of the noise that differs by more is not as stated
     correlated            as many samples worth one are more than white noise has by chance
     certain               chance of so much by noise, below which an unknown input is there
@@ -63,8 +62,8 @@ class Settings:
     small: float = 0.01
     accounted: float = 0.5
     slow: float = 2.0
-    imitated: float = 10.0
-    unpredicted: float = 7.5
+    shown: float = 0.01
+    inconstant: float = 100.0
     misstated: float = 0.1
     correlated: float = 1.5
     certain: float = 1e-6

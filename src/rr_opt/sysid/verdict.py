@@ -7,7 +7,6 @@ where no effect is shown is the answer `unexplained`.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -15,6 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from rr_opt.sysid.candidates import Candidate, weights
+from rr_opt.sysid.constancy import Constancy, constancy
 from rr_opt.sysid.diagnosis import Finding, Remainder, Tried, Verdict
 from rr_opt.sysid.evaluation import Evaluation
 from rr_opt.sysid.intervals import estimates, named, wrong
@@ -56,24 +56,19 @@ class Result:
 
     @cached_property
     def sound(self) -> float:
-        """How likely the answer's effects are no imitation of something else.
+        """How likely the answer's effects are no imitation of something else: whether recordings
+        agree on their values, and those that were not fitted are predicted better with them."""
+        if self.best.choices and self.final.excess > self.refitted.excess:
+            return 0.0
+        return self.constancy.probability
 
-        An imitation leaves some of what an unknown input explained beside the nominal model, the
-        more effects it takes the less; and some of the misfit in recordings that were not fitted.
-        But so do machines that differ from models of an effect.
-        """
-        gain = self.selection.base.fit.deviance - self.best.fit.deviance
-        before, after = (
-            max((one.surplus for one in found), default=0.0) for found in (self.before, self.after)
-        )
-        imitated = len(self.best.choices) * after / max(before, gain / 4, 1e-12)
-        floor = self.selection.model.form_error**2
-        left = max(self.final.excess**2 - SETTINGS.none**2 - floor, 0.0)
-        unpredicted = left / max(self.refitted.excess**2 - floor, 1e-12)
-        info = self.selection.model.catalogue
-        form = max((info[name].form_error for name in self.best.effects), default=math.inf)
-        doubt = max(imitated / SETTINGS.imitated, unpredicted / SETTINGS.unpredicted) / form
-        return 1 / (1 + doubt**4)
+    @cached_property
+    def constancy(self) -> Constancy:
+        """How well recordings agree on the answer's values."""
+        catalogue = self.selection.model.catalogue
+        forms = {name: catalogue[name].form_error for name in self.best.effects}
+        explained = {run: max(one.rms**2 - 1, 0.0) for run, one in enumerate(self.refitted.misfits)}
+        return constancy(self.everywhere.fit, explained, forms)
 
     @property
     def shown(self) -> tuple[Choice, ...]:

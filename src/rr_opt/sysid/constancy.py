@@ -1,0 +1,88 @@
+r"""Whether the recordings agree on a fit's values (parameter constancy, Chow 1960).
+
+What is really there has the same values in every recording. An imitation of something else fits
+each with values of its own, and none may leave more than noise. So each run r is held against the
+others. With g, B the gradient and curvature of its loss, A and G those of the rest, the prior
+among them, its score where the others have their optimum is
+
+    s = g - B A^-1 G,    Var s = phi (B + B (A^-1 + F) B).
+
+No machine is its model, though. F is the variance by which machines differ from the model of an
+effect in its values; and in the motion they differ by that share, e, of what the effect explains
+of the run, m (RMS in sigma), for about a correlation time: phi = 1 + (e m)^2 n/K with the samples n
+and correlation times K of the run.
+
+T, the sum of s' Var^-1 s over all runs, is k on average, the number of values that each run shows,
+added up. If the values are not constant it is larger by an unknown factor, which is given a
+log-uniform prior from 1 to `inconstant`. By Laplace's approximation the odds of constant values are
+
+    (T/k)^(k/2) exp(-(T - k)/2) sqrt(k/(4 pi)) ln(inconstant)    where T > k.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import solve_triangular
+
+from rr_opt.sysid.estimation import Fit, root
+from rr_opt.sysid.settings import SETTINGS
+
+
+@dataclass(frozen=True)
+class Constancy:
+    """T and k, of all runs."""
+
+    statistic: float
+    degrees: int
+
+    @property
+    def probability(self) -> float:
+        """That the values are constant; 1/2 if nothing is known of that."""
+        k = self.degrees
+        if not k:
+            return 0.5
+        ratio = max(self.statistic / k, 1.0)
+        occam = math.sqrt(k / (4 * math.pi)) * math.log(SETTINGS.inconstant)
+        odds = math.exp(-k / 2 * (ratio - 1 - math.log(ratio))) * occam
+        return odds / (1 + odds)
+
+
+def constancy(
+    fit: Fit, explained: Mapping[int, float], form_errors: Mapping[str, float]
+) -> Constancy:
+    """Of a fit to all runs.
+
+    explained    of each run, the mean square in sigma that the effects explain
+    form_errors  by how much, relative, machines differ from the model of an effect, by its name
+    """
+    problem = fit.problem
+    if not problem.names:
+        return Constancy(0.0, 0)
+    values = fit.u + problem.centre / problem.scale
+    form = [form_errors.get(name.split(".")[0], 0.0) for name in problem.names]
+    H, g, _ = fit.information()
+    # In units in which all that is known of the values is the unit matrix.
+    units = np.sqrt(np.diag(H))
+    L = root(H / units / units[:, None])
+
+    def within(x: np.ndarray) -> np.ndarray:
+        return solve_triangular(L, (x.T / units).T, lower=True)
+
+    spread = L.T * units @ np.diag(np.array(form) * values)
+    statistic, degrees = 0.0, 0
+    for run, one in fit.evidences.items():
+        B = within(within(one.H).T)
+        others = np.linalg.pinv(np.eye(len(B)) - B, hermitian=True)
+        score = within(one.g) - B @ others @ within(g - one.g)
+        variance, ways = np.linalg.eigh(B + B @ (others + spread @ spread.T) @ B)
+        shown = variance > SETTINGS.shown
+        total = float(np.sum((ways.T @ score)[shown] ** 2 / variance[shown]))
+        per_time = problem.samples(run) / problem.correlation_times(run)
+        share = max(form_errors.values(), default=0.0)
+        statistic += total / (1 + share**2 * explained[run] * per_time)
+        degrees += int(shown.sum())
+    return Constancy(statistic, degrees)
