@@ -18,10 +18,14 @@ from rr_opt.sysid.settings import SETTINGS
 
 @dataclass(frozen=True, eq=False)
 class Candidate:
-    """The nominal model with some effects beside it, fitted."""
+    """The nominal model with some effects beside it, fitted.
+
+    given_up  its fit was not taken to its end, as it would not have come to that of another
+    """
 
     choices: tuple[Choice, ...]
     fit: Fit
+    given_up: bool = False
 
     @property
     def effects(self) -> tuple[str, ...]:
@@ -61,6 +65,8 @@ class Candidate:
 
     def predicts_better(self, other: Candidate) -> bool:
         """Whether the evidence from prediction is enough to prefer it."""
+        if self.given_up:
+            return False
         gain, error = self.advantage(other)
         return gain > max(SETTINGS.evidence, SETTINGS.standard_errors * error)
 
@@ -83,13 +89,13 @@ def fitted(
     choices: Sequence[Choice],
     parent: Fit,
     guesses: Sequence[Mapping[str, float]],
-    enough: float = math.inf,
+    rival: Fit | None = None,
 ) -> Candidate:
     """A set of effects, fitted beside a fit without them.
 
     guesses  of the new quantities. The parameters begin as in the parent's fit and, as what is
              missing may have bent them, as believed. By successive halving the best is taken on
-    enough   deviance, well above which the fit need not be taken to its end
+    rival    a fit that will not be beaten need not be taken to its end
     """
     ordered = tuple(sorted(choices))
     names = tuple(one.name for one in ordered)
@@ -107,15 +113,23 @@ def fitted(
         states = _converted(model, parent, names, values)
         part = {one: states[one] for one in some.segments}
         trials.append((estimation.solve(some, values, part, 0), states))
+    gain = math.inf
     for steps in SETTINGS.trial_steps:
         trials.sort(key=lambda trial: trial[0].deviance)
+        before = trials[0][0].deviance
         trials = [
             (estimation.solve(some, fit.values, fit.states, steps), states)
             for fit, states in trials[: max(len(trials) // 2, 1)]
         ]
+        gain = (before - min(fit.deviance for fit, _ in trials)) / steps
     best, states = min(trials, key=lambda trial: trial[0].deviance)
     begun_with = {**states, **best.states}
-    return Candidate(ordered, estimation.fitted(problem, best.values, begun_with, enough=enough))
+    lacking = best.deviance - rival.deviance_of(some.by_run) if rival else -math.inf
+    if not best.converged and lacking > SETTINGS.patience * max(gain, SETTINGS.tolerance):
+        return Candidate(ordered, estimation.solve(problem, best.values, begun_with, 0), True)
+    enough = rival.deviance if rival else math.inf
+    fit = estimation.fitted(problem, best.values, begun_with, enough=enough)
+    return Candidate(ordered, fit, not fit.converged and fit.deviance > enough)
 
 
 def refitted(candidate: Candidate, runs: Iterable[int]) -> Candidate:

@@ -334,6 +334,10 @@ class Fit:
         """-2 log of the marginal likelihood of all runs."""
         return _deviance(self.problem, self.evidences, self.u)
 
+    def deviance_of(self, runs: Iterable[int]) -> float:
+        """That of some runs alone, at these values."""
+        return _deviance(self.problem, {run: self.evidences[run] for run in runs}, self.u)
+
     def _without(self, run: int) -> float:
         """The deviance of the others, at their own best."""
         problem = self.problem

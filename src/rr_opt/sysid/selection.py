@@ -9,10 +9,11 @@ simulation of whole runs leaves is no more than machines differ from models of s
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from rr_opt.sysid.candidates import Candidate, fitted, polished, quantities_of
+from rr_opt.sysid.constancy import Constancy, constancy
 from rr_opt.sysid.machine import Machine
 from rr_opt.sysid.model import Choice
 from rr_opt.sysid.score_test import scores
@@ -34,6 +35,7 @@ class Selection:
     progress: Progress = lambda _: None
     tried: dict[tuple[Choice, ...], Candidate] = field(default_factory=dict)
     _upstream: Sequence[tuple[tuple[Choice, ...], Mapping[str, float]]] = ()
+    _constancies: dict[Candidate, Constancy] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self.best = self.tried[()] = self.base
@@ -42,7 +44,8 @@ class Selection:
         """A search with the same machine and other noise, begun where this one ended: at the
         candidates that predict best."""
         other = Selection(model, base, self.progress, _upstream=self._upstream)
-        leading = sorted(self.tried.values(), key=lambda one: -one.elpd)[: SETTINGS.promising]
+        ended = [one for one in self.tried.values() if not one.given_up]
+        leading = sorted(ended, key=lambda one: -one.elpd)[: SETTINGS.promising]
         for one in dict.fromkeys((self.best, *leading)):
             other.fitted(one.choices, [{}], one)
         other.best = other.tried[tuple(sorted(self.best.choices))]
@@ -64,13 +67,26 @@ class Selection:
         return self.best
 
     def complete(self, candidate: Candidate) -> bool:
-        """Whether its simulation leaves nothing: no more than is negligible, beside an effect as
-        much as is none, and than noise leaves by chance."""
+        """Whether recordings agree on its values and its simulation leaves nothing: no more than is
+        negligible, beside an effect as much as is none, and than noise leaves by chance."""
+        if self.constancy(candidate).probability <= SETTINGS.named:
+            return False
         chance = 2 * math.sqrt(2 / max(candidate.fit.samples, 1))
         least = SETTINGS.none if candidate.choices else SETTINGS.negligible
         most = least**2 + chance
         # Segments that need not join leave less than whole runs.
         return candidate.fit.excess**2 <= 2 * most and candidate.excess**2 <= most
+
+    def constancy(self, candidate: Candidate) -> Constancy:
+        """How well the recordings that were fitted agree on its values."""
+        if candidate not in self._constancies:
+            nominal = self.base.simulated.evidences
+            each = {run: max(e.excess / e.samples, 0.0) for run, e in nominal.items()}
+            typical = sum(each.values()) / len(each)
+            explained = {run: each.get(run, typical) for run in candidate.fit.evidences}
+            forms = {name: self.model.catalogue[name].form_error for name in candidate.effects}
+            self._constancies[candidate] = constancy(candidate.fit, explained, forms)
+        return self._constancies[candidate]
 
     def _better(self, candidate: Candidate, other: Candidate) -> bool:
         """Whether a larger candidate predicts better than one that leaves something."""
@@ -90,9 +106,9 @@ class Selection:
         key = tuple(sorted(choices))
         if key not in self.tried:
             self.progress("fitting " + (" and ".join(c.name for c in key) or "the parameters"))
-            enough = min(one.fit.deviance for one in self.tried.values())
+            rival = min((one.fit for one in self.tried.values()), key=lambda fit: fit.deviance)
             begun = [*guesses, *self._nested(key)]
-            self.tried[key] = fitted(self.model, key, (parent or self.best).fit, begun, enough)
+            self.tried[key] = fitted(self.model, key, (parent or self.best).fit, begun, rival)
         return self.tried[key]
 
     def _nested(self, key: Sequence[Choice]) -> Sequence[Mapping[str, float]]:
@@ -123,14 +139,14 @@ class Selection:
         if not self._settled(found):
             self.progress("looking where effects without derivatives may be")
             found += self._proposed()
-        best = max(found, key=lambda one: one.elpd, default=None)
+        best = _best(found)
         if best and best.predicts_better(self.best):
             self.best = best
 
     def _settled(self, found: Sequence[Candidate]) -> bool:
         """Whether one leaves nothing and predicts better than all others of other effects, as what
         is not may be an imitation of something that was not tried yet."""
-        best = max(found, key=lambda one: one.elpd, default=None)
+        best = _best(found)
         if best is None or not self.complete(best):
             return False
         others = [one for one in found if one.effects != best.effects]
@@ -144,11 +160,7 @@ class Selection:
         pairs = [s for s in promising if len(s.choices) == 2][: SETTINGS.promising]
         for one in singles:
             yield self.fitted((*parent.choices, *one.choices), [one.guess], parent)
-        best = max(
-            (self.tried[tuple(sorted((*parent.choices, *one.choices)))] for one in singles),
-            key=lambda one: one.elpd,
-            default=None,
-        )
+        best = _best(self.tried[tuple(sorted((*parent.choices, *one.choices)))] for one in singles)
         if best is None or not self.complete(best):
             for one in pairs:
                 yield self.fitted((*parent.choices, *one.choices), [one.guess], parent)
@@ -192,14 +204,14 @@ class Selection:
         rest = [choice for choice in self.best.choices if choice not in every]
         if len(rest) < len(self.best.choices):
             others = [self.fitted((*rest, *some), [values]) for some, values in self._upstream]
-            self.best = max((self.best, *others), key=lambda one: one.elpd)
+            self.best = _best((self.best, *others)) or self.best
 
     def _polish(self) -> None:
         """Fit sets that leave nothing, and are not larger than the best, once more from where whole
         runs are simulated best: a fit in segments may have stopped in a kink of an effect without
         derivatives."""
         for key, one in [*self.tried.items()]:
-            worse = one.elpd < self.best.elpd
+            worse = one.elpd < self.best.elpd and not one.given_up
             if worse and len(key) <= len(self.best.choices) and self.complete(one):
                 again = polished(one)
                 if again.elpd > one.elpd:
@@ -213,6 +225,7 @@ class Selection:
             one
             for one in self.tried.values()
             if one.choices
+            and not one.given_up
             and not self.best.predicts_better(one)
             and (one.effects == self.best.effects or not self.needed(self.best, one))
         ]
@@ -232,9 +245,10 @@ class Selection:
             smaller += [
                 one for one in self._simpler(self.best) if not self.best.predicts_better(one)
             ]
-            if not smaller:
+            best = _best(smaller)
+            if best is None:
                 return
-            self.best = max(smaller, key=lambda one: one.elpd)
+            self.best = best
 
     def _fewer(self, candidate: Candidate) -> Iterator[Candidate]:
         for choice in candidate.choices:
@@ -257,6 +271,12 @@ class Selection:
             between = (own < x < one if fuller else one < x < own for x in others.values())
             if not any(between):
                 yield k, own
+
+
+def _best(candidates: Iterable[Candidate]) -> Candidate | None:
+    """The one that predicts best, of those whose fits were taken to their ends."""
+    ended = (one for one in candidates if not one.given_up)
+    return max(ended, key=lambda one: one.elpd, default=None)
 
 
 def _more(guess: Mapping[str, float], own: set[str]) -> dict[str, float]:

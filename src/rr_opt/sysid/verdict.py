@@ -44,10 +44,14 @@ class Result:
     after: Sequence[Dependence]
 
     @cached_property
+    def _ended(self) -> list[Candidate]:
+        return [one for one in self.selection.tried.values() if not one.given_up]
+
+    @cached_property
     def confidences(self) -> Mapping[str, float]:
         """Of each effect: the weight of the candidates that have it, by how they predict
         recordings, times the likelihood that it imitates nothing else."""
-        tried = list(self.selection.tried.values())
+        tried = self._ended
         own = list(zip(weights(tried), tried, strict=True))
         return {
             name: float(self.sound * sum(w for w, one in own if name in one.effects))
@@ -74,7 +78,7 @@ class Result:
     def shown(self) -> tuple[Choice, ...]:
         """The effects that are missing with more likelihood than not: each, or another one of those
         that cannot be told from it."""
-        tried, alike = list(self.selection.tried.values()), self.selection.alike()
+        tried, alike = self._ended, self.selection.alike()
         own = list(zip(weights(tried), tried, strict=True))
         return tuple(
             c
@@ -87,7 +91,9 @@ class Result:
     def explained(self) -> bool:
         """Whether what the answer leaves, if it is fitted to all recordings, is no more than
         machines differ from their models; or is as noise that is a little larger than stated,
-        which follows nothing."""
+        which follows nothing. And whether recordings agree on its values."""
+        if self.constancy.probability <= SETTINGS.named:
+            return False
         both = (self.best, self.everywhere)
         slight = self.selection.model.form_error
         if all(self.selection.complete(one) or one.excess <= slight for one in both):
@@ -108,7 +114,7 @@ class Result:
     def rivals(self) -> list[Candidate]:
         """Candidates without one of the effects, the best first."""
         own = set(self.best.effects)
-        others = [c for c in self.selection.tried.values() if not own <= set(c.effects)]
+        others = [one for one in self._ended if not own <= set(one.effects)]
         return sorted(others, key=lambda one: -one.elpd)
 
 
