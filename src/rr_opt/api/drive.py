@@ -9,11 +9,11 @@ from rr_opt.api.load import PathLike, load_gait, read_arguments
 from rr_opt.model.gait import Gait
 from rr_opt.model.problem import LARGEST_EXCESS, Limits, Problem
 from rr_opt.model.robot import Robot
+from rr_opt.motion import setpoints
 from rr_opt.motion.circle import circle_of, transient
 from rr_opt.motion.dynamics import require_friction
 from rr_opt.motion.rollout import measured, rollout
 from rr_opt.motion.servo import servo_made
-from rr_opt.motion import setpoints
 from rr_opt.motion.steady_cycle import require_regular, steady_cycle
 from rr_opt.outcome import InputError
 from rr_opt.results.motion import DrivenCircle, SimulatedMotion

@@ -88,9 +88,7 @@ Scheduler = Annotated[
 ]
 
 
-Force = Annotated[
-    bool, typer.Option("--force", help="Write over the answer to another question.")
-]
+Force = Annotated[bool, typer.Option("--force", help="Write over the answer to another question.")]
 
 
 def results_folder(out: Path | None, name: str) -> Path:
@@ -214,6 +212,18 @@ def _warned(read: Callable[[], Read]) -> Read:
     return found
 
 
+def read_columns(text: str | None) -> dict[str, str] | None:
+    """The column of each channel of --columns; None if it was not given."""
+    if text is None:
+        return None
+    pairs = [pair.partition("=") for pair in text.split(",")]
+    if not all(channel.strip() and name.strip() for channel, _, name in pairs):
+        raise InputError(
+            f"--columns: Read {text!r}. Expected a column for each channel: `t=time,psi=yaw`."
+        )
+    return {channel.strip(): name.strip() for channel, _, name in pairs}
+
+
 def read_command(**sizes: str | None) -> Gait | None:
     """The commanded gait of --amplitude, --period and --offset; None if there is none."""
     read = read_options(**sizes)
@@ -323,6 +333,14 @@ Layout = Annotated[
 ]
 ServoLog = Annotated[
     Path | None, typer.Option(metavar="CSV", help="The servo's log, on its own clock.")
+]
+Columns = Annotated[
+    str | None,
+    typer.Option(
+        metavar="CHANNEL=COLUMN,...",
+        help="Which columns of a text file hold the channels t, x, y, psi, phi: "
+        "'psi=yaw [deg],t=time'.",
+    ),
 ]
 CommandedAmplitude = Annotated[
     str | None, typer.Option(help="Commanded amplitude in rad, or with a unit.")

@@ -98,9 +98,9 @@ def text_of(points: SetPoints, format: Format) -> str:
     times = (np.arange(len(points.angles)) / points.rate).tolist()
     if format == "csv":
         angles = points.angles.tolist(), np.degrees(points.angles).tolist()
-        return csv_text(("t", "phi", "phi_deg"), zip(times, *angles, strict=True))
+        return csv_text(("t [s]", "phi [rad]", "phi [deg]"), zip(times, *angles, strict=True))
     if format == "servo":
-        return csv_text(("t", "count"), zip(times, points.counts.tolist(), strict=True))
+        return csv_text(("t [s]", "count"), zip(times, points.counts.tolist(), strict=True))
     return _c_header(points)
 
 
