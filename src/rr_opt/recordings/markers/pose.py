@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 
@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rr_opt.array import Array
+from rr_opt.messages import listed
 from rr_opt.model.experiment import CHANNELS, Flag, Recording
 from rr_opt.outcome import InputError
 from rr_opt.recordings.cleaning import unwrapped
@@ -292,18 +293,13 @@ def _of_layout(
 def _of_names(data: MarkerData, made: MarkerFit, always: Order | None) -> Iterator[Notice]:
     names = made.bodies.labels
     if always:
-        yield notice("swap.always", names=_and(names[i] for i in members(always)))
+        yield notice("swap.always", names=listed(names[i] for i in members(always)))
     together: dict[tuple[int, ...], list[int]] = {}
     for swap in made.swaps:
         together.setdefault(swap.members, []).extend(swap.frames.tolist())
     for several, frames in together.items():
-        both = _and(names[i] for i in several)
+        both = listed(names[i] for i in several)
         yield notice("swap.frames", names=both, **_frames(data, sorted(frames)))
-
-
-def _and(names: Iterable[str]) -> str:
-    *others, last = names
-    return f"{', '.join(others)} and {last}"
 
 
 def _frames(data: MarkerData, rows: Sequence[int] | NDArray[np.int_]) -> dict[str, str]:
