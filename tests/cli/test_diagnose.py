@@ -116,8 +116,7 @@ def test_recordings_that_cannot_tell_are_refused(run, tables, tmp_path, change, 
 
 
 def test_one_recording_that_cannot_tell_is_left_out(tables, tmp_path):
-    from rr_opt.recordings.experiment import read_experiment
-    from rr_opt.recordings.usable import usable
+    from rr_opt.recordings.experiment import read_experiment, usable
 
     write(tmp_path / "trial", [tables[0], tables[1][:60], tables[2]], ("fit",) * 3)
     experiment, reported = usable(read_experiment(tmp_path / "trial"))

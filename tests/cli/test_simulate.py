@@ -6,9 +6,8 @@ import json
 import numpy as np
 import pytest
 
-from rr_opt.files.gait_record import gait_record
 from rr_opt.files.problem_file import read_problem
-from rr_opt.files.record import robot_record
+from rr_opt.files.record import gait_record, robot_record
 from rr_opt.formatting import number, speed_text
 from rr_opt.model.problem import Limits
 from rr_opt.verify.replay import replay

@@ -14,12 +14,11 @@ from rr_opt.files.experiment_model import (
 )
 from rr_opt.files.experiment_plan import ExperimentPlan, PlannedRun, layout_from
 from rr_opt.files.fields import validate
-from rr_opt.files.gait_record import gait_from
-from rr_opt.files.gate import unreadable
 from rr_opt.files.issue import InvalidFileError, Issue, has_errors
 from rr_opt.files.problem_file import ROBOT, kind_of
+from rr_opt.files.record import gait_from
 from rr_opt.files.robot_file import robot_from
-from rr_opt.files.source import is_result, linked, read_document
+from rr_opt.files.source import is_result, linked, read_document, unreadable
 from rr_opt.files.yaml_text import Document
 from rr_opt.messages import shown
 from rr_opt.model.gait import Gait

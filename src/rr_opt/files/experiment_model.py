@@ -11,7 +11,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field, SkipValidation, create_model
 
 from rr_opt.files.fields import FileModel, Key, Section
-from rr_opt.files.gait_record import FourierRecord, FreeRecord, SineRecord
+from rr_opt.files.record import FourierRecord, FreeRecord, SineRecord
 from rr_opt.files.robot_file import RobotModel
 from rr_opt.messages import shown, unknown_word
 from rr_opt.model.experiment import UNITS, Column, CountScale, Noise, Start, Use

@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 
 from rr_opt.array import Array
-from rr_opt.files.gate import LONG, read_content
 from rr_opt.files.issue import Issue, refuse
 from rr_opt.files.machine_file import MachinePlan, PlannedRecording
+from rr_opt.files.source import LONG, read_content
 from rr_opt.messages import shown
 from rr_opt.model.experiment import Column
 from rr_opt.model.machine import Channel, MachineExperiment, MachineRun

@@ -26,7 +26,7 @@ class ExplainedMachine(Explained[MachineExperiment]):
     """The diagnosis; `found` is all of it, `window` the seconds over which it predicts."""
 
     OTHERS = (CORRECTED,)
-    DRAW = "rr_opt.results.figures.machine_diagnosis.draw"
+    DRAW = "rr_opt.results.figures.diagnosis.draw_machine"
     CAPTIONS = captions("machine")
 
     window: float

@@ -38,7 +38,7 @@ class DrivenRoute(Result):
 
     FILE = "route.json"
     OTHERS = ("trajectory.csv", "setpoints.csv")
-    DRAW = "rr_opt.results.figures.route.draw_route"
+    DRAW = "rr_opt.results.figures.motion.draw_route"
     CAPTIONS = captions("route")
 
     name: str

@@ -9,8 +9,7 @@ from typer.testing import CliRunner
 from rr_opt.cli.main import app
 from rr_opt.files.issue import has_errors
 from rr_opt.outcome import InputError
-from rr_opt.recordings.experiment import read_experiment
-from rr_opt.recordings.usable import usable
+from rr_opt.recordings.experiment import read_experiment, usable
 from tests.sysid.bad_data.folder import GAITS, written
 
 DEGREES = 180 / np.pi

@@ -8,8 +8,8 @@ import numpy as np
 
 from rr_opt.array import Array
 from rr_opt.recordings.clock_fit import RUNS_OFF, ClockFit
+from rr_opt.recordings.nuisances.clock import dominant
 from rr_opt.recordings.nuisances.evidence import Evidence
-from rr_opt.recordings.nuisances.periods import dominant
 from rr_opt.recordings.warnings import Notice, notice
 
 _ALIKE, _OTHER = 0.5, 0.8

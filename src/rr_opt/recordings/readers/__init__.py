@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import NoReturn
 
-from rr_opt.files.gate import LONG, read_content
 from rr_opt.files.issue import refuse
+from rr_opt.files.source import LONG, read_content
 from rr_opt.messages import shown
 from rr_opt.model.experiment import Recording
 from rr_opt.recordings.readers import (

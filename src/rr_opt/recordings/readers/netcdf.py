@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rr_opt.files.gait_record import gait_from, gait_record
 from rr_opt.files.issue import InvalidFileError, refuse
+from rr_opt.files.record import gait_from, gait_record
 from rr_opt.files.yaml_text import Document
 from rr_opt.model.experiment import CHANNELS, UNITS, Flag, Noise, Recording
 from rr_opt.model.gait import Gait
