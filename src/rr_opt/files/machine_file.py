@@ -163,7 +163,7 @@ def machine_plan(path: str | Path, machine: Machine) -> tuple[MachinePlan | None
     if isinstance(entries, list):
         for k, one in enumerate(entries):
             if not isinstance(one, dict):
-                issues.append(document.issue("error", ("recordings", k), f"Read {shown(one)}. "
+                issues.append(document.error(("recordings", k), f"Read {shown(one)}. "
                                              "Expected {file: ...}. Write it so."))  # fmt: skip
                 continue
             place = Document(document.file, one, document.lines, ("recordings", k))
@@ -171,16 +171,16 @@ def machine_plan(path: str | Path, machine: Machine) -> tuple[MachinePlan | None
             issues += found
             why = unreadable(file.parent / read.file) if read else ""
             if read and why:
-                issues.append(place.issue("error", ("file",), f"Read {shown(read.file)}. {why}"))
+                issues.append(place.error(("file",), f"Read {shown(read.file)}. {why}"))
             elif read:
                 own = {**_given(model.columns if model else None), **_given(read.columns)}
                 planned.append(PlannedRecording(file.parent / read.file, read.use, own))
     if not entries or not isinstance(entries, list):
         message = f"Read {shown(entries)}. Expected a list of recordings."
-        issues.append(document.issue("error", ("recordings",), message))
+        issues.append(document.error(("recordings",), message))
     elif not any(one.use == "fit" for one in planned) and not has_errors(issues):
         message = "No recording is to be fitted. Give at least one `use: fit`."
-        issues.append(document.issue("error", ("recordings",), message))
+        issues.append(document.error(("recordings",), message))
     if model is None or has_errors(issues):
         return None, issues
     nominal = dict(model.parameters)

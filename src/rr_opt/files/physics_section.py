@@ -23,7 +23,7 @@ def read_effects(document: Document) -> tuple[tuple[EffectUse, ...], list[Issue]
             f"Read {shown(entries)}. Expected a list of effects, each with a name and its "
             "parameters. Write for example `- {name: coulomb_friction, F1: 0.02, F2: 0.02}`."
         )
-        return (), [document.issue("error", ("physics",), message)]
+        return (), [document.error(("physics",), message)]
     uses: dict[str, EffectUse] = {}
     issues: list[Issue] = []
 

@@ -143,10 +143,10 @@ def gait_from(document: Document) -> tuple[Gait | None, list[Issue]]:
     shape = document.data.get("shape", "sine")
     if not isinstance(shape, str):
         message = f"Read {shown(shape)}. Expected one of: {', '.join(_SHAPES)}."
-        return None, [document.issue("error", ("shape",), message)]
+        return None, [document.error(("shape",), message)]
     if shape not in _SHAPES:
         message = unknown_word(shape, list(_SHAPES), "word")
-        return None, [document.issue("error", ("shape",), message)]
+        return None, [document.error(("shape",), message)]
     record, kind = _SHAPES[shape]
     model, issues = validate(record, document)
     if model is None:
@@ -163,7 +163,7 @@ def gait_from(document: Document) -> tuple[Gait | None, list[Issue]]:
     else:
         wrong += _open_ends(gait) if isinstance(gait, FreeGait) else ()
         wrong += _disagreements(gait, values) if shape != "sine" else ()
-    issues += [document.issue("error", (key,), message) for key, message in wrong]
+    issues += [document.error((key,), message) for key, message in wrong]
     return (None if issues else gait), issues
 
 

@@ -65,7 +65,7 @@ def linked(
         return document.section(key), (), []
     if not isinstance(given, str) or not given:
         message = f"Read {shown(given)}. Expected {expected}."
-        return None, (), [document.issue("error", (key,), message)]
+        return None, (), [document.error((key,), message)]
     named = folder / given
     try:
         return read_document(named), (named,), []
@@ -73,7 +73,7 @@ def linked(
         # What is wrong with the name stands where it is written.
         message = f"Read {shown(given)}. {error.issues[0].message}"
         if error.issues[0].line is None:
-            return None, (named,), [document.issue("error", (key,), message)]
+            return None, (named,), [document.error((key,), message)]
         return None, (named,), list(error.issues)
 
 

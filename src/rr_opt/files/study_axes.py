@@ -180,7 +180,7 @@ def line_at(
             )
         return Line(key, tuple(data), _numbers(data, key), place)
     except InputError as error:
-        issues.append(document.issue("error", place, str(error)))
+        issues.append(document.error(place, str(error)))
         return None
 
 
@@ -193,12 +193,12 @@ def _ranged(
     if model is None:
         for issue in found:
             at = (*place, issue.path.rsplit(".", 1)[-1])
-            issues.append(document.issue("error", at, issue.message))
+            issues.append(document.error(at, issue.message))
         return None
     numbers = range_values(model, key)
     doubt = doubt_about_units(model, key)
     if doubt:
-        issues.append(document.issue("warning", place, doubt))
+        issues.append(document.warning(place, doubt))
     return Line(key, numbers, numbers, place)
 
 
@@ -243,7 +243,7 @@ def axes_of(document: Document) -> tuple[list[Axis], list[Issue]]:
     issues: list[Issue] = []
 
     def note(place: KeyPath, message: str) -> None:
-        issues.append(document.issue("error", place, message))
+        issues.append(document.error(place, message))
 
     seen: dict[KeyPath, tuple[Key, object]] = {}
     axes: list[Axis] = []

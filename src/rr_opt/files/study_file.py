@@ -144,7 +144,7 @@ def read_study(path: str | Path) -> tuple[Study, list[Issue]]:
             "Read a file that varies nothing. Expected a study, with `problem` and `vary`. "
             "A single problem is solved by `rr-opt maximize-speed`."
         )
-        raise InvalidFileError([document.issue("error", (), message)])
+        raise InvalidFileError([document.error((), message)])
     study, issues = study_from(document, file)
     if study is None:
         raise InvalidFileError(issues)

@@ -68,6 +68,14 @@ class Document:
         )
         return Issue(level, path_text(whole), message, line, self.file)
 
+    def error(self, path: KeyPath, message: str) -> Issue:
+        """An issue that is an error."""
+        return self.issue("error", path, message)
+
+    def warning(self, path: KeyPath, message: str) -> Issue:
+        """An issue that is a warning."""
+        return self.issue("warning", path, message)
+
 
 DEEPEST = 20
 MOST_VALUES = 10_000

@@ -114,7 +114,7 @@ def _inspected(
     except InvalidFileError as error:
         return None, list(error.issues)
     except InputError as error:
-        return None, [plan.document.issue("error", ("recordings", number, "file"), str(error))]
+        return None, [plan.document.error(("recordings", number, "file"), str(error))]
 
 
 def _other_command(plan: ExperimentPlan, number: int, planned: PlannedRun, t: Array) -> list[Issue]:
@@ -126,7 +126,7 @@ def _other_command(plan: ExperimentPlan, number: int, planned: PlannedRun, t: Ar
     if said is None or np.allclose(said.angle(t), planned.gait.angle(t)):
         return []
     message = "Read another gait than the file says was commanded. The one written here was taken."
-    return [plan.document.issue("warning", ("recordings", number, "gait"), message)]
+    return [plan.document.warning(("recordings", number, "gait"), message)]
 
 
 def _in_files(folder: Path) -> list[Issue]:

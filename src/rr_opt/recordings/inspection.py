@@ -206,7 +206,7 @@ def read_layout(path: Path) -> Layout:
         document = document.section("markers")
     elif "robot" in document.data and kind_of(document) == "experiment":
         message = "Read an experiment without `markers`. Expected the places of markers. Add them."
-        raise InvalidFileError([document.issue("error", (), message)])
+        raise InvalidFileError([document.error((), message)])
     places, issues = layout_from(document)
     if places is None:
         raise InvalidFileError(issues)

@@ -31,7 +31,7 @@ def machine_experiment(plan: MachinePlan) -> tuple[MachineExperiment, list[Issue
             run = _run(plan, one)
         except InputError as error:
             where = ("recordings", k, "file")
-            issues.append(plan.document.issue("error", where, str(error)))
+            issues.append(plan.document.error(where, str(error)))
             continue
         runs.append(run)
         issues += [Issue("warning", "", text, None, str(one.file)) for text in run.doubts]

@@ -21,7 +21,7 @@ def notices(phi):
     """Of an angle against its command."""
     still = np.zeros(len(T))
     given = Evidence(Recording.of(T, x=still, y=still, psi=still, phi=phi), None, GAIT)
-    return list(command.LOOK(given))
+    return list(command.look(given))
 
 
 @pytest.mark.parametrize("memory", [0.0, 0.7])

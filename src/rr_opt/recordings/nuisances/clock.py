@@ -21,7 +21,8 @@ _SINE = 0.75
 """Of phi's variance in a window that a sine explains, where the angle is that of a gait."""
 
 
-def _look(given: Evidence) -> Iterator[Notice]:
+def look(given: Evidence) -> Iterator[Notice]:
+    """A clock that changes its rate."""
     t, phi = given.t, given.motion[3]
     usual = given.gait.period if given.gait else dominant(t, phi)[0]
     for length in _LENGTHS if usual > 0 else ():
@@ -67,9 +68,6 @@ def _moment(t: Array, phi: Array, before: float, after: float, first: float) -> 
         for one in tries
     ]
     return float(tries[int(np.argmin(left))])
-
-
-LOOK = _look
 
 
 _PADDED = 8

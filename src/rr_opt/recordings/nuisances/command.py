@@ -25,7 +25,8 @@ _HALF = 0.05
 """Periods."""
 
 
-def _look(given: Evidence) -> Iterator[Notice]:
+def look(given: Evidence) -> Iterator[Notice]:
+    """An angle that does not follow its command, or not at once."""
     if given.gait is None:
         return
     fit, period = given.command, given.gait.period
@@ -88,6 +89,3 @@ def follows(given: Evidence, phi: Array) -> bool:
     command = given.gait.angle(given.t[known])
     alike = float(np.corrcoef(phi[known], command)[0, 1])
     return not alike < -_ALIKE
-
-
-LOOK = _look

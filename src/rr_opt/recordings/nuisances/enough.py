@@ -25,7 +25,8 @@ _HARDLY = 0.02
 """A path shorter than this tells little about friction, m."""
 
 
-def _look(given: Evidence) -> Iterator[Notice]:
+def look(given: Evidence) -> Iterator[Notice]:
+    """Why nothing, or little, can be learnt."""
     if (why := next(_reasons(given), None)) is not None:
         yield why
         return
@@ -68,6 +69,3 @@ def _reasons(given: Evidence) -> Iterator[Notice]:
 def _range(values: Array) -> float:
     low, high = np.nanpercentile(values, (1, 99))
     return float(high - low)
-
-
-LOOK = _look

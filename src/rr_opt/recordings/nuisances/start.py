@@ -47,7 +47,8 @@ _FASTEST = 1e3
 """What goes farther or faster is not the motion of a robot, m or m/s."""
 
 
-def _look(given: Evidence) -> Iterator[Notice]:
+def look(given: Evidence) -> Iterator[Notice]:
+    """A start from rest that is none."""
     if given.gait is None or given.start != "rest":
         return
     if given.t[0] >= given.gait.period / 4:
@@ -137,6 +138,3 @@ def _periods(given: Evidence, period: float) -> tuple[Array, Array]:
         after = at + part // 2
         speeds.append((whole[after] - whole[before]) / ((after - before) * given.step))
     return np.array(ways), np.array(speeds)
-
-
-LOOK = _look

@@ -65,7 +65,8 @@ _HEADING = 6.0
 """Nor does its heading swing so many times as far as phi: in degrees it is 57 times too far."""
 
 
-def _look(given: Evidence) -> Iterator[Notice]:
+def look(given: Evidence) -> Iterator[Notice]:
+    """Lengths and angles in another unit, by the gait and the robot."""
     if given.gait is None or given.robot is None:
         return
     x, y, psi, phi = (_swing(given.t, one, given.gait.period) for one in given.motion)
@@ -86,6 +87,3 @@ def _swing(t: Array, y: Array, period: float) -> float:
             low, high = np.percentile(inside, (2, 98))
             ranges.append(high - low)
     return float(np.median(ranges)) if ranges else 0.0
-
-
-LOOK = _look
