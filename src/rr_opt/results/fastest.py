@@ -36,7 +36,7 @@ from rr_opt.results.limits import (
     limits_table,
 )
 from rr_opt.results.motion import trajectory_csv
-from rr_opt.results.result import Check, Result
+from rr_opt.results.result import Check, Result, picked
 from rr_opt.verify.replay import Replay
 from rr_opt.verify.sweep import TOLERATED, SweepCheck
 
@@ -316,23 +316,11 @@ class FastestGait(Result):
         optimum, replay, sweep = self.optimum, self.replay, self.sweep
         cycle, driven = self.cycle, self.driven
         return {
-            "status": self.status,
-            "message": self.message,
-            "warnings": self.warnings,
+            **picked(self, "status message warnings gait joint inertia_ratio speed energy"),
             "problem": self.name,
-            "gait": self.gait,
-            "joint": self.joint,
-            "inertia_ratio": self.inertia_ratio,
-            "speed": self.speed,
             "speed_as_built": self.as_built,
             "cycle": cycle
-            and {
-                "dx": cycle.dx,
-                "dy": cycle.dy,
-                "dpsi": cycle.dpsi,
-                "radius": cycle.radius if self.turns else None,
-            },
-            "energy": self.energy,
+            and {**picked(cycle, "dx dy dpsi"), "radius": cycle.radius if self.turns else None},
             "limits": [
                 {**plain(row), "unit": UNITS[row.name], "active": row.active if replay else None}
                 for row in self.limits.values()
@@ -353,16 +341,12 @@ class FastestGait(Result):
             },
             "driven": driven
             and {
-                "effects": driven.driven.effects,
+                **picked(driven.driven, "effects left_out speeds"),
                 "beyond_optimiser": driven.beyond,
-                "left_out": driven.driven.left_out,
-                "speeds": driven.driven.speeds,
                 "speed_without": optimum.best and optimum.best.speed,
             },
             "solver": {
-                "starts": optimum.starts,
-                "iterations": optimum.iterations,
-                "intervals": optimum.intervals,
+                **picked(optimum, "starts iterations intervals failures"),
                 "distinct_optima": [
                     {
                         "speed": one.speed,
@@ -372,7 +356,6 @@ class FastestGait(Result):
                     for one in optimum.optima
                 ],
                 "ties": len(optimum.ties),
-                "failures": optimum.failures,
             },
             "robot": robot_record(self.robot),
             "loads": _loads(self),
