@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -27,26 +26,19 @@ from rr_opt.model.robot import Robot
 
 def runs_from(document: Document, file: Path) -> tuple[tuple[PlannedRun, ...], list[Issue]]:
     """The runs that could be read, and all issues; files are named relative to `file`."""
-    entries = document.data.get("recordings")
-    if not isinstance(entries, list) or not entries:
-        message = (
-            f"Read {shown(entries)}. Expected a list of recordings. Write for example "
-            "`- {file: run01.csv, gait: {amplitude: 0.5, period: 1 s, offset: 0}}`."
-        )
-        return (), [document.error(("recordings",), message)]
+    sections, issues = document.entries(
+        "recordings",
+        "a list of recordings. Write for example "
+        "`- {file: run01.csv, gait: {amplitude: 0.5, period: 1 s, offset: 0}}`",
+        "{file: ..., gait: ...}",
+    )
     runs: list[PlannedRun] = []
-    issues: list[Issue] = []
-    for index, entry in enumerate(entries):
-        if not isinstance(entry, dict):
-            message = f"Read {shown(entry)}. Expected {{file: ..., gait: ...}}. Write it so."
-            issues.append(document.error(("recordings", index), message))
-            continue
-        prefix = (*document.prefix, "recordings", index)
-        run, found = _run(replace(document, data=entry, prefix=prefix), file)
+    for section in sections:
+        run, found = _run(section, file)
         issues += found
         if run is not None:
             runs.append(run)
-    issues += _twice(document, entries)
+    issues += _twice(document, document.data["recordings"] if sections else [])
     return tuple(runs), issues or _uses(document, runs)
 
 

@@ -52,6 +52,23 @@ class Document:
         """The mapping under a key, which keeps its place in the file."""
         return replace(self, data=self.data[key], prefix=(*self.prefix, key))
 
+    def entries(self, key: str, whole: str, each: str) -> tuple[list[Document], list[Issue]]:
+        """The mappings of a list that is not empty, and an issue for whatever is something else.
+
+        whole, each  what the list and an entry should be, for the messages
+        """
+        given = self.data.get(key)
+        if not isinstance(given, list) or not given:
+            return [], [self.error((key,), f"Read {shown(given)}. Expected {whole}.")]
+        sections, issues = list[Document](), list[Issue]()
+        for index, entry in enumerate(given):
+            if isinstance(entry, dict):
+                sections.append(replace(self, data=entry, prefix=(*self.prefix, key, index)))
+            else:
+                message = f"Read {shown(entry)}. Expected {each}. Write it so."
+                issues.append(self.error((key, index), message))
+        return sections, issues
+
     def without(self, *keys: str) -> Document:
         """The same without some keys."""
         return replace(self, data={k: v for k, v in self.data.items() if k not in keys})
