@@ -139,7 +139,7 @@ class Reproduction(Result):
         return doc.Document(
             "",
             "the paper, reproduced",
-            "The paper's tables and figures recomputed, and what does not hold",
+            "The paper's tables and figures recomputed, and its statements checked",
             "The tables and figures were recomputed for the shipped prototype. For "
             f"{sum(one.within_mean for one in rows)} of {len(rows)} measured averages the model's "
             "speed is within their interval; Table 2's amplitude and the friction were fitted to "

@@ -98,7 +98,7 @@ def test_less_than_a_period_has_no_circle(run):
     assert "mean v of axle 1, less than a period" in run(*arguments).stdout
 
 
-def test_torque_between_the_samples_is_held_against_the_servo(run):
+def test_torque_between_the_samples_is_compared_the_servo(run):
     done = run("simulate", "--amplitude", "1", "--period", "0.2", "--seconds", "1", "--rate", "5")
     assert "the servo's torque limit" in done.stderr
 

@@ -235,7 +235,7 @@ def _of_result(document: Document) -> RobotWithGait:
     robot: Any = document.data.get("robot")
     if not isinstance(document.data.get("gait"), dict) or not isinstance(robot, dict):
         raise InputError(
-            f"{document.file}: The result holds no gait: its status is "
+            f"{document.file}: The result has no gait: its status is "
             f"`{document.data['status']}`. Give the result of a problem that was solved."
         )
     servo = robot.get("servo")

@@ -60,7 +60,7 @@ def _run(document: Document, file: Path) -> tuple[PlannedRun | None, list[Issue]
 def _gait(document: Document, file: Path) -> tuple[Gait | None, list[Issue]]:
     """The gait written in the entry, or that of the result that it names."""
     expected = (
-        "the gait, or the name of a result that holds it. Write for example "
+        "the gait, or the name of a result that has it. Write for example "
         "`{amplitude: 0.5, period: 1 s, offset: 0}`"
     )
     found, named, issues = linked(document, "gait", file.parent, expected)
@@ -72,7 +72,7 @@ def _gait(document: Document, file: Path) -> tuple[Gait | None, list[Issue]]:
         return gait_from(found)
     if not is_result(found.data) or not isinstance(found.data.get("gait"), dict):
         given = shown(document.data["gait"])
-        message = f"Read {given}, which holds no gait. Expected a result of rr-opt."
+        message = f"Read {given}, which has no gait. Expected a result of rr-opt."
         return None, [document.error(("gait",), message)]
     return gait_from(found.section("gait"))
 

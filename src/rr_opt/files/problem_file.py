@@ -174,7 +174,7 @@ def with_robot(problem: Document, file: Path, paths: tuple[Path, ...] = ()) -> S
     if robot is not None and is_result(robot.data):
         message = (
             f"Read {shown(problem.data['robot'])}, a result. Expected a robot file. Write what the "
-            "result holds under `robot` to a file, and name that."
+            "result has under `robot` to a file, and name that."
         )
         robot, issues = None, [problem.error(("robot",), message)]
     return Sources((*paths, *named), problem, robot, tuple(issues))

@@ -52,10 +52,10 @@ def refuse_repeats(steps: Sequence[tuple[Any, ...]], written: Sequence[tuple[Any
     for number, step in enumerate(steps, 1):
         same = first.setdefault("\n".join(_digits(value) for value in step), number)
         if same != number:
-            told = ", ".join(shown(value) for value in written[number - 1])
+            values = ", ".join(shown(value) for value in written[number - 1])
             raise InputError(
-                f"Read {told} as value {number}, which is value {same} again. Expected each value "
-                "once. Delete one of them."
+                f"Read {values} as value {number}, which is value {same} again. Expected each "
+                "value once. Delete one of them."
             )
 
 
@@ -125,9 +125,9 @@ def doubt_about_units(given: Any, key: Key) -> str | None:
     ]
     if not bare or not any(_has_unit(value) for value in written.values()):
         return None
-    told = " and ".join(f"`{name}: {shown(written[name])}`" for name in bare)
+    values = " and ".join(f"`{name}: {shown(written[name])}`" for name in bare)
     return (
-        f"Read {told} without a unit beside a value that has one. Expected a unit with each: "
+        f"Read {values} without a unit beside a value that has one. Expected a unit with each: "
         f"what has none is in {key.unit}. Write the unit."
     )
 
@@ -253,8 +253,8 @@ def axes_of(document: Document) -> tuple[list[Axis], list[Issue]]:
         good = [line for line in lines if line is not None]
         lengths = {line.key.name: len(line.values) for line in good}
         if len(set(lengths.values())) > 1:
-            told = ", ".join(f"{count} of `{name}`" for name, count in lengths.items())
-            note(place, f"Read {told}. Expected as many of each, to take them in step.")
+            counts = ", ".join(f"{count} of `{name}`" for name, count in lengths.items())
+            note(place, f"Read {counts}. Expected as many of each, to take them in step.")
         elif good and len(good) == len(lines):
             axis = Axis(tuple(good))
             try:

@@ -47,12 +47,12 @@ class CaseIssues:
 
     def issues(self) -> list[Issue]:
         """All of them, those of one place together."""
-        told: list[Issue] = []
+        new: list[Issue] = []
         warned: set[tuple[Keys, str]] = set()
         for issue, (steps, count) in self._seen.items():
             line = self._reason(issue)
             if line is None and count == self._cases:
-                told.append(issue)
+                new.append(issue)
                 continue
             place: Keys = line.place if line else ()
             # A warning about one value says what it would say about the next.
@@ -62,8 +62,8 @@ class CaseIssues:
             warned.add(alike)
             where = f"{issue.path}: " if issue.path else ""
             message = f"{where}{issue.message}{self._cases_text(steps, count)}"
-            told.append(self._document.issue(issue.level, place, message))
-        return told
+            new.append(self._document.issue(issue.level, place, message))
+        return new
 
     def _cases_text(self, steps: tuple[int, ...], count: int) -> str:
         if count == self._cases:

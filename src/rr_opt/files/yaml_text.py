@@ -182,7 +182,7 @@ class _Reading:
         self.values += 1
         if self.values > MOST_VALUES or len(path) > DEEPEST:
             most = f"{MOST_VALUES} values in {DEEPEST} levels"
-            self._stop(f"The file holds too much. Expected at most {most}.", line)
+            self._stop(f"The file is too large. Expected at most {most}.", line)
         if isinstance(event, yaml.AliasEvent):
             self._note(f"Read the alias `*{event.anchor}`. Write the value itself.", line, path)
             return None

@@ -70,10 +70,10 @@ def clean(recording: Recording) -> Cleaned:
     for channel in recording.channels:
         y = recording.data(channel)
         stated = recording.sigma[channel]
-        told = stated if np.isfinite(stated).all() and (stated > 0).all() else usual_noise(y)
+        allowed = stated if np.isfinite(stated).all() and (stated > 0).all() else usual_noise(y)
         steps[channel] = step_of(y)
-        told = np.hypot(told, steps[channel] / np.sqrt(12))
-        seen = outliers(recording.t, y, told)
+        allowed = np.hypot(allowed, steps[channel] / np.sqrt(12))
+        seen = outliers(recording.t, y, allowed)
         values[channel] = recording.values[channel]
         flags[channel] = recording.flags[channel] | np.where(
             seen.outlier, np.uint8(Flag.OUTLIER), np.uint8(0)
@@ -82,7 +82,7 @@ def clean(recording: Recording) -> Cleaned:
         unsaid = not np.isfinite(stated).any()
         sigma[channel] = np.full(len(y), seen.sigma) if unsaid else stated
         good = np.where(seen.outlier, np.nan, y)
-        all_jumps = jumps(good, max(seen.noise.sigma, 0.5 * float(np.median(told))))
+        all_jumps = jumps(good, max(seen.noise.sigma, 0.5 * float(np.median(allowed))))
         # Where rows are lacking, the motion went on unseen.
         found[channel] = tuple(jump for jump in all_jumps if not lacking[jump.row])
     made = replace(recording, sigma=MappingProxyType(sigma), flags=MappingProxyType(flags))
@@ -123,7 +123,7 @@ _MANY, _FEW = 1.25, 0.8
 """Times the stated noise from which on the estimate contradicts it."""
 _COLOURED, _ALTERNATING, _CHANCE = 1.2, 0.85, 1e-4
 _LONG = 0.1
-"""Gaps longer than this are told one by one, s."""
+"""Gaps longer than this are listed one by one, s."""
 _LISTED = 3
 
 

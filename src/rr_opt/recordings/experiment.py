@@ -33,7 +33,7 @@ def is_experiment(path: Path) -> bool:
 def read_experiment(folder: str | Path) -> Experiment:
     """The experiment of a folder with `experiment.yaml`, or of that file, recordings cleaned.
 
-    A recording with a servo's log is put on the command's clock, as far as the log can tell it.
+    A recording with a servo's log is put on the command's clock, as far as the log determines it.
     Raises InvalidFileError with everything that is wrong in the file and in every recording.
     """
     file = experiment_path(Path(folder))
@@ -60,13 +60,13 @@ def experiment_of(folder: str | Path) -> tuple[Experiment | None, list[Issue]]:
         return None, [*error.issues, *_in_files(Path(folder))]
     runs: list[Run] = []
     for number, planned in enumerate(plan.runs):
-        found, told = _inspected(plan, number, planned, estimate=False)
-        issues += told
+        found, more = _inspected(plan, number, planned, estimate=False)
+        issues += more
         if found is not None:
             recording = found.recording
             file = recording.source.get("file", recording.name)
-            told = [one for one in recording.doubts if not stops(one)]
-            issues += [Issue("warning", "", one, None, file) for one in told]
+            doubts = (one for one in recording.doubts if not stops(one))
+            issues += [Issue("warning", "", one, None, file) for one in doubts]
             runs.append(Run(recording, planned.gait, planned.use, planned.start))
     if has_errors(issues):
         return None, issues
@@ -84,8 +84,8 @@ def inspect_experiment(path: Path, progress: Progress) -> list[Inspection]:
     issues: list[Issue] = []
     for number, planned in enumerate(plan.runs):
         progress(f"recording {number + 1} of {len(plan.runs)}")
-        found, told = _inspected(plan, number, planned, estimate=True)
-        issues += told
+        found, more = _inspected(plan, number, planned, estimate=True)
+        issues += more
         inspections += [found] if found is not None else []
     if has_errors(issues):
         raise InvalidFileError(issues)
@@ -142,9 +142,9 @@ def _in_files(folder: Path) -> list[Issue]:
 
 @dataclass(frozen=True)
 class Checked:
-    """What speaks against diagnosing the recordings, in sentences.
+    """Why recordings cannot be diagnosed, in sentences.
 
-    left_out  by name, of each recording that tells nothing
+    left_out  by name, of each uninformative recording
     wrong     what cannot be as the experiment says: units, signs, clocks, the gait; or that no
               recording is left to fit
     """
@@ -154,13 +154,16 @@ class Checked:
 
 
 def checked(experiment: Experiment) -> Checked:
-    """What the recordings were warned of when they were read, and how they go together."""
+    """The warnings of the recordings, and whether they go together."""
     left_out = dict(_left_out(experiment))
     wrong = [
-        f"{run.name}: {one}" for run in experiment.runs for one in told(run) if one.level == "error"
+        f"{run.name}: {one}"
+        for run in experiment.runs
+        for one in notices_of(run)
+        if one.level == "error"
     ]
     kept = [run for run in experiment.runs if run.name not in left_out]
-    half = [any(one.code == "command.half" for one in told(run)) for run in kept]
+    half = [any(one.code == "command.half" for one in notices_of(run)) for run in kept]
     if not wrong and len(half) > 1 and all(half):
         wrong.append(notice("command.signs"))
     if not wrong and all(run.use != "fit" for run in experiment.runs):
@@ -169,24 +172,24 @@ def checked(experiment: Experiment) -> Checked:
         )
     elif not wrong and all(run.use != "fit" for run in kept):
         wrong.append(
-            "No recording to fit is left, so nothing can be told of this robot. Record some "
+            "No recording to fit is left, so nothing can be learnt of this robot. Record some "
             "periods in which it drives."
         )
     return Checked(left_out, tuple(wrong))
 
 
-def told(run: Run) -> list[Notice]:
-    """What its recording was warned of when it was read."""
+def notices_of(run: Run) -> list[Notice]:
+    """The warnings of its recording."""
     return [one for one in run.recording.doubts if isinstance(one, Notice)]
 
 
-def stops(doubt: str) -> bool:
-    """Whether a recording with this doubt cannot be diagnosed."""
-    return isinstance(doubt, Notice) and (doubt.level == "error" or doubt.kind == "useless")
+def stops(warning: str) -> bool:
+    """Whether a recording with this warning cannot be diagnosed."""
+    return isinstance(warning, Notice) and (warning.level == "error" or warning.kind == "useless")
 
 
 def usable(experiment: Experiment) -> tuple[Experiment, tuple[str, ...]]:
-    """The experiment without the recordings that tell nothing, and a sentence on each of those.
+    """The experiment without uninformative recordings, and a sentence on each of those.
 
     Raises InputError for recordings that are not as the experiment says, and where no recording is
     left to fit.
@@ -199,11 +202,11 @@ def usable(experiment: Experiment) -> tuple[Experiment, tuple[str, ...]]:
 
 
 def _left_out(experiment: Experiment) -> Iterator[tuple[str, str]]:
-    """Names, and why they tell nothing. What is to be fitted goes before what is held out."""
+    """Names, and why they are left out. What is to be fitted goes before what is held out."""
     seen: list[tuple[str, set[bytes]]] = []
     for run in sorted(experiment.runs, key=lambda one: one.use != "fit"):
         rows = _rows(run.recording)
-        why = next((one for one in told(run) if one.kind == "useless"), None)
+        why = next((one for one in notices_of(run) if one.kind == "useless"), None)
         copied = next((name for name, others in seen if _same(rows, others)), None)
         if why is None and copied is not None:
             why = notice("useless.copy", other=copied)

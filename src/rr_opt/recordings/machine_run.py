@@ -142,7 +142,7 @@ def read_columns(file: Path) -> dict[str, Array]:
     text = decode(content, str(file))
     header = find_header(text)
     if header is None:
-        refuse(str(file), "The file holds no rows. Expected a header row and numbers.")
+        refuse(str(file), "The file has no rows. Expected a header row and numbers.")
     table = read_table(text, header.at + 1, len(text.lines), header.separator, header.names)
     return {name: table.values[:, k] for k, name in enumerate(header.names)}
 

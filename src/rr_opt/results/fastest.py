@@ -85,7 +85,7 @@ class FastestGait(Result):
         """The fastest gait, as commanded; None if there is none."""
         if self.driven:
             return self.driven.gait
-        return self.told(self.optimum.best.gait) if self.optimum.best else None
+        return self.command_for(self.optimum.best.gait) if self.optimum.best else None
 
     @property
     def joint(self) -> Gait | None:
@@ -93,12 +93,12 @@ class FastestGait(Result):
         if self.gait is None:
             return None
         command = self.problem.command
-        return command.servo.made(self.gait) if command else self.gait
+        return command.servo.response_to(self.gait) if command else self.gait
 
-    def told(self, gait: Gait) -> Gait:
+    def command_for(self, gait: Gait) -> Gait:
         """The command of which the servo makes a gait of the joint, such as those of `optimum`."""
         command = self.problem.command
-        return command.servo.told(gait) if command else gait
+        return command.servo.command_for(gait) if command else gait
 
     @property
     def speed(self) -> float | None:
@@ -350,7 +350,7 @@ class FastestGait(Result):
                 "distinct_optima": [
                     {
                         "speed": one.speed,
-                        "gait": self.told(one.gait),
+                        "gait": self.command_for(one.gait),
                         "inertia_ratio": self.ratio_of(one),
                     }
                     for one in optimum.optima
@@ -531,13 +531,13 @@ def _optima(result: FastestGait) -> doc.Table:
     rows = [
         [
             f"{1e3 * one.speed:+.2f} mm/s",
-            with_unit(told.amplitude, "rad"),
-            with_unit(told.period, "s"),
-            with_unit(told.offset, "rad"),
+            with_unit(command.amplitude, "rad"),
+            with_unit(command.period, "s"),
+            with_unit(command.offset, "rad"),
             number(result.ratio_of(one)),
             "the optimum" if one is optimum.best else "a tie" if id(one) in ties else "",
         ]
-        for one, told in ((one, result.told(one.gait)) for one in optimum.optima)
+        for one, command in ((one, result.command_for(one.gait)) for one in optimum.optima)
     ]
     head = ["Speed", "Amplitude", "Period", "Offset", "J20/J10", "Remark"]
     return doc.table(head, rows if len(rows) > 1 else [])

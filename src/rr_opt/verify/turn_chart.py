@@ -58,7 +58,7 @@ def open_offsets(problem: Problem) -> float:
 
 
 def turn_map(problem: Problem, counts: tuple[int, int, int]) -> TurnMap:
-    """The map of the robot as it is, at so many amplitudes, periods and offsets within bounds."""
+    """The map of the robot as it is; counts: of amplitudes, periods and offsets within bounds."""
     box, limits = problem.gait, problem.limits
     most = min(box.amplitude.high, reach(problem), limits.rate * box.period.high / (2 * math.pi))
     amplitude = np.linspace(box.amplitude.low, most, counts[0] if most > box.amplitude.low else 1)
@@ -248,7 +248,7 @@ class RadiusClaim:
 
 
 def sign_claim(seen: TurnMap) -> SignClaim:
-    """Hold the first half of the claim against a map."""
+    """Test the first half of the claim on a map."""
     kept = seen.keeps & (seen.offset > 0) & (seen.heading != 0)
     left, ahead = seen.heading > 0, seen.speed > 0
     count = [int((kept & way & turn).sum()) for way in (ahead, ~ahead) for turn in (left, ~left)]
@@ -261,7 +261,7 @@ def sign_claim(seen: TurnMap) -> SignClaim:
 
 
 def radius_claim(seen: TurnMap) -> RadiusClaim:
-    """Hold the second half of the claim against a map."""
+    """Test the second half of the claim on a map."""
     curvature = np.where(seen.keeps & (seen.offset > 0), seen.curvature, np.nan)
     curves = growing = 0
     first: SineGait | None = None

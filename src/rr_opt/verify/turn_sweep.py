@@ -20,7 +20,7 @@ from rr_opt.model.problem import Interval, Problem
 from rr_opt.verify.evaluate import Found, kept_limits
 from rr_opt.verify.grid import boxes, whole_loads
 from rr_opt.verify.speeds import model_of, robot_with, speed_of, speeds
-from rr_opt.verify.sweep import SweepCheck, held_against
+from rr_opt.verify.sweep import SweepCheck, compared
 from rr_opt.verify.turn_points import Care, Points, Turning
 
 _SLACK = 1e-6
@@ -46,9 +46,9 @@ _EFFORT = {
 
 
 def check_turn(problem: Problem, gait: Gait, ratio: float | None, speed: float) -> SweepCheck:
-    """Hold a claimed fastest turn against a sweep, as `check_optimum` does without a turn.
+    """Compare a claimed fastest turn with a sweep, as `check_optimum` does without a turn.
 
-    A gait of another shape is held against all sines. Of whole loads every number is swept.
+    A gait of another shape is compared with all sines. Of whole loads every number is swept.
     """
     choice = problem.inertia_ratio
     if choice is None:
@@ -95,7 +95,7 @@ def _check(
         points += more
         best = found if _speed(problem, turning, found) > _speed(problem, turning, best) else best
     top = _found(turning, best, ratios is not None)
-    return held_against(speed, claimed, top, points)
+    return compared(speed, claimed, top, points)
 
 
 def _closer(

@@ -11,7 +11,7 @@ from rr_opt.recordings.nuisances.evidence import Evidence
 from rr_opt.recordings.warnings import Notice, notice
 
 _LENGTHS = (3.0, 2.0)
-"""Of a window, in periods: the first tells slow periods, the second has more windows."""
+"""Of a window, in periods: the first resolves slow periods, the second has more windows."""
 _LEAST = 0.1
 """By which part of itself a period changes, at least."""
 _STEADY = 0.05
@@ -73,7 +73,7 @@ def _moment(t: Array, phi: Array, before: float, after: float, first: float) -> 
 _PADDED = 8
 """Times as many samples as there are, so that the peak lies near one of the rates."""
 _LONGEST = 60.0
-"""So many seconds show a period, s."""
+"""Of a recording that are looked at for a period, s."""
 _FINEST = 4096
 """Samples that are looked at."""
 

@@ -21,7 +21,7 @@ of the first, and a tilted floor 4 cm of the second."""
 _RARE = 10.0
 """Times the usual size over the recording."""
 _MOST = 3
-"""Of one recording that are told."""
+"""Of one recording that are reported."""
 
 
 def look(given: Evidence) -> Iterator[Notice]:

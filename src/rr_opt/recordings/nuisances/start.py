@@ -28,7 +28,7 @@ _UNSEEN = 0.2
 _ACCURACY, _DELAY = 0.3, 0.05
 """By how much the nominal robot may be wrong, of its speed, and the servo late, s; 1 sigma."""
 _OTHER = 2.0
-"""Beyond so many of these sigmas the model says nothing of the robot."""
+"""Sigmas beyond which the model does not describe the robot."""
 _SURE_SPEED, _PLAIN = 6.0, 0.3
 """An initial speed is reported beyond this in sigma, and in parts of the largest speed from rest.
 Of starts from rest that were tried none was beyond 0.2 where it was sure."""

@@ -73,7 +73,7 @@ def _refuse(text: Text) -> NoReturn:
     if "endheader" in "\n".join(text.lines[:20]).casefold():
         advice = "It looks like a table of OpenSim: export C3D or TRC instead."
     elif names and all(name.replace(".", "").lstrip("+-").isdecimal() for name in names):
-        advice = "The first row holds numbers: write the header row `t,x,y,psi,phi` above it."
+        advice = "The first row has numbers: write the header row `t,x,y,psi,phi` above it."
     formats = ", ".join(reader.format for reader in READERS[:-2])
     refuse(
         text.file,
