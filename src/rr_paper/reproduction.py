@@ -375,15 +375,15 @@ def curves(found: Reproduction) -> dict[str, str]:
     ]
     return {
         "figure3.csv": doc.csv_text(
-            ("t", "x", "y", "psi", "phi", "average_speed"),
+            ("t [s]", "x [m]", "y [m]", "psi [rad]", "phi [rad]", "average_speed [m/s]"),
             [(*row, average.get(round(row[0], 9))) for row in run],
         ),
         # Thinned to the paper's steps or finer: 0.05 rad, 0.01 and 0.05 s.
         "figure4.csv": _surface(found.ratio_surface, 10),
         "figure5.csv": _surface(found.period_surface, 5),
-        "figure6.csv": doc.csv_text(("offset", "t", "x", "y"), circles),
+        "figure6.csv": doc.csv_text(("offset [rad]", "t [s]", "x [m]", "y [m]"), circles),
         "signs.csv": doc.csv_text(
-            ("t", *(f"v {name}" for name in motion.v)),
+            ("t [s]", *(f"v {name} [m/s]" for name in motion.v)),
             np.column_stack([motion.t, *motion.v.values()]),
         ),
     }
@@ -391,7 +391,10 @@ def curves(found: Reproduction) -> dict[str, str]:
 
 def _surface(surface: SpeedSurface, every: int) -> str:
     """Every fifth amplitude; `every`: the step of ratios or periods."""
-    head = ("amplitude", "ratio", "period", "speed", "peak_rate", "keeps_30_rpm")
+    head = (
+        *("amplitude [rad]", "ratio", "period [s]", "speed [m/s]", "peak_rate [rad/s]"),
+        "keeps_30_rpm",
+    )
     rows = [
         (surface.amplitude[i], surface.ratio[j], surface.period[j], surface.speed[i, j],
          surface.rate[i, j], int(surface.rate[i, j] <= RATE_LIMIT))

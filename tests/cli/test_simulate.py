@@ -13,7 +13,7 @@ from rr_opt.model.problem import Limits
 from rr_opt.verify.replay import replay
 from tests.motion.gaits import EVERY, FREE
 
-COLUMNS = ["t", "x", "y", "psi", "phi", "v", "torque"]
+COLUMNS = ["t [s]", "x [m]", "y [m]", "psi [rad]", "phi [rad]", "v [m/s]", "torque [N m]"]
 
 
 def rows(path):

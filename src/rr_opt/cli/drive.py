@@ -64,6 +64,7 @@ def export(
     kind: options.SetPoints = "csv",
     rate: options.PointRate = 125.0,
     keep_period: options.KeepPeriod = False,
+    within_limits: options.WithinLimits = None,
     amplitude: options.Amplitude = None,
     period: options.Period = None,
     offset: options.Offset = None,
@@ -72,14 +73,16 @@ def export(
 ) -> None:
     """Write a gait as set points for a controller.
 
-    A period holds a whole number of set points. The loss of speed is reported separately for
+    A period holds a whole number of set points. Where that takes a gait beyond its limits, the
+    amplitude is lowered. The loss of speed is reported separately for
     the adjusted period, the straight lines between set points, and rounding to counts.
     """
     with Steps() as steps, options.naming(source):
         gait = {"amplitude": amplitude, "period": period, "offset": offset}
         driven = options.read_gait(source, **gait, rate=rate)
         file = options.setpoints_file(out, source, kind)
-        points = rr.export(driven, format=kind, rate=rate, keep_period=keep_period, progress=steps)
+        how = {"keep_period": keep_period, "within_limits": within_limits}
+        points = rr.export(driven, format=kind, rate=rate, **how, progress=steps)
         files = points.save(file)
     show(points, files, json=json)
 

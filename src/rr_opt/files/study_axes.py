@@ -16,7 +16,7 @@ from rr_opt.files.study_keys import Key, key_of
 from rr_opt.files.yaml_text import Document, KeyPath
 from rr_opt.messages import shown
 from rr_opt.outcome import InputError
-from rr_opt.units import to_si
+from rr_opt.units import to_si, unit_written
 
 
 def refuse_conflict(key: Key, values: object, seen: Mapping[KeyPath, tuple[Key, object]]) -> None:
@@ -148,12 +148,14 @@ class Line:
 
     values   as a problem file would hold them
     numbers  the same in SI; None if not all of them are numbers
+    unit     in which they were asked for, if in one; else the key's, SI
     place    where in the study file they stand
     """
 
     key: Key
     values: tuple[Any, ...]
     numbers: tuple[float, ...] | None
+    unit: str
     place: KeyPath
 
 
@@ -178,7 +180,7 @@ def line_at(
                 f"Read {shown(data)}. Expected a list of values, or a range. Write for example "
                 "`[1, 2, 3]` or `{from: 1, to: 3, count: 3}`."
             )
-        return Line(key, tuple(data), _numbers(data, key), place)
+        return Line(key, tuple(data), _numbers(data, key), _unit(data, key), place)
     except InputError as error:
         issues.append(document.error(place, str(error)))
         return None
@@ -199,7 +201,19 @@ def _ranged(
     doubt = doubt_about_units(model, key)
     if doubt:
         issues.append(document.warning(place, doubt))
-    return Line(key, numbers, numbers, place)
+    ends = [data["from"], data["to"]]
+    return Line(key, numbers, numbers, _unit(ends, key), place)
+
+
+def _unit(values: list[Any], key: Key) -> str:
+    """The unit that all values but those that are 0 or infinite have; else the key's, SI."""
+    units = {
+        unit_written(value) if isinstance(value, str) else ""
+        for value in values
+        if value not in (0, math.inf)
+    }
+    unit = units.pop() if len(units) == 1 else ""
+    return unit or key.unit or ""
 
 
 def _numbers(values: list[Any], key: Key) -> tuple[float, ...] | None:

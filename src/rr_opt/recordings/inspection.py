@@ -73,22 +73,13 @@ class Inspection:
         return self.recording.name
 
 
-def inspect_file(
-    path: Path,
-    *,
-    layout: Path | None = None,
-    servo_log: Path | None = None,
-    gait: Gait | None = None,
-    start: Start = "running",
-) -> Inspection:
+def inspect_file(path: Path, known: Circumstances, *, layout: Path | None = None) -> Inspection:
     """One recording. Raises InputError with what cannot be read or matched.
 
-    layout: a YAML file with the markers' places; servo_log, gait and start: where they are known.
+    layout: a YAML file with the markers' places.
     """
     places = read_layout(layout) if layout else None
-    found = inspected(
-        path, Circumstances(layout=places, gait=gait, start=start, servo_log=servo_log)
-    )
+    found = inspected(path, replace(known, layout=places))
     if places is not None and found.markers is None:
         refuse(
             str(layout),

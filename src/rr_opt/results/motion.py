@@ -16,7 +16,7 @@ from rr_opt.documents.archive import (
     write_dataset,
     write_text,
 )
-from rr_opt.documents.document import Document, Fact, Figure, csv_text, facts_alone
+from rr_opt.documents.document import Document, Fact, Figure, csv_text, facts_alone, heading
 from rr_opt.documents.texts import captions
 from rr_opt.formatting import QUANTITIES, number, side_text, speed_text, with_unit
 from rr_opt.model.gait import Gait
@@ -189,10 +189,11 @@ _COLUMNS = {
 
 
 def trajectory_csv(trajectory: Trajectory) -> str:
-    """t,x,y,psi,phi,v,torque in SI units under a header row."""
+    """t,x,y,psi,phi,v,torque in SI units, under a header row that has them."""
     names = [field.name for field in fields(Trajectory)]
     columns = (getattr(trajectory, name).tolist() for name in names)
-    return csv_text(names, zip(*columns, strict=True))
+    head = [heading(name, _COLUMNS[name][0]) for name in names]
+    return csv_text(head, zip(*columns, strict=True))
 
 
 def write_netcdf(path: Path, trajectory: Trajectory) -> Path:

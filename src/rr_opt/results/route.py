@@ -176,7 +176,9 @@ class DrivenRoute(Result):
         phi = command.angle(np.minimum(t, command.seconds))
         counts = np.round(CENTRE + phi / COUNT).astype(int)
         columns = (t.tolist(), phi.tolist(), np.degrees(phi).tolist(), counts.tolist())
-        points = doc.csv_text(("t", "phi", "phi_deg", "count"), zip(*columns, strict=True))
+        points = doc.csv_text(
+            ("t [s]", "phi [rad]", "phi [deg]", "count"), zip(*columns, strict=True)
+        )
         return {"trajectory.csv": trajectory_csv(self.replay.trajectory), "setpoints.csv": points}
 
 

@@ -14,8 +14,11 @@ from rr_opt.outcome import Status
 from rr_opt.results.gait import gait_facts, ignored_effects, speed_fact
 from rr_opt.results.result import Result, picked
 from rr_opt.verify.evaluate import LIMITS, Found
-from rr_opt.verify.grid import DECISIONS
 from rr_opt.verify.sweep import SweepResult
+
+_COLUMNS = (
+    "amplitude [rad]", "period [s]", "offset [rad]", "ratio", "speed [m/s]", "peak_torque [N m]",
+)  # fmt: skip
 
 
 @dataclass(frozen=True, repr=False)
@@ -79,7 +82,7 @@ class Sweep(Result):
         the angle.
         """
         found = self.found.found
-        names = (*DECISIONS, "speed", "peak_torque", *(f"keeps_{name}" for name in LIMITS))
+        names = (*_COLUMNS, *(f"keeps_{name}" for name in LIMITS))
         kept = [found.keeps[name].astype(int) for name in LIMITS]
         columns = [*found.decisions, found.speed, found.peak_torque, *kept]
         rows = zip(*(column.tolist() for column in columns), strict=True)
