@@ -1,14 +1,17 @@
-"""A gait, driven: its motion, its circle, and its set points for a controller."""
+"""A gait or a route, driven: motion, circle, set points for a controller, the drive itself."""
 
 from __future__ import annotations
 
+import warnings
 from pathlib import Path
 from typing import Literal, Protocol
 
-from rr_opt.api.load import PathLike, load_gait, read_arguments
+from rr_opt.api.load import InputWarning, PathLike, fingerprint, load_gait, read_arguments
+from rr_opt.files.route_file import read_route
 from rr_opt.model.gait import Gait
 from rr_opt.model.problem import LARGEST_EXCESS, Limits, Problem
 from rr_opt.model.robot import Robot
+from rr_opt.model.route import Route
 from rr_opt.motion import setpoints
 from rr_opt.motion.circle import circle_of, transient
 from rr_opt.motion.dynamics import require_friction
@@ -18,7 +21,10 @@ from rr_opt.motion.steady_cycle import require_regular, steady_cycle
 from rr_opt.outcome import InputError
 from rr_opt.results.motion import DrivenCircle, SimulatedMotion
 from rr_opt.results.result import Progress, quiet
+from rr_opt.results.route import DrivenRoute
 from rr_opt.results.setpoints import ExportedGait, Format, text_of
+from rr_opt.routing.plan import plan_route
+from rr_opt.routing.replay import replay
 
 
 class HasGait(Protocol):
@@ -140,3 +146,30 @@ def export(
     progress("what the set points cost")
     lost = setpoints.cost(robot, points, rounded=format == "servo")
     return ExportedGait(robot, gait, status, points, lost, format)
+
+
+def load_route(path: PathLike) -> Route:
+    """The route of a file. Warns with InputWarning of what looks wrong.
+
+    Raises InputError with everything that is wrong in it and in its problem.
+    """
+    route, issues = read_route(path)
+    for issue in issues:
+        warnings.warn(str(issue), InputWarning, stacklevel=2)
+    return route
+
+
+def route(asked: Route | PathLike, *, progress: Progress = quiet) -> DrivenRoute:
+    """The fastest drive found along a route, from rest, checked by simulation.
+
+    Raises InputError for a robot without friction, and for a route without pieces.
+    """
+    if isinstance(asked, str | Path):
+        asked = load_route(asked)
+    plan = plan_route(asked, progress)
+    check = None
+    if plan.drive:
+        progress("replay by CVODES")
+        command = plan.drive.command
+        check = replay(plan.problem, command, asked.start, plan.legs, plan.turned, plan.heading)
+    return DrivenRoute(asked.name, asked.sha256 or fingerprint(asked), plan, check)

@@ -14,10 +14,10 @@ from typing import Any
 
 import numpy as np
 
-from rr_opt.files.gait_record import gait_from
 from rr_opt.files.issue import InvalidFileError
 from rr_opt.files.lint import lint_file
 from rr_opt.files.problem_file import kind_of, name_of, read_problem
+from rr_opt.files.record import gait_from
 from rr_opt.files.robot_file import read_robot, robot_from
 from rr_opt.files.source import read_document
 from rr_opt.files.yaml_text import Document
@@ -237,7 +237,7 @@ def _of_result(document: Document) -> RobotWithGait:
     robot: Any = document.data.get("robot")
     if not isinstance(document.data.get("gait"), dict) or not isinstance(robot, dict):
         raise InputError(
-            f"{document.file}: The result holds no gait: its status is "
+            f"{document.file}: The result has no gait: its status is "
             f"`{document.data['status']}`. Give the result of a problem that was solved."
         )
     servo = robot.get("servo")

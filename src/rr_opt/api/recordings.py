@@ -19,11 +19,10 @@ from rr_opt.model.gait import Gait
 from rr_opt.model.machine import MachineExperiment
 from rr_opt.outcome import InputError, NotConvergedError
 from rr_opt.recordings.clock_fit import at_commanded_rate
-from rr_opt.recordings.experiment import inspect_experiment, is_experiment
+from rr_opt.recordings.experiment import inspect_experiment, is_experiment, usable
 from rr_opt.recordings.inspection import Circumstances, inspect_file
 from rr_opt.recordings.readers import ReadOptions
 from rr_opt.recordings.readers.columns import columns_from
-from rr_opt.recordings.usable import usable
 from rr_opt.results.inspection import InspectedRecordings
 from rr_opt.results.result import Progress, quiet
 

@@ -1,6 +1,11 @@
-"""Verbs that drive a given gait: its motion, its circle, its set points for a controller."""
+"""Verbs that drive: a given gait, its circle, its set points for a controller; a route."""
 
 from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
 
 import rr_opt as rr
 from rr_opt.cli import options
@@ -80,3 +85,21 @@ def export(
         points = rr.export(driven, format=kind, rate=rate, **how, progress=steps)
         files = points.save(file)
     show(points, files, json=json)
+
+
+def route(
+    route: Annotated[Path, typer.Argument(help="Route file: where to drive, and how exactly.")],
+    out: Annotated[Path | None, options.out_option("out/NAME")] = None,
+    json: Annotated[bool, options.json_option("route.json")] = False,
+    figures: options.Figures = True,
+) -> None:
+    """Drive a route of straights, arcs and waypoints from rest, as fast as the robot can.
+
+    The drive is checked by simulation. `rr-opt init route` writes a file to begin with.
+    """
+    with Steps() as steps:
+        asked = options.read_route(route)
+        folder = options.results_folder(out, asked.name)
+        driven = rr.route(asked, progress=steps)
+        files = driven.save(folder, figures=figures, progress=steps)
+    show(driven, files, json=json)

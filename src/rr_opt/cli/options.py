@@ -195,7 +195,7 @@ def read_problem(path: Path | None) -> Problem:
 
 def read_route(path: Path) -> Route:
     """The route of a file; what looks wrong goes to stderr."""
-    from rr_opt.api.route import load_route
+    from rr_opt.api.drive import load_route
 
     return _warned(lambda: load_route(path))
 

@@ -12,7 +12,7 @@ from rr_opt.formatting import direction_text, number, pace_text, with_unit
 from rr_opt.model.problem import Problem
 from rr_opt.outcome import Status
 from rr_opt.results.gait import gait_facts, ignored_effects, speed_fact
-from rr_opt.results.result import Result
+from rr_opt.results.result import Result, picked
 from rr_opt.verify.evaluate import LIMITS, Found
 from rr_opt.verify.sweep import SweepResult
 
@@ -113,9 +113,4 @@ class Sweep(Result):
 
 
 def _found(one: Found | None) -> dict[str, Any] | None:
-    return one and {
-        "gait": one.gait,
-        "inertia_ratio": one.ratio,
-        "speed": one.speed,
-        "peak_torque": one.peak_torque,
-    }
+    return one and {"inertia_ratio": one.ratio, **picked(one, "gait speed peak_torque")}

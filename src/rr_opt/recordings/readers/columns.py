@@ -50,7 +50,7 @@ def read_columns(
     header = find_header(text)
     if header is None:
         expected = f"`{','.join(needed)}`"
-        refuse(text.file, f"The file holds no rows. Expected {expected}. Export it once more.")
+        refuse(text.file, f"The file has no rows. Expected {expected}. Export it once more.")
     header, units = _renamed(header, columns, known)
     _check(header, needed, known, text.file)
     table = read_table(text, header.at + 1, len(text.lines), header.separator, header.names)
@@ -64,8 +64,8 @@ def read_columns(
         column = columns.get(name, Column(name))
         if name in units and column.factor == 1:
             column = replace(column, factor=_factor(units[name], name, header, text.file))
-        values[:, at], told = _converted(values[:, at], column)
-        doubts += told
+        values[:, at], notices = _converted(values[:, at], column)
+        doubts += notices
     t, values = values[:, names.index("t")], np.delete(values, names.index("t"), axis=1)
     order = in_order(t, values, table.lines)
     t, values = t[order.rows], values[order.rows]
@@ -120,15 +120,15 @@ def _factor(unit: str, channel: str, header: Header, file: str) -> float:
 
 def _converted(values: Array, column: Column) -> tuple[Array, list[Notice]]:
     """Counts with their sign, and in SI."""
-    told = []
+    notices = []
     if column.bits:
         negative = values >= 2 ** (column.bits - 1)
         values = np.where(negative, values - 2**column.bits, values)
         if negative.any():
-            told.append(
+            notices.append(
                 notice("file.signed", count=negative.sum(), column=column.column, bits=column.bits)
             )
-    return values * column.factor, told
+    return values * column.factor, notices
 
 
 def _check(header: Header, needed: Sequence[str], known: Sequence[str], file: str) -> None:
@@ -156,7 +156,7 @@ def _check(header: Header, needed: Sequence[str], known: Sequence[str], file: st
                 f"Rename them, or write `columns: {{{meant}}}` in the experiment file, or "
                 f'--columns "{option}" for one recording.'
             )
-        # A letter alone is like no other: the columns that there are tell more.
+        # A letter alone is like no other: the columns that there are say more.
         wrong.append(
             f"Read the columns {shown(', '.join(header.names))}. Expected also "
             f"{', '.join(f'`{name}`' for name in missing)}. {advice}"
