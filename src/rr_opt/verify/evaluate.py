@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from rr_opt.array import Array
 from rr_opt.model.gait import SineGait
 from rr_opt.model.problem import Problem
+from rr_opt.verify.compiled_cycles import Speeds
 from rr_opt.verify.grid import DECISIONS, Grid, boxes, points
 from rr_opt.verify.speeds import grips, least_S1, speeds
 
@@ -94,7 +95,7 @@ def evaluate(
     shape = arrays[0].shape
     rows = [part.reshape(-1, shape[-1]) for part in arrays]
     speed, torque = (np.full(rows[0].shape, np.nan) for _ in range(2))
-    geometry = _geometry(problem, rows[0], rows[2])
+    geometry = within(problem, rows[0], rows[2])
     wanted = np.flatnonzero((geometry["angle"] & geometry["singularity"])[:, 0])
     failed = 0
     for done in range(0, len(wanted), _ROWS):
@@ -108,45 +109,53 @@ def evaluate(
             progress(min(done + _ROWS, len(wanted)) * shape[-1], len(wanted) * shape[-1])
     seen = np.array([*arrays, speed.reshape(shape), torque.reshape(shape)])
     flat = seen[:, np.isfinite(arrays[1])]
-    plain = Evaluated(flat[:4], flat[4], flat[5], _keeps(problem, *flat), failed)
+    plain = _evaluated(problem, flat, failed)
     line = _torque_line(problem, grid, seen, plain.merit.max(initial=0.0), tolerance)
-    flat = np.concatenate([flat, line], axis=1)
-    return Evaluated(flat[:4], flat[4], flat[5], _keeps(problem, *flat), failed)
+    return _evaluated(problem, np.concatenate([flat, line], axis=1), failed)
 
 
-def _geometry(problem: Problem, amplitude: Array, offset: Array) -> dict[str, Mask]:
-    limits, robot = problem.limits, problem.robot
-    slack = _SLACK * robot.platform1.c
+def _evaluated(problem: Problem, points: Array, failed: int) -> Evaluated:
+    """points (6, K): decisions, speed, peak torque."""
+    decisions, speed, torque = points[:4], points[4], points[5]
+    found = Speeds(speed, speed, torque, np.isfinite(speed))
+    return Evaluated(decisions, speed, torque, _keeps(problem, decisions, found), failed)
+
+
+def within(
+    problem: Problem, amplitude: Array, offset: Array, slack: float = _SLACK
+) -> dict[str, Mask]:
+    """Which gaits keep the limits on angle and singularity; slack: relative."""
+    limits, far = problem.limits, np.abs(amplitude) + np.abs(offset)
+    S1 = least_S1(problem.robot, amplitude, offset)
     return {
-        "angle": np.abs(amplitude) + np.abs(offset) <= limits.angle * (1 + _SLACK),
-        "singularity": least_S1(robot, amplitude, offset) >= limits.singularity - slack,
+        "angle": far <= limits.angle * (1 + slack),
+        "singularity": limits.singularity * (1 - slack) <= S1,
     }
 
 
-def _keeps(
-    problem: Problem,
-    amplitude: Array,
-    period: Array,
-    offset: Array,
-    ratio: Array,
-    speed: Array,
-    torque: Array,
-) -> dict[str, Mask]:
-    limits = problem.limits
+def kept_limits(problem: Problem, gaits: Array, found: Speeds, slack: float) -> dict[str, Mask]:
+    """By limit, which gaits keep it: amplitude, period and offset come first in `gaits`, and found
+    are their speeds. Not the limit on grip, which the model of the speeds leaves out."""
+    (amplitude, period, offset), limits, speed = gaits[:3], problem.limits, found.speed
     ahead = {"forward": speed > 0, "backward": speed < 0, "either": np.isfinite(speed)}
-    kept = {
-        "rate": np.abs(amplitude) * 2 * math.pi / period <= limits.rate * (1 + _SLACK),
-        **_geometry(problem, amplitude, offset),
-        "torque": torque <= limits.torque * (1 + _SLACK),
+    return {
+        "rate": np.abs(amplitude) * 2 * math.pi <= limits.rate * period * (1 + slack),
+        **within(problem, amplitude, offset, slack),
+        "torque": found.peak_torque <= limits.torque * (1 + slack),
         "direction": ahead[problem.direction],
     }
-    kept["grip"] = np.ones(len(speed), bool)
+
+
+def _keeps(problem: Problem, decisions: Array, found: Speeds) -> dict[str, Mask]:
+    limits, kept = problem.limits, kept_limits(problem, decisions, found, _SLACK)
+    kept["grip"] = np.ones(len(found.speed), bool)
     if math.isfinite(limits.grip):
-        # The model of the speeds leaves it out; only points that keep all else are looked at.
+        # Only points that keep all else are looked at.
         asked = np.flatnonzero(np.logical_and.reduce(list(kept.values())))
-        ratios = None if np.isnan(ratio).all() else ratio[asked]
-        found = grips(problem, amplitude[asked], period[asked], offset[asked], ratios)
-        kept["grip"][asked] = found <= limits.grip * (1 + _SLACK)
+        amplitude, period, offset, ratio = decisions[:, asked]
+        ratios = None if np.isnan(decisions[3]).all() else ratio
+        needed = grips(problem, amplitude, period, offset, ratios)
+        kept["grip"][asked] = needed <= limits.grip * (1 + _SLACK)
     return kept
 
 

@@ -55,7 +55,7 @@ TOLERATED = 1e-4
 """A sweep that beats an optimum by more than this, relative, refutes it."""
 
 _FINAL = 1e-6
-"""Tolerance of the speeds that are held against a claim, relative."""
+"""Tolerance of the speeds that are compared with a claim, relative."""
 
 
 class _Effort(NamedTuple):
@@ -86,7 +86,7 @@ class SweepResult:
     """What a sweep found.
 
     grid     the values of each decision
-    found    all points evaluated, those on the lines where limits hold among them
+    found    all points evaluated, those on the lines where limits are active among them
     best     the best point of them that keeps all limits, None if none does
     refined  the best that smaller grids around the best few points led to
     points   how many points were evaluated in all
@@ -101,7 +101,7 @@ class SweepResult:
 
 @dataclass(frozen=True)
 class SweepCheck:
-    """A claimed optimum, held against a sweep.
+    """A claimed optimum, compared with a sweep.
 
     points         evaluated, near the claimed optimum and all over
     best_speed     of the best point that keeps all limits, signed, m/s; NaN if none does
@@ -164,9 +164,9 @@ def check_optimum(
     counts: Mapping[str, int] | int | None = None,
     everywhere: SweepResult | None = None,
 ) -> SweepCheck:
-    """Hold a claimed optimum against a sweep of the whole problem and a dense grid around it.
+    """Compare a claimed optimum with a sweep of the whole problem and a dense grid around it.
 
-    A gait of another shape is held against all sines, which no optimum of its family may fall
+    A gait of another shape is compared with all sines, which no optimum of its family may fall
     short of.
 
     gait, ratio (J20/J10 in the problem's definition; read only if the problem has one) and
@@ -187,14 +187,14 @@ def check_optimum(
         finalists, points = [*finalists, near.best], points + near.points
     else:
         here = speed_of(robot_with(problem, ratio), gait).speed
-    # A grid of dry friction is coarse: what is held against the claim is as fine as the claim.
+    # A grid of dry friction is coarse: what is compared with the claim is as fine as the claim.
     best = _fastest([one and _resolved(problem, one, _FINAL) for one in finalists])
-    return held_against(speed, here, best, points)
+    return compared(speed, here, best, points)
 
 
-def held_against(claimed: float, own: float, best: Found | None, points: int) -> SweepCheck:
-    """A claimed speed held against the model's own of that gait (both signed, m/s) and against
-    the best that was found among so many points."""
+def compared(claimed: float, own: float, best: Found | None, points: int) -> SweepCheck:
+    """A claimed speed compared with the model's own of that gait (both signed, m/s) and with
+    the best that was found among `points`."""
     reached = math.nan if best is None else best.speed
     return SweepCheck(
         points=points,

@@ -64,7 +64,7 @@ class Turning:
 
     @property
     def active_sets(self) -> list[dict[str, float]]:
-        """What may hold a gait to the turn: all that is fixed, and one end of what is bounded."""
+        """The possible active sets: all that is fixed, and one end of what is bounded."""
         fixed = {name: box.low for name, box in self._asked.items() if box.fixed}
         ends = [
             {name: end}

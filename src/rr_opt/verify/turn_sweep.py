@@ -17,10 +17,10 @@ import numpy as np
 from rr_opt.array import Array
 from rr_opt.model.gait import Gait, SineGait
 from rr_opt.model.problem import Interval, Problem
-from rr_opt.verify.evaluate import Found
+from rr_opt.verify.evaluate import Found, kept_limits
 from rr_opt.verify.grid import boxes, whole_loads
-from rr_opt.verify.speeds import least_S1, model_of, robot_with, speed_of, speeds
-from rr_opt.verify.sweep import SweepCheck, held_against
+from rr_opt.verify.speeds import model_of, robot_with, speed_of, speeds
+from rr_opt.verify.sweep import SweepCheck, compared
 from rr_opt.verify.turn_points import Care, Points, Turning
 
 _SLACK = 1e-6
@@ -46,9 +46,9 @@ _EFFORT = {
 
 
 def check_turn(problem: Problem, gait: Gait, ratio: float | None, speed: float) -> SweepCheck:
-    """Hold a claimed fastest turn against a sweep, as `check_optimum` does without a turn.
+    """Compare a claimed fastest turn with a sweep, as `check_optimum` does without a turn.
 
-    A gait of another shape is held against all sines. Of whole loads every number is swept.
+    A gait of another shape is compared with all sines. Of whole loads every number is swept.
     """
     choice = problem.inertia_ratio
     if choice is None:
@@ -69,12 +69,12 @@ def _check(
     """Over these ratios; the claimed gait is followed if its own is one of them."""
     effort = _EFFORT[model_of(problem.robot).viscous]
     wide, turning = (Turning(problem, ratios, care) for care in (effort.wide, effort.close))
-    fixed = [box.fixed for box in (problem.gait.period, problem.gait.offset)]
-    counts = list(effort.counts)
-    counts[0] = 1 if fixed[0] else counts[0]
-    counts[1] = 1 if fixed[1] else counts[1]
-    counts[2] = 1 if problem.gait.amplitude.fixed else counts[2]
-    counts[3] = 1 if ratios is None or ratios.fixed else counts[3]
+    box = problem.gait
+    decisions = (box.period, box.offset, box.amplitude, ratios)
+    counts = [
+        1 if one is None or one.fixed else count
+        for one, count in zip(decisions, effort.counts, strict=True)
+    ]
     axes = [np.linspace(0.0, 1.0, count) for count in counts]
     everywhere = np.array(list(itertools.product(*axes))).T
     far, points = _best(problem, wide, everywhere)
@@ -95,7 +95,7 @@ def _check(
         points += more
         best = found if _speed(problem, turning, found) > _speed(problem, turning, best) else best
     top = _found(turning, best, ratios is not None)
-    return held_against(speed, claimed, top, points)
+    return compared(speed, claimed, top, points)
 
 
 def _closer(
@@ -137,31 +137,15 @@ def _speed(problem: Problem, turning: Turning, place: Array | None) -> float:
 
 def _merit(problem: Problem, points: Points) -> Array:
     """|speed| where everything is kept, else -inf."""
-    limits, robot = problem.limits, problem.robot
-    amplitude, period, offset, _ = points.gaits
-    speed, torque = points.seen.speed, points.seen.peak_torque
-    ahead = {"forward": speed > 0, "backward": speed < 0, "either": np.isfinite(speed)}
-    far = np.abs(amplitude) + np.abs(offset)
-    kept = (
-        points.turns
-        & ahead[problem.direction]
-        & (torque <= limits.torque * (1 + _SLACK))
-        & (amplitude * 2 * math.pi <= limits.rate * period * (1 + _SLACK))
-        & (far <= limits.angle * (1 + _SLACK))
-        & (least_S1(robot, amplitude, offset) >= limits.singularity * (1 - _SLACK))
-    )
-    return np.where(kept, np.abs(speed), -np.inf)
+    kept = kept_limits(problem, points.gaits, points.seen, _SLACK)
+    every = np.logical_and.reduce([points.turns, *kept.values()])
+    return np.where(every, np.abs(points.seen.speed), -np.inf)
 
 
 def _found(turning: Turning, place: Array | None, has_ratio: bool) -> Found | None:
     if place is None:
         return None
     points = turning.at(place)
-    amplitude, period, offset, ratio = (float(value) for value in points.gaits[:, 0])
-    seen = points.seen
-    return Found(
-        SineGait(amplitude, period, offset),
-        ratio if has_ratio else None,
-        float(seen.speed[0]),
-        float(seen.peak_torque[0]),
-    )
+    *sizes, ratio = points.gaits[:, 0].tolist()
+    speed, torque = float(points.seen.speed[0]), float(points.seen.peak_torque[0])
+    return Found(SineGait(*sizes), ratio if has_ratio else None, speed, torque)
