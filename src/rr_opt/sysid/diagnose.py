@@ -145,7 +145,8 @@ def identified(model: Machine, watch: Stopwatch) -> Result:
         if quieter := _quieter(selection):
             watch.progress("the noise is less than it looked; once more")
             model = model.with_noise(quieter)
-            selection = selection.again(model, first(model, runs))
+            selection = Selection(model, first(model, runs), watch.progress)
+            selection.drive()
             best = selection.run()
         best = turned(model, best)
     with watch("looking for wrong values"):

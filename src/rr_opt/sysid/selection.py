@@ -40,17 +40,6 @@ class Selection:
     def __post_init__(self) -> None:
         self.best = self.tried[()] = self.base
 
-    def again(self, model: Machine, base: Candidate) -> Selection:
-        """A search with the same machine and other noise, begun where this one ended: at the
-        candidates that predict best."""
-        other = Selection(model, base, self.progress, _upstream=self._upstream)
-        ended = [one for one in self.tried.values() if not one.given_up]
-        leading = sorted(ended, key=lambda one: -one.elpd)[: SETTINGS.promising]
-        for one in dict.fromkeys((self.best, *leading)):
-            other.fitted(one.choices, [{}], one)
-        other.best = other.tried[tuple(sorted(self.best.choices))]
-        return other
-
     def run(self) -> Candidate:
         """Search; the candidate that was chosen."""
         seen: list[Candidate] = []
@@ -67,9 +56,10 @@ class Selection:
         return self.best
 
     def complete(self, candidate: Candidate) -> bool:
-        """Whether recordings agree on its values and its simulation leaves nothing: no more than is
-        negligible, beside an effect as much as is none, and than noise leaves by chance."""
-        if self.constancy(candidate).probability <= SETTINGS.named:
+        """Whether its simulation leaves nothing: no more than is negligible, beside an effect as
+        much as is none, and than noise leaves by chance. And, without effects, whether recordings
+        agree on its values."""
+        if not candidate.choices and self.constancy(candidate).probability <= SETTINGS.named:
             return False
         chance = 2 * math.sqrt(2 / max(candidate.fit.samples, 1))
         least = SETTINGS.none if candidate.choices else SETTINGS.negligible

@@ -34,6 +34,8 @@ class Settings:
                           says nothing of it
     inconstant            by as large a factor, at most, an imitation's values vary more between
                           recordings than their uncertainty (mean square)
+    form_errors           of an effect, by which what is left beside it is as likely an imitation's
+                          as a machine's
     misstated             relative; a level of the noise that differs by more is not as stated
     correlated            as many samples worth one are more than white noise has by chance
     certain               chance of so much by noise, below which an unknown input is there
@@ -64,6 +66,7 @@ class Settings:
     slow: float = 2.0
     shown: float = 0.01
     inconstant: float = 100.0
+    form_errors: float = 6.0
     misstated: float = 0.1
     correlated: float = 1.5
     certain: float = 1e-6

@@ -7,6 +7,7 @@ where no effect is shown is the answer `unexplained`.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -60,19 +61,27 @@ class Result:
 
     @cached_property
     def sound(self) -> float:
-        """How likely the answer's effects are no imitation of something else: whether recordings
-        agree on their values, and those that were not fitted are predicted better with them."""
+        """How likely the answer's effects are no imitation of something else: recordings agree on
+        their values, those that were not fitted are predicted better with them, and what is left of
+        the misfit is no more than machines differ from models of such effects."""
         if self.best.choices and self.final.excess > self.refitted.excess:
             return 0.0
-        return self.constancy.probability
+        first = self.selection.base.excess**2
+        left = self.best.excess**2 - SETTINGS.none**2 - self.selection.model.form_error**2
+        share = math.sqrt(max(left, 0.0) / max(first, 1e-12))
+        form = max(self._form_errors.values(), default=math.inf)
+        return self.constancy.probability / (1 + (share / form / SETTINGS.form_errors) ** 4)
+
+    @property
+    def _form_errors(self) -> Mapping[str, float]:
+        catalogue = self.selection.model.catalogue
+        return {name: catalogue[name].form_error for name in self.best.effects}
 
     @cached_property
     def constancy(self) -> Constancy:
         """How well recordings agree on the answer's values."""
-        catalogue = self.selection.model.catalogue
-        forms = {name: catalogue[name].form_error for name in self.best.effects}
         explained = {run: max(one.rms**2 - 1, 0.0) for run, one in enumerate(self.refitted.misfits)}
-        return constancy(self.everywhere.fit, explained, forms)
+        return constancy(self.everywhere.fit, explained, self._form_errors)
 
     @property
     def shown(self) -> tuple[Choice, ...]:
