@@ -78,6 +78,22 @@ def peak(x: Array, flipping: bool) -> Array:
     return middle - (right - left) ** 2 / (8 * np.where(bend < 0, bend, -np.inf))
 
 
+def peaks(x: Array, parts: int) -> Array:
+    """Largest |x| in each part of the span, (parts, K): as `peak`, so that it moves smoothly."""
+    size = np.abs(_resampled(x, False))
+    n = len(size) // parts
+    column = np.arange(size.shape[1])
+    found = []
+    for part in range(parts):
+        top = part * n + size[part * n : (part + 1) * n].argmax(axis=0)
+        left, middle, right = (size[(top + k) % len(size), column] for k in (-1, 0, 1))
+        bend, slope = left - 2 * middle + right, (right - left) / 2
+        shift = np.where(bend < 0, -slope / np.where(bend < 0, bend, -1.0), 0.0)
+        shift = np.clip(shift, -0.5, 0.5)
+        found.append(middle + shift * (slope + shift * bend / 2))
+    return np.array(found)
+
+
 def tail(x: Array, flipping: bool) -> Array:
     """Size of the fastest eighth of the harmonics, (K,), in the unit of x."""
     return np.abs(_apply(_tail, x, flipping)).max(axis=0)
