@@ -11,7 +11,7 @@ from rr_opt.machines.racer.racer import RollerRacer
 from rr_opt.model.experiment import CHANNELS, Experiment, Noise, Recording, Run
 from rr_opt.model.gait import SineGait
 from rr_opt.model.robot import Platform, Robot, Servo
-from rr_opt.sysid.model import Piece
+from rr_opt.sysid.model import Request, segments
 
 PLATFORMS = ((0.5, 0.004, 0.15, 0.03, 0.05, 1.2e-5), (0.3, 0.003, 0.08, 0.03, 0.05, 1.2e-5))
 ROBOT = Robot(Platform(*PLATFORMS[0]), Platform(*PLATFORMS[1]), 0.02, Servo(2.6, 6.28, 1.5))
@@ -43,21 +43,23 @@ def record(folder: Path, effect: str, values: dict[str, float]) -> None:
         Run(_recording(f"run{k}", t, empty), gait, "fit", "running") for k, gait in enumerate(GAITS)
     )
     model = RollerRacer(Experiment(ROBOT, NOISE, {}, runs, "bench"))
+    effects = (effect,) if effect else ()
     rng = np.random.default_rng(0)
     folder.mkdir(parents=True)
-    told = []
+    recordings = []
     for k, gait in enumerate(GAITS):
         given = {f"{effect}.{key}": value for key, value in values.items()}
-        start = np.array([0.0, 0.0, 0.7 * k, 0.05, 0.0, 0.0])
-        effects = (effect,) if effect else ()
-        clean = model.respond(Piece(k, 0, t.size), given, effects, start).predicted
+        start = np.zeros(model.state_scale(effects).size)
+        start[2:4] = 0.7 * k, 0.05
+        (whole,) = segments({k: model.runs[k]})
+        clean = model.predicted(Request(whole, given, start), effects)
         noisy = clean + rng.normal(size=clean.shape) * [NOISE.of(name) for name in CHANNELS]
         table = np.column_stack([t, noisy])
         header = ",".join(("t", *CHANNELS))
         np.savetxt(
             folder / f"run{k}.csv", table, fmt="%.6f", delimiter=",", header=header, comments=""
         )
-        told.append(
+        recordings.append(
             {
                 "file": f"run{k}.csv",
                 "use": "holdout" if k > 5 else "fit",
@@ -68,12 +70,12 @@ def record(folder: Path, effect: str, values: dict[str, float]) -> None:
     names = ("m", "I", "c", "a", "b", "kappa")
     robot = {f"platform{i + 1}": dict(zip(names, PLATFORMS[i], strict=True)) for i in (0, 1)}
     servo = {"angle_limit": 2.6, "rate_limit": 6.28, "torque_limit": 1.5}
-    whole = {
+    experiment = {
         "robot": {**robot, "h": ROBOT.h, "servo": servo},
         "noise": {"position": NOISE.position, "angle": NOISE.angle},
-        "recordings": told,
+        "recordings": recordings,
     }
-    (folder / "experiment.yaml").write_text(yaml.safe_dump(whole), encoding="utf-8")
+    (folder / "experiment.yaml").write_text(yaml.safe_dump(experiment), encoding="utf-8")
 
 
 def _recording(name: str, t: np.ndarray, values: np.ndarray) -> Recording:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import time
 from collections import Counter
 from collections.abc import Callable, Sequence
@@ -12,48 +13,42 @@ from unittest.mock import patch
 
 import numpy as np
 
-from rr_opt.machines.racer import unknown_input as pushed
-from rr_opt.machines.racer.diagnose import diagnose_racer
 from rr_opt.machines.racer.racer import RollerRacer
-from rr_opt.machines.racer.stages import gram as stages_gram
+from rr_opt.recordings.clock_fit import at_commanded_rate
 from rr_opt.recordings.experiment import read_experiment
 from rr_opt.recordings.usable import usable
-from rr_opt.sysid import least_squares as problem
-from rr_opt.sysid import sensitivities as gram
-from rr_opt.sysid import shooting as shoot
-from rr_opt.sysid.diagnose import Steps
+from rr_opt.sysid import shooting
+from rr_opt.sysid.diagnose import diagnose
 from rr_opt.sysid.shooting import System
 
 WATCHED = {
-    "derivatives, summed up": (gram, "grams"),
-    "predictions": (shoot, "predict_all"),
-    "least squares": (problem, "normal_of"),
-    "pushes without a name": (pushed, "linear"),
-    "stages": (stages_gram, "products"),
+    "derivatives, summed up": "grams",
+    "predictions": "predict_all",
+    "unknown inputs": "unknown_terms",
 }
+"""Functions by which the time is spent; none calls another."""
+COUNTED = ("derivatives, summed up", "predictions")
 
 
 def lines(folder: Path) -> list[str]:
     """A paragraph: shares of the CPU time of one process, and operations counted."""
     experiment, _ = usable(read_experiment(folder))
-    model = RollerRacer(experiment)
+    model = RollerRacer(at_commanded_rate(experiment))
     spent, done, works = Counter[str](), Counter[str](), Counter[str]()
     with ExitStack() as stack:
-        for name, (owner, attribute) in WATCHED.items():
-            if hasattr(owner, attribute):
-                inner = getattr(owner, attribute)
-                watch = _watched(inner, name, spent, done, works)
-                for module in _users(attribute, inner):
-                    stack.enter_context(patch.object(module, attribute, watch))
+        for name, attribute in WATCHED.items():
+            for module in _users(attribute):
+                watch = _watched(getattr(module, attribute), name, spent, done, works)
+                stack.enter_context(patch.object(module, attribute, watch))
         begun = time.process_time()
-        diagnose_racer(model, Steps())
+        diagnose(model)
         whole = time.process_time() - begun
     shares = ", ".join(f"{name} {spent[name] / whole:.0%}" for name in WATCHED if spent[name])
     rest = 1 - sum(spent.values()) / whole
     counted = "; ".join(
         f"{name}: {done[name] / 1e6:.1f} million steps of a run, {works[name] / done[name]:,.0f} "
         f"operations each, {1e9 * spent[name] / works[name]:.3f} ns an operation"
-        for name in ("derivatives, summed up", "predictions")
+        for name in COUNTED
     )
     return [
         f"{whole:.1f} s of CPU in one process: {shares}, the rest {rest:.0%}.",
@@ -62,15 +57,12 @@ def lines(folder: Path) -> list[str]:
     ]
 
 
-def _users(attribute: str, inner: Callable) -> list[Any]:
-    """The modules that call a function by that name."""
-    import sys
-
+def _users(attribute: str) -> list[Any]:
+    """The modules of the machine that call a function by that name."""
     return [
         module
         for name, module in list(sys.modules.items())
-        if name.startswith(("rr_opt.sysid", "rr_opt.machines"))
-        and getattr(module, attribute, None) is inner
+        if name.startswith("rr_opt.machines") and callable(getattr(module, attribute, None))
     ]
 
 
@@ -107,7 +99,7 @@ def _operations(system: System, name: str) -> int:
     key = system, name
     if key not in _counts:
         if name == "predictions":
-            _counts[key] = shoot._step(system).n_instructions()
+            _counts[key] = shooting._step(system).n_instructions()
         else:
             import casadi as ca
 
