@@ -22,8 +22,6 @@ from rr_opt.array import Array
 
 Mask = NDArray[np.bool_]
 
-_STEP = 1e-3
-"""Of the stencil, in the variables' scales: differences lose some 1e-7 of a slope."""
 _GAIN, _LENGTH, _STATIONARY = 1e-9, 1e-7, 1e-4
 """A step that gains less, relative, or that is shorter, in scales, is the last; and the slope,
 relative, of what its radius holds back from gaining more."""
@@ -73,6 +71,7 @@ class Program:
     look: Callable[[Array], Seen]
     equal: int = 0
     unit: float = 0.0
+    step: float = 1e-3
 
     def violation(self, worst: Array) -> Array:
         """Of the row that fails most, (K,)."""
@@ -111,17 +110,19 @@ def ascend(program: Program, start: Array, penalty: float = 10.0) -> Ascent:
     penalty: of a violation of 1, in values of the function, to begin with.
     """
     x, radius, converged, iterations = start, _RADIUS, False, 0
-    stencil, design = _stencil(len(x))
+    size = max(program.unit, 1e-300)
+    stencil, design = _stencil(len(x), program.step)
     here = program.look(x[None])
     value, violation = float(here.function[0]), float(program.violation(here.worst)[0])
     names, prices = here.names, Prices(np.zeros(len(here.rows)), *(np.zeros(0) for _ in range(3)))
     while not converged and iterations < _ITERATIONS:
         iterations += 1
-        function, rows, _, names = program.look(x + _STEP * program.scale * stencil)
+        function, rows, _, names = program.look(x + program.step * program.scale * stencil)
         models = np.vstack([function, rows]) @ design.T
         if not np.isfinite(models).all():
             break
-        size = max(abs(value), program.unit, 1e-300)
+        # It never falls: a penalty that does would let the climb go round in a circle.
+        size = max(abs(value), size)
         step, prices, promise = _step(program, x, models, radius, penalty * size)
         dearest = float(np.abs(prices.rows).max(initial=0.0)) / size
         penalty = max(penalty, min(2 * dearest, _DEAREST))
@@ -133,14 +134,14 @@ def ascend(program: Program, start: Array, penalty: float = 10.0) -> Ascent:
         merit = there.function - penalty * size * off
         merit = np.where(np.isfinite(merit), merit, -np.inf)
         best = int(merit.argmax())
-        gain = merit[best] - merit[0]
+        gain = float(merit[best] - merit[0])
         x, value, violation = tried[best], float(there.function[best]), float(off[best])
         if best == 0:
             radius = _SHRUNK * min(radius, length)
         elif best == 1:
             radius = min(2 * radius, _RADIUS)
         else:
-            radius = _FRACTIONS[best - 1] * length
+            radius = float(_FRACTIONS[best - 1]) * length
         # A step that its radius cuts short, or that falls short of its promise, says nothing.
         small = length <= _LENGTH or abs(gain if best == 1 else promise) <= _GAIN * size
         converged = length < (1 - _SETTLED) * reach and small
@@ -197,7 +198,7 @@ def _step(
     at_high, at_low = at_high * (upper <= radius) / scale, at_low * (lower <= radius) / scale
     there = values + (slopes + bends @ step / 2) @ step
     promise = there[0] - values[0] - penalty * (_worst(there, equal) - _worst(values, equal))
-    return step, Prices(price, linear, at_high, at_low), promise
+    return step, Prices(price, linear, at_high, at_low), float(promise)
 
 
 def _worst(models: Array, equal: int) -> float:
@@ -276,7 +277,7 @@ def _solved(E: Array, f: Array) -> Array:
 
 
 @lru_cache
-def _stencil(n: int) -> tuple[Array, Array]:
+def _stencil(n: int, step: float) -> tuple[Array, Array]:
     """Points (M, n), the first in the middle, in stencils, and what makes of values at them those
     of a quadratic, its slopes and its second derivatives, in scales."""
     pairs = list(combinations(range(n), 2))
@@ -288,8 +289,8 @@ def _stencil(n: int) -> tuple[Array, Array]:
     crossed = [points[:, [i]] * points[:, [j]] for i, j in pairs]
     monomials = np.hstack([np.ones((len(points), 1)), points, points**2 / 2, *crossed])
     design = np.asarray(np.linalg.inv(monomials), float)
-    design[1 : n + 1] /= _STEP
-    design[n + 1 :] /= _STEP**2
+    design[1 : n + 1] /= step
+    design[n + 1 :] /= step**2
     return points, design
 
 

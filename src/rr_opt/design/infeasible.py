@@ -98,11 +98,15 @@ def clash(problem: Problem, box: Decisions, settings: list[Setting]) -> str | At
 
 def nearest_turn(problem: Problem, box: Decisions) -> Nearest:
     """What the gait does that comes nearest to the turn within all other limits."""
-    terrains = [
-        Terrain(one, scanned(one, box), WAYS[problem.direction], ("torque", "direction"), "turn")
+    return _nearest(attempt(_terrains(problem, box)))
+
+
+def _terrains(problem: Problem, box: Decisions) -> list[Terrain]:
+    way = WAYS[problem.direction]
+    return [
+        Terrain(one, scanned(one, box), way, ("torque", "direction"), "turn")
         for one in settings_of(problem, box)
     ]
-    return _nearest(attempt(terrains))
 
 
 def _evidence(found: Attempt, box: Decisions) -> str:

@@ -39,7 +39,10 @@ _MARGIN = 0.05
 """Of a stencil's reach in the robot's size, below which it shrinks with the singular margin."""
 
 
+_STEP = {True: 1e-4, False: 1e-3}
+"""Of a stencil; cycles with other friction than viscous are closed less exactly."""
 _ANY_WAY = Interval(-4 * math.pi, 4 * math.pi)
+_ANY_RADIUS = Interval(math.log(1e-9), math.log(1e9))
 _FORWARD = Interval(1e-6, math.inf)
 """Of the forward speed, in sizes of the speed: at 0 a gait goes neither forward nor backward."""
 
@@ -152,7 +155,8 @@ class Terrain:
 
     @cached_property
     def _bounds(self) -> tuple[Array, Array]:
-        """Of amplitude, period, offset, share of the ballast, direction of V."""
+        """Of amplitude, period, offset, share of the ballast, direction of V, logarithm of
+        the radius."""
         box, gait = self.box, self.setting.problem.gait
         share = 0.0 if box.ballast.fixed else self.setting.fixed_share
         boxes = (
@@ -161,6 +165,7 @@ class Terrain:
             box.offset if box.offset.fixed else gait.offset,
             Interval(0.0, 1.0) if share is None else Interval(share, share),
             _ANY_WAY if self._radius else Interval(0.0, 0.0),
+            self._radii,
         )
         low, high = np.array([(one.low, one.high) for one in boxes]).T
         return low, high
@@ -192,21 +197,26 @@ class Terrain:
 
     def program(self, start: Array, nodes: int) -> tuple[Program, Array]:
         """The program from a gait (4,), amplitude, period, offset, share, and its start."""
-        free, (low, high), limits = self.free, self._bounds, self.setting.problem.limits
-        V = self.setting.landscape.cycles(start[:, None], nodes).mean[:2, 0]
-        start = np.clip(np.append(start, math.atan2(V[1], V[0])), low, high)
+        free, limits = self.free, self.setting.problem.limits
+        low, high = (end.copy() for end in self._bounds)
+        start = np.append(start, self._lifted(start, nodes))
+        if self._radius and start[5] > self._asked:
+            low[5] = self._asked
+        elif self._radius:
+            high[5] = self._asked
+        start = np.clip(start, low, high)
         size = min(1.0, limits.singularity / (_MARGIN * self.setting.problem.robot.platform1.c))
-        scale = np.array([size * max(start[0], _WIDE), start[1], 0.5 * size, 1.0, 1.0])
-        matrix, most = np.array([[1.0, 0, 1, 0, 0], [1.0, 0, -1, 0, 0]]), [self.box.reach] * 2
+        scale = np.array([size * max(start[0], _WIDE), start[1], 0.5 * size, 1.0, 1.0, 1.0])
+        matrix, most = np.array([[1.0, 0, 1, 0, 0, 0], [1.0, 0, -1, 0, 0, 0]]), [self.box.reach] * 2
         if math.isfinite(limits.rate):
-            matrix = np.vstack([matrix, [1.0, -limits.rate / (2 * math.pi), 0, 0, 0]])
+            matrix = np.vstack([matrix, [1.0, -limits.rate / (2 * math.pi), 0, 0, 0, 0]])
             most.append(0.0)
-        fixed = np.setdiff1d(np.arange(5), free)
+        fixed = np.setdiff1d(np.arange(6), free)
 
         def look(points: Array) -> Seen:
             decided = np.repeat(start[:, None], len(points), axis=1)
             decided[free] = points.T
-            gaits, beta = decided[:4], decided[4]
+            gaits, beta, size = decided[:4], decided[4], decided[5]
             with np.errstate(all="ignore"):
                 cycles = self.setting.landscape.cycles(gaits, nodes)
                 unit = max(float(np.abs(cycles.speed[0])), _SLOWEST)
@@ -214,8 +224,9 @@ class Terrain:
                 function = self._function(cycles, gaits)
             known = dict(zip(self._named, values, strict=True))
             if self._radius:
-                function = cycles.turn / gaits[1] * self._radius
-                known |= _circle_rows(cycles.mean, function, beta, unit)
+                along = cycles.turn / gaits[1] * math.copysign(1.0, self._radius) * np.exp(size)
+                function = along if self.aim == "speed" else -np.abs(size - self._asked)
+                known |= self._circle_rows(cycles.mean, along / unit, beta, unit)
             if self.box.command:
                 known["command"] = gaits[0] / self.box.command.servo.gain(gaits[1])
             rows = [side.coefficient * (known[side.name] - side.end) for side in self._sides]
@@ -238,8 +249,28 @@ class Terrain:
             look=look,
             equal=sum(side.equal for side in self._sides),
             unit=0.0 if self.aim == "speed" else 1.0,
+            step=_STEP[self.setting.landscape.linear],
         )
         return program, start[free]
+
+    def _lifted(self, gait: Array, nodes: int) -> Array:
+        """The direction of V, rad, and the logarithm of the radius of a gait (4,)."""
+        cycle = self.setting.landscape.cycles(gait[:, None], nodes)
+        V, omega = cycle.mean[:2, 0], float(cycle.turn[0]) / gait[1]
+        speed = max(float(np.hypot(*V)), _SLOWEST)
+        return np.array([math.atan2(V[1], V[0]), math.log(speed / max(abs(omega), _SLOWEST))])
+
+    def _circle_rows(self, mean: Array, along: Array, beta: Array, unit: float) -> dict[str, Array]:
+        """Rows of the circle; along: omega R, in a unit as all of them."""
+        cos, sin = np.cos(beta), np.sin(beta)
+        rows = {
+            _CIRCLE[0]: mean[0] / unit - along * cos,
+            _CIRCLE[1]: mean[1] / unit - along * sin,
+            _SIDE: along,
+        }
+        return rows | (
+            {"direction": self.way * (cos * mean[2] + sin * mean[3])} if self._ahead else {}
+        )
 
     def _curvature_price(self, speed: float, ascent: Ascent) -> float:
         """Speed gained per unit of curvature, m2/s.
@@ -260,10 +291,25 @@ class Terrain:
 
         The curvature turn/(T |V|) bends sharply where V passes by zero: a circle that is tight
         lies in a narrow valley. With the direction beta of V as one variable more,
-        V = omega R (cos beta, sin beta) is two rows that hardly bend.
+        V = omega R (cos beta, sin beta) is two rows that hardly bend. Where the nearest circle is
+        sought the logarithm of R is another variable.
         """
-        asked = self._turn.turn.curvature if self._turn and self.aim == "speed" else None
-        return 1 / asked.low if asked and asked.fixed and asked.low else 0.0
+        if not self.box.turn or not (self.aim == "turn" or self._turn):
+            return 0.0
+        others = self.aim == "turn" and len(self.box.turn.names) > 1
+        asked = self.box.turn.turn.curvature
+        return 1 / asked.low if asked.fixed and asked.low and not others else 0.0
+
+    @property
+    def _radii(self) -> Interval:
+        """Logarithms of the radii that are tried, m."""
+        if not self._radius:
+            return Interval(0.0, 0.0)
+        return _ANY_RADIUS if self.aim == "turn" else Interval(self._asked, self._asked)
+
+    @property
+    def _asked(self) -> float:
+        return math.log(abs(self._radius))
 
     @cached_property
     def _named(self) -> tuple[str, ...]:
@@ -271,7 +317,7 @@ class Terrain:
 
     def gait_at(self, start: Array, x: Array) -> Array:
         """Amplitude, period, offset, share (4,) at a point of the program from `start`."""
-        gait = np.clip(np.append(start, 0.0), *self._bounds)
+        gait = np.clip(np.append(start, [0.0, 0.0]), *self._bounds)
         gait[self.free] = x
         return gait[:4]
 
@@ -321,12 +367,6 @@ class Terrain:
             bounds[names[i]] = float(up - down)
         bounds["amplitude"] += found.pop("command")
         return found, bounds
-
-
-def _circle_rows(mean: Array, along: Array, beta: Array, unit: float) -> dict[str, Array]:
-    """Rows of the circle, and the speed along it, in a unit."""
-    rows = (mean[0] - along * np.cos(beta), mean[1] - along * np.sin(beta), along)
-    return dict(zip((*_CIRCLE, _SIDE), (row / unit for row in rows), strict=True))
 
 
 def _followed(used: Array) -> list[Indices]:

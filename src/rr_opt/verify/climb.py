@@ -41,7 +41,7 @@ class _Care(NamedTuple):
 
 
 _ROUGH, _FINE = _Care(PHASES // 2, 1e-6, 30, 1), _Care(2 * PHASES, 1e-13, 100, 4)
-_SETTLED = 1e-9
+_SETTLED, _STEPS, _LONGEST = 1e-9, 5, 0.01
 _AHEAD = 1e-6
 """Least V . E/|V|: at 0 a gait would go neither forward nor backward."""
 _SLOWEST = 1e-12
@@ -81,11 +81,17 @@ def climb(problem: Problem, start: Array, aim: Aim = "speed", *, rough: bool = F
         there = np.clip(end.x, 0.0, 1.0)
         if not np.isfinite(local.look(there)[0]).all():
             break
+        there = local.inside(there)
         moved = float(np.abs(there - z).max())
         z = there
         if moved <= _SETTLED:
             break
     return Climbed(local.decisions(z[None])[:, 0], local.points, local.keeps(z), local.value(z))
+
+
+def peak_torque(problem: Problem, decisions: Array) -> float:
+    """The largest |torque| of a gait (4,), N m."""
+    return float(peaks(motions(problem, decisions[:, None], _FINE.phases).torque, 1)[0, 0])
 
 
 class _Local:
@@ -115,6 +121,19 @@ class _Local:
         found = np.repeat(self._start[:, None], len(z), axis=1)
         found[self._free] = self._low[self._free, None] + self._span[self._free, None] * z.T
         return found
+
+    def inside(self, z: Array) -> Array:
+        """The nearest place that fails no row: SLSQP often ends a hair outside."""
+        for _ in range(_STEPS):
+            values, slopes = self.look(z)
+            fails = np.concatenate([values[1:], -values[1 + self._rows - self._equal :]])
+            rows = np.concatenate([slopes[1:], -slopes[1 + self._rows - self._equal :]])
+            off = fails < 0.1 * KEPT
+            if not (fails < -0.1 * KEPT).any():
+                break
+            change = np.linalg.lstsq(rows[off], 0.2 * KEPT - fails[off], rcond=1e-9)[0]
+            z = np.clip(z + np.clip(change, -_LONGEST, _LONGEST), 0.0, 1.0)
+        return z
 
     def keeps(self, z: Array) -> bool:
         """Whether all rows hold."""

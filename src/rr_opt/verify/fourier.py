@@ -144,6 +144,9 @@ def _tail(x: Array, flipping: bool) -> Array:
     return np.concatenate([top.real, top.imag])
 
 
+_STIFF = 15.0
+"""Range of A beyond which rounding, which exp(A) magnifies, is more than `solve_stiff` errs."""
+
 _NEAR = (-2, -1, 0, 1, 2, 3)
 """Samples, counted from the start of a step, whose polynomial stands for the integrand."""
 
@@ -169,7 +172,11 @@ def solve(a: Array, b: Array, span: Array) -> tuple[Array, Array]:
     growth = np.exp(A)
     forcing = harmonics(b / growth)
     forcing /= omega - mean
-    return growth * samples(forcing, len(a)), mean
+    v = growth * samples(forcing, len(a))
+    stiff = np.ptp(A, axis=0) > _STIFF
+    if stiff.any():
+        v[:, stiff] = solve_stiff(a[:, stiff], b[:, stiff], span[stiff])[0]
+    return v, mean
 
 
 def solve_stiff(a: Array, b: Array, span: Array) -> tuple[Array, Array]:

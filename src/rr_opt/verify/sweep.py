@@ -17,7 +17,7 @@ from rr_opt.array import Array
 from rr_opt.model.gait import Gait, SineGait
 from rr_opt.model.problem import Problem
 from rr_opt.model.robot import Robot
-from rr_opt.verify.climb import KEPT, Aim, climb, turn_rows
+from rr_opt.verify.climb import KEPT, Aim, climb, peak_torque, turn_rows
 from rr_opt.verify.evaluate import Evaluated, Found, Progress, evaluate
 from rr_opt.verify.grid import DECISIONS, Grid, boxes, free_decisions, grid_of, mirrored
 from rr_opt.verify.speeds import least_S1, model_of, robot_with, speed_of, speeds
@@ -71,7 +71,7 @@ class _Effort(NamedTuple):
 
 # Other friction than viscous takes some hundred times as long.
 _EFFORT = {
-    True: _Effort(10_000, 1e-6, 1e-8, 4, 12, 1e-6),
+    True: _Effort(10_000, 1e-4, 1e-8, 4, 12, 1e-6),
     False: _Effort(600, 0.03, 5e-5, 2, 2, 1e-4),
 }
 _FINALISTS = 3
@@ -122,7 +122,7 @@ class SweepCheck:
     @property
     def better(self) -> Found | None:
         """What refutes the claim."""
-        return self.best if self.gap < -self.tolerated else None
+        return None if self.gap >= -self.tolerated else self.best
 
     @property
     def passed(self) -> bool:
@@ -173,7 +173,9 @@ def _resolved(problem: Problem, decisions: Array) -> Found | None:
     amplitude, period, offset, ratio = decisions.tolist()
     known = None if math.isnan(ratio) else ratio
     seen = speeds(problem, amplitude, period, offset, known, _EFFORT[viscous].fine)
-    torque, slack = float(seen.peak_torque), 100 * KEPT if viscous else TOLERATED
+    torque, slack = float(seen.peak_torque), TOLERATED
+    if viscous:
+        torque, slack = peak_torque(problem, decisions), 10 * KEPT
     if not seen.converged or torque > problem.limits.torque * (1 + slack):
         return None
     gait, speed, turn = SineGait(amplitude, period, offset), float(seen.speed), float(seen.turn)
@@ -200,7 +202,7 @@ def check_optimum(
     if problem.inertia_ratio is None:
         ratio = None
     everywhere = everywhere or sweep(problem, counts)
-    finalists, points = [everywhere.refined, everywhere.best], everywhere.points
+    finalists, points = [everywhere.refined], everywhere.points
     gained = math.nan
     if isinstance(gait, SineGait):
         own = speeds(problem, gait.amplitude, gait.period, gait.offset, ratio, effort.fine)
