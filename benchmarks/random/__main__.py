@@ -56,7 +56,9 @@ def turn(number: int, seed: str) -> tuple[Problem, float, float]:
         asked = Turn(curvature=Interval(side / _TIGHTEST, side / _TIGHTEST))
         tight = replace(posed, turn=asked)
         nearest = nearest_turn(tight, decisions(tight))
-        if nearest.torque > posed.limits.torque * (1 + 1e-6) or nearest.curvature * side <= 0:
+        way = {"forward": 1.0, "backward": -1.0, "either": nearest.speed}[posed.direction]
+        kept = nearest.torque <= posed.limits.torque * (1 + 1e-6) and nearest.speed * way > 0
+        if not kept or nearest.curvature * side <= 0:
             continue
         times = 1.0 if number % 8 == 0 else float(_WIDEST ** rng.random())
         radius = max(1 / abs(nearest.curvature), _TIGHTEST) * times * (1 + 1e-5)

@@ -14,6 +14,8 @@ from rr_opt.api.load import PathLike, identity, problem_of, read_arguments
 from rr_opt.batch.journal import Journal
 from rr_opt.batch.run import Pool, pool_of, run
 from rr_opt.design import maximize_speed as design
+from rr_opt.design.decisions import decisions
+from rr_opt.design.infeasible import posture_clashes
 from rr_opt.design.maximize_speed import Optimum
 from rr_opt.design.study.case import solve_case, solve_study
 from rr_opt.design.study.plan import plan
@@ -24,6 +26,7 @@ from rr_opt.documents.archive import folder_for_results
 from rr_opt.files.study_file import Study, read_study
 from rr_opt.model.problem import Problem
 from rr_opt.motion.dynamics import require_friction
+from rr_opt.outcome import Status
 from rr_opt.results.fastest import FastestGait
 from rr_opt.results.result import Progress, quiet
 from rr_opt.results.shapes import FastestShapes, family_name
@@ -98,6 +101,10 @@ def _checked(
             break
         optimum, check = climbed, _held(climbed, swept)
     if optimum.best is None or optimum.robot is None:
+        proved = posture_clashes(optimum.problem, decisions(optimum.problem))
+        if optimum.status is Status.INFEASIBLE and not proved:
+            second = f" A sweep of {swept.points} gaits by another model finds none either."
+            optimum = replace(optimum, message=optimum.message + second)
         return optimum, None, None
     progress("replay by CVODES")
     replayed = replay(optimum.robot, optimum.best.gait, optimum.problem.limits, optimum.best.speed)

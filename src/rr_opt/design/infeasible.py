@@ -230,11 +230,12 @@ def _ballast(box: Decisions) -> list[str]:
 def _nearest(found: Attempt) -> Nearest:
     cycle = found.setting.landscape.cycles(found.gait[:, None], _NODES)
     amplitude, period, offset, share = found.gait.tolist()
-    turn, speed = float(cycle.turn[0]), abs(float(cycle.speed[0]))
+    turn, speed = float(cycle.turn[0]), float(cycle.speed[0])
     return Nearest(
         gait=SineGait(amplitude, period, offset),
         share=share,
-        curvature=turn / (period * speed),
+        speed=speed,
+        curvature=turn / (period * abs(speed)),
         yaw_rate=turn / period,
         heading=turn,
         torque=float(cycle.peak_torque[0]),
