@@ -121,7 +121,9 @@ def predicted(out: Path, gait: dict[str, Any], name: str) -> float:
 def mean_speed(path: Path, period: float) -> float:
     """Way over time of the last five whole periods, m/s, positive along platform 1's heading."""
     with path.open(encoding="utf-8") as file:
-        rows = [row for row in csv.DictReader(file) if row["x"]]
+        # Without the units: `x [m]`.
+        names = [name.split(" [")[0] for name in next(csv.reader(file))]
+        rows = [row for row in csv.DictReader(file, names) if row["x"]]
     last = rows[-1]
     begin = float(last["t"]) - 5 * period
     first = min(rows, key=lambda row: abs(float(row["t"]) - begin))

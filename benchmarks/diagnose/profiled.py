@@ -15,8 +15,7 @@ import numpy as np
 
 from rr_opt.machines.racer.racer import RollerRacer
 from rr_opt.recordings.clock_fit import at_commanded_rate
-from rr_opt.recordings.experiment import read_experiment
-from rr_opt.recordings.usable import usable
+from rr_opt.recordings.experiment import read_experiment, usable
 from rr_opt.sysid import shooting
 from rr_opt.sysid.diagnose import diagnose
 from rr_opt.sysid.shooting import System

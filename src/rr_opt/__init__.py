@@ -29,6 +29,8 @@ from rr_opt.version import __version__
 if TYPE_CHECKING:
     from rr_opt.api.drive import circle as circle
     from rr_opt.api.drive import export as export
+    from rr_opt.api.drive import load_route as load_route
+    from rr_opt.api.drive import route as route
     from rr_opt.api.drive import simulate as simulate
     from rr_opt.api.files import init as init
     from rr_opt.api.files import lint as lint
@@ -50,8 +52,6 @@ if TYPE_CHECKING:
     from rr_opt.api.optimise import turn_chart as turn_chart
     from rr_opt.api.recordings import diagnose as diagnose
     from rr_opt.api.recordings import inspect as inspect
-    from rr_opt.api.route import load_route as load_route
-    from rr_opt.api.route import route as route
     from rr_opt.model.experiment import Experiment as Experiment
     from rr_opt.model.experiment import Noise as Noise
     from rr_opt.model.experiment import Recording as Recording
@@ -91,13 +91,12 @@ if TYPE_CHECKING:
     from rr_opt.results.turn_chart import TurnChart as TurnChart
 
 _HOMES = {
-    "api.drive": "circle export simulate",
+    "api.drive": "circle export load_route route simulate",
     "api.files": "init lint schema",
     "api.load": "InputWarning RobotWithGait load load_experiment "
     "load_gait load_robot prototype shipped",
     "api.optimise": "load_study maximize_speed shapes study sweep turn turn_chart",
     "api.recordings": "diagnose inspect",
-    "api.route": "load_route route",
     "model.experiment": "Experiment Noise Recording Run",
     "model.gait": "FourierGait FreeGait Gait SineGait",
     "model.problem": "GaitBounds Limits Problem RatioChoice",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
 
 _LONGEST_SHOWN = 60
@@ -62,6 +62,7 @@ def one_of(words: Sequence[str]) -> str:
     return f"one of: {', '.join(words)}" if len(words) > 1 else f"`{words[0]}`"
 
 
-def listed(names: Sequence[str]) -> str:
-    """`rate`, `rate and torque`, `angle, rate and torque`."""
-    return " and ".join(filter(None, [", ".join(names[:-1]), names[-1]]))
+def listed(names: Iterable[str]) -> str:
+    """`rate`, `rate and torque`, `angle, rate and torque`; empty for no name."""
+    *others, last = [*names] or [""]
+    return " and ".join(filter(None, [", ".join(others), last]))

@@ -59,7 +59,7 @@ class Program:
     low, high, scale   bounds (n,), and a small step of each variable (n,)
     matrix, most       linear constraints: matrix x <= most
     look               points (K, n) -> Seen
-    equal              the first so many of rows and of worst must be 0
+    equal              number of rows and of worst, the first ones, that must be 0
     unit               a small value of the function
     """
 

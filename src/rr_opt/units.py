@@ -85,6 +85,12 @@ def _split(text: str, unit: str) -> tuple[float, str]:
     return float(match[1]), match[2].strip()
 
 
+def unit_written(text: str) -> str:
+    """The unit of a text such as `30 rpm`; empty if it has none, or no number."""
+    match = _QUANTITY.fullmatch(text) if len(text) <= _LONGEST else None
+    return match[2].strip() if match else ""
+
+
 class _UnitError(ValueError):
     """The text after the number is not a unit; says why."""
 

@@ -13,23 +13,8 @@ from matplotlib.ticker import MaxNLocator
 
 from rr_opt.array import Array
 from rr_opt.formatting import number
+from rr_opt.results.figures import style
 from rr_opt.results.figures.motion import along_travel
-from rr_opt.results.figures.style import (
-    BACKWARD,
-    FORWARD,
-    GREY,
-    INK,
-    LIMIT,
-    OPTIMUM,
-    PAPER,
-    PLATFORM1,
-    SIGNED,
-    colour_of,
-    figure,
-    note,
-    styled,
-    svg,
-)
 from rr_paper.consistency import QUESTIONS, Consistency, Question
 from rr_paper.publication import ANGLE_LIMIT, RATE_LIMIT, Row
 from rr_paper.reproduction import Reproduction
@@ -38,16 +23,16 @@ from rr_paper.statements import PeriodLaw, Turning
 from rr_paper.tables import AMPLITUDES, RecomputedRow, SpeedSurface, Start, Tables
 
 _LINES = {
-    "Kane": ("Kane's method", FORWARD, 5.0, "-"),
-    "multipliers": ("two bodies, multipliers", OPTIMUM, 2.4, "-"),
-    CORRECTED.name: ("(3) with corrected signs", INK, 1.2, (0, (4, 3))),
-    PRINTED.name: ("(3) as printed", BACKWARD, 1.8, "-"),
+    "Kane": ("Kane's method", style.FORWARD, 5.0, "-"),
+    "multipliers": ("two bodies, multipliers", style.OPTIMUM, 2.4, "-"),
+    CORRECTED.name: ("(3) with corrected signs", style.INK, 1.2, (0, (4, 3))),
+    PRINTED.name: ("(3) as printed", style.BACKWARD, 1.8, "-"),
 }
 
 
 def signs_figure(motion: Comparison) -> Figure:
     """v of axle 1 over time, mm/s: three lines that coincide, and one that does not."""
-    drawn = figure(6.6, 4.2)
+    drawn = style.figure(6.6, 4.2)
     ax = drawn.subplots()
     for name, (label, colour, width, line) in _LINES.items():
         ax.plot(motion.t, 1e3 * motion.v[name], color=colour, lw=width, ls=line, label=label)
@@ -65,7 +50,7 @@ _PREFIXES: dict[Question, str] = {"ratio": "J20/J10 ", "kappa": "κ = ", "equati
 
 def readings_figure(found: Consistency) -> Figure:
     """Chi-square of every reading on both columns, on a logarithmic axis."""
-    drawn = figure(10.4, 4.6)
+    drawn = style.figure(10.4, 4.6)
     ax = drawn.subplots()
     names: list[str] = []
     for question in QUESTIONS:
@@ -73,18 +58,18 @@ def readings_figure(found: Consistency) -> Figure:
         for mean, other in pairs:
             place = len(names)
             names.append(_PREFIXES[question] + mean.name)
-            ax.plot([mean.fit.chi2, other.fit.chi2], [place] * 2, color=GREY, lw=0.8)
+            ax.plot([mean.fit.chi2, other.fit.chi2], [place] * 2, color=style.GREY, lw=0.8)
             for one, marker, colour, shift in (
-                (mean, "o", FORWARD, 6), (other, "x", BACKWARD, -13),
+                (mean, "o", style.FORWARD, 6), (other, "x", style.BACKWARD, -13),
             ):  # fmt: skip
                 ax.plot(one.fit.chi2, place, marker, color=colour, ms=8, mew=2)
                 ax.annotate(f"p {one.p:.2g}", (one.fit.chi2, place), (0, shift), fontsize=7.5,
                             textcoords="offset points", ha="center", color=colour)  # fmt: skip
-    ax.axvline(found.still["mean"], color=GREY, lw=1.0, ls=":")
+    ax.axvline(found.still["mean"], color=style.GREY, lw=1.0, ls=":")
     ax.annotate("a robot that stands still", (found.still["mean"], -0.6), (-4, 0), fontsize=8.5,
-                textcoords="offset points", ha="right", color=GREY)  # fmt: skip
-    ax.plot([], [], "o", color=FORWARD, label="mean column")
-    ax.plot([], [], "x", color=BACKWARD, mew=2, label="v_exp column")
+                textcoords="offset points", ha="right", color=style.GREY)  # fmt: skip
+    ax.plot([], [], "o", color=style.FORWARD, label="mean column")
+    ax.plot([], [], "x", color=style.BACKWARD, mew=2, label="v_exp column")
     ax.set_xscale("log")
     ax.set_yticks(range(len(names)), names)
     ax.set_ylim(len(names) - 0.4, -0.9)
@@ -97,17 +82,17 @@ def readings_figure(found: Consistency) -> Figure:
 
 def period_law_figure(law: PeriodLaw) -> Figure:
     """The ratio over amplitude, rad, on a logarithmic axis."""
-    drawn = figure(6.6, 4.2)
+    drawn = style.figure(6.6, 4.2)
     ax = drawn.subplots()
     viscous = law.spreads[0]
-    ax.axhspan(viscous.q05, viscous.q95, color=FORWARD, alpha=0.25, lw=0,
+    ax.axhspan(viscous.q05, viscous.q95, color=style.FORWARD, alpha=0.25, lw=0,
                label="viscous friction, 90 % of robots")  # fmt: skip
-    ax.axhline(viscous.largest, color=FORWARD, lw=0.9, ls=":", label="the largest of them")
+    ax.axhline(viscous.largest, color=style.FORWARD, lw=0.9, ls=":", label="the largest of them")
     for i, one in enumerate(law.ratios):
-        ax.plot([one.amplitude] * 2, [one.low, one.high], color=INK, lw=1.4,
+        ax.plot([one.amplitude] * 2, [one.low, one.high], color=style.INK, lw=1.4,
                 label="mean column, 95 %" if i == 0 else None)  # fmt: skip
-        ax.plot(one.amplitude, one.mean, "o", color=INK, ms=7)
-        ax.plot(one.amplitude, one.other, "x", color=BACKWARD, ms=9, mew=2,
+        ax.plot(one.amplitude, one.mean, "o", color=style.INK, ms=7)
+        ax.plot(one.amplitude, one.other, "x", color=style.BACKWARD, ms=9, mew=2,
                 label="v_exp column" if i == 0 else None)  # fmt: skip
     ax.set_yscale("log")
     ax.set_yticks([0.5, 1, 2, 4, 8, 16], ["0.5", "1", "2", "4", "8", "16"])
@@ -116,12 +101,12 @@ def period_law_figure(law: PeriodLaw) -> Figure:
     ax.set_xlabel("amplitude α, rad")
     ax.set_ylabel("v(T = 1 s) / v(T = 2 s)")
     ax.set_title("Speed over the period")
-    ax.spines["left"].set_color(GREY)
+    ax.spines["left"].set_color(style.GREY)
     ax.legend(loc="lower right")
     return drawn
 
 
-_THREE = (FORWARD, PLATFORM1, BACKWARD)
+_THREE = (style.FORWARD, style.PLATFORM1, style.BACKWARD)
 """Colours of three rows or circles."""
 _SHIFT = 0.02
 """Between rows that would hide one another, rad."""
@@ -130,7 +115,7 @@ _SHIFT = 0.02
 def draw(found: Reproduction) -> dict[str, str]:
     """All figures as SVG texts by name."""
     singular = found.posture.angle
-    with styled():
+    with style.styled():
         drawn = {
             "figure3": start_figure(found.start),
             "figure4": ratio_figure(found.ratio_surface, found.tables, singular),
@@ -140,34 +125,36 @@ def draw(found: Reproduction) -> dict[str, str]:
             "readings": readings_figure(found.consistency),
             "period": period_law_figure(found.period),
         }
-        return {name: svg(one) for name, one in drawn.items()}
+        return {name: style.svg(one) for name, one in drawn.items()}
 
 
 def start_figure(start: Start) -> Figure:
     """The path of P, m; and the displacement over a sliding period, per second."""
-    drawn = figure(6.6, 6.4)
+    drawn = style.figure(6.6, 6.4)
     path, speed = drawn.subplots(2, 1, height_ratios=[1, 1.6])
     moved = along_travel(start.driven)
-    path.plot(moved.x, moved.y, color=colour_of(start.steady), lw=1.1)
+    path.plot(moved.x, moved.y, color=style.colour_of(start.steady), lw=1.1)
     path.set_title("Path of P from rest")
     path.set_xlabel("x, m")
     path.set_ylabel("y, m")
     row = start.row
     speed.axhspan(
-        1e3 * (row.mean - row.half_width), 1e3 * (row.mean + row.half_width), color=GREY,
+        1e3 * (row.mean - row.half_width), 1e3 * (row.mean + row.half_width), color=style.GREY,
         alpha=0.16, lw=0, label="measured, 95 % interval (Table 3)",
     )  # fmt: skip
-    speed.axhline(1e3 * row.mean, color=GREY, lw=1.2, label="its mean")
-    speed.axhline(1e3 * row.other, color=LIMIT, lw=1.2, ls=(0, (4, 2)), label="column v_exp")
-    speed.plot(start.t, 1e3 * start.speed, color=colour_of(start.steady), label="model from rest")
-    speed.axhline(1e3 * abs(start.steady), color=INK, lw=1.0, ls=":", label="model, steady")
+    speed.axhline(1e3 * row.mean, color=style.GREY, lw=1.2, label="its mean")
+    speed.axhline(1e3 * row.other, color=style.LIMIT, lw=1.2, ls=(0, (4, 2)), label="column v_exp")
+    speed.plot(
+        start.t, 1e3 * start.speed, color=style.colour_of(start.steady), label="model from rest"
+    )
+    speed.axhline(1e3 * abs(start.steady), color=style.INK, lw=1.0, ls=":", label="model, steady")
     speed.set_title("Average speed over a period")
     speed.set_xlabel("time, s")
     speed.set_ylabel("mm/s")
     speed.set_xlim(0, start.driven.t[-1])
     speed.set_ylim(0, 1.1e3 * (row.mean + row.half_width))
     gait = start.gait
-    note(
+    style.note(
         speed, f"α = {number(gait.amplitude)} rad, T = {number(gait.period)} s, "
         f"J20/J10 = {number(row.ratio)}; the paper does not give Fig. 3's", y=0.06, va="bottom",
     )  # fmt: skip
@@ -177,7 +164,7 @@ def start_figure(start: Start) -> Figure:
 
 def ratio_figure(surface: SpeedSurface, tables: Tables, singular: float) -> Figure:
     """The map, with Table 2's fitted amplitude; and its rows over all amplitudes."""
-    drawn = figure(11.4, 4.9)
+    drawn = style.figure(11.4, 4.9)
     left, right = drawn.subplots(1, 2, width_ratios=[1.1, 1])
     norm = _speed_map(left, surface, surface.ratio, singular)
     left.set_xlabel("J20/J10 (about P), T = 1 s")
@@ -191,8 +178,8 @@ def ratio_figure(surface: SpeedSurface, tables: Tables, singular: float) -> Figu
         label = f"J20/J10 = {number(row.ratio)}"
         _printed_row(right, one.amplitude + _SHIFT * (i - 1), row, colour, label)
     limit = RATE_LIMIT / (2 * np.pi)
-    right.axvline(limit, color=LIMIT, lw=1.4)
-    right.annotate("30 rpm", (limit, 0.98), xycoords=("data", "axes fraction"), color=LIMIT,
+    right.axvline(limit, color=style.LIMIT, lw=1.4)
+    right.annotate("30 rpm", (limit, 0.98), xycoords=("data", "axes fraction"), color=style.LIMIT,
                    ha="right", va="top", rotation=90, fontsize=9)  # fmt: skip
     right.set_ylim(0, None)
     right.set_xlabel("amplitude α, rad (Table 2 does not give it)")
@@ -204,13 +191,13 @@ def ratio_figure(surface: SpeedSurface, tables: Tables, singular: float) -> Figu
 
 def period_figure(surface: SpeedSurface, tables: Tables, singular: float) -> Figure:
     """The map with the six measured means; and cuts through it at their two periods."""
-    drawn = figure(11.4, 4.9)
+    drawn = style.figure(11.4, 4.9)
     left, right = drawn.subplots(1, 2, width_ratios=[1.1, 1])
     norm = _speed_map(left, surface, surface.period, singular)
     left.set_xlabel("period T, s, at J20/J10 = 0.3 (about P)")
     points = [(one.row.period, one.amplitude, one.row) for one in tables.table3]
     _measured_means(left, points, norm, stacked=True)
-    for period, colour in ((1.0, FORWARD), (2.0, BACKWARD)):
+    for period, colour in ((1.0, style.FORWARD), (2.0, style.BACKWARD)):
         rows = [one for one in tables.table3 if one.row.period == period]
         _cut(right, surface, rows, period, colour)
     right.set_yscale("log")
@@ -232,16 +219,16 @@ def _speed_map(ax: Axes, surface: SpeedSurface, across: Array, singular: float) 
     top = max(float(abs(speed).max()), 1e-9)
     norm = TwoSlopeNorm(0.0, -top, top)
     alpha = surface.amplitude
-    fill = ax.contourf(across, alpha, speed, levels=25, cmap=SIGNED, norm=norm, zorder=1)
+    fill = ax.contourf(across, alpha, speed, levels=25, cmap=style.SIGNED, norm=norm, zorder=1)
     fill.set(edgecolor="face", linewidth=0.4)
-    ax.contour(across, alpha, speed, levels=[0.0], colors=[INK], linewidths=0.8, zorder=2)
+    ax.contour(across, alpha, speed, levels=[0.0], colors=[style.INK], linewidths=0.8, zorder=2)
     rate = surface.rate
     if rate.max() > RATE_LIMIT:
         ax.contourf(
             across, alpha, rate, levels=[RATE_LIMIT, 2 * rate.max()],
             colors=[(1, 1, 1, 0.35)], hatches=["////"], zorder=3,
         )  # fmt: skip
-        ax.contour(across, alpha, rate, levels=[RATE_LIMIT], colors=[LIMIT], linewidths=1.6,
+        ax.contour(across, alpha, rate, levels=[RATE_LIMIT], colors=[style.LIMIT], linewidths=1.6,
                    zorder=4)  # fmt: skip
     bar = ax.figure.colorbar(fill, ax=ax, pad=0.02, aspect=30, ticks=MaxNLocator(7))
     bar.set_label("mean speed, mm/s  (− platform 2 leads)")
@@ -251,7 +238,8 @@ def _speed_map(ax: Axes, surface: SpeedSurface, across: Array, singular: float) 
     ax.set_title("Hatched: beyond 30 rpm")
     ax.annotate(
         f"{number(singular, 3)} rad, singular posture, and {number(ANGLE_LIMIT)} rad, the servo's "
-        "limit, are above the plot", (0, -0.2), xycoords="axes fraction", fontsize=8.5, color=GREY,
+        "limit, are above the plot", (0, -0.2), xycoords="axes fraction", fontsize=8.5,
+        color=style.GREY,
     )  # fmt: skip
     return norm
 
@@ -266,13 +254,13 @@ def _measured_means(
     """
     for i, (x, y, row) in enumerate(points):
         above = stacked or i % 2 == 0
-        colour = SIGNED(norm(-1e3 * row.mean))
-        ax.plot(x, y, "o", ms=11, mfc=colour, mec=INK, mew=1.3, zorder=6, clip_on=False)
+        colour = style.SIGNED(norm(-1e3 * row.mean))
+        ax.plot(x, y, "o", ms=11, mfc=colour, mec=style.INK, mew=1.3, zorder=6, clip_on=False)
         text = f"{number(1e3 * row.mean, 3)} ± {number(1e3 * row.half_width, 3)}"
         ax.annotate(
             text, (x, y), (0, 9 if above else -17), textcoords="offset points", fontsize=8.5,
             zorder=7, ha="right" if x > 0.9 * ax.get_xlim()[1] else "center",
-            path_effects=[withStroke(linewidth=3, foreground=PAPER, alpha=0.9)],
+            path_effects=[withStroke(linewidth=3, foreground=style.PAPER, alpha=0.9)],
         )  # fmt: skip
 
 
@@ -296,17 +284,17 @@ def _cut(
             label=f"{label}, beyond 30 rpm" if not kept.all() else None)  # fmt: skip
     for one in rows:
         _printed_row(ax, one.amplitude, one.row, colour)
-    ax.axvline(RATE_LIMIT * period / (2 * np.pi), color=LIMIT, lw=0.8, ls=":")
+    ax.axvline(RATE_LIMIT * period / (2 * np.pi), color=style.LIMIT, lw=0.8, ls=":")
 
 
 def circles_figure(turning: Turning) -> Figure:
     """The paths of P, m, each beginning at the origin with platform 1 along x."""
-    drawn = figure(6.6, 6.0)
+    drawn = style.figure(6.6, 6.0)
     ax = drawn.subplots()
     for one, colour in zip(turning.circles, _THREE, strict=True):
         label = f"φ0 = {number(one.gait.offset, 3)}: R = {number(one.circle.radius, 3)} m"
         ax.plot(one.driven.x, one.driven.y, color=colour, lw=1.0, label=label)
-    ax.plot(0, 0, "o", color=INK, ms=5, zorder=5)
+    ax.plot(0, 0, "o", color=style.INK, ms=5, zorder=5)
     gait = turning.circles[0].gait
     ax.set_title(f"Circles at α = {number(gait.amplitude)} rad, T = {number(gait.period)} s")
     ax.set_aspect("equal", adjustable="datalim")

@@ -11,17 +11,7 @@ from typing import Any
 import numpy as np
 
 from rr_opt.array import Array
-from rr_opt.documents.document import (
-    Cell,
-    Document,
-    Figure,
-    Gallery,
-    Section,
-    Table,
-    csv_text,
-    table,
-    versions,
-)
+from rr_opt.documents import document as doc
 from rr_opt.documents.texts import prose
 from rr_opt.formatting import number
 from rr_opt.model.ballast import Loads, load_count
@@ -133,36 +123,36 @@ class Reproduction(Result):
         audit["tables.csv"] = audit.pop("audit-columns.csv")
         return curves(self) | audit
 
-    def document(self, figures: Sequence[Figure] = ()) -> Document:
+    def document(self, figures: Sequence[doc.Figure] = ()) -> doc.Document:
         """The page, its Markdown and the text for a terminal."""
         rows, audit = self.tables.rows, findings(self)
         drawn = {figure.name: figure for figure in figures}
         sections = {
-            one.key: Section(one.title, (one.finding, *one.sentences, one.table), brief=False)
+            one.key: doc.Section(one.title, (one.finding, *one.sentences, one.table), brief=False)
             for one in audit
         }
 
-        def gallery(*names: str, wide: bool = False) -> Section:
+        def gallery(*names: str, wide: bool = False) -> doc.Section:
             shown = tuple(drawn[name] for name in names if name in drawn)
-            return Section("", (Gallery(shown, wide),), brief=False)
+            return doc.Section("", (doc.Gallery(shown, wide),), brief=False)
 
-        return Document(
+        return doc.Document(
             "",
             "the paper, reproduced",
-            "The paper's tables and figures recomputed, and what does not hold",
+            "The paper's tables and figures recomputed, and its statements checked",
             "The tables and figures were recomputed for the shipped prototype. For "
             f"{sum(one.within_mean for one in rows)} of {len(rows)} measured averages the model's "
             "speed is within their interval; Table 2's amplitude and the friction were fitted to "
             "them.",
             (
-                Section("Findings", tuple(map(_sentences, audit))),
+                doc.Section("Findings", tuple(map(_sentences, audit))),
                 sections.pop("columns"),
                 gallery("figure4", "figure5", wide=True),
                 gallery("figure3", "signs", "figure6", "period"),
                 gallery("readings"),
                 *sections.values(),
             ),
-            footer=(CITATION, *versions(self.sha256)),
+            footer=(CITATION, *doc.versions(self.sha256)),
         )
 
 
@@ -228,7 +218,7 @@ class Finding:
     title: str
     finding: str
     sentences: tuple[str, ...]
-    table: Table
+    table: doc.Table
 
 
 def _sentences(one: Finding) -> str:
@@ -279,12 +269,12 @@ def _gait(answer: FastestGait) -> str:
 _QUESTIONS = {"ratio": "J20/J10", "kappa": "kappa", "equation": "equation (3)"}
 
 
-def _audit_tables(found: Reproduction) -> dict[str, Table]:
+def _audit_tables(found: Reproduction) -> dict[str, doc.Table]:
     """By the finding's key."""
     energy = {one.signs: one for one in found.signs.energy}
     posture, limit = found.posture, publication.ANGLE_LIMIT
     return {
-        "signs": table(
+        "signs": doc.table(
             ("signs of (3)", "largest error against Kane", "against multipliers", "median error",
              "servo, mW", "friction, mW", "from nowhere, mW", "mean speed, m/s"),
             [
@@ -296,7 +286,7 @@ def _audit_tables(found: Reproduction) -> dict[str, Table]:
                 for one in found.signs.deviations
             ],
         ),
-        "left-out": table(
+        "left-out": doc.table(
             ("unknown", "unit", "assumed", "box from", "box to", "least speed, m/s",
              "largest speed, m/s"),
             [
@@ -304,7 +294,7 @@ def _audit_tables(found: Reproduction) -> dict[str, Table]:
                 for one in found.sensitivities
             ],
         ),
-        "columns": table(
+        "columns": doc.table(
             ("table", "J20/J10", "period, s", "amplitude, rad", "mean, m/s", "half width, m/s",
              "v_exp, m/s", "model, m/s", "model within mean", "model within v_exp",
              "v_exp within mean"),
@@ -318,7 +308,7 @@ def _audit_tables(found: Reproduction) -> dict[str, Table]:
                 for one in found.tables.rows
             ],
         ),
-        "readings": table(
+        "readings": doc.table(
             ("question", "reading", "column", "chi-square", "unknowns fitted", "p", "a1, m",
              "a2, m", "b, m", "k, N s/m", "Table 2's amplitude, rad"),
             [
@@ -329,11 +319,11 @@ def _audit_tables(found: Reproduction) -> dict[str, Table]:
                 for one in found.consistency.hypotheses
             ],
         ),
-        "limits": table(
+        "limits": doc.table(
             ("gait", "amplitude, rad", "period, s", "peak rate, rpm", "over 30 rpm by, rpm"),
             [(one.where, one.amplitude, one.period, one.rpm, one.excess) for one in found.demands],
         ),
-        "posture": table(
+        "posture": doc.table(
             ("robot", "singular angle, rad", "servo's limit, rad"),
             [
                 ("shipped prototype", posture.angle, limit),
@@ -341,7 +331,7 @@ def _audit_tables(found: Reproduction) -> dict[str, Table]:
                 ("largest over a1, a2", posture.largest, limit),
             ],
         ),
-        "period": table(
+        "period": doc.table(
             ("amplitude, rad", "model", "mean", "mean from", "mean to", "v_exp", "v_exp from",
              "v_exp to"),
             [
@@ -350,14 +340,14 @@ def _audit_tables(found: Reproduction) -> dict[str, Table]:
                 for one in found.period.ratios
             ],
         ),
-        "amplitude": table(
+        "amplitude": doc.table(
             ("robot", "J20/J10", "best amplitude at T = 1 s, rad", "a maximum", "reverses at, rad"),
             [
                 *(("shipped prototype", J, *_peak(peak)) for J, peak in found.best.own),
                 *((f"fitted: {name}", 0.3, *_peak(peak)) for name, peak in found.best.fitted),
             ],
         ),
-        "turning": table(
+        "turning": doc.table(
             ("phi0, rad", "radius, m", "heading per period, rad", "speed, m/s", "once round, s",
              "heading at -phi0, rad"),
             [
@@ -369,7 +359,7 @@ def _audit_tables(found: Reproduction) -> dict[str, Table]:
     }  # fmt: skip
 
 
-def _peak(peak: Peak) -> tuple[Cell, ...]:
+def _peak(peak: Peak) -> tuple[doc.Cell, ...]:
     return peak.amplitude, "yes" if peak.inside else "end of range", peak.reverses
 
 
@@ -384,16 +374,16 @@ def curves(found: Reproduction) -> dict[str, str]:
         for row in np.column_stack([one.driven.t, one.driven.x, one.driven.y])[::5]
     ]
     return {
-        "figure3.csv": csv_text(
-            ("t", "x", "y", "psi", "phi", "average_speed"),
+        "figure3.csv": doc.csv_text(
+            ("t [s]", "x [m]", "y [m]", "psi [rad]", "phi [rad]", "average_speed [m/s]"),
             [(*row, average.get(round(row[0], 9))) for row in run],
         ),
         # Thinned to the paper's steps or finer: 0.05 rad, 0.01 and 0.05 s.
         "figure4.csv": _surface(found.ratio_surface, 10),
         "figure5.csv": _surface(found.period_surface, 5),
-        "figure6.csv": csv_text(("offset", "t", "x", "y"), circles),
-        "signs.csv": csv_text(
-            ("t", *(f"v {name}" for name in motion.v)),
+        "figure6.csv": doc.csv_text(("offset [rad]", "t [s]", "x [m]", "y [m]"), circles),
+        "signs.csv": doc.csv_text(
+            ("t [s]", *(f"v {name} [m/s]" for name in motion.v)),
             np.column_stack([motion.t, *motion.v.values()]),
         ),
     }
@@ -401,11 +391,14 @@ def curves(found: Reproduction) -> dict[str, str]:
 
 def _surface(surface: SpeedSurface, every: int) -> str:
     """Every fifth amplitude; `every`: the step of ratios or periods."""
-    head = ("amplitude", "ratio", "period", "speed", "peak_rate", "keeps_30_rpm")
+    head = (
+        *("amplitude [rad]", "ratio", "period [s]", "speed [m/s]", "peak_rate [rad/s]"),
+        "keeps_30_rpm",
+    )
     rows = [
         (surface.amplitude[i], surface.ratio[j], surface.period[j], surface.speed[i, j],
          surface.rate[i, j], int(surface.rate[i, j] <= RATE_LIMIT))
         for j in range(0, len(surface.ratio), every)
         for i in range(0, len(surface.amplitude), 5)
     ]  # fmt: skip
-    return csv_text(head, rows)
+    return doc.csv_text(head, rows)

@@ -4,9 +4,8 @@ import json
 
 import pytest
 
-from rr_opt.files.gait_record import gait_record
 from rr_opt.files.problem_file import read_problem
-from rr_opt.files.record import robot_record
+from rr_opt.files.record import gait_record, robot_record
 from rr_opt.model.gait import SineGait
 
 

@@ -2,12 +2,12 @@
 
 import csv
 import json
+import math
 
 import pytest
 
-from rr_opt.files.gait_record import gait_record
 from rr_opt.files.problem_file import read_problem
-from rr_opt.files.record import robot_record
+from rr_opt.files.record import gait_record, robot_record
 from rr_opt.model.gait import SineGait
 from tests.motion.gaits import EVERY
 
@@ -84,6 +84,46 @@ def test_steps_too_fast_for_the_servo_are_reported(run, result):
     done = run("export", result(SineGait(0.5, 0.3)))
     assert done.exit_code == 0
     assert "warning: A step between set points needs" in done.stderr
+
+
+def test_a_changed_period_lowers_the_amplitude_to_stay_within_the_limits(run, result):
+    # 47.4 set points a period become 47: 1 % faster, at a servo's full rate.
+    gait = SineGait(math.pi * 0.379 / (2 * math.pi), 0.379)
+    asked = (run("export", result(gait), "--json", *more) for more in ((), ("--no-within-limits",)))
+    kept, broken = asked
+    assert json.loads(broken.stdout)["amplitude"] == gait.amplitude
+    assert "warning: A step between set points needs" in broken.stderr
+    lowered = json.loads(kept.stdout)
+    assert "warning" not in kept.stderr
+    assert lowered["amplitude"] * 2 * math.pi / lowered["period"] == pytest.approx(
+        math.pi, rel=5e-4
+    )
+    assert abs(lowered["speed_left"]) < abs(json.loads(broken.stdout)["speed_left"])
+
+
+def test_steps_between_counts_are_within_the_limits_if_asked(run, result, tmp_path):
+    def steps(*more):
+        done = run("export", result(SineGait(0.15, 0.3)), "--format", "servo", *more, "-o", "a.csv")
+        counts = [int(row[1]) for row in rows(tmp_path / "a.csv")[1:]]
+        return done, max(abs(b - a) for a, b in zip(counts, counts[1:] + counts[:1], strict=True))
+
+    # 30 rpm are 4.9 counts in 8 ms.
+    rounded, most = steps()
+    assert (most, "up to 1.734 mrad behind" in rounded.stderr) == (5, True)
+    strict, most = steps("--within-limits")
+    assert (most, strict.stderr.count("warning")) == (4, 0)
+
+
+def test_the_limits_of_a_result_are_those_of_its_problem(run, result, tmp_path):
+    # As it is at 30 rpm, of a problem that allows 15: its own, not the servo's.
+    gait = SineGait(math.pi / 2 * 0.379 / (2 * math.pi), 0.379)
+    path = tmp_path / result(gait)
+    record = json.loads(path.read_text())
+    limits = {"angle": 2.6, "rate": math.pi / 2, "torque": None, "singularity": 0.02, "grip": None}
+    record["limits"] = [{"name": name, "limit": limit} for name, limit in limits.items()]
+    path.write_text(json.dumps(record))
+    done = run("export", "mine/result.json", "--json")
+    assert json.loads(done.stdout)["amplitude"] < 0.995 * gait.amplitude
 
 
 @pytest.mark.parametrize(

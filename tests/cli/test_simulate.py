@@ -6,15 +6,14 @@ import json
 import numpy as np
 import pytest
 
-from rr_opt.files.gait_record import gait_record
 from rr_opt.files.problem_file import read_problem
-from rr_opt.files.record import robot_record
+from rr_opt.files.record import gait_record, robot_record
 from rr_opt.formatting import number, speed_text
 from rr_opt.model.problem import Limits
 from rr_opt.verify.replay import replay
 from tests.motion.gaits import EVERY, FREE
 
-COLUMNS = ["t", "x", "y", "psi", "phi", "v", "torque"]
+COLUMNS = ["t [s]", "x [m]", "y [m]", "psi [rad]", "phi [rad]", "v [m/s]", "torque [N m]"]
 
 
 def rows(path):
@@ -99,7 +98,7 @@ def test_less_than_a_period_has_no_circle(run):
     assert "mean v of axle 1, less than a period" in run(*arguments).stdout
 
 
-def test_torque_between_the_samples_is_held_against_the_servo(run):
+def test_torque_between_the_samples_is_compared_the_servo(run):
     done = run("simulate", "--amplitude", "1", "--period", "0.2", "--seconds", "1", "--rate", "5")
     assert "the servo's torque limit" in done.stderr
 

@@ -24,9 +24,9 @@ def test_every_gait_is_a_row_and_the_best_of_the_grid_is_among_them(swept, tmp_p
         rows = list(csv.DictReader(file))
     best = json.loads(swept.stdout)["best_of_grid"]
     kept = [row for row in rows if all(row[key] == "1" for key in row if key.startswith("keeps"))]
-    fastest = max(kept, key=lambda row: abs(float(row["speed"])))
-    assert float(fastest["speed"]) == pytest.approx(best["speed"], rel=1e-8)
-    assert float(fastest["amplitude"]) == pytest.approx(best["gait"]["amplitude"], rel=1e-8)
+    fastest = max(kept, key=lambda row: abs(float(row["speed [m/s]"])))
+    assert float(fastest["speed [m/s]"]) == pytest.approx(best["speed"], rel=1e-8)
+    assert float(fastest["amplitude [rad]"]) == pytest.approx(best["gait"]["amplitude"], rel=1e-8)
 
 
 def test_only_whole_files_are_left(swept, tmp_path):

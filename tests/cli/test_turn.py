@@ -111,12 +111,29 @@ def test_chart(run, plain, tmp_path):
     assert "tightest" in done.stdout
     with (tmp_path / "res" / "turn-chart.csv").open() as file:
         rows = list(csv.DictReader(file))
-    by = {(row["amplitude"], row["period"], row["offset"]): row for row in rows}
+    by = {(row["amplitude [rad]"], row["period [s]"], row["offset [rad]"]): row for row in rows}
     mirrored = 0
     for (amplitude, period, offset), row in by.items():
         twin = by.get((amplitude, period, f"-{offset}"))
-        if twin and row["speed"] and offset != "0":
-            assert twin["speed"] == row["speed"]
-            assert float(twin["curvature"]) == -float(row["curvature"])
+        if twin and row["speed [m/s]"] and offset != "0":
+            assert twin["speed [m/s]"] == row["speed [m/s]"]
+            assert float(twin["curvature [1/m]"]) == -float(row["curvature [1/m]"])
             mirrored += 1
     assert mirrored > 100
+
+
+def test_another_question_does_not_lose_its_answer(run, plain, tmp_path):
+    def turned(*arguments):
+        return run("turn", plain, "--out", "res", "--no-figures", *arguments)
+
+    file = tmp_path / "res" / "result.json"
+    assert turned("--radius", "1.5 m").exit_code == 0
+    first = file.read_bytes()
+    for verb in (("turn", plain, "--radius", "2 m"), ("maximize-speed", plain)):
+        done = run(*verb, "--out", "res", "--no-figures")
+        assert done.exit_code == 2
+        assert "the answer to another question: the turn radius-1.5m. Expected" in done.stderr
+    assert file.read_bytes() == first
+    assert turned("--radius", "150 cm").exit_code == 0
+    assert turned("--radius", "2 m", "--force").exit_code == 0
+    assert file.read_bytes() != first

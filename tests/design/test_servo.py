@@ -37,7 +37,7 @@ def with_effect(name, values):
 )
 def test_what_a_servo_is_told_makes_the_gait(gait):
     servo = LinearServo(0.05, 2e-3, 0.03)
-    made, t = servo.made(servo.told(gait)), np.linspace(0, 2, 301)
+    made, t = servo.response_to(servo.command_for(gait)), np.linspace(0, 2, 301)
     if isinstance(gait, SineGait):  # told without its lead in time
         assert (made.amplitude, made.offset) == pytest.approx((gait.amplitude, gait.offset))
     else:
@@ -57,7 +57,7 @@ def test_a_linear_servo_is_what_the_effect_is(name):
 def test_the_robot_reaches_the_speed_with_its_servo(name):
     problem = Problem(with_effect(name, SERVOS[name]), gait=GaitBounds(offset=Interval(-0.2, 0.2)))
     found = maximize_speed(problem)
-    told = found.problem.command.servo.told(found.best.gait)
+    told = found.problem.command.servo.command_for(found.best.gait)
     seen = driven_speed(problem.robot, told)
     assert seen.speed == pytest.approx(found.best.speed, rel=1e-5)
     assert problem.limits.worst(seen.reached)[1] <= 1e-6
@@ -69,7 +69,7 @@ def test_the_bounds_are_those_of_the_command():
     def best(high):
         gait = GaitBounds(amplitude=Interval(0.05, high), period=Interval(0.3, 1.5))
         found = maximize_speed(Problem(robot, gait=gait))
-        return found, found.problem.command.servo.told(found.best.gait)
+        return found, found.problem.command.servo.command_for(found.best.gait)
 
     found, told = best(0.5)
     assert told.amplitude == pytest.approx(0.5, rel=1e-6)

@@ -64,7 +64,7 @@ def test_a_result_is_no_robot(write):
     assert result.exit_code == 2
     assert result.stdout == (
         f"{path}:1: robot: Read 'result.json', a result. Expected a robot file. "
-        "Write what the result holds under `robot` to a file, and name that.\n"
+        "Write what the result has under `robot` to a file, and name that.\n"
     )
 
 

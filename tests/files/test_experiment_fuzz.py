@@ -16,9 +16,9 @@ from rr_opt.files.experiment_model import (
     UncertaintyModel,
 )
 from rr_opt.files.fields import keys_of
-from rr_opt.files.gait_record import FourierRecord, SineRecord
 from rr_opt.files.issue import InvalidFileError
 from rr_opt.files.lint import lint_file
+from rr_opt.files.record import FourierRecord, SineRecord
 from rr_opt.model.experiment import CountScale, Noise
 
 MODELS = (

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from rr_opt.files.gait_record import gait_from, gait_record
+from rr_opt.files.record import gait_from, gait_record
 from rr_opt.files.yaml_text import Document
 from rr_opt.model.gait import Gait, SineGait
 from tests.motion.gaits import EVERY, FOURIER, FREE

@@ -5,9 +5,9 @@ import os
 import pytest
 
 from rr_opt.batch.journal import Journal
-from rr_opt.files.gate import read_content
 from rr_opt.files.issue import InvalidFileError
 from rr_opt.files.lint import lint_file
+from rr_opt.files.source import read_content
 from rr_opt.outcome import InputError
 
 

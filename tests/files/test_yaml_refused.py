@@ -26,8 +26,8 @@ REFUSED = {
     "a: \x00": "f: The text has a character (code 0) that YAML does not allow.",
     'a: "\\UFFFFFFFF"': "f: The text is not YAML",
     'a: "\\ud800"': "f:1: a: The text holds half a character.",
-    "[" * 3000: "The file holds too much. Expected at most 10000 values in 20 levels.",
-    "[" + "0," * 11000 + "]": "The file holds too much.",
+    "[" * 3000: "The file is too large. Expected at most 10000 values in 20 levels.",
+    "[" + "0," * 11000 + "]": "The file is too large.",
 }
 
 

@@ -35,7 +35,7 @@ def table(text):
 def test_csv(gait):
     points = set_points(gait, 125.0)
     head, (t, phi, degrees) = table(text_of(points, "csv"))
-    assert head == ["t", "phi", "phi_deg"]
+    assert head == ["t [s]", "phi [rad]", "phi [deg]"]
     assert np.diff(t) == pytest.approx(0.008, rel=1e-6)
     assert phi == pytest.approx(points.played.angle(t), abs=1e-8)
     assert degrees == pytest.approx(phi * 180 / math.pi, abs=1e-6)
@@ -45,7 +45,7 @@ def test_csv(gait):
 def test_servo(gait):
     points = set_points(gait, 125.0)
     head, (t, count) = table(text_of(points, "servo"))
-    assert head == ["t", "count"]
+    assert head == ["t [s]", "count"]
     angle = np.radians((count - 512) * 300 / 1024)
     assert np.abs(angle - points.played.angle(t)).max() <= np.radians(150 / 1024) + 1e-9
 

@@ -75,8 +75,8 @@ def test_files(turned, tmp_path):
     assert record["status"] == "optimal"
     assert record["seconds"] == pytest.approx(turned.seconds)
     points = np.genfromtxt(tmp_path / "setpoints.csv", delimiter=",", names=True)
-    assert points["phi"] == pytest.approx(turned.command.angle(points["t"]), abs=1e-6)
-    assert np.abs(np.diff(points["phi"])).max() <= PROBLEM.limits.rate / 125 * 1.001
+    assert points["phi_rad"] == pytest.approx(turned.command.angle(points["t_s"]), abs=1e-6)
+    assert np.abs(np.diff(points["phi_rad"])).max() <= PROBLEM.limits.rate / 125 * 1.001
 
 
 def test_without_pieces():

@@ -44,8 +44,7 @@ def lint(path: str | Path) -> list[Issue]:
 
     if (found := lint_machine(experiment)) is not None:
         return found
-    from rr_opt.recordings.experiment import experiment_of
-    from rr_opt.recordings.usable import checked
+    from rr_opt.recordings.experiment import checked, experiment_of
 
     read, issues = experiment_of(experiment)
     if read is not None:

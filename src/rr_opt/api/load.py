@@ -14,10 +14,10 @@ from typing import Any
 
 import numpy as np
 
-from rr_opt.files.gait_record import gait_from
 from rr_opt.files.issue import InvalidFileError
 from rr_opt.files.lint import lint_file
 from rr_opt.files.problem_file import kind_of, name_of, read_problem
+from rr_opt.files.record import gait_from
 from rr_opt.files.robot_file import read_robot, robot_from
 from rr_opt.files.source import read_document
 from rr_opt.files.yaml_text import Document
@@ -27,7 +27,7 @@ from rr_opt.model.ballast import inertia_ratio, load_count, with_inertia_ratio, 
 from rr_opt.model.experiment import Experiment
 from rr_opt.model.gait import AMPLITUDE, OFFSET, PERIOD, Gait, SineGait
 from rr_opt.model.machine import MachineExperiment
-from rr_opt.model.problem import GaitBounds, Problem, RatioChoice
+from rr_opt.model.problem import GaitBounds, Limits, Problem, RatioChoice
 from rr_opt.model.robot import Robot
 from rr_opt.outcome import InputError
 from rr_opt.units import Quantity
@@ -145,6 +145,7 @@ class RobotWithGait:
     """A gait with the robot that is to drive it.
 
     status    of the result that the gait was taken from; None if it was not taken from one
+    limits    of the problem that it solves; None likewise
     warnings  what a user may take this gait for that it is not
     """
 
@@ -152,6 +153,7 @@ class RobotWithGait:
     gait: Gait
     status: str | None = None
     warnings: tuple[str, ...] = ()
+    limits: Limits | None = None
 
 
 _AMPLITUDE, _PERIOD, _OFFSET = 0.785, 1.0, 0.0
@@ -235,7 +237,7 @@ def _of_result(document: Document) -> RobotWithGait:
     robot: Any = document.data.get("robot")
     if not isinstance(document.data.get("gait"), dict) or not isinstance(robot, dict):
         raise InputError(
-            f"{document.file}: The result holds no gait: its status is "
+            f"{document.file}: The result has no gait: its status is "
             f"`{document.data['status']}`. Give the result of a problem that was solved."
         )
     servo = robot.get("servo")
@@ -248,13 +250,22 @@ def _of_result(document: Document) -> RobotWithGait:
         raise InvalidFileError([*issues, *found])
     status, message = (document.data.get(key) for key in ("status", "message"))
     if status == "optimal":
-        return RobotWithGait(read, gait, "optimal")
+        return RobotWithGait(read, gait, "optimal", limits=_limits(document.data))
     why = f" {message}" if isinstance(message, str) else ""
     doubt = (
         f"{document.file}: The status of this result is {shown(status)} and not 'optimal'.{why} "
         "Its gait is driven all the same."
     )
     return RobotWithGait(read, gait, status if isinstance(status, str) else shown(status), (doubt,))
+
+
+def _limits(result: dict[str, Any]) -> Limits | None:
+    """The limits that a result names; None if it does not."""
+    rows = result.get("limits")
+    if not isinstance(rows, list):
+        return None
+    named = {row["name"]: row["limit"] for row in rows}
+    return Limits(**{name: math.inf if limit is None else limit for name, limit in named.items()})
 
 
 def _doubts(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
@@ -18,9 +19,10 @@ from rr_opt.model.gait import Gait
 from rr_opt.model.machine import MachineExperiment
 from rr_opt.outcome import InputError, NotConvergedError
 from rr_opt.recordings.clock_fit import at_commanded_rate
-from rr_opt.recordings.experiment import inspect_experiment, is_experiment
-from rr_opt.recordings.inspection import inspect_file
-from rr_opt.recordings.usable import usable
+from rr_opt.recordings.experiment import inspect_experiment, is_experiment, usable
+from rr_opt.recordings.inspection import Circumstances, inspect_file
+from rr_opt.recordings.readers import ReadOptions
+from rr_opt.recordings.readers.columns import columns_from
 from rr_opt.results.inspection import InspectedRecordings
 from rr_opt.results.result import Progress, quiet
 
@@ -34,6 +36,7 @@ def inspect(
     *,
     layout: str | Path | None = None,
     servo_log: str | Path | None = None,
+    columns: Mapping[str, str] | None = None,
     gait: Gait | None = None,
     start: Start = "running",
     progress: Progress = quiet,
@@ -44,6 +47,7 @@ def inspect(
 
     layout     YAML file that says where each marker sits; None: estimated
     servo_log  the servo's log, on its own clock
+    columns    by channel, the column of a text file that has it: `{"psi": "yaw [deg]"}`
     gait       what was commanded
     start      `rest`: the robot stood still until t = 0
 
@@ -51,7 +55,7 @@ def inspect(
     """
     path = Path(source)
     if is_experiment(path):
-        given = {"layout": layout, "servo_log": servo_log, "gait": gait}
+        given = {"layout": layout, "servo_log": servo_log, "columns": columns, "gait": gait}
         wrong = [name for name, value in given.items() if value is not None]
         if wrong:
             _refuse(wrong)
@@ -59,7 +63,11 @@ def inspect(
         sha256 = read_plan(path)[0].sha256
     else:
         layout_file, log = (None if one is None else Path(one) for one in (layout, servo_log))
-        found = [inspect_file(path, layout=layout_file, servo_log=log, gait=gait, start=start)]
+        known = Circumstances(
+            options=ReadOptions(columns=columns_from(columns or {})),
+            gait=gait, start=start, servo_log=log,
+        )  # fmt: skip
+        found = [inspect_file(path, known, layout=layout_file)]
         sha256 = fingerprint([path])
     return InspectedRecordings(name_of(path), sha256, tuple(found))
 
@@ -126,7 +134,7 @@ def diagnose(
 
 def _cleaned(experiment: Experiment) -> Experiment:
     """With recordings that were made from arrays treated as those of files are."""
-    from rr_opt.recordings.inspection import Circumstances, inspect
+    from rr_opt.recordings.inspection import inspect
 
     def as_read(run: Run) -> Run:
         sigma = {

@@ -15,7 +15,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Generic, Self, TypeVar
 
-from rr_opt.files.gate import require_regular
+from rr_opt.files.source import require_regular
 from rr_opt.outcome import InputError
 
 _CHANGES = {

@@ -1,6 +1,11 @@
-"""Verbs that drive a given gait: its motion, its circle, its set points for a controller."""
+"""Verbs that drive: a given gait, its circle, its set points for a controller; a route."""
 
 from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
 
 import rr_opt as rr
 from rr_opt.cli import options
@@ -59,6 +64,7 @@ def export(
     kind: options.SetPoints = "csv",
     rate: options.PointRate = 125.0,
     keep_period: options.KeepPeriod = False,
+    within_limits: options.WithinLimits = None,
     amplitude: options.Amplitude = None,
     period: options.Period = None,
     offset: options.Offset = None,
@@ -67,13 +73,33 @@ def export(
 ) -> None:
     """Write a gait as set points for a controller.
 
-    A period holds a whole number of set points. The loss of speed is reported separately for
+    A period holds a whole number of set points. Where that takes a gait beyond its limits, the
+    amplitude is lowered. The loss of speed is reported separately for
     the adjusted period, the straight lines between set points, and rounding to counts.
     """
     with Steps() as steps, options.naming(source):
         gait = {"amplitude": amplitude, "period": period, "offset": offset}
         driven = options.read_gait(source, **gait, rate=rate)
         file = options.setpoints_file(out, source, kind)
-        points = rr.export(driven, format=kind, rate=rate, keep_period=keep_period, progress=steps)
+        how = {"keep_period": keep_period, "within_limits": within_limits}
+        points = rr.export(driven, format=kind, rate=rate, **how, progress=steps)
         files = points.save(file)
     show(points, files, json=json)
+
+
+def route(
+    route: Annotated[Path, typer.Argument(help="Route file: where to drive, and how exactly.")],
+    out: Annotated[Path | None, options.out_option("out/NAME")] = None,
+    json: Annotated[bool, options.json_option("route.json")] = False,
+    figures: options.Figures = True,
+) -> None:
+    """Drive a route of straights, arcs and waypoints from rest, as fast as the robot can.
+
+    The drive is checked by simulation. `rr-opt init route` writes a file to begin with.
+    """
+    with Steps() as steps:
+        asked = options.read_route(route)
+        folder = options.results_folder(out, asked.name)
+        driven = rr.route(asked, progress=steps)
+        files = driven.save(folder, figures=figures, progress=steps)
+    show(driven, files, json=json)

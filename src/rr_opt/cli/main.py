@@ -22,8 +22,7 @@ from rr_opt.version import __version__
 
 VERBS = {
     **dict.fromkeys(("maximize-speed", "shapes", "sweep", "turn", "turn-chart"), "optimise"),
-    "route": "route",
-    **dict.fromkeys(("circle", "simulate", "export"), "drive"),
+    **dict.fromkeys(("route", "circle", "simulate", "export"), "drive"),
     "study": "optimise",
     **dict.fromkeys(("inspect", "diagnose"), "recordings"),
     **dict.fromkeys(("init", "lint", "schema"), "files"),

@@ -16,6 +16,7 @@ from rr_opt.cli.steps import Steps
 def maximize_speed(
     problem: options.ProblemFile = None,
     out: Annotated[Path | None, options.out_option("out/NAME")] = None,
+    force: options.Force = False,
     json: Annotated[bool, options.json_option("result.json")] = False,
     figures: options.Figures = True,
 ) -> None:
@@ -25,7 +26,7 @@ def maximize_speed(
     """
     with Steps() as steps:
         posed = options.read_problem(problem)
-        folder = options.results_folder(out, posed.name)
+        folder = options.fastest_folder(out, posed.name, force=force)
         best = rr.maximize_speed(posed, progress=steps)
         files = best.save(folder, figures=figures, progress=steps)
     show(best, files, json=json)
@@ -58,6 +59,7 @@ def turn(
     length: options.Length = None,
     cycles: options.Cycles = "any",
     out: Annotated[Path | None, options.out_option("out/NAME-turn-...")] = None,
+    force: options.Force = False,
     json: Annotated[bool, options.json_option("result.json")] = False,
     figures: options.Figures = True,
 ) -> None:
@@ -69,7 +71,7 @@ def turn(
     with Steps() as steps:
         asked = options.read_options(radius=radius, heading=heading, within=within, length=length)
         posed = options.read_problem(problem)
-        folder = options.turn_folder(out, posed.name, asked, cycles)
+        folder = options.turn_folder(out, posed.name, asked, cycles, force=force)
         turned = rr.turn(posed, **asked, whole=cycles == "whole", progress=steps)
         files = turned.save(folder, figures=figures, progress=steps)
     show(turned, files, json=json)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar
@@ -88,6 +88,9 @@ Scheduler = Annotated[
 ]
 
 
+Force = Annotated[bool, typer.Option("--force", help="Write over the answer to another question.")]
+
+
 def results_folder(out: Path | None, name: str) -> Path:
     """--out, or out/NAME. Raises InputError, before anything is computed, if it cannot be made."""
     from rr_opt.documents.archive import folder_for_results
@@ -119,13 +122,51 @@ def inspection_folder(out: Path | None, source: Path, netcdf: Path | None) -> Pa
     return results_folder(out, f"{name_of(source)}-inspect")
 
 
-def turn_folder(out: Path | None, name: str, asked: dict[str, float], cycles: str) -> Path:
+_UNITS = {"heading": "deg", "radius": "m", "within": "s", "length": "m"}
+
+
+def turn_folder(
+    out: Path | None, name: str, asked: dict[str, float], cycles: str, *, force: bool
+) -> Path:
     """NAME-turn-heading-90deg-radius-0.5m-whole, so that another turn has another folder."""
-    units = {"heading": "deg", "radius": "m", "within": "s", "length": "m"}
-    shown = asked | {"heading": math.degrees(asked.get("heading", 0.0))}
-    parts = [f"{key}-{shown[key]:.6g}{unit}" for key, unit in units.items() if key in asked]
-    whole = ["whole"] if cycles == "whole" else []
-    return results_folder(out, "-".join([name, "turn", *parts, *whole]))
+    folder = results_folder(out, "-".join([name, "turn", *_turn(asked | {"cycles": cycles})]))
+    _require_same_turn(folder, {**dict.fromkeys(_UNITS), **asked, "cycles": cycles}, force)
+    return folder
+
+
+def fastest_folder(out: Path | None, name: str, *, force: bool) -> Path:
+    """The folder of a fastest gait, which asks for no turn."""
+    folder = results_folder(out, name)
+    _require_same_turn(folder, {}, force)
+    return folder
+
+
+def _turn(asked: Mapping[str, Any]) -> list[str]:
+    """What was asked of a turn, in words without spaces."""
+    sizes = {key: asked[key] for key in _UNITS if asked.get(key) is not None}
+    shown = {key: math.degrees(size) if key == "heading" else size for key, size in sizes.items()}
+    whole = ["whole"] if asked.get("cycles") == "whole" else []
+    return [*(f"{key}-{size:.6g}{_UNITS[key]}" for key, size in shown.items()), *whole]
+
+
+def _require_same_turn(folder: Path, asked: Mapping[str, Any], force: bool) -> None:
+    """Raise InputError if the folder has the answer to another turn, or to none."""
+    import json
+
+    file = folder / "result.json"
+    if force or not file.is_file():
+        return
+    try:
+        turn = json.loads(file.read_text(encoding="utf-8")).get("turn") or {}
+        there = dict(turn.get("asked") or {})
+    except (OSError, ValueError, AttributeError, TypeError):
+        return
+    if there != asked:
+        words = f"the turn {' '.join(_turn(there))}" if there else "the fastest gait without a turn"
+        raise InputError(
+            f"{file}: The file has the answer to another question: {words}. Expected a folder for "
+            "this one. Give another with --out, or --force to write over it."
+        )
 
 
 def setpoints_file(out: Path | None, source: Path | None, format: Any) -> Path:
@@ -154,7 +195,7 @@ def read_problem(path: Path | None) -> Problem:
 
 def read_route(path: Path) -> Route:
     """The route of a file; what looks wrong goes to stderr."""
-    from rr_opt.api.route import load_route
+    from rr_opt.api.drive import load_route
 
     return _warned(lambda: load_route(path))
 
@@ -169,6 +210,18 @@ def _warned(read: Callable[[], Read]) -> Read:
         for warning in caught:
             typer.echo(str(warning.message), err=True)
     return found
+
+
+def read_columns(text: str | None) -> dict[str, str] | None:
+    """The column of each channel of --columns; None if it was not given."""
+    if text is None:
+        return None
+    pairs = [pair.partition("=") for pair in text.split(",")]
+    if not all(channel.strip() and name.strip() for channel, _, name in pairs):
+        raise InputError(
+            f"--columns: Read {text!r}. Expected a column for each channel: `t=time,psi=yaw`."
+        )
+    return {channel.strip(): name.strip() for channel, _, name in pairs}
 
 
 def read_command(**sizes: str | None) -> Gait | None:
@@ -243,6 +296,15 @@ KeepPeriod = Annotated[
     bool, typer.Option("--keep-period", help="Adjust the rate instead of the period.")
 ]
 
+WithinLimits = Annotated[
+    bool | None,
+    typer.Option(
+        help="Lower the amplitude until every step is within the limits, or never; default: where "
+        "the adjusted period takes the gait beyond them.",
+        show_default=False,
+    ),
+]
+
 Trajectory = Annotated[Literal["csv", "netcdf"], typer.Option("--format", help="Trajectory file.")]
 Film = Annotated[Literal["gif", "mp4"] | None, typer.Option(help="Also make an animation.")]
 From = Annotated[
@@ -271,6 +333,14 @@ Layout = Annotated[
 ]
 ServoLog = Annotated[
     Path | None, typer.Option(metavar="CSV", help="The servo's log, on its own clock.")
+]
+Columns = Annotated[
+    str | None,
+    typer.Option(
+        metavar="CHANNEL=COLUMN,...",
+        help="Which columns of a text file hold the channels t, x, y, psi, phi: "
+        "'psi=yaw [deg],t=time'.",
+    ),
 ]
 CommandedAmplitude = Annotated[
     str | None, typer.Option(help="Commanded amplitude in rad, or with a unit.")

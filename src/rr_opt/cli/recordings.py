@@ -18,6 +18,7 @@ def inspect(
     *,
     layout: options.Layout = None,
     servo_log: options.ServoLog = None,
+    columns: options.Columns = None,
     amplitude: options.CommandedAmplitude = None,
     period: options.CommandedPeriod = None,
     offset: options.CommandedOffset = None,
@@ -36,7 +37,8 @@ def inspect(
         gait = options.read_command(amplitude=amplitude, period=period, offset=offset)
         folder = options.inspection_folder(out, source, netcdf)
         given = {"layout": layout, "servo_log": servo_log, "gait": gait, "start": start}
-        found = rr.inspect(source, **given, progress=steps)
+        named = options.read_columns(columns)
+        found = rr.inspect(source, columns=named, **given, progress=steps)
         files = found.save(folder, figures=figures, netcdf=netcdf, progress=steps)
     show(found, files, json=json)
 

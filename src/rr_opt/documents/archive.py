@@ -15,7 +15,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
-from rr_opt.files.gate import require_regular
+from rr_opt.files.source import require_regular
 from rr_opt.outcome import InputError
 
 

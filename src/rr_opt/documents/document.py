@@ -95,6 +95,11 @@ def csv_text(names: Sequence[str], rows: Iterable[Sequence[Any]], digits: int = 
     return text.getvalue()
 
 
+def heading(name: str, unit: str) -> str:
+    """The heading of a column of numbers: `speed [m/s]`; of plain numbers the name alone."""
+    return f"{name} [{unit}]" if unit not in ("", "1") else name
+
+
 _FORMULA = tuple("=+-@\t\r\n＝＋－＠")
 """Spreadsheets take a text that begins with one of these for a formula (OWASP, CSV injection): it
 gets an apostrophe."""

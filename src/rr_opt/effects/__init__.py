@@ -6,52 +6,21 @@ To add an effect, add a file that defines `EFFECT` and name it in `_MODULES`.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from importlib import import_module
 from types import MappingProxyType
 
-from rr_opt.effects import (
-    axle_misalignment,
-    clock_offset,
-    com_offset,
-    coulomb_friction,
-    floor_patch,
-    floor_tilt,
-    lateral_slip,
-    left_right_drag,
-    marker_offset,
-    quadratic_drag,
-    rolling_force_curve,
-    servo_backlash,
-    servo_lag,
-    servo_offset,
-    servo_rate_limit,
-    wheel_inertia,
-    zero_offset,
-)
 from rr_opt.effects.effect import Effect
 
-_MODULES = (
-    servo_lag,
-    servo_rate_limit,
-    servo_backlash,
-    servo_offset,
-    coulomb_friction,
-    quadratic_drag,
-    rolling_force_curve,
-    left_right_drag,
-    wheel_inertia,
-    axle_misalignment,
-    floor_tilt,
-    floor_patch,
-    lateral_slip,
-    com_offset,
-    marker_offset,
-    clock_offset,
-    zero_offset,
-)
+_MODULES = """
+servo_lag servo_rate_limit servo_backlash servo_offset coulomb_friction quadratic_drag
+rolling_force_curve left_right_drag wheel_inertia axle_misalignment floor_tilt floor_patch
+lateral_slip com_offset marker_offset clock_offset zero_offset
+"""
 
-CATALOGUE: Mapping[str, Effect] = MappingProxyType({m.EFFECT.name: m.EFFECT for m in _MODULES})
+_EFFECTS = [import_module(f"{__name__}.{module}").EFFECT for module in _MODULES.split()]
+CATALOGUE: Mapping[str, Effect] = MappingProxyType({one.name: one for one in _EFFECTS})
 
 OF_ROBOTS: Mapping[str, Effect] = MappingProxyType(
-    {name: effect for name, effect in CATALOGUE.items() if effect is not zero_offset.EFFECT}
+    {name: effect for name, effect in CATALOGUE.items() if name != "zero_offset"}
 )
 """What a robot file may list: the zeros of a capture system are stated by an experiment."""

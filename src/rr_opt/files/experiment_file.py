@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -14,12 +13,11 @@ from rr_opt.files.experiment_model import (
 )
 from rr_opt.files.experiment_plan import ExperimentPlan, PlannedRun, layout_from
 from rr_opt.files.fields import validate
-from rr_opt.files.gait_record import gait_from
-from rr_opt.files.gate import unreadable
 from rr_opt.files.issue import InvalidFileError, Issue, has_errors
 from rr_opt.files.problem_file import ROBOT, kind_of
+from rr_opt.files.record import gait_from
 from rr_opt.files.robot_file import robot_from
-from rr_opt.files.source import is_result, linked, read_document
+from rr_opt.files.source import is_result, linked, read_document, unreadable
 from rr_opt.files.yaml_text import Document
 from rr_opt.messages import shown
 from rr_opt.model.gait import Gait
@@ -28,26 +26,19 @@ from rr_opt.model.robot import Robot
 
 def runs_from(document: Document, file: Path) -> tuple[tuple[PlannedRun, ...], list[Issue]]:
     """The runs that could be read, and all issues; files are named relative to `file`."""
-    entries = document.data.get("recordings")
-    if not isinstance(entries, list) or not entries:
-        message = (
-            f"Read {shown(entries)}. Expected a list of recordings. Write for example "
-            "`- {file: run01.csv, gait: {amplitude: 0.5, period: 1 s, offset: 0}}`."
-        )
-        return (), [document.issue("error", ("recordings",), message)]
+    sections, issues = document.entries(
+        "recordings",
+        "a list of recordings. Write for example "
+        "`- {file: run01.csv, gait: {amplitude: 0.5, period: 1 s, offset: 0}}`",
+        "{file: ..., gait: ...}",
+    )
     runs: list[PlannedRun] = []
-    issues: list[Issue] = []
-    for index, entry in enumerate(entries):
-        if not isinstance(entry, dict):
-            message = f"Read {shown(entry)}. Expected {{file: ..., gait: ...}}. Write it so."
-            issues.append(document.issue("error", ("recordings", index), message))
-            continue
-        prefix = (*document.prefix, "recordings", index)
-        run, found = _run(replace(document, data=entry, prefix=prefix), file)
+    for section in sections:
+        run, found = _run(section, file)
         issues += found
         if run is not None:
             runs.append(run)
-    issues += _twice(document, entries)
+    issues += _twice(document, document.data["recordings"] if sections else [])
     return tuple(runs), issues or _uses(document, runs)
 
 
@@ -59,7 +50,7 @@ def _run(document: Document, file: Path) -> tuple[PlannedRun | None, list[Issue]
         name = document.data.get(key)
         why = unreadable(file.parent / name) if isinstance(name, str) else ""
         if why:
-            issues.append(document.issue("error", (key,), f"Read {shown(name)}. {why}"))
+            issues.append(document.error((key,), f"Read {shown(name)}. {why}"))
     if model is None or gait is None or issues:
         return None, issues
     log = None if model.servo_log is None else file.parent / model.servo_log
@@ -69,20 +60,20 @@ def _run(document: Document, file: Path) -> tuple[PlannedRun | None, list[Issue]
 def _gait(document: Document, file: Path) -> tuple[Gait | None, list[Issue]]:
     """The gait written in the entry, or that of the result that it names."""
     expected = (
-        "the gait, or the name of a result that holds it. Write for example "
+        "the gait, or the name of a result that has it. Write for example "
         "`{amplitude: 0.5, period: 1 s, offset: 0}`"
     )
     found, named, issues = linked(document, "gait", file.parent, expected)
     if found is None:
         read = f"Read {shown(document.data['gait'])}. "
         why = issues[0].message.removeprefix(read)
-        return None, [document.issue("error", ("gait",), f"{read}{why}")]
+        return None, [document.error(("gait",), f"{read}{why}")]
     if not named:
         return gait_from(found)
     if not is_result(found.data) or not isinstance(found.data.get("gait"), dict):
         given = shown(document.data["gait"])
-        message = f"Read {given}, which holds no gait. Expected a result of rr-opt."
-        return None, [document.issue("error", ("gait",), message)]
+        message = f"Read {given}, which has no gait. Expected a result of rr-opt."
+        return None, [document.error(("gait",), message)]
     return gait_from(found.section("gait"))
 
 
@@ -97,7 +88,7 @@ def _twice(document: Document, entries: list[object]) -> list[Issue]:
         first = seen.setdefault(str(Path(name)), index)
         if first != index:
             message = f"Read {shown(name)}, which is recordings[{first}] too. Keep one of them."
-            issues.append(document.issue("error", ("recordings", index, "file"), message))
+            issues.append(document.error(("recordings", index, "file"), message))
     return issues
 
 
@@ -110,7 +101,7 @@ def _uses(document: Document, runs: list[PlannedRun]) -> list[Issue]:
         message = "No recording is kept back to check a fit on. Give one of them `use: holdout`."
     else:
         return []
-    return [document.issue("warning", ("recordings",), message)]
+    return [document.warning(("recordings",), message)]
 
 
 FILE_NAME = "experiment.yaml"
@@ -136,7 +127,7 @@ def read_plan(path: str | Path) -> tuple[ExperimentPlan, list[Issue]]:
             "Read a file that names no recordings. Expected an experiment, with `robot`, `noise` "
             "and `recordings`. `rr-opt schema experiment` lists its keys."
         )
-        raise InvalidFileError([document.issue("error", (), message)])
+        raise InvalidFileError([document.error((), message)])
     plan, issues = plan_from(document, file)
     if plan is None:
         raise InvalidFileError(issues)
@@ -177,11 +168,11 @@ def plan_from(document: Document, file: Path) -> tuple[ExperimentPlan | None, li
         issues += found
     if model is not None and model.servo_counts.range == 0:
         message = "Read 0. Expected the angle that all counts cover. Write for example `300 deg`."
-        issues.append(document.issue("error", ("servo_counts", "range"), message))
+        issues.append(document.error(("servo_counts", "range"), message))
     if model is None or robot is None or has_errors(issues):
         return None, issues
     for key, message in shares_of_nothing(model.uncertainty, robot):
-        issues.append(document.issue("warning", ("uncertainty", key), message))
+        issues.append(document.warning(("uncertainty", key), message))
     issues += _beyond_the_model(document, robot, [run.gait.peak_angle for run in runs])
     plan = ExperimentPlan(
         name=file.absolute().parent.name,
@@ -208,7 +199,7 @@ def _markers(document: Document) -> tuple[Any, list[Issue]]:
     if isinstance(given, dict):
         return layout_from(document.section("markers"))
     message = f"Read {shown(given)}. Expected `platform1` and `platform2`, each with its markers."
-    return None, [document.issue("error", ("markers",), message)]
+    return None, [document.error(("markers",), message)]
 
 
 def _beyond_the_model(document: Document, robot: Robot, peaks: list[float]) -> list[Issue]:
@@ -219,9 +210,7 @@ def _beyond_the_model(document: Document, robot: Robot, peaks: list[float]) -> l
     )
     limit = robot.singular_angle
     return [
-        document.issue(
-            "warning", ("recordings", at, "gait"), message.format(peak=peak, limit=limit)
-        )
+        document.warning(("recordings", at, "gait"), message.format(peak=peak, limit=limit))
         for at, peak in enumerate(peaks)
         if peak >= limit
     ]

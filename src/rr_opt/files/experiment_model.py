@@ -11,7 +11,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field, SkipValidation, create_model
 
 from rr_opt.files.fields import FileModel, Key, Section
-from rr_opt.files.gait_record import FourierRecord, FreeRecord, SineRecord
+from rr_opt.files.record import FourierRecord, FreeRecord, SineRecord
 from rr_opt.files.robot_file import RobotModel
 from rr_opt.messages import shown, unknown_word
 from rr_opt.model.experiment import UNITS, Column, CountScale, Noise, Start, Use
@@ -230,7 +230,7 @@ class RecordingModel(FileModel):
     file: str = Field(description="Its file, relative to this one.")
     gait: Annotated[str | SineRecord | FourierRecord | FreeRecord, SkipValidation] = Field(
         description="The commanded phi(t), its clock starting at the recording's t = 0; "
-        "or the file of a result of rr-opt that holds it."
+        "or the file of a result of rr-opt that has it."
     )
     use: Use = Field(default="fit", description="holdout: kept back, to check the fit on.")
     start: Start = Field(
@@ -262,7 +262,7 @@ class ExperimentModel(FileModel):
     )
     columns: ColumnsModel = Field(  # pyright: ignore[reportInvalidTypeForm] - it is made
         default_factory=ColumnsModel,
-        description="Columns of text files that go by another name, or hold another unit.",
+        description="Columns of text files that have another name, or another unit.",
     )
     servo_counts: Annotated[CountScale, Section()] = Field(
         default_factory=CountScale, description="What the counts of servo logs mean."

@@ -62,7 +62,7 @@ def layout_from(document: Document) -> tuple[Layout | None, list[Issue]]:
     for name in second:
         if name in first:
             message = f"Read the marker {shown(name)} on both platforms. Keep it on one of them."
-            issues.append(document.issue("error", ("platform2", name), message))
+            issues.append(document.error(("platform2", name), message))
     if model is None:
         return None, issues
     for platform in ("platform1", "platform2"):
@@ -73,7 +73,7 @@ def layout_from(document: Document) -> tuple[Layout | None, list[Issue]]:
                 message = (
                     f"Read the place of {shown(other)} again. Expected another one. Measure it."
                 )
-                issues.append(document.issue("error", (platform, name), message))
+                issues.append(document.error((platform, name), message))
     if issues:
         return None, issues
     return Layout(

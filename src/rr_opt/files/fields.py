@@ -135,7 +135,7 @@ def another_file(model: type[BaseModel], document: Document) -> list[Issue]:
         f"Read {len(keys)} keys, and none that is known. Expected {one_of(known)}. "
         "Is this the right file?"
     )
-    return [document.issue("error", (), message)]
+    return [document.error((), message)]
 
 
 _EXPECTED = {
@@ -157,7 +157,7 @@ def validate(model: type[Model], document: Document) -> tuple[Model | None, list
         return model.model_validate(document.data), []
     except ValidationError as error:
         found = error.errors(include_url=False)
-        return None, [document.issue("error", one["loc"], _message(model, one)) for one in found]
+        return None, [document.error(one["loc"], _message(model, one)) for one in found]
 
 
 def _message(model: type[BaseModel], found: Any) -> str:

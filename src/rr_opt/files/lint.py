@@ -62,5 +62,5 @@ def _robot_issues(document: Document) -> list[Issue]:
     robot, issues = robot_from(document)
     notice = singular_posture(robot) if robot else None
     if notice:
-        issues.append(document.issue("warning", ("servo", "angle_limit"), notice))
+        issues.append(document.warning(("servo", "angle_limit"), notice))
     return issues

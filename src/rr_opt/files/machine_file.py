@@ -12,9 +12,8 @@ from pydantic import Field, SkipValidation, create_model
 from rr_opt.files.experiment_file import experiment_path
 from rr_opt.files.experiment_model import ColumnOf, Uncertain
 from rr_opt.files.fields import FileModel, Key, validate
-from rr_opt.files.gate import unreadable
 from rr_opt.files.issue import InvalidFileError, Issue, has_errors
-from rr_opt.files.source import fingerprint, read_document
+from rr_opt.files.source import fingerprint, read_document, unreadable
 from rr_opt.files.yaml_text import Document
 from rr_opt.messages import shown
 from rr_opt.model.experiment import Column, Use
@@ -160,28 +159,22 @@ def machine_plan(path: str | Path, machine: Machine) -> tuple[MachinePlan | None
     document = read_document(file)
     whole, entry = model_of(machine)
     model, issues = validate(whole, document)
-    entries, planned = document.data.get("recordings"), []
-    if isinstance(entries, list):
-        for k, one in enumerate(entries):
-            if not isinstance(one, dict):
-                issues.append(document.issue("error", ("recordings", k), f"Read {shown(one)}. "
-                                             "Expected {file: ...}. Write it so."))  # fmt: skip
-                continue
-            place = Document(document.file, one, document.lines, ("recordings", k))
-            read, found = validate(entry, place)
-            issues += found
-            why = unreadable(file.parent / read.file) if read else ""
-            if read and why:
-                issues.append(place.issue("error", ("file",), f"Read {shown(read.file)}. {why}"))
-            elif read:
-                own = {**_given(model.columns if model else None), **_given(read.columns)}
-                planned.append(PlannedRecording(file.parent / read.file, read.use, own))
-    if not entries or not isinstance(entries, list):
-        message = f"Read {shown(entries)}. Expected a list of recordings."
-        issues.append(document.issue("error", ("recordings",), message))
-    elif not any(one.use == "fit" for one in planned) and not has_errors(issues):
+    sections, found = document.entries("recordings", "a list of recordings", "{file: ...}")
+    issues += found
+    planned: list[PlannedRecording] = []
+    for section in sections:
+        read, found = validate(entry, section)
+        issues += found
+        if read is None:
+            continue
+        if why := unreadable(file.parent / read.file):
+            issues.append(section.error(("file",), f"Read {shown(read.file)}. {why}"))
+            continue
+        own = {**_given(model.columns if model else None), **_given(read.columns)}
+        planned.append(PlannedRecording(file.parent / read.file, read.use, own))
+    if not any(one.use == "fit" for one in planned) and not has_errors(issues):
         message = "No recording is to be fitted. Give at least one `use: fit`."
-        issues.append(document.issue("error", ("recordings",), message))
+        issues.append(document.error(("recordings",), message))
     if model is None or has_errors(issues):
         return None, issues
     nominal = dict(model.parameters)

@@ -17,45 +17,36 @@ from rr_opt.units import Quantity
 
 def read_effects(document: Document) -> tuple[tuple[EffectUse, ...], list[Issue]]:
     """The effects under `physics` of a robot; a parameter that is not given is neutral."""
-    entries = document.data["physics"]
-    if not isinstance(entries, list):
-        message = (
-            f"Read {shown(entries)}. Expected a list of effects, each with a name and its "
-            "parameters. Write for example `- {name: coulomb_friction, F1: 0.02, F2: 0.02}`."
-        )
-        return (), [document.issue("error", ("physics",), message)]
+    if document.data["physics"] == []:
+        return (), []
+    sections, issues = document.entries(
+        "physics",
+        "a list of effects, each with a name and its parameters. Write for example "
+        "`- {name: coulomb_friction, F1: 0.02, F2: 0.02}`",
+        "{name: ..., and its parameters}",
+    )
     uses: dict[str, EffectUse] = {}
-    issues: list[Issue] = []
-
-    def note(path: tuple[str | int, ...], message: str, level: Any = "error") -> None:
-        issues.append(document.issue(level, ("physics", *path), message))
-
-    for index, entry in enumerate(entries):
-        if not isinstance(entry, dict):
-            note((index,), f"Read {shown(entry)}. Expected {{name: ..., and its parameters}}.")
-            continue
-        name = entry.get("name")
+    for section in sections:
+        name = section.data.get("name")
         effect = OF_ROBOTS.get(name) if isinstance(name, str) else None
         if effect is None:
-            message = (
-                unknown_word(name, list(OF_ROBOTS), "effect")
-                if isinstance(name, str)
-                else (
-                    f"Read {shown(name)}. Expected the name of an effect: {', '.join(OF_ROBOTS)}."
-                )
-            )
-            note((index, "name"), message)
+            known = ", ".join(OF_ROBOTS)
+            message = f"Read {shown(name)}. Expected the name of an effect: {known}."
+            if isinstance(name, str):
+                message = unknown_word(name, list(OF_ROBOTS), "effect")
+            issues.append(section.error(("name",), message))
             continue
         if effect.name in uses:
-            note((index, "name"), f"Read `{name}` a second time. Keep one, with all parameters.")
+            message = f"Read `{name}` a second time. Keep one, with all parameters."
+            issues.append(section.error(("name",), message))
             continue
-        values, wrong = _values(effect, entry)
-        for key, message in wrong:
-            note((index, key), message)
+        values, wrong = _values(effect, section.data)
+        issues += [section.error((key,), message) for key, message in wrong]
         uses[effect.name] = EffectUse(effect.name, MappingProxyType(values))
-        if not wrong and len(entry) == 1:
+        if not wrong and len(section.data) == 1:
             keys = ", ".join(q.name for q in effect.parameters)
-            note((index,), f"No parameter is given, so it does nothing. Add {keys}.", "warning")
+            message = f"No parameter is given, so it does nothing. Add {keys}."
+            issues.append(section.warning((), message))
     return tuple(uses.values()), issues
 
 

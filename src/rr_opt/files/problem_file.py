@@ -86,13 +86,13 @@ def gait_findings(gait: GaitBounds, document: Document) -> Iterator[Issue]:
                 f"Read {key} of a gait with the shape `{gait.shape}`. Only a `{shape}` gait "
                 f"has {key}. Write `shape: {shape}`, or delete this key."
             )
-            yield document.issue("error", ("gait", key), message)
+            yield document.error(("gait", key), message)
     if gait.amplitude.high <= 0:
         message = (
             "Read an amplitude of at most 0. Expected an upper bound above 0: a gait that "
             "does not move the servo does not move the robot."
         )
-        yield document.issue("error", ("gait", "amplitude"), message)
+        yield document.error(("gait", "amplitude"), message)
     elif gait.amplitude.low == 0 and gait.shape != "sine":
         message = (
             f"Read an amplitude from 0 of a `{gait.shape}` gait. Expected a lower bound above 0: "
@@ -100,13 +100,13 @@ def gait_findings(gait: GaitBounds, document: Document) -> Iterator[Issue]:
             "the bounds of the period mean nothing. Write for example `amplitude: "
             f"[{min(0.05, gait.amplitude.high / 10):.2g}, {gait.amplitude.high:.4g}]`."
         )
-        yield document.issue("warning", ("gait", "amplitude"), message)
+        yield document.warning(("gait", "amplitude"), message)
     if gait.period.high > LONGEST_PERIOD:
         message = (
             f"Read a period of up to {gait.period.high:.4g} s. Expected at most "
             f"{LONGEST_PERIOD:.4g} s. Check the unit."
         )
-        yield document.issue("error", ("gait", "period"), message)
+        yield document.error(("gait", "period"), message)
 
 
 @dataclass(frozen=True)
@@ -145,7 +145,7 @@ def problem_sources(path: str | Path | None) -> Sources:
     document = read_document(file)
     kind = kind_of(document)
     if kind in _READ_ELSEWHERE:
-        raise InvalidFileError([document.issue("error", (), _READ_ELSEWHERE[kind])])
+        raise InvalidFileError([document.error((), _READ_ELSEWHERE[kind])])
     if wrong := another_file(RobotModel if kind == "robot" else ProblemModel, document):
         raise InvalidFileError(wrong)
     if kind == "robot":
@@ -174,9 +174,9 @@ def with_robot(problem: Document, file: Path, paths: tuple[Path, ...] = ()) -> S
     if robot is not None and is_result(robot.data):
         message = (
             f"Read {shown(problem.data['robot'])}, a result. Expected a robot file. Write what the "
-            "result holds under `robot` to a file, and name that."
+            "result has under `robot` to a file, and name that."
         )
-        robot, issues = None, [problem.issue("error", ("robot",), message)]
+        robot, issues = None, [problem.error(("robot",), message)]
     return Sources((*paths, *named), problem, robot, tuple(issues))
 
 
@@ -250,14 +250,14 @@ def _contradictions(model: ProblemModel, robot: Robot, document: Document) -> It
             "Read kappa = 0 (or k = 0) on both platforms, and no `physics`. Without friction no "
             "gait settles to a steady speed. Give at least one platform a kappa above 0."
         )
-        yield document.issue("error", ("robot",), message)
+        yield document.error(("robot",), message)
     if ratio := model.inertia_ratio:
         for level, key, message in ratio_findings(ratio, robot):
             yield document.issue(level, ("inertia_ratio", key), message)
         written = document.data["inertia_ratio"]
         if ratio.by == "inertia" and isinstance(written, dict) and "loads" in written:
             message = "Loads are given and not used. Write `by: loads`, or delete them."
-            yield document.issue("warning", ("inertia_ratio", "loads"), message)
+            yield document.warning(("inertia_ratio", "loads"), message)
     servo = robot.servo
     for key, given, able, unit in (
         ("angle", model.limits.angle, servo.angle_limit, "rad"),
@@ -269,4 +269,4 @@ def _contradictions(model: ProblemModel, robot: Robot, document: Document) -> It
                 f"Read {shown(document.data['limits'][key])}, beyond what the robot's servo can "
                 f"do, {able:.4g} {unit}. Lower it, or raise `servo.{key}_limit` of the robot."
             )
-            yield document.issue("warning", ("limits", key), message)
+            yield document.warning(("limits", key), message)

@@ -1,16 +1,25 @@
-"""Robots, gaits and results as plain data, as JSON and YAML hold them."""
+"""Robots, gaits and results as plain data, as JSON and YAML hold them; and gaits read back.
+
+Of a gait `shape`, `amplitude`, `period` and `offset` are always there; a fourier gait adds `sines`
+and `cosines`, a free gait `angle0`, `rate0` and `accelerations`.
+"""
 
 from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Iterator, Mapping
+from dataclasses import fields
+from typing import Annotated, Any, Literal
 
 import yaml
+from pydantic import Field
 
-from rr_opt.files.gait_record import gait_record
-from rr_opt.model.gait import FourierGait, FreeGait, SineGait
+from rr_opt.files.fields import FileModel, Key, keys_of, validate
+from rr_opt.files.issue import Issue
+from rr_opt.files.yaml_text import Document
+from rr_opt.messages import shown, unknown_word
+from rr_opt.model.gait import AMPLITUDE, OFFSET, FourierGait, FreeGait, Gait, SineGait
 from rr_opt.model.robot import Robot
 
 
@@ -76,3 +85,116 @@ def _nested(flat: dict[str, str]) -> dict[str, Any]:
             place = place.setdefault(section, {})
         place[key] = text
     return nested
+
+
+_AMPLITUDE = Annotated[float | None, Key(AMPLITUDE)]
+_OFFSET = Annotated[float | None, Key(OFFSET)]
+_LARGEST = "largest |phi - offset|, rad."
+
+
+class SineRecord(keys_of(SineGait)):
+    """phi(t) = amplitude sin(2 pi t/period) + offset."""
+
+    shape: Literal["sine"] = Field(default="sine", description="`sine`")
+    offset: _OFFSET = Field(description="offset, rad.")
+
+
+class FourierRecord(keys_of(FourierGait)):
+    """phi(t) = offset + sum of sines[n-1] sin(2 pi n t/period) + cosines[n-1] cos(2 pi n t/period).
+
+    The amplitude follows from the sines and cosines.
+    """
+
+    shape: Literal["fourier"] = Field(description="`fourier`")
+    amplitude: _AMPLITUDE = Field(default=None, description=_LARGEST)
+
+
+class FreeRecord(keys_of(FreeGait)):
+    """phi(t) with a constant acceleration on each of many equal intervals of the period.
+
+    Amplitude and offset follow from the other values.
+    """
+
+    shape: Literal["free"] = Field(description="`free`")
+    amplitude: _AMPLITUDE = Field(default=None, description=_LARGEST)
+    offset: _OFFSET = Field(default=None, description="mean of phi, rad.")
+
+
+_SHAPES: dict[str, tuple[type[FileModel], Any]] = {
+    "sine": (SineRecord, SineGait),
+    "fourier": (FourierRecord, FourierGait),
+    "free": (FreeRecord, FreeGait),
+}
+
+_ROUNDING = 1e-6
+"""What a record that was written by a program may be off by, relative to the gait's size."""
+
+
+def gait_record(gait: Gait) -> dict[str, Any]:
+    """The gait in SI, complete: `gait_from` makes the same gait of it, to the last digit."""
+    size = {name: getattr(gait, name) for name in ("shape", "amplitude", "period", "offset")}
+    own: Any = gait
+    values = {one.name: getattr(gait, one.name) for one in fields(own)}
+    return size | {key: list(v) if isinstance(v, tuple) else v for key, v in values.items()}
+
+
+def gait_from(document: Document) -> tuple[Gait | None, list[Issue]]:
+    """The gait that a mapping describes (None if there are issues), and all issues."""
+    shape = document.data.get("shape", "sine")
+    if not isinstance(shape, str):
+        message = f"Read {shown(shape)}. Expected one of: {', '.join(_SHAPES)}."
+        return None, [document.error(("shape",), message)]
+    if shape not in _SHAPES:
+        message = unknown_word(shape, list(_SHAPES), "word")
+        return None, [document.error(("shape",), message)]
+    record, kind = _SHAPES[shape]
+    model, issues = validate(record, document)
+    if model is None:
+        return None, issues
+    values = dict(model)
+    gait: Any = kind(**{one.name: values[one.name] for one in fields(kind)})
+    wrong: list[tuple[str, str]] = []
+    if isinstance(gait, FourierGait) and len(gait.sines) != len(gait.cosines):
+        message = (
+            f"Read {len(gait.cosines)} cosines and {len(gait.sines)} sines. Expected as many of "
+            "each. Write 0 for those that are missing."
+        )
+        wrong.append(("cosines", message))
+    else:
+        wrong += _open_ends(gait) if isinstance(gait, FreeGait) else ()
+        wrong += _disagreements(gait, values) if shape != "sine" else ()
+    issues += [document.error((key,), message) for key, message in wrong]
+    return (None if issues else gait), issues
+
+
+def _open_ends(gait: FreeGait) -> Iterator[tuple[str, str]]:
+    """Key and message where a free gait does not come back to where it began."""
+    ends = zip(("angle", "rate"), gait.nodes, ("rad", "rad/s"), strict=True)
+    for what, values, unit in ends:
+        gap = float(values[-1] - values[0])
+        if not abs(gap) <= _ROUNDING * (1 + abs(values).max()):
+            yield (
+                "accelerations",
+                f"After a period the {what} is {gap:.3g} {unit} from where it began. Expected it "
+                "to come back, so that the gait can be repeated. Correct rate0 or accelerations.",
+            )
+
+
+def _disagreements(
+    gait: FourierGait | FreeGait, given: dict[str, Any]
+) -> Iterator[tuple[str, str]]:
+    """Key and message where a value is given that follows from the others, and differs."""
+    if gait.amplitude == 0:
+        yield (
+            "amplitude",
+            "Read a gait that does not move the servo. Expected one that does: its values make "
+            "an amplitude of 0. Correct them.",
+        )
+    for key in ("amplitude", "offset"):
+        value, made = given[key], getattr(gait, key)
+        if value is not None and not abs(value - made) <= _ROUNDING * (1 + gait.peak_angle):
+            yield (
+                key,
+                f"Read {value:.6g} rad. Expected {made:.6g} rad, which is what the gait's other "
+                f"values make. Correct them, or delete {key}.",
+            )

@@ -202,7 +202,7 @@ def read_provenance(document: Document) -> tuple[Mapping[str, str], list[Issue]]
             for key, inner in value.items():
                 if known is not None and key not in known:
                     message = unknown_word(key, known, "key")
-                    issues.append(document.issue("error", (*here, key), message))
+                    issues.append(document.error((*here, key), message))
                 else:
                     walk(inner, (*path, key))
         elif not path or not isinstance(value, str) or not value.startswith(ORIGINS):
@@ -210,7 +210,7 @@ def read_provenance(document: Document) -> tuple[Mapping[str, str], list[Issue]]
                 f"Read {shown(value)}. Expected a text that begins with {', '.join(ORIGINS)}. "
                 "Write for example `measured: Table 1`, in quotes."
             )
-            issues.append(document.issue("error", here, message))
+            issues.append(document.error(here, message))
         else:
             kept = (*path[:-1], "kappa") if path[-1] == "k" else path
             found[path_text(kept)] = value
@@ -252,8 +252,8 @@ def robot_from(document: Document) -> tuple[Robot | None, list[Issue]]:
         name=model.name,
         **beyond,
     )
-    issues += [document.issue("warning", path, message) for path, message in doubts(robot)]
-    stuck = [document.issue("error", path, text) for path, text in too_much_friction(robot)]
+    issues += [document.warning(path, message) for path, message in doubts(robot)]
+    stuck = [document.error(path, text) for path, text in too_much_friction(robot)]
     return (None if stuck else robot), issues + stuck
 
 
@@ -272,18 +272,18 @@ def _friction_and_radius(document: Document) -> list[Issue]:
             continue
         if "kappa" in platform and "k" in platform:
             message = "Both kappa and k are given, and k = kappa/h^2. Keep one of them."
-            issues.append(document.issue("error", (key, "k"), message))
+            issues.append(document.error((key, "k"), message))
         elif "kappa" not in platform and "k" not in platform:
             message = (
                 "The wheel friction is missing. Expected kappa (N m s) or k = kappa/h^2 (N s/m). "
                 "Add one of them."
             )
-            issues.append(document.issue("error", (key, "kappa"), message))
+            issues.append(document.error((key, "kappa"), message))
         if "kappa" in platform:
             reasons.append(f"{key}.kappa")
     if reasons and "h" not in document.data:
         message = (
             f"The wheel radius (m) is missing. {reasons[0]} needs it. Add for example h: 20 mm."
         )
-        issues.append(document.issue("error", ("h",), message))
+        issues.append(document.error(("h",), message))
     return issues

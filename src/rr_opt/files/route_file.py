@@ -34,6 +34,7 @@ class PieceModel(FileModel):
 
 
 _ONE = "`straight`, `arc` or `to`"
+_EACH = f"one key, {_ONE}, such as `- straight: 1 m`"
 
 
 class RouteModel(FileModel):
@@ -69,7 +70,7 @@ def read_route(path: str | Path) -> tuple[Route, list[Issue]]:
     document = read_document(file)
     if kind_of(document) != "route":
         message = "Read a file without `route`. Expected the pieces of a route under this key."
-        raise InvalidFileError([document.issue("error", (), message)])
+        raise InvalidFileError([document.error((), message)])
     route, issues = route_from(document, file)
     if route is None:
         raise InvalidFileError(issues)
@@ -104,29 +105,23 @@ def route_from(document: Document, file: Path) -> tuple[Route | None, list[Issue
 
 
 def _pieces(document: Document) -> tuple[list[Piece], list[Issue]]:
-    given = document.data.get("route", [])
-    if not isinstance(given, list) or not given:
-        message = f"Read {shown(given)}. Expected a list of pieces, each {_ONE}."
-        return [], [
-            document.issue("error", ("route",), message)
-        ] if "route" in document.data else []
-    pieces, issues = list[Piece](), list[Issue]()
-    for number, one in enumerate(given):
-        place = ("route", number)
-        if not isinstance(one, dict) or len(one) != 1:
-            message = f"Read {shown(one)}. Expected one key: {_ONE}. Write `- straight: 1 m`."
-            issues.append(document.issue("error", place, message))
+    if "route" not in document.data:
+        return [], []
+    sections, issues = document.entries("route", f"a list of pieces, each {_ONE}", _EACH)
+    pieces = list[Piece]()
+    for section in sections:
+        given = shown(section.data)
+        if len(section.data) != 1:
+            issues.append(section.error((), f"Read {given}. Expected {_EACH}. Write it so."))
             continue
-        section = replace(document, data=one, prefix=(*document.prefix, *place))
         model, found = validate(PieceModel, section)
         issues += found
         piece = model and (model.straight or model.arc or model.to)
         if piece is not None:
             pieces.append(piece)
         elif not found:
-            message = f"Read {shown(one)}. Expected values under the key."
-            issues.append(document.issue("error", place, message))
+            issues.append(section.error((), f"Read {given}. Expected values under the key."))
         if isinstance(piece, Arc) and piece.angle == 0:
             message = "Read an arc of 0 deg, which leads nowhere. Give its change of heading."
-            issues.append(document.issue("error", (*place, "arc"), message))
+            issues.append(section.error(("arc",), message))
     return pieces, issues

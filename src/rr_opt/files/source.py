@@ -1,17 +1,23 @@
-"""Where input files come from: the user's disk, the package, or a result that rr-opt wrote."""
+"""Where input files come from: the user's disk, the package, or a result that rr-opt wrote.
+
+Only regular files of bounded size are read: a pipe or a device may never end. Input may come by way
+of a link; output never replaces or follows one.
+"""
 
 from __future__ import annotations
 
 import hashlib
 import json
+import os
+import stat
 from collections.abc import Iterable
 from importlib.resources import files
 from pathlib import Path
 
-from rr_opt.files.gate import LONG, read_content
-from rr_opt.files.issue import InvalidFileError, Issue
+from rr_opt.files.issue import InvalidFileError, Issue, refuse
 from rr_opt.files.yaml_text import Document, parse_yaml
 from rr_opt.messages import shown
+from rr_opt.outcome import InputError
 
 _MARKS = ("status", "input_sha256")
 """Keys that every result has and no input."""
@@ -59,7 +65,7 @@ def linked(
         return document.section(key), (), []
     if not isinstance(given, str) or not given:
         message = f"Read {shown(given)}. Expected {expected}."
-        return None, (), [document.issue("error", (key,), message)]
+        return None, (), [document.error((key,), message)]
     named = folder / given
     try:
         return read_document(named), (named,), []
@@ -67,7 +73,7 @@ def linked(
         # What is wrong with the name stands where it is written.
         message = f"Read {shown(given)}. {error.issues[0].message}"
         if error.issues[0].line is None:
-            return None, (named,), [document.issue("error", (key,), message)]
+            return None, (named,), [document.error((key,), message)]
         return None, (named,), list(error.issues)
 
 
@@ -90,3 +96,79 @@ def problem_path(path: Path) -> Path:
         return path / "problem.yaml" if path.is_dir() else path
     except OSError:
         return path
+
+
+SHORT = 1_000_000
+"""Largest YAML file or result, bytes."""
+LONG = 250_000_000
+"""Largest recording, bytes: over an hour of a dozen markers at 200 Hz as text."""
+
+
+def read_content(path: Path, most: int = SHORT) -> bytes:
+    """The bytes of a regular file. Raises InvalidFileError if it is none, or larger than `most`."""
+    file = str(path)
+    try:
+        # Opened without waiting: a pipe without a writer would be waited for without end.
+        with open(file, "rb", opener=_opened) as opened:
+            why = _not_regular(os.fstat(opened.fileno()).st_mode)
+            content = b"" if why else opened.read(most + 1)
+    except (OSError, ValueError) as error:
+        refuse(file, _why(error))
+    if why:
+        refuse(file, why)
+    if len(content) > most:
+        refuse(
+            file,
+            f"The file is larger than {most / 1e6:g} MB. Expected at most that. "
+            "Check that it is the right file, or cut it.",
+        )
+    return content
+
+
+def unreadable(path: Path) -> str:
+    """Why the file at a path cannot be read, as far as it shows without opening it; else empty."""
+    try:
+        return _not_regular(path.stat().st_mode)
+    except (OSError, ValueError) as error:
+        return _why(error)
+
+
+def _why(error: OSError | ValueError) -> str:
+    if isinstance(error, FileNotFoundError):
+        return "There is no such file. Check its name and folder."
+    if isinstance(error, IsADirectoryError):
+        return _not_regular(stat.S_IFDIR)
+    why = getattr(error, "strerror", None) or error
+    return f"The file cannot be read: {why}. Check its name and permissions."
+
+
+def _not_regular(mode: int) -> str:
+    return "" if stat.S_ISREG(mode) else f"This is {kind_of(mode)}. Expected a file."
+
+
+def _opened(file: str, flags: int) -> int:
+    return os.open(file, flags | getattr(os, "O_NONBLOCK", 0))
+
+
+def kind_of(mode: int) -> str:
+    """What a file that is not regular is, by its mode."""
+    kinds = {
+        stat.S_IFLNK: "a symbolic link",
+        stat.S_IFDIR: "a folder",
+        stat.S_IFIFO: "a pipe",
+        stat.S_IFSOCK: "a socket",
+    }
+    return kinds.get(stat.S_IFMT(mode), "a device")
+
+
+def require_regular(path: Path) -> None:
+    """Raise InputError for what exists and is not a regular file, before it is written to."""
+    try:
+        mode = path.lstat().st_mode
+    except OSError:
+        return
+    if not stat.S_ISREG(mode):
+        raise InputError(
+            f"{path} is {kind_of(mode)}. Expected a regular file, which is replaced, or a new "
+            "name. Give another place with --out."
+        )

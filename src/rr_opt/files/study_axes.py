@@ -16,7 +16,7 @@ from rr_opt.files.study_keys import Key, key_of
 from rr_opt.files.yaml_text import Document, KeyPath
 from rr_opt.messages import shown
 from rr_opt.outcome import InputError
-from rr_opt.units import to_si
+from rr_opt.units import to_si, unit_written
 
 
 def refuse_conflict(key: Key, values: object, seen: Mapping[KeyPath, tuple[Key, object]]) -> None:
@@ -52,10 +52,10 @@ def refuse_repeats(steps: Sequence[tuple[Any, ...]], written: Sequence[tuple[Any
     for number, step in enumerate(steps, 1):
         same = first.setdefault("\n".join(_digits(value) for value in step), number)
         if same != number:
-            told = ", ".join(shown(value) for value in written[number - 1])
+            values = ", ".join(shown(value) for value in written[number - 1])
             raise InputError(
-                f"Read {told} as value {number}, which is value {same} again. Expected each value "
-                "once. Delete one of them."
+                f"Read {values} as value {number}, which is value {same} again. Expected each "
+                "value once. Delete one of them."
             )
 
 
@@ -125,9 +125,9 @@ def doubt_about_units(given: Any, key: Key) -> str | None:
     ]
     if not bare or not any(_has_unit(value) for value in written.values()):
         return None
-    told = " and ".join(f"`{name}: {shown(written[name])}`" for name in bare)
+    values = " and ".join(f"`{name}: {shown(written[name])}`" for name in bare)
     return (
-        f"Read {told} without a unit beside a value that has one. Expected a unit with each: "
+        f"Read {values} without a unit beside a value that has one. Expected a unit with each: "
         f"what has none is in {key.unit}. Write the unit."
     )
 
@@ -148,12 +148,14 @@ class Line:
 
     values   as a problem file would hold them
     numbers  the same in SI; None if not all of them are numbers
+    unit     in which they were asked for, if in one; else the key's, SI
     place    where in the study file they stand
     """
 
     key: Key
     values: tuple[Any, ...]
     numbers: tuple[float, ...] | None
+    unit: str
     place: KeyPath
 
 
@@ -178,9 +180,9 @@ def line_at(
                 f"Read {shown(data)}. Expected a list of values, or a range. Write for example "
                 "`[1, 2, 3]` or `{from: 1, to: 3, count: 3}`."
             )
-        return Line(key, tuple(data), _numbers(data, key), place)
+        return Line(key, tuple(data), _numbers(data, key), _unit(data, key), place)
     except InputError as error:
-        issues.append(document.issue("error", place, str(error)))
+        issues.append(document.error(place, str(error)))
         return None
 
 
@@ -193,13 +195,25 @@ def _ranged(
     if model is None:
         for issue in found:
             at = (*place, issue.path.rsplit(".", 1)[-1])
-            issues.append(document.issue("error", at, issue.message))
+            issues.append(document.error(at, issue.message))
         return None
     numbers = range_values(model, key)
     doubt = doubt_about_units(model, key)
     if doubt:
-        issues.append(document.issue("warning", place, doubt))
-    return Line(key, numbers, numbers, place)
+        issues.append(document.warning(place, doubt))
+    ends = [data["from"], data["to"]]
+    return Line(key, numbers, numbers, _unit(ends, key), place)
+
+
+def _unit(values: list[Any], key: Key) -> str:
+    """The unit that all values but those that are 0 or infinite have; else the key's, SI."""
+    units = {
+        unit_written(value) if isinstance(value, str) else ""
+        for value in values
+        if value not in (0, math.inf)
+    }
+    unit = units.pop() if len(units) == 1 else ""
+    return unit or key.unit or ""
 
 
 def _numbers(values: list[Any], key: Key) -> tuple[float, ...] | None:
@@ -243,7 +257,7 @@ def axes_of(document: Document) -> tuple[list[Axis], list[Issue]]:
     issues: list[Issue] = []
 
     def note(place: KeyPath, message: str) -> None:
-        issues.append(document.issue("error", place, message))
+        issues.append(document.error(place, message))
 
     seen: dict[KeyPath, tuple[Key, object]] = {}
     axes: list[Axis] = []
@@ -253,8 +267,8 @@ def axes_of(document: Document) -> tuple[list[Axis], list[Issue]]:
         good = [line for line in lines if line is not None]
         lengths = {line.key.name: len(line.values) for line in good}
         if len(set(lengths.values())) > 1:
-            told = ", ".join(f"{count} of `{name}`" for name, count in lengths.items())
-            note(place, f"Read {told}. Expected as many of each, to take them in step.")
+            counts = ", ".join(f"{count} of `{name}`" for name, count in lengths.items())
+            note(place, f"Read {counts}. Expected as many of each, to take them in step.")
         elif good and len(good) == len(lines):
             axis = Axis(tuple(good))
             try:

@@ -47,12 +47,12 @@ class CaseIssues:
 
     def issues(self) -> list[Issue]:
         """All of them, those of one place together."""
-        told: list[Issue] = []
+        new: list[Issue] = []
         warned: set[tuple[Keys, str]] = set()
         for issue, (steps, count) in self._seen.items():
             line = self._reason(issue)
             if line is None and count == self._cases:
-                told.append(issue)
+                new.append(issue)
                 continue
             place: Keys = line.place if line else ()
             # A warning about one value says what it would say about the next.
@@ -62,8 +62,8 @@ class CaseIssues:
             warned.add(alike)
             where = f"{issue.path}: " if issue.path else ""
             message = f"{where}{issue.message}{self._cases_text(steps, count)}"
-            told.append(self._document.issue(issue.level, place, message))
-        return told
+            new.append(self._document.issue(issue.level, place, message))
+        return new
 
     def _cases_text(self, steps: tuple[int, ...], count: int) -> str:
         if count == self._cases:
@@ -144,7 +144,7 @@ def read_study(path: str | Path) -> tuple[Study, list[Issue]]:
             "Read a file that varies nothing. Expected a study, with `problem` and `vary`. "
             "A single problem is solved by `rr-opt maximize-speed`."
         )
-        raise InvalidFileError([document.issue("error", (), message)])
+        raise InvalidFileError([document.error((), message)])
     study, issues = study_from(document, file)
     if study is None:
         raise InvalidFileError(issues)

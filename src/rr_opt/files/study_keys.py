@@ -177,6 +177,6 @@ def _entry(data: Any, keys: KeyPath) -> Any:
     held = f"a list of {len(data)}" if isinstance(data, list) else shown(data)
     wanted = "an entry of that number" if isinstance(at, int) else "keys with values under it"
     raise _CannotSetError(
-        f"The problem holds {held} at `{path_text(keys[:-1])}`. Expected {wanted}, to set "
+        f"The problem has {held} at `{path_text(keys[:-1])}`. Expected {wanted}, to set "
         f"`{path_text(keys)}`. Write it in the problem first."
     )

@@ -52,6 +52,23 @@ class Document:
         """The mapping under a key, which keeps its place in the file."""
         return replace(self, data=self.data[key], prefix=(*self.prefix, key))
 
+    def entries(self, key: str, whole: str, each: str) -> tuple[list[Document], list[Issue]]:
+        """The mappings of a list that is not empty, and an issue for whatever is something else.
+
+        whole, each  what the list and an entry should be, for the messages
+        """
+        given = self.data.get(key)
+        if not isinstance(given, list) or not given:
+            return [], [self.error((key,), f"Read {shown(given)}. Expected {whole}.")]
+        sections, issues = list[Document](), list[Issue]()
+        for index, entry in enumerate(given):
+            if isinstance(entry, dict):
+                sections.append(replace(self, data=entry, prefix=(*self.prefix, key, index)))
+            else:
+                message = f"Read {shown(entry)}. Expected {each}. Write it so."
+                issues.append(self.error((key, index), message))
+        return sections, issues
+
     def without(self, *keys: str) -> Document:
         """The same without some keys."""
         return replace(self, data={k: v for k, v in self.data.items() if k not in keys})
@@ -67,6 +84,14 @@ class Document:
             (self.lines[step] for step in steps if step in self.lines), 1 if self.lines else None
         )
         return Issue(level, path_text(whole), message, line, self.file)
+
+    def error(self, path: KeyPath, message: str) -> Issue:
+        """An issue that is an error."""
+        return self.issue("error", path, message)
+
+    def warning(self, path: KeyPath, message: str) -> Issue:
+        """An issue that is a warning."""
+        return self.issue("warning", path, message)
 
 
 DEEPEST = 20
@@ -157,7 +182,7 @@ class _Reading:
         self.values += 1
         if self.values > MOST_VALUES or len(path) > DEEPEST:
             most = f"{MOST_VALUES} values in {DEEPEST} levels"
-            self._stop(f"The file holds too much. Expected at most {most}.", line)
+            self._stop(f"The file is too large. Expected at most {most}.", line)
         if isinstance(event, yaml.AliasEvent):
             self._note(f"Read the alias `*{event.anchor}`. Write the value itself.", line, path)
             return None

@@ -197,6 +197,11 @@ class Run:
         """The name of its file."""
         return self.recording.name
 
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """Those of its recording."""
+        return self.recording.doubts
+
 
 @dataclass(frozen=True)
 class Experiment:

@@ -148,7 +148,7 @@ class Problem:
 
     `inertia_ratio` None: the robot as it is; `turn` None: straight or on any circle.
 
-    command  None: gaits are what the servo is told; else they are what the joint does
+    command  None: gaits are commands to the servo; else they are motions of the joint
     sha256  fingerprint of the files it was read from; empty if it was made or changed in Python
     """
 

@@ -1,4 +1,4 @@
-"""What a servo is told so that the joint makes a gait.
+"""The command with which a servo makes the joint follow a gait.
 
 A servo that lags, and whose zero is off, makes of its command u the angle phi with
 
@@ -6,7 +6,7 @@ A servo that lags, and whose zero is off, makes of its command u the angle phi w
 
 as long as it keeps its rate limit. So every phi has a command, found without integration: of each
 harmonic 1 + i w tau - w^2 beta times as much. Gaits are optimised as what the joint does, which
-knows no servo, and reported as what the servo is told.
+knows no servo, and reported as commands.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ class LinearServo:
         omega = 2 * math.pi / period
         return ((1 - omega**2 * self.beta) ** 2 + (omega * self.tau) ** 2) ** -0.5
 
-    def told(self, gait: Gait) -> Gait:
+    def command_for(self, gait: Gait) -> Gait:
         """The command of which the servo makes this gait; of a sine without its lead in time, which
         no steady motion depends on."""
         offset = gait.offset - self.shift
@@ -57,8 +57,8 @@ class LinearServo:
         parts = _harmonics(gait)
         return _fourier(gait.period, offset, parts / self._response(gait.period, len(parts)))
 
-    def made(self, gait: Gait) -> Gait:
-        """What it makes of a command that keeps its rate limit: the inverse of `told`."""
+    def response_to(self, gait: Gait) -> Gait:
+        """The joint's motion for a command within its rate limit: the inverse of `command_for`."""
         offset = gait.offset + self.shift
         if not self.lags:
             return gait.resized(gait.amplitude, gait.period, offset)
@@ -72,7 +72,7 @@ class LinearServo:
 
 @dataclass(frozen=True)
 class Command:
-    """Bounds of the command's amplitude, rad, and the servo that is told it.
+    """Bounds of the command's amplitude, rad, and the servo that follows it.
 
     A problem that has one is about what the joint does. Its own bounds of the amplitude enclose all
     that the servo makes of these; where it lags, that depends on the period. They are the same for

@@ -43,7 +43,7 @@ def _in_series(one: LinearServo, other: LinearServo) -> LinearServo:
 
 
 def for_joint(problem: Problem) -> Problem:
-    """The problem as one about what the joint does; itself where the servo does what it is told."""
+    """The problem posed for the joint; itself where the servo follows its command exactly."""
     servo = linear_servo(problem.robot)
     if problem.command or servo == LinearServo():
         return problem
@@ -88,7 +88,7 @@ def servo_made(robot: Robot, gait: Gait) -> Gait:
     uses = [use for use in robot.physics if CATALOGUE[use.name].actuate]
     servo = linear_servo(robot)
     if all(CATALOGUE[use.name].linear for use in uses):
-        made = servo.made(gait) if uses else gait
+        made = servo.response_to(gait) if uses else gait
         if max(made.peak_rate, gait.peak_rate) <= servo.rate:
             return made
     t = gait.period * (_SETTLED + np.arange(_SAMPLES) / _SAMPLES)

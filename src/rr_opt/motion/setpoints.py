@@ -12,17 +12,18 @@ motion counts if `physics` lists it, such as a lag.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rr_opt.array import Array
 from rr_opt.model.gait import FreeGait, Gait
+from rr_opt.model.problem import LARGEST_EXCESS, Limits
 from rr_opt.model.robot import Robot
 from rr_opt.motion.dynamics import require_friction
 from rr_opt.motion.servo import servo_made
-from rr_opt.motion.steady_cycle import require_regular, steady_cycle
+from rr_opt.motion.steady_cycle import grip_needed, peak_torque, require_regular, steady_cycle
 from rr_opt.outcome import InputError
 
 COUNT = math.radians(300) / 1024
@@ -111,6 +112,71 @@ def interpolated(angles: Array, rate: float, blend: int = BLEND) -> FreeGait:
         rate0=before,
         accelerations=tuple(map(float, accelerations.ravel())),
     )
+
+
+def excess(robot: Robot, limits: Limits, gait: Gait) -> float:
+    """By how much the steady motion of a gait breaks the worst limit, relative to it.
+
+    Raises NotConvergedError for a gait that does not settle.
+    """
+    joint = servo_made(robot, gait)
+    steady = steady_cycle(robot, joint)
+    reached = {
+        "angle": joint.peak_angle,
+        "rate": joint.peak_rate,
+        "torque": peak_torque(steady),
+        "grip": max(grip_needed(steady, robot)),
+    }
+    return limits.worst(reached)[1]
+
+
+_HALVINGS = 12
+"""The amplitude is found to 1/4096."""
+
+
+def within_limits(
+    robot: Robot, limits: Limits, points: SetPoints, *, rounded: bool = False
+) -> SetPoints:
+    """The set points with the amplitude lowered until they are within the limits.
+
+    rounded: also the steps between the counts that they are rounded to.
+    Raises InputError if no amplitude does.
+    """
+    times, played = np.arange(len(points.angles)) / points.rate, points.played
+
+    def scaled(share: float) -> SetPoints:
+        lower = played.resized(share * played.amplitude, played.period, played.offset)
+        return replace(points, played=lower, angles=lower.angle(times))
+
+    def kept(candidate: SetPoints) -> bool:
+        steps = candidate.rounded if rounded else candidate.angles
+        too_fast = interpolated(steps, points.rate).peak_rate / (limits.rate or math.inf) - 1
+        return max(too_fast, excess(robot, limits, candidate.played)) <= LARGEST_EXCESS
+
+    if kept(points):
+        return points
+    low, high = 0.0, 1.0
+    for _ in range(_HALVINGS):
+        middle = (low + high) / 2
+        low, high = (middle, high) if kept(scaled(middle)) else (low, middle)
+    if not low:
+        raise InputError(
+            "No amplitude keeps the set points within the limits. Expected steps of one count to "
+            "do. Lower --rate, or raise the limits."
+        )
+    return scaled(low)
+
+
+def lag(angles: Array, rate: float, rate_limit: float) -> float:
+    """How far a servo that is sent these angles periodically, and turns at rate_limit, is behind.
+
+    rad, the largest in a period.
+    """
+    step, at, worst = rate_limit / rate, float(angles[0]), 0.0
+    for target in np.tile(angles, 2):
+        at += float(np.clip(target - at, -step, step))
+        worst = max(worst, abs(target - at))
+    return worst
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,7 @@
 
 A pure delay of the servo and a clock that is late are one thing in a recording: both shift phi
 against its command by the same time at every instant. Only a start from rest, or a delay that is
-not pure (a lag, which also makes the angle smaller), can tell one from the other.
+not pure (a lag, which also makes the angle smaller), can distinguish them.
 
 phi as seen at t is matched with a reference, the command or the servo's log, at the time
 

@@ -1,8 +1,12 @@
-"""A folder with an experiment file and its recordings, to an Experiment."""
+"""A folder with an experiment file and its recordings, to an Experiment that can be diagnosed.
+
+Nothing is put right: the experimenter has to say. A fault of the robot is no reason to refuse.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -11,12 +15,12 @@ from rr_opt.array import Array
 from rr_opt.files.experiment_file import FILE_NAME, experiment_path, named_files, read_plan
 from rr_opt.files.experiment_plan import ExperimentPlan, PlannedRun
 from rr_opt.files.issue import InvalidFileError, Issue, has_errors
-from rr_opt.model.experiment import Experiment, Run
+from rr_opt.model.experiment import CHANNELS, Experiment, Recording, Run
 from rr_opt.outcome import InputError
 from rr_opt.recordings.inspection import Circumstances, Inspection, inspected
 from rr_opt.recordings.readers import ReadOptions, read_file
 from rr_opt.recordings.readers.netcdf import commanded_gait
-from rr_opt.recordings.usable import stops
+from rr_opt.recordings.warnings import Notice, notice
 
 Progress = Callable[[str], object]
 
@@ -29,7 +33,7 @@ def is_experiment(path: Path) -> bool:
 def read_experiment(folder: str | Path) -> Experiment:
     """The experiment of a folder with `experiment.yaml`, or of that file, recordings cleaned.
 
-    A recording with a servo's log is put on the command's clock, as far as the log can tell it.
+    A recording with a servo's log is put on the command's clock, as far as the log determines it.
     Raises InvalidFileError with everything that is wrong in the file and in every recording.
     """
     file = experiment_path(Path(folder))
@@ -56,13 +60,13 @@ def experiment_of(folder: str | Path) -> tuple[Experiment | None, list[Issue]]:
         return None, [*error.issues, *_in_files(Path(folder))]
     runs: list[Run] = []
     for number, planned in enumerate(plan.runs):
-        found, told = _inspected(plan, number, planned, estimate=False)
-        issues += told
+        found, more = _inspected(plan, number, planned, estimate=False)
+        issues += more
         if found is not None:
             recording = found.recording
             file = recording.source.get("file", recording.name)
-            told = [one for one in recording.doubts if not stops(one)]
-            issues += [Issue("warning", "", one, None, file) for one in told]
+            doubts = (one for one in recording.doubts if not stops(one))
+            issues += [Issue("warning", "", one, None, file) for one in doubts]
             runs.append(Run(recording, planned.gait, planned.use, planned.start))
     if has_errors(issues):
         return None, issues
@@ -80,8 +84,8 @@ def inspect_experiment(path: Path, progress: Progress) -> list[Inspection]:
     issues: list[Issue] = []
     for number, planned in enumerate(plan.runs):
         progress(f"recording {number + 1} of {len(plan.runs)}")
-        found, told = _inspected(plan, number, planned, estimate=True)
-        issues += told
+        found, more = _inspected(plan, number, planned, estimate=True)
+        issues += more
         inspections += [found] if found is not None else []
     if has_errors(issues):
         raise InvalidFileError(issues)
@@ -110,7 +114,7 @@ def _inspected(
     except InvalidFileError as error:
         return None, list(error.issues)
     except InputError as error:
-        return None, [plan.document.issue("error", ("recordings", number, "file"), str(error))]
+        return None, [plan.document.error(("recordings", number, "file"), str(error))]
 
 
 def _other_command(plan: ExperimentPlan, number: int, planned: PlannedRun, t: Array) -> list[Issue]:
@@ -122,7 +126,7 @@ def _other_command(plan: ExperimentPlan, number: int, planned: PlannedRun, t: Ar
     if said is None or np.allclose(said.angle(t), planned.gait.angle(t)):
         return []
     message = "Read another gait than the file says was commanded. The one written here was taken."
-    return [plan.document.issue("warning", ("recordings", number, "gait"), message)]
+    return [plan.document.warning(("recordings", number, "gait"), message)]
 
 
 def _in_files(folder: Path) -> list[Issue]:
@@ -134,3 +138,95 @@ def _in_files(folder: Path) -> list[Issue]:
         except InputError as error:
             issues += error.issues if isinstance(error, InvalidFileError) else []
     return issues
+
+
+@dataclass(frozen=True)
+class Checked:
+    """Why recordings cannot be diagnosed, in sentences.
+
+    left_out  by name, of each uninformative recording
+    wrong     what cannot be as the experiment says: units, signs, clocks, the gait; or that no
+              recording is left to fit
+    """
+
+    left_out: dict[str, str]
+    wrong: tuple[str, ...]
+
+
+def checked(experiment: Experiment) -> Checked:
+    """The warnings of the recordings, and whether they go together."""
+    left_out = dict(_left_out(experiment))
+    wrong = [
+        f"{run.name}: {one}"
+        for run in experiment.runs
+        for one in notices_of(run)
+        if one.level == "error"
+    ]
+    kept = [run for run in experiment.runs if run.name not in left_out]
+    half = [any(one.code == "command.half" for one in notices_of(run)) for run in kept]
+    if not wrong and len(half) > 1 and all(half):
+        wrong.append(notice("command.signs"))
+    if not wrong and all(run.use != "fit" for run in experiment.runs):
+        wrong.append(
+            "All recordings are held out. Expected some to fit. Mark them with `use: fit`."
+        )
+    elif not wrong and all(run.use != "fit" for run in kept):
+        wrong.append(
+            "No recording to fit is left, so nothing can be learnt of this robot. Record some "
+            "periods in which it drives."
+        )
+    return Checked(left_out, tuple(wrong))
+
+
+def notices_of(run: Run) -> list[Notice]:
+    """The warnings of its recording."""
+    return [one for one in run.recording.doubts if isinstance(one, Notice)]
+
+
+def stops(warning: str) -> bool:
+    """Whether a recording with this warning cannot be diagnosed."""
+    return isinstance(warning, Notice) and (warning.level == "error" or warning.kind == "useless")
+
+
+def usable(experiment: Experiment) -> tuple[Experiment, tuple[str, ...]]:
+    """The experiment without uninformative recordings, and a sentence on each of those.
+
+    Raises InputError for recordings that are not as the experiment says, and where no recording is
+    left to fit.
+    """
+    found = checked(experiment)
+    if found.wrong:
+        raise InputError("\n".join((*found.left_out.values(), *found.wrong)))
+    runs = tuple(run for run in experiment.runs if run.name not in found.left_out)
+    return replace(experiment, runs=runs), tuple(found.left_out.values())
+
+
+def _left_out(experiment: Experiment) -> Iterator[tuple[str, str]]:
+    """Names, and why they are left out. What is to be fitted goes before what is held out."""
+    seen: list[tuple[str, set[bytes]]] = []
+    for run in sorted(experiment.runs, key=lambda one: one.use != "fit"):
+        rows = _rows(run.recording)
+        why = next((one for one in notices_of(run) if one.kind == "useless"), None)
+        copied = next((name for name, others in seen if _same(rows, others)), None)
+        if why is None and copied is not None:
+            why = notice("useless.copy", other=copied)
+        if why is not None:
+            yield run.name, f"{run.name}: {why} It is left out."
+        seen.append((run.name, rows))
+
+
+_ALIKE = 0.2
+"""Rows are the same whose values are equal to this part of their noise."""
+_SHARE = 0.5
+"""Of its rows that another recording has too: independent noise makes next to none."""
+
+
+def _rows(recording: Recording) -> set[bytes]:
+    values = [recording.data(name) / (_ALIKE * recording.sigma[name]) for name in CHANNELS]
+    table = np.round(np.column_stack(values))
+    known = np.isfinite(table).all(axis=1)
+    return {row.tobytes() for row in table[known] + 0.0}
+
+
+def _same(one: set[bytes], two: set[bytes]) -> bool:
+    return len(one & two) > _SHARE * max(min(len(one), len(two)), 1)

@@ -87,7 +87,7 @@ def bridged(t: Array, y: Array, longest: float = SHORT) -> Array:
 _FEWEST = 3
 """Copies in a row, in every channel, that noise does not make."""
 _COMMON = 0.2
-"""A recording of which a larger part repeats has no noise to tell by: it is computed."""
+"""A recording of which a larger part repeats has no noise: it is computed."""
 
 
 def without_copies(recording: Recording) -> tuple[Recording, tuple[Notice, ...]]:
@@ -113,8 +113,8 @@ def without_copies(recording: Recording) -> tuple[Recording, tuple[Notice, ...]]
     first, last = max(stretches, key=lambda one: one[1] - one[0])
     start, end = recording.t[first - 1], recording.t[last - 1]
     times = counted(len(stretches), "time")
-    told = notice("held.rows", count=count, times=times, longest=end - start, start=start)
-    return replace(recording, flags=MappingProxyType(flags)), (told,)
+    found = notice("held.rows", count=count, times=times, longest=end - start, start=start)
+    return replace(recording, flags=MappingProxyType(flags)), (found,)
 
 
 _SIDE = 7

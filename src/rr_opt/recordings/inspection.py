@@ -49,7 +49,7 @@ class Inspection:
     """What was found of one recording.
 
     markers    the rigid fit, of marker files
-    gait       what the servo was told, where it is known
+    gait       the command, where it is known
     command    phi against it
     synchrony  what the servo's log says of the clocks, where there is one
     doubts     all of them: of reading, of the log, of cleaning, and of phi against its command
@@ -73,33 +73,24 @@ class Inspection:
         return self.recording.name
 
 
-def inspect_file(
-    path: Path,
-    *,
-    layout: Path | None = None,
-    servo_log: Path | None = None,
-    gait: Gait | None = None,
-    start: Start = "running",
-) -> Inspection:
+def inspect_file(path: Path, known: Circumstances, *, layout: Path | None = None) -> Inspection:
     """One recording. Raises InputError with what cannot be read or matched.
 
-    layout: a YAML file with the markers' places; servo_log, gait and start: where they are known.
+    layout: a YAML file with the markers' places.
     """
     places = read_layout(layout) if layout else None
-    found = inspected(
-        path, Circumstances(layout=places, gait=gait, start=start, servo_log=servo_log)
-    )
+    found = inspected(path, replace(known, layout=places))
     if places is not None and found.markers is None:
         refuse(
             str(layout),
             f"Read the places of markers. Expected a marker file beside them, and {path.name} "
-            "holds motion already. Leave --layout away.",
+            "has motion already. Omit --layout.",
         )
     return found
 
 
 def inspected(file: Path, known: Circumstances, *, estimate: bool = True) -> Inspection:
-    """What a file holds, with all that is known of it.
+    """The content of a file, with all that is known of it.
 
     estimate: the layout, where it is not known. Raises InvalidFileError with all that is wrong in
     the file and in the servo's log, and InputError, naming the file, if it is another kind of file.
@@ -142,7 +133,7 @@ def _read_both(file: Path, known: Circumstances) -> tuple[Any, Any]:
 
 
 def inspect(read: Recording | MarkerData, log: ServoLog | None, known: Circumstances) -> Inspection:
-    """Look at what a file holds. Raises InputError if markers make no robot."""
+    """Inspect the content of a file. Raises InputError if markers make no robot."""
     markers = synchrony = None
     if isinstance(read, MarkerData):
         layout = None if known.layout is None else layout_for(read, known.layout)
@@ -206,7 +197,7 @@ def read_layout(path: Path) -> Layout:
         document = document.section("markers")
     elif "robot" in document.data and kind_of(document) == "experiment":
         message = "Read an experiment without `markers`. Expected the places of markers. Add them."
-        raise InvalidFileError([document.issue("error", (), message)])
+        raise InvalidFileError([document.error((), message)])
     places, issues = layout_from(document)
     if places is None:
         raise InvalidFileError(issues)

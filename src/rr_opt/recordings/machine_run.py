@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 
 from rr_opt.array import Array
-from rr_opt.files.gate import LONG, read_content
 from rr_opt.files.issue import Issue, refuse
 from rr_opt.files.machine_file import MachinePlan, PlannedRecording
+from rr_opt.files.source import LONG, read_content
 from rr_opt.messages import shown
 from rr_opt.model.experiment import Column
 from rr_opt.model.machine import Channel, MachineExperiment, MachineRun
@@ -31,7 +31,7 @@ def machine_experiment(plan: MachinePlan) -> tuple[MachineExperiment, list[Issue
             run = _run(plan, one)
         except InputError as error:
             where = ("recordings", k, "file")
-            issues.append(plan.document.issue("error", where, str(error)))
+            issues.append(plan.document.error(where, str(error)))
             continue
         runs.append(run)
         issues += [Issue("warning", "", text, None, str(one.file)) for text in run.doubts]
@@ -142,7 +142,7 @@ def read_columns(file: Path) -> dict[str, Array]:
     text = decode(content, str(file))
     header = find_header(text)
     if header is None:
-        refuse(str(file), "The file holds no rows. Expected a header row and numbers.")
+        refuse(str(file), "The file has no rows. Expected a header row and numbers.")
     table = read_table(text, header.at + 1, len(text.lines), header.separator, header.names)
     return {name: table.values[:, k] for k, name in enumerate(header.names)}
 

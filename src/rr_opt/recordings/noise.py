@@ -2,7 +2,7 @@
 
 The sixth difference of a smooth motion is next to nothing, that of white noise is sqrt(924) of its
 standard deviation. Differences over two samples see the noise at half the frequency: with white
-noise both tell the same, and where a filter has taken the quickest noise away the first is smaller.
+noise both agree, and where a filter has taken the quickest noise away the first is smaller.
 Extreme differences are cut off, at three standard deviations, so that a kink or a jump does not
 count. The uncertainties are those of the mean over pieces of the recording.
 """

@@ -4,7 +4,7 @@ A sample is suspected if it is off the smooth curve through all others by more t
 is once in a million. The worst of its surroundings is taken out, the curve is drawn again, and so
 on until none is left; then each that was taken out is tried again. Where the motion has a kink (a
 start, a servo at its rate limit) a smooth curve through both sides misses good samples, but one
-side alone foretells them: a sample is an outlier only if neither side does.
+side alone predicts them: a sample is an outlier only if neither side does.
 """
 
 from __future__ import annotations
@@ -31,8 +31,8 @@ _LEVELS = 4
 def usual_noise(y: Array) -> Array:
     """The noise of a channel of which none is stated, (n,); never zero.
 
-    Behind a filter the quickest differences tell too little. The largest over slower ones is then
-    taken; if it holds some of the motion, fewer outliers are found, and no good sample is flagged.
+    Behind a filter the quickest differences are too small. The largest over slower ones is then
+    taken; if part of it is motion, fewer outliers are found, and no good sample is flagged.
     """
     noise = noise_of(y)
     sigma = noise.sigma
@@ -91,9 +91,9 @@ def _off(
     # The constant of the parabola through the neighbours is its value at the sample.
     G = np.linalg.inv(np.swapaxes(V, 1, 2) @ V + 1e-12 * np.eye(3))
     weight = np.einsum("nj,nkj->nk", G[:, 0], V)
-    told = (weight * y[near]).sum(axis=1)
+    predicted = (weight * y[near]).sum(axis=1)
     sigma = np.sqrt(noise[row] ** 2 + (weight**2 * noise[near] ** 2).sum(axis=1))
-    off[whole] = np.where(scale <= _REACH, np.abs(y[row] - told) / sigma, np.inf)
+    off[whole] = np.where(scale <= _REACH, np.abs(y[row] - predicted) / sigma, np.inf)
     return off
 
 

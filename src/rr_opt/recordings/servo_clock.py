@@ -1,7 +1,7 @@
 """A recording put on the command's clock by way of the servo's log.
 
 Two steps lead from the capture's time to the command's: phi against the log's present position
-tells the log's time, and the log's goal against the gait tells the command's. What the servo is
+gives the log's time, and the log's goal against the gait the command's. What the servo is
 late by lies between goal and present, so it stays in the recording; the clocks' part is taken out.
 """
 
@@ -201,7 +201,7 @@ def shift_of(log: ClockFit, goal: ClockFit, period: float, *, rest: bool) -> Shi
     """The two fits as one; the capture's time to the log's, and the log's to the command's.
 
     rest: the command has a beginning. Otherwise it is the same a period (s) later, and the shift
-    nearest to none is told.
+    nearest to 0 is taken.
     """
     since = log.t_mid + log.offset - goal.t_mid
     offset = log.offset + goal.offset + goal.drift * since
@@ -255,7 +255,7 @@ def log_notices(
 
 def _of_shift(shift: Shift) -> Iterator[Notice]:
     low, high = (1e3 * end for end in shift.interval())
-    told = f"{1e3 * shift.offset:+.3g} ms (95 %: {low:+.3g} to {high:+.3g} ms)"
+    size = f"{1e3 * shift.offset:+.3g} ms (95 %: {low:+.3g} to {high:+.3g} ms)"
     play = ""
     if shift.play:
         play = (
@@ -264,9 +264,9 @@ def _of_shift(shift: Shift) -> Iterator[Notice]:
         )
     if shift.applied:
         drift, half = 1e6 * shift.drift, 1.96e6 * shift.sigma[1]
-        yield notice("clock.shifted", shift=told, drift=drift, half=half, play=play)
+        yield notice("clock.shifted", shift=size, drift=drift, half=half, play=play)
     elif shift.play:
-        yield notice("clock.play", shift=told, play=play)
+        yield notice("clock.play", shift=size, play=play)
 
 
 @dataclass(frozen=True)
@@ -276,7 +276,7 @@ class Synchrony:
     recording  on the command's clock, if `shift` was applied
     log        phi against the log; None if they share no motion
     goal       the log's goal against the gait; None without a gait or a goal
-    shift      from the recording's own clock to the command's; None if it cannot be told
+    shift      from the recording's own clock to the command's; None if unknown
     """
 
     recording: Recording
@@ -289,11 +289,11 @@ class Synchrony:
 def synchronised(
     recording: Recording, log: ServoLog, gait: Gait | None, start: Start = "running"
 ) -> Synchrony:
-    """The recording on the command's clock, as far as the log can tell it; it is not cleaned yet.
+    """The recording on the command's clock, as far as the log determines it; it is not cleaned yet.
 
     gait: what was commanded; without it the clocks are compared, and nothing is shifted. Of offsets
     that are as likely the one is taken that shifts the recording least, and of those the one
-    that most samples tell.
+    that rests on most samples.
     """
     t, phi = recording.t, _phi(recording)
     # Against its goal alone phi's clock has the servo's lag in it.
@@ -322,8 +322,8 @@ def synchronised(
         others = _apart([one.offset for one in shifts if one], shift.offset) if far else ()
     if shift is not None and shift.applied:
         recording = replace(recording, t=shift.of(t))
-    told = tuple(log_notices(fit, goal, shift, others))
-    return Synchrony(_told(recording, log, shift), fit, goal, shift, told)
+    notices = tuple(log_notices(fit, goal, shift, others))
+    return Synchrony(_with_source(recording, log, shift), fit, goal, shift, notices)
 
 
 def _apart(offsets: list[float], taken: float) -> tuple[float, ...]:
@@ -340,10 +340,10 @@ def _phi(recording: Recording) -> Array:
     return np.where(outliers(recording.t, phi, sigma).outlier, np.nan, phi)
 
 
-def _told(recording: Recording, log: ServoLog, shift: Shift | None) -> Recording:
-    told: dict[str, str] = {"servo log": f"{log.name}, {log.rate:.6g} Hz"}
+def _with_source(recording: Recording, log: ServoLog, shift: Shift | None) -> Recording:
+    source: dict[str, str] = {"servo log": f"{log.name}, {log.rate:.6g} Hz"}
     if shift is not None and shift.applied:
-        told["clock"] = f"the command's, by the servo's log: the recording's {shift}"
+        source["clock"] = f"the command's, by the servo's log: the recording's {shift}"
     elif shift is not None:
-        told["servo log"] += f"; the command's clock is the recording's {shift}: not shifted"
-    return replace(recording, source=MappingProxyType({**recording.source, **told}))
+        source["servo log"] += f"; the command's clock is the recording's {shift}: not shifted"
+    return replace(recording, source=MappingProxyType({**recording.source, **source}))

@@ -200,9 +200,9 @@ def strength(y: Array, sigma: float) -> float:
 
 
 _CLOSEST = 0.3
-"""Samples within so many steps of the first of them share a node: the noise that drives the signal
-adds nothing between them that a sample would show, and steps much smaller would suffer in the
-arithmetic, which has their fifth power."""
+"""Samples within this number of steps of the first of them share a node: the noise that drives the
+signal adds nothing between them that a sample would show, and much smaller steps would suffer in
+the arithmetic, which has their fifth power."""
 _SMOOTH_FEWEST = 4
 _FINEST, _APART = 1e-12, 1e3
 """A sigma below the first, relative to the signal, is lost in rounding. One that is farther from
@@ -210,7 +210,7 @@ the usual one than the second, as a factor, is no sigma."""
 
 
 def bounded(y: Array, sigma: Array | float) -> Array:
-    """The standard deviations (n,) of y (n,) within what arithmetic can hold."""
+    """The standard deviations (n,) of y (n,) within the range of the arithmetic."""
     sigma = np.broadcast_to(np.asarray(sigma, float), y.shape)
     known = np.abs(y[np.isfinite(y)])
     good = sigma[(sigma > 0) & np.isfinite(sigma)]

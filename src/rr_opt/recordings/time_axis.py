@@ -15,7 +15,7 @@ from rr_opt.recordings.warnings import Notice, notice
 
 
 def time_step(t: Array) -> float:
-    """The usual time between samples, s; 1 where there are too few to tell."""
+    """The usual time between samples, s; 1 where there are too few samples."""
     step = np.diff(t)
     step = step[step > 0]
     return float(np.median(step)) if len(step) else 1.0
@@ -32,7 +32,7 @@ def in_steps(t: Array) -> Array:
 
 
 _LATEST = 1e12
-"""No clock shows so many seconds, in any unit."""
+"""Larger times belong to no clock, in any unit, s."""
 _RESTARTS = 5
 """A file whose time falls back less often, and by more rows than this at once, was joined."""
 
@@ -119,9 +119,9 @@ def _longest_rising(t: Array) -> NDArray[np.bool_]:
 LACKING = 1.5
 """Steps longer than this, in usual steps, lack a row."""
 _UNEVEN = 0.2
-"""Steps that differ by more from the usual one, relative to it, are told."""
+"""Steps that differ by more from the usual one, relative to it, are reported."""
 _OTHER_RATE = 2e-3
-"""A rate that differs by more from the one stated, relative to it, is told."""
+"""A rate that differs by more from the one stated, relative to it, is reported."""
 _LISTED = 3
 SLOWEST, FASTEST = 1e-3, 1e6
 """Rates beyond these are taken for a slip of the unit, or for damage, Hz."""

@@ -148,15 +148,15 @@ gap.short            note     {count} of up to {longest:.0f} ms, {lost} samples:
 motion.robot         warning  The robot hardly moves: the joint is never more than {far:.2g} mm from
     where it began. Such a recording says little about friction or inertia.
 useless.empty        warning  There are no data of {channel}. Expected x, y, psi and phi.
-useless.short        warning  Read {seconds:.3g} s, and {count} values of {channel}: too short to
-    tell. Expected at least {periods:g} periods of the gait and {least} values.
+useless.short        warning  Read {seconds:.3g} s, and {count} values of {channel}: too short.
+    Expected at least {periods:g} periods of the gait and {least} values.
 useless.gap          warning  Read no {channel} for {gap:.3g} s. Expected gaps of at most {most:g}
     s. => Cut the recording there.
 useless.noisy        warning  phi moves by {moved:.3g} rad, next to nothing against its stated noise
-    of {sigma:.3g} rad: too noisy to tell. => Correct `noise.angle` if the noise is smaller.
-useless.servo        warning  phi does not move: it stays within {moved:.2g} rad, too still to tell.
+    of {sigma:.3g} rad: too noisy. => Correct `noise.angle` if the noise is smaller.
+useless.servo        warning  phi does not move: it stays within {moved:.2g} rad.
     Expected the servo to follow its command.
-useless.robot        warning  The robot does not move: too still to tell. Expected it to drive.
+useless.robot        warning  The robot does not move. Expected it to drive.
 useless.copy         warning  Read the same motion as {other}, which is to be fitted. Expected
     another run: a copy is no evidence. => Record one to hold out.
 frame.wrong          error    Position and angles contradict rolling wheels: by {left:.3g} times

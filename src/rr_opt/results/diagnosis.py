@@ -17,22 +17,8 @@ from rr_opt.files.record import robot_yaml
 from rr_opt.formatting import counted
 from rr_opt.model.experiment import Experiment
 from rr_opt.model.robot import Robot
-from rr_opt.results.diagnosis_record import diagnosis_record
-from rr_opt.results.diagnosis_tables import (
-    candidate_words,
-    candidates_table,
-    effects_table,
-    headline,
-    misfit_table,
-    parameters_table,
-    recordings_table,
-    remainder_text,
-    share_text,
-    stage_name,
-    stage_text,
-    stage_words,
-    value_text,
-)
+from rr_opt.results import diagnosis_tables as tables
+from rr_opt.results.explained import Explained
 from rr_opt.results.loss import (
     Loss,
     LossUnknown,
@@ -43,8 +29,8 @@ from rr_opt.results.loss import (
     share_lost,
     unknown,
 )
-from rr_opt.results.result import Progress, Result, quiet
-from rr_opt.sysid.diagnosis import Diagnosis, Finding, Stage
+from rr_opt.results.result import Progress, quiet
+from rr_opt.sysid.diagnosis import Finding, Stage
 from rr_opt.version import __version__
 
 _PREDICTS = 1.2
@@ -52,7 +38,7 @@ _PREDICTS = 1.2
 
 
 @dataclass(frozen=True, repr=False)
-class ExplainedExperiment(Result):
+class ExplainedExperiment(Explained[Experiment]):
     """The diagnosis of an experiment.
 
     name, sha256     of the input
@@ -66,31 +52,11 @@ class ExplainedExperiment(Result):
     left_out         sentences on the recordings that could not be used
     """
 
-    FILE = "diagnosis.json"
     OTHERS = ("robot-corrected.yaml",)
     DRAW = "rr_opt.results.figures.diagnosis.draw"
     CAPTIONS = captions("diagnosis")
 
-    name: str
-    sha256: str
-    experiment: Experiment
-    found: Diagnosis
     left_out: tuple[str, ...] = ()
-
-    @property
-    def verdict(self) -> str:
-        """`consistent`, `parameters`, `missing_physics` or `unexplained`."""
-        return self.found.verdict
-
-    @property
-    def effects(self) -> tuple[Finding, ...]:
-        """The accepted effects, strongest first; for the verdict `parameters`, the parameters."""
-        return tuple(self.found.findings)
-
-    @property
-    def message(self) -> str:
-        """The diagnosis in a paragraph."""
-        return self.found.summary
 
     @cached_property
     def corrected_robot(self) -> Robot:
@@ -111,13 +77,6 @@ class ExplainedExperiment(Result):
     def warnings(self) -> tuple[str, ...]:
         """Sentences on the recordings that could not be used, then on those that were."""
         return (*self.left_out, *self.doubts)
-
-    @property
-    def doubts(self) -> tuple[str, ...]:
-        """Sentences on the recordings that were used, each with its recording's name."""
-        return tuple(
-            f"{run.name}: {doubt}" for run in self.experiment.runs for doubt in run.recording.doubts
-        )
 
     @property
     def guilty(self) -> tuple[Stage, ...]:
@@ -163,32 +122,28 @@ class ExplainedExperiment(Result):
         """The report of a diagnosis."""
         found, loss = self.found, self.loss
         steps = ", ".join(f"{step} {time:.1f} s" for step, time in found.seconds.items())
+        cost = loss.sentence if isinstance(loss, LossUnknown) else ""
+        recordings = tables.recordings_table(self.experiment), doc.warnings(self.warnings)
+        sections: dict[str, tuple[doc.Block, ...]] = {
+            "What was found": (tables.effects_table(found),),
+            "What the wrong model would cost": (cost,),
+            "What remains open, and what to record next": tuple(_open(self)),
+            "What was tried": (tables.candidates_table(found),),
+            "The robot's parameters": (tables.parameters_table(found, self.experiment),),
+            "Misfit by channel, before → after, σ": (tables.misfit_table(found),),
+            "Recordings": recordings,
+        }
         return doc.Document(
             name=self.name,
             kind="diagnosis",
-            title=headline(found),
+            title=tables.headline(found),
             lead=found.summary,
             good=found.verdict == "consistent",
             sections=(
                 doc.Section("Where it goes wrong", (chain(self), chain_note(self))),
                 doc.Section("", (doc.Facts(tuple(_key_facts(self)), key=True),)),
                 doc.gallery(figures),
-                doc.Section("What was found", (effects_table(found),)),
-                doc.Section(
-                    "What the wrong model would cost",
-                    (loss.sentence if isinstance(loss, LossUnknown) else "",),
-                ),
-                doc.Section("What remains open, and what to record next", tuple(_open(self))),
-                doc.Section("What was tried", (candidates_table(found),)),
-                doc.Section("The robot's parameters", (parameters_table(found, self.experiment),)),
-                doc.Section("Misfit by channel, before → after, σ", (misfit_table(found),)),
-                doc.Section(
-                    "Recordings",
-                    (
-                        recordings_table(self.experiment),
-                        doc.warnings((*self.left_out, *self.doubts)),
-                    ),
-                ),
+                *(doc.Section(title, blocks) for title, blocks in sections.items()),
             ),
             footer=(
                 *doc.versions(self.sha256),
@@ -213,12 +168,13 @@ class ExplainedExperiment(Result):
 
     def _record(self) -> dict[str, Any]:
         """The content of `diagnosis.json`."""
-        own = {"loss": loss_record(self.loss), "left_out": self.left_out, "doubts": self.doubts}
-        return {"name": self.name, **diagnosis_record(self.found, self.where), **own}
+        return super()._record() | {"loss": loss_record(self.loss), "left_out": self.left_out}
 
     def _tables(self) -> dict[str, str]:
         """The corrected robot as a robot file."""
-        title = f"{headline(self.found)}.\nFrom {self.name} by rr-opt {__version__} diagnose."
+        title = (
+            f"{tables.headline(self.found)}.\nFrom {self.name} by rr-opt {__version__} diagnose."
+        )
         return {self.OTHERS[0]: robot_yaml(self.corrected_robot, title)}
 
 
@@ -241,23 +197,19 @@ _STATES = {
 
 def chain(one: ExplainedExperiment) -> doc.Chain:
     """The stages; without tests of them, where the accepted effect acts."""
-    stages, channel = one.found.stages, one.found.channel
-    if stages:
-        marked = zip(stages, stage_words(stages), strict=True)
-        return doc.Chain(
-            tuple(
-                doc.Step(stage_name(stage), *_STATES[word], stage_text(stage, one.found))
-                for stage, word in marked
-            )
-        )
-    return doc.Chain(
-        tuple(
-            doc.Step(name, "fault", "✗ the effect acts here")
-            if channel in channels
-            else doc.Step(name, "untested", "–")
+    found = one.found
+    if not found.stages:
+        acts = "fault", "✗ the effect acts here"
+        steps = (
+            doc.Step(name, *(acts if found.channel in channels else ("untested", "–")))
             for name, channels in _PLACES
         )
-    )
+    else:
+        steps = (
+            doc.Step(tables.stage_name(stage), *_STATES[word], tables.stage_text(stage, found))
+            for stage, word in zip(found.stages, tables.stage_words(found.stages), strict=True)
+        )
+    return doc.Chain(tuple(steps))
 
 
 def chain_note(one: ExplainedExperiment) -> str:
@@ -287,11 +239,11 @@ def _key_facts(one: ExplainedExperiment) -> Iterator[doc.Fact]:
     yield doc.Fact("misfit now", f"{found.after:.2f} σ", "1 is the noise alone")
     for finding in found.findings[:3]:
         if found.verdict == "missing_physics":
-            name = candidate_words([finding.name])
+            name = tables.candidate_words([finding.name])
             beyond = "of the misfit beyond the noise"
-            yield doc.Fact(f"explained by {name}", share_text(finding), beyond)
+            yield doc.Fact(f"explained by {name}", tables.share_text(finding), beyond)
         for name, each in list(finding.parameters.items())[:2]:
-            value, _, interval = value_text(each).partition(" [")
+            value, _, interval = tables.value_text(each).partition(" [")
             yield doc.Fact(name.replace("_", " "), value, f"95 %: {interval.rstrip(']')}")
     if isinstance(one.loss, Loss):
         lost = share_lost(one.loss)
@@ -301,10 +253,10 @@ def _key_facts(one: ExplainedExperiment) -> Iterator[doc.Fact]:
 def _open(one: ExplainedExperiment) -> Iterator[str]:
     found = one.found
     for group in found.indistinguishable:
-        names = " from ".join(candidate_words([name]) for name in group)
+        names = " from ".join(tables.candidate_words([name]) for name in group)
         yield f"These recordings cannot distinguish {names}."
     if found.verdict != "consistent":
-        yield f"Remainder: {remainder_text(found.remainder)}. {found.remainder.matters}"
+        yield f"Remainder: {tables.remainder_text(found.remainder)}. {found.remainder.matters}"
     yield from (each.sentence for each in found.residue)
     if found.next_experiment is not None:
         yield found.next_experiment.sentence
@@ -312,7 +264,7 @@ def _open(one: ExplainedExperiment) -> Iterator[str]:
 
 def _summary_facts(one: ExplainedExperiment) -> Iterator[Fact]:
     found = one.found
-    yield Fact("verdict", f"{found.verdict}: {headline(found)}")
+    yield Fact("verdict", f"{found.verdict}: {tables.headline(found)}")
     if found.channel != "none":
         yield Fact("  shows in", found.channel.replace("_", " "))
     if one.where:
@@ -322,13 +274,13 @@ def _summary_facts(one: ExplainedExperiment) -> Iterator[Fact]:
     proof = counted(len(one.proof), "held out recording") if one.marked else one.proven_on
     misfit = f"{found.before:.2f} before, {found.after:.2f} after, in units of the noise"
     yield Fact("misfit", f"{misfit} ({proof})")
-    for stage, word in zip(found.stages, stage_words(found.stages), strict=True):
-        text = f"{word}, {stage_text(stage, found)}"
-        yield Fact(f"channel {stage_name(stage)}", text)
+    for stage, word in zip(found.stages, tables.stage_words(found.stages), strict=True):
+        text = f"{word}, {tables.stage_text(stage, found)}"
+        yield Fact(f"channel {tables.stage_name(stage)}", text)
     for group in found.indistinguishable:
         yield Fact("indistinguishable", " or ".join(name.replace("_", " ") for name in group))
     if found.verdict != "consistent":
-        yield Fact("remainder", remainder_text(found.remainder))
+        yield Fact("remainder", tables.remainder_text(found.remainder))
     for each in found.residue:
         yield Fact("left over", each.sentence)
     if one.loss is not None:
@@ -341,7 +293,7 @@ def _summary_facts(one: ExplainedExperiment) -> Iterator[Fact]:
 def _finding(finding: Finding, verdict: str) -> Iterator[Fact]:
     if verdict != "parameters":
         minor = ", minor" if finding.minor else ""
-        head = f"confidence {finding.confidence:.2f}, explains {share_text(finding)}{minor}"
-        yield Fact(candidate_words([finding.name]), head)
+        head = f"confidence {finding.confidence:.2f}, explains {tables.share_text(finding)}{minor}"
+        yield Fact(tables.candidate_words([finding.name]), head)
     for name, value in finding.parameters.items():
-        yield Fact(f"  {name}", value_text(value))
+        yield Fact(f"  {name}", tables.value_text(value))

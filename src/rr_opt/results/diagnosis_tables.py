@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
 from rr_opt.documents import document as doc
 from rr_opt.formatting import number, with_unit
+from rr_opt.messages import listed
 from rr_opt.model.experiment import Experiment, Run
 from rr_opt.model.parameters import PARAMETERS, parameters_of
 from rr_opt.sysid.diagnosis import Diagnosis, Estimate, Finding, Misfit, Remainder, Stage, Tried
@@ -58,12 +59,6 @@ def candidate_words(effects: Sequence[str]) -> str:
     """A set of effects."""
     names = (one.replace("_", " ").replace("coulomb", "Coulomb") for one in effects)
     return " + ".join(names) or "none (parameters only)"
-
-
-def listed(words: Iterable[str]) -> str:
-    """`one`, `one and two`, `one, two and three`."""
-    several = list(words)
-    return " and ".join([", ".join(several[:-1]), several[-1]] if several[1:] else several)
 
 
 def headline(found: Diagnosis) -> str:
@@ -197,7 +192,7 @@ def effects_table(found: Diagnosis) -> doc.Table:
 
 
 _CANDIDATES = (
-    "Each row was fitted to the fitted recordings, with the robot's parameters re-estimated. "
+    "Each row was fitted to the fitted recordings, with the parameters re-estimated. "
     "Score: twice the loss of log predictive density, each recording predicted from the others; "
     "lower is better. Misfit: RMS residual of simulation in the fitted recordings; 1 is the noise."
 )

@@ -37,7 +37,7 @@ from rr_opt.results.limits import (
     worst_slack,
 )
 from rr_opt.results.motion import trajectory_csv
-from rr_opt.results.result import Check, Result
+from rr_opt.results.result import Check, Result, picked
 from rr_opt.verify.replay import Replay
 from rr_opt.verify.sweep import TOLERATED, SweepCheck
 
@@ -90,7 +90,7 @@ class FastestGait(Result):
         """The fastest gait, as commanded; None if there is none."""
         if self.driven:
             return self.driven.gait
-        return self.told(self.optimum.best.gait) if self.optimum.best else None
+        return self.command_for(self.optimum.best.gait) if self.optimum.best else None
 
     @property
     def joint(self) -> Gait | None:
@@ -98,12 +98,12 @@ class FastestGait(Result):
         if self.gait is None:
             return None
         command = self.problem.command
-        return command.servo.made(self.gait) if command else self.gait
+        return command.servo.response_to(self.gait) if command else self.gait
 
-    def told(self, gait: Gait) -> Gait:
+    def command_for(self, gait: Gait) -> Gait:
         """The command of which the servo makes a gait of the joint, such as those of `optimum`."""
         command = self.problem.command
-        return command.servo.told(gait) if command else gait
+        return command.servo.command_for(gait) if command else gait
 
     @property
     def speed(self) -> float | None:
@@ -329,23 +329,11 @@ class FastestGait(Result):
         optimum, replay, sweep = self.optimum, self.replay, self.sweep
         cycle, driven = self.cycle, self.driven
         return {
-            "status": self.status,
-            "message": self.message,
-            "warnings": self.warnings,
+            **picked(self, "status message warnings gait joint inertia_ratio speed energy"),
             "problem": self.name,
-            "gait": self.gait,
-            "joint": self.joint,
-            "inertia_ratio": self.inertia_ratio,
-            "speed": self.speed,
             "speed_as_built": self.as_built,
             "cycle": cycle
-            and {
-                "dx": cycle.dx,
-                "dy": cycle.dy,
-                "dpsi": cycle.dpsi,
-                "radius": cycle.radius if self.turns else None,
-            },
-            "energy": self.energy,
+            and {**picked(cycle, "dx dy dpsi"), "radius": cycle.radius if self.turns else None},
             "limits": [
                 {**plain(row), "unit": UNITS[row.name], "active": row.active if replay else None}
                 for row in self.limits.values()
@@ -367,26 +355,21 @@ class FastestGait(Result):
             },
             "driven": driven
             and {
-                "effects": driven.driven.effects,
+                **picked(driven.driven, "effects left_out speeds"),
                 "beyond_optimiser": driven.beyond,
-                "left_out": driven.driven.left_out,
-                "speeds": driven.driven.speeds,
                 "speed_without": optimum.best and optimum.best.speed,
             },
             "solver": {
-                "starts": optimum.starts,
-                "iterations": optimum.iterations,
-                "intervals": optimum.intervals,
+                **picked(optimum, "starts iterations intervals failures"),
                 "distinct_optima": [
                     {
                         "speed": one.speed,
-                        "gait": self.told(one.gait),
+                        "gait": self.command_for(one.gait),
                         "inertia_ratio": self.ratio_of(one),
                     }
                     for one in optimum.optima
                 ],
                 "ties": len(optimum.ties),
-                "failures": optimum.failures,
             },
             "robot": robot_record(self.robot),
             "loads": _loads(self),
@@ -563,13 +546,13 @@ def _optima(result: FastestGait) -> doc.Table:
     rows = [
         [
             f"{1e3 * one.speed:+.2f} mm/s",
-            with_unit(told.amplitude, "rad"),
-            with_unit(told.period, "s"),
-            with_unit(told.offset, "rad"),
+            with_unit(command.amplitude, "rad"),
+            with_unit(command.period, "s"),
+            with_unit(command.offset, "rad"),
             number(result.ratio_of(one)),
             "the optimum" if one is optimum.best else "a tie" if id(one) in ties else "",
         ]
-        for one, told in ((one, result.told(one.gait)) for one in optimum.optima)
+        for one, command in ((one, result.command_for(one.gait)) for one in optimum.optima)
     ]
     head = ["Speed", "Amplitude", "Period", "Offset", "J20/J10", "Remark"]
     return doc.table(head, rows if len(rows) > 1 else [])

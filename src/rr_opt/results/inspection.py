@@ -21,7 +21,7 @@ from rr_opt.recordings.markers.pose import MarkerFit
 from rr_opt.recordings.servo_clock import Synchrony
 from rr_opt.recordings.time_axis import time_step
 from rr_opt.recordings.warnings import size_text
-from rr_opt.results.result import Progress, Result, quiet
+from rr_opt.results.result import Progress, Result, picked, quiet
 
 
 @dataclass(frozen=True, repr=False)
@@ -261,10 +261,9 @@ def _channel(found: Inspection, channel: str) -> dict[str, Any]:
         "flagged": {flag.name.lower(): (flags & flag > 0).sum() for flag in Flag if flag.name},
         "sigma": np.median(recording.sigma[channel]),
         "noise": {
-            "sigma": noise.sigma,
+            **picked(noise, "sigma p_white"),
             "sigma_error": noise.error,
             "at_half_frequency": noise.slower,
-            "p_white": noise.p_white,
         },
     }
 

@@ -70,11 +70,8 @@ def limit_row(name: str, optimum: Optimum, reached: Mapping[str, float]) -> Limi
     return LimitRow(name, limit, value, active, price if active else 0.0)
 
 
-def bound_rows(optimum: Optimum, told: Gait, ratio: float) -> dict[str, BoundRow]:
-    """Amplitude, period, offset, the inertia ratio if it is a decision; empty without a gait.
-
-    told  the commanded gait
-    """
+def bound_rows(optimum: Optimum, commanded: Gait, ratio: float) -> dict[str, BoundRow]:
+    """Amplitude, period, offset, the inertia ratio if it is a decision; empty without a gait."""
     best, gait, choice = optimum.best, optimum.problem.gait, optimum.problem.inertia_ratio
     if best is None:
         return {}
@@ -85,7 +82,8 @@ def bound_rows(optimum: Optimum, told: Gait, ratio: float) -> dict[str, BoundRow
         boxes |= {"amplitude": command.amplitude, "offset": offset}
     prices = best.bound_prices
     rows = {
-        name: _bound(name, getattr(told, name), box, prices[name]) for name, box in boxes.items()
+        name: _bound(name, getattr(commanded, name), box, prices[name])
+        for name, box in boxes.items()
     }
     if gait.shape != "sine":
         rows["amplitude"] = _swing(rows["amplitude"], prices["amplitude"], best.speed)

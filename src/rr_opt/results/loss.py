@@ -16,7 +16,7 @@ from typing import Any
 from rr_opt.effects import CATALOGUE, OF_ROBOTS
 from rr_opt.effects.effect import Port
 from rr_opt.files.problem_file import read_problem
-from rr_opt.formatting import number, with_unit
+from rr_opt.formatting import direction_text, number, with_unit
 from rr_opt.messages import listed
 from rr_opt.model.experiment import Experiment
 from rr_opt.model.gait import Gait
@@ -27,6 +27,7 @@ from rr_opt.motion.dynamics import ignored_in_steady_cycle
 from rr_opt.motion.servo import servo_made
 from rr_opt.motion.steady_cycle import steady_cycle
 from rr_opt.outcome import RollerRacerError
+from rr_opt.results.result import picked
 from rr_opt.sysid.diagnosis import Diagnosis
 from rr_opt.verify.sweep import check_optimum
 
@@ -185,7 +186,7 @@ def share_lost(one: Loss) -> str:
 
 def pace(speed: float) -> str:
     """`298.3 mm/s forward`."""
-    return f"{1e3 * abs(speed):.1f} mm/s {'forward' if speed > 0 else 'backward'}"
+    return f"{1e3 * abs(speed):.1f} mm/s {direction_text(speed)}"
 
 
 def loss_sentences(one: Loss | LossUnknown | None) -> str:
@@ -229,15 +230,14 @@ def loss_record(one: Loss | LossUnknown | None) -> dict[str, Any] | None:
     if isinstance(one, LossUnknown):
         return {"not_told": one.sentence}
     return {
-        "gait_as_believed": _gait(one.believed),
+        "gait_as_believed": picked(one.believed, _SIZES),
         "speed_promised": one.promised,
         "speed_reached": one.reached,
-        "gait_as_found": _gait(one.best),
+        "gait_as_found": picked(one.best, _SIZES),
         "speed_as_found": one.speed,
         "share_lost": one.share,
         "beyond_what_was_recorded": one.unseen,
     }
 
 
-def _gait(gait: Gait) -> dict[str, float]:
-    return {name: getattr(gait, name) for name in ("amplitude", "period", "offset")}
+_SIZES = "amplitude period offset"

@@ -16,7 +16,7 @@ from rr_opt.documents.archive import (
     write_dataset,
     write_text,
 )
-from rr_opt.documents.document import Document, Fact, Figure, csv_text, facts_alone
+from rr_opt.documents.document import Document, Fact, Figure, csv_text, facts_alone, heading
 from rr_opt.documents.texts import captions
 from rr_opt.formatting import QUANTITIES, number, side_text, speed_text, with_unit
 from rr_opt.model.gait import Gait
@@ -26,7 +26,7 @@ from rr_opt.motion.circle import Circle, Transient
 from rr_opt.motion.rollout import Measured, Trajectory
 from rr_opt.motion.servo import servo_made
 from rr_opt.results.gait import gait_facts, ignored_effects, speed_fact
-from rr_opt.results.result import Progress, Result, quiet
+from rr_opt.results.result import Progress, Result, picked, quiet
 from rr_opt.version import __version__
 
 Format = Literal["csv", "netcdf"]
@@ -137,9 +137,8 @@ class SimulatedMotion(GaitResult):
         """Distance, turn, speed and torque, SI."""
         driven, measured = self.trajectory, self.measured
         return {
-            "gait": self.gait,
+            **picked(self, "gait start"),
             "status": self.source_status,
-            "start": self.start,
             "seconds": driven.t[-1],
             "distance": math.hypot(driven.x[-1] - driven.x[0], driven.y[-1] - driven.y[0]),
             "turned": driven.psi[-1] - driven.psi[0],
@@ -161,12 +160,8 @@ class DrivenCircle(GaitResult):
         circle, start = self.circle, self.transient
         return {
             "gait": self.gait,
-            "speed": circle.speed,
-            "curvature": circle.curvature,
-            "radius": circle.radius,
-            "centre": circle.centre,
+            **picked(circle, "speed curvature radius centre yaw_rate"),
             "heading_per_period": circle.heading,
-            "yaw_rate": circle.yaw_rate,
             "time_for_full_turn": circle.time_round,
             "periods_for_full_turn": circle.periods_round,
             "from_rest": {
@@ -194,10 +189,11 @@ _COLUMNS = {
 
 
 def trajectory_csv(trajectory: Trajectory) -> str:
-    """t,x,y,psi,phi,v,torque in SI units under a header row."""
+    """t,x,y,psi,phi,v,torque in SI units, under a header row that has them."""
     names = [field.name for field in fields(Trajectory)]
     columns = (getattr(trajectory, name).tolist() for name in names)
-    return csv_text(names, zip(*columns, strict=True))
+    head = [heading(name, _COLUMNS[name][0]) for name in names]
+    return csv_text(head, zip(*columns, strict=True))
 
 
 def write_netcdf(path: Path, trajectory: Trajectory) -> Path:

@@ -49,6 +49,11 @@ class Plots(dict[str, Svg]):
         return [write_text(Path(folder) / f"{name}.svg", svg) for name, svg in self.items()]
 
 
+def picked(source: Any, names: str) -> dict[str, Any]:
+    """Attributes by their names, which blanks part, for a record."""
+    return {name: getattr(source, name) for name in names.split()}
+
+
 @dataclass(frozen=True)
 class Check:
     """One check of a result: whether it passed, and its finding in a sentence."""

@@ -20,7 +20,7 @@ from rr_opt.motion.setpoints import CENTRE, COUNT
 from rr_opt.outcome import Status
 from rr_opt.results.gait import ignored_effects
 from rr_opt.results.motion import trajectory_csv
-from rr_opt.results.result import Check, Result
+from rr_opt.results.result import Check, Result, picked
 from rr_opt.routing.plan import Plan
 from rr_opt.routing.replay import Replay
 
@@ -38,7 +38,7 @@ class DrivenRoute(Result):
 
     FILE = "route.json"
     OTHERS = ("trajectory.csv", "setpoints.csv")
-    DRAW = "rr_opt.results.figures.route.draw_route"
+    DRAW = "rr_opt.results.figures.motion.draw_route"
     CAPTIONS = captions("route")
 
     name: str
@@ -124,19 +124,12 @@ class DrivenRoute(Result):
         """The content of route.json, SI."""
         plan, replay, command = self.plan, self.replay, self.command
         return {
-            "status": self.status,
-            "message": self.message,
-            "seconds": self.seconds,
+            **picked(self, "status message seconds"),
             "direction": plan.way,
             "length": sum(leg.length for leg in plan.legs),
             "path": [plain(leg) for leg in plan.legs],
             "gaits": [
-                {
-                    "amplitude": gait.amplitude,
-                    "period": gait.period,
-                    "offset": gait.offset,
-                    "speed": v,
-                }
+                {**picked(gait, "amplitude period offset"), "speed": v}
                 for gait, v in zip(plan.gaits, plan.speeds, strict=True)
             ],
             "coasting_alone": plain(plan.coasting) if plan.coasting else None,
@@ -147,15 +140,7 @@ class DrivenRoute(Result):
                 "offset": command.knots[1].tolist(),
                 "omega": command.knots[2].tolist(),
             },
-            "check": replay
-            and {
-                "position": replay.position,
-                "heading": replay.heading,
-                "speed": replay.speed,
-                "path": replay.path,
-                "reached": replay.reached,
-                "excess": replay.excess,
-            },
+            "check": replay and picked(replay, "position heading speed path reached excess"),
             "solver": plan.drive
             and {"steps": plan.drive.iterations, "converged": plan.drive.success},
             "tolerance": plain(plan.route.tolerance),
@@ -191,7 +176,9 @@ class DrivenRoute(Result):
         phi = command.angle(np.minimum(t, command.seconds))
         counts = np.round(CENTRE + phi / COUNT).astype(int)
         columns = (t.tolist(), phi.tolist(), np.degrees(phi).tolist(), counts.tolist())
-        points = doc.csv_text(("t", "phi", "phi_deg", "count"), zip(*columns, strict=True))
+        points = doc.csv_text(
+            ("t [s]", "phi [rad]", "phi [deg]", "count"), zip(*columns, strict=True)
+        )
         return {"trajectory.csv": trajectory_csv(self.replay.trajectory), "setpoints.csv": points}
 
 

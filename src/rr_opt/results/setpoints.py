@@ -14,7 +14,7 @@ from rr_opt.documents.archive import file_for_result, write_text
 from rr_opt.documents.document import Document, Fact, Figure, csv_text, facts_alone
 from rr_opt.formatting import QUANTITIES, number, speed_text, with_unit
 from rr_opt.model.problem import LARGEST_EXCESS
-from rr_opt.motion.setpoints import CENTRE, COUNT, Cost, SetPoints, interpolated
+from rr_opt.motion.setpoints import CENTRE, COUNT, Cost, SetPoints, interpolated, lag
 from rr_opt.results.gait import gait_facts
 from rr_opt.results.motion import GaitResult
 from rr_opt.results.result import Progress, quiet
@@ -48,9 +48,11 @@ class ExportedGait(GaitResult):
         limit, both = self.robot.servo.rate_limit, QUANTITIES["rate"].both
         if needed <= limit * (1 + LARGEST_EXCESS):
             return ()
+        behind = lag(angles, self.points.rate, limit)
         return (
             f"A step between set points needs {both(needed)}, but the servo's rate limit is "
-            f"{both(limit)}. The cost in speed ignores this limit.",
+            f"{both(limit)}: at it the servo is up to {number(1e3 * behind)} mrad behind. The cost "
+            "in speed ignores this. --within-limits lowers the amplitude until no step does.",
         )
 
     def record(self, files: Sequence[Path] = ()) -> dict[str, Any]:
@@ -73,6 +75,7 @@ class ExportedGait(GaitResult):
             "rate": points.rate,
             "points": len(points.angles),
             "period": points.played.period,
+            "amplitude": points.played.amplitude,
             "speed": cost.nominal,
             "speed_left": cost.final,
             "cost": {"period": 0.0, "holding": 0.0, "rounding": None, **cost.steps},
@@ -95,9 +98,9 @@ def text_of(points: SetPoints, format: Format) -> str:
     times = (np.arange(len(points.angles)) / points.rate).tolist()
     if format == "csv":
         angles = points.angles.tolist(), np.degrees(points.angles).tolist()
-        return csv_text(("t", "phi", "phi_deg"), zip(times, *angles, strict=True))
+        return csv_text(("t [s]", "phi [rad]", "phi [deg]"), zip(times, *angles, strict=True))
     if format == "servo":
-        return csv_text(("t", "count"), zip(times, points.counts.tolist(), strict=True))
+        return csv_text(("t [s]", "count"), zip(times, points.counts.tolist(), strict=True))
     return _c_header(points)
 
 
@@ -146,7 +149,7 @@ _NOTHING = 1e-6
 
 
 _STEPS = {
-    "period": "by the changed period",
+    "period": "by the changed period and amplitude",
     "holding": "by moving in straight lines between set points",
     "rounding": f"by rounding to counts of {1e3 * COUNT:.2f} mrad",
 }
@@ -158,6 +161,10 @@ def _facts(result: ExportedGait) -> Iterator[Fact]:
     yield from gait_facts(points.gait)
     yield Fact("set points", f"{len(points.angles)} a period, {rate}")
     yield Fact("  period", _period_text(points))
+    asked, sent = points.gait.amplitude, points.played.amplitude
+    if not math.isclose(asked, sent, rel_tol=_NOTHING):
+        change = f"lowered from {with_unit(asked, 'rad')} ({100 * (sent / asked - 1):+.2f} %)"
+        yield Fact("  amplitude", f"{with_unit(sent, 'rad')}, {change} to be within the limits")
     yield Fact("speed", f"{speed_text(cost.nominal)}, of the gait itself")
     for name, change in cost.steps.items():
         yield Fact(f"  {name}", f"{_change_text(change, cost.nominal)} {_STEPS[name]}")

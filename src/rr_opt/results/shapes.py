@@ -102,7 +102,8 @@ class FastestShapes(Result):
     def _tables(self) -> dict[str, str]:
         """shapes.csv, and the record of each family."""
         rows = [_row(self, one) for one in self.answers]
-        text = doc.csv_text(list(rows[0]), [list(row.values()) for row in rows], digits=12)
+        head = [doc.heading(name, _UNITS.get(name, "")) for name in rows[0]]
+        text = doc.csv_text(head, [list(row.values()) for row in rows], digits=12)
         return {"shapes.csv": text} | {_file(o): strict_json(o.record()) for o in self.answers}
 
     def document(self, figures: Sequence[doc.Figure] = ()) -> doc.Document:
@@ -144,6 +145,17 @@ def family_name(gait: GaitBounds) -> str:
 def _with(answer: FastestGait) -> str:
     shape = answer.problem.gait.shape
     return {"free": "a free gait", "sine": "a sine"}.get(shape, family(answer))
+
+
+_UNITS = {
+    "speed": "m/s",
+    "amplitude": "rad",
+    "period": "s",
+    "offset": "rad",
+    "peak_angle": "rad",
+    "peak_rate": "rad/s",
+    "peak_torque": "N m",
+}
 
 
 def _row(result: FastestShapes, answer: FastestGait) -> dict[str, Any]:

@@ -175,8 +175,8 @@ class SolvedStudy(Result):
         return study_columns(self.study, self.rows, self.branches)
 
     def _tables(self) -> dict[str, str]:
-        rows = zip(*(column.cells for column in self._columns), strict=True)
-        names = [column.name for column in self._columns]
+        rows = zip(*(column.in_table for column in self._columns), strict=True)
+        names = [column.heading for column in self._columns]
         return {"study.csv": doc.csv_text(names, rows, digits=12)}
 
     def _record(self) -> dict[str, Any]:

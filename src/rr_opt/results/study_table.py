@@ -12,12 +12,14 @@ from typing import Any
 import numpy as np
 
 from rr_opt.design.study.row import Optimum, Row
+from rr_opt.documents.document import heading
 from rr_opt.files.study_axes import Axis
 from rr_opt.files.study_file import Study
 from rr_opt.files.study_keys import Key
 from rr_opt.formatting import QUANTITIES, direction_text, with_unit
 from rr_opt.model.parameters import PARAMETERS, SYMBOLS
 from rr_opt.results.motion import netcdf_writer, write_dataset
+from rr_opt.units import to_si
 from rr_opt.version import __version__
 
 _LIKE = {"angle_limit": "angle", "rate_limit": "rate", "torque_limit": "torque"}
@@ -107,12 +109,29 @@ _BOUNDS = (("amplitude", "rad"), ("period", "s"), ("offset", "rad"), ("inertia_r
 @dataclass(frozen=True)
 class Column:
     """A quantity of every case: its SI unit ("1" for plain numbers, empty for text), a phrase that
-    says what it is, and a cell for each case, None where the case has no such thing."""
+    says what it is, and a cell for each case, None where the case has no such thing.
+
+    asked  the unit in which what is varied was asked for; empty: the SI unit
+    """
 
     name: str
     unit: str
     meaning: str
     cells: Sequence[Any]
+    asked: str = ""
+
+    @property
+    def heading(self) -> str:
+        """Of the column in a table: the name, and the unit."""
+        return heading(self.name, self.asked or self.unit)
+
+    @property
+    def in_table(self) -> Sequence[Any]:
+        """The cells in the unit that was asked for."""
+        if not self.asked or self.asked == self.unit:
+            return self.cells
+        worth = to_si(f"1 {self.asked}", self.unit)
+        return [cell / worth for cell in self.cells]
 
 
 def study_columns(
@@ -147,6 +166,7 @@ def study_columns(
                 "" if line.numbers is None else line.key.unit or "1",
                 "varied",
                 [one[line.key.name] for one in inputs],
+                "" if line.numbers is None else line.unit,
             )
             for axis in study.axes
             for line in axis.lines

@@ -12,10 +12,13 @@ from rr_opt.formatting import direction_text, number, pace_text, with_unit
 from rr_opt.model.problem import Problem
 from rr_opt.outcome import Status
 from rr_opt.results.gait import gait_facts, ignored_effects, speed_fact
-from rr_opt.results.result import Result
+from rr_opt.results.result import Result, picked
 from rr_opt.verify.evaluate import LIMITS, Found
-from rr_opt.verify.grid import DECISIONS
 from rr_opt.verify.sweep import SweepResult
+
+_COLUMNS = (
+    "amplitude [rad]", "period [s]", "offset [rad]", "ratio", "speed [m/s]", "peak_torque [N m]",
+)  # fmt: skip
 
 
 @dataclass(frozen=True, repr=False)
@@ -79,7 +82,7 @@ class Sweep(Result):
         the angle.
         """
         found = self.found.found
-        names = (*DECISIONS, "speed", "peak_torque", *(f"keeps_{name}" for name in LIMITS))
+        names = (*_COLUMNS, *(f"keeps_{name}" for name in LIMITS))
         kept = [found.keeps[name].astype(int) for name in LIMITS]
         columns = [*found.decisions, found.speed, found.peak_torque, *kept]
         rows = zip(*(column.tolist() for column in columns), strict=True)
@@ -110,9 +113,4 @@ class Sweep(Result):
 
 
 def _found(one: Found | None) -> dict[str, Any] | None:
-    return one and {
-        "gait": one.gait,
-        "inertia_ratio": one.ratio,
-        "speed": one.speed,
-        "peak_torque": one.peak_torque,
-    }
+    return one and {"inertia_ratio": one.ratio, **picked(one, "gait speed peak_torque")}

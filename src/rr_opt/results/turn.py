@@ -16,7 +16,7 @@ from rr_opt.formatting import direction_text, number, side_text, with_unit
 from rr_opt.model.problem import ANY
 from rr_opt.outcome import Status
 from rr_opt.results.fastest import FastestGait
-from rr_opt.results.result import Check
+from rr_opt.results.result import Check, picked
 from rr_opt.verify.replay import LARGEST, PERIODS, CircleCheck
 
 
@@ -98,10 +98,7 @@ class FastestTurn(FastestGait):
         record, target, circle = super()._record(), self.target, self.circle
         own = {
             "asked": {
-                "heading": target.heading,
-                "radius": target.radius,
-                "within": target.within,
-                "length": target.length,
+                **picked(target, "heading radius within length"),
                 "cycles": "whole" if target.whole else "any",
             },
             "offset_opened": self.opened,
@@ -109,9 +106,7 @@ class FastestTurn(FastestGait):
             "prices": self.turn_prices,
             "circle_check": circle
             and {
-                "ends": circle.ends,
-                "mean": circle.mean,
-                "rest": circle.rest,
+                **picked(circle, "ends mean rest"),
                 "rest_periods": circle.periods,
                 "time_constant": circle.transient.constant,
                 "distance_lost": circle.transient.lost,

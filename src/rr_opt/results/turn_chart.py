@@ -147,8 +147,8 @@ def sine_text(gait: SineGait) -> str:
 
 
 COLUMNS = (
-    "amplitude", "period", "offset", "curvature", "speed", "heading_per_period", "peak_torque",
-    "keeps_limits",
+    "amplitude [rad]", "period [s]", "offset [rad]", "curvature [1/m]", "speed [m/s]",
+    "heading_per_period [rad]", "peak_torque [N m]", "keeps_limits",
 )  # fmt: skip
 
 

@@ -203,12 +203,12 @@ def _stages(plan: Plan, coast: Coasting | None, *, brakes: bool) -> list[Stage]:
 
 def _why_not(route: Route, charts: dict[Way, Chart], paths: dict[Way, list[Leg]]) -> str:
     """Which piece cannot be driven, by which limit, and the nearest that can."""
-    told = []
+    reasons = []
     for way, gaits in charts.items():
         bad = [leg for leg in paths[way] if not math.isfinite(gaits.cost(leg.curvature))]
         low, high = gaits.tightest
         if low == high == 0:
-            told.append(f"no gait within the limits drives {way}")
+            reasons.append(f"no gait within the limits drives {way}")
             continue
         leg = bad[0]
         what = "an arc" if isinstance(route.pieces[leg.piece], Arc) else "the way"
@@ -216,8 +216,8 @@ def _why_not(route: Route, charts: dict[Way, Chart], paths: dict[Way, list[Leg]]
         limits = binding_limits(gaits.problem, way, leg.curvature)
         by = f" (in the way: {', '.join(f'limits.{name}' for name in limits)})" if limits else ""
         nearest = _nearest(gaits, leg.curvature)
-        told.append(f"{way}, piece {leg.piece + 1}, {what} {circle}, has no gait{by}; {nearest}")
-    return "The route cannot be driven: " + ". And ".join(told) + "."
+        reasons.append(f"{way}, piece {leg.piece + 1}, {what} {circle}, has no gait{by}; {nearest}")
+    return "The route cannot be driven: " + ". And ".join(reasons) + "."
 
 
 def _nearest(gaits: Chart, curvature: float) -> str:

@@ -59,8 +59,8 @@ _PENALTY, _RADIUS, _SMALLEST, _SETTLED = 10.0, 0.5, 1e-5, 1e-5
 """Most steps of either kind; penalty over the time of the guess; trust region of the scaled
 unknowns, at first and at last; gain of time, s, of the last step."""
 _PLACES, _BETWEEN = 100, 0.93
-"""At about so many places the distance from the path is bounded, by this share of the tolerance:
-between them P swings with the gait."""
+"""About how many places have a bound on the distance from the path, and the share of the tolerance
+that it is: between them P swings with the gait."""
 
 
 @dataclass(frozen=True)

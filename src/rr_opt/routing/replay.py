@@ -90,7 +90,7 @@ def distances(legs: tuple[Leg, ...], x: Array, y: Array) -> Array:
 
 
 def simulate(problem: Problem, command: Command, start: Pose, turned: float) -> Trajectory:
-    """The motion from rest, at least so many samples a second, and at every knot."""
+    """The motion from rest, at least `rate` samples a second, and at every knot."""
     dynamics = dynamics_of(problem.robot)
     p = dynamics.values(problem.robot)
     state = np.array([0.0, start.heading + turned, start.x, start.y])

@@ -13,6 +13,7 @@ from rr_opt.array import Array
 from rr_opt.model.gait import SineGait
 from rr_opt.model.problem import Problem
 from rr_opt.verify.climb import turn_rows
+from rr_opt.verify.compiled_cycles import Speeds
 from rr_opt.verify.fourier import peak
 from rr_opt.verify.grid import Grid, points
 from rr_opt.verify.speeds import least_S1, motions, speeds
@@ -105,7 +106,7 @@ def evaluate(
     shape = arrays[0].shape
     rows = [part.reshape(-1, shape[-1]) for part in arrays]
     speed, torque, turn = (np.full(rows[0].shape, np.nan) for _ in range(3))
-    geometry = _geometry(problem, rows[0], rows[2])
+    geometry = within(problem, rows[0], rows[2])
     wanted = np.flatnonzero((geometry["angle"] & geometry["singularity"])[:, 0])
     failed = 0
     for done in range(0, len(wanted), _ROWS):
@@ -124,49 +125,51 @@ def evaluate(
     return _evaluated(problem, np.concatenate([flat, line], axis=1), failed)
 
 
-def _evaluated(problem: Problem, flat: Array, failed: int) -> Evaluated:
-    return Evaluated(flat[:4], flat[4], flat[5], flat[6], _keeps(problem, *flat), failed)
+def _evaluated(problem: Problem, points: Array, failed: int) -> Evaluated:
+    """points (7, K): decisions, speed, peak torque, turn."""
+    decisions, (speed, torque, turn) = points[:4], points[4:]
+    found = Speeds(speed, turn, torque, np.isfinite(speed))
+    return Evaluated(decisions, speed, torque, turn, _keeps(problem, decisions, found), failed)
 
 
-def _geometry(problem: Problem, amplitude: Array, offset: Array) -> dict[str, Mask]:
-    limits, robot = problem.limits, problem.robot
-    slack = _SLACK * robot.platform1.c
+def within(
+    problem: Problem, amplitude: Array, offset: Array, slack: float = _SLACK
+) -> dict[str, Mask]:
+    """Which gaits keep the limits on angle and singularity; slack: relative."""
+    limits, far = problem.limits, np.abs(amplitude) + np.abs(offset)
+    S1 = least_S1(problem.robot, amplitude, offset)
     return {
-        "angle": np.abs(amplitude) + np.abs(offset) <= limits.angle * (1 + _SLACK),
-        "singularity": least_S1(robot, amplitude, offset) >= limits.singularity - slack,
+        "angle": far <= limits.angle * (1 + slack),
+        "singularity": limits.singularity * (1 - slack) <= S1,
     }
 
 
-def _keeps(
-    problem: Problem,
-    amplitude: Array,
-    period: Array,
-    offset: Array,
-    ratio: Array,
-    speed: Array,
-    torque: Array,
-    turn: Array,
-) -> dict[str, Mask]:
-    limits = problem.limits
+def kept_limits(problem: Problem, gaits: Array, found: Speeds, slack: float) -> dict[str, Mask]:
+    """By limit, which gaits keep it: amplitude, period and offset come first in `gaits`, and found
+    are their speeds. Not the limit on grip, which the model of the speeds leaves out."""
+    (amplitude, period, offset), limits, speed = gaits[:3], problem.limits, found.speed
     ahead = {"forward": speed > 0, "backward": speed < 0, "either": np.isfinite(speed)}
-    kept = {
-        "rate": np.abs(amplitude) * 2 * math.pi / period <= limits.rate * (1 + _SLACK),
-        **_geometry(problem, amplitude, offset),
-        "torque": torque <= limits.torque * (1 + _SLACK),
+    return {
+        "rate": np.abs(amplitude) * 2 * math.pi <= limits.rate * period * (1 + slack),
+        **within(problem, amplitude, offset, slack),
+        "torque": found.peak_torque <= limits.torque * (1 + slack),
         "direction": ahead[problem.direction],
     }
-    less, equal = turn_rows(problem, np.abs(speed), turn, period)
-    kept["turn"] = np.isfinite(speed)
+
+
+def _keeps(problem: Problem, decisions: Array, found: Speeds) -> dict[str, Mask]:
+    limits, kept = problem.limits, kept_limits(problem, decisions, found, _SLACK)
+    less, equal = turn_rows(problem, np.abs(found.speed), found.turn, decisions[1])
+    kept["turn"] = np.isfinite(found.speed)
     for row in less:
         kept["turn"] &= row >= -_SLACK
     for row in equal:
         kept["turn"] &= np.abs(row) <= _SLACK
-    kept["grip"] = np.ones(len(speed), bool)
+    kept["grip"] = np.ones(len(found.speed), bool)
     if math.isfinite(limits.grip):
-        # The model of the speeds leaves it out; only points that keep all else are looked at.
+        # Only points that keep all else are looked at.
         asked = np.flatnonzero(np.logical_and.reduce(list(kept.values())))
-        gaits = np.array([amplitude, period, offset, ratio])[:, asked]
-        for grip in motions(problem, gaits, grip=True).grips:
+        for grip in motions(problem, decisions[:, asked], grip=True).grips:
             kept["grip"][asked] &= peak(grip, False) <= limits.grip * (1 + _SLACK)
     return kept
 

@@ -27,10 +27,10 @@ Spectrum = NDArray[np.complex128]
 _Operation = Callable[[Array, bool], Array]
 
 _DENSE = 64
-"""Up to so many samples one matrix product is faster than the transforms it stands for."""
+"""Samples up to which one matrix product is faster than the transforms it stands for."""
 
 _SMOOTH = 256
-"""At least so many samples show a peak well enough for a parabola."""
+"""Samples from which on a peak is resolved well enough for a parabola."""
 
 
 def harmonics(x: Array) -> Spectrum:

@@ -1,4 +1,4 @@
-"""The points of a sweep: a product grid of the decisions, and the lines where limits hold it.
+"""The points of a sweep: a product grid of the decisions, and the lines where limits are active.
 
 Optima tend to lie on limits, where a grid of evenly spaced values has hardly a point. So every
 grid is given, besides, the amplitude that the angle and the singular posture leave at each
@@ -130,7 +130,7 @@ def points(problem: Problem, grid: Grid) -> tuple[Array, Array, Array, Array]:
     """Amplitude, period, offset and ratio of all points: (A, F, R, B) each, by amplitude,
     offset, ratio and period; amplitudes and periods increase, and NaN stands for no point.
 
-    The lines where limits hold are added as far as they lie between the grid's ends.
+    The lines where limits are active are added as far as they lie between the grid's ends.
     """
     far, rate = reach(problem), problem.limits.rate
     alpha, phi0, T = grid.amplitude, grid.offset, grid.period

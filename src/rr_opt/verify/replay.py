@@ -51,7 +51,7 @@ class Replay:
 
 
 def replay(robot: Robot, gait: Gait, limits: Limits, claimed: float) -> Replay:
-    """Simulate the steady cycle of a gait and hold it against the claim and the limits.
+    """Simulate the steady cycle of a gait and compare it with the claim and the limits.
 
     Raises NotConvergedError if the gait has no steady cycle.
     """
@@ -107,7 +107,7 @@ class CircleCheck:
 
 
 def check_circle(robot: Robot, gait: Gait, curvature: float) -> CircleCheck:
-    """Hold a claimed curvature, 1/m, against a simulation.
+    """Compare a claimed curvature, 1/m, with a simulation.
 
     Raises NotConvergedError if the gait has no steady cycle.
     """

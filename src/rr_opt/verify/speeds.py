@@ -80,7 +80,7 @@ FEWEST, RESOLVE_MOST = 16, 4096
 """Samples of half a period of a straight gait; of a whole period twice as many."""
 
 _MARGIN = 10.0
-"""The fastest harmonics of the velocity may be so many times as large as the speed's error, which
+"""The fastest harmonics of the velocity may be this many times as large as the speed's error, which
 comes from their products where friction is viscous. Where it is not, those of the friction are
 stronger, and what doubling the samples changes is the error."""
 

@@ -68,7 +68,7 @@ _BLOCK = {True: 4096, False: 16384}
 operation hardly counts, so short that some arrays fit the processor's cache."""
 
 _PAYS = {True: 200_000, False: 1000}
-"""From so many points on NumPy takes longer than to compile."""
+"""Points from which on NumPy takes longer than to compile."""
 
 
 class _Angle(NamedTuple):
@@ -117,7 +117,7 @@ class SteadyFourier:
         self._compiled: CompiledCycles | None = None
 
     def compiled(self, points: int) -> CompiledCycles | None:
-        """The same as machine code, if there is a compiler and it pays, with so many more points
+        """The same as machine code, if there is a compiler and it pays, with this number of points
         to come; what was compiled once is there at once."""
         before, self._asked = self._asked, self._asked + points
         if self._compiled is None and (before == 0 or before < _PAYS[self.viscous] <= self._asked):

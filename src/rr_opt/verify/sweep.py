@@ -84,7 +84,7 @@ class SweepResult:
     """What a sweep found.
 
     grid     the values of each decision
-    found    all points evaluated, those on the lines where limits hold among them
+    found    all points evaluated, those on the lines where limits are active among them
     best     the best point of them that keeps all limits, None if none does
     refined  the best that climbs from the best few points led to
     points   how many points were evaluated in all
@@ -99,7 +99,7 @@ class SweepResult:
 
 @dataclass(frozen=True)
 class SweepCheck:
-    """A claimed optimum, held against a sweep.
+    """A claimed optimum, compared with a sweep.
 
     points         evaluated, near the claimed optimum and all over
     best           that keeps all limits, offset >= 0 where gaits at phi0 and -phi0 do equally well;
@@ -190,9 +190,9 @@ def check_optimum(
     counts: Mapping[str, int] | int | None = None,
     everywhere: SweepResult | None = None,
 ) -> SweepCheck:
-    """Hold a claimed optimum against a sweep of the whole problem and a dense grid around it.
+    """Compare a claimed optimum with a sweep of the whole problem and a climb on from it.
 
-    A gait of another shape is held against all sines, which no optimum of its family may fall
+    A gait of another shape is compared with all sines, which no optimum of its family may fall
     short of.
 
     gait, ratio (J20/J10 in the problem's definition; read only if the problem has one) and

@@ -4,6 +4,7 @@ paper's claim that the offset alone decides on the circle."""
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,9 +14,9 @@ from rr_opt.array import Array
 from rr_opt.model.gait import SineGait
 from rr_opt.model.problem import Problem
 from rr_opt.motion.dynamics import dynamics_of
-from rr_opt.verify.evaluate import Found, Mask, evaluate
+from rr_opt.verify.evaluate import Found, Mask, evaluate, kept_limits, within
 from rr_opt.verify.grid import grid_of, reach
-from rr_opt.verify.speeds import least_S1, speeds
+from rr_opt.verify.speeds import speeds
 from rr_opt.verify.sweep import climbed, tops
 
 _SLACK = 1e-8
@@ -55,7 +56,7 @@ def open_offsets(problem: Problem) -> float:
 
 
 def turn_map(problem: Problem, counts: tuple[int, int, int]) -> TurnMap:
-    """The map of the robot as it is, at so many amplitudes, periods and offsets within bounds."""
+    """The map of the robot as it is; counts: of amplitudes, periods and offsets within bounds."""
     box, limits = problem.gait, problem.limits
     most = min(box.amplitude.high, reach(problem), limits.rate * box.period.high / (2 * math.pi))
     amplitude = np.linspace(box.amplitude.low, most, counts[0] if most > box.amplitude.low else 1)
@@ -63,10 +64,7 @@ def turn_map(problem: Problem, counts: tuple[int, int, int]) -> TurnMap:
     period = np.geomspace(*ends, counts[1]) if ends[0] < ends[1] else np.array(ends[:1])
     offset = np.linspace(0.0, open_offsets(problem), counts[2])
     alpha, phi0, T = np.meshgrid(amplitude, offset, period, indexing="ij")
-    far = alpha + phi0
-    inside = (far <= limits.angle * (1 + _SLACK)) & (
-        least_S1(problem.robot, alpha, phi0) >= limits.singularity * (1 - _SLACK)
-    )
+    inside = _every(within(problem, alpha, phi0))
     seen = speeds(
         problem,
         np.where(inside, alpha, 0.0)[..., :1],
@@ -75,24 +73,16 @@ def turn_map(problem: Problem, counts: tuple[int, int, int]) -> TurnMap:
         None,
         _TOLERANCE,
     )
-    keeps = (
-        inside
-        & seen.converged
-        & (alpha > 0)
-        & (alpha * 2 * math.pi <= limits.rate * T * (1 + _SLACK))
-        & (seen.peak_torque <= limits.torque * (1 + _SLACK))
-    )
-    keeps &= ahead(problem, seen.speed)
+    gaits = np.array([alpha, T, phi0])
+    keeps = seen.converged & (alpha > 0) & _every(kept_limits(problem, gaits, seen, _SLACK))
     parts = (np.where(inside, part, np.nan) for part in (seen.speed, seen.turn, seen.peak_torque))
     speed, heading, torque = (np.swapaxes(part, 1, 2) for part in parts)
     keeps, alike = np.swapaxes(keeps, 1, 2), dynamics_of(problem.robot).mirrored
     return TurnMap(amplitude, period, offset, speed, heading, torque, keeps, alike)
 
 
-def ahead(problem: Problem, speed: Array) -> Mask:
-    """Where it drives the way it should."""
-    ways = {"forward": speed > 0, "backward": speed < 0, "either": np.isfinite(speed)}
-    return ways[problem.direction]
+def _every(kept: Mapping[str, Mask]) -> Mask:
+    return np.logical_and.reduce(list(kept.values()))
 
 
 _COUNTS = ((8, 8, 33), (11, 11, 46))
@@ -198,7 +188,7 @@ class RadiusClaim:
 
 
 def sign_claim(seen: TurnMap) -> SignClaim:
-    """Hold the first half of the claim against a map."""
+    """Test the first half of the claim on a map."""
     kept = seen.keeps & (seen.offset > 0) & (seen.heading != 0)
     left, ahead = seen.heading > 0, seen.speed > 0
     count = [int((kept & way & turn).sum()) for way in (ahead, ~ahead) for turn in (left, ~left)]
@@ -211,7 +201,7 @@ def sign_claim(seen: TurnMap) -> SignClaim:
 
 
 def radius_claim(seen: TurnMap) -> RadiusClaim:
-    """Hold the second half of the claim against a map."""
+    """Test the second half of the claim on a map."""
     curvature = np.where(seen.keeps & (seen.offset > 0), seen.curvature, np.nan)
     curves = growing = 0
     first: SineGait | None = None

@@ -1,7 +1,7 @@
 /* Steady cycles of robots with viscous friction by Fourier series, as verify/steady_fourier.py.
 
    n samples of a span: half a period of a straight gait, else a whole one. The matrices of
-   verify/spectral.py for so many samples stand in one table, one after the other. */
+   verify/spectral.py for this number of samples stand in one table, one after the other. */
 
 typedef struct {
   const double *sine, *cosine;       /* of the phase, n each */

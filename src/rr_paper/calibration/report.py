@@ -8,17 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from rr_opt.documents.document import (
-    Badge,
-    Document,
-    Figure,
-    Gallery,
-    Section,
-    Table,
-    Tone,
-    csv_text,
-    table,
-)
+from rr_opt.documents import document as doc
 from rr_opt.documents.texts import prose
 from rr_opt.files.record import plain
 from rr_opt.formatting import number
@@ -140,7 +130,7 @@ def tables(found: Findings) -> dict[str, str]:
         ],
     }  # fmt: skip
     return {
-        name: csv_text(list(here[0]), (list(row.values()) for row in here), digits=6)
+        name: doc.csv_text(list(here[0]), (list(row.values()) for row in here), digits=6)
         for name, here in rows.items()
     }
 
@@ -227,7 +217,11 @@ def _posterior_rows(found: Findings) -> _Rows:
 
 
 _SHORT: dict[Column, str] = {"mean": "first column", "other": "v_exp"}
-_TONES: dict[str, Tone] = {"pinned down": "good", "narrowed": "note", "not identifiable": "warn"}
+_TONES: dict[str, doc.Tone] = {
+    "pinned down": "good",
+    "narrowed": "note",
+    "not identifiable": "warn",
+}
 
 
 @dataclass(frozen=True)
@@ -262,15 +256,15 @@ def conclusions(found: Findings) -> Conclusions:
     return Conclusions(verdict, *parts)
 
 
-def document(found: Findings, figures: Sequence[Figure]) -> Document:
+def document(found: Findings, figures: Sequence[doc.Figure]) -> doc.Document:
     """The page and the text for a terminal."""
     drawn = {figure.name: figure for figure in figures}
     said = conclusions(found)
 
-    def gallery(name: str) -> Section:
-        return Section("", (Gallery((drawn[name],) if drawn else (), wide=True),))
+    def gallery(name: str) -> doc.Section:
+        return doc.Section("", (doc.Gallery((drawn[name],) if drawn else (), wide=True),))
 
-    return Document(
+    return doc.Document(
         "",
         "calibration of the paper's prototype",
         said.verdict,
@@ -279,36 +273,38 @@ def document(found: Findings, figures: Sequence[Figure]) -> Document:
         "t with 2 degrees of freedom, not the normal distribution.",
         (
             gallery("unknowns"),
-            Section("95 % intervals, viscous friction", (_interval_table(found), *said.valleys)),
+            doc.Section(
+                "95 % intervals, viscous friction", (_interval_table(found), *said.valleys)
+            ),
             gallery("predictions"),
-            Section("Models", (_model_table(found),)),
-            Section("What follows, and what does not", (*said.follows, *said.shipped)),
+            doc.Section("Models", (_model_table(found),)),
+            doc.Section("What follows, and what does not", (*said.follows, *said.shipped)),
             gallery("coverage"),
-            Section("The boxes, and the reasons for them", (_box_table(),), brief=False),
-            Section("Other readings of J20/J10", (_reading_table(found),), brief=False),
+            doc.Section("The boxes, and the reasons for them", (_box_table(),), brief=False),
+            doc.Section("Other readings of J20/J10", (_reading_table(found),), brief=False),
         ),
         footer=(*_sampling(found), f"rr-opt {__version__}"),
     )
 
 
-def _interval_table(found: Findings) -> Table:
+def _interval_table(found: Findings) -> doc.Table:
     head = ("Unknown", "Measured", "Box", "Posterior", "Profile, Student", "Profile, normal",
             "Verdict")  # fmt: skip
-    return table(
+    return doc.table(
         head,
         [
             (one.unknown.symbol, _SHORT[one.column], one.unknown.box_text,
              one.unknown.span(one.posterior), one.profile_text(one.profile),
-             one.profile_text(one.normal), Badge(one.verdict, _TONES[one.verdict]))
+             one.profile_text(one.normal), doc.Badge(one.verdict, _TONES[one.verdict]))
             for one in found.intervals()
         ],
     )  # fmt: skip
 
 
-def _model_table(found: Findings) -> Table:
+def _model_table(found: Findings) -> doc.Table:
     head = ("Model", "Measured", "Unknowns", "Deviance", "χ², normal", "Degrees of freedom", "AICc",
             "Rows left out", "Table 3 alone: AICc")  # fmt: skip
-    return table(
+    return doc.table(
         head,
         [
             (one.model.words, _SHORT[column], len(one.model.unknowns),
@@ -319,8 +315,8 @@ def _model_table(found: Findings) -> Table:
     )  # fmt: skip
 
 
-def _box_table() -> Table:
-    return table(
+def _box_table() -> doc.Table:
+    return doc.table(
         ("Unknown", "Box", "Why"),
         [
             (
@@ -333,7 +329,7 @@ def _box_table() -> Table:
     )
 
 
-def _reading_table(found: Findings) -> Table:
+def _reading_table(found: Findings) -> doc.Table:
     deviance = {
         (READINGS[0], name, column): one.student.deviance
         for (name, column), one in found.assessments.items()
@@ -342,7 +338,7 @@ def _reading_table(found: Findings) -> Table:
         (one.reading, one.model.name, one.column): one.student.deviance
         for one in found.alternatives
     }
-    return table(
+    return doc.table(
         ("J20/J10", "Model", "Deviance, first column", "Deviance, v_exp"),
         [
             (reading.words, MODELS[name].words,
@@ -385,6 +381,6 @@ class Calibration(Findings, Result):
     def _tables(self) -> dict[str, str]:
         return tables(self)
 
-    def document(self, figures: Sequence[Figure] = ()) -> Document:
+    def document(self, figures: Sequence[doc.Figure] = ()) -> doc.Document:
         """The page and the text for a terminal."""
         return document(self, figures)

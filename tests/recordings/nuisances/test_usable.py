@@ -7,8 +7,8 @@ import pytest
 
 from rr_opt.model.experiment import Experiment, Run
 from rr_opt.outcome import InputError
+from rr_opt.recordings.experiment import usable
 from rr_opt.recordings.inspection import Circumstances, inspect
-from rr_opt.recordings.usable import usable
 from tests.recordings.nuisances.spoilt import GAIT, NOISE, ROBOT, recording
 
 

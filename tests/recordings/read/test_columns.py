@@ -7,6 +7,7 @@ from rr_opt.files.issue import InvalidFileError
 from rr_opt.model.experiment import Column
 from rr_opt.recordings.experiment import experiment_of, read_experiment
 from rr_opt.recordings.readers import ReadOptions, ServoLog, read_file
+from rr_opt.recordings.readers.columns import columns_from
 from tests.recordings.read.test_experiment import GAIT, HEAD, motion, plain
 
 FOREIGN = """\
@@ -51,11 +52,38 @@ def test_a_servo_log_may_have_other_names_too(write):
     assert log.goal.tolist() == [512, 513]
 
 
+def test_a_header_may_have_units(write):
+    text = (
+        "t [ms],x [mm],y,psi [deg],phi (rad),torque [N m]\n0,1000,2,90,0.1,1\n10,1001,2,91,0.2,1\n"
+    )
+    run = read_file(write(text))
+    np.testing.assert_allclose(run.t, [0, 0.01])
+    np.testing.assert_allclose(run.values["x"], [1, 1.001])
+    np.testing.assert_allclose(run.values["psi"], np.radians([90, 91]))
+    np.testing.assert_allclose(run.values["phi"], [0.1, 0.2])
+    with pytest.raises(InvalidFileError, match="The unit of `x`: Read '1 kg', a mass"):
+        read_file(write(text.replace("mm", "kg")))
+
+
+def test_a_column_by_another_name_keeps_its_unit(write):
+    text = "time [ms],x,y,yaw [deg],phi\n0,1,2,90,0.1\n10,1,2,91,0.2\n"
+    for file, yaw in (
+        (text, "yaw"),
+        (text, "yaw [deg]"),
+        (text.replace(" [deg]", ""), "yaw [deg]"),
+    ):
+        columns = columns_from({"t": "time", "psi": yaw})
+        run = read_file(write(file), ReadOptions(columns=columns))
+        np.testing.assert_allclose(run.t, [0, 0.01])
+        np.testing.assert_allclose(run.values["psi"], np.radians([90, 91]))
+
+
 def test_what_is_missing_is_guessed(write):
     with pytest.raises(InvalidFileError) as caught:
         read_file(write("time,x_m,y_m,yaw,theta2,phi_rad\n0,1,2,3,4,5\n1,1,2,3,4,5\n"))
     told = str(caught.value)
     assert "write `columns: {t: time, x: x_m, y: y_m, psi: yaw, phi: phi_rad}`" in told
+    assert '--columns "t=time,x=x_m,y=y_m,psi=yaw,phi=phi_rad"' in told
 
 
 def test_an_experiment_file_says_them(write, tmp_path):

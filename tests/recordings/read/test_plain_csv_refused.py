@@ -17,7 +17,7 @@ CASES = {
     "a column missing": (ROWS.replace("psi", "heading"), 1, "Expected also `psi`."),
     "a column misspelt": (ROWS.replace("phi", "phi1"), 1, "write `columns: {phi: phi1}`"),
     "a column twice": (ROWS.replace("y,psi", "x,psi"), 1, "Read the column `x` twice."),
-    "no header": (ROWS.split("\n", 1)[1], 1, "The first row holds numbers"),
+    "no header": (ROWS.split("\n", 1)[1], 1, "The first row has numbers"),
     "no rows": ("t,x,y,psi,phi\n", 1, "Read no row with a time."),
     "one row": ("t,x,y,psi,phi\n0,1,2,3,4\n", 1, "Read 1 row with a time."),
     "no times": ("t,x,y,psi,phi\n,1,2,3,4\n,1,2,3,4\n", 1, "Read no row with a time."),

@@ -9,8 +9,7 @@ from typer.testing import CliRunner
 from rr_opt.cli.main import app
 from rr_opt.files.issue import has_errors
 from rr_opt.outcome import InputError
-from rr_opt.recordings.experiment import read_experiment
-from rr_opt.recordings.usable import usable
+from rr_opt.recordings.experiment import read_experiment, usable
 from tests.sysid.bad_data.folder import GAITS, written
 
 DEGREES = 180 / np.pi
@@ -83,8 +82,8 @@ def test_what_is_refused_is_no_clean_bill_of_lint(tmp_path):
 
 def test_too_short_or_too_still(tmp_path):
     short = refusal(written(tmp_path / "short", lambda table: table[:150]))
-    assert "too short to tell" in short
-    assert "nothing can be told" in short
+    assert "too short" in short
+    assert "nothing can be learnt" in short
 
     def still(table):
         table[:, 1:4] = table[0, 1:4] + 0.001 * np.random.default_rng(0).normal(

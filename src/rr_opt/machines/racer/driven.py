@@ -100,7 +100,7 @@ def driven_speed(robot: Robot, gait: Gait) -> DrivenSpeed:
     S1 = robot.platform1.c * np.cos(phi) + robot.platform2.c
     reached = {
         "angle": float(np.abs(phi).max()),
-        "rate": linear_servo(robot).made(gait).peak_rate,
+        "rate": linear_servo(robot).response_to(gait).peak_rate,
         "torque": float(max(at_samples)),
         "singularity": float(S1.min()),
         "grip": float(max(one.max() for one in needed)),
@@ -183,10 +183,10 @@ def drive_optimum(optimum: Optimum) -> DrivenOptimum | None:
     if best is None or robot is None or ratio is None or not unsteady_effects(robot):
         return None
     problem = optimum.problem
-    told = problem.command.servo.told if problem.command else lambda gait: gait
-    start = driven_speed(robot, told(best.gait))
+    command_for = problem.command.servo.command_for if problem.command else lambda gait: gait
+    start = driven_speed(robot, command_for(best.gait))
     beyond = tuple(name for name in unsteady_effects(robot) if not CATALOGUE[name].linear)
-    here = DrivenOptimum(beyond, told(best.gait), robot, ratio, start, start)
+    here = DrivenOptimum(beyond, command_for(best.gait), robot, ratio, start, start)
     if not beyond or not isinstance(best.gait, SineGait) or problem.turn:
         return here
     box = decisions(problem)
@@ -197,7 +197,7 @@ def drive_optimum(optimum: Optimum) -> DrivenOptimum | None:
 
     def driven_at(point: Array) -> tuple[Robot, Gait, DrivenSpeed]:
         amplitude, period, offset, share = map(float, box.physical(point[None])[:, 0])
-        built, command = robot_of(setting, share), told(SineGait(amplitude, period, offset))
+        built, command = robot_of(setting, share), command_for(SineGait(amplitude, period, offset))
         return built, command, driven_speed(built, command)
 
     for one in optimum.optima[:_STARTS]:

@@ -1,1 +1,1 @@
-"""Markers on two rigid platforms: which is which, and the motion that they tell."""
+"""Markers on two rigid platforms: which is which, and the motion they show."""

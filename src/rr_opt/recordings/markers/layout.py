@@ -2,7 +2,7 @@
 
 Where nobody measured it: markers whose distance does not change are on one platform. The shape of a
 platform is the mean of its frames, each turned onto the others. The joint P is the point that keeps
-its place in both platforms' axes, which the wiggle of the servo shows. What stays unknown is a line
+its place in both platforms' axes, as the motion of the servo shows. What stays unknown is a line
 on each platform: the zeros of psi and of phi. And nothing says which platform is the first.
 """
 
@@ -158,7 +158,7 @@ def rigid_groups(labels: Sequence[str], seen: Array) -> tuple[list[int], list[in
 def _refuse(labels: Sequence[str], what: str) -> NoReturn:
     raise InputError(
         f"The markers {', '.join(labels)} show {what}. Expected two rigid platforms with at least "
-        "two markers each, and a servo that wiggles. Give the layout with --layout."
+        "two markers each, and a servo that moves. Give the layout with --layout."
     )
 
 
@@ -272,6 +272,6 @@ def _joint(poses: Sequence[tuple[Complex, Complex]]) -> tuple[tuple[complex, com
     if weak or sigma > _VAGUE:
         raise InputError(
             "The servo moves too little to show the joint P, the point that both platforms keep. "
-            "Expected a wiggle of some degrees. Record one, or give the layout with --layout."
+            "Expected a motion of some degrees. Record one, or give the layout with --layout."
         )
     return (complex(found[0]), complex(found[1])), sigma

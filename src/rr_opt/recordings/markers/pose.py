@@ -1,8 +1,8 @@
-"""The motion of P and both angles that the markers of a file tell, and what is odd about them."""
+"""The motion of P and both angles from the markers of a file, and what is odd about them."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 
@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rr_opt.array import Array
+from rr_opt.messages import listed
 from rr_opt.model.experiment import CHANNELS, Flag, Recording
 from rr_opt.outcome import InputError
 from rr_opt.recordings.cleaning import unwrapped
@@ -86,7 +87,7 @@ def tilt(bodies: Bodies, height: Array) -> Array:
 
 
 _SAMPLE = 6000
-"""Frames that tell the noise, spread over the recording."""
+"""Frames from which the noise is estimated, spread over the recording."""
 LEAST_NOISE = 1e-6
 """Noise that no capture system goes below, m; what noise-free data are given."""
 
@@ -125,7 +126,7 @@ class MarkerFit:
     recording  the motion of P and both angles
     bodies     the markers, where the recording has them
     shift      (k, 2), by how much they are from where the layout has them, m
-    noise      of a marker's coordinate as the residuals have it, m; NaN if they cannot tell
+    noise      of a marker's coordinate as the residuals have it, m; NaN if they do not determine it
     residual   (n,), root mean square of a frame's residuals per coordinate, corrected for the
                unknowns, m
     whose      (k,), the same of a marker over all frames in which it was used, m
@@ -147,7 +148,7 @@ class MarkerFit:
 def fit_markers(
     data: MarkerData, layout: Layout | None, noise_sigma: float | None = None
 ) -> MarkerFit:
-    """The motion that a marker file holds, and all that was found, put right and left out.
+    """The motion in a marker file, and all that was found, corrected and left out.
 
     layout: None has it estimated from the file itself; psi's and phi's zeros are then unknown.
     noise_sigma: standard deviation of one coordinate of a marker, m; None takes the residuals'.
@@ -176,7 +177,7 @@ def fit_markers(
         tilt(bodies, height), tuple(swaps), ghosts, (),
     )  # fmt: skip
     doubts = _notices(data, layout, made, guess, always, noise_sigma)
-    return replace(made, doubts=doubts, recording=_told(made.recording, data, doubts))
+    return replace(made, doubts=doubts, recording=_with_doubts(made.recording, data, doubts))
 
 
 _FLAT = 0.2
@@ -238,17 +239,17 @@ def _recording(data: MarkerData, fitted: Fit, sigma: float, lost: NDArray[np.int
     return Recording(data.name, data.t, values, sigmas, flags)
 
 
-def _told(recording: Recording, data: MarkerData, doubts: tuple[Notice, ...]) -> Recording:
+def _with_doubts(recording: Recording, data: MarkerData, doubts: tuple[Notice, ...]) -> Recording:
     source = {**data.source, "motion": "a rigid fit of both platforms to the markers, by frame"}
     return replace(recording, source=MappingProxyType(source), doubts=(*data.doubts, *doubts))
 
 
 _MATTERS = 0.5
-"""Times the noise by which a marker must be off its place to be told."""
+"""Times the noise by which a marker must be off its place to be reported."""
 _STATED = 1.5
 """Times the stated noise from which on the residuals contradict it."""
 _TILTS = 6.0
-"""Times the typical tilt from which on a frame's is told."""
+"""Times the typical tilt from which on a frame's is reported."""
 
 
 def _notices(
@@ -292,18 +293,13 @@ def _of_layout(
 def _of_names(data: MarkerData, made: MarkerFit, always: Order | None) -> Iterator[Notice]:
     names = made.bodies.labels
     if always:
-        yield notice("swap.always", names=_and(names[i] for i in members(always)))
+        yield notice("swap.always", names=listed(names[i] for i in members(always)))
     together: dict[tuple[int, ...], list[int]] = {}
     for swap in made.swaps:
         together.setdefault(swap.members, []).extend(swap.frames.tolist())
     for several, frames in together.items():
-        both = _and(names[i] for i in several)
+        both = listed(names[i] for i in several)
         yield notice("swap.frames", names=both, **_frames(data, sorted(frames)))
-
-
-def _and(names: Iterable[str]) -> str:
-    *others, last = names
-    return f"{', '.join(others)} and {last}"
 
 
 def _frames(data: MarkerData, rows: Sequence[int] | NDArray[np.int_]) -> dict[str, str]:

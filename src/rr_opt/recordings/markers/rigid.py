@@ -134,17 +134,17 @@ FALSE_ALARM = 1e-6
 
 
 def marker_noise(fit: Fit) -> float:
-    """The standard deviation of one coordinate of one marker, m; NaN if no frame can tell.
+    """The standard deviation of one coordinate of one marker, m; NaN if no frame determines it.
 
     The median over frames, so that up to half of them may hold anything.
     """
-    told = fit.freedom > 0
-    if not told.any():
+    known = fit.freedom > 0
+    if not known.any():
         return float("nan")
-    freedom = fit.freedom[told]
+    freedom = fit.freedom[known]
     # The median of chi squared, by Wilson and Hilferty's cube.
     median = freedom * (1 - 2 / (9 * freedom)) ** 3
-    return float(np.sqrt(np.median(fit.squares[told] / median)))
+    return float(np.sqrt(np.median(fit.squares[known] / median)))
 
 
 def beyond(fit: Fit, sigma: float) -> NDArray[np.bool_]:

@@ -46,7 +46,7 @@ def members(order: Order) -> tuple[int, ...]:
 
 
 _AS_GOOD = 20.0
-"""Sums of squares, over the variance, that are closer than this do not tell two sets apart."""
+"""Sums of squares, over the variance, that are closer than this do not distinguish two sets."""
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
 """The catalogue of nuisances: what goes wrong between a motion and its recording, by name.
 
-A nuisance is one module here with LOOK: a function that takes the Evidence of a recording and gives
-notices. Wheels that roll tie place, heading and joint angle together at every instant, whatever the
+A nuisance is one module here with `look`, a function from the Evidence of a recording to notices.
+Wheels that roll tie place, heading and joint angle together at every instant, whatever the
 forces are, and the command ties the angle to the clock. So a nuisance shows in the kinematics, and
 an effect of the robot's physics, which obeys them or nearly so, does not pass for one.
 """
@@ -13,15 +13,15 @@ from rr_opt.recordings.nuisances.evidence import Evidence, Look
 from rr_opt.recordings.warnings import Notice
 
 CATALOGUE: tuple[Look, ...] = (
-    enough.LOOK,
-    units.LOOK,
-    clock.LOOK,
-    frame.LOOK,
-    late.LOOK,
-    frame.TWICE,
-    command.LOOK,
-    push.LOOK,
-    start.LOOK,
+    enough.look,
+    units.look,
+    clock.look,
+    frame.look,
+    late.look,
+    frame.look_twice,
+    command.look,
+    push.look,
+    start.look,
 )
 """Asked in this order until one finds what makes the others mean nothing."""
 

@@ -1,4 +1,4 @@
-"""A clock whose rate changes while the robot drives on as before."""
+"""The period of an angle; and a clock whose rate changes while the robot drives on as before."""
 
 from __future__ import annotations
 
@@ -8,11 +8,10 @@ import numpy as np
 
 from rr_opt.array import Array
 from rr_opt.recordings.nuisances.evidence import Evidence
-from rr_opt.recordings.nuisances.periods import dominant, explained
 from rr_opt.recordings.warnings import Notice, notice
 
 _LENGTHS = (3.0, 2.0)
-"""Of a window, in periods: the first tells slow periods, the second has more windows."""
+"""Of a window, in periods: the first resolves slow periods, the second has more windows."""
 _LEAST = 0.1
 """By which part of itself a period changes, at least."""
 _STEADY = 0.05
@@ -22,7 +21,8 @@ _SINE = 0.75
 """Of phi's variance in a window that a sine explains, where the angle is that of a gait."""
 
 
-def _look(given: Evidence) -> Iterator[Notice]:
+def look(given: Evidence) -> Iterator[Notice]:
+    """A clock that changes its rate."""
     t, phi = given.t, given.motion[3]
     usual = given.gait.period if given.gait else dominant(t, phi)[0]
     for length in _LENGTHS if usual > 0 else ():
@@ -70,4 +70,43 @@ def _moment(t: Array, phi: Array, before: float, after: float, first: float) -> 
     return float(tries[int(np.argmin(left))])
 
 
-LOOK = _look
+_PADDED = 8
+"""Times as many samples as there are, so that the peak lies near one of the rates."""
+_LONGEST = 60.0
+"""Of a recording that are looked at for a period, s."""
+_FINEST = 4096
+"""Samples that are looked at."""
+
+
+def dominant(t: Array, y: Array) -> tuple[float, float]:
+    """The period of the sine that explains most of y (n,) at t (n,), s, and how much that is.
+
+    NaN is no sample. The second is the part of y's variance; both are NaN where there are too few.
+    """
+    known = np.isfinite(y) & (t <= t[0] + _LONGEST)
+    if known.sum() < 8:
+        return np.nan, np.nan
+    t, y = t[known], y[known]
+    n = min(len(t), _FINEST)
+    even = np.linspace(t[0], t[-1], n)
+    z = np.interp(even, t, y)
+    z = (z - z.mean()) * np.hanning(n)
+    power = np.abs(np.fft.rfft(z, _PADDED * n)) ** 2
+    # Less than one and a half turns in all is a trend, and no period.
+    first = int(1.5 * _PADDED)
+    if len(power) < first + 3 or not power[first:].max() > 0:
+        return np.nan, np.nan
+    at = first + int(np.argmax(power[first:-1]))
+    low, peak, high = np.log(np.maximum(power[at - 1 : at + 2], 1e-300))
+    bend = low - 2 * peak + high
+    off = 0.5 * (low - high) / bend if bend < 0 else 0.0
+    rate = (at + float(np.clip(off, -0.5, 0.5))) / (_PADDED * n * (even[1] - even[0]))
+    return 1 / rate, explained(t, y, 1 / rate)
+
+
+def explained(t: Array, y: Array, period: float) -> float:
+    """Of y's variance, what a constant and a sine of a period explain."""
+    turn = 2 * np.pi * (t - t[0]) / period
+    A = np.column_stack([np.ones(len(t)), np.sin(turn), np.cos(turn)])
+    left = y - A @ np.linalg.lstsq(A, y, rcond=None)[0]
+    return 1 - float(left @ left) / max(len(y) * float(np.var(y)), 1e-300)

@@ -8,14 +8,14 @@ import numpy as np
 
 from rr_opt.array import Array
 from rr_opt.recordings.clock_fit import RUNS_OFF, ClockFit
+from rr_opt.recordings.nuisances.clock import dominant
 from rr_opt.recordings.nuisances.evidence import Evidence
-from rr_opt.recordings.nuisances.periods import dominant
 from rr_opt.recordings.warnings import Notice, notice
 
 _ALIKE, _OTHER = 0.5, 0.8
 """Of phi's variance, what is the gait's where it was driven, and a sine's of another period."""
 _SIZE = 20.0
-"""Times as far as told, or as little, phi moves in another unit only."""
+"""Times as far as commanded, or as little, phi moves in another unit only."""
 _LATE = 1e-3
 """An offset smaller than this matters to nobody, s."""
 _SURE = 3.0
@@ -25,7 +25,8 @@ _HALF = 0.05
 """Periods."""
 
 
-def _look(given: Evidence) -> Iterator[Notice]:
+def look(given: Evidence) -> Iterator[Notice]:
+    """An angle that does not follow its command, or not at once."""
     if given.gait is None:
         return
     fit, period = given.command, given.gait.period
@@ -68,16 +69,16 @@ def _scale(scale: float) -> str:
 
 def _late(given: Evidence, fit: ClockFit) -> str:
     if fit.offset > 0:
-        return "a clock that is off, as no servo moves before it is told"
+        return "a clock that is off, as no servo moves before its command"
     if given.clock_known:
-        return "a servo that is late, as its log has told what the clocks are off by"
+        return "a servo that is late, as its log gives the offset of the clocks"
     both = "a servo that is late, or a clock that is off."
     if given.start == "rest":
         return (
             f"{both} The start from rest is part of the fit, but only a model of the servo can "
-            "tell one from the other"
+            "distinguish the two"
         )
-    return f"{both} This recording cannot tell one from the other: they are one thing in it"
+    return f"{both} This recording cannot distinguish the two: they have the same effect"
 
 
 def follows(given: Evidence, phi: Array) -> bool:
@@ -88,6 +89,3 @@ def follows(given: Evidence, phi: Array) -> bool:
     command = given.gait.angle(given.t[known])
     alike = float(np.corrcoef(phi[known], command)[0, 1])
     return not alike < -_ALIKE
-
-
-LOOK = _look

@@ -1,4 +1,4 @@
-"""A recording that tells too little: empty, short, full of gaps, still, or drowned in noise."""
+"""An uninformative recording: empty, short, full of gaps, still, or drowned in noise."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from rr_opt.recordings.nuisances.evidence import Evidence
 from rr_opt.recordings.warnings import Notice, notice
 
 _FEWEST = 50
-"""Samples of a channel below which nothing is told."""
+"""Least samples of a channel."""
 _PERIODS = 2.0
-"""A shorter recording holds a start and no more."""
+"""A shorter recording shows a start and no more."""
 _LARGEST_GAP = 4.0
 """Seconds without any data of a channel; the motion in between is then nobody's."""
 _STILL = 10.0
@@ -22,10 +22,11 @@ _STILL = 10.0
 _COMMANDED = 0.2
 """A servo that moves that much of its amplitude follows its command, whatever the noise."""
 _HARDLY = 0.02
-"""A path shorter than this tells little about friction, m."""
+"""A path shorter than this shows little of friction, m."""
 
 
-def _look(given: Evidence) -> Iterator[Notice]:
+def look(given: Evidence) -> Iterator[Notice]:
+    """Why nothing, or little, can be learnt."""
     if (why := next(_reasons(given), None)) is not None:
         yield why
         return
@@ -37,7 +38,7 @@ def _look(given: Evidence) -> Iterator[Notice]:
 
 
 def _reasons(given: Evidence) -> Iterator[Notice]:
-    """Why nothing can be told, the gravest first; each holds only if none before it does."""
+    """Why nothing can be learnt, the gravest first; each applies only if none before it does."""
     t, data = given.t, dict(zip(CHANNELS, given.motion, strict=True))
     counts = {name: int(np.isfinite(values).sum()) for name, values in data.items()}
     least = min(counts, key=lambda name: counts[name])
@@ -68,6 +69,3 @@ def _reasons(given: Evidence) -> Iterator[Notice]:
 def _range(values: Array) -> float:
     low, high = np.nanpercentile(values, (1, 99))
     return float(high - low)
-
-
-LOOK = _look

@@ -73,7 +73,7 @@ class Slip:
 class Evidence:
     """A cleaned recording, and what is known of how it was made; None: not known.
 
-    clock_known  a servo's log has told what the recording's clock is off by
+    clock_known  the offset of the recording's clock is known from a servo's log
     framed       the zeros of psi and phi, and which platform is the first, are those of the robot
     """
 
@@ -127,7 +127,7 @@ class Evidence:
         return self.slip_of(self.motion)
 
     def slip_of(self, motion: Iterable[Array], every: int = 1, scale: float = 1.0) -> Slip:
-        """Of a motion that may have been, of every so many strides.
+        """Of a motion that may have been, at every `every`-th stride.
 
         scale: of x and y, and so of their noise, in the motion against the recording.
         """

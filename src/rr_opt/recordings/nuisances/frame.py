@@ -36,11 +36,12 @@ _TOO_FAR, _NOT_FAR = 10.0, 0.05
 slide leave 0.7."""
 
 
-def _look(given: Evidence) -> Iterator[Notice]:
+def look(given: Evidence) -> Iterator[Notice]:
+    """A frame, a zero or a sign that is wrong."""
     return _found(given, {name: undo(*given.motion) for name, undo in _UNDONE.items()}, units=True)
 
 
-def _look_twice(given: Evidence) -> Iterator[Notice]:
+def look_twice(given: Evidence) -> Iterator[Notice]:
     """For two at once."""
     return _found(
         given,
@@ -67,6 +68,3 @@ def _found(
     if meant := given.likely(left):
         best = min(left.values())
         yield notice("frame.wrong", meant=", or ".join(meant), left=given.slip.size, best=best)
-
-
-LOOK, TWICE = _look, _look_twice

@@ -18,7 +18,8 @@ _SHORTEST, _UNSURE = 0.01, 0.02
 that are not known, or wheels that creep sideways, which shows at both axles alike."""
 
 
-def _look(given: Evidence) -> Iterator[Notice]:
+def look(given: Evidence) -> Iterator[Notice]:
+    """Channels that are late."""
     if given.slip.size < ROLLING:
         return
     found = {name: _best(given, columns) for name, columns in _PARTS.items()}
@@ -68,6 +69,3 @@ def _at(u: Array, t: Array, y: Array) -> Array:
     known = np.isfinite(y)
     whole = np.interp(u, t, known.astype(float), left=0.0, right=0.0) > 0.999
     return np.where(whole, np.interp(u, t, np.where(known, y, 0.0)), np.nan)
-
-
-LOOK = _look

@@ -21,10 +21,11 @@ of the first, and a tilted floor 4 cm of the second."""
 _RARE = 10.0
 """Times the usual size over the recording."""
 _MOST = 3
-"""Of one recording that are told."""
+"""Of one recording that are reported."""
 
 
-def _look(given: Evidence) -> Iterator[Notice]:
+def look(given: Evidence) -> Iterator[Notice]:
+    """Pushes and surges."""
     width = max(1, round(_WINDOW / given.step))
     if not given.framed or len(given.t) < 4 * width:
         return
@@ -77,6 +78,3 @@ def _events(far: Array, least: float, width: int) -> list[int]:
         if all(abs(at - other) > 2 * width for other in found):
             found.append(at)
     return sorted(found)
-
-
-LOOK = _look

@@ -28,7 +28,7 @@ _UNSEEN = 0.2
 _ACCURACY, _DELAY = 0.3, 0.05
 """By how much the nominal robot may be wrong, of its speed, and the servo late, s; 1 sigma."""
 _OTHER = 2.0
-"""Beyond so many of these sigmas the model says nothing of the robot."""
+"""Sigmas beyond which the model does not describe the robot."""
 _SURE_SPEED, _PLAIN = 6.0, 0.3
 """An initial speed is reported beyond this in sigma, and in parts of the largest speed from rest.
 Of starts from rest that were tried none was beyond 0.2 where it was sure."""
@@ -47,7 +47,8 @@ _FASTEST = 1e3
 """What goes farther or faster is not the motion of a robot, m or m/s."""
 
 
-def _look(given: Evidence) -> Iterator[Notice]:
+def look(given: Evidence) -> Iterator[Notice]:
+    """A start from rest that is none."""
     if given.gait is None or given.start != "rest":
         return
     if given.t[0] >= given.gait.period / 4:
@@ -137,6 +138,3 @@ def _periods(given: Evidence, period: float) -> tuple[Array, Array]:
         after = at + part // 2
         speeds.append((whole[after] - whole[before]) / ((after - before) * given.step))
     return np.array(ways), np.array(speeds)
-
-
-LOOK = _look

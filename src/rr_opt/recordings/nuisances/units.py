@@ -17,9 +17,9 @@ _ROOM, _NO_ROOM = 50.0, 1e5
 _NO_ANGLE = 1000.0
 """No servo turns so far in rad, nor in degrees."""
 _SLOWEST = 0.5
-"""Capture systems sample more often than every so many seconds."""
+"""Capture systems sample more often than this, s."""
 _LATEST = 1e6
-"""Nor do they begin so many seconds, eleven days, after the command did."""
+"""Nor do they begin later than this after the command, eleven days, s."""
 
 
 def unit_notices(recording: Recording) -> tuple[Notice, ...]:
@@ -60,12 +60,13 @@ def _range(values: Array) -> float:
 
 
 _LENGTHS = 5.0
-"""No robot drives so many of its own lengths in a period."""
+"""No robot drives further in a period, in its own lengths."""
 _HEADING = 6.0
-"""Nor does its heading swing so many times as far as phi: in degrees it is 57 times too far."""
+"""Nor does its heading swing further, relative to phi: in degrees it is 57 times too far."""
 
 
-def _look(given: Evidence) -> Iterator[Notice]:
+def look(given: Evidence) -> Iterator[Notice]:
+    """Lengths and angles in another unit, by the gait and the robot."""
     if given.gait is None or given.robot is None:
         return
     x, y, psi, phi = (_swing(given.t, one, given.gait.period) for one in given.motion)
@@ -86,6 +87,3 @@ def _swing(t: Array, y: Array, period: float) -> float:
             low, high = np.percentile(inside, (2, 98))
             ranges.append(high - low)
     return float(np.median(ranges)) if ranges else 0.0
-
-
-LOOK = _look

@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import NoReturn
 
-from rr_opt.files.gate import LONG, read_content
 from rr_opt.files.issue import refuse
+from rr_opt.files.source import LONG, read_content
 from rr_opt.messages import shown
 from rr_opt.model.experiment import Recording
 from rr_opt.recordings.readers import (
@@ -73,7 +73,7 @@ def _refuse(text: Text) -> NoReturn:
     if "endheader" in "\n".join(text.lines[:20]).casefold():
         advice = "It looks like a table of OpenSim: export C3D or TRC instead."
     elif names and all(name.replace(".", "").lstrip("+-").isdecimal() for name in names):
-        advice = "The first row holds numbers: write the header row `t,x,y,psi,phi` above it."
+        advice = "The first row has numbers: write the header row `t,x,y,psi,phi` above it."
     formats = ", ".join(reader.format for reader in READERS[:-2])
     refuse(
         text.file,

@@ -10,11 +10,13 @@ import numpy as np
 
 from rr_opt.array import Array
 from rr_opt.files.issue import refuse
-from rr_opt.messages import nearest, shown
-from rr_opt.model.experiment import Column
+from rr_opt.messages import nearest, shown, unknown_word
+from rr_opt.model.experiment import UNITS, Column
+from rr_opt.outcome import InputError
 from rr_opt.recordings.readers.text import Header, Text, find_header, read_table
 from rr_opt.recordings.time_axis import Order, in_order, rate_of, time_notices
 from rr_opt.recordings.warnings import Notice, notice
+from rr_opt.units import to_si
 
 
 @dataclass(frozen=True)
@@ -41,14 +43,15 @@ def read_columns(
 ) -> Columns:
     """The columns `t` and those known that a text file with a header row has.
 
-    columns: where a channel is that goes by another name. Raises InvalidFileError with every
-    column that is needed and missing, or there twice, and for every cell that is not a number.
+    columns: where a channel is that goes by another name. A name may have its unit in brackets.
+    Raises InvalidFileError with every column that is needed and missing, or there twice, and for
+    every cell that is not a number.
     """
     header = find_header(text)
     if header is None:
         expected = f"`{','.join(needed)}`"
-        refuse(text.file, f"The file holds no rows. Expected {expected}. Export it once more.")
-    header = _renamed(header, columns, known)
+        refuse(text.file, f"The file has no rows. Expected {expected}. Export it once more.")
+    header, units = _renamed(header, columns, known)
     _check(header, needed, known, text.file)
     table = read_table(text, header.at + 1, len(text.lines), header.separator, header.names)
     doubts = list(table.doubts)
@@ -58,9 +61,11 @@ def read_columns(
     names = [one for one in known if one in header.names]
     values = table.values[:, [header.names.index(one) for one in names]]
     for at, name in enumerate(names):
-        if name in columns:
-            values[:, at], told = _converted(values[:, at], columns[name])
-            doubts += told
+        column = columns.get(name, Column(name))
+        if name in units and column.factor == 1:
+            column = replace(column, factor=_factor(units[name], name, header, text.file))
+        values[:, at], notices = _converted(values[:, at], column)
+        doubts += notices
     t, values = values[:, names.index("t")], np.delete(values, names.index("t"), axis=1)
     order = in_order(t, values, table.lines)
     t, values = t[order.rows], values[order.rows]
@@ -75,31 +80,55 @@ def read_columns(
 def column_names(text: Text, columns: Mapping[str, Column], known: Sequence[str]) -> set[str]:
     """What the columns of a text file are called; nothing if it has no header row."""
     header = find_header(text)
-    return set(_renamed(header, columns, known).names) if header else set()
+    return set(_renamed(header, columns, known)[0].names) if header else set()
 
 
-def _renamed(header: Header, columns: Mapping[str, Column], known: Sequence[str]) -> Header:
-    """The header with the names of the channels where other columns stand for them."""
-    names = list(header.names)
+_WITH_UNIT = re.compile(r"(.*\S)\s*[\[(]([^\[\]()]+)[\])]")
+"""A name and its unit, as in `x [mm]` or `Time (ms)`."""
+
+
+def _renamed(
+    header: Header, columns: Mapping[str, Column], known: Sequence[str]
+) -> tuple[Header, dict[str, str]]:
+    """The header with the names of the channels where other columns stand for them, and units."""
+    split = [_WITH_UNIT.fullmatch(cell) for cell in header.cells]
+    bare = [found[1].casefold() if found else "" for found in split]
+    names = [
+        short if short in known and short not in header.names else name
+        for short, name in zip(bare, header.names, strict=True)
+    ]
     for channel, column in columns.items():
         foreign = column.column.strip().casefold()
-        if channel in known and foreign in header.names:
+        there = next((row.index(foreign) for row in (header.names, bare) if foreign in row), None)
+        if channel in known and there is not None:
             names = [f"{one}, as named" if one == channel else one for one in names]
-            names[header.names.index(foreign)] = channel
-    return replace(header, names=tuple(names))
+            names[there] = channel
+    units = {name: found[2] for name, found in zip(names, split, strict=True) if found}
+    return replace(header, names=tuple(names)), units
+
+
+def _factor(unit: str, channel: str, header: Header, file: str) -> float:
+    """What 1 of the unit in a header is, SI. Raises InvalidFileError."""
+    si = UNITS.get(channel, "")
+    if unit == si:
+        return 1.0
+    try:
+        return to_si(f"1 {unit}", si)
+    except InputError as error:
+        refuse(file, f"The unit of `{channel}`: {error}", header.at + 1)
 
 
 def _converted(values: Array, column: Column) -> tuple[Array, list[Notice]]:
     """Counts with their sign, and in SI."""
-    told = []
+    notices = []
     if column.bits:
         negative = values >= 2 ** (column.bits - 1)
         values = np.where(negative, values - 2**column.bits, values)
         if negative.any():
-            told.append(
+            notices.append(
                 notice("file.signed", count=negative.sum(), column=column.column, bits=column.bits)
             )
-    return values * column.factor, told
+    return values * column.factor, notices
 
 
 def _check(header: Header, needed: Sequence[str], known: Sequence[str], file: str) -> None:
@@ -117,12 +146,17 @@ def _check(header: Header, needed: Sequence[str], known: Sequence[str], file: st
     if twice:
         wrong.append(f"Read the column `{twice[0]}` twice. Expected it once. Delete one of them.")
     if missing:
-        meant_by = guesses([name for name in header.names if name not in known], missing)
+        others = [_WITH_UNIT.sub(r"\1", name) for name in header.names if name not in known]
+        meant_by = guesses(others, missing)
         meant = ", ".join(f"{name}: {column}" for name, column in meant_by.items())
         advice = "Add what is missing."
         if meant_by:
-            advice = f"Rename them, or write `columns: {{{meant}}}` in the experiment file."
-        # A letter alone is like no other: the columns that there are tell more.
+            option = ",".join(f"{name}={column}" for name, column in meant_by.items())
+            advice = (
+                f"Rename them, or write `columns: {{{meant}}}` in the experiment file, or "
+                f'--columns "{option}" for one recording.'
+            )
+        # A letter alone is like no other: the columns that there are say more.
         wrong.append(
             f"Read the columns {shown(', '.join(header.names))}. Expected also "
             f"{', '.join(f'`{name}`' for name in missing)}. {advice}"
@@ -137,6 +171,21 @@ def _is_number(cell: str) -> bool:
     except ValueError:
         return False
     return True
+
+
+_CHANNELS = (*UNITS, "goal", "present")
+
+
+def columns_from(given: Mapping[str, str]) -> dict[str, Column]:
+    """Columns by channel, of names such as `yaw [deg]`. Raises InputError for another channel."""
+    found = {}
+    for channel, name in given.items():
+        if channel not in _CHANNELS:
+            raise InputError(unknown_word(channel, _CHANNELS, "channel"))
+        split = _WITH_UNIT.fullmatch(name.strip())
+        factor = to_si(f"1 {split[2]}", UNITS.get(channel, "")) if split else 1.0
+        found[channel] = Column(split[1] if split else name.strip(), factor)
+    return found
 
 
 _FOREIGN = {

@@ -30,7 +30,7 @@ class MarkerData:
     labels     (k,), the markers' names, each once
     positions  (n, k, 3), m; NaN where a marker was not seen
     rate       frames per second, Hz, as the file states it; else as the times have it
-    residual   (n, k), m, of the capture's own triangulation, NaN where unknown; None: not told
+    residual   (n, k), m, of the capture's own triangulation, NaN where unknown; None: not stated
     up         the axis that points up where nobody says otherwise
     posed      the positions are points of bodies whose poses were given: they show no noise
     source     where it came from: file, format, unit, encoding; plain text by name
@@ -127,8 +127,8 @@ def marker_data(
     """
     file = source["file"]
     check_rate(rate, file)
-    clean, subject, told = clean_labels(labels)
-    doubts = [*doubts, *told]
+    clean, subject, renamed = clean_labels(labels)
+    doubts = [*doubts, *renamed]
     if not unit:
         doubts.append(notice("file.unit"))
     elif unit.casefold() not in METRES:

@@ -4,7 +4,7 @@ The header has a row each for the type of what a column belongs to (`Marker`, `R
 its name, as a rule its ID, `Position` or `Rotation`, and last `Frame,Time (Seconds),X,Y,Z,...`.
 The markers that were measured are read, or else the poses of two rigid bodies; `Rigid Body Marker`
 is where Motive's own fit has them.
-Motive's y axis points up unless it was told otherwise: `up: y`.
+Motive's y axis points up unless set otherwise: `up: y`.
 """
 
 from __future__ import annotations

@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rr_opt.files.gait_record import gait_from, gait_record
 from rr_opt.files.issue import InvalidFileError, refuse
+from rr_opt.files.record import gait_from, gait_record
 from rr_opt.files.yaml_text import Document
 from rr_opt.model.experiment import CHANNELS, UNITS, Flag, Noise, Recording
 from rr_opt.model.gait import Gait
@@ -40,7 +40,7 @@ def numbers_of(data: xarray.Dataset, name: str, unit: str, file: str) -> Any:
     stated = str(found.attrs.get("units", unit))
     if found.dims != ("t",) or found.dtype.kind not in "fiu":
         raise InputError(
-            f"{file}: `{name}` holds {found.dtype} over {found.dims}. Expected numbers over t. "
+            f"{file}: `{name}` has {found.dtype} over {found.dims}. Expected numbers over t. "
             "Write them so."
         )
     if stated != unit:
@@ -229,7 +229,7 @@ def _opened(path: Path) -> Any:
             file.visititems(lambda *_: None)
         with xarray.open_dataset(path, engine="h5netcdf", decode_cf=False) as opened:
             if opened.nbytes > _LARGEST:
-                refuse(str(path), f"The file holds {opened.nbytes / 1e9:.3g} GB of numbers. "
+                refuse(str(path), f"The file has {opened.nbytes / 1e9:.3g} GB of numbers. "
                        f"Expected at most {_LARGEST / 1e9:g} GB. Cut the recording.")  # fmt: skip
             return opened.load()
     except InputError:

@@ -22,7 +22,7 @@ def sniff(text: Text, options: ReadOptions) -> bool:
 
 
 def read(file: str, text: Text, options: ReadOptions) -> Recording:
-    """The recording of a plain CSV; columns in any order, others than those known are told.
+    """The recording of a plain CSV; columns in any order; unknown ones are reported.
 
     An empty cell, NaN or infinity is flagged MISSING, a row that stood in another place than its
     time OUT_OF_ORDER, and so is the first of rows that share a time and say different things.

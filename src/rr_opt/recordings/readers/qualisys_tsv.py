@@ -2,7 +2,7 @@
 
 `MARKER_NAMES` names three columns each, `BODY_NAMES` sixteen: place, three angles, a residual and
 the rotation matrix, column by column. The row `Frame`, `Time`, ... and these two columns are
-there if the export was told to write them; else frames come at `FREQUENCY`.
+there if the export was set to write them; else frames come at `FREQUENCY`.
 """
 
 from __future__ import annotations

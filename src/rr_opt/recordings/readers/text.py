@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import codecs
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -121,11 +122,15 @@ SEPARATORS = ("\t", ";", ",")
 
 @dataclass(frozen=True)
 class Header:
-    """The names of the columns, in small letters, as the line with index `at` has them."""
+    """The names of the columns, in small letters, as the line with index `at` has them.
+
+    cells: the same as written.
+    """
 
     at: int
     separator: str
     names: tuple[str, ...]
+    cells: tuple[str, ...]
 
 
 def separator_of(line: str) -> str:
@@ -148,12 +153,13 @@ def find_header(text: Text) -> Header | None:
             continue
         bare = line.strip().lstrip("#").strip()
         separator = separator_of(bare)
-        names = [cell.casefold() for cell in cells_of(bare, separator)]
-        if line.lstrip().startswith("#") and "t" not in names:
+        cells = cells_of(bare, separator)
+        names = [cell.casefold() for cell in cells]
+        if line.lstrip().startswith("#") and not any(re.match(r"t\b", one) for one in names):
             continue
         while names and not names[-1]:
             names.pop()
-        return Header(at, separator, tuple(names))
+        return Header(at, separator, tuple(names), tuple(cells[: len(names)]))
     return None
 
 

@@ -15,6 +15,7 @@ from rr_opt.model.experiment import CHANNELS, Recording
 from rr_opt.results.diagnosis import ExplainedExperiment
 from rr_opt.results.figures import style
 from rr_opt.results.loss import Loss, gait_words, loss_sentences, pace
+from rr_opt.results.machine_diagnosis import ExplainedMachine
 from rr_opt.sysid.diagnosis import Curve, Misfit, Residue
 
 _SYMBOLS = {"psi": "ψ", "phi": "φ"}
@@ -137,7 +138,7 @@ def _evidence(one: ExplainedExperiment) -> tuple[Figure, str] | None:
     made = style.figure(height=0.4 + 2.1 * rows)
     axes = style.grid(made, len(curves), min(len(curves), 2))
     for ax, (stage, each) in zip(axes, curves, strict=True):
-        _curve(ax, each, stage.channel)
+        _curve(ax, each, _input_words(stage.channel))
     names = dict.fromkeys(stage.name.replace("_", " ") for stage, _ in curves)
     return made, (
         f"The unknown input ({' and '.join(names)}) that would explain most of the misfit of the "
@@ -151,7 +152,7 @@ def _residue(one: ExplainedExperiment) -> tuple[Figure, str] | None:
         return None
     made = style.figure(height=0.3 + 2.4 * len(some))
     for ax, each in zip(style.grid(made, len(some), 1), some, strict=True):
-        _curve(ax, each, each.kind)
+        _curve(ax, each, _input_words(each.kind))
     return made, " ".join(each.sentence for each in some)
 
 
@@ -165,7 +166,7 @@ _NAMES = {
 }
 
 
-def _curve(ax: Axes, one: Curve | Residue, channel: str) -> None:
+def _curve(ax: Axes, one: Curve | Residue, input: str) -> None:
     """The mean in bins with its 95 % band; at zero there is no fault."""
     low, high = one.mean - _Z * one.error, one.mean + _Z * one.error
     ax.axhline(0, color=style.GREY, lw=1)
@@ -173,7 +174,7 @@ def _curve(ax: Axes, one: Curve | Residue, channel: str) -> None:
     ax.plot(one.at, one.mean, "o-", color=style.NOMINAL, ms=3.5, lw=1.4)
     name = _NAMES.get(one.variable, one.variable.replace("_", " "))
     unit = f"in units {one.unit}" if one.unit.startswith("of ") else one.unit
-    ax.set(xlabel=f"{name}, {unit}" if unit else name, ylabel=_input_words(channel))
+    ax.set(xlabel=f"{name}, {unit}" if unit else name, ylabel=input)
     if not np.isfinite([*low, *high]).any():
         ax.text(0.5, 0.5, "no data", transform=ax.transAxes, ha="center", color=style.GREY)
 
@@ -266,3 +267,51 @@ def _loss(one: ExplainedExperiment) -> tuple[Figure, str] | None:
     style.lanes(ax, [""] * len(bars))
     ax.set(ylim=(len(bars) - 0.65, -0.75), xlabel="mean speed, mm/s")
     return made, loss_sentences(loss)
+
+
+_MOST_PARTS = 12
+"""Parts of recordings, the held-out ones if there are any."""
+
+
+def draw_machine(one: ExplainedMachine) -> dict[str, str]:
+    """SVG text by name."""
+    with style.styled():
+        made = {"errors": _errors(one), "unknown": _unknown(one)}
+        return {name: style.svg(each) for name, each in made.items() if each}
+
+
+def _errors(one: ExplainedMachine) -> Figure:
+    outputs = one.experiment.machine.outputs
+    found = one.found
+    rows = [k for k, m in enumerate(found.final) if m.held_out] or list(range(len(found.final)))
+    made = style.figure(height=0.8 + 1.7 * len(outputs))
+    axes = np.atleast_1d(made.subplots(len(outputs), 1, sharex=True))
+    for k, (ax, channel) in enumerate(zip(axes, outputs, strict=True)):
+        for level, colour, label in (
+            (found.refitted, style.NOMINAL, "values fitted, no effect"),
+            (found.final, style.FOUND, "as found"),
+        ):
+            start = 0.0
+            for row in rows[:_MOST_PARTS]:
+                m = level[row]
+                t = m.t - m.t[0] + start
+                off = (m.predicted - m.recorded)[:, k]
+                ax.plot(t, off, color=colour, lw=1.2, label=label if start == 0 else None)
+                start = float(t[-1])
+        ax.axhline(0, color=style.GREY, lw=0.8)
+        ax.set(ylabel=f"{channel.name} off, {channel.unit}")
+    axes[-1].set_xlabel("time, one recording after the other, s")
+    style.legend_below(made, axes[0])
+    return made
+
+
+def _unknown(one: ExplainedMachine) -> Figure | None:
+    curves = [c for stage in one.found.stages for c in stage.curves if c.at.size > 1]
+    if not curves:
+        return None
+    made = style.figure(height=2.6)
+    axes = style.grid(made, len(curves), min(len(curves), 2))
+    ports = list(one.experiment.machine.ports.values())
+    for ax, curve in zip(axes, curves, strict=True):
+        _curve(ax, curve, f"unknown, {ports[0][1]}")
+    return made
