@@ -19,7 +19,7 @@ from rr_opt.motion.dynamics import dynamics_of
 from rr_opt.verify.evaluate import Mask, kept_limits, within
 from rr_opt.verify.grid import reach
 from rr_opt.verify.speeds import speeds
-from rr_opt.verify.turn_points import Care, Points, Turning
+from rr_opt.verify.turn_points import Care, Turning, TurnPoints
 
 _SLACK = 1e-8
 _TOLERANCE = 1e-6
@@ -176,7 +176,7 @@ def _closer(problem: Problem, turning: Turning, start: Array, free: Array) -> tu
     return value, best
 
 
-def _merit(problem: Problem, points: Points) -> Array:
+def _merit(problem: Problem, points: TurnPoints) -> Array:
     """Minus the radius, m, where every limit is kept, else -inf."""
     seen, gaits = points.seen, points.gaits
     kept = points.turns & (seen.turn != 0) & _every(kept_limits(problem, gaits, seen, _SLACK))

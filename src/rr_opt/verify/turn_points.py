@@ -28,7 +28,7 @@ _LONGEST = 0.15
 
 
 @dataclass(frozen=True)
-class Points:
+class TurnPoints:
     """K gaits: unit (4, K) in periods, offsets, shares of the amplitude, ratios; amplitude, period,
     offset, ratio (4, K); what they do; and whether they turn as asked."""
 
@@ -75,7 +75,7 @@ class Turning:
         ]
         return [fixed, *({**fixed, **one} for one in ends if len(fixed) < 2)]
 
-    def at(self, unit: Array) -> Points:
+    def at(self, unit: Array) -> TurnPoints:
         """The gaits at these places of the unit box, (4, K)."""
         gaits = self._gaits(unit)
         amplitude, period, offset, ratio = gaits
@@ -88,7 +88,7 @@ class Turning:
                 abs(end) for end in (box.low, box.high) if math.isfinite(end)
             )
             turns &= (rows[name] >= box.low - slack) & (rows[name] <= box.high + slack)
-        return Points(unit, gaits, seen, turns)
+        return TurnPoints(unit, gaits, seen, turns)
 
     def held(self, unit: Array, active: dict[str, float]) -> Array:
         """The places next to these where the named rows have these values, as far as Newton's

@@ -21,7 +21,7 @@ from rr_opt.verify.evaluate import Found, kept_limits
 from rr_opt.verify.grid import boxes, whole_loads
 from rr_opt.verify.speeds import model_of, robot_with, speed_of, speeds
 from rr_opt.verify.sweep import SweepCheck, compared
-from rr_opt.verify.turn_points import Care, Points, Turning
+from rr_opt.verify.turn_points import Care, Turning, TurnPoints
 
 _SLACK = 1e-6
 
@@ -135,7 +135,7 @@ def _speed(problem: Problem, turning: Turning, place: Array | None) -> float:
     return -math.inf if place is None else float(_merit(problem, turning.at(place))[0])
 
 
-def _merit(problem: Problem, points: Points) -> Array:
+def _merit(problem: Problem, points: TurnPoints) -> Array:
     """|speed| where everything is kept, else -inf."""
     kept = kept_limits(problem, points.gaits, points.seen, _SLACK)
     every = np.logical_and.reduce([points.turns, *kept.values()])
