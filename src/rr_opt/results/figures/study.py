@@ -14,7 +14,7 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
 from rr_opt.formatting import counted
-from rr_opt.results.figures import style
+from rr_opt.results.figures import readout, style
 from rr_opt.results.figures.study_axes import Scale, StudyGrid, grid_of, scale_of
 from rr_opt.results.study import SolvedStudy
 from rr_opt.results.study_table import held_words
@@ -33,6 +33,7 @@ def study_map(ax: Axes, result: SolvedStudy, grid: StudyGrid) -> Axes:
     cells.set_edgecolor("face")
     ends = np.nanmin(speed, initial=0.0), np.nanmax(speed, initial=0.0)
     style.speed_bar(ax, cells).set_ylim(min(ends[0], 0.0), max(ends[1], 0.0))
+    readout.cells(ax, *grid.centres, speed, "mean speed, mm/s")
     _contours(ax, np.abs(speed), grid)
     _parting(ax, result, grid)
     row, column = np.unravel_index(np.nanargmax(np.abs(speed)), speed.shape)
