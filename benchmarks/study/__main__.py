@@ -18,7 +18,7 @@ from typing import Any
 
 from benchmarks.results import machine, write, yardstick
 from rr_opt.batch.journal import Journal
-from rr_opt.batch.local import LocalPool
+from rr_opt.batch.pools import LocalPool
 from rr_opt.batch.run import run
 from rr_opt.design.study.case import Task, solve_case, solve_study
 from rr_opt.design.study.plan import plan

@@ -51,7 +51,7 @@ def test_a_failed_check_is_the_headline(answer):
 
 
 def test_names_are_escaped(answer):
-    assert "<script>" not in page(replace(answer, name="<script>"))
+    assert page(replace(answer, name="<script>")).count("<script>") == 1
 
 
 def test_provenance_is_shown(answer):

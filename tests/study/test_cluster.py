@@ -50,22 +50,22 @@ def test_a_killed_worker_costs_no_row(started, tmp_path):
     "address", ["", "foo", "tcp://127.0.0.1", "tcp://127.0.0.1:x", "tcp://127.0.0.1:99999"]
 )
 def test_no_scheduler_is_wrong_input_before_a_client_is_made(monkeypatch, address):
-    from rr_opt.batch import cluster
+    from rr_opt.batch import pools
     from rr_opt.outcome import InputError
 
-    monkeypatch.setattr(cluster, "_client", lambda: pytest.fail)
+    monkeypatch.setattr(pools, "_client", lambda: pytest.fail)
     with pytest.raises(InputError, match="No dask scheduler answers"):
-        cluster.ClusterPool(address or f"tcp://127.0.0.1:{free_port()}")
+        pools.ClusterPool(address or f"tcp://127.0.0.1:{free_port()}")
 
 
 def test_what_listens_and_says_nothing_is_no_scheduler(monkeypatch):
-    from rr_opt.batch import cluster
+    from rr_opt.batch import pools
     from rr_opt.outcome import InputError
 
-    monkeypatch.setattr(cluster, "_client", lambda: pytest.fail)
-    monkeypatch.setattr(cluster, "_PATIENCE", 0.2)
+    monkeypatch.setattr(pools, "_client", lambda: pytest.fail)
+    monkeypatch.setattr(pools, "_PATIENCE", 0.2)
     with socket.socket() as silent:
         silent.bind(("127.0.0.1", 0))
         silent.listen()
         with pytest.raises(InputError, match="No dask scheduler answers"):
-            cluster.ClusterPool(f"tcp://127.0.0.1:{silent.getsockname()[1]}")
+            pools.ClusterPool(f"tcp://127.0.0.1:{silent.getsockname()[1]}")

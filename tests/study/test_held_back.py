@@ -6,7 +6,7 @@ import time
 
 import pytest
 
-from rr_opt.batch.local import LocalPool
+from rr_opt.batch.pools import LocalPool
 from rr_opt.interrupt import held_back
 
 

@@ -6,7 +6,7 @@ from concurrent.futures import Future
 
 import pytest
 
-from rr_opt.batch.local import LocalPool
+from rr_opt.batch.pools import LocalPool
 from rr_opt.batch.run import LOST, PoolLostError, run
 
 

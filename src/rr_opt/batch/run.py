@@ -44,13 +44,10 @@ class Pool(Protocol):
 
 def pool_of(workers: int | None, scheduler: str | None) -> Pool:
     """`workers` processes on this machine (None: one per core), or those of a dask cluster."""
-    if scheduler:
-        from rr_opt.batch.cluster import ClusterPool
+    # Here and not above: it loads joblib, which only studies and trials need.
+    from rr_opt.batch.pools import ClusterPool, LocalPool
 
-        return ClusterPool(scheduler)
-    from rr_opt.batch.local import LocalPool
-
-    return LocalPool(workers)
+    return ClusterPool(scheduler) if scheduler else LocalPool(workers)
 
 
 Task = TypeVar("Task")

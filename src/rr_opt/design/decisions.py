@@ -34,7 +34,7 @@ from rr_opt.design.landscape import Landscape
 from rr_opt.model.ballast import Loads, load_count, with_load_count
 from rr_opt.model.problem import ANY, Interval, Problem, RatioChoice, Turn
 from rr_opt.model.robot import Robot
-from rr_opt.model.servo_command import Command
+from rr_opt.model.servo_command import CommandBounds
 from rr_opt.motion.dynamics import Dynamics, dynamics_of
 
 _LENGTHS = 5.0
@@ -128,7 +128,7 @@ class Decisions:
     reach: float
     rate: float
     turn: TurnRows | None = None
-    command: Command | None = None
+    command: CommandBounds | None = None
     two_sided: bool = True
 
     @property

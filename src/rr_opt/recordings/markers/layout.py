@@ -118,8 +118,9 @@ def check_scale(bodies: Bodies, seen: Array, up: str) -> None:
     )
 
 
-_APART = 6.0
-"""How many times more a distance between platforms must change than one within a platform."""
+_APART = 3.0
+"""How many times more a distance between platforms must change than one within a platform. Within,
+all change by the markers' noise, and a marker may have twice that of another."""
 
 
 def rigid_groups(labels: Sequence[str], seen: Array) -> tuple[list[int], list[int], list[int]]:

@@ -22,6 +22,8 @@ from rr_opt.recordings.warnings import notice
 
 _HEADER = 12
 """The header has fewer lines than this."""
+_ROUNDED = 1e-3
+"""Within this, s, a time is that of its frame."""
 
 
 def sniff(text: Text, _: ReadOptions) -> bool:
@@ -77,11 +79,15 @@ def read(file: str, text: Text, _: ReadOptions) -> MarkerData:
     if others:
         doubts.append(notice("file.columns", names=shown(", ".join(others))))
     rate = stated.get("Export Frame Rate") or stated.get("Capture Frame Rate", "")
+    frame, hertz = frames_of(table, 0, file, last + 1), rate_in(rate, "as the frame rate", file, 1)
+    t = table.values[:, 1]
+    # Times may be written to the millisecond, which frames are not.
+    counted = frame / hertz
     rows: dict[str, Any] = {
-        "frame": frames_of(table, 0, file, last + 1),
+        "frame": frame,
         "lines": table.lines,
-        "t": table.values[:, 1],
-        "rate": rate_in(rate, "as the frame rate", file, 1),
+        "t": counted if np.abs(counted - t).max(initial=0.0) < _ROUNDED else t,
+        "rate": hertz,
         "positions": np.stack([table.values[:, at : at + 3] for at in places], axis=1),
         "unit": stated.get("Length Units", ""),
         "unit_place": ("`Length Units`", 1),

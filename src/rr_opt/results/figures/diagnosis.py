@@ -38,11 +38,13 @@ def bands(one: ExplainedExperiment) -> tuple[Figure, str]:
     axes = list(made.subplots(len(CHANNELS), 1, sharex=True))
     for k, (ax, name) in enumerate(zip(axes, CHANNELS, strict=True)):
         largest = 0.0
-        for level, colour in ((nominal, style.NOMINAL), (final, style.FOUND)):
+        levels = (nominal, style.NOMINAL, "as believed"), (final, style.FOUND, "as found")
+        for level, colour, words in levels:
             for start, each in zip(starts, level, strict=False):
                 at, low, high = _band(each.t, each.residuals[:, k])
                 here = at - each.t[0] + start
-                ax.fill_between(here, low, high, color=colour, alpha=0.45, lw=0.8, step="mid")
+                ax.fill_between(here, low, high, color=colour, alpha=0.45, lw=0.8, step="mid",
+                                label=f"_{words}")  # fmt: skip
                 largest = max([largest, *np.abs([*low, *high])[np.isfinite([*low, *high])]])
         for end in (-_Z, _Z):
             ax.axhline(end, color=style.GREY, lw=1, ls=style.DASHED)

@@ -17,6 +17,7 @@ from rr_opt.model.gait import SineGait
 from rr_opt.model.problem import GaitBounds, Interval, Limits, Problem
 from rr_opt.model.robot import Robot
 from rr_opt.results.figures import style
+from rr_opt.results.figures.readout import cells
 from rr_opt.results.sweep import Sweep
 from rr_opt.verify.sweep import speed_map as evaluated_map
 
@@ -109,6 +110,7 @@ def speed_map(
     ax.contourf(data.period, data.amplitude, worst, levels=[1.0, 2.0], colors=[style.GROUND],
                 hatches=["////"], zorder=2)  # fmt: skip
     style.speed_bar(ax, fill)
+    cells(ax, data.period, data.amplitude, 1e3 * data.speed, "mean speed, mm/s")
     _edges(ax, data, shares, problem.limits)
     for one in others:
         ax.plot(one.period, one.amplitude, "o", ms=9, mfc="none", mec=style.INK, mew=1.4, zorder=6)

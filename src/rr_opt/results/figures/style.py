@@ -15,6 +15,8 @@ from matplotlib.colors import LinearSegmentedColormap, TwoSlopeNorm
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from rr_opt.results.figures.readout import readout
+
 INK, GREY, FAINT, PAPER = "#1f2933", "#66727f", "#d5dbe1", "#ffffff"
 FORWARD, BACKWARD = "#0072b2", "#d55e00"
 PLATFORM1, PLATFORM2, WHEEL = "#009e73", "#e69f00", "#2b3440"
@@ -80,10 +82,11 @@ def figure(width: float = WIDTH, height: float = 4.4) -> Figure:
 
 
 def svg(drawn: Figure) -> str:
-    """The figure as SVG text, the same for the same data."""
+    """The figure as SVG text, the same for the same data, with the values it shows."""
     text = io.StringIO()
     drawn.savefig(text, format="svg", metadata={"Date": None, "Creator": "rr-opt"})
-    return text.getvalue()
+    picture, end, rest = text.getvalue().rpartition("</svg>")
+    return picture + readout(drawn) + end + rest
 
 
 def panel(height: float, fill: Callable[[Axes], object]) -> str:
