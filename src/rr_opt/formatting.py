@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
-class Quantity:
+class ReportedQuantity:
     """A quantity in reports: its name, SI unit, and a second unit with its worth per SI unit."""
 
     words: str
@@ -32,15 +32,15 @@ class Quantity:
 _DEGREES = 180 / math.pi
 
 QUANTITIES = {
-    "angle": Quantity("largest joint angle", "rad", "deg", _DEGREES),
-    "rate": Quantity("largest joint rate", "rad/s", "rpm", 30 / math.pi),
-    "torque": Quantity("largest servo torque", "N m"),
-    "singularity": Quantity("least S1 = c1 cos φ + c2", "m", "mm", 1e3),
-    "grip": Quantity("largest side force over load", ""),
-    "amplitude": Quantity("amplitude", "rad", "deg", _DEGREES),
-    "period": Quantity("period", "s"),
-    "offset": Quantity("offset", "rad", "deg", _DEGREES),
-    "inertia_ratio": Quantity("inertia ratio J20/J10", ""),
+    "angle": ReportedQuantity("largest joint angle", "rad", "deg", _DEGREES),
+    "rate": ReportedQuantity("largest joint rate", "rad/s", "rpm", 30 / math.pi),
+    "torque": ReportedQuantity("largest servo torque", "N m"),
+    "singularity": ReportedQuantity("least S1 = c1 cos φ + c2", "m", "mm", 1e3),
+    "grip": ReportedQuantity("largest side force over load", ""),
+    "amplitude": ReportedQuantity("amplitude", "rad", "deg", _DEGREES),
+    "period": ReportedQuantity("period", "s"),
+    "offset": ReportedQuantity("offset", "rad", "deg", _DEGREES),
+    "inertia_ratio": ReportedQuantity("inertia ratio J20/J10", ""),
 }
 """By the name under which a limit or a decision stands in files and results."""
 

@@ -62,7 +62,7 @@ def predicted(
 
 
 @dataclass(frozen=True)
-class Fit:
+class RowFit:
     """The best fit to a column.
 
     values     of the unknowns by name, fixed ones included
@@ -82,7 +82,7 @@ def fit(
     *,
     signs: Signs = CORRECTED,
     fixed: Mapping[str, float] | None = None,
-) -> Fit:
+) -> RowFit:
     """Fit the unknowns of BOX that are not fixed, k in its logarithm, to a column."""
     fixed = fixed or {}
     names = [name for name in BOX if name not in fixed]
@@ -119,7 +119,7 @@ def fit(
             )  # fmt: skip
             best = min(best, (2 * float(found.cost), found.x, sign), key=lambda one: one[0])
     chi2, point, sign = best
-    return Fit(values(point), tuple((sign * speeds(point)).tolist()), chi2, len(names))
+    return RowFit(values(point), tuple((sign * speeds(point)).tolist()), chi2, len(names))
 
 
 def _spread(unit: Array, chi2: Array) -> list[int]:
@@ -142,7 +142,7 @@ class Hypothesis:
     definition: RatioDefinition
     signs: Signs
     column: Column
-    fit: Fit
+    fit: RowFit
 
     @property
     def at_edge(self) -> bool:

@@ -39,7 +39,7 @@ def test_a_known_robot_is_recovered(monkeypatch):
 
 
 def test_p_of_one_square():
-    one = consistency.Fit({}, (), 4.303**2, len(ROWS) - 1)
+    one = consistency.RowFit({}, (), 4.303**2, len(ROWS) - 1)
     p = Hypothesis("ratio", "", ABOUT_P, CORRECTED, "mean", one).p
     assert p == pytest.approx(2 * stats.t.sf(4.303, 2), abs=2e-3)
 

@@ -12,14 +12,16 @@ import numpy as np
 from rr_opt.files.fields import validate
 from rr_opt.files.issue import Issue
 from rr_opt.files.problem_model import MOST_CASES, RangeModel
-from rr_opt.files.study_keys import Key, key_of
+from rr_opt.files.study_keys import ProblemKey, key_of
 from rr_opt.files.yaml_text import Document, KeyPath
 from rr_opt.messages import shown
 from rr_opt.outcome import InputError
 from rr_opt.units import to_si, unit_written
 
 
-def refuse_conflict(key: Key, values: object, seen: Mapping[KeyPath, tuple[Key, object]]) -> None:
+def refuse_conflict(
+    key: ProblemKey, values: object, seen: Mapping[KeyPath, tuple[ProblemKey, object]]
+) -> None:
     """Raise InputError if one of the keys before is this one, holds it, or is held by it.
 
     seen: each key before and its values, by its path. Robots that are named by their files may be
@@ -71,7 +73,7 @@ def _digits(value: Any) -> str:
 _ROUNDING = 1e-9
 
 
-def range_values(given: Any, key: Key) -> tuple[float, ...]:
+def range_values(given: Any, key: ProblemKey) -> tuple[float, ...]:
     """The values of a RangeModel in SI, both ends included. Raises InputError if it has none."""
     first, last = getattr(given, "from"), given.to
     if key.unit is None:
@@ -112,7 +114,7 @@ def range_values(given: Any, key: Key) -> tuple[float, ...]:
     return tuple(float(value) for value in values)
 
 
-def doubt_about_units(given: Any, key: Key) -> str | None:
+def doubt_about_units(given: Any, key: ProblemKey) -> str | None:
     """A sentence on a range in which a number without a unit stands beside one with a unit.
 
     Zero is the same in every unit.
@@ -152,7 +154,7 @@ class Line:
     place    where in the study file they stand
     """
 
-    key: Key
+    key: ProblemKey
     values: tuple[Any, ...]
     numbers: tuple[float, ...] | None
     unit: str
@@ -160,7 +162,10 @@ class Line:
 
 
 def line_at(
-    document: Document, place: KeyPath, seen: dict[KeyPath, tuple[Key, object]], issues: list[Issue]
+    document: Document,
+    place: KeyPath,
+    seen: dict[KeyPath, tuple[ProblemKey, object]],
+    issues: list[Issue],
 ) -> Line | None:
     """The values of the key at a place; None, and issues added, where something is wrong.
 
@@ -187,7 +192,7 @@ def line_at(
 
 
 def _ranged(
-    document: Document, place: KeyPath, key: Key, data: dict[str, Any], issues: list[Issue]
+    document: Document, place: KeyPath, key: ProblemKey, data: dict[str, Any], issues: list[Issue]
 ) -> Line | None:
     """The line of a range; None where a key of the range is wrong. Raises InputError as ranges."""
     inner = Document(document.file, data, document.lines, place)
@@ -205,7 +210,7 @@ def _ranged(
     return Line(key, numbers, numbers, _unit(ends, key), place)
 
 
-def _unit(values: list[Any], key: Key) -> str:
+def _unit(values: list[Any], key: ProblemKey) -> str:
     """The unit that all values but those that are 0 or infinite have; else the key's, SI."""
     units = {
         unit_written(value) if isinstance(value, str) else ""
@@ -216,7 +221,7 @@ def _unit(values: list[Any], key: Key) -> str:
     return unit or key.unit or ""
 
 
-def _numbers(values: list[Any], key: Key) -> tuple[float, ...] | None:
+def _numbers(values: list[Any], key: ProblemKey) -> tuple[float, ...] | None:
     """The values in SI, if they are numbers. A wrong value is reported by its case."""
     if key.unit is None:
         return None
@@ -259,7 +264,7 @@ def axes_of(document: Document) -> tuple[list[Axis], list[Issue]]:
     def note(place: KeyPath, message: str) -> None:
         issues.append(document.error(place, message))
 
-    seen: dict[KeyPath, tuple[Key, object]] = {}
+    seen: dict[KeyPath, tuple[ProblemKey, object]] = {}
     axes: list[Axis] = []
     groups = _groups(document, note)
     for place, group in groups:

@@ -21,7 +21,7 @@ _STEP = re.compile(r"(?:^|\.)([A-Za-z_][A-Za-z0-9_-]*)|\[([0-9]{1,3})\]")
 
 
 @dataclass(frozen=True)
-class Key:
+class ProblemKey:
     """A key of a problem file.
 
     unit   SI unit of a quantity, "" of a plain number, None of anything else
@@ -32,7 +32,7 @@ class Key:
     unit: str | None
 
 
-def key_of(name: str) -> Key:
+def key_of(name: str) -> ProblemKey:
     """The key of this name. Raises InputError if no problem file has such a key."""
     path = _split(name)
     whole = problem_schema()
@@ -50,7 +50,7 @@ def key_of(name: str) -> Key:
         # An end of a pair has the unit of the pair.
         units = [node["x-unit"] for node in _unfolded(nodes, whole) if "x-unit" in node]
         unit = units[0] if units else unit if isinstance(part, int) else None
-    return Key(name, path, "" if unit == "dimensionless" else unit)
+    return ProblemKey(name, path, "" if unit == "dimensionless" else unit)
 
 
 @lru_cache

@@ -11,7 +11,7 @@ from rr_opt.model.ballast import About, By, Loads, inertia_ratio
 from rr_opt.model.fields import SI, Bounds, Count, Interval, OptionalSI, Range, data, declared
 from rr_opt.model.gait import AMPLITUDE, OFFSET
 from rr_opt.model.robot import ANGLE_LIMIT, RATE_LIMIT, TORQUE_LIMIT, Robot
-from rr_opt.model.servo_command import Command
+from rr_opt.model.servo_command import CommandBounds
 from rr_opt.units import Quantity
 
 Direction = Literal["forward", "backward", "either"]
@@ -158,7 +158,7 @@ class Problem:
     inertia_ratio: RatioChoice | None = None
     direction: Direction = "either"
     turn: Turn | None = None
-    command: Command | None = None
+    command: CommandBounds | None = None
     name: str = field(default="", compare=False)
     sha256: str = field(default="", init=False, compare=False, repr=False)
 

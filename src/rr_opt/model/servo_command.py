@@ -71,7 +71,7 @@ class LinearServo:
 
 
 @dataclass(frozen=True)
-class Command:
+class CommandBounds:
     """Bounds of the command's amplitude, rad, and the servo that follows it.
 
     A problem that has one is about what the joint does. Its own bounds of the amplitude enclose all

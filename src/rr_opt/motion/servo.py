@@ -16,7 +16,7 @@ from rr_opt.mechanics.drive import Drive, commanded
 from rr_opt.model.gait import FourierGait, Gait
 from rr_opt.model.problem import Interval, Problem
 from rr_opt.model.robot import Robot
-from rr_opt.model.servo_command import Command, LinearServo
+from rr_opt.model.servo_command import CommandBounds, LinearServo
 from rr_opt.motion.floor_motion import free_joint
 
 _PERIODS = 257
@@ -61,7 +61,7 @@ def for_joint(problem: Problem) -> Problem:
         problem,
         gait=replace(gait, amplitude=amplitude, offset=offset),
         limits=replace(limits, rate=min(limits.rate, servo.rate)),
-        command=Command(gait.amplitude, servo),
+        command=CommandBounds(gait.amplitude, servo),
     ).read_from(problem.name, problem.sha256)
 
 

@@ -22,7 +22,7 @@ from rr_opt.results.gait import ignored_effects
 from rr_opt.results.motion import trajectory_csv
 from rr_opt.results.result import Check, Result, picked
 from rr_opt.routing.plan import Plan
-from rr_opt.routing.replay import Replay
+from rr_opt.routing.replay import RouteReplay
 
 _RATE = 125.0
 """Set points a second."""
@@ -44,7 +44,7 @@ class DrivenRoute(Result):
     name: str
     sha256: str
     plan: Plan
-    replay: Replay | None
+    replay: RouteReplay | None
 
     @property
     def robot(self) -> Robot:

@@ -23,7 +23,7 @@ from rr_opt.results.gait import ignored_effects
 from rr_opt.results.motion import netcdf_writer
 from rr_opt.results.result import Progress, Result, quiet
 from rr_opt.results.study_table import (
-    Column,
+    StudyColumn,
     axis_words,
     held_words,
     setting_text,
@@ -171,7 +171,7 @@ class SolvedStudy(Result):
         return written
 
     @cached_property
-    def _columns(self) -> list[Column]:
+    def _columns(self) -> list[StudyColumn]:
         return study_columns(self.study, self.rows, self.branches)
 
     def _tables(self) -> dict[str, str]:

@@ -15,7 +15,7 @@ from rr_opt.design.study.row import Optimum, Row
 from rr_opt.documents.document import heading
 from rr_opt.files.study_axes import Axis
 from rr_opt.files.study_file import Study
-from rr_opt.files.study_keys import Key
+from rr_opt.files.study_keys import ProblemKey
 from rr_opt.formatting import QUANTITIES, direction_text, with_unit
 from rr_opt.model.parameters import PARAMETERS, SYMBOLS
 from rr_opt.results.motion import netcdf_writer, write_dataset
@@ -27,7 +27,7 @@ _SMALL = {"m": ("mm", 1e3), "N m s": ("µN m s", 1e6)}
 """SI unit -> the unit shown, and how many of it are one SI unit."""
 
 
-def unit_of(key: Key) -> tuple[str, float]:
+def unit_of(key: ProblemKey) -> tuple[str, float]:
     """The unit, empty for none, and how many of it are one SI unit."""
     name = str(key.path[-1] if isinstance(key.path[-1], str) else key.path[-2])
     kind = QUANTITIES.get(_LIKE.get(name, name))
@@ -35,7 +35,7 @@ def unit_of(key: Key) -> tuple[str, float]:
     return _SMALL.get(unit, (unit, factor))
 
 
-def value_text(key: Key, value: Any, digits: int = 4) -> str:
+def value_text(key: ProblemKey, value: Any, digits: int = 4) -> str:
     """A value of a key for people: a float, SI, in their unit; infinity is `no limit`."""
     if not isinstance(value, float):
         return str(value)
@@ -43,7 +43,7 @@ def value_text(key: Key, value: Any, digits: int = 4) -> str:
     return with_unit(factor * value, unit, digits) if np.isfinite(value) else "no limit"
 
 
-def key_words(key: Key) -> str:
+def key_words(key: ProblemKey) -> str:
     """`rate limit` for limits.rate, `mass of platform 1` for robot.platform1.m; else the key."""
     *above, name = map(str, key.path)
     for parameter in PARAMETERS.values():
@@ -107,7 +107,7 @@ _BOUNDS = (("amplitude", "rad"), ("period", "s"), ("offset", "rad"), ("inertia_r
 
 
 @dataclass(frozen=True)
-class Column:
+class StudyColumn:
     """A quantity of every case: its SI unit ("1" for plain numbers, empty for text), a phrase that
     says what it is, and a cell for each case, None where the case has no such thing.
 
@@ -136,22 +136,24 @@ class Column:
 
 def study_columns(
     study: Study, rows: Sequence[Row], branches: Sequence[int | None]
-) -> list[Column]:
+) -> list[StudyColumn]:
     """All of them, in order; branches: the number of each case's branch of optima."""
     inputs = [study.inputs(case) for case in range(len(rows))]
 
-    def of_rows(name: str, unit: str, meaning: str, cell: Callable[[Row], Any]) -> Column:
-        return Column(name, unit, meaning, [cell(row) for row in rows])
+    def of_rows(name: str, unit: str, meaning: str, cell: Callable[[Row], Any]) -> StudyColumn:
+        return StudyColumn(name, unit, meaning, [cell(row) for row in rows])
 
-    def of_optima(name: str, unit: str, meaning: str, cell: Callable[[Optimum], Any]) -> Column:
+    def of_optima(
+        name: str, unit: str, meaning: str, cell: Callable[[Optimum], Any]
+    ) -> StudyColumn:
         return of_rows(name, unit, meaning, lambda row: row.optimum and cell(row.optimum))
 
-    def price(name: str, unit: str, what: str, prices: Callable[[Optimum], Any]) -> Column:
+    def price(name: str, unit: str, what: str, prices: Callable[[Optimum], Any]) -> StudyColumn:
         per, meaning = f"m/s per {unit}" if unit else "m/s", f"speed gained per unit of the {what}"
         # What is not active costs nothing.
         return of_optima(f"price_{name}", per, meaning, lambda one: prices(one).get(name, 0.0))
 
-    def expected(end: int, word: str) -> Column:
+    def expected(end: int, word: str) -> StudyColumn:
         meaning = f"{word} |speed| expected from the neighbours"
         cell = lambda row: row.expected and row.expected[end]  # noqa: E731
         return of_rows(f"expected_{word}", "m/s", meaning, cell)
@@ -159,9 +161,9 @@ def study_columns(
     branch = "family of optima that it belongs to"
     warm = "from cold initial guesses, or from neighbours' optima: warm"
     return [
-        Column("case", "1", "number of the case", range(len(rows))),
+        StudyColumn("case", "1", "number of the case", range(len(rows))),
         *(
-            Column(
+            StudyColumn(
                 line.key.name,
                 "" if line.numbers is None else line.key.unit or "1",
                 "varied",
@@ -172,7 +174,7 @@ def study_columns(
             for line in axis.lines
         ),
         of_rows("status", "", "how the case ended", lambda row: row.status.value),
-        Column("branch", "1", branch, branches),
+        StudyColumn("branch", "1", branch, branches),
         of_rows("started", "", warm, lambda row: row.started),
         of_optima("drives", "", "which way", lambda one: direction_text(one.speed)),
         *(of_optima(*described, attrgetter(described[0])) for described in _OF_OPTIMUM),
@@ -186,7 +188,7 @@ def study_columns(
     ]
 
 
-def write_netcdf(path: Path, study: Study, columns: Iterable[Column]) -> Path:
+def write_netcdf(path: Path, study: Study, columns: Iterable[StudyColumn]) -> Path:
     """Write every column over the axes of the study, with units and meanings."""
     names = [axis.lines[0].key.name for axis in study.axes]
     inputs = {line.key.name for axis in study.axes for line in axis.lines}
@@ -204,7 +206,7 @@ def write_netcdf(path: Path, study: Study, columns: Iterable[Column]) -> Path:
     return write_dataset(path, data)
 
 
-def _array(column: Column) -> np.ndarray:
+def _array(column: StudyColumn) -> np.ndarray:
     if not column.unit:
         return np.array([cell or "" for cell in column.cells], object)
     return np.array([math.nan if cell is None else cell for cell in column.cells], float)

@@ -16,7 +16,7 @@ from rr_opt.motion.dynamics import require_friction
 from rr_opt.outcome import InputError, Status
 from rr_opt.routing.gaits import Chart, Coasting, Way, binding_limits, chart, coasting
 from rr_opt.routing.path import Leg, legs_of
-from rr_opt.routing.program import BROKEN, Drive, Program, Stage, slip
+from rr_opt.routing.program import BROKEN, Drive, DriveProgram, Stage, slip
 
 Progress = Callable[[str], None]
 
@@ -107,7 +107,7 @@ def plan_route(route: Route, progress: Progress = lambda _: None) -> Plan:
     best: Drive | None = None
     for brakes in (True, False) if route.end == "rest" else (False,):
         stages = _stages(plan, coast if route.end == "rest" else None, brakes=brakes)
-        program = Program(
+        program = DriveProgram(
             problem, stages, route.tolerance, route.start, plan.turned, route.end == "rest"
         )
         drive = program.solve(progress)

@@ -151,7 +151,7 @@ class _Rows:
         self.at_most(name, [leg.piece] * 8, apart, slopes, within * math.cos(math.pi / 8))
 
 
-class Program:
+class DriveProgram:
     """The program of a sequence of stages."""
 
     def __init__(

@@ -25,7 +25,7 @@ _APART = 2e-3
 
 
 @dataclass(frozen=True)
-class Replay:
+class RouteReplay:
     """What the simulation says.
 
     position   distance of P from the end of the route, m
@@ -53,7 +53,7 @@ def replay(
     legs: tuple[Leg, ...],
     turned: float,
     heading: float,
-) -> Replay:
+) -> RouteReplay:
     """Simulate a command; turned: heading of platform 1 at the start against that of the path, rad;
     heading: the one it is to have at the end, rad."""
     robot = problem.robot
@@ -67,7 +67,7 @@ def replay(
         "torque": float(np.abs(driven.torque).max()),
         "singularity": float(S1.min()),
     }
-    return Replay(
+    return RouteReplay(
         driven,
         math.hypot(driven.x[-1] - end.x, driven.y[-1] - end.y),
         abs(float(driven.psi[-1]) - heading),

@@ -23,7 +23,7 @@ from rr_opt.recordings.markers.layout import (
     check_scale,
     guessed_layout,
 )
-from rr_opt.recordings.markers.rigid import Fit, fit, marker_noise, refined
+from rr_opt.recordings.markers.rigid import RigidFit, fit, marker_noise, refined
 from rr_opt.recordings.markers.swaps import (
     Ghosts,
     Order,
@@ -217,7 +217,9 @@ def _rms(residual: Complex) -> Array:
     return np.sqrt(np.nansum(np.abs(residual) ** 2, axis=0) / np.where(count > 0, count, np.nan))
 
 
-def _recording(data: MarkerData, fitted: Fit, sigma: float, lost: NDArray[np.int_]) -> Recording:
+def _recording(
+    data: MarkerData, fitted: RigidFit, sigma: float, lost: NDArray[np.int_]
+) -> Recording:
     turned = fitted.heading[:, 1] - fitted.heading[:, 0]
     values = {
         "x": fitted.joint[:, 0],

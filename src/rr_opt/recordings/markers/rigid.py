@@ -35,7 +35,7 @@ _CHUNK = 20_000
 
 
 @dataclass(frozen=True)
-class Fit:
+class RigidFit:
     """The fit of n frames; NaN where a frame has too few markers.
 
     joint     (n, 2), P on the floor, m
@@ -58,17 +58,17 @@ class Fit:
     freedom: NDArray[np.int_]
 
 
-def fit(bodies: Bodies, seen: Array) -> Fit:
+def fit(bodies: Bodies, seen: Array) -> RigidFit:
     """Fit every frame of `seen` (n, k, 2), m; NaN is a marker that is not there."""
     pieces = [
         _fit(bodies, (seen[start : start + _CHUNK] @ np.array([1, 1j])).astype(complex))
         for start in range(0, max(len(seen), 1), _CHUNK)
     ]
-    names = [one.name for one in fields(Fit)]
-    return Fit(*(np.concatenate([getattr(one, name) for one in pieces]) for name in names))
+    names = [one.name for one in fields(RigidFit)]
+    return RigidFit(*(np.concatenate([getattr(one, name) for one in pieces]) for name in names))
 
 
-def _fit(bodies: Bodies, z: Complex) -> Fit:
+def _fit(bodies: Bodies, z: Complex) -> RigidFit:
     b, used = bodies.places @ np.array([1, 1j]), np.isfinite(z)
     known = np.where(used, z, 0)
     # By platform: whether it is there, its heading and P alone, S, 1/T, u and l.
@@ -118,7 +118,7 @@ def _fit(bodies: Bodies, z: Complex) -> Fit:
     )
     unknowns = 2 + there[0].astype(int) + there[1]
     freedom = 2 * np.isfinite(residual).sum(axis=1) - unknowns
-    return Fit(
+    return RigidFit(
         np.stack([joint.real, joint.imag], 1),
         angles,
         np.sqrt(np.stack([Cxx, Cyy, psi, phi], 1)),
@@ -133,7 +133,7 @@ FALSE_ALARM = 1e-6
 """The share of good frames, with Gaussian noise, whose squares are larger than they may be."""
 
 
-def marker_noise(fit: Fit) -> float:
+def marker_noise(fit: RigidFit) -> float:
     """The standard deviation of one coordinate of one marker, m; NaN if no frame determines it.
 
     The median over frames, so that up to half of them may hold anything.
@@ -147,7 +147,7 @@ def marker_noise(fit: Fit) -> float:
     return float(np.sqrt(np.median(fit.squares[known] / median)))
 
 
-def beyond(fit: Fit, sigma: float) -> NDArray[np.bool_]:
+def beyond(fit: RigidFit, sigma: float) -> NDArray[np.bool_]:
     """The frames (n,) whose markers do not fit two rigid platforms with noise sigma, m."""
     most = sigma**2 * chdtri(np.maximum(fit.freedom, 1), FALSE_ALARM)
     # Noise-free data keep to their digits only.
@@ -184,7 +184,7 @@ def refined(bodies: Bodies, seen: Array) -> tuple[Bodies, Array]:
     return now, shift
 
 
-def _means(bodies: Bodies, fitted: Fit) -> tuple[Array, Array]:
+def _means(bodies: Bodies, fitted: RigidFit) -> tuple[Array, Array]:
     """Mean residual of each marker in its platform's axes (k, 2), and its error (k,), m."""
     sigma = marker_noise(fitted)
     good = ~beyond(fitted, sigma) & (fitted.freedom > 0)

@@ -106,7 +106,7 @@ def _values(file: Bytes, at: int) -> tuple[Any, ...]:
 
 
 @dataclass(frozen=True)
-class Header:
+class C3dHeader:
     """What the header says.
 
     points, analogs  numbers of them in a frame; first, last: the frames' own numbers
@@ -128,7 +128,7 @@ class Header:
         return (4 * self.points + self.analogs) * (4 if self.scale < 0 else 2)
 
 
-def read_header(content: bytes) -> tuple[Bytes, Header]:
+def read_header(content: bytes) -> tuple[Bytes, C3dHeader]:
     """Raises ValueError."""
     at = _BLOCK * (content[0] - 1) + 3
     if at >= len(content) or content[at] not in (INTEL, DEC, MIPS):
@@ -141,11 +141,11 @@ def read_header(content: bytes) -> tuple[Bytes, Header]:
     if start < 2:
         raise ValueError("it does not say where its frames begin")
     points, analogs, first, last = file.integers("u2", 4, 2)
-    return file, Header(points, analogs, first, last, scale, _BLOCK * (start - 1), rate)
+    return file, C3dHeader(points, analogs, first, last, scale, _BLOCK * (start - 1), rate)
 
 
 def frame_count(
-    content: bytes, header: Header, parameters: Parameters, file: str
+    content: bytes, header: C3dHeader, parameters: Parameters, file: str
 ) -> tuple[int, list[Notice]]:
     """How many frames there are, and what is odd about their number. Raises InvalidFileError."""
     end = parameters.get("TRIAL:ACTUAL_END_FIELD", ())
@@ -171,7 +171,7 @@ def frame_count(
 
 
 def points_of(
-    file: Bytes, header: Header, count: int, kept: list[int]
+    file: Bytes, header: C3dHeader, count: int, kept: list[int]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Positions (n, k, 3) and residuals (n, k), below 0 where a marker was not seen."""
     width = 4 * header.points + header.analogs

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from rr_opt.array import Array
 from rr_opt.files.issue import refuse
 from rr_opt.messages import shown
-from rr_opt.recordings.readers.text import Table
+from rr_opt.recordings.readers.text import NumberTable
 from rr_opt.recordings.time_axis import check_rate, in_order, rate_of, time_notices
 from rr_opt.recordings.warnings import Notice, notice
 
@@ -72,7 +72,7 @@ def rate_in(cell: str, said: str, file: str, line: int | None = None) -> float:
     return rate
 
 
-def frames_of(table: Table, column: int, file: str, header: int) -> NDArray[np.int64]:
+def frames_of(table: NumberTable, column: int, file: str, header: int) -> NDArray[np.int64]:
     """The frames' numbers (n,), in a column of a table whose header ends in a line.
 
     Raises InvalidFileError for a table without rows, and for what is no number of a frame.

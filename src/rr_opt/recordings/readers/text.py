@@ -164,7 +164,7 @@ def find_header(text: Text) -> Header | None:
 
 
 @dataclass(frozen=True)
-class Table:
+class NumberTable:
     """values (n, columns), NaN where a cell is empty; lines (n,), the rows' numbers in the file."""
 
     values: Array
@@ -174,7 +174,7 @@ class Table:
 
 def read_table(
     text: Text, first: int, last: int, separator: str, names: Sequence[str | None]
-) -> Table:
+) -> NumberTable:
     """The rows in text.lines[first:last], whose columns have these names; None: not a number.
 
     Cells are empty (missing), or numbers with a decimal point; with another separator than the
@@ -216,7 +216,7 @@ def read_table(
     if endless.any():
         doubts.append(notice("file.infinite", rows=_rows_text(lines[endless.any(axis=1)].tolist())))
         values[endless] = np.nan
-    return Table(values, lines, tuple(doubts))
+    return NumberTable(values, lines, tuple(doubts))
 
 
 def _rows_text(lines: Sequence[int]) -> str:

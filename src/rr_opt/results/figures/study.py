@@ -15,7 +15,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
 from rr_opt.formatting import counted
 from rr_opt.results.figures import readout, style
-from rr_opt.results.figures.study_axes import Grid, Scale, grid_of, scale_of
+from rr_opt.results.figures.study_axes import Scale, StudyGrid, grid_of, scale_of
 from rr_opt.results.study import SolvedStudy
 from rr_opt.results.study_table import held_words
 
@@ -23,7 +23,7 @@ _LEAST_CELLS = 4
 """Along each axis, for lines of equal speed."""
 
 
-def study_map(ax: Axes, result: SolvedStudy, grid: Grid) -> Axes:
+def study_map(ax: Axes, result: SolvedStudy, grid: StudyGrid) -> Axes:
     """A cell for each case, the colour its signed speed; lines part branches; the star is the
     fastest. Hatched: no optimum."""
     speed = 1e3 * result.values("speed")[grid.cases]
@@ -43,7 +43,7 @@ def study_map(ax: Axes, result: SolvedStudy, grid: Grid) -> Axes:
     return ax
 
 
-def _contours(ax: Axes, speed: np.ndarray, grid: Grid) -> None:
+def _contours(ax: Axes, speed: np.ndarray, grid: StudyGrid) -> None:
     """Lines of equal speed, where there are cells enough, on scales, to draw them between."""
     if min(speed.shape) < _LEAST_CELLS or not (grid.x.ordered and grid.y.ordered):
         return
@@ -53,7 +53,7 @@ def _contours(ax: Axes, speed: np.ndarray, grid: Grid) -> None:
         text.set_bbox({"facecolor": style.PAPER, "edgecolor": "none", "alpha": 0.6, "pad": 0.8})
 
 
-def _parting(ax: Axes, result: SolvedStudy, grid: Grid) -> None:
+def _parting(ax: Axes, result: SolvedStudy, grid: StudyGrid) -> None:
     """Lines between cells of different branches."""
     branch = np.array([one or 0 for one in result.branches])[grid.cases]
     x, y = grid.borders
@@ -86,7 +86,7 @@ def active_lanes(ax: Axes, result: SolvedStudy) -> Axes:
     return ax
 
 
-def active_areas(ax: Axes, result: SolvedStudy, grid: Grid) -> Axes:
+def active_areas(ax: Axes, result: SolvedStudy, grid: StudyGrid) -> Axes:
     """Each case in the colour of what limits it; the rarest share a grey. Hatched: no optimum."""
     sets = [
         None if one.optimum is None else " + ".join(held_words(one.optimum.held))

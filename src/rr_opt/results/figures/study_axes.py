@@ -93,7 +93,7 @@ def _even_in_log(steps: Array) -> bool:
 
 
 @dataclass(frozen=True)
-class Grid:
+class StudyGrid:
     """cases (Y, X): of those that share a place, that with the fastest optimum."""
 
     x: Scale
@@ -119,7 +119,7 @@ class Grid:
         ax.grid(visible=False)
 
 
-def grid_of(result: SolvedStudy) -> Grid | None:
+def grid_of(result: SolvedStudy) -> StudyGrid | None:
     """The map over the two longest axes; None if the study has only one."""
     shape = result.study.shape
     if len(shape) < 2:
@@ -130,4 +130,4 @@ def grid_of(result: SolvedStudy) -> Grid | None:
     cases = np.moveaxis(cases, (second, first), (0, 1)).reshape(shape[second], shape[first], -1)
     speed = np.nan_to_num(result.speed, nan=-1.0)
     best = np.take_along_axis(cases, speed[cases].argmax(axis=2)[:, :, None], axis=2)[:, :, 0]
-    return Grid(x, y, best[np.ix_(y.order, x.order)])
+    return StudyGrid(x, y, best[np.ix_(y.order, x.order)])
