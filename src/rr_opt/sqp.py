@@ -22,18 +22,19 @@ from rr_opt.array import Array
 
 Mask = NDArray[np.bool_]
 
-_STEP = 1e-3
-"""Of the stencil, in the variables' scales: differences lose some 1e-7 of a slope."""
-_GAIN, _LENGTH = 1e-10, 1e-7
-"""A step that gains less, relative, or that is shorter, in scales, is the last."""
+_GAIN, _LENGTH, _STATIONARY = 1e-9, 1e-7, 1e-4
+"""A step that gains less, relative, or that is shorter, in scales, is the last; and the slope,
+relative, of what its radius holds back from gaining more."""
 _FRACTIONS = np.array([1.0, 0.6, 0.3, 0.1, 0.03])
 """Of a step that are tried, all in one call."""
 _RADIUS = 0.2
 """The longest step, in scales."""
-_ITERATIONS = 60
+_SHRUNK = 0.1
+"""What is left of it after a step that gains nothing."""
+_ITERATIONS = 100
 _DEAREST = 1e5
 """The largest penalty, in values of the function: what needs a larger one has no solution near."""
-_REPEATED, _SETTLED = 4, 1e-2
+_REPEATED, _SETTLED = 8, 1e-2
 """Quadratic programs within a step, at most, and the change, relative, that ends them."""
 _ACROSS, _FLAT, _SLIGHT = 10.0, 1e-6, 1e-3
 """Curvature across rows that hold, and least curvature, relative to the largest curvature or slope
@@ -70,6 +71,7 @@ class Program:
     look: Callable[[Array], Seen]
     equal: int = 0
     unit: float = 0.0
+    step: float = 1e-3
 
     def violation(self, worst: Array) -> Array:
         """Of the row that fails most, (K,)."""
@@ -108,21 +110,23 @@ def ascend(program: Program, start: Array, penalty: float = 10.0) -> Ascent:
     penalty: of a violation of 1, in values of the function, to begin with.
     """
     x, radius, converged, iterations = start, _RADIUS, False, 0
-    stencil, design = _stencil(len(x))
+    size = max(program.unit, 1e-300)
+    stencil, design = _stencil(len(x), program.step)
     here = program.look(x[None])
     value, violation = float(here.function[0]), float(program.violation(here.worst)[0])
     names, prices = here.names, Prices(np.zeros(len(here.rows)), *(np.zeros(0) for _ in range(3)))
     while not converged and iterations < _ITERATIONS:
         iterations += 1
-        function, rows, _, names = program.look(x + _STEP * program.scale * stencil)
+        function, rows, _, names = program.look(x + program.step * program.scale * stencil)
         models = np.vstack([function, rows]) @ design.T
         if not np.isfinite(models).all():
             break
-        size = max(abs(value), program.unit, 1e-300)
-        step, prices = _step(program, x, models, radius, penalty * size)
+        # It never falls: a penalty that does would let the climb go round in a circle.
+        size = max(abs(value), size)
+        step, prices, promise = _step(program, x, models, radius, penalty * size)
         dearest = float(np.abs(prices.rows).max(initial=0.0)) / size
         penalty = max(penalty, min(2 * dearest, _DEAREST))
-        length = float(np.abs(step).max(initial=0.0))
+        length, reach = float(np.abs(step).max(initial=0.0)), radius
         tried = x + _FRACTIONS[:, None] * program.scale * step
         tried = np.vstack([x, np.clip(tried, program.low, program.high)])
         there = program.look(tried)
@@ -130,22 +134,28 @@ def ascend(program: Program, start: Array, penalty: float = 10.0) -> Ascent:
         merit = there.function - penalty * size * off
         merit = np.where(np.isfinite(merit), merit, -np.inf)
         best = int(merit.argmax())
-        gain = merit[best] - merit[0]
+        gain = float(merit[best] - merit[0])
         x, value, violation = tried[best], float(there.function[best]), float(off[best])
         if best == 0:
-            radius = 0.3 * _FRACTIONS[-1] * min(radius, length)
+            radius = _SHRUNK * min(radius, length)
         elif best == 1:
             radius = min(2 * radius, _RADIUS)
         else:
-            radius = _FRACTIONS[best - 1] * length
-        converged = length <= _LENGTH or (best == 1 and gain <= _GAIN * size)
+            radius = float(_FRACTIONS[best - 1]) * length
+        # A step that its radius cuts short, or that falls short of its promise, says nothing.
+        small = length <= _LENGTH or abs(gain if best == 1 else promise) <= _GAIN * size
+        converged = length < (1 - _SETTLED) * reach and small
+        if reach <= _LENGTH:
+            converged = 0 <= promise <= _STATIONARY * size * reach
+            break
     return Ascent(x, value, violation, prices, names, converged, iterations)
 
 
 def _step(
     program: Program, x: Array, models: Array, radius: float, penalty: float
-) -> tuple[Array, Prices]:
-    """The step, in scales, to the best of the quadratic models, and the prices.
+) -> tuple[Array, Prices, float]:
+    """The step, in scales, to the best of the quadratic models, the prices, and what the models
+    promise to gain.
 
     The models of the rows bend too, so quadratic programs follow each other within the step: along
     a curved limit linear rows would let it go no further than their error. A last variable is by
@@ -171,7 +181,11 @@ def _step(
         h = np.concatenate([-here[1:], here[1 : 1 + equal], np.maximum(at, 0.0)])
         bend = np.tensordot(price, bends[1:], 1) - bends[0]
         least = max(np.abs(slopes[0]).max(initial=0.0), _SLIGHT * penalty)
-        curve[:n, :n] = _convex(bend, least, normals[found[:-1] > 0])
+        # Where rows contradict each other none of them settles the step across it.
+        settled = found[:-1] > np.where(
+            (found[-1] > 0) | (np.arange(len(normals)) >= rows + equal), 0.0, np.inf
+        )
+        curve[:n, :n] = _convex(bend, least, normals[settled])
         change, found = _quadratic(curve, np.append(-tangents[0], penalty), G, h, found > 0)
         price = found[:rows].copy()
         price[:equal] -= found[rows : rows + equal]
@@ -182,7 +196,16 @@ def _step(
     _, linear, at_high, at_low = np.split(found[:-1], parts)
     # What holds the radius alone is no bound of the program.
     at_high, at_low = at_high * (upper <= radius) / scale, at_low * (lower <= radius) / scale
-    return step, Prices(price, linear, at_high, at_low)
+    there = values + (slopes + bends @ step / 2) @ step
+    promise = there[0] - values[0] - penalty * (_worst(there, equal) - _worst(values, equal))
+    return step, Prices(price, linear, at_high, at_low), float(promise)
+
+
+def _worst(models: Array, equal: int) -> float:
+    """Violation of the row that fails most, by the models of the function and the rows."""
+    rows = models[1:].copy()
+    rows[:equal] = np.abs(rows[:equal])
+    return float(rows.max(initial=0.0))
 
 
 def _convex(bend: Array, least: float, held: Array) -> Array:
@@ -254,7 +277,7 @@ def _solved(E: Array, f: Array) -> Array:
 
 
 @lru_cache
-def _stencil(n: int) -> tuple[Array, Array]:
+def _stencil(n: int, step: float) -> tuple[Array, Array]:
     """Points (M, n), the first in the middle, in stencils, and what makes of values at them those
     of a quadratic, its slopes and its second derivatives, in scales."""
     pairs = list(combinations(range(n), 2))
@@ -266,8 +289,8 @@ def _stencil(n: int) -> tuple[Array, Array]:
     crossed = [points[:, [i]] * points[:, [j]] for i, j in pairs]
     monomials = np.hstack([np.ones((len(points), 1)), points, points**2 / 2, *crossed])
     design = np.asarray(np.linalg.inv(monomials), float)
-    design[1 : n + 1] /= _STEP
-    design[n + 1 :] /= _STEP**2
+    design[1 : n + 1] /= step
+    design[n + 1 :] /= step**2
     return points, design
 
 

@@ -46,7 +46,7 @@ def problem(tmp_path, monkeypatch):
 
 def test_maximize_speed(problem, tmp_path):
     best = rr.maximize_speed(problem)
-    assert [check.passed for check in best.checks] == [True] * 4
+    assert [check.passed for check in best.checks] == [True] * 5
     assert best.limits["rate"].active
     assert best.limits["rate"].shadow_price > 0
     files = best.save("saved")

@@ -6,6 +6,7 @@ from rr_opt.design.maximize_speed import maximize_speed
 from rr_opt.files.problem_file import read_problem
 from rr_opt.model.problem import GaitBounds, Interval, Problem
 from rr_opt.results.fastest import FastestGait
+from rr_opt.verify.evaluate import Found
 from rr_opt.verify.replay import replay
 from rr_opt.verify.sweep import SweepCheck
 
@@ -20,5 +21,6 @@ def answer() -> FastestGait:
     assert optimum.robot is not None
     best = optimum.best
     seen = replay(optimum.robot, best.gait, problem.limits, best.speed)
-    sweep = SweepCheck(100, 0.99 * best.speed, best.gait, None, 0.01, best.speed, 0.0)
+    slower = Found(best.gait, None, 0.99 * best.speed, 0.0, 0.0)
+    sweep = SweepCheck(100, slower, 0.01, 0.0, 1e-6, best.speed, 0.0)
     return FastestGait("small", "0" * 64, optimum, seen, sweep)

@@ -42,7 +42,7 @@ def test_a_failed_check_takes_the_verdict(answer, change, word):
     assert "FAILED" in doubtful.summary()
 
 
-@pytest.mark.parametrize("change", [{"error": 5e-7}, {"excess": 5e-5}, {"gap": -5e-5}])
+@pytest.mark.parametrize("change", [{"error": 5e-7}, {"excess": 5e-5}, {"gap": -5e-7}])
 def test_within_the_tolerance_a_check_is_passed(answer, change):
     assert failed(answer, **change).status is Status.OPTIMAL
 

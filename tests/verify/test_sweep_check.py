@@ -38,7 +38,7 @@ def test_a_gait_one_per_cent_smaller_is_caught(name):
     check = check_optimum(PROBLEMS[name], gait, ratio, speed)
     assert not check.passed
     assert check.gap < -1e-4
-    assert abs(check.best_speed) == pytest.approx(abs(BEST[name]["speed"]), rel=1e-5)
+    assert abs(check.best.speed) == pytest.approx(abs(BEST[name]["speed"]), rel=1e-5)
 
 
 def test_a_speed_that_the_gait_does_not_have_is_caught():

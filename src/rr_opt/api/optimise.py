@@ -14,16 +14,19 @@ from rr_opt.api.load import PathLike, identity, problem_of, read_arguments
 from rr_opt.batch.journal import Journal
 from rr_opt.batch.run import Pool, pool_of, run
 from rr_opt.design import maximize_speed as design
+from rr_opt.design.decisions import decisions
+from rr_opt.design.infeasible import posture_clashes
 from rr_opt.design.maximize_speed import Optimum
 from rr_opt.design.study.case import solve_case, solve_study
 from rr_opt.design.study.plan import plan
 from rr_opt.design.study.row import Row, row_from, row_record
-from rr_opt.design.turn import fastest_turn
+from rr_opt.design.turn import arc_of, fastest_turn
 from rr_opt.design.turn_target import Target, checked
 from rr_opt.documents.archive import folder_for_results
 from rr_opt.files.study_file import Study, read_study
 from rr_opt.model.problem import Problem
 from rr_opt.motion.dynamics import require_friction
+from rr_opt.outcome import Status
 from rr_opt.results.fastest import FastestGait
 from rr_opt.results.result import Progress, quiet
 from rr_opt.results.shapes import FastestShapes, family_name
@@ -36,7 +39,6 @@ from rr_opt.verify.grid import free_decisions
 from rr_opt.verify.replay import Replay, check_circle, replay
 from rr_opt.verify.sweep import SweepCheck, SweepResult, check_optimum
 from rr_opt.verify.turn_chart import radius_claim, sign_claim, tightest, turn_map
-from rr_opt.verify.turn_sweep import check_turn
 from rr_opt.version import __version__
 
 if TYPE_CHECKING:
@@ -50,10 +52,9 @@ def maximize_speed(problem: Problem | PathLike, *, progress: Progress = quiet) -
     so. Raises InputError for a robot without friction, which has no steady speed.
     """
     problem = problem_of(problem)
-    optimum = design.maximize_speed(problem, progress)
-    evidence = _evidence(optimum, progress)
+    optimum, replayed, swept = _checked(design.maximize_speed(problem, progress), progress)
     driven = _driven(optimum, progress)
-    best = FastestGait(*identity(problem), optimum, *evidence, driven=driven)
+    best = FastestGait(*identity(problem), optimum, replayed, swept, driven=driven)
     if optimum.best is None or not best.rebuilt:
         return best
     progress("the robot as built")
@@ -71,21 +72,50 @@ def _driven(optimum: Optimum, progress: Progress) -> DrivenOptimum | None:
     return drive_optimum(optimum)
 
 
-def _evidence(
+_RESUMED = 2
+"""Climbs on from what the sweep found, at most."""
+
+
+def _checked(
     optimum: Optimum, progress: Progress, swept: SweepResult | None = None
-) -> tuple[Replay | None, SweepCheck | None]:
-    """The replay of an optimum and the sweep against it; None and None if there is no optimum.
+) -> tuple[Optimum, Replay | None, SweepCheck | None]:
+    """The optimum with its replay and the sweep against it; None and None if there is no gait.
+
+    Where the sweep found a better gait the optimiser climbs on from there, and what it comes to is
+    checked instead.
 
     swept  a sweep of the whole problem, where that is done already
     """
-    best, robot, ratio = optimum.best, optimum.robot, optimum.ratio
-    if best is None or robot is None or ratio is None:
-        return None, None
-    progress("replay by CVODES")
-    replayed = replay(robot, best.gait, optimum.problem.limits, best.speed)
+    if optimum.best is None and optimum.problem.gait.shape != "sine":
+        return optimum, None, None
     progress("check against a sweep")
-    check = check_optimum(optimum.problem, best.gait, ratio, best.speed, everywhere=swept)
-    return replayed, check
+    swept = swept or verify.sweep(optimum.problem)
+    check = _held(optimum, swept)
+    for _ in range(_RESUMED):
+        better = check.better if check else swept.refined
+        if better is None:
+            break
+        progress("climb on from a gait that the sweep found")
+        climbed = design.resumed(optimum, better.gait, better.ratio)
+        if climbed is optimum:
+            break
+        optimum, check = climbed, _held(climbed, swept)
+    if optimum.best is None or optimum.robot is None:
+        proved = posture_clashes(optimum.problem, decisions(optimum.problem))
+        if optimum.status is Status.INFEASIBLE and not proved:
+            second = f" A sweep of {swept.points} gaits by another model finds none either."
+            optimum = replace(optimum, message=optimum.message + second)
+        return optimum, None, None
+    progress("replay by CVODES")
+    replayed = replay(optimum.robot, optimum.best.gait, optimum.problem.limits, optimum.best.speed)
+    return optimum, replayed, check
+
+
+def _held(optimum: Optimum, swept: SweepResult) -> SweepCheck | None:
+    if optimum.best is None:
+        return None
+    best = optimum.best
+    return check_optimum(optimum.problem, best.gait, optimum.ratio, best.speed, everywhere=swept)
 
 
 def shapes(problem: Problem | PathLike, *, progress: Progress = quiet) -> FastestShapes:
@@ -105,8 +135,9 @@ def shapes(problem: Problem | PathLike, *, progress: Progress = quiet) -> Fastes
     answers = []
     for one in optima:
         own = f"{name}, {family_name(one.problem.gait)}"
-        evidence = _evidence(one, progress, swept)
-        answers.append(FastestGait(own, sha256, one, *evidence, driven=_driven(one, progress)))
+        optimum, replayed, check = _checked(one, progress, swept)
+        driven = _driven(optimum, progress)
+        answers.append(FastestGait(own, sha256, optimum, replayed, check, driven=driven))
     return FastestShapes(name, sha256, tuple(answers))
 
 
@@ -136,15 +167,11 @@ def turn(
     problem = problem_of(problem)
     name, sha256 = identity(problem)
     turned = fastest_turn(problem, target, progress)
-    optimum, arc = turned.optimum, turned.arc
-    best, robot, ratio = optimum.best, optimum.robot, optimum.ratio
+    optimum, replayed, swept = _checked(turned.optimum, progress)
+    best, robot, arc = optimum.best, optimum.robot, arc_of(optimum, target.heading)
     found = FastestTurn(name, sha256, optimum, target=target, opened=turned.opened)
-    if best is None or robot is None or ratio is None or arc is None:
+    if best is None or robot is None or arc is None:
         return found
-    progress("replay by CVODES")
-    replayed = replay(robot, best.gait, optimum.problem.limits, best.speed)
-    progress("check against a sweep")
-    swept = check_turn(optimum.problem, best.gait, ratio, best.speed)
     progress("check of the circle")
     wanted = target.turn.curvature
     circle = check_circle(robot, best.gait, wanted.low if wanted.fixed else arc.curvature)

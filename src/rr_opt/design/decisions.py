@@ -2,11 +2,14 @@
 
 The turn that a problem asks for, as rows that a search can penalise.
 
-The curvature grows without bound where the speed passes through zero, and its sign jumps there.
-The angle atan(curvature * length) does not: it is the direction of the pair (speed, yaw rate *
-length), whose plane the gaits fill smoothly. `length` is the radius that is asked for, so that
-the angle changes fastest where it matters; but at most some lengths of the robot, or it would be
-a step where left turns into right.
+The curvature grows without bound where the mean velocity V passes by zero, and |V| has nearly a
+kink there. With the yaw rate omega and a length L the share
+
+    s = omega L / sqrt((omega L)^2 + V^2)
+
+says the same and is smooth in V and omega. L is the radius that is asked for, so that s changes
+fastest where it matters; but at most some lengths of the robot, or it would be a step where left
+turns into right.
 
 The free decisions of a gait problem on a unit box, and what limits do to their bounds.
 
@@ -35,6 +38,8 @@ from rr_opt.model.servo_command import CommandBounds
 from rr_opt.motion.dynamics import Dynamics, dynamics_of
 
 _LENGTHS = 5.0
+_SLOWEST = 1e-12
+"""A speed below it, m/s, counts as this where something is divided by it."""
 
 
 @dataclass(frozen=True)
@@ -56,7 +61,7 @@ class TurnRows:
         rows = []
         if self.turn.curvature != ANY:
             ends = (self.turn.curvature.low, self.turn.curvature.high)
-            rows.append(Interval(*(math.atan(end * self.length) for end in ends)))
+            rows.append(Interval(*(math.sin(math.atan(end * self.length)) for end in ends)))
         for asked in (self.turn.yaw_rate, self.turn.heading):
             if asked != ANY:
                 rows.append(Interval(asked.low / _size(asked), asked.high / _size(asked)))
@@ -66,7 +71,8 @@ class TurnRows:
         """The rows of gaits with this speed (m/s), heading per period (rad) and period (s)."""
         rows = []
         if self.turn.curvature != ANY:
-            rows.append(np.arctan2(turn / period * self.length, np.abs(speed)))
+            across = turn / period * self.length
+            rows.append(across / np.maximum(np.hypot(across, speed), _SLOWEST))
         if self.turn.yaw_rate != ANY:
             rows.append(turn / period / _size(self.turn.yaw_rate))
         if self.turn.heading != ANY:
@@ -77,7 +83,7 @@ class TurnRows:
         """What a row gains per unit of its quantity, at a gait."""
         tangent = turn / period / abs(speed) * self.length
         found = {name: 1 / _size(getattr(self.turn, name)) for name in self.names}
-        return found | {"curvature": self.length / (1 + tangent**2)}
+        return found | {"curvature": self.length / (1 + tangent**2) ** 1.5}
 
 
 def turn_rows(turn: Turn, robot: Robot) -> TurnRows:
@@ -237,6 +243,15 @@ def ballast_interval(robot: Robot, choice: RatioChoice | None) -> Interval:
         offset, scale = 0.0, robot.platform1.I
     low, high = (r * scale - offset for r in ends)
     return Interval(max(low, 1e-6 * scale), high)
+
+
+def share_of(problem: Problem, box: Decisions, ratio: float | None) -> float:
+    """Where in the ballast's range J20/J10 is this."""
+    choice, span = problem.inertia_ratio, box.ballast.high - box.ballast.low
+    if choice is None or ratio is None or not span:
+        return 0.0
+    at = ballast_interval(problem.robot, replace(choice, bounds=Interval(ratio, ratio))).low
+    return float(np.clip((at - box.ballast.low) / span, 0.0, 1.0))
 
 
 @dataclass(frozen=True)

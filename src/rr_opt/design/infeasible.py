@@ -98,11 +98,15 @@ def clash(problem: Problem, box: Decisions, settings: list[Setting]) -> str | At
 
 def nearest_turn(problem: Problem, box: Decisions) -> Nearest:
     """What the gait does that comes nearest to the turn within all other limits."""
-    terrains = [
-        Terrain(one, scanned(one, box), WAYS[problem.direction], ("torque", "direction"), "turn")
+    return _nearest(attempt(_terrains(problem, box)))
+
+
+def _terrains(problem: Problem, box: Decisions) -> list[Terrain]:
+    way = WAYS[problem.direction]
+    return [
+        Terrain(one, scanned(one, box), way, ("torque", "direction"), "turn")
         for one in settings_of(problem, box)
     ]
-    return _nearest(attempt(terrains))
 
 
 def _evidence(found: Attempt, box: Decisions) -> str:
@@ -226,11 +230,12 @@ def _ballast(box: Decisions) -> list[str]:
 def _nearest(found: Attempt) -> Nearest:
     cycle = found.setting.landscape.cycles(found.gait[:, None], _NODES)
     amplitude, period, offset, share = found.gait.tolist()
-    turn, speed = float(cycle.turn[0]), abs(float(cycle.speed[0]))
+    turn, speed = float(cycle.turn[0]), float(cycle.speed[0])
     return Nearest(
         gait=SineGait(amplitude, period, offset),
         share=share,
-        curvature=turn / (period * speed),
+        speed=speed,
+        curvature=turn / (period * abs(speed)),
         yaw_rate=turn / period,
         heading=turn,
         torque=float(cycle.peak_torque[0]),

@@ -10,11 +10,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from rr_opt.design.candidate import Candidate, Finds, distinct
-from rr_opt.design.decisions import robot_of
+from rr_opt.design.decisions import decisions, robot_of, settings_of, share_of
 from rr_opt.design.families import find_families, refine
 from rr_opt.design.search import Progress, find_sines
+from rr_opt.design.sines import WAYS, solve_sine
 from rr_opt.model.ballast import inertia_ratio
+from rr_opt.model.gait import SineGait
 from rr_opt.model.problem import Problem
 from rr_opt.model.robot import Robot
 from rr_opt.motion.dynamics import require_friction
@@ -87,6 +91,29 @@ def maximize_speed(problem: Problem, progress: Progress = lambda _: None) -> Opt
     finds = [found for _, found in find_families(problem, progress)]
     optimum = _answer(problem, finds[-1], progress)
     return replace(optimum, sine=finds[0].fastest or None)
+
+
+def resumed(optimum: Optimum, gait: SineGait, ratio: float | None) -> Optimum:
+    """The optimum, or the better one that a climb leads to from a sine that was found elsewhere;
+    ratio: its J20/J10, None: of the robot as it is."""
+    problem = optimum.problem
+    if problem.gait.shape != "sine":
+        return optimum
+    box = decisions(problem)
+    start = np.array([gait.amplitude, gait.period, gait.offset, share_of(problem, box, ratio)])
+    settings = settings_of(problem, box)
+    setting = min(settings, key=lambda one: abs((one.fixed_share or 0.0) - start[3]))
+    climbed = solve_sine(setting, WAYS[problem.direction], start)
+    again = _answer(problem, Finds([(setting, climbed)]), lambda _: None)
+    if again.best is None or (optimum.best and abs(again.best.speed) <= abs(optimum.best.speed)):
+        return optimum
+    return replace(
+        again,
+        optima=(again.best, *optimum.optima),
+        starts=optimum.starts + 1,
+        iterations=optimum.iterations + again.iterations,
+        failures=optimum.failures,
+    )
 
 
 def compare_shapes(problem: Problem, progress: Progress = lambda _: None) -> list[Optimum]:

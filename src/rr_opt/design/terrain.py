@@ -28,8 +28,9 @@ _UNSETTLED = 10.0
 """What a gait uses of each limit that has no steady cycle."""
 _SEEN_FROM = 0.5
 """Share of the torque's limit from which a peak is a row."""
-_WITHIN = 3
-"""Nodes to either side within which a peak is followed."""
+_DENSER, _WITHIN = 4, 12
+"""So many times as many phases, by Fourier series, show a peak; phases to either side within which
+it is followed."""
 _WIDE = 0.05
 """Smallest amplitude by which a stencil is scaled, rad."""
 _SLOWEST = 1e-12
@@ -38,9 +39,16 @@ _MARGIN = 0.05
 """Of a stencil's reach in the robot's size, below which it shrinks with the singular margin."""
 
 
+_STEP = {True: 1e-4, False: 1e-3}
+"""Of a stencil; cycles with other friction than viscous are closed less exactly."""
+_ANY_WAY = Interval(-4 * math.pi, 4 * math.pi)
+_ANY_RADIUS = Interval(math.log(1e-9), math.log(1e9))
 _FORWARD = Interval(1e-6, math.inf)
 """Of the forward speed, in sizes of the speed: at 0 a gait goes neither forward nor backward."""
 
+
+_CIRCLE, _SIDE = ("circle x", "circle y"), "side"
+"""Rows of a circle: the mean velocity, and which way it turns."""
 
 LIMITS = ("rate", "angle", "singularity", "torque", "grip")
 Aim = Literal["speed", "rows", "turn"]
@@ -80,15 +88,12 @@ class Terrain:
         counted = "torque" in self.rows
         return {name: one for name, one in limits.items() if counted and math.isfinite(one)}
 
-    def _used(self, cycles: Cycles, gaits: Array) -> list[tuple[str, Array]]:
-        """Shares that each load uses of its limit at the phases, (N, K)."""
-        used = []
-        if "torque" in self._loads:
-            used.append(("torque", np.abs(cycles.torque) / self._loads["torque"]))
+    def _used(self, cycles: Cycles, gaits: Array, denser: int = 1) -> list[tuple[str, Array]]:
+        """Shares that each load uses of its limit at the phases, and between them, (N', K)."""
+        loads = [("torque", cycles.torque)] if "torque" in self._loads else []
         if "grip" in self._loads:
-            grips = self.setting.landscape.grips(cycles, gaits)
-            used += [("grip", np.abs(grip) / self._loads["grip"]) for grip in grips]
-        return used
+            loads += [("grip", one) for one in self.setting.landscape.grips(cycles, gaits)]
+        return [(name, np.abs(_dense(one, denser)) / self._loads[name]) for name, one in loads]
 
     @cached_property
     def _turn(self) -> TurnRows | None:
@@ -150,7 +155,8 @@ class Terrain:
 
     @cached_property
     def _bounds(self) -> tuple[Array, Array]:
-        """Of amplitude, period, offset, share of the ballast."""
+        """Of amplitude, period, offset, share of the ballast, direction of V, logarithm of
+        the radius."""
         box, gait = self.box, self.setting.problem.gait
         share = 0.0 if box.ballast.fixed else self.setting.fixed_share
         boxes = (
@@ -158,13 +164,15 @@ class Terrain:
             box.period if box.period.fixed else gait.period,
             box.offset if box.offset.fixed else gait.offset,
             Interval(0.0, 1.0) if share is None else Interval(share, share),
+            _ANY_WAY if self._radius else Interval(0.0, 0.0),
+            self._radii,
         )
         low, high = np.array([(one.low, one.high) for one in boxes]).T
         return low, high
 
     @cached_property
     def free(self) -> Indices:
-        """Which of amplitude, period, offset, share are free."""
+        """Which of the decisions are free."""
         low, high = self._bounds
         return np.flatnonzero(low < high)
 
@@ -172,6 +180,10 @@ class Terrain:
     def _sides(self) -> list[_Side]:
         """The rows but for the torque's, equations first."""
         rows = list(zip(self._named, self.kept[len(self.kept) - len(self._named) :], strict=True))
+        if self._radius:
+            rows = [(name, kept) for name, kept in rows if name != "curvature"]
+            rows += [(name, Interval(0.0, 0.0)) for name in _CIRCLE]
+            rows.append((_SIDE, Interval(0.0, math.inf)))
         if self.box.command:
             rows.append(("command", self.box.command.amplitude))
         sides = []
@@ -185,30 +197,41 @@ class Terrain:
 
     def program(self, start: Array, nodes: int) -> tuple[Program, Array]:
         """The program from a gait (4,), amplitude, period, offset, share, and its start."""
-        free, (low, high), limits = self.free, self._bounds, self.setting.problem.limits
+        free, limits = self.free, self.setting.problem.limits
+        low, high = (end.copy() for end in self._bounds)
+        start = np.append(start, self._lifted(start, nodes))
+        if self._radius and start[5] > self._asked:
+            low[5] = self._asked
+        elif self._radius:
+            high[5] = self._asked
         start = np.clip(start, low, high)
         size = min(1.0, limits.singularity / (_MARGIN * self.setting.problem.robot.platform1.c))
-        scale = np.array([size * max(start[0], _WIDE), start[1], 0.5 * size, 1.0])
-        matrix, most = np.array([[1.0, 0.0, 1.0, 0.0], [1.0, 0.0, -1.0, 0.0]]), [self.box.reach] * 2
+        scale = np.array([size * max(start[0], _WIDE), start[1], 0.5 * size, 1.0, 1.0, 1.0])
+        matrix, most = np.array([[1.0, 0, 1, 0, 0, 0], [1.0, 0, -1, 0, 0, 0]]), [self.box.reach] * 2
         if math.isfinite(limits.rate):
-            matrix = np.vstack([matrix, [1.0, -limits.rate / (2 * math.pi), 0.0, 0.0]])
+            matrix = np.vstack([matrix, [1.0, -limits.rate / (2 * math.pi), 0, 0, 0, 0]])
             most.append(0.0)
-        fixed = np.setdiff1d(np.arange(4), free)
+        fixed = np.setdiff1d(np.arange(6), free)
 
         def look(points: Array) -> Seen:
-            gaits = np.repeat(start[:, None], len(points), axis=1)
-            gaits[free] = points.T
+            decided = np.repeat(start[:, None], len(points), axis=1)
+            decided[free] = points.T
+            gaits, beta, size = decided[:4], decided[4], decided[5]
             with np.errstate(all="ignore"):
                 cycles = self.setting.landscape.cycles(gaits, nodes)
                 unit = max(float(np.abs(cycles.speed[0])), _SLOWEST)
                 values = self._values(cycles, gaits, unit)
                 function = self._function(cycles, gaits)
             known = dict(zip(self._named, values, strict=True))
+            if self._radius:
+                along = cycles.turn / gaits[1] * math.copysign(1.0, self._radius) * np.exp(size)
+                function = along if self.aim == "speed" else -np.abs(size - self._asked)
+                known |= self._circle_rows(cycles.mean, along / unit, beta, unit)
             if self.box.command:
                 known["command"] = gaits[0] / self.box.command.servo.gain(gaits[1])
             rows = [side.coefficient * (known[side.name] - side.end) for side in self._sides]
             with np.errstate(all="ignore"):
-                loads = self._used(cycles, gaits)
+                loads = self._used(cycles, gaits, _DENSER)
             worst, names = list(rows), [side.name for side in self._sides]
             for name, used in loads:
                 worst.append(_heights(used, used.argmax(axis=0)) - 1)
@@ -226,8 +249,67 @@ class Terrain:
             look=look,
             equal=sum(side.equal for side in self._sides),
             unit=0.0 if self.aim == "speed" else 1.0,
+            step=_STEP[self.setting.landscape.linear],
         )
         return program, start[free]
+
+    def _lifted(self, gait: Array, nodes: int) -> Array:
+        """The direction of V, rad, and the logarithm of the radius of a gait (4,)."""
+        cycle = self.setting.landscape.cycles(gait[:, None], nodes)
+        V, omega = cycle.mean[:2, 0], float(cycle.turn[0]) / gait[1]
+        speed = max(float(np.hypot(*V)), _SLOWEST)
+        return np.array([math.atan2(V[1], V[0]), math.log(speed / max(abs(omega), _SLOWEST))])
+
+    def _circle_rows(self, mean: Array, along: Array, beta: Array, unit: float) -> dict[str, Array]:
+        """Rows of the circle; along: omega R, in a unit as all of them."""
+        cos, sin = np.cos(beta), np.sin(beta)
+        rows = {
+            _CIRCLE[0]: mean[0] / unit - along * cos,
+            _CIRCLE[1]: mean[1] / unit - along * sin,
+            _SIDE: along,
+        }
+        return rows | (
+            {"direction": self.way * (cos * mean[2] + sin * mean[3])} if self._ahead else {}
+        )
+
+    def _curvature_price(self, speed: float, ascent: Ascent) -> float:
+        """Speed gained per unit of curvature, m2/s.
+
+        The function is omega R, and two rows say V = omega R (cos beta, sin beta), in units of
+        |V|. So a radius larger by dR gains omega dR and, as it moves the rows, their prices.
+        """
+        at, beta = (
+            next(i for i, side in enumerate(self._sides) if side.name in _CIRCLE),
+            ascent.x[-1],
+        )
+        along = float(ascent.prices.rows[at : at + 2] @ [math.cos(beta), math.sin(beta)])
+        return -self._radius * (abs(speed) + along)
+
+    @cached_property
+    def _radius(self) -> float:
+        """Of the circle that is asked for, signed, m; 0 if none is.
+
+        The curvature turn/(T |V|) bends sharply where V passes by zero: a circle that is tight
+        lies in a narrow valley. With the direction beta of V as one variable more,
+        V = omega R (cos beta, sin beta) is two rows that hardly bend. Where the nearest circle is
+        sought the logarithm of R is another variable.
+        """
+        if not self.box.turn or not (self.aim == "turn" or self._turn):
+            return 0.0
+        others = self.aim == "turn" and len(self.box.turn.names) > 1
+        asked = self.box.turn.turn.curvature
+        return 1 / asked.low if asked.fixed and asked.low and not others else 0.0
+
+    @property
+    def _radii(self) -> Interval:
+        """Logarithms of the radii that are tried, m."""
+        if not self._radius:
+            return Interval(0.0, 0.0)
+        return _ANY_RADIUS if self.aim == "turn" else Interval(self._asked, self._asked)
+
+    @property
+    def _asked(self) -> float:
+        return math.log(abs(self._radius))
 
     @cached_property
     def _named(self) -> tuple[str, ...]:
@@ -235,9 +317,9 @@ class Terrain:
 
     def gait_at(self, start: Array, x: Array) -> Array:
         """Amplitude, period, offset, share (4,) at a point of the program from `start`."""
-        gait = np.clip(start, *self._bounds)
+        gait = np.clip(np.append(start, [0.0, 0.0]), *self._bounds)
         gait[self.free] = x
-        return gait
+        return gait[:4]
 
     def dearest(self, gait: Array, nodes: int) -> str:
         """The load that uses most of its limit."""
@@ -248,7 +330,7 @@ class Terrain:
         """Mean speed, m/s, and peak torque, N m, of a gait (4,)."""
         with np.errstate(all="ignore"):
             cycle = self.setting.landscape.cycles(gait[:, None], nodes)
-        torque = np.abs(cycle.torque)
+        torque = np.abs(_dense(cycle.torque, _DENSER))
         return float(cycle.speed[0]), float(_heights(torque, torque.argmax(axis=0))[0])
 
     def prices(
@@ -275,10 +357,13 @@ class Terrain:
         slopes["direction"] = 1 / max(abs(speed), _SLOWEST)
         slopes["command"] = 1.0
         for side, price in zip(sides, prices.rows, strict=False):
-            found[side.name] += side.coefficient * float(price) * slopes[side.name]
+            if side.name not in (*_CIRCLE, _SIDE):
+                found[side.name] += side.coefficient * float(price) * slopes[side.name]
+        if self._radius:
+            found["curvature"] = self._curvature_price(speed, ascent)
         names = ("amplitude", "period", "offset", "ballast")
         bounds: dict[str, float] = dict.fromkeys(names, 0.0)
-        for i, up, down in zip(self.free, prices.high, prices.low, strict=True):
+        for i, up, down in zip(self.free[self.free < len(names)], prices.high, prices.low):  # noqa: B905
             bounds[names[i]] = float(up - down)
         bounds["amplitude"] += found.pop("command")
         return found, bounds
@@ -297,10 +382,29 @@ def _followed(used: Array) -> list[Indices]:
     return [at[used[at].argmax(axis=0)] for at in around]
 
 
+def _dense(x: Array, times: int) -> Array:
+    """Periodic functions (N, K) at so many times as many phases."""
+    if times == 1 or not np.isfinite(x).all():
+        return np.repeat(x, times, axis=0)
+    return np.fft.irfft(np.fft.rfft(x, axis=0), times * len(x), axis=0) * times
+
+
 def _heights(used: Array, at: Indices) -> Array:
-    """Heights (K,) of peaks at nodes (K,): of the parabola through each and its neighbours."""
+    """Heights (K,) of peaks next to phases (K,): of the quartic through five of them.
+
+    A parabola jumps where a peak passes from one phase to the next, by enough to stop a climb.
+    """
     k, n = np.arange(used.shape[1]), len(used)
-    left, here, right = used[at - 1, k], used[at, k], used[(at + 1) % n, k]
-    bend, slope = left - 2 * here + right, (left - right) / 2
-    shift = np.where(bend < 0, slope / np.where(bend < 0, bend, -1.0), 0.0)
-    return here - 0.5 * slope * np.clip(shift, -1.0, 1.0)
+    y = np.array([used[(at + i) % n, k] for i in (-2, -1, 0, 1, 2)])
+    p = _QUARTIC @ y
+    t = np.zeros(len(k))
+    for _ in range(_NEWTON):
+        slope = p[1] + t * (2 * p[2] + t * (3 * p[3] + t * 4 * p[4]))
+        bend = 2 * p[2] + t * (6 * p[3] + t * 12 * p[4])
+        t = np.where(bend < 0, np.clip(t - slope / np.where(bend < 0, bend, -1.0), -1.0, 1.0), t)
+    return p[0] + t * (p[1] + t * (p[2] + t * (p[3] + t * p[4])))
+
+
+_NEWTON = 3
+_QUARTIC = np.linalg.inv(np.vander(np.arange(-2.0, 3.0), increasing=True))
+"""From values at -2 .. 2 to coefficients."""

@@ -129,12 +129,14 @@ SURE = 2e-3
 class Nearest:
     """The gait that comes nearest to a turn within all limits, and what it does.
 
+    speed    signed, m/s
     torque   largest, N m; share: of the ballast's range
     distance from the turn, relative
     """
 
     gait: SineGait
     share: float
+    speed: float
     curvature: float
     yaw_rate: float
     heading: float

@@ -94,6 +94,34 @@ def bound_rows(optimum: Optimum, commanded: Gait, ratio: float) -> dict[str, Bou
     return rows
 
 
+def worst_slack(optimum: Optimum, told: Gait, reached: Mapping[str, float]) -> tuple[str, float]:
+    """Complementary slackness: at an optimum what has a price is at its limit, and no price has the
+    wrong sign. The limit or bound that fails it most, and how: its price times its distance, or
+    times itself where the sign is wrong, relative to the speed.
+    """
+    best, problem = optimum.best, optimum.problem
+    if best is None:
+        return "", 0.0
+    worth: dict[str, float] = {}
+    for name, value in reached.items():
+        limit, price = getattr(problem.limits, name), best.prices[name]
+        if math.isfinite(limit):
+            slack, price = (
+                (value - limit, -price) if name == "singularity" else (limit - value, price)
+            )
+            worth[f"limit {name}"] = max(price * max(slack, 0.0), -price * abs(limit))
+    gait, prices = problem.gait, best.bound_prices
+    boxes = {"period": gait.period, "offset": gait.offset}
+    if problem.gait.shape == "sine" and not problem.command:
+        boxes["amplitude"] = gait.amplitude
+    places = [(name, getattr(told, name), box) for name, box in boxes.items()]
+    for name, value, box in (*places, ("ballast", best.share, Interval(0.0, 1.0))):
+        away = max(box.high - value if prices[name] > 0 else value - box.low, 0.0)
+        worth[f"bound on {name}"] = 0.0 if box.fixed else abs(prices[name]) * away
+    name = max(worth, key=lambda one: worth[one])
+    return name, worth[name] / abs(best.speed)
+
+
 def _bound(name: str, value: float, box: Interval, price: float | None) -> BoundRow:
     if box.fixed:
         return BoundRow(name, value, box.low, box.high, "fixed", None)

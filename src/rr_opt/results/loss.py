@@ -29,7 +29,7 @@ from rr_opt.motion.steady_cycle import steady_cycle
 from rr_opt.outcome import RollerRacerError
 from rr_opt.results.result import picked
 from rr_opt.sysid.diagnosis import Diagnosis
-from rr_opt.verify.sweep import TOLERATED, check_optimum
+from rr_opt.verify.sweep import check_optimum
 
 _DIGITS = 7
 """Of a fitted value that are written: more than any recording determines."""
@@ -143,7 +143,7 @@ def loss_of(experiment: Experiment, corrected: Robot) -> Loss | LossUnknown:
         if before.best is None or after.best is None or after.ratio is None:
             return unknown(next(one.message for one in (before, after) if one.best is None))
         believed, best = before.best, after.best
-        if check_optimum(after.problem, best.gait, after.ratio, best.speed).gap < -TOLERATED:
+        if check_optimum(after.problem, best.gait, after.ratio, best.speed).better:
             return unknown("a plain sweep finds a faster gait for the corrected robot.")
         reached = steady_cycle(corrected, servo_made(corrected, believed.gait)).speed
     except RollerRacerError as error:

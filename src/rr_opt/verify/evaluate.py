@@ -12,9 +12,11 @@ from numpy.typing import NDArray
 from rr_opt.array import Array
 from rr_opt.model.gait import SineGait
 from rr_opt.model.problem import Problem
+from rr_opt.verify.climb import turn_rows
 from rr_opt.verify.compiled_cycles import Speeds
-from rr_opt.verify.grid import DECISIONS, Grid, boxes, points
-from rr_opt.verify.speeds import grips, least_S1, speeds
+from rr_opt.verify.fourier import peak
+from rr_opt.verify.grid import Grid, points
+from rr_opt.verify.speeds import least_S1, motions, speeds
 
 Mask = NDArray[np.bool_]
 Progress = Callable[[int, int], None]
@@ -39,13 +41,19 @@ _ROWS = 4096
 class Found:
     """A gait that was found: offset >= 0 where phi0 and -phi0 do equally well.
 
-    ratio J20/J10 or None, speed signed, m/s; peak torque N m
+    ratio J20/J10 or None, speed signed, m/s; peak torque N m; turn rad per period
     """
 
     gait: SineGait
     ratio: float | None
     speed: float
     peak_torque: float
+    turn: float
+
+    @property
+    def radius(self) -> float:
+        """Of its circle, m."""
+        return self.gait.period * abs(self.speed / self.turn) if self.turn else math.inf
 
 
 @dataclass(frozen=True)
@@ -55,6 +63,7 @@ class Evaluated:
     decisions    amplitude, period, offset, ratio (NaN: the robot as it is), (4, K)
     speed        signed, m/s; NaN where a limit on the angle or the singular posture is broken
     peak_torque  N m; NaN there too
+    turn         heading gained per period, rad; NaN there too
     keeps        by limit's name: the point keeps it; torque and direction are not kept where
                  the speed is NaN
     failed       how many points that keep angle and singularity have no resolved cycle
@@ -63,13 +72,14 @@ class Evaluated:
     decisions: Array
     speed: Array
     peak_torque: Array
+    turn: Array
     keeps: Mapping[str, Mask]
     failed: int
 
     @property
     def feasible(self) -> Mask:
         """All limits are kept."""
-        return np.logical_and.reduce([self.keeps[name] for name in LIMITS])
+        return np.logical_and.reduce([self.keeps[name] for name in (*LIMITS, "turn")])
 
     @property
     def merit(self) -> Array:
@@ -84,6 +94,7 @@ class Evaluated:
             None if math.isnan(ratio) else ratio,
             float(self.speed[index]),
             float(self.peak_torque[index]),
+            float(self.turn[index]),
         )
 
 
@@ -94,7 +105,7 @@ def evaluate(
     arrays = points(problem, grid)
     shape = arrays[0].shape
     rows = [part.reshape(-1, shape[-1]) for part in arrays]
-    speed, torque = (np.full(rows[0].shape, np.nan) for _ in range(2))
+    speed, torque, turn = (np.full(rows[0].shape, np.nan) for _ in range(3))
     geometry = within(problem, rows[0], rows[2])
     wanted = np.flatnonzero((geometry["angle"] & geometry["singularity"])[:, 0])
     failed = 0
@@ -103,11 +114,11 @@ def evaluate(
         amplitude, period, offset, ratio = (part[block] for part in rows)
         known = None if grid.ratio is None else ratio[:, :1]
         found = speeds(problem, amplitude[:, :1], period, offset[:, :1], known, tolerance)
-        speed[block], torque[block] = found.speed, found.peak_torque
+        speed[block], torque[block], turn[block] = found.speed, found.peak_torque, found.turn
         failed += int((~found.converged & np.isfinite(period)).sum())
         if progress:
             progress(min(done + _ROWS, len(wanted)) * shape[-1], len(wanted) * shape[-1])
-    seen = np.array([*arrays, speed.reshape(shape), torque.reshape(shape)])
+    seen = np.array([*arrays, *(part.reshape(shape) for part in (speed, torque, turn))])
     flat = seen[:, np.isfinite(arrays[1])]
     plain = _evaluated(problem, flat, failed)
     line = _torque_line(problem, grid, seen, plain.merit.max(initial=0.0), tolerance)
@@ -115,10 +126,10 @@ def evaluate(
 
 
 def _evaluated(problem: Problem, points: Array, failed: int) -> Evaluated:
-    """points (6, K): decisions, speed, peak torque."""
-    decisions, speed, torque = points[:4], points[4], points[5]
-    found = Speeds(speed, speed, torque, np.isfinite(speed))
-    return Evaluated(decisions, speed, torque, _keeps(problem, decisions, found), failed)
+    """points (7, K): decisions, speed, peak torque, turn."""
+    decisions, (speed, torque, turn) = points[:4], points[4:]
+    found = Speeds(speed, turn, torque, np.isfinite(speed))
+    return Evaluated(decisions, speed, torque, turn, _keeps(problem, decisions, found), failed)
 
 
 def within(
@@ -148,23 +159,27 @@ def kept_limits(problem: Problem, gaits: Array, found: Speeds, slack: float) -> 
 
 def _keeps(problem: Problem, decisions: Array, found: Speeds) -> dict[str, Mask]:
     limits, kept = problem.limits, kept_limits(problem, decisions, found, _SLACK)
+    less, equal = turn_rows(problem, np.abs(found.speed), found.turn, decisions[1])
+    kept["turn"] = np.isfinite(found.speed)
+    for row in less:
+        kept["turn"] &= row >= -_SLACK
+    for row in equal:
+        kept["turn"] &= np.abs(row) <= _SLACK
     kept["grip"] = np.ones(len(found.speed), bool)
     if math.isfinite(limits.grip):
         # Only points that keep all else are looked at.
         asked = np.flatnonzero(np.logical_and.reduce(list(kept.values())))
-        amplitude, period, offset, ratio = decisions[:, asked]
-        ratios = None if np.isnan(decisions[3]).all() else ratio
-        needed = grips(problem, amplitude, period, offset, ratios)
-        kept["grip"][asked] = needed <= limits.grip * (1 + _SLACK)
+        for grip in motions(problem, decisions[:, asked], grip=True).grips:
+            kept["grip"][asked] &= peak(grip, False) <= limits.grip * (1 + _SLACK)
     return kept
 
 
 def _torque_line(
     problem: Problem, grid: Grid, seen: Array, reached: float, tolerance: float
 ) -> Array:
-    """Points (6, K) on the torque limit: decisions, speed, peak torque.
+    """Points (7, K) on the torque limit: decisions, speed, peak torque, turn.
 
-    seen (6, A, F, R, B): the same of the grid's points; reached: the best merit among them. The
+    seen (7, A, F, R, B): the same of the grid's points; reached: the best merit among them. The
     points lie between neighbours along the period, or the first free decision without it, of
     which one keeps the limit and one is not much slower than the best; found by secants in the
     logarithm of the torque.
@@ -173,7 +188,7 @@ def _torque_line(
     axes = {"amplitude": 0, "offset": 1, "period": 3}
     order = [name for name in ("period", "amplitude", "offset") if name in grid.free]
     if not order or not np.isfinite(limit):
-        return np.empty((6, 0))
+        return np.empty((7, 0))
     along = axes[order[0]]
     seen = np.moveaxis(seen, along + 1, -1)
     one, other = seen[..., :-1], seen[..., 1:]
@@ -185,7 +200,7 @@ def _torque_line(
     inside, outside = np.where(keeps, one, other), np.where(keeps, other, one)
     low, high = np.maximum(inside[5], 1e-12 * limit), outside[5]
     inside, outside = inside[:4], outside[:4]
-    best = np.array([*inside, np.full(len(low), np.nan), low])
+    best = np.array([*inside, *np.full((3, len(low)), np.nan)])
     for aim in _AIMS if len(low) else ():
         apart = np.maximum(np.log(high / low), 1e-12)
         rise = np.log(limit * (1 - aim) / low) / apart
@@ -194,99 +209,7 @@ def _torque_line(
         found = speeds(problem, *middle[:3], ratio, tolerance)
         good = found.peak_torque <= limit
         worse = found.peak_torque > limit
-        best[:, good] = np.array([*middle, found.speed, found.peak_torque])[:, good]
+        best[:, good] = np.array([*middle, found.speed, found.peak_torque, found.turn])[:, good]
         inside, low = np.where(good, middle, inside), np.where(good, found.peak_torque, low)
         outside, high = np.where(worse, middle, outside), np.where(worse, found.peak_torque, high)
     return best[:, np.isfinite(best[4])]
-
-
-_VALUES = {1: 5, 2: 5, 3: 3, 4: 3}
-"""Values of each decision in a grid, by how many are free."""
-
-_ROUNDS = 60
-
-
-@dataclass(frozen=True)
-class Zoomed:
-    """best: None if no point near the start keeps all limits; points: evaluated in all."""
-
-    best: Found | None
-    points: int
-
-
-def local_grid(
-    problem: Problem, centre: Mapping[str, float | None], widths: Mapping[str, float], count: int
-) -> Grid:
-    """`count` values of each decision within `widths` of the centre and within the bounds."""
-    inside = boxes(problem)
-
-    def around(name: str) -> Array:
-        middle = centre[name]
-        if middle is None:
-            return np.array([])
-        box, width = inside[name], widths.get(name, 0.0)
-        if box.fixed or width == 0.0:
-            return np.array([box.clip(middle)])
-        return np.unique(np.clip(middle + width * np.linspace(-1, 1, count), box.low, box.high))
-
-    ratio = None
-    if centre["ratio"] is not None:
-        ratio = np.array([centre["ratio"]]) if _whole(problem) else around("ratio")
-    return Grid(around("amplitude"), around("period"), around("offset"), ratio)
-
-
-def zoom(
-    problem: Problem,
-    start: Found,
-    widths: Mapping[str, float],
-    tolerance: float,
-    least: float,
-    first: int = 0,
-) -> Zoomed:
-    """Climb from a start by grids around the best point so far.
-
-    widths: of the first grid to either side of the start, by free decision; `first`: values of
-    each in it.
-    A grid whose best point lies inside is followed by one half as wide, until it is `least` of
-    the first; one whose best is on its rim, by one around that.
-    tolerance: of the speeds, relative.
-    """
-    best, points, share = None, 0, 1.0
-    usual = _VALUES.get(len(widths), 1)
-    count = first or usual
-    centre = _values(start)
-    for _ in range(_ROUNDS):
-        around = {name: share * width for name, width in widths.items()}
-        found = evaluate(problem, local_grid(problem, centre, around, count), tolerance)
-        points, count = points + found.speed.size, usual
-        merit = found.merit
-        top = int(merit.argmax()) if merit.size else -1
-        if top < 0 or merit[top] == -np.inf:
-            break
-        if best is None or merit[top] >= abs(best.speed):
-            best = found.found(top)
-        moved = _values(best)
-        on_rim = any(
-            abs(_gap(moved[name], centre[name])) > 0.75 * width for name, width in around.items()
-        )
-        centre = moved
-        if not on_rim:
-            share /= 2
-        if share < least:
-            break
-    return Zoomed(best, points)
-
-
-def _values(found: Found) -> dict[str, float | None]:
-    gait = found.gait
-    values = (gait.amplitude, gait.period, gait.offset, found.ratio)
-    return dict(zip(DECISIONS, values, strict=True))
-
-
-def _gap(one: float | None, other: float | None) -> float:
-    return 0.0 if one is None or other is None else one - other
-
-
-def _whole(problem: Problem) -> bool:
-    choice = problem.inertia_ratio
-    return choice is not None and choice.by == "loads" and choice.loads.whole

@@ -78,6 +78,22 @@ def peak(x: Array, flipping: bool) -> Array:
     return middle - (right - left) ** 2 / (8 * np.where(bend < 0, bend, -np.inf))
 
 
+def peaks(x: Array, parts: int) -> Array:
+    """Largest |x| in each part of the span, (parts, K): as `peak`, so that it moves smoothly."""
+    size = np.abs(_resampled(x, False))
+    n = len(size) // parts
+    column = np.arange(size.shape[1])
+    found = []
+    for part in range(parts):
+        top = part * n + size[part * n : (part + 1) * n].argmax(axis=0)
+        left, middle, right = (size[(top + k) % len(size), column] for k in (-1, 0, 1))
+        bend, slope = left - 2 * middle + right, (right - left) / 2
+        shift = np.where(bend < 0, -slope / np.where(bend < 0, bend, -1.0), 0.0)
+        shift = np.clip(shift, -0.5, 0.5)
+        found.append(middle + shift * (slope + shift * bend / 2))
+    return np.array(found)
+
+
 def tail(x: Array, flipping: bool) -> Array:
     """Size of the fastest eighth of the harmonics, (K,), in the unit of x."""
     return np.abs(_apply(_tail, x, flipping)).max(axis=0)
@@ -128,6 +144,9 @@ def _tail(x: Array, flipping: bool) -> Array:
     return np.concatenate([top.real, top.imag])
 
 
+_STIFF = 15.0
+"""Range of A beyond which rounding, which exp(A) magnifies, is more than `solve_stiff` errs."""
+
 _NEAR = (-2, -1, 0, 1, 2, 3)
 """Samples, counted from the start of a step, whose polynomial stands for the integrand."""
 
@@ -153,7 +172,11 @@ def solve(a: Array, b: Array, span: Array) -> tuple[Array, Array]:
     growth = np.exp(A)
     forcing = harmonics(b / growth)
     forcing /= omega - mean
-    return growth * samples(forcing, len(a)), mean
+    v = growth * samples(forcing, len(a))
+    stiff = np.ptp(A, axis=0) > _STIFF
+    if stiff.any():
+        v[:, stiff] = solve_stiff(a[:, stiff], b[:, stiff], span[stiff])[0]
+    return v, mean
 
 
 def solve_stiff(a: Array, b: Array, span: Array) -> tuple[Array, Array]:

@@ -48,7 +48,8 @@ class Grid:
 def mirrored(problem: Problem) -> bool:
     """Whether each gait's mirror image, phi0 and -phi0, is within bounds and does as well."""
     offset = problem.gait.offset
-    return offset.low == -offset.high and dynamics_of(problem.robot).mirrored
+    symmetric = offset.low == -offset.high and problem.turn is None
+    return symmetric and dynamics_of(problem.robot).mirrored
 
 
 def boxes(problem: Problem) -> dict[str, Interval]:
@@ -85,7 +86,7 @@ def grid_of(problem: Problem, counts: Mapping[str, int]) -> Grid:
     ratio = None
     choice = problem.inertia_ratio
     if choice is not None:
-        ratio = whole_loads(problem) if _whole(choice) else spread("ratio")
+        ratio = whole_loads(problem) if loads_are_whole(problem) else spread("ratio")
     return Grid(spread("amplitude"), spread("period"), spread("offset"), ratio)
 
 
@@ -105,10 +106,15 @@ def free_decisions(problem: Problem) -> tuple[str, ...]:
     """The decisions whose number of values is open."""
     inside = boxes(problem)
     free = [name for name in DECISIONS if inside[name].low < inside[name].high]
-    choice = problem.inertia_ratio
-    if choice is not None and _whole(choice) and "ratio" in free:
+    if loads_are_whole(problem) and "ratio" in free:
         free.remove("ratio")
     return tuple(free)
+
+
+def loads_are_whole(problem: Problem) -> bool:
+    """Whether only whole loads exist."""
+    choice = problem.inertia_ratio
+    return choice is not None and choice.by == "loads" and choice.loads.whole
 
 
 def reach(problem: Problem) -> float:
@@ -160,10 +166,6 @@ def _between_or_nan(values: Array, axis: Array) -> Array:
 
 def _between(values: Array, axis: Array) -> Array:
     return values[(values > axis[0]) & (values < axis[-1])]
-
-
-def _whole(choice: RatioChoice) -> bool:
-    return choice.by == "loads" and choice.loads.whole
 
 
 def _loaded(robot: Robot, choice: RatioChoice, count: int) -> Robot:

@@ -16,7 +16,7 @@ from rr_opt.model.problem import Problem
 from rr_opt.model.robot import Robot
 from rr_opt.motion.dynamics import derive, dynamics_of
 from rr_opt.verify.compiled_cycles import CompiledCycles, Points, Speeds
-from rr_opt.verify.steady_fourier import Doublings, SteadyFourier
+from rr_opt.verify.steady_fourier import Doublings, Motion, SteadyFourier
 
 _Places = tuple[NDArray[np.int_], NDArray[np.int_]]
 
@@ -225,23 +225,23 @@ def _parameters(problem: Problem, ratio: Array | None) -> tuple[NDArray[np.int_]
     return (None, p) if len(values) == 1 else (which, p)
 
 
-_GRIP_SAMPLES, _GRIP_BLOCK = 256, 64
+PHASES, _BLOCK = 256, 64
 
 
-def grips(
-    problem: Problem, amplitude: Array, period: Array, offset: Array, ratio: Array | None
-) -> Array:
-    """The largest side force of an axle over the load on it, (K,), of sines as of `speeds`."""
-    which, p = _parameters(problem, ratio)
-    theta = np.arange(_GRIP_SAMPLES)[:, None] * (2 * math.pi / _GRIP_SAMPLES)
-    found = np.full(len(amplitude), np.nan)
-    for at in range(0, len(amplitude), _GRIP_BLOCK):
-        here = slice(at, at + _GRIP_BLOCK)
+def motions(problem: Problem, gaits: Array, phases: int = PHASES, *, grip: bool = False) -> Motion:
+    """Steady motions of sines, (4, K): amplitude, period, offset, ratio (NaN: as it is), and with
+    `grip` the grip that they need. Columns are NaN where none is found."""
+    amplitude, period, offset, ratio = gaits
+    which, p = _parameters(problem, None if np.isnan(ratio).all() else ratio)
+    theta = np.arange(phases)[:, None] * (2 * math.pi / phases)
+    model, parts = model_of(problem.robot), []
+    for at in range(0, len(amplitude), _BLOCK):
+        here = slice(at, at + _BLOCK)
         swing, rate = amplitude[here] * np.sin(theta), amplitude[here] * np.cos(theta)
         angle = swing + offset[here], rate, -swing
         robots = p if which is None else p[:, which[here]]
-        found[here] = model_of(problem.robot).grip(angle, period[here], robots)
-    return found
+        parts.append(model.motion(angle, period[here], robots, grip=grip))
+    return Motion(*(np.concatenate(each, axis=-1) for each in zip(*parts, strict=True)))
 
 
 _SAMPLES, _MOST = 256, 8192

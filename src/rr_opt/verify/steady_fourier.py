@@ -81,8 +81,25 @@ class _Angle(NamedTuple):
     omega: Array
 
 
+_Means = tuple[Array, Array, Array]
 _Motion = tuple[Array, Array, Array, Array, NDArray[np.bool_]]
 """v, w, side and torque (n, G B); whether v is a steady cycle (G B,)."""
+
+
+class Motion(NamedTuple):
+    """Steady motion of K gaits over n phases.
+
+    velocity, heading   means in the frame that turns with the gait, m/s and 1, (2, K)
+    turn                heading gained per period, rad, (K,)
+    torque              N m, (n, K)
+    grips               side force of each axle over its load, (2, n, K); (0, n, K) if not asked
+    """
+
+    velocity: Array
+    heading: Array
+    turn: Array
+    torque: Array
+    grips: Array
 
 
 class SteadyFourier:
@@ -168,17 +185,21 @@ class SteadyFourier:
         return Steady(*(np.concatenate(results) for results in zip(*parts, strict=True)))
 
     @np.errstate(divide="ignore", over="ignore", invalid="ignore")
-    def grip(self, angle: tuple[Array, Array, Array], period: Array, p: Array) -> Array:
-        """The largest side force of an axle over the load on it, (K,), of a whole period of gaits
-        given as in `along`, one period (s) each."""
+    def motion(
+        self, angle: tuple[Array, Array, Array], period: Array, p: Array, *, grip: bool
+    ) -> Motion:
+        """A whole period of the steady motion of gaits given as in `along`, one period (s) each."""
         here = _Angle(*angle, 2 * math.pi / period[:, None])
         if self.viscous:
-            v = _by_powers(self._powers(angle[0], p), here, period)[0]
+            v, w, side, torque, _ = _by_powers(self._powers(angle[0], p), here, period)
         else:
-            v = self._by_newton(p, here, period, 1e-6)[0]
-        omega = 2 * math.pi / period
-        sides = self._grip(v, angle[0], angle[1] * omega, angle[2] * omega**2, *p)
-        return np.maximum(*(peak(np.broadcast_to(side, v.shape), False) for side in sides))
+            v, w, side, torque, _ = self._by_newton(p, here, period, 1e-6)
+        grips = np.empty((0, *v.shape))
+        if grip:
+            omega = 2 * math.pi / period
+            sides = self._grip(v, angle[0], angle[1] * omega, angle[2] * omega**2, *p)
+            grips = np.array([np.broadcast_to(one, v.shape) for one in sides])
+        return Motion(*_means(v, w, side, period, False), torque, grips)
 
     def _by_newton(self, p: Array, gaits: _Angle, span: Array, tolerance: float) -> _Motion:
         periods, omega = gaits.omega.shape[1], gaits.omega.ravel()
@@ -243,22 +264,29 @@ def _by_powers(powers: Powers, gaits: _Angle, span: Array) -> _Motion:
     return v, w, side, torque, mean * span < _DAMPED
 
 
-def _mean_speed(
-    v: Array, w: Array, side: Array, span: Array, straight: bool
-) -> tuple[Array, Array]:
-    """Signed mean speed (m/s) and turn (rad), (K,).
+def _means(v: Array, w: Array, side: Array, span: Array, straight: bool) -> _Means:
+    """V and E (2, K) and the heading gained in a period, rad, (K,).
 
     chi = psi - turn t/T is periodic. V is the mean of P's velocity in the frame that turns with
     the gait, E the mean heading there, which says what is forward.
     """
     chi = integral(w, span, straight)
     cos, sin = np.cos(chi), np.sin(chi)
-    Vx, Ex = (cos * v - sin * side).mean(axis=0), cos.mean(axis=0)
+    V, E = [(cos * v - sin * side).mean(axis=0)], [cos.mean(axis=0)]
     if straight:
         # In the mirror image sideways is the other way: Vy = Ey = 0 over the whole period.
-        return np.copysign(Vx, Vx * Ex), np.zeros_like(Vx)
-    Vy, Ey = (sin * v + cos * side).mean(axis=0), sin.mean(axis=0)
-    return np.copysign(np.hypot(Vx, Vy), Vx * Ex + Vy * Ey), span * w.mean(axis=0)
+        still = np.zeros_like(V[0])
+        return np.array([*V, still]), np.array([*E, still]), still
+    V, E = [*V, (sin * v + cos * side).mean(axis=0)], [*E, sin.mean(axis=0)]
+    return np.array(V), np.array(E), span * w.mean(axis=0)
+
+
+def _mean_speed(
+    v: Array, w: Array, side: Array, span: Array, straight: bool
+) -> tuple[Array, Array]:
+    """Signed mean speed (m/s) and turn (rad), (K,)."""
+    V, E, turn = _means(v, w, side, span, straight)
+    return np.copysign(np.hypot(*V), (V * E).sum(axis=0)), turn
 
 
 class Powers(NamedTuple):

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -17,7 +17,8 @@ from rr_opt.array import Array
 from rr_opt.model.gait import Gait, SineGait
 from rr_opt.model.problem import Problem
 from rr_opt.model.robot import Robot
-from rr_opt.verify.evaluate import Evaluated, Found, Progress, evaluate, zoom
+from rr_opt.verify.climb import KEPT, Aim, climb, peak_torque, turn_rows
+from rr_opt.verify.evaluate import Evaluated, Found, Progress, evaluate
 from rr_opt.verify.grid import DECISIONS, Grid, boxes, free_decisions, grid_of, mirrored
 from rr_opt.verify.speeds import least_S1, model_of, robot_with, speed_of, speeds
 
@@ -52,33 +53,30 @@ def speed_map(problem: Problem, robot: Robot, offset: float) -> SpeedMap:
 
 
 TOLERATED = 1e-4
-"""A sweep that beats an optimum by more than this, relative, refutes it."""
-
-_FINAL = 1e-6
-"""Tolerance of the speeds that are compared with a claim, relative."""
+"""A claimed speed may differ by so much, relative, from the sweep's own of that gait."""
 
 
 class _Effort(NamedTuple):
     """points of a grid in all; tolerance of its speeds, and of the best one's, relative; how many
-    of its best points are climbed from, down to which share of the grid's spacing, and values
-    per decision of the grid around a claimed optimum."""
+    of its best points are climbed from, and how many where hardly one of them keeps the rows; and
+    what a climb may gain, relative, on a claim."""
 
     points: int
     tolerance: float
     fine: float
     climbs: int
-    least: float
-    around: int
+    more: int
+    gained: float
 
-
-_ROUGH = 0.1
-"""Share of the grid's spacing to which all climbs go, before the best of them goes on."""
 
 # Other friction than viscous takes some hundred times as long.
 _EFFORT = {
-    True: _Effort(10_000, 1e-6, 1e-8, 4, 1e-4, 7),
-    False: _Effort(600, 0.03, 5e-5, 2, 3e-2, 3),
+    True: _Effort(10_000, 1e-4, 1e-8, 4, 12, 1e-6),
+    False: _Effort(600, 0.03, 5e-5, 2, 2, 1e-4),
 }
+_FINALISTS = 3
+_OFF, _MOST_OFF = 2.0, 5.0
+"""Share of the speed that an excess of 1, relative, costs a start, and the largest that counts."""
 
 
 @dataclass(frozen=True)
@@ -88,7 +86,7 @@ class SweepResult:
     grid     the values of each decision
     found    all points evaluated, those on the lines where limits are active among them
     best     the best point of them that keeps all limits, None if none does
-    refined  the best that smaller grids around the best few points led to
+    refined  the best that climbs from the best few points led to
     points   how many points were evaluated in all
     """
 
@@ -104,26 +102,32 @@ class SweepCheck:
     """A claimed optimum, compared with a sweep.
 
     points         evaluated, near the claimed optimum and all over
-    best_speed     of the best point that keeps all limits, signed, m/s; NaN if none does
-    best_gait      offset >= 0 where gaits at phi0 and -phi0 do equally well
-    best_ratio     J20/J10, None: the robot as it is
+    best           that keeps all limits, offset >= 0 where gaits at phi0 and -phi0 do equally well;
+                   None if none was found
     gap            (|claimed| - |best|)/|claimed|: negative where the sweep found something better
+    gained         what a climb on from the claimed gait gains, relative; NaN for another shape
+    tolerated      of either
     speed          of the claimed gait, by the sweep's model, signed, m/s
     error          |speed - claimed|/|claimed|; NaN where the model cannot follow the gait's shape
     """
 
     points: int
-    best_speed: float
-    best_gait: SineGait | None
-    best_ratio: float | None
+    best: Found | None
     gap: float
+    gained: float
+    tolerated: float
     speed: float
     error: float
 
     @property
+    def better(self) -> Found | None:
+        """What refutes the claim."""
+        return None if self.gap >= -self.tolerated else self.best
+
+    @property
     def passed(self) -> bool:
         """Nothing better was found, and the claimed gait has the claimed speed."""
-        return self.gap >= -TOLERATED and not self.error > TOLERATED
+        return self.better is None and not self.error > TOLERATED
 
 
 def sweep(
@@ -139,21 +143,43 @@ def sweep(
     effort = _EFFORT[model_of(problem.robot).viscous]
     grid = grid_of(problem, _counts(problem, counts, effort.points))
     found = evaluate(problem, grid, effort.tolerance, progress)
-    widths = _spacing(grid)
-    starts = [found.found(index) for index in _tops(found, widths, effort.climbs)]
-    climbs = [zoom(problem, start, widths, effort.tolerance, _ROUGH) for start in starts]
-    refined = _fastest([climb.best for climb in climbs])
-    if refined is not None:
-        closer = {name: 2 * _ROUGH * width for name, width in widths.items()}
-        climbs.append(zoom(problem, refined, closer, effort.fine, effort.least))
-        refined = climbs[-1].best
+    feasible = found.feasible.any()
+    most = effort.climbs if feasible and not problem.turn else effort.more
+    starts = tops(found, _merit(problem, found), grid, most)
+    end, more = climbed(problem, found.decisions[:, starts])
     return SweepResult(
         grid=grid,
         found=found,
-        best=starts[0] if starts else None,
-        refined=refined,
-        points=found.speed.size + sum(climb.points for climb in climbs),
+        best=found.found(int(found.merit.argmax())) if feasible else None,
+        refined=end,
+        points=found.speed.size + more,
     )
+
+
+def climbed(problem: Problem, starts: Array, aim: Aim = "speed") -> tuple[Found | None, int]:
+    """The best that climbs from gaits (4, K) lead to, None if none of the best keeps every limit;
+    and how many gaits were evaluated. All climb a little, and the best of them to their ends."""
+    rough = [climb(problem, start, aim, rough=True) for start in starts.T]
+    rough.sort(key=lambda end: -end.value)
+    fine = [climb(problem, end.decisions, aim) for end in rough[:_FINALISTS]]
+    ends = sorted((end for end in fine if end.kept), key=lambda end: -end.value)
+    found = next((one for end in ends if (one := _resolved(problem, end.decisions))), None)
+    return found, sum(end.points for end in (*rough, *fine))
+
+
+def _resolved(problem: Problem, decisions: Array) -> Found | None:
+    """A gait (4,) with its speed; None where that is not resolved or a peak was overlooked."""
+    viscous = model_of(problem.robot).viscous
+    amplitude, period, offset, ratio = decisions.tolist()
+    known = None if math.isnan(ratio) else ratio
+    seen = speeds(problem, amplitude, period, offset, known, _EFFORT[viscous].fine)
+    torque, slack = float(seen.peak_torque), TOLERATED
+    if viscous:
+        torque, slack = peak_torque(problem, decisions), 10 * KEPT
+    if not seen.converged or torque > problem.limits.torque * (1 + slack):
+        return None
+    gait, speed, turn = SineGait(amplitude, period, offset), float(seen.speed), float(seen.turn)
+    return Found(gait, known, speed, torque, turn)
 
 
 def check_optimum(
@@ -164,7 +190,7 @@ def check_optimum(
     counts: Mapping[str, int] | int | None = None,
     everywhere: SweepResult | None = None,
 ) -> SweepCheck:
-    """Compare a claimed optimum with a sweep of the whole problem and a dense grid around it.
+    """Compare a claimed optimum with a sweep of the whole problem and a climb on from it.
 
     A gait of another shape is compared with all sines, which no optimum of its family may fall
     short of.
@@ -176,34 +202,27 @@ def check_optimum(
     if problem.inertia_ratio is None:
         ratio = None
     everywhere = everywhere or sweep(problem, counts)
-    finalists, points = [everywhere.refined, everywhere.best], everywhere.points
+    finalists, points = [everywhere.refined], everywhere.points
+    gained = math.nan
     if isinstance(gait, SineGait):
         own = speeds(problem, gait.amplitude, gait.period, gait.offset, ratio, effort.fine)
         here = float(own.speed)
-        centre = Found(_inside(problem, gait), ratio, here, float(own.peak_torque))
-        near = zoom(
-            problem, centre, _spacing(everywhere.grid), effort.fine, effort.least, effort.around
-        )
-        finalists, points = [*finalists, near.best], points + near.points
+        offset = abs(gait.offset) if mirrored(problem) else gait.offset
+        claimed = (gait.amplitude, gait.period, offset, math.nan if ratio is None else ratio)
+        end, more = climbed(problem, np.array(claimed)[:, None])
+        finalists, points = [*finalists, end], points + more
+        gained = abs(end.speed / here) - 1 if end else 0.0
     else:
         here = speed_of(robot_with(problem, ratio), gait).speed
-    # A grid of dry friction is coarse: what is compared with the claim is as fine as the claim.
-    best = _fastest([one and _resolved(problem, one, _FINAL) for one in finalists])
-    return compared(speed, here, best, points)
-
-
-def compared(claimed: float, own: float, best: Found | None, points: int) -> SweepCheck:
-    """A claimed speed compared with the model's own of that gait (both signed, m/s) and with
-    the best that was found among `points`."""
-    reached = math.nan if best is None else best.speed
+    best = _fastest(finalists)
     return SweepCheck(
         points=points,
-        best_speed=reached,
-        best_gait=best.gait if best else None,
-        best_ratio=best.ratio if best else None,
-        gap=(abs(claimed) - abs(reached)) / abs(claimed) if best else math.inf,
-        speed=own,
-        error=abs(own - claimed) / abs(claimed),
+        best=best,
+        gap=1 - abs(best.speed / speed) if best else math.inf,
+        gained=gained,
+        tolerated=effort.gained,
+        speed=here,
+        error=abs(here - speed) / abs(speed),
     )
 
 
@@ -216,15 +235,12 @@ def _counts(
     return dict.fromkeys(free, counts) if isinstance(counts, int) else counts
 
 
-def _spacing(grid: Grid) -> dict[str, float]:
-    """The widest gap between neighbours on the grid, by free decision."""
-    return {name: float(np.diff(grid.axis(name)).max()) for name in grid.free}
-
-
-def _tops(found: Evaluated, widths: Mapping[str, float], most: int) -> list[int]:
-    """Indices of the best points that are two spacings or more from better ones, best first."""
-    merit, chosen = found.merit, []
-    apart = np.array([2.0 * widths.get(name, math.inf) for name in DECISIONS])[:, None]
+def tops(found: Evaluated, merit: Array, grid: Grid, most: int) -> list[int]:
+    """Indices of the points with the most merit that are two spacings of the grid or more from
+    better ones, best first."""
+    spacing = {name: float(np.diff(grid.axis(name)).max()) for name in grid.free}
+    apart = np.array([2.0 * spacing.get(name, math.inf) for name in DECISIONS])[:, None]
+    chosen: list[int] = []
     while merit.size and len(chosen) < most and merit.max() > -np.inf:
         top = int(merit.argmax())
         chosen.append(top)
@@ -233,24 +249,20 @@ def _tops(found: Evaluated, widths: Mapping[str, float], most: int) -> list[int]
     return chosen
 
 
+def _merit(problem: Problem, found: Evaluated) -> Array:
+    """The speed, less some of it for each row that fails where few points keep them all: those of
+    a turn, or limits that are tight."""
+    if found.feasible.any() and not problem.turn:
+        return found.merit
+    speed = np.abs(found.speed)
+    less, equal = turn_rows(problem, speed, found.turn, found.decisions[1])
+    off = sum([np.maximum(-row, 0.0) for row in less] + [np.abs(row) for row in equal])
+    off = off + np.maximum(found.peak_torque / problem.limits.torque - 1, 0.0)
+    off = off + ~found.keeps["direction"]
+    merit = speed * (1 - _OFF * np.clip(off, 0.0, _MOST_OFF))
+    return np.where(np.isfinite(merit) & found.keeps["rate"], merit, -np.inf)
+
+
 def _fastest(gaits: Sequence[Found | None]) -> Found | None:
     there = [one for one in gaits if one is not None]
     return max(there, key=lambda one: abs(one.speed), default=None)
-
-
-def _resolved(problem: Problem, found: Found, tolerance: float) -> Found | None:
-    """The same gait at this tolerance; None if that has no steady cycle or breaks the torque's
-    limit."""
-    gait = found.gait
-    again = speeds(problem, gait.amplitude, gait.period, gait.offset, found.ratio, tolerance)
-    torque = float(again.peak_torque)
-    if not again.converged or torque > problem.limits.torque * (1 + 1e-4):
-        return None
-    return replace(found, speed=float(again.speed), peak_torque=torque)
-
-
-def _inside(problem: Problem, gait: SineGait) -> SineGait:
-    """The gait or its mirror image, whichever the sweep looks at."""
-    if mirrored(problem):
-        return SineGait(gait.amplitude, gait.period, abs(gait.offset))
-    return gait

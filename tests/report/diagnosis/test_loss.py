@@ -116,9 +116,11 @@ def test_a_gait_that_drives_the_robot_the_other_way_loses_more_than_all():
 
 def test_a_gait_that_a_sweep_beats_is_no_best_gait(missing, monkeypatch):
     from rr_opt.results import loss as module
+    from rr_opt.verify.evaluate import Found
     from rr_opt.verify.sweep import SweepCheck
 
-    beaten = SweepCheck(100, 0.2, None, None, -0.5, 0.1, 0.0)
+    faster = Found(SineGait(1.0, 1.5), None, 0.2, 0.1, 0.0)
+    beaten = SweepCheck(100, faster, -0.5, 0.0, 1e-6, 0.1, 0.0)
     monkeypatch.setattr(module, "check_optimum", lambda *_: beaten)
     reported = loss_of(missing.experiment, missing.experiment.robot)
     assert isinstance(reported, LossUnknown)

@@ -1,0 +1,241 @@
+"""The local optimum next to a gait, by SLSQP on the sweep's own model.
+
+Every limit is a smooth row: the torque counts by its peak in each part of the cycle, as the largest
+of several peaks has a kink where they change places, and by its logarithm, as it grows a
+hundredfold near the singular posture. Slopes are central differences, all of them in one call.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Literal, NamedTuple
+
+import numpy as np
+
+from rr_opt.array import Array
+from rr_opt.model.problem import Problem
+from rr_opt.verify.fourier import peaks
+from rr_opt.verify.grid import DECISIONS, boxes, loads_are_whole, reach
+from rr_opt.verify.speeds import PHASES, model_of, motions
+
+_STEP = {True: 1e-5, False: 1e-3}
+"""Of a difference, in each decision's range; where friction is viscous (True) or not."""
+_PARTS = 8
+"""Parts of the cycle, with a peak each."""
+_LEAST = 1e-3
+"""Share of its limit below which a peak does not count."""
+KEPT = 1e-8
+"""By so much, relative, a row may fail."""
+
+
+class _Care(NamedTuple):
+    """phases of a cycle; tolerance and iterations of a climb, and how often it is begun anew, as
+    peaks that limit a gait at its end need not be those of the start."""
+
+    phases: int
+    tolerance: float
+    iterations: int
+    repeats: int
+
+
+_ROUGH, _FINE = _Care(PHASES // 2, 1e-6, 30, 1), _Care(2 * PHASES, 1e-13, 100, 4)
+_SETTLED, _STEPS, _LONGEST = 1e-9, 5, 0.01
+_AHEAD = 1e-6
+"""Least V . E/|V|: at 0 a gait would go neither forward nor backward."""
+_SLOWEST = 1e-12
+
+
+@dataclass(frozen=True)
+class Climbed:
+    """Where a climb ended.
+
+    decisions: amplitude, period, offset, ratio (NaN: the robot as it is), (4,); points: gaits
+    evaluated; kept: the end keeps every limit and turns as asked; value: what was climbed, less
+    where a row fails."""
+
+    decisions: Array
+    points: int
+    kept: bool
+    value: float
+
+
+Aim = Literal["speed", "radius"]
+
+
+def climb(problem: Problem, start: Array, aim: Aim = "speed", *, rough: bool = False) -> Climbed:
+    """Climb to the fastest gait, or the tightest circle, from a start (4,), which need not keep the
+    limits."""
+    from scipy.optimize import minimize  # 0.1 s that a sweep alone can do without
+
+    care = _ROUGH if rough else _FINE
+    local = _Local(problem, np.asarray(start, float), aim, care.phases)
+    z = local.first
+    for _ in range(care.repeats if len(z) else 0):
+        end = minimize(
+            local.cost, z, jac=local.cost_slope, bounds=[(0.0, 1.0)] * len(z),
+            constraints=local.constraints, method="SLSQP",
+            options={"ftol": care.tolerance, "maxiter": care.iterations},
+        )  # fmt: skip
+        there = np.clip(end.x, 0.0, 1.0)
+        if not np.isfinite(local.look(there)[0]).all():
+            break
+        there = local.inside(there)
+        moved = float(np.abs(there - z).max())
+        z = there
+        if moved <= _SETTLED:
+            break
+    return Climbed(local.decisions(z[None])[:, 0], local.points, local.keeps(z), local.value(z))
+
+
+def peak_torque(problem: Problem, decisions: Array) -> float:
+    """The largest |torque| of a gait (4,), N m."""
+    return float(peaks(motions(problem, decisions[:, None], _FINE.phases).torque, 1)[0, 0])
+
+
+class _Local:
+    """Aim and rows over the free decisions, each in its range, and their slopes."""
+
+    def __init__(self, problem: Problem, start: Array, aim: Aim, phases: int) -> None:
+        inside = boxes(problem)
+        self._problem, self._start, self._aim, self.points = problem, start, aim, 0
+        whole = loads_are_whole(problem)
+        self._free = np.array(
+            [k for k, name in enumerate(DECISIONS)
+             if inside[name].low < inside[name].high and not (whole and name == "ratio")], int,
+        )  # fmt: skip
+        ends = np.array([(inside[name].low, inside[name].high) for name in DECISIONS])
+        self._low, self._span = ends[:, 0], ends[:, 1] - ends[:, 0]
+        self._step = _STEP[model_of(problem.robot).viscous]
+        self.first = np.clip((start - self._low)[self._free] / self._span[self._free], 0.0, 1.0)
+        self._unit, self._phases = 1.0, phases
+        self._known: dict[bytes, tuple[Array, Array]] = {}
+        self._equal = 0
+        values = self._values(self.first[None])
+        self._unit = max(float(np.abs(values[0, 0])), _SLOWEST)
+        self._rows = len(values) - 1
+
+    def decisions(self, z: Array) -> Array:
+        """(4, K) of places (K, n)."""
+        found = np.repeat(self._start[:, None], len(z), axis=1)
+        found[self._free] = self._low[self._free, None] + self._span[self._free, None] * z.T
+        return found
+
+    def inside(self, z: Array) -> Array:
+        """The nearest place that fails no row: SLSQP often ends a hair outside."""
+        for _ in range(_STEPS):
+            values, slopes = self.look(z)
+            fails = np.concatenate([values[1:], -values[1 + self._rows - self._equal :]])
+            rows = np.concatenate([slopes[1:], -slopes[1 + self._rows - self._equal :]])
+            off = fails < 0.1 * KEPT
+            if not (fails < -0.1 * KEPT).any():
+                break
+            change = np.linalg.lstsq(rows[off], 0.2 * KEPT - fails[off], rcond=1e-9)[0]
+            z = np.clip(z + np.clip(change, -_LONGEST, _LONGEST), 0.0, 1.0)
+        return z
+
+    def keeps(self, z: Array) -> bool:
+        """Whether all rows hold."""
+        rows = self.look(z)[0][1:]
+        less, equal = np.split(rows, [self._rows - self._equal])
+        return bool((less >= -KEPT).all() and (np.abs(equal) <= KEPT).all())
+
+    def value(self, z: Array) -> float:
+        """The aim, less its size times what the rows fail by."""
+        value, rows = self.look(z)[0][0], self.look(z)[0][1:]
+        less, equal = np.split(rows, [self._rows - self._equal])
+        off = np.maximum(-less, 0.0).sum() + np.abs(equal).sum()
+        return float(value - abs(value) * off)
+
+    def look(self, z: Array) -> tuple[Array, Array]:
+        """Values and slopes of the aim and of rows that must not be negative or, the last ones,
+        must be 0."""
+        key = z.tobytes()
+        if key not in self._known:
+            n, h = len(z), self._step
+            ahead, behind = np.minimum(z + h, 1.0), np.maximum(z - h, 0.0)
+            around = np.tile(z, (2 * n + 1, 1))
+            np.fill_diagonal(around[1 : n + 1], ahead)
+            np.fill_diagonal(around[n + 1 :], behind)
+            values = self._values(around)
+            slopes = (values[:, 1 : n + 1] - values[:, n + 1 :]) / (ahead - behind)
+            self._known = {key: (values[:, 0], slopes)}
+        return self._known[key]
+
+    def cost(self, z: Array) -> float:
+        """The aim, negative, in its size at the start."""
+        return -float(self.look(z)[0][0]) / self._unit
+
+    def cost_slope(self, z: Array) -> Array:
+        """Its slope."""
+        return -self.look(z)[1][0] / self._unit
+
+    @property
+    def constraints(self) -> list[dict[str, Any]]:
+        """As SLSQP takes them."""
+        first = 1 + self._rows - self._equal
+        kinds = {"ineq": slice(1, first), "eq": slice(first, None)}
+        counts = {"ineq": first - 1, "eq": self._equal}
+        return [
+            {"type": kind, "fun": self._part(0, rows), "jac": self._part(1, rows)}
+            for kind, rows in kinds.items()
+            if counts[kind]
+        ]
+
+    def _part(self, which: int, rows: slice) -> Callable[[Array], Array]:
+        return lambda z: self.look(z)[which][rows]
+
+    def _values(self, z: Array) -> Array:
+        gaits, problem = self.decisions(z), self._problem
+        amplitude, period, offset, _ = gaits
+        self.points += len(z)
+        limits = problem.limits
+        found = motions(problem, gaits, self._phases, grip=math.isfinite(limits.grip))
+        speed = np.hypot(*found.velocity)
+        far = reach(problem)
+        rows = [far - amplitude - offset, far - amplitude + offset]
+        if math.isfinite(limits.rate):
+            rows.append(1 - amplitude * 2 * math.pi / (period * limits.rate))
+        if problem.command and problem.bounds_command:
+            low, high = problem.command.joint_amplitude(period)
+            rows += [amplitude - low, high - amplitude]
+        loads = [(found.torque, limits.torque), *((grip, limits.grip) for grip in found.grips)]
+        for load, limit in loads:
+            if math.isfinite(limit):
+                rows += list(-np.log(np.maximum(peaks(load, _PARTS) / limit, _LEAST)))
+        if problem.direction != "either":
+            ahead = (found.velocity * found.heading).sum(axis=0) / np.maximum(speed, _SLOWEST)
+            rows.append((ahead if problem.direction == "forward" else -ahead) - _AHEAD)
+        less, equal = turn_rows(problem, speed, found.turn, period)
+        self._equal = len(equal)
+        # The square of a radius has no kink where it is 0.
+        value = speed if self._aim == "speed" else -((speed * period / found.turn) ** 2)
+        return np.array([value, *rows, *less, *equal])
+
+
+def turn_rows(
+    problem: Problem, speed: Array, turn: Array, period: Array
+) -> tuple[list[Array], list[Array]]:
+    """What a problem asks of the turn, relative: rows that must not be negative, and rows that must
+    be 0. speed >= 0, m/s; turn in rad per period."""
+    less: list[Array] = []
+    equal: list[Array] = []
+    if problem.turn is None:
+        return less, equal
+    rate = turn / period
+    for box, value, per in (
+        (problem.turn.curvature, rate, speed),
+        (problem.turn.yaw_rate, rate, np.ones_like(rate)),
+        (problem.turn.heading, turn, np.ones_like(rate)),
+    ):
+        for sign, end in ((1.0, box.low), (-1.0, box.high)):
+            if not math.isfinite(end):
+                continue
+            size = np.maximum(abs(end) * per, _SLOWEST) if end else 1.0
+            row = sign * (value - end * per) / size
+            if not box.fixed:
+                less.append(row)
+            elif sign > 0:
+                equal.append(row)
+    return less, equal

@@ -1,0 +1,24 @@
+"""Robots that friction stops within a small part of a period are resolved too."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rr_opt.model.gait import SineGait
+from rr_opt.model.problem import Problem
+from rr_opt.motion.steady_cycle import steady_cycle
+from rr_opt.verify.speeds import speeds
+from tests.robots import BENCHMARK
+
+
+@pytest.mark.parametrize("offset", [0.0, 0.2])
+@pytest.mark.parametrize("kappa", [1e-3, 1e-2, 0.1])
+def test_speed_is_that_of_the_integrator(kappa, offset):
+    one, two = (replace(part, kappa=kappa) for part in (BENCHMARK.platform1, BENCHMARK.platform2))
+    robot = replace(BENCHMARK, platform1=one, platform2=two)
+    found = speeds(Problem(robot), 1.0, 1.5, offset)
+    cycle = steady_cycle(robot, SineGait(1.0, 1.5, offset), steps=6144).cycle
+    assert np.isfinite(found.speed)
+    assert float(found.speed) == pytest.approx(cycle.speed, rel=1e-5)
+    assert float(found.turn) == pytest.approx(cycle.dpsi, rel=1e-5, abs=1e-9)
