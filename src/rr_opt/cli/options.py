@@ -321,8 +321,8 @@ Recorded = Annotated[
     Path,
     typer.Argument(
         metavar="FILE|FOLDER",
-        help="A recording (plain CSV, Vicon CSV, C3D, TRC or netCDF), or the folder of an "
-        "experiment.",
+        help="A recording (plain CSV, Vicon, Motive or Qualisys export, C3D, TRC, netCDF or ROS "
+        "bag), or the folder of an experiment.",
     ),
 ]
 Layout = Annotated[

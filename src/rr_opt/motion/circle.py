@@ -15,7 +15,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.integrate import simpson
 
 from rr_opt.array import Array
 from rr_opt.model.robot import Robot
@@ -145,6 +144,8 @@ def transient(robot: Robot, steady: SteadyCycle) -> Transient:
 def _mean_velocity(path: Array, period: float) -> complex:
     """Mean velocity of P, m/s, in the frame that turns steadily through this period from the
     heading at its start. path (5, N + 1): states at equal steps."""
+    from scipy.integrate import simpson  # half a second that few commands need
+
     _, psi, x, y, _ = path
     turn = psi[-1] - psi[0]
     theta = np.linspace(0.0, 1.0, path.shape[1])

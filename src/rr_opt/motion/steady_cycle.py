@@ -26,7 +26,6 @@ from dataclasses import dataclass
 import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.interpolate import CubicSpline
 
 from rr_opt.array import Array
 from rr_opt.model.gait import Gait
@@ -223,6 +222,8 @@ def peak_torque(steady: SteadyCycle) -> float:
 
 def _peak(pieces: int, after: Array, before: Array) -> float:
     """Largest size of what has these values after and before the jumps between pieces."""
+    from scipy.interpolate import CubicSpline  # half a second, after the first lines are printed
+
     each = (len(after) - 1) // pieces
     inside = after[:-1].reshape(pieces, each)
     ends = before[each::each, None]

@@ -109,7 +109,9 @@ def inspected(file: Path, known: Circumstances, *, estimate: bool = True) -> Ins
     if isinstance(read, MarkerData) and known.layout is None and not estimate:
         raise InputError(
             f"Read {shown(file.name)}, a marker file. Expected `markers`, the place of each on the "
-            f"robot; the file has {shown(', '.join(read.labels))}. Add the key."
+            f"robot; the file has {shown(', '.join(read.labels))}. Add the key. `rr-opt inspect` "
+            "estimates the places from a recording in which the joint moves; turn them so that "
+            "forward is along each platform."
         )
     try:
         return inspect(read, log, known)

@@ -81,3 +81,14 @@ def test_a_layout_that_is_off_by_millimetres_is_put_right_but_for_its_axes():
         apart = found.recording.values[name] - known.values[name]
         assert apart.std() < 0.4 * np.median(known.sigma[name])
         assert abs(apart.mean()) < 0.04
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_millimetre_of_noise_does_not_hide_two_small_platforms(seed):
+    first = {"RR1": (0.028, 0.011), "RR2": (0.084, -0.018), "RR3": (0.167, 0.020)}
+    second = {"RF1": (-0.007, 0.011), "RF2": (-0.020, -0.018), "RF3": (-0.040, 0.020)}
+    layout = Layout(first, second)
+    data = markers(motion(gait=SineGait(0.3, 1.2)), 1e-3, seed, layout)
+    guess = guessed_layout(data.labels, data.positions[..., :2])
+    assert set(guess.layout.platform1) == set(first)
+    assert set(guess.layout.platform2) == set(second)
