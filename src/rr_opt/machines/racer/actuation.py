@@ -210,7 +210,11 @@ def _fitted(
     low, high = (np.array([getattr(q, end) for q in quantities]) / scale for end in ("low", "high"))
     if quantities:
         u = least_squares(
-            left, np.clip(u, low, high), slopes, bounds=(low, high + 1e-12), max_nfev=12
+            left,
+            np.clip(u, low, high),
+            slopes,  # pyright: ignore[reportArgumentType]
+            bounds=(low, high + 1e-12),
+            max_nfev=12,
         ).x
     values = valued(u)
     residuals = angle.residuals(values, effects)
