@@ -38,3 +38,15 @@ def test_status_and_message(drive, verb):
         "warning: result.json: The status of this result is ['odd'] and not 'optimal'. Its gait is "
         "driven all the same.\n",
     )
+
+
+@pytest.mark.parametrize("row", [{"name": "rate"}, {"name": ["rate"], "limit": 1.0}, 3,
+                                 {"name": "rate", "limit": "fast"}, {"name": "way", "limit": 1.0},
+                                 {"name": "rate", "limit": float("nan")}])  # fmt: skip
+def test_a_limit_that_is_none_is_refused(run, tmp_path, row):
+    gait, robot = gait_record(SineGait(0.15, 1.2)), robot_record(read_problem(None).robot)
+    record = {"status": "optimal", "input_sha256": "0" * 64, "limits": [row]}
+    (tmp_path / "result.json").write_text(json.dumps({**record, "gait": gait, "robot": robot}))
+    done = run("simulate", "result.json")
+    assert done.exit_code == 2
+    assert "result.json: limits: Read an entry that is no limit." in done.stderr

@@ -250,7 +250,7 @@ def _of_result(document: Document) -> RobotWithGait:
         raise InvalidFileError([*issues, *found])
     status, message = (document.data.get(key) for key in ("status", "message"))
     if status == "optimal":
-        return RobotWithGait(read, gait, "optimal", limits=_limits(document.data))
+        return RobotWithGait(read, gait, "optimal", limits=_limits(document))
     why = f" {message}" if isinstance(message, str) else ""
     doubt = (
         f"{document.file}: The status of this result is {shown(status)} and not 'optimal'.{why} "
@@ -259,13 +259,24 @@ def _of_result(document: Document) -> RobotWithGait:
     return RobotWithGait(read, gait, status if isinstance(status, str) else shown(status), (doubt,))
 
 
-def _limits(result: dict[str, Any]) -> Limits | None:
-    """The limits that a result names; None if it does not."""
-    rows = result.get("limits")
+def _limits(document: Document) -> Limits | None:
+    """The limits that a result names; None if it does not. Raises InputError for wrong ones."""
+    rows: Any = document.data.get("limits")
     if not isinstance(rows, list):
         return None
-    named = {row["name"]: row["limit"] for row in rows}
-    return Limits(**{name: math.inf if limit is None else limit for name, limit in named.items()})
+    try:
+        named = {
+            str(row["name"]): math.inf if row["limit"] is None else float(row["limit"])
+            for row in rows
+        }
+        if all(limit > 0 for limit in named.values()):
+            return Limits(**named)
+    except (KeyError, TypeError, ValueError):
+        pass
+    raise InputError(
+        f"{document.file}: limits: Read an entry that is no limit. Expected each with the `name` "
+        "of a limit and a positive `limit`, or null for none, as rr-opt writes them."
+    )
 
 
 def _doubts(
