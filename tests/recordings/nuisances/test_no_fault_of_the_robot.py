@@ -1,13 +1,15 @@
 """No effect of the robot's physics passes for a nuisance, however strong."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from rr_opt.effects import CATALOGUE
 from rr_opt.machines.racer.racer import RollerRacer
 from rr_opt.model.gait import SineGait
-from rr_opt.recordings.nuisances import nuisances
+from rr_opt.recordings.nuisances import frame, nuisances
 from rr_opt.recordings.nuisances.evidence import Evidence
 from tests.sysid.made_up import experiment, predicted, recorded
 
@@ -24,6 +26,9 @@ OF_THE_SERVO = {"clock.offset", "clock.drift", "command.scale", "command.bias", 
         ("servo_offset", {"offset": 0.3}),
         ("clock_offset", {"offset": 0.2}),
         ("marker_offset", {"dx": -0.1, "dy": 0.1}),
+        ("marker_offset", {"dx": -0.03, "dy": 0.03}),
+        ("marker_offset", {"dx": 0.0, "dy": 0.02}),
+        ("marker_offset", {"dx": -0.01, "dy": 0.01}),
         ("lateral_slip", {"creep_compliance": 0.0, "mu": 0.02}),
         ("lateral_slip", {"creep_compliance": 0.3, "mu": 1.0}),
         ("coulomb_friction", {"force1": 0.02, "force2": 0.02}),
@@ -52,3 +57,18 @@ def test_none_is_told(effect, values):
         assert {one.code for one in found} <= OF_THE_SERVO, found
         found = nuisances(Evidence(run.recording))
         assert {one.code for one in found} <= OF_THE_SERVO, found
+
+
+@pytest.mark.parametrize(("slip", "wrong"), [(1.44, 0), (10.0, 1)])
+def test_another_frame_has_to_be_far_likelier(monkeypatch, slip, wrong):
+    monkeypatch.setattr(frame, "follows", lambda *_: True)
+    still = np.zeros(5)
+    given = SimpleNamespace(
+        motion=(still, still, still, still),
+        robot=None,
+        sideways=1.0,
+        slip=SimpleNamespace(size=slip),
+        explains=lambda *_: 1.1,
+        likely=lambda left: list(left)[:1],
+    )
+    assert len(list(frame.look(given))) == wrong

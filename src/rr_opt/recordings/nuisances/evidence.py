@@ -170,7 +170,7 @@ class Evidence:
         now, then = self.slip.size, self.slip_of(motion, every, scale).size
         rolls = then < CLEAN and now > ROLLING * then
         sure = self._likelier(now, then) > _SURE
-        return then if sure and (rolls or now > _FAR * then) else np.inf
+        return then if sure and (rolls or now > FAR * then) else np.inf
 
     def likely(self, left: Mapping[Name, float]) -> list[Name]:
         """Those that explain a recording about as well as the best, by the slip they leave."""
@@ -191,7 +191,7 @@ def _lever(side: Array, turned: Array) -> float:
     return -float(side[known] @ turned[known]) / swings if swings > 0 else 0.0
 
 
-ROLLING, CLEAN, _FAR = 1.1, 1.3, 3.0
+ROLLING, CLEAN, FAR = 1.1, 1.3, 3.0
 """Slip that wheels leave that roll, in noise; with some uncertainty of c; and times as much slip as
 there is in a motion that is right, where wheels slide."""
 _SURE, _UNSURE = 15.0, 5.0
