@@ -73,8 +73,9 @@ class Recurrence:
         step = in_stages(self._step, "step", (1, 1, 0))
         sizes = {name: self._step.nnz_in(i) for i, name in enumerate(("NX", "NI", "NP"))}
         defines = [f"#define {name} {n}\n" for name, n in {**sizes, "KEPT": step.kept[0]}.items()]
-        here = (source_file("rr_opt.mechanics", name) for name in ("lanes.c", "recurrence.c"))
-        lanes, loop = here
+        lanes, loop = (
+            source_file("rr_opt.mechanics", name) for name in ("lanes.c", "recurrence.c")
+        )
         return "".join([*defines, lanes, step.source, loop])
 
     def _code(self, make: bool) -> ctypes.CDLL | None:

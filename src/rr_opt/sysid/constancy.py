@@ -24,6 +24,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import numpy as np
 from scipy.linalg import solve_triangular
@@ -51,12 +52,15 @@ class Constancy:
         return odds / (1 + odds)
 
 
+_NONE: Mapping = MappingProxyType({})
+
+
 def constancy(
-    fit: Fit, explained: Mapping[int, float], form_errors: Mapping[str, float]
+    fit: Fit, explained: Mapping[int, float] = _NONE, form_errors: Mapping[str, float] = _NONE
 ) -> Constancy:
     """Of a fit to all runs.
 
-    explained    of each run, the mean square in sigma that the effects explain
+    explained    of each run, the mean square in sigma that the effects explain; 0 if left out
     form_errors  by how much, relative, machines differ from the model of an effect, by its name
     """
     problem = fit.problem
@@ -83,6 +87,6 @@ def constancy(
         total = float(np.sum((ways.T @ score)[shown] ** 2 / variance[shown]))
         per_time = problem.samples(run) / problem.correlation_times(run)
         share = max(form_errors.values(), default=0.0)
-        statistic += total / (1 + share**2 * explained[run] * per_time)
+        statistic += total / (1 + share**2 * explained.get(run, 0.0) * per_time)
         degrees += int(shown.sum())
     return Constancy(statistic, degrees)

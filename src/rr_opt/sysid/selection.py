@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from rr_opt.sysid.candidates import Candidate, fitted, polished, quantities_of
-from rr_opt.sysid.constancy import Constancy, constancy
+from rr_opt.sysid.constancy import constancy
 from rr_opt.sysid.machine import Machine
 from rr_opt.sysid.model import Choice
 from rr_opt.sysid.score_test import scores
@@ -35,7 +35,6 @@ class Selection:
     progress: Progress = lambda _: None
     tried: dict[tuple[Choice, ...], Candidate] = field(default_factory=dict)
     _upstream: Sequence[tuple[tuple[Choice, ...], Mapping[str, float]]] = ()
-    _constancies: dict[Candidate, Constancy] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self.best = self.tried[()] = self.base
@@ -59,24 +58,13 @@ class Selection:
         """Whether its simulation leaves nothing: no more than is negligible, beside an effect as
         much as is none, and than noise leaves by chance. And, without effects, whether recordings
         agree on its values."""
-        if not candidate.choices and self.constancy(candidate).probability <= SETTINGS.named:
+        if not candidate.choices and constancy(candidate.fit).probability <= SETTINGS.named:
             return False
         chance = 2 * math.sqrt(2 / max(candidate.fit.samples, 1))
         least = SETTINGS.none if candidate.choices else SETTINGS.negligible
         most = least**2 + chance
         # Segments that need not join leave less than whole runs.
         return candidate.fit.excess**2 <= 2 * most and candidate.excess**2 <= most
-
-    def constancy(self, candidate: Candidate) -> Constancy:
-        """How well the recordings that were fitted agree on its values."""
-        if candidate not in self._constancies:
-            nominal = self.base.simulated.evidences
-            each = {run: max(e.excess / e.samples, 0.0) for run, e in nominal.items()}
-            typical = sum(each.values()) / len(each)
-            explained = {run: each.get(run, typical) for run in candidate.fit.evidences}
-            forms = {name: self.model.catalogue[name].form_error for name in candidate.effects}
-            self._constancies[candidate] = constancy(candidate.fit, explained, forms)
-        return self._constancies[candidate]
 
     def _better(self, candidate: Candidate, other: Candidate) -> bool:
         """Whether a larger candidate predicts better than one that leaves something."""
