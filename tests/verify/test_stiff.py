@@ -22,3 +22,14 @@ def test_speed_is_that_of_the_integrator(kappa, offset):
     assert np.isfinite(found.speed)
     assert float(found.speed) == pytest.approx(cycle.speed, rel=1e-5)
     assert float(found.turn) == pytest.approx(cycle.dpsi, rel=1e-5, abs=1e-9)
+
+
+def test_a_light_robot_is_resolved_or_reported_as_unresolved():
+    one, two = (
+        replace(part, kappa=0.1, m=0.1 * part.m, I=0.1 * part.I)
+        for part in (BENCHMARK.platform1, BENCHMARK.platform2)
+    )
+    robot = replace(BENCHMARK, platform1=one, platform2=two)
+    found = float(speeds(Problem(robot), 1.3, 3.0, 0.2).speed)
+    cycle = steady_cycle(robot, SineGait(1.3, 3.0, 0.2), steps=24576).cycle
+    assert np.isnan(found) or found == pytest.approx(cycle.speed, rel=1e-4)

@@ -146,6 +146,8 @@ def _tail(x: Array, flipping: bool) -> Array:
 
 _STIFF = 15.0
 """Range of A beyond which rounding, which exp(A) magnifies, is more than `solve_stiff` errs."""
+_REACH = 1.0
+"""a times a step up to which `solve_stiff` resolves the step; beyond, its integrals are off."""
 
 _NEAR = (-2, -1, 0, 1, 2, 3)
 """Samples, counted from the start of a step, whose polynomial stands for the integrand."""
@@ -173,7 +175,8 @@ def solve(a: Array, b: Array, span: Array) -> tuple[Array, Array]:
     forcing = harmonics(b / growth)
     forcing /= omega - mean
     v = growth * samples(forcing, len(a))
-    stiff = np.ptp(A, axis=0) > _STIFF
+    resolved = np.abs(a).max(axis=0) * span / len(a) <= _REACH
+    stiff = (np.ptp(A, axis=0) > _STIFF) & resolved
     if stiff.any():
         v[:, stiff] = solve_stiff(a[:, stiff], b[:, stiff], span[stiff])[0]
     return v, mean
