@@ -79,7 +79,7 @@ def climb(problem: Problem, start: Array, aim: Aim = "speed", *, rough: bool = F
             options={"ftol": care.tolerance, "maxiter": care.iterations},
         )  # fmt: skip
         there = np.clip(end.x, 0.0, 1.0)
-        if not np.isfinite(local.look(there)[0]).all():
+        if not all(np.isfinite(part).all() for part in local.look(there)):
             break
         there = local.inside(there)
         moved = float(np.abs(there - z).max())
@@ -159,7 +159,8 @@ class _Local:
             np.fill_diagonal(around[1 : n + 1], ahead)
             np.fill_diagonal(around[n + 1 :], behind)
             values = self._values(around)
-            slopes = (values[:, 1 : n + 1] - values[:, n + 1 :]) / (ahead - behind)
+            with np.errstate(invalid="ignore"):
+                slopes = (values[:, 1 : n + 1] - values[:, n + 1 :]) / (ahead - behind)
             self._known = {key: (values[:, 0], slopes)}
         return self._known[key]
 
@@ -186,6 +187,8 @@ class _Local:
     def _part(self, which: int, rows: slice) -> Callable[[Array], Array]:
         return lambda z: self.look(z)[which][rows]
 
+    # A gait without a settled cycle has values that are not finite.
+    @np.errstate(divide="ignore", over="ignore", invalid="ignore")
     def _values(self, z: Array) -> Array:
         gaits, problem = self.decisions(z), self._problem
         amplitude, period, offset, _ = gaits
