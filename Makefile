@@ -86,8 +86,8 @@ bench: $(BENCH) ## measure against other ways to the same answer, into results/b
 	  echo "== $$name"; $(MEASURE) -m benchmarks.$$name || exit 1; \
 	done; $(MEASURE) -m benchmarks.regression
 
-real: $(DEV) ## diagnose recordings of a real machine (DATA=folder with experiment.yaml)
-	$(BIN)/rr-opt diagnose "$(DATA)" --out "results/real/$(notdir $(DATA:/=))"
+real: $(DEV) ## diagnose recordings of real machines (DATA=folder with experiment.yaml, or of sets)
+	$(BIN)/python -m benchmarks.real "$(DATA)"
 
 prove: $(DEV) ## try the diagnosis on 100 sealed cases, of the commit's own seed (an hour)
 	$(BIN)/rr-opt prove --workers $(WORKERS) --out results/proof

@@ -57,3 +57,23 @@ def test_schema(machine):
     assert "parameters" in schema["properties"]
     with pytest.raises(rr.InputError, match="servo"):
         rr.schema("experiment", "servoo")
+
+
+def test_what_cannot_be_as_it_says_is_reported(tmp_path):
+    folder = write(tmp_path, dry=0.0, runs=2, seconds=4.0)
+    table = np.loadtxt(folder / "run0.csv", delimiter=",", skiprows=1)
+
+    def said(spoiled):
+        np.savetxt(folder / "run0.csv", spoiled, "%.9g", ",", header="time,angle,motor",
+                   comments="")  # fmt: skip
+        return " ".join(one.message for one in rr.lint(folder))
+
+    assert "function of" not in said(table)
+    assert "to the last digit" not in said(table)
+    spoiled = table.copy()
+    spoiled[:, 2] = -0.3 * np.sin(np.radians(table[:, 1]))
+    assert "u is a function of q" in said(spoiled)
+    spoiled = table.copy()
+    fast = int(np.argmax(np.abs(table[40:, 1] - table[:-40, 1])))
+    spoiled[fast : fast + 40, 1] = spoiled[fast, 1]
+    assert "to the last digit" in said(spoiled)

@@ -82,6 +82,16 @@ DIRECTION_FRICTION = _joint(
     _torque("difference", -1e3),
     lambda v, c: -c.difference / 2 * sign(v.w) ** 2,
 )
+SUPPLY_SAG = MachineEffect(
+    "supply_sag",
+    "motor",
+    "actuation",
+    "torque",
+    "a supply that sags between where it is measured and the motor",
+    "The motor sees less voltage than was measured, the more current it draws.",
+    (Constant("resistance", "ohm", lambda _: 1.0),),
+    lambda v, c: -c.resistance / v.R * v.duty**2 * v.drive,
+)
 TORQUE_OFFSET = MachineEffect(
     "torque_offset",
     "motor",

@@ -22,6 +22,15 @@ from rr_opt.recordings.readers.text import decode, find_header, read_table
 _WILD = 8.0
 """Times its usual distance from its neighbours' median, from which a sample is wild."""
 
+_MANY = 100
+"""Samples, with which a function can be told from a measurement."""
+
+_CROSSED = 5.0
+"""Times its range a function of the angle goes up and down along it, at most."""
+
+_STILL, _JUMP = 5, 3.0
+"""Samples that repeat, and the step after them over usual large ones, where a sensor was stuck."""
+
 _UPDATES = 50
 """Of the inputs, from which their clock is seen."""
 
@@ -138,13 +147,28 @@ def _impossible(
             x = data[u.name]
             if np.ptp(x) == 0:
                 continue
-            order, known = np.argsort(y), np.isfinite(y)
-            x = (x[order])[known[order]]
-            if x.size > 100 and np.std(np.diff(x)) < 1e-3 * np.std(x) and u.unit == "N m":
+            # A function of the angle goes up and down a few times along it, a measurement always.
+            known = np.isfinite(y)
+            along = x[known][np.argsort(y[known], kind="stable")]
+            crossed = float(np.abs(np.diff(along)).sum())
+            if along.size > _MANY and crossed < _CROSSED * np.ptp(x) and u.unit == "N m":
                 said.append(
                     f"{u.name} is a function of {c.name}: a command, and not a measurement?"
                 )
+        if stuck := _stuck(y):
+            said.append(f"{c.name} stands still to the last digit and jumps on, {stuck} times.")
     return said
+
+
+def _stuck(y: Array) -> int:
+    """How often a value repeats for long and is left by a step larger than those around it."""
+    steps = np.abs(np.diff(y))
+    moves = np.flatnonzero(steps > 0)
+    if moves.size < _MANY // 10:
+        return 0
+    still = np.diff(moves) - 1
+    after = steps[moves[1:]]
+    return int(np.sum((still >= _STILL) & (after > _JUMP * np.percentile(steps[moves], 95))))
 
 
 def read_columns(file: Path) -> dict[str, Array]:

@@ -63,6 +63,15 @@ def _compliance(axle: str) -> MachineEffect:
     )  # fmt: skip
 
 
+def _saturation(axle: str) -> MachineEffect:
+    return MachineEffect(
+        f"{axle}_grip", "contact", "tyres", axle, f"a limit to the grip of the {axle} wheels",
+        f"The side force of the {axle} wheels approaches a limit as they slip.",
+        (Constant("inverse", "1/N", lambda _: 0.1, 0.0, 10.0),),
+        lambda v, c: c.inverse * laws.size(v.slip),
+    )  # fmt: skip
+
+
 CAR = Machine(
     name="car",
     words="a car",
@@ -92,6 +101,8 @@ CAR = Machine(
     effects=(
         _compliance("front"),
         _compliance("rear"),
+        _saturation("front"),
+        _saturation("rear"),
         MachineEffect("steering_curve", "steering", "steering", "steering",
                       "a steering map that is not straight",
                       "The steering angle is not proportional to its command.",

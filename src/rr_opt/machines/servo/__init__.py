@@ -26,7 +26,7 @@ def _rates(v: Names, add: Add) -> Mapping[str, ca.SX]:
     duty = ca.fmax(ca.fmin(v.kp * (v.goal - v.q) * PER_COUNT, 1), -1)
     drive = v.on * v.kt / v.R * (v.volts * duty - v.kt * v.w)
     known = drive - v.b * v.w - v.fc * laws.sign(v.w) - gravity(v.q)
-    torque = known + add("torque", drive=drive, load=gravity(v.q), gravity=gravity)
+    torque = known + add("torque", drive=drive, load=gravity(v.q), gravity=gravity, duty=duty)
     return {"q": v.w, "w": torque / (v.m * v.l**2 + v.armature)}
 
 
@@ -58,6 +58,7 @@ SERVO = Machine(
         laws.LOAD_FRICTION,
         laws.DIRECTION_FRICTION,
         laws.QUADRATIC_DRAG,
+        laws.SUPPLY_SAG,
         laws.TORQUE_OFFSET,
         laws.ANGLE_OFFSET,
         laws.late("command_delay", "the set point", "goal"),
