@@ -37,6 +37,9 @@ QUANTITIES = {
     "torque": ReportedQuantity("largest servo torque", "N m"),
     "singularity": ReportedQuantity("least S1 = c1 cos φ + c2", "m", "mm", 1e3),
     "grip": ReportedQuantity("largest side force over load", ""),
+    "power": ReportedQuantity("mean positive power of the servo", "W", "mW", 1e3),
+    "cost_of_transport": ReportedQuantity("cost of transport", ""),
+    "speed": ReportedQuantity("least speed", "m/s", "mm/s", 1e3),
     "amplitude": ReportedQuantity("amplitude", "rad", "deg", _DEGREES),
     "period": ReportedQuantity("period", "s"),
     "offset": ReportedQuantity("offset", "rad", "deg", _DEGREES),
@@ -101,10 +104,12 @@ def side_text(value: float) -> str:
     return "left" if value > 0 else "right"
 
 
-def price_text(name: str, price: float) -> str:
-    """A shadow price, m/s per SI unit, as `+8.57 mm/s per rpm`."""
+def price_text(name: str, price: float, objective: str = "speed") -> str:
+    """A shadow price, per SI unit, as `+8.57 mm/s per rpm`, or of the cost of transport, which it
+    lowers, as `-0.0012 per rpm`."""
     unit, factor = QUANTITIES[name].common
-    per = 1e3 * price / factor
+    gained, kind = (1e3, " mm/s") if objective == "speed" else (-1.0, "")
+    per = gained * price / factor
     if not unit:
-        return f"{number(per / 100, 3) if per < 0 else '+' + number(per / 100, 3)} mm/s per 0.01"
-    return f"{'' if per < 0 else '+'}{number(per, 3)} mm/s per {unit}"
+        per, unit = per / 100, "0.01"
+    return f"{'' if per < 0 else '+'}{number(per, 3)}{kind} per {unit}"

@@ -12,8 +12,8 @@ MESSAGES = {
         "intervals. Did you mean `amplitude`?"
     ),
     "zzz: 1": (
-        "Read the key 'zzz'. Expected one of: robot, gait, inertia_ratio, limits, direction. "
-        "Correct it, or delete it."
+        "Read the key 'zzz'. Expected one of: robot, gait, inertia_ratio, limits, direction, "
+        "objective. Correct it, or delete it."
     ),
     "Direction: forward": "Did you mean `direction`?",
     "gait: {shape: square}": (

@@ -21,6 +21,6 @@ def answer() -> FastestGait:
     assert optimum.robot is not None
     best = optimum.best
     seen = replay(optimum.robot, best.gait, problem.limits, best.speed)
-    slower = Found(best.gait, None, 0.99 * best.speed, 0.0, 0.0)
+    slower = Found(best.gait, None, 0.99 * best.speed, 0.0, 0.0, 0.99 * abs(best.speed))
     sweep = SweepCheck(100, slower, 0.01, 0.0, 1e-6, best.speed, 0.0)
     return FastestGait("small", "0" * 64, optimum, seen, sweep)

@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
-from rr_opt.design.study.measure import GRAVITY, energy
+from rr_opt.mechanics.kinematics import G
 from rr_opt.model.gait import FreeGait, SineGait
 from rr_opt.motion.dynamics import dynamics_of
+from rr_opt.motion.energy import energy
 from rr_opt.motion.steady_cycle import reference_cycle, steady_cycle
 from tests.robots import BENCHMARK, DRY
 
@@ -37,5 +38,5 @@ def test_gross_work_is_the_positive_power(gait):
     found = energy(BENCHMARK, steady_cycle(BENCHMARK, gait))
     assert found.gross == pytest.approx(per_metre, rel=1e-4)
     assert found.gross > found.net > 0
-    weight = (BENCHMARK.platform1.m + BENCHMARK.platform2.m) * GRAVITY
+    weight = BENCHMARK.mass * G
     assert found.cost_of_transport == pytest.approx(per_metre / weight, rel=1e-4)

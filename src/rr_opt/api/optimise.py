@@ -24,9 +24,10 @@ from rr_opt.design.turn import arc_of, fastest_turn
 from rr_opt.design.turn_target import Target, checked
 from rr_opt.documents.archive import folder_for_results
 from rr_opt.files.study_file import Study, read_study
+from rr_opt.messages import listed
 from rr_opt.model.problem import Problem
 from rr_opt.motion.dynamics import require_friction
-from rr_opt.outcome import Status
+from rr_opt.outcome import InputError, Status
 from rr_opt.results.fastest import FastestGait
 from rr_opt.results.result import Progress, quiet
 from rr_opt.results.shapes import FastestShapes, family_name
@@ -46,12 +47,14 @@ if TYPE_CHECKING:
 
 
 def maximize_speed(problem: Problem | PathLike, *, progress: Progress = quiet) -> FastestGait:
-    """The fastest gait of a problem or its file, checked by simulation and against a plain sweep.
+    """The best gait of a problem or its file, checked by simulation and against a plain sweep: the
+    fastest, or that of the least cost of transport.
 
     Where no gait respects every limit, or a check fails, the result's `status` and `message` say
     so. Raises InputError for a robot without friction, which has no steady speed.
     """
     problem = problem_of(problem)
+    _require_known(problem)
     optimum, replayed, swept = _checked(design.maximize_speed(problem, progress), progress)
     driven = _driven(optimum, progress)
     best = FastestGait(*identity(problem), optimum, replayed, swept, driven=driven)
@@ -60,6 +63,20 @@ def maximize_speed(problem: Problem | PathLike, *, progress: Progress = quiet) -
     progress("the robot as built")
     as_built = design.maximize_speed(replace(problem, inertia_ratio=None)).best
     return replace(best, as_built=as_built.speed if as_built else None)
+
+
+def _require_known(problem: Problem) -> None:
+    """Raise InputError where energy counts and the optimiser lacks an effect on it."""
+    if not (problem.economy and problem.robot.physics):
+        return
+    from rr_opt.machines.racer.driven import beyond_optimiser
+
+    if names := beyond_optimiser(problem.robot):
+        raise InputError(
+            f"Read {listed(names)} in the robot's physics with `objective: cost_of_transport` or "
+            "one of the limits power, cost_of_transport and speed. The optimiser knows no energy "
+            "of a robot with such effects. Leave them out, or ask for the speed alone."
+        )
 
 
 def _driven(optimum: Optimum, progress: Progress) -> DrivenOptimum | None:
@@ -114,8 +131,9 @@ def _checked(
 def _held(optimum: Optimum, swept: SweepResult) -> SweepCheck | None:
     if optimum.best is None:
         return None
-    best = optimum.best
-    return check_optimum(optimum.problem, best.gait, optimum.ratio, best.speed, everywhere=swept)
+    best, posed = optimum.best, optimum.problem
+    cost = best.cost or math.nan
+    return check_optimum(posed, best.gait, optimum.ratio, best.speed, everywhere=swept, cost=cost)
 
 
 def shapes(problem: Problem | PathLike, *, progress: Progress = quiet) -> FastestShapes:
@@ -165,6 +183,7 @@ def turn(
     asked = {"radius": radius, "heading": heading, "within": within, "length": length}
     target = checked(Target(**read_arguments(asked), whole=whole))
     problem = problem_of(problem)
+    _require_known(problem)
     name, sha256 = identity(problem)
     turned = fastest_turn(problem, target, progress)
     optimum, replayed, swept = _checked(turned.optimum, progress)

@@ -27,6 +27,7 @@ class Candidate:
                  offset, ballast
     intervals    of the period, for the solver
     mesh         of multiple shooting; None for a sine
+    cost         of transport, where that is the objective; what prices refer to is then this
     """
 
     sign: int
@@ -42,11 +43,22 @@ class Candidate:
     violation: float
     intervals: int
     mesh: Mesh | None = field(default=None, repr=False)
+    cost: float | None = None
+
+    @property
+    def merit(self) -> float:
+        """What is maximised: |speed|, m/s, or the inverse of the cost of transport."""
+        return abs(self.speed) if self.cost is None else 1 / self.cost
+
+    @property
+    def value(self) -> float:
+        """|speed|, m/s, or the cost of transport: what a price is compared with."""
+        return abs(self.speed) if self.cost is None else self.cost
 
     @property
     def rank(self) -> tuple[bool, bool, float]:
-        """Sort key: infeasible last, then unsuccessful, then slow."""
-        return (not self.feasible, not self.success, -abs(self.speed))
+        """Sort key: infeasible last, then unsuccessful, then poor."""
+        return (not self.feasible, not self.success, -self.merit)
 
 
 @dataclass(frozen=True)

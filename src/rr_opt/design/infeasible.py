@@ -25,6 +25,7 @@ from rr_opt.design.seeds import THOROUGH, tops
 from rr_opt.design.sines import FEASIBLE, FEWEST, WAYS, climbed
 from rr_opt.design.terrain import Aim, Terrain
 from rr_opt.design.turn_target import Nearest, asked_text, reached_text
+from rr_opt.messages import listed
 from rr_opt.model.gait import SineGait
 from rr_opt.model.problem import Interval, Problem, Turn
 
@@ -81,17 +82,21 @@ def clash(problem: Problem, box: Decisions, settings: list[Setting]) -> str | At
         return attempt([Terrain(one, scanned(one, box), way, rows, aim) for one in settings])
 
     found = seek(("torque",), "rows", 0)
+    if problem.limits.economy and found.excess <= FEASIBLE:
+        found = seek(("torque", "economy"), "rows", 0)
     if found.excess > FEASIBLE:
-        name = Terrain(found.setting, box, 0).dearest(found.gait, _NODES)
-        return f"{_told([_load(problem, name, found)])} {_evidence(found, box)}"
+        names = Terrain(found.setting, box, 0).clashing(found.gait, _NODES, found.excess)
+        words = _load(problem, names[0], found) if len(names) == 1 else _both(problem, names, found)
+        return f"{_told([words])} {_evidence(found, box)}"
     if way:
-        found = seek(("torque", "direction"), "rows", way)
+        found = seek(("torque", "economy", "direction"), "rows", way)
         if found.excess > FEASIBLE:
             return f"{_told([_direction(problem)])} {_evidence(found, box)}"
     if problem.turn:
-        found = seek(("torque", "direction"), "turn", way)
+        rows = ("torque", "economy", "direction")
+        found = seek(rows, "turn", way)
         if found.excess > FEASIBLE:
-            other = seek(("torque", "direction"), "turn", -way) if way else found
+            other = seek(rows, "turn", -way) if way else found
             return " ".join([*_turn(problem, box, found, other), _evidence(found, box)])
     return found
 
@@ -104,7 +109,7 @@ def nearest_turn(problem: Problem, box: Decisions) -> Nearest:
 def _terrains(problem: Problem, box: Decisions) -> list[Terrain]:
     way = WAYS[problem.direction]
     return [
-        Terrain(one, scanned(one, box), way, ("torque", "direction"), "turn")
+        Terrain(one, scanned(one, box), way, ("torque", "economy", "direction"), "turn")
         for one in settings_of(problem, box)
     ]
 
@@ -117,11 +122,31 @@ def _evidence(found: Attempt, box: Decisions) -> str:
     )
 
 
+_UNITS = {"torque": " N m", "power": " W", "speed": " m/s"}
+
+
+def _both(problem: Problem, names: list[str], found: Attempt) -> str:
+    limits = [f"`{n}` ({getattr(problem.limits, n):.6g}{_UNITS.get(n, '')})" for n in names]
+    return (
+        f"Limits {listed(limits)} clash: the gait that comes nearest to keeping all limits breaks "
+        f"each of these by {100 * found.excess:.2g} %."
+    )
+
+
 def _load(problem: Problem, name: str, found: Attempt) -> str:
-    limit, unit = getattr(problem.limits, name), " N m" if name == "torque" else ""
+    limit = getattr(problem.limits, name)
+    unit = _UNITS.get(name, "")
+    if name == "speed":
+        return (
+            f"Limit `speed` ({limit:.6g}{unit}) conflicts with the gait's bounds: the fastest of "
+            f"the gaits that keep the other limits has "
+            f"{_down(limit * (1 - found.excess) / _ENOUGH)}{unit}. Ask for that, or relax what "
+            "limits it."
+        )
+    quantity = f"peak {name}" if name in ("torque", "grip") else name.replace("_", " ")
     return (
         f"Limit `{name}` ({limit:.6g}{unit}) conflicts with the gait's bounds: among the gaits "
-        f"that keep the other limits, the least peak {name} is "
+        f"that keep the other limits, the least {quantity} is "
         f"{_up(limit * (1 + found.excess) * _ENOUGH)}{unit}. Raise the limit to that, "
         "or allow longer periods or smaller amplitudes."
     )

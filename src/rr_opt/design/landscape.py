@@ -24,6 +24,7 @@ import numpy as np
 from rr_opt.array import Array
 from rr_opt.mechanics.code_generation import ArrayFunction, in_stages, over_arrays, source_file
 from rr_opt.mechanics.compile_cache import library
+from rr_opt.mechanics.kinematics import G
 from rr_opt.model.ballast import By, Loads, hang
 from rr_opt.model.problem import Interval
 from rr_opt.model.robot import Robot
@@ -196,6 +197,17 @@ class Landscape:
         found = _grip(self._effects)(cycles.v, *angle, *self._parameters(share))
         return np.array(np.broadcast_arrays(*found))
 
+    def costs(self, cycles: Cycles, gaits: Array, denser: int = 1) -> tuple[Array, Array]:
+        """Mean positive power of the servo, W, and cost of transport, (K,), on the cycles of these
+        gaits (4, K); from so many times as many phases."""
+        amplitude, period, _, share = gaits
+        n, omega = len(cycles.torque) * denser, 2 * math.pi / period
+        theta = 2 * math.pi * np.arange(n)[:, None] / n
+        rate = amplitude * omega * np.cos(theta)
+        power = mean_positive(dense(cycles.torque, denser) * rate)
+        p = dict(zip(self._names, self._parameters(share), strict=True))
+        return power, power / ((p["m1"] + p["m2"]) * G * np.abs(cycles.speed))
+
     def _parameters(self, share: Array) -> list:
         low, high = self._range
         amount = low + share * (high - low)
@@ -321,3 +333,43 @@ def _summary(v: Array, w: Array, side: Array, torque: Array, period: Array) -> C
     )
     forward = mean[0] * mean[2] + mean[1] * mean[3]
     return Cycles(np.copysign(np.hypot(mean[0], mean[1]), forward), torque, v, chi, turn, mean)
+
+
+def dense(x: Array, times: int) -> Array:
+    """Periodic functions (N, K) at so many times as many phases."""
+    if times == 1 or not np.isfinite(x).all():
+        return np.repeat(x, times, axis=0)
+    return np.fft.irfft(np.fft.rfft(x, axis=0), times * len(x), axis=0) * times
+
+
+_NEAR = np.arange(-2, 4)
+_SEXTIC = np.linalg.inv(np.vander(_NEAR.astype(float), increasing=True))
+"""From values at -2 .. 3 to the coefficients of the polynomial through them."""
+_POWERS = np.arange(1, 7)
+_NEWTON = 4
+
+
+def mean_positive(x: Array) -> Array:
+    """Mean of the positive part of periodic functions (N, K), (K,).
+
+    Between two phases the function is the polynomial through six, integrated from its zero on
+    where it changes sign. At the zero it vanishes, so the mean is as smooth as the function.
+    """
+    n = len(x)
+    near = np.array([np.roll(x, -k, axis=0) for k in _NEAR])
+    weights = (1.0 / _POWERS) @ _SEXTIC
+    whole = np.tensordot(weights, near, 1)
+    here, there = x, np.roll(x, -1, axis=0)
+    total = np.where((here > 0) & (there > 0), whole, 0.0).sum(axis=0)
+    rows, columns = np.nonzero((here > 0) != (there > 0))
+    p = _SEXTIC @ near[:, rows, columns]
+    slope = p[1:] * _POWERS[:5, None]
+    start, end = here[rows, columns], there[rows, columns]
+    s = start / np.where(start != end, start - end, 1.0)
+    for _ in range(_NEWTON):
+        steep = np.polynomial.polynomial.polyval(s, slope, tensor=False)
+        fall = np.polynomial.polynomial.polyval(s, p, tensor=False)
+        s = np.clip(s - fall / np.where(steep != 0, steep, 1.0), 0.0, 1.0)
+    below = s * np.polynomial.polynomial.polyval(s, p / _POWERS[:, None], tensor=False)
+    part = np.where(start > 0, below, whole[rows, columns] - below)
+    return (total + np.bincount(columns, part, minlength=x.shape[1])) / n

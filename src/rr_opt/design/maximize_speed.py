@@ -23,7 +23,7 @@ from rr_opt.model.problem import Problem
 from rr_opt.model.robot import Robot
 from rr_opt.motion.dynamics import require_friction
 from rr_opt.motion.servo import for_joint
-from rr_opt.outcome import Status
+from rr_opt.outcome import InputError, Status
 
 SAME_SPEED = 1e-5
 """Optima whose speeds differ by less, relative, are a tie."""
@@ -73,8 +73,8 @@ class Optimum:
         """Other optima as fast as the best, within the resolution."""
         if self.best is None:
             return ()
-        least = abs(self.best.speed) * (1 - SAME_SPEED)
-        return tuple(one for one in self.optima[1:] if abs(one.speed) >= least)
+        least = self.best.merit * (1 - SAME_SPEED)
+        return tuple(one for one in self.optima[1:] if one.merit >= least)
 
 
 def maximize_speed(problem: Problem, progress: Progress = lambda _: None) -> Optimum:
@@ -85,6 +85,7 @@ def maximize_speed(problem: Problem, progress: Progress = lambda _: None) -> Opt
     Raises InputError for a robot that has no steady cycle to find.
     """
     require_friction(problem.robot)
+    _require_speed(problem)
     problem = for_joint(problem)
     if problem.gait.shape == "sine":
         return _answer(problem, find_sines(problem, progress), progress)
@@ -105,7 +106,7 @@ def resumed(optimum: Optimum, gait: SineGait, ratio: float | None) -> Optimum:
     setting = min(settings, key=lambda one: abs((one.fixed_share or 0.0) - start[3]))
     climbed = solve_sine(setting, WAYS[problem.direction], start)
     again = _answer(problem, Finds([(setting, climbed)]), lambda _: None)
-    if again.best is None or (optimum.best and abs(again.best.speed) <= abs(optimum.best.speed)):
+    if again.best is None or (optimum.best and again.best.merit <= optimum.best.merit):
         return optimum
     return replace(
         again,
@@ -116,11 +117,22 @@ def resumed(optimum: Optimum, gait: SineGait, ratio: float | None) -> Optimum:
     )
 
 
+def _require_speed(problem: Problem) -> None:
+    """Raise InputError where energy counts and the optimiser does not know it."""
+    if problem.economy and problem.gait.shape != "sine":
+        raise InputError(
+            f"Read a `{problem.gait.shape}` gait with `objective: cost_of_transport` or one of the "
+            "limits power, cost_of_transport and speed. Only sines are optimised with these. "
+            "Write `shape: sine`, or leave them out."
+        )
+
+
 def compare_shapes(problem: Problem, progress: Progress = lambda _: None) -> list[Optimum]:
     """The optimum among sines, then among COMPARED harmonics, then among free gaits."""
     require_friction(problem.robot)
     problem = for_joint(problem)
     free = replace(problem, gait=replace(problem.gait, shape="free"))
+    _require_speed(free)
     families = find_families(free, progress, COMPARED)
     return [_answer(posed, finds, progress) for posed, finds in families]
 
@@ -145,7 +157,7 @@ def _answer(problem: Problem, finds: Finds, progress: Progress) -> Optimum:
         good = distinct([(setting, refined), *good[1:]])
         others = good[1:]
         # A coarse mesh can put a close second first: it is refined too before the choice falls.
-        if others and abs(others[0][1].speed) > abs(refined.speed):
+        if others and others[0][1].merit > refined.merit:
             good = sorted(good, key=lambda pair: pair[1].rank)
             continue
         robot = robot_of(setting, refined.share)

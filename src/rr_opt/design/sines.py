@@ -98,4 +98,5 @@ def _candidate(terrain: Terrain, start: Array, nodes: int) -> Candidate:
         bound_prices=bound_prices,
         violation=ascent.violation,
         intervals=nodes,
+        cost=None if terrain.setting.problem.objective == "speed" else terrain.cost(end, nodes),
     )

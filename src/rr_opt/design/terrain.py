@@ -19,9 +19,9 @@ from numpy.typing import NDArray
 from rr_opt.array import Array
 from rr_opt.design.climb import Merit
 from rr_opt.design.decisions import Decisions, Setting, TurnRows, reach_before_singularity
-from rr_opt.design.landscape import Cycles
+from rr_opt.design.landscape import Cycles, dense
 from rr_opt.design.transcription import ROWS
-from rr_opt.model.problem import Interval
+from rr_opt.model.problem import LEAST, Interval
 from rr_opt.sqp import Ascent, Program, Seen
 
 _UNSETTLED = 10.0
@@ -31,6 +31,7 @@ _SEEN_FROM = 0.5
 _DENSER, _WITHIN = 4, 12
 """So many times as many phases, by Fourier series, show a peak; phases to either side within which
 it is followed."""
+_AS_BADLY = 0.9
 _WIDE = 0.05
 """Smallest amplitude by which a stencil is scaled, rad."""
 _SLOWEST = 1e-12
@@ -50,7 +51,7 @@ _FORWARD = Interval(1e-6, math.inf)
 _CIRCLE, _SIDE = ("circle x", "circle y"), "side"
 """Rows of a circle: the mean velocity, and which way it turns."""
 
-LIMITS = ("rate", "angle", "singularity", "torque", "grip")
+LIMITS = ("rate", "angle", "singularity", "torque", "grip", "power", "cost_of_transport", "speed")
 Aim = Literal["speed", "rows", "turn"]
 Indices = NDArray[np.int_]
 
@@ -70,7 +71,7 @@ class Terrain:
     """The gaits of a setting.
 
     way   +1 forward, -1 backward, 0 either
-    rows  which rows count, of torque, direction and turn
+    rows  which rows count, of torque, economy, direction and turn
     aim   what is maximised: the speed; how nearly the rows are kept; or how near a gait comes to
           the turn that is asked for
     """
@@ -78,7 +79,7 @@ class Terrain:
     setting: Setting
     box: Decisions
     way: int
-    rows: tuple[str, ...] = ("torque", "direction", "turn")
+    rows: tuple[str, ...] = ("torque", "economy", "direction", "turn")
     aim: Aim = "speed"
 
     @cached_property
@@ -93,7 +94,24 @@ class Terrain:
         loads = [("torque", cycles.torque)] if "torque" in self._loads else []
         if "grip" in self._loads:
             loads += [("grip", one) for one in self.setting.landscape.grips(cycles, gaits)]
-        return [(name, np.abs(_dense(one, denser)) / self._loads[name]) for name, one in loads]
+        return [(name, np.abs(dense(one, denser)) / self._loads[name]) for name, one in loads]
+
+    @cached_property
+    def _economy(self) -> dict[str, float]:
+        """Limits on what a whole period comes to, by name."""
+        return self.setting.problem.limits.economy if "economy" in self.rows else {}
+
+    def _shares(self, cycles: Cycles, gaits: Array, denser: int = 1) -> dict[str, Array]:
+        """What gaits use of those limits, (K,) each."""
+        if not self._economy:
+            return {}
+        limits, speed = self._economy, np.abs(cycles.speed)
+        power, cost = self.setting.landscape.costs(cycles, gaits, denser)
+        used = {"power": power, "cost_of_transport": cost}
+        shares = {name: used[name] / one for name, one in limits.items() if name in used}
+        if "speed" in limits:
+            shares["speed"] = 2 - speed / limits["speed"]
+        return shares
 
     @cached_property
     def _turn(self) -> TurnRows | None:
@@ -106,13 +124,13 @@ class Terrain:
     @cached_property
     def kept(self) -> tuple[Interval, ...]:
         """The interval of each row: torque over its limit, forward speed, those of the turn."""
-        torque = (Interval(-math.inf, 1.0),) if self._loads else ()
+        torque = (Interval(-math.inf, 1.0),) if self._loads or self._economy else ()
         ahead = (_FORWARD,) if self._ahead else ()
         return (*torque, *ahead, *(self._turn.intervals if self._turn else ()))
 
     def merit(self, unit: float, torque: float, turn: float) -> Merit:
         """The speed less penalties, in a unit (m/s), for what is off by 1."""
-        heavy = (torque * unit,) if self._loads else ()
+        heavy = (torque * unit,) if self._loads or self._economy else ()
         ahead = (torque,) if self._ahead else ()
         rest = len(self.kept) - len(heavy) - len(ahead)
         return Merit(self.kept, (*heavy, *ahead, *(turn * unit,) * rest))
@@ -123,9 +141,14 @@ class Terrain:
         with np.errstate(all="ignore"):
             cycles = self.setting.landscape.cycles(gaits, nodes)
             used = [one.max(axis=0) for _, one in self._used(cycles, gaits)]
+            shares = self._shares(cycles, gaits).values()
+            used += [np.minimum(share, 1 + _UNSETTLED) for share in shares]
             torque = (np.max(used, axis=0),) if used else ()
-            values = self._values(cycles, gaits, 1.0)
-            seen = np.array([self._function(cycles, gaits), *torque, *values])
+            function = self._function(cycles, gaits)
+            # The forward speed in the function's unit, so that one weight does for both.
+            unit = np.abs(cycles.speed) / function if self._cheap else 1.0
+            values = self._values(cycles, gaits, unit)
+            seen = np.array([function, *torque, *values])
         lost = ~np.isfinite(seen).all(axis=0)
         seen[:, lost], seen[0, lost] = 0.0, -_UNSETTLED if self.aim == "turn" else 0.0
         for row, kept in zip(seen[1:], self.kept, strict=True):
@@ -133,9 +156,17 @@ class Terrain:
             row[lost] = far
         return seen
 
-    def _function(self, cycles: Cycles, gaits: Array) -> Array:
+    @property
+    def _cheap(self) -> bool:
+        """Whether the cost of transport is minimised."""
+        return self.aim == "speed" and self.setting.problem.objective != "speed"
+
+    def _function(self, cycles: Cycles, gaits: Array, denser: int = 1) -> Array:
         """What is maximised. Of the speed it is the size, which is smooth where forward turns into
-        backward: a row knows the way."""
+        backward: a row knows the way. Of the cost of transport it is the inverse, which is 0 for a
+        robot that stands."""
+        if self._cheap:
+            return 1 / self.setting.landscape.costs(cycles, gaits, denser)[1]
         if self.aim == "speed":
             return np.abs(cycles.speed)
         turn = self.box.turn
@@ -146,7 +177,7 @@ class Terrain:
         )
         return Merit(turn.intervals, (1.0,) * len(turn.intervals))(values)
 
-    def _values(self, cycles: Cycles, gaits: Array, unit: float) -> list[Array]:
+    def _values(self, cycles: Cycles, gaits: Array, unit: float | Array) -> list[Array]:
         """Forward speed in a unit (m/s), then the turn's rows."""
         V, E = cycles.mean[:2], cycles.mean[2:]
         ahead = [self.way * (V * E).sum(axis=0) / unit] if self._ahead else []
@@ -221,22 +252,29 @@ class Terrain:
                 cycles = self.setting.landscape.cycles(gaits, nodes)
                 unit = max(float(np.abs(cycles.speed[0])), _SLOWEST)
                 values = self._values(cycles, gaits, unit)
-                function = self._function(cycles, gaits)
+                function = self._function(cycles, gaits, _DENSER)
             known = dict(zip(self._named, values, strict=True))
             if self._radius:
                 along = cycles.turn / gaits[1] * math.copysign(1.0, self._radius) * np.exp(size)
-                function = along if self.aim == "speed" else -np.abs(size - self._asked)
+                if self._cheap:
+                    function = function * along / np.abs(cycles.speed)
+                else:
+                    function = along if self.aim == "speed" else -np.abs(size - self._asked)
                 known |= self._circle_rows(cycles.mean, along / unit, beta, unit)
             if self.box.command:
                 known["command"] = gaits[0] / self.box.command.servo.gain(gaits[1])
             rows = [side.coefficient * (known[side.name] - side.end) for side in self._sides]
             with np.errstate(all="ignore"):
                 loads = self._used(cycles, gaits, _DENSER)
+                shares = self._shares(cycles, gaits, _DENSER)
             worst, names = list(rows), [side.name for side in self._sides]
             for name, used in loads:
                 worst.append(_heights(used, used.argmax(axis=0)) - 1)
                 peaks = [_heights(used, at) - 1 for at in _followed(used)]
                 rows, names = rows + peaks, names + [name] * len(peaks)
+            for name, share in shares.items():
+                worst.append(share - 1)
+                rows, names = [*rows, share - 1], [*names, name]
             shape = (-1, len(points))
             return Seen(function, np.reshape(rows, shape), np.reshape(worst, shape), tuple(names))
 
@@ -272,18 +310,18 @@ class Terrain:
             {"direction": self.way * (cos * mean[2] + sin * mean[3])} if self._ahead else {}
         )
 
-    def _curvature_price(self, speed: float, ascent: Ascent) -> float:
-        """Speed gained per unit of curvature, m2/s.
+    def _curvature_price(self, ascent: Ascent) -> float:
+        """Gain of the function per unit of curvature.
 
-        The function is omega R, and two rows say V = omega R (cos beta, sin beta), in units of
-        |V|. So a radius larger by dR gains omega dR and, as it moves the rows, their prices.
+        The function goes with omega R, and two rows say V = omega R (cos beta, sin beta), in units
+        of |V|. So a radius larger by dR gains dR/R of it and, as it moves the rows, their prices.
         """
         at, beta = (
             next(i for i, side in enumerate(self._sides) if side.name in _CIRCLE),
             ascent.x[-1],
         )
         along = float(ascent.prices.rows[at : at + 2] @ [math.cos(beta), math.sin(beta)])
-        return -self._radius * (abs(speed) + along)
+        return -self._radius * (ascent.value + along)
 
     @cached_property
     def _radius(self) -> float:
@@ -321,22 +359,36 @@ class Terrain:
         gait[self.free] = x
         return gait[:4]
 
-    def dearest(self, gait: Array, nodes: int) -> str:
-        """The load that uses most of its limit."""
-        used = self._used(self.setting.landscape.cycles(gait[:, None], nodes), gait[:, None])
-        return max(used, key=lambda one: float(one[1].max()))[0]
+    def clashing(self, gait: Array, nodes: int, excess: float) -> list[str]:
+        """The limits that a gait breaks, the worst by this much, about as badly as any."""
+        gaits = gait[:, None]
+        cycles = self.setting.landscape.cycles(gaits, nodes)
+        used = [*self._used(cycles, gaits), *self._shares(cycles, gaits).items()]
+        shares: dict[str, float] = {}
+        for name, share in used:
+            shares[name] = max(float(share.max()), shares.get(name, 0.0))
+        return [name for name, share in shares.items() if share > 1 + _AS_BADLY * excess]
 
-    def measured(self, gait: Array, nodes: int) -> tuple[float, float]:
-        """Mean speed, m/s, and peak torque, N m, of a gait (4,)."""
+    def measured(self, gait: Array, nodes: int) -> tuple[float, ...]:
+        """Mean speed, m/s, peak torque, N m, and, if it counts, the cost of transport of a gait
+        (4,)."""
         with np.errstate(all="ignore"):
             cycle = self.setting.landscape.cycles(gait[:, None], nodes)
-        torque = np.abs(_dense(cycle.torque, _DENSER))
-        return float(cycle.speed[0]), float(_heights(torque, torque.argmax(axis=0))[0])
+        torque = np.abs(dense(cycle.torque, _DENSER))
+        cost = (self.cost(gait, nodes),) if self.setting.problem.economy else ()
+        return float(cycle.speed[0]), float(_heights(torque, torque.argmax(axis=0))[0]), *cost
+
+    def cost(self, gait: Array, nodes: int) -> float:
+        """Cost of transport of a gait (4,)."""
+        with np.errstate(all="ignore"):
+            cycle = self.setting.landscape.cycles(gait[:, None], nodes)
+            return float(self.setting.landscape.costs(cycle, gait[:, None], _DENSER)[1][0])
 
     def prices(
         self, gait: Array, speed: float, turn: float, ascent: Ascent
     ) -> tuple[dict[str, float], dict[str, float]]:
-        """Speed gained per unit of each limit, and per unit by which an active bound moves up.
+        """What is gained per unit of each limit, and per unit by which an active bound moves up: of
+        the speed, m/s, or off the cost of transport.
 
         speed (m/s) and turn (rad per period) of the gait
         """
@@ -352,7 +404,7 @@ class Terrain:
         if math.isfinite(limits.rate):
             found["rate"] = float(prices.linear[2]) * period / (2 * math.pi)
         for name, price in zip(ascent.names[len(sides) :], prices.rows[len(sides) :], strict=True):
-            found[name] += float(price) / getattr(limits, name)
+            found[name] += (-1 if name in LEAST else 1) * float(price) / getattr(limits, name)
         slopes = self._turn.slopes(speed, turn, period) if self._turn else {}
         slopes["direction"] = 1 / max(abs(speed), _SLOWEST)
         slopes["command"] = 1.0
@@ -360,12 +412,17 @@ class Terrain:
             if side.name not in (*_CIRCLE, _SIDE):
                 found[side.name] += side.coefficient * float(price) * slopes[side.name]
         if self._radius:
-            found["curvature"] = self._curvature_price(speed, ascent)
+            found["curvature"] = self._curvature_price(ascent)
         names = ("amplitude", "period", "offset", "ballast")
         bounds: dict[str, float] = dict.fromkeys(names, 0.0)
         for i, up, down in zip(self.free[self.free < len(names)], prices.high, prices.low):  # noqa: B905
             bounds[names[i]] = float(up - down)
         bounds["amplitude"] += found.pop("command")
+        if self._cheap:
+            # 1/cost is what gains: its cost falls by cost^2 times that.
+            per = ascent.value**-2
+            found = {name: per * price for name, price in found.items()}
+            bounds = {name: per * price for name, price in bounds.items()}
         return found, bounds
 
 
@@ -380,13 +437,6 @@ def _followed(used: Array) -> list[Indices]:
     )
     around = (peaks[:, None] + np.arange(-_WITHIN, _WITHIN + 1)) % n
     return [at[used[at].argmax(axis=0)] for at in around]
-
-
-def _dense(x: Array, times: int) -> Array:
-    """Periodic functions (N, K) at so many times as many phases."""
-    if times == 1 or not np.isfinite(x).all():
-        return np.repeat(x, times, axis=0)
-    return np.fft.irfft(np.fft.rfft(x, axis=0), times * len(x), axis=0) * times
 
 
 def _heights(used: Array, at: Indices) -> Array:

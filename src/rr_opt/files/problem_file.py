@@ -238,6 +238,7 @@ def problem_from(sources: Sources) -> tuple[Problem | None, list[Issue]]:
         gait=model.gait,
         inertia_ratio=reachable(ratio, robot) if ratio else None,
         direction=model.direction,
+        objective=model.objective,
     )
     return problem, issues
 
@@ -251,6 +252,13 @@ def _contradictions(model: ProblemModel, robot: Robot, document: Document) -> It
             "gait settles to a steady speed. Give at least one platform a kappa above 0."
         )
         yield document.error(("robot",), message)
+    if (model.objective != "speed" or model.limits.economy) and model.gait.shape != "sine":
+        message = (
+            f"Read `{model.gait.shape}` with `objective: cost_of_transport` or one of the limits "
+            "power, cost_of_transport and speed. Only sines are optimised with these. Write "
+            "`shape: sine`, or leave them out."
+        )
+        yield document.error(("gait", "shape"), message)
     if ratio := model.inertia_ratio:
         for level, key, message in ratio_findings(ratio, robot):
             yield document.issue(level, ("inertia_ratio", key), message)

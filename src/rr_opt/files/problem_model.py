@@ -8,7 +8,7 @@ from pydantic import Field, JsonValue, SkipValidation, WithJsonSchema, create_mo
 
 from rr_opt.files.fields import FileModel, Section
 from rr_opt.files.robot_file import RobotModel
-from rr_opt.model.problem import Direction, GaitBounds, Limits, RatioChoice, Shape
+from rr_opt.model.problem import Direction, GaitBounds, Limits, Objective, RatioChoice, Shape
 
 OWN_SHAPE: dict[str, Shape] = {"harmonics": "fourier", "intervals": "free"}
 """Keys of a gait that belong to one shape only."""
@@ -43,6 +43,10 @@ class ProblemModel(FileModel):
         "can do.",
     )
     direction: Direction = Field(default="either", description="Which way the robot shall go.")
+    objective: Objective = Field(
+        default="speed",
+        description="What is best: the largest speed, or the least cost of transport.",
+    )
 
 
 MOST_CASES = 100_000

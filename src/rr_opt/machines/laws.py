@@ -135,7 +135,7 @@ def lagged(t: Array, u: Array, tau: float) -> Array:
     return out
 
 
-def late(name: str, words: str, *signals: str, low: float = -0.1) -> MachineEffect:
+def late(name: str, words: str, *signals: str, low: float = -0.3) -> MachineEffect:
     """Some inputs are late, or early."""
 
     def law(t: Array, u: Signals, c: Names) -> Signals:

@@ -157,6 +157,7 @@ class MachineRun:
     """A recording of a machine: t (n,) s; inputs and outputs (n,) SI by name, NaN for no data.
 
     sigma   of the noise of each channel
+    held    samples for which inputs stand still from one update to the next
     doubts  sentences on what looked wrong in it
     """
 
@@ -167,6 +168,7 @@ class MachineRun:
     sigma: Mapping[str, float]
     held_out: bool = False
     doubts: tuple[str, ...] = ()
+    held: int = 1
 
     def __len__(self) -> int:
         return len(self.t)

@@ -16,6 +16,7 @@ from rr_opt.units import Quantity
 
 Direction = Literal["forward", "backward", "either"]
 Shape = Literal["sine", "fourier", "free"]
+Objective = Literal["speed", "cost_of_transport"]
 
 
 @data
@@ -70,6 +71,9 @@ LARGEST_EXCESS = 1e-4
 """By so much, relative to it, a gait may go over a limit and still counts as keeping it."""
 
 
+LEAST = ("singularity", "speed")
+"""Limits below which something must not fall; of the others, above which it must not rise."""
+
 GRIP_LIMIT = Quantity("", "0.5", above=0, endless=True)
 
 NEEDS_GRIP = 0.5
@@ -80,7 +84,9 @@ wheels or dust less."""
 @data
 class Limits:
     """|phi| <= angle (rad), |dphi/dt| <= rate (rad/s), |torque| <= torque (N m),
-    S1 = c1 cos phi + c2 >= singularity (m), |side force of an axle| <= grip * its load.
+    S1 = c1 cos phi + c2 >= singularity (m), |side force of an axle| <= grip * its load,
+    mean positive power of the servo <= power (W), that per metre and weight <= cost_of_transport,
+    |mean speed| >= speed (m/s).
 
     A limit that is left out (None) is the robot's servo's; the Problem fills it in.
     """
@@ -102,6 +108,28 @@ class Limits:
         "wheels may need; .inf: no limit.",
         default=math.inf,
     )
+    power: SI = declared(
+        Quantity("W", "0.5 W", above=0, endless=True),
+        "Largest mean of the servo's positive power torque dphi/dt over a period, W: what it gets "
+        "back while it brakes does not count; .inf: no limit.",
+        default=math.inf,
+    )
+    cost_of_transport: SI = declared(
+        Quantity("", "0.2", above=0, endless=True),
+        "Largest cost of transport: the servo's positive work per metre over the robot's weight; "
+        ".inf: no limit.",
+        default=math.inf,
+    )
+    speed: SI = declared(
+        Quantity("m/s", "50 mm/s", at_least=0.0), "Least mean speed, m/s, either way.", default=0.0
+    )
+
+    @property
+    def economy(self) -> dict[str, float]:
+        """The limits on what a whole period comes to that are set, by name."""
+        names = ("power", "cost_of_transport", "speed")
+        given = {name: getattr(self, name) for name in names}
+        return {name: limit for name, limit in given.items() if 0 < limit < math.inf}
 
     def worst(self, reached: Mapping[str, float]) -> tuple[str, float]:
         """The limit that is broken most, or kept most narrowly, and its excess relative to it.
@@ -110,10 +138,9 @@ class Limits:
         """
         limits = {name: getattr(self, name) for name in reached}
         excess = {
-            name: (limit - reached[name] if name == "singularity" else reached[name] - limit)
-            / abs(limit)
+            name: (limit - reached[name] if name in LEAST else reached[name] - limit) / abs(limit)
             for name, limit in limits.items()
-            if math.isfinite(limit)
+            if limit and math.isfinite(limit)
         }
         name = max(excess, key=lambda one: excess[one])
         return name, excess[name]
@@ -144,7 +171,8 @@ class Turn:
 
 @dataclass(frozen=True)
 class Problem:
-    """Which gait drives `robot` fastest within `gait`, `inertia_ratio`, `limits` and `turn`?
+    """Which gait drives `robot` fastest within `gait`, `inertia_ratio`, `limits` and `turn`, or at
+    the least cost of transport?
 
     `inertia_ratio` None: the robot as it is; `turn` None: straight or on any circle.
 
@@ -157,6 +185,7 @@ class Problem:
     gait: GaitBounds = field(default_factory=GaitBounds)
     inertia_ratio: RatioChoice | None = None
     direction: Direction = "either"
+    objective: Objective = "speed"
     turn: Turn | None = None
     command: CommandBounds | None = None
     name: str = field(default="", compare=False)
@@ -173,6 +202,15 @@ class Problem:
     def bounds_command(self) -> bool:
         """Whether the amplitude of the command is bounded, and not that of the joint."""
         return bool(self.command and self.command.servo.lags and self.gait.shape == "sine")
+
+    @property
+    def economy(self) -> bool:
+        """Whether the energy or the least speed of a gait counts."""
+        return self.objective != "speed" or bool(self.limits.economy)
+
+    def merit(self, speed: float, cost_of_transport: float) -> float:
+        """What is maximised: |speed|, m/s, or the distance per energy, weights times metres."""
+        return abs(speed) if self.objective == "speed" else 1 / cost_of_transport
 
     def read_from(self, name: str, sha256: str) -> Problem:
         """The problem with its name and the fingerprint of its files."""

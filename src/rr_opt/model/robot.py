@@ -106,6 +106,11 @@ class Robot:
         return self.platform2.kappa / (self.h * self.h)
 
     @property
+    def mass(self) -> float:
+        """Of both platforms, kg."""
+        return self.platform1.m + self.platform2.m
+
+    @property
     def singular_angle(self) -> float:
         """The smallest |phi| at which S1 = c1 cos phi + c2 vanishes, rad; inf if never."""
         ratio = self.platform2.c / self.platform1.c

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -21,6 +21,9 @@ from rr_opt.recordings.readers.text import decode, find_header, read_table
 
 _WILD = 8.0
 """Times its usual distance from its neighbours' median, from which a sample is wild."""
+
+_UPDATES = 50
+"""Of the inputs, from which their clock is seen."""
 
 
 def machine_experiment(plan: MachinePlan) -> tuple[MachineExperiment, list[Issue]]:
@@ -60,7 +63,10 @@ def _run(plan: MachinePlan, one: PlannedRecording) -> MachineRun:
             known = np.isfinite(y)
             y = np.interp(t, t[known], y[known]) if inner else y
         data[c.name] = y
-        sigma[c.name] = plan.noise.get(c.name, noise_of(y) if not inner or wild_free(y) else 0.0)
+    held = held_for([data[c.name] for c in machine.inputs])
+    for c in machine.channels:
+        usual = input_noise(data[c.name], held) if c in machine.inputs else noise_of(data[c.name])
+        sigma[c.name] = plan.noise.get(c.name, usual)
     doubts += _impossible(machine.inputs, machine.outputs, data)
     return MachineRun(
         one.file.name,
@@ -70,14 +76,31 @@ def _run(plan: MachinePlan, one: PlannedRecording) -> MachineRun:
         sigma,
         one.use == "holdout",
         tuple(doubts),
+        held,
     )
 
 
-def wild_free(y: Array) -> bool:
-    """Whether a signal is noisy at all: it changes sign from step to step more often than not."""
+def held_for(inputs: Sequence[Array]) -> int:
+    """Samples for which inputs stand still between two updates; 1 if they follow every sample."""
+    changes = np.flatnonzero(np.any([np.diff(y) != 0 for y in inputs], axis=0))
+    if changes.size < _UPDATES:
+        return 1
+    return max(int(np.percentile(np.diff(changes), 10)), 1)
+
+
+def input_noise(y: Array, held: int) -> float:
+    """One sigma of an input.
+
+    One that is sampled and held may be anything between two updates (uniformly distributed). One
+    that changes its direction with most samples is noisy, by its third differences. Any other is
+    taken to be exact.
+    """
+    if held > 1:
+        return float(np.sqrt(np.mean(np.diff(y[::held]) ** 2) / 12))
     d = np.diff(y)
     d = d[d != 0]
-    return d.size > 0.3 * y.size and bool(np.mean(d[1:] * d[:-1] < 0) > 0.5)
+    noisy = d.size > 0.3 * y.size and np.mean(d[1:] * d[:-1] < 0) > 0.5
+    return noise_of(y) if noisy else 0.0
 
 
 def noise_of(y: Array) -> float:

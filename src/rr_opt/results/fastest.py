@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 from rr_opt.design.candidate import Candidate
 from rr_opt.design.decisions import ballast_interval
 from rr_opt.design.maximize_speed import Optimum
-from rr_opt.design.study.measure import Energy, energy
 from rr_opt.documents import document as doc
 from rr_opt.documents.texts import captions
 from rr_opt.files.record import plain, robot_record
@@ -21,6 +20,7 @@ from rr_opt.model.ballast import inertia_ratio, load_count, with_load_count
 from rr_opt.model.gait import Gait
 from rr_opt.model.problem import LARGEST_EXCESS, NEEDS_GRIP, Problem
 from rr_opt.model.robot import Robot
+from rr_opt.motion.energy import Energy, energy
 from rr_opt.motion.rollout import one_period
 from rr_opt.motion.steady_cycle import Cycle
 from rr_opt.outcome import Status
@@ -48,6 +48,9 @@ if TYPE_CHECKING:
 LARGEST_REPLAY_ERROR = 1e-6
 """Of the replayed speed, relative: the optimiser's mesh is refined until it is well below this."""
 
+LARGEST_COST_ERROR = 1e-4
+"""Of the cost of transport, where that is the objective, relative: it is added up from samples."""
+
 LARGEST_SLACK = {True: 1e-5, False: 1e-3}
 """Of the speed, what prices times distances may be: of sines (True), which are solved as functions
 of their decisions, and of other shapes, whose peaks the solver moves a little aside of limits."""
@@ -55,7 +58,7 @@ of their decisions, and of other shapes, whose peaks the solver moves a little a
 
 @dataclass(frozen=True, repr=False)
 class FastestGait(Result):
-    """The fastest gait of a problem, with the evidence for it.
+    """The best gait of a problem, with the evidence for it.
 
     name, sha256   of the problem: its name, and the fingerprint of its files
     optimum        as the optimiser left it
@@ -135,6 +138,16 @@ class FastestGait(Result):
         return self.driven if self.driven and self.driven.beyond else None
 
     @property
+    def cost(self) -> float | None:
+        """Its cost of transport where that is the objective; None elsewhere."""
+        return self.optimum.best.cost if self.optimum.best else None
+
+    @property
+    def _aim(self) -> str:
+        """What the prices are compared with."""
+        return "cost of transport" if self.cost else "speed"
+
+    @property
     def cycle(self) -> Cycle | None:
         """The rigid motion of a period; None if there is no gait."""
         if self.climbed:
@@ -157,12 +170,13 @@ class FastestGait(Result):
 
     @cached_property
     def limits(self) -> dict[str, LimitRow]:
-        """By name (angle, rate, torque, singularity), each with `limit`, `value`, `active` and
-        `shadow_price`, SI."""
+        """By name (angle, rate, torque, singularity, grip, and what else is limited), each with
+        `limit`, `value`, `active` and `shadow_price`, SI."""
         reached = self.replay.reached if self.replay else {}
         if self.climbed:
             reached = self.climbed.driven.reached
-        return {name: limit_row(name, self.optimum, reached) for name in LIMIT_NAMES}
+        names = (*LIMIT_NAMES, *self.problem.limits.economy)
+        return {name: limit_row(name, self.optimum, reached) for name in names}
 
     @cached_property
     def bounds(self) -> dict[str, BoundRow]:
@@ -216,11 +230,18 @@ class FastestGait(Result):
                 most = LARGEST_SLACK[self.problem.gait.shape == "sine"]
                 slackness = (
                     f"Complementary slackness: the price of the {name} times its distance is "
-                    f"{share:.1e} of the speed (tolerance {most:.0e})."
+                    f"{share:.1e} of the {self._aim} (tolerance {most:.0e})."
                 )
                 checks.append(Check(share <= most, slackness))
+        if self.cost and self.energy:
+            error = abs(self.energy.cost_of_transport / self.cost - 1)
+            sentence = (
+                f"Cost of transport of the replay: {number(self.energy.cost_of_transport)}, "
+                f"relative error {error:.1e} (tolerance {LARGEST_COST_ERROR:.0e})."
+            )
+            checks.append(Check(error <= LARGEST_COST_ERROR, sentence))
         if self.sweep:
-            better = _sweep_sentence(self.sweep, self.problem.gait.shape)
+            better = _sweep_sentence(self.sweep, self.problem.gait.shape, self.cost)
             checks.append(Check(self.sweep.better is None, better))
             if not math.isnan(self.sweep.error):
                 own = (
@@ -228,6 +249,13 @@ class FastestGait(Result):
                     f"relative error {self.sweep.error:.1e} (tolerance {TOLERATED:.0e})."
                 )
                 checks.append(Check(self.sweep.error <= TOLERATED, own))
+            if self.cost:
+                error = abs(self.sweep.cost / self.cost - 1)
+                own = (
+                    f"Cost of transport by the sweep's own model: {number(self.sweep.cost)}, "
+                    f"relative error {error:.1e} (tolerance {LARGEST_COST_ERROR:.0e})."
+                )
+                checks.append(Check(error <= LARGEST_COST_ERROR, own))
         return checks + (_driven_checks(self.driven, self.optimum) if self.driven else [])
 
     @property
@@ -258,7 +286,12 @@ class FastestGait(Result):
 
     @property
     def _subject(self) -> str:
-        return f"The fastest gait found drives {direction_text(self.speed or 0.0)}"
+        return f"{self._found('gait')} drives {direction_text(self.speed or 0.0)}"
+
+    def _found(self, what: str) -> str:
+        if self.cost:
+            return f"The {what} of least cost of transport found, {number(self.cost)},"
+        return f"The fastest {what} found"
 
     @property
     def remarks(self) -> list[str]:
@@ -331,6 +364,7 @@ class FastestGait(Result):
         return {
             **picked(self, "status message warnings gait joint inertia_ratio speed energy"),
             "problem": self.name,
+            "objective": self.problem.objective,
             "speed_as_built": self.as_built,
             "cycle": cycle
             and {**picked(cycle, "dx dy dpsi"), "radius": cycle.radius if self.turns else None},
@@ -380,7 +414,7 @@ class FastestGait(Result):
         """The report of a fastest gait."""
         choice, solved = self.problem.inertia_ratio, self.gait is not None
         chosen = "platform2.I" if choice and choice.by == "inertia" and solved else ""
-        good = self.status is Status.OPTIMAL
+        good, objective = self.status is Status.OPTIMAL, self.problem.objective
         lead = " ".join(
             [
                 *([] if self.climbed else ["Every check confirms it."]),
@@ -402,9 +436,13 @@ class FastestGait(Result):
                 ),
                 doc.gallery(figures),
                 doc.Section(
-                    "Limits", (limits_table(self.limits.values(), reached=solved),), brief=solved
+                    "Limits",
+                    (limits_table(self.limits.values(), reached=solved, objective=objective),),
+                    brief=solved,
                 ),
-                doc.Section("Decisions and their bounds", (bounds_table(self.bounds.values()),)),
+                doc.Section(
+                    "Decisions and their bounds", (bounds_table(self.bounds.values(), objective),)
+                ),
                 doc.Section("Local optima", (_optima(self),)),
                 doc.Section("Robot", (robot_table(self.robot, chosen),), brief=False),
                 doc.Section("Solver", (_solver(self),), brief=solved),
@@ -470,18 +508,21 @@ def _climbed(found: DrivenOptimum, optimum: Optimum) -> str:
     return text
 
 
-def _sweep_sentence(sweep: SweepCheck, shape: str) -> str:
+def _sweep_sentence(sweep: SweepCheck, shape: str, cost: float | None) -> str:
     gaits, best = "gaits" if shape == "sine" else "sines", sweep.best
     if best is None:
         return f"Sweep of {sweep.points} {gaits}: none respects every limit."
     head = f"Sweep of {sweep.points} {gaits}, climbing from the best of them and from the optimum: "
-    head += f"it reaches {1e3 * best.speed:+.3f} mm/s, "
+    at, worse, better = f"{1e3 * best.speed:+.3f} mm/s", "slower", "faster"
+    if cost:
+        at, worse, better = f"a cost of transport of {number(1 / best.merit)}", "dearer", "cheaper"
+    head += f"it reaches {at}, "
     if abs(sweep.gap) < sweep.tolerated:
         return head + f"equal to the optimum to within {sweep.tolerated:.0e}."
     if sweep.gap >= 0:
-        return head + f"{100 * sweep.gap:.2g} % slower than the optimum."
+        return head + f"{100 * sweep.gap:.2g} % {worse} than the optimum."
     return (
-        head + f"{-100 * sweep.gap:.2g} % faster than the optimum "
+        head + f"{-100 * sweep.gap:.2g} % {better} than the optimum "
         f"(tolerance {100 * sweep.tolerated:g} %)."
     )
 
@@ -579,6 +620,8 @@ UNITS = {
     "period": "s",
     "offset": "rad",
     "inertia_ratio": "1",
+    "power": "W, mean positive power of the servo",
+    "cost_of_transport": "1",
     "speed": "m/s",
     "speed_as_built": "m/s, of the fastest gait of the robot with its inertia ratio unchanged",
     "dx": "m",
@@ -586,11 +629,13 @@ UNITS = {
     "dpsi": "rad",
     "radius": "m",
     "energy": "J per metre of path: gross, the positive work of the servo, none of it recovered; "
-    "net, what friction takes; cost_of_transport, gross over the weight, 1",
-    "shadow_price": "m/s of |speed| per SI unit by which the limit or bound is raised",
-    "gap": "(|speed| - |sweep_best|)/|speed|",
-    "climb_gain": "gain in |speed|, relative, of a climb by SLSQP on the sweep's model from the "
-    "optimum",
+    "net, what friction takes; cost_of_transport, gross over the weight, 1; power, gross per "
+    "second, W",
+    "shadow_price": "m/s of |speed| per SI unit by which the limit or bound is raised; with the "
+    "objective cost_of_transport how much that falls",
+    "gap": "(|speed| - |sweep_best|)/|speed|; with the objective cost_of_transport of its inverse",
+    "climb_gain": "gain in |speed|, or in the inverse of the cost of transport, relative, of a "
+    "climb by SLSQP on the sweep's model from the optimum",
     "sweep_error": "|speed by the sweep's model - speed|/|speed|",
     "replay_error": "|replay speed - speed|/|speed|",
     "limit_excess": "largest (value - limit)/limit over the replayed cycle",

@@ -13,12 +13,19 @@ from rr_opt.documents import document as doc
 from rr_opt.formatting import QUANTITIES, number, price_text, with_unit
 from rr_opt.messages import listed
 from rr_opt.model.gait import Gait
-from rr_opt.model.problem import Interval, Problem, RatioChoice
+from rr_opt.model.problem import LEAST, Interval, Problem, RatioChoice
 
 ACTIVE = 1e-4
 """A limit is active when the gait comes this near to it, relative to the limit."""
 
 LIMIT_NAMES = ("angle", "rate", "torque", "singularity", "grip")
+"""Of every problem; those on the economy of a gait are shown where they are set."""
+
+_WORDS = {
+    "singularity": "the singularity margin",
+    "cost_of_transport": "the limit on the cost of transport",
+    "speed": "the least speed",
+}
 
 
 @dataclass(frozen=True)
@@ -28,8 +35,8 @@ class LimitRow:
     limit         SI; inf if there is none
     value         the extreme over the replayed cycle, SI; NaN if there is no gait
     active        whether the limit constrains the optimum
-    shadow_price  m/s of |speed| gained per SI unit by which the limit is raised; 0 if inactive,
-                  NaN if there is no gait
+    shadow_price  m/s of |speed| gained per SI unit by which the limit is raised, or how much the
+                  cost of transport falls; 0 if inactive, NaN if there is no gait
     """
 
     name: str
@@ -62,7 +69,7 @@ def limit_row(name: str, optimum: Optimum, reached: Mapping[str, float]) -> Limi
     if not reached or best is None:
         return LimitRow(name, limit)
     value, price = reached[name], best.prices[name]
-    slack = value - limit if name == "singularity" else limit - value
+    slack = value - limit if name in LEAST else limit - value
     active = bool(math.isfinite(limit) and slack <= ACTIVE * abs(limit))
     if optimum.problem.gait.shape != "sine":
         # Its peaks may stay short of the limit, which the optimiser tightens somewhat.
@@ -97,7 +104,7 @@ def bound_rows(optimum: Optimum, commanded: Gait, ratio: float) -> dict[str, Bou
 def worst_slack(optimum: Optimum, told: Gait, reached: Mapping[str, float]) -> tuple[str, float]:
     """Complementary slackness: at an optimum what has a price is at its limit, and no price has the
     wrong sign. The limit or bound that fails it most, and how: its price times its distance, or
-    times itself where the sign is wrong, relative to the speed.
+    times itself where the sign is wrong, relative to the speed or the cost of transport.
     """
     best, problem = optimum.best, optimum.problem
     if best is None:
@@ -106,9 +113,7 @@ def worst_slack(optimum: Optimum, told: Gait, reached: Mapping[str, float]) -> t
     for name, value in reached.items():
         limit, price = getattr(problem.limits, name), best.prices[name]
         if math.isfinite(limit):
-            slack, price = (
-                (value - limit, -price) if name == "singularity" else (limit - value, price)
-            )
+            slack, price = (value - limit, -price) if name in LEAST else (limit - value, price)
             worth[f"limit {name}"] = max(price * max(slack, 0.0), -price * abs(limit))
     gait, prices = problem.gait, best.bound_prices
     boxes = {"period": gait.period, "offset": gait.offset}
@@ -119,7 +124,7 @@ def worst_slack(optimum: Optimum, told: Gait, reached: Mapping[str, float]) -> t
         away = max(box.high - value if prices[name] > 0 else value - box.low, 0.0)
         worth[f"bound on {name}"] = 0.0 if box.fixed else abs(prices[name]) * away
     name = max(worth, key=lambda one: worth[one])
-    return name, worth[name] / abs(best.speed)
+    return name, worth[name] / best.value
 
 
 def _bound(name: str, value: float, box: Interval, price: float | None) -> BoundRow:
@@ -166,11 +171,7 @@ def _share_per_ratio(problem: Problem, choice: RatioChoice) -> float:
 
 def limited_by(limits: Iterable[LimitRow], bounds: Iterable[BoundRow]) -> str:
     """`It is limited by the rate limit and the lower bound of the period.`"""
-    active = [
-        "the singularity margin" if row.name == "singularity" else f"the {row.name} limit"
-        for row in limits
-        if row.active
-    ]
+    active = [_WORDS.get(row.name, f"the {row.name} limit") for row in limits if row.active]
     active += [
         f"the {'lower' if row.active == 'low' else 'upper'} bound of the "
         f"{QUANTITIES[row.name].words}"
@@ -182,7 +183,7 @@ def limited_by(limits: Iterable[LimitRow], bounds: Iterable[BoundRow]) -> str:
     return f"It is limited by {listed(active)}."
 
 
-def limits_table(rows: Iterable[LimitRow], *, reached: bool) -> doc.Table:
+def limits_table(rows: Iterable[LimitRow], *, reached: bool, objective: str = "speed") -> doc.Table:
     """Each limit: what is reached, what is allowed, and its shadow price."""
     kinds = [(QUANTITIES[row.name], row) for row in rows]
     if not reached:
@@ -195,14 +196,14 @@ def limits_table(rows: Iterable[LimitRow], *, reached: bool) -> doc.Table:
                 kind.both(row.value),
                 kind.both(row.limit),
                 doc.Badge("active", "good") if row.active else doc.Badge("not active"),
-                price_text(row.name, row.shadow_price) if row.active else None,
+                price_text(row.name, row.shadow_price, objective) if row.active else None,
             ]
             for kind, row in kinds
         ],
     )
 
 
-def bounds_table(bounds: Iterable[BoundRow]) -> doc.Table:
+def bounds_table(bounds: Iterable[BoundRow], objective: str = "speed") -> doc.Table:
     """Each decision, its range, and the shadow price of its active bound."""
     states = {
         "low": doc.Badge("at lower bound", "good"),
@@ -216,6 +217,6 @@ def bounds_table(bounds: Iterable[BoundRow]) -> doc.Table:
         span = "fixed" if fixed else f"{number(row.low)} to {with_unit(row.high, kind.unit)}"
         price = None
         if row.active in ("low", "high") and row.shadow_price is not None:
-            price = price_text(row.name, row.shadow_price)
+            price = price_text(row.name, row.shadow_price, objective)
         rows.append([kind.words, kind.both(row.value), span, states[row.active], price])
     return doc.table(["Decision", "Value", "Range", "State", "Shadow price"], rows)

@@ -172,7 +172,8 @@ class SolvedStudy(Result):
 
     @cached_property
     def _columns(self) -> list[StudyColumn]:
-        return study_columns(self.study, self.rows, self.branches)
+        fronts = {name: self.front(name) for name in COSTS}
+        return study_columns(self.study, self.rows, self.branches, fronts)
 
     def _tables(self) -> dict[str, str]:
         rows = zip(*(column.in_table for column in self._columns), strict=True)
@@ -237,7 +238,7 @@ class SolvedStudy(Result):
         )
 
 
-COSTS = ("peak_torque", "energy_per_metre")
+COSTS = ("peak_torque", "energy_per_metre", "cost_of_transport")
 
 
 _MOST_ROWS = 300

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from operator import attrgetter
 from pathlib import Path
@@ -101,7 +101,8 @@ _OF_OPTIMUM = (
 )
 _LIMITS = (
     *(("angle", "rad"), ("rate", "rad/s"), ("torque", "N m")),
-    *(("singularity", "m"), ("grip", "")),
+    *(("singularity", "m"), ("grip", ""), ("power", "W"), ("cost_of_transport", "")),
+    ("speed", "m/s"),
 )
 _BOUNDS = (("amplitude", "rad"), ("period", "s"), ("offset", "rad"), ("inertia_ratio", ""))
 
@@ -135,9 +136,13 @@ class StudyColumn:
 
 
 def study_columns(
-    study: Study, rows: Sequence[Row], branches: Sequence[int | None]
+    study: Study,
+    rows: Sequence[Row],
+    branches: Sequence[int | None],
+    fronts: Mapping[str, Sequence[int]],
 ) -> list[StudyColumn]:
-    """All of them, in order; branches: the number of each case's branch of optima."""
+    """All of them, in order; branches: the number of each case's branch of optima; fronts: by cost
+    the cases that no other one beats in both speed and cost."""
     inputs = [study.inputs(case) for case in range(len(rows))]
 
     def of_rows(name: str, unit: str, meaning: str, cell: Callable[[Row], Any]) -> StudyColumn:
@@ -158,6 +163,10 @@ def study_columns(
         cell = lambda row: row.expected and row.expected[end]  # noqa: E731
         return of_rows(f"expected_{word}", "m/s", meaning, cell)
 
+    on_fronts = [
+        "; ".join(name for name, cases in fronts.items() if case in cases)
+        for case in range(len(rows))
+    ]
     branch = "family of optima that it belongs to"
     warm = "from cold initial guesses, or from neighbours' optima: warm"
     return [
@@ -179,6 +188,7 @@ def study_columns(
         of_optima("drives", "", "which way", lambda one: direction_text(one.speed)),
         *(of_optima(*described, attrgetter(described[0])) for described in _OF_OPTIMUM),
         of_optima("held_by", "", "active limits and bounds", lambda one: "; ".join(one.held)),
+        StudyColumn("fronts", "", "costs of which no case is both faster and cheaper", on_fronts),
         *(price(*named, "limit", attrgetter("prices")) for named in _LIMITS),
         *(price(*named, "active bound", attrgetter("bound_prices")) for named in _BOUNDS),
         expected(0, "least"),

@@ -66,7 +66,7 @@ class FastestTurn(FastestGait):
         if arc is None or self.radius is None or self.status is not Status.OPTIMAL:
             return ""
         return (
-            f"The fastest turn found goes {direction_text(arc.speed)} and to the "
+            f"{self._found('turn')} goes {direction_text(arc.speed)} and to the "
             f"{side_text(arc.curvature)} round {with_unit(self.radius, 'm')} at "
             f"{1e3 * abs(arc.speed):.1f} mm/s"
         )
@@ -77,7 +77,7 @@ class FastestTurn(FastestGait):
         if arc is None or self.radius is None:
             return super()._subject
         return (
-            f"The fastest turn found goes {direction_text(arc.speed)} and to the "
+            f"{self._found('turn')} goes {direction_text(arc.speed)} and to the "
             f"{side_text(arc.curvature)}, round a circle of radius {with_unit(self.radius, 'm')},"
         )
 
@@ -152,7 +152,8 @@ UNITS = {
     "yaw_rate": "rad/s",
     "length": "m, along the mean circle",
     "time": "s",
-    "price of curvature, yaw_rate, heading": "m/s of |speed| per SI unit by which it is raised",
+    "price of curvature, yaw_rate, heading": "m/s of |speed| per SI unit by which it is raised; "
+    "with the objective cost_of_transport how much that falls",
 }
 
 
@@ -175,4 +176,5 @@ def _facts(turn: FastestTurn, arc: Arc) -> Iterator[doc.Fact]:
         value, words = asked[name]
         gain = -0.01 * value * price
         if abs(gain) > 1e-9:
-            yield doc.Fact("price", f"{1e3 * gain:+.3g} mm/s for {words}")
+            per = f"{-gain:+.3g}" if turn.cost else f"{1e3 * gain:+.3g} mm/s"
+            yield doc.Fact("price", f"{per} for {words}")

@@ -18,7 +18,7 @@ from rr_opt.array import Array
 from rr_opt.model.problem import Problem
 from rr_opt.verify.fourier import peaks
 from rr_opt.verify.grid import DECISIONS, boxes, loads_are_whole, reach
-from rr_opt.verify.speeds import PHASES, model_of, motions
+from rr_opt.verify.speeds import PHASES, costs, model_of, motions
 
 _STEP = {True: 1e-5, False: 1e-3}
 """Of a difference, in each decision's range; where friction is viscous (True) or not."""
@@ -65,7 +65,7 @@ Aim = Literal["speed", "radius"]
 
 
 def climb(problem: Problem, start: Array, aim: Aim = "speed", *, rough: bool = False) -> Climbed:
-    """Climb to the fastest gait, or the tightest circle, from a start (4,), which need not keep the
+    """Climb to the best gait, or the tightest circle, from a start (4,), which need not keep the
     limits."""
     from scipy.optimize import minimize  # 0.1 s that a sweep alone can do without
 
@@ -92,6 +92,13 @@ def climb(problem: Problem, start: Array, aim: Aim = "speed", *, rough: bool = F
 def peak_torque(problem: Problem, decisions: Array) -> float:
     """The largest |torque| of a gait (4,), N m."""
     return float(peaks(motions(problem, decisions[:, None], _FINE.phases).torque, 1)[0, 0])
+
+
+def cost_of_transport(problem: Problem, decisions: Array) -> float:
+    """Of a gait (4,)."""
+    gaits = decisions[:, None]
+    found = motions(problem, gaits, _FINE.phases)
+    return float(costs(problem, gaits, found).cost_of_transport[0])
 
 
 class _Local:
@@ -207,13 +214,22 @@ class _Local:
         for load, limit in loads:
             if math.isfinite(limit):
                 rows += list(-np.log(np.maximum(peaks(load, _PARTS) / limit, _LEAST)))
+        value = speed
+        if problem.economy:
+            cost = costs(problem, gaits, found)
+            if problem.objective != "speed":
+                value = 1 / cost.cost_of_transport
+            used = {**cost._asdict(), "speed": limits.speed**2 / np.maximum(speed, _SLOWEST)}
+            for name, limit in limits.economy.items():
+                rows.append(-np.log(np.maximum(used[name] / limit, _LEAST)))
         if problem.direction != "either":
             ahead = (found.velocity * found.heading).sum(axis=0) / np.maximum(speed, _SLOWEST)
             rows.append((ahead if problem.direction == "forward" else -ahead) - _AHEAD)
         less, equal = turn_rows(problem, speed, found.turn, period)
         self._equal = len(equal)
         # The square of a radius has no kink where it is 0.
-        value = speed if self._aim == "speed" else -((speed * period / found.turn) ** 2)
+        if self._aim == "radius":
+            value = -((speed * period / found.turn) ** 2)
         return np.array([value, *rows, *less, *equal])
 
 

@@ -16,13 +16,13 @@ from rr_opt.verify.climb import turn_rows
 from rr_opt.verify.compiled_cycles import Speeds
 from rr_opt.verify.fourier import peak
 from rr_opt.verify.grid import Grid, points
-from rr_opt.verify.speeds import least_S1, motions, speeds
+from rr_opt.verify.speeds import costs, least_S1, motions, speeds
 
 Mask = NDArray[np.bool_]
 Progress = Callable[[int, int], None]
 """Called with the points done and the points in all."""
 
-LIMITS = ("rate", "angle", "singularity", "torque", "grip", "direction")
+LIMITS = ("rate", "angle", "singularity", "torque", "grip", "economy", "direction")
 
 _SLACK = 1e-8
 """By so much, relative, a limit may be broken: by rounding."""
@@ -33,6 +33,9 @@ _AIMS = (1e-3, 1e-4, 1e-6, 1e-7)
 _WORTH = 0.8
 """Points so much slower than the best are not led to the torque limit."""
 
+_PHASES = 64
+"""Of the motions of which the cost of transport is known."""
+
 _ROWS = 4096
 """Rows of points between two reports of progress."""
 
@@ -41,7 +44,8 @@ _ROWS = 4096
 class Found:
     """A gait that was found: offset >= 0 where phi0 and -phi0 do equally well.
 
-    ratio J20/J10 or None, speed signed, m/s; peak torque N m; turn rad per period
+    ratio J20/J10 or None, speed signed, m/s; peak torque N m; turn rad per period; merit: what
+    the problem maximises
     """
 
     gait: SineGait
@@ -49,6 +53,7 @@ class Found:
     speed: float
     peak_torque: float
     turn: float
+    merit: float
 
     @property
     def radius(self) -> float:
@@ -64,6 +69,7 @@ class Evaluated:
     speed        signed, m/s; NaN where a limit on the angle or the singular posture is broken
     peak_torque  N m; NaN there too
     turn         heading gained per period, rad; NaN there too
+    value        what is maximised: |speed|, or the inverse of the cost of transport; NaN there too
     keeps        by limit's name: the point keeps it; torque and direction are not kept where
                  the speed is NaN
     failed       how many points that keep angle and singularity have no resolved cycle
@@ -73,6 +79,7 @@ class Evaluated:
     speed: Array
     peak_torque: Array
     turn: Array
+    value: Array
     keeps: Mapping[str, Mask]
     failed: int
 
@@ -83,8 +90,8 @@ class Evaluated:
 
     @property
     def merit(self) -> Array:
-        """|speed| where all limits are kept, else -inf, m/s."""
-        return np.where(self.feasible, np.abs(self.speed), -np.inf)
+        """The value where all limits are kept, else -inf."""
+        return np.where(self.feasible, self.value, -np.inf)
 
     def found(self, index: int) -> Found:
         """One of the points."""
@@ -95,6 +102,7 @@ class Evaluated:
             float(self.speed[index]),
             float(self.peak_torque[index]),
             float(self.turn[index]),
+            float(self.value[index]),
         )
 
 
@@ -121,7 +129,8 @@ def evaluate(
     seen = np.array([*arrays, *(part.reshape(shape) for part in (speed, torque, turn))])
     flat = seen[:, np.isfinite(arrays[1])]
     plain = _evaluated(problem, flat, failed)
-    line = _torque_line(problem, grid, seen, plain.merit.max(initial=0.0), tolerance)
+    reached = plain.merit.max(initial=0.0) if problem.objective == "speed" else 0.0
+    line = _torque_line(problem, grid, seen, reached, tolerance)
     return _evaluated(problem, np.concatenate([flat, line], axis=1), failed)
 
 
@@ -129,7 +138,17 @@ def _evaluated(problem: Problem, points: Array, failed: int) -> Evaluated:
     """points (7, K): decisions, speed, peak torque, turn."""
     decisions, (speed, torque, turn) = points[:4], points[4:]
     found = Speeds(speed, turn, torque, np.isfinite(speed))
-    return Evaluated(decisions, speed, torque, turn, _keeps(problem, decisions, found), failed)
+    value, kept = np.abs(speed), _keeps(problem, decisions, found)
+    if problem.economy:
+        known = np.flatnonzero(np.isfinite(speed))
+        cost = costs(problem, decisions[:, known], motions(problem, decisions[:, known], _PHASES))
+        used = {**cost._asdict(), "speed": 2 * problem.limits.speed - value[known]}
+        for name, limit in problem.limits.economy.items():
+            kept["economy"][known] &= used[name] <= limit * (1 + _SLACK)
+        if problem.objective != "speed":
+            value = np.full(len(speed), np.nan)
+            value[known] = 1 / cost.cost_of_transport
+    return Evaluated(decisions, speed, torque, turn, value, kept, failed)
 
 
 def within(
@@ -165,6 +184,7 @@ def _keeps(problem: Problem, decisions: Array, found: Speeds) -> dict[str, Mask]
         kept["turn"] &= row >= -_SLACK
     for row in equal:
         kept["turn"] &= np.abs(row) <= _SLACK
+    kept["economy"] = np.isfinite(found.speed)
     kept["grip"] = np.ones(len(found.speed), bool)
     if math.isfinite(limits.grip):
         # Only points that keep all else are looked at.

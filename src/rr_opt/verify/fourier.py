@@ -29,6 +29,9 @@ _Operation = Callable[[Array, bool], Array]
 _DENSE = 64
 """Samples up to which one matrix product is faster than the transforms it stands for."""
 
+_FINER = 4
+"""So many times as many samples show where a function changes sign."""
+
 _SMOOTH = 256
 """Samples from which on a peak is resolved well enough for a parabola."""
 
@@ -92,6 +95,28 @@ def peaks(x: Array, parts: int) -> Array:
         shift = np.clip(shift, -0.5, 0.5)
         found.append(middle + shift * (slope + shift * bend / 2))
     return np.array(found)
+
+
+def positive_mean(x: Array) -> Array:
+    """Mean of the positive part (K,) of functions that repeat after the span.
+
+    It is what the integral gains between a rise through zero and the fall after it. At a zero the
+    integral is stationary, so it hardly matters how exactly the zero is known.
+    """
+    n = _FINER * len(x)
+    fine = samples(harmonics(x), n) * _FINER if len(x) > 1 else np.repeat(x, n, axis=0)
+    mean = x.mean(axis=0)
+    whole = _integral(fine, False) + mean * np.arange(n)[:, None] / n
+    after, gained = np.roll(fine, -1, axis=0), np.roll(whole, -1, axis=0)
+    gained[-1] += mean
+    at = np.nonzero((fine > 0) != (after > 0))
+    start, end = fine[at], after[at]
+    s = start / (start - end)
+    # Hermite's cubic has the slopes of the integral, which are the function's values.
+    here = whole[at] * (1 + 2 * s) * (1 - s) ** 2 + gained[at] * s**2 * (3 - 2 * s)
+    here += s * (1 - s) * ((1 - s) * start - s * end) / n
+    turns = np.bincount(at[1], np.where(start > 0, here, -here), minlength=x.shape[1])
+    return np.asarray(turns + np.where(fine[0] > 0, mean, 0.0), float)
 
 
 def tail(x: Array, flipping: bool) -> Array:

@@ -17,6 +17,7 @@ from rr_opt.model.gait import Gait
 from rr_opt.model.problem import Limits
 from rr_opt.model.robot import Robot
 from rr_opt.motion.circle import Transient, circle_of, transient
+from rr_opt.motion.energy import energy
 from rr_opt.motion.integrators import cvodes
 from rr_opt.motion.steady_cycle import (
     BETWEEN,
@@ -37,7 +38,8 @@ class Replay:
     speed      m/s, signed
     error      |speed - claimed| / |claimed|
     reached    extreme of each limited quantity over the cycle: rate (rad/s), angle (rad),
-               torque (N m), singularity (least S1, m), grip (largest of both axles)
+               torque (N m), singularity (least S1, m), grip (largest of both axles), and, where
+               one of them is limited, power (W), cost_of_transport and speed (m/s)
     grip       of each axle: largest side force over the load on it
     excess     by how much the worst limit is broken, relative to it; negative if all are kept
     """
@@ -67,6 +69,10 @@ def replay(robot: Robot, gait: Gait, limits: Limits, claimed: float) -> Replay:
         "singularity": float(S1.min()),
         "grip": max(grip),
     }
+    if limits.economy:
+        spent = energy(robot, steady)
+        reached |= {"power": spent.power, "cost_of_transport": spent.cost_of_transport}
+        reached["speed"] = abs(steady.speed)
     _, excess = limits.worst(reached)
     error = abs(steady.speed - claimed) / abs(claimed)
     return Replay(steady.speed, error, reached, excess, steady, grip)

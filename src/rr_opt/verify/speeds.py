@@ -10,12 +10,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rr_opt.array import Array
+from rr_opt.mechanics.kinematics import G
 from rr_opt.model.ballast import with_inertia_ratio
 from rr_opt.model.gait import Gait
 from rr_opt.model.problem import Problem
 from rr_opt.model.robot import Robot
 from rr_opt.motion.dynamics import derive, dynamics_of
 from rr_opt.verify.compiled_cycles import CompiledCycles, Points, Speeds
+from rr_opt.verify.fourier import positive_mean
 from rr_opt.verify.steady_fourier import Doublings, Motion, SteadyFourier
 
 _Places = tuple[NDArray[np.int_], NDArray[np.int_]]
@@ -242,6 +244,27 @@ def motions(problem: Problem, gaits: Array, phases: int = PHASES, *, grip: bool 
         robots = p if which is None else p[:, which[here]]
         parts.append(model.motion(angle, period[here], robots, grip=grip))
     return Motion(*(np.concatenate(each, axis=-1) for each in zip(*parts, strict=True)))
+
+
+class Costs(NamedTuple):
+    """Of K gaits: mean positive power of the servo, W, and cost of transport."""
+
+    power: Array
+    cost_of_transport: Array
+
+
+@np.errstate(divide="ignore", over="ignore", invalid="ignore")
+def costs(problem: Problem, gaits: Array, found: Motion) -> Costs:
+    """The costs of sines, (4, K) as in `motions`, of which that found the motion."""
+    amplitude, period, _, ratio = gaits
+    n = len(found.torque)
+    theta = np.arange(n)[:, None] * (2 * math.pi / n)
+    power = positive_mean(found.torque * (amplitude * np.cos(theta) * 2 * math.pi / period))
+    which, p = _parameters(problem, None if np.isnan(ratio).all() else ratio)
+    names = dynamics_of(problem.robot).parameters
+    mass = p[names.index("m1")] + p[names.index("m2")]
+    weight = G * (mass if which is None else mass[which])
+    return Costs(power, power / (weight * np.hypot(*found.velocity)))
 
 
 _SAMPLES, _MOST = 256, 8192

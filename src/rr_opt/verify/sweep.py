@@ -17,7 +17,7 @@ from rr_opt.array import Array
 from rr_opt.model.gait import Gait, SineGait
 from rr_opt.model.problem import Problem
 from rr_opt.model.robot import Robot
-from rr_opt.verify.climb import KEPT, Aim, climb, peak_torque, turn_rows
+from rr_opt.verify.climb import KEPT, Aim, climb, cost_of_transport, peak_torque, turn_rows
 from rr_opt.verify.evaluate import Evaluated, Found, Progress, evaluate
 from rr_opt.verify.grid import DECISIONS, Grid, boxes, free_decisions, grid_of, mirrored
 from rr_opt.verify.speeds import least_S1, model_of, robot_with, speed_of, speeds
@@ -104,11 +104,13 @@ class SweepCheck:
     points         evaluated, near the claimed optimum and all over
     best           that keeps all limits, offset >= 0 where gaits at phi0 and -phi0 do equally well;
                    None if none was found
-    gap            (|claimed| - |best|)/|claimed|: negative where the sweep found something better
+    gap            (claimed - best)/claimed, of speeds or of distances per energy: negative where
+                   the sweep found something better
     gained         what a climb on from the claimed gait gains, relative; NaN for another shape
     tolerated      of either
     speed          of the claimed gait, by the sweep's model, signed, m/s
     error          |speed - claimed|/|claimed|; NaN where the model cannot follow the gait's shape
+    cost           of transport of the claimed gait, by the sweep's model; NaN if it does not count
     """
 
     points: int
@@ -118,6 +120,7 @@ class SweepCheck:
     tolerated: float
     speed: float
     error: float
+    cost: float = math.nan
 
     @property
     def better(self) -> Found | None:
@@ -179,7 +182,8 @@ def _resolved(problem: Problem, decisions: Array) -> Found | None:
     if not seen.converged or torque > problem.limits.torque * (1 + slack):
         return None
     gait, speed, turn = SineGait(amplitude, period, offset), float(seen.speed), float(seen.turn)
-    return Found(gait, known, speed, torque, turn)
+    cost = cost_of_transport(problem, decisions) if problem.economy else math.nan
+    return Found(gait, known, speed, torque, turn, problem.merit(speed, cost))
 
 
 def check_optimum(
@@ -189,6 +193,7 @@ def check_optimum(
     speed: float,
     counts: Mapping[str, int] | int | None = None,
     everywhere: SweepResult | None = None,
+    cost: float = math.nan,
 ) -> SweepCheck:
     """Compare a claimed optimum with a sweep of the whole problem and a climb on from it.
 
@@ -196,14 +201,15 @@ def check_optimum(
     short of.
 
     gait, ratio (J20/J10 in the problem's definition; read only if the problem has one) and
-    signed speed (m/s) as claimed; counts as for `sweep`, or what it found where that is known.
+    signed speed (m/s) as claimed, and cost of transport where it is the objective; counts as for
+    `sweep`, or what it found where that is known.
     """
     effort = _EFFORT[model_of(problem.robot).viscous]
     if problem.inertia_ratio is None:
         ratio = None
     everywhere = everywhere or sweep(problem, counts)
     finalists, points = [everywhere.refined], everywhere.points
-    gained = math.nan
+    gained, own_cost = math.nan, math.nan
     if isinstance(gait, SineGait):
         own = speeds(problem, gait.amplitude, gait.period, gait.offset, ratio, effort.fine)
         here = float(own.speed)
@@ -211,18 +217,21 @@ def check_optimum(
         claimed = (gait.amplitude, gait.period, offset, math.nan if ratio is None else ratio)
         end, more = climbed(problem, np.array(claimed)[:, None])
         finalists, points = [*finalists, end], points + more
-        gained = abs(end.speed / here) - 1 if end else 0.0
+        if problem.economy:
+            own_cost = cost_of_transport(problem, np.array(claimed))
+        gained = end.merit / problem.merit(here, own_cost) - 1 if end else 0.0
     else:
         here = speed_of(robot_with(problem, ratio), gait).speed
     best = _fastest(finalists)
     return SweepCheck(
         points=points,
         best=best,
-        gap=1 - abs(best.speed / speed) if best else math.inf,
+        gap=1 - best.merit / problem.merit(speed, cost) if best else math.inf,
         gained=gained,
         tolerated=effort.gained,
         speed=here,
         error=abs(here - speed) / abs(speed),
+        cost=own_cost,
     )
 
 
@@ -258,11 +267,11 @@ def _merit(problem: Problem, found: Evaluated) -> Array:
     less, equal = turn_rows(problem, speed, found.turn, found.decisions[1])
     off = sum([np.maximum(-row, 0.0) for row in less] + [np.abs(row) for row in equal])
     off = off + np.maximum(found.peak_torque / problem.limits.torque - 1, 0.0)
-    off = off + ~found.keeps["direction"]
-    merit = speed * (1 - _OFF * np.clip(off, 0.0, _MOST_OFF))
+    off = off + ~found.keeps["direction"] + ~found.keeps["economy"]
+    merit = found.value * (1 - _OFF * np.clip(off, 0.0, _MOST_OFF))
     return np.where(np.isfinite(merit) & found.keeps["rate"], merit, -np.inf)
 
 
 def _fastest(gaits: Sequence[Found | None]) -> Found | None:
     there = [one for one in gaits if one is not None]
-    return max(there, key=lambda one: abs(one.speed), default=None)
+    return max(there, key=lambda one: one.merit, default=None)

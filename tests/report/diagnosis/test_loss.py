@@ -119,7 +119,7 @@ def test_a_gait_that_a_sweep_beats_is_no_best_gait(missing, monkeypatch):
     from rr_opt.verify.evaluate import Found
     from rr_opt.verify.sweep import SweepCheck
 
-    faster = Found(SineGait(1.0, 1.5), None, 0.2, 0.1, 0.0)
+    faster = Found(SineGait(1.0, 1.5), None, 0.2, 0.1, 0.0, 0.2)
     beaten = SweepCheck(100, faster, -0.5, 0.0, 1e-6, 0.1, 0.0)
     monkeypatch.setattr(module, "check_optimum", lambda *_: beaten)
     reported = loss_of(missing.experiment, missing.experiment.robot)

@@ -50,7 +50,9 @@ def solve_case(task: Task) -> Row:
 
 
 def _solve(task: Task) -> Row:
-    setting = _only_setting(task.problem) if task.footholds else None
+    # Neighbours foretell speeds, not costs.
+    warm = task.footholds and task.problem.objective == "speed"
+    setting = _only_setting(task.problem) if warm else None
     if setting is None:
         return _cold(task.problem)
     reached: list[tuple[Foothold, Candidate]] = []

@@ -1,13 +1,4 @@
-"""An optimum, measured: how far it goes, what holds it, what it costs.
-
-What a steady cycle costs: energy per metre of path, and the cost of transport.
-
-The servo's power is torque * dphi/dt. Over a period the kinetic energy returns to what it was, so
-the net work of a period is what friction takes. A servo that brakes does not give energy back,
-though: what its supply has to provide is the positive part of the power alone, the gross work,
-which is never less than the net. The cost of transport is the gross work per metre over the
-robot's weight. Losses within the servo are in neither.
-"""
+"""An optimum, measured: how far it goes, what holds it, what it costs."""
 
 from __future__ import annotations
 
@@ -15,30 +6,35 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from rr_opt.design.candidate import Candidate
 from rr_opt.design.decisions import ballast_interval
 from rr_opt.design.study.row import Optimum, Row, gait_record
-from rr_opt.model.problem import LARGEST_EXCESS, Interval, Problem, RatioChoice
+from rr_opt.model.problem import LARGEST_EXCESS, LEAST, Interval, Problem, RatioChoice
 from rr_opt.model.robot import Robot
+from rr_opt.motion.energy import energy
 from rr_opt.motion.steady_cycle import SteadyCycle, grip_needed, peak_torque, steady_cycle
 from rr_opt.outcome import Status
 
-UNITS = {"angle": "rad", "rate": "rad/s", "torque": "N m", "singularity": "m", "grip": ""}
+UNITS = {
+    **{"angle": "rad", "rate": "rad/s", "torque": "N m", "singularity": "m", "grip": ""},
+    **{"power": "W", "cost_of_transport": "", "speed": "m/s"},
+}
 """Of each limit, by its name in the problem."""
 
 
 def reached(robot: Robot, steady: SteadyCycle) -> dict[str, float]:
     """The extreme of what each limit bounds, SI: largest |phi|, |dphi/dt|, |torque|, least S1,
-    largest side force over load."""
-    gait = steady.gait
+    largest side force over load, power, cost of transport and speed."""
+    gait, work = steady.gait, energy(robot, steady)
     return {
         "angle": gait.peak_angle,
         "rate": gait.peak_rate,
         "torque": peak_torque(steady),
         "singularity": robot.platform1.c * math.cos(gait.peak_angle) + robot.platform2.c,
         "grip": max(grip_needed(steady, robot)),
+        "power": work.power,
+        "cost_of_transport": work.cost_of_transport,
+        "speed": abs(steady.speed),
     }
 
 
@@ -82,11 +78,11 @@ def _on_limit(problem: Problem, best: Candidate, name: str, value: float) -> boo
     """A sine that is held by a limit comes to it. Of another shape the angle stays a little short
     of its limit, and so may the torque: there the price says it."""
     limit = getattr(problem.limits, name)
-    if not math.isfinite(limit):
+    if not limit or not math.isfinite(limit):
         return False
     if problem.gait.shape != "sine":
         return _matters(best, best.prices[name], limit)
-    slack = value - limit if name == "singularity" else limit - value
+    slack = value - limit if name in LEAST else limit - value
     return slack <= _ON * abs(limit)
 
 
@@ -139,40 +135,6 @@ def _share_per_ratio(problem: Problem, choice: RatioChoice) -> float:
     span, high = ballast_interval(problem.robot, choice), choice.bounds.high
     step = 1e-6 * high
     return (amount(high) - amount(high - step)) / step / (span.high - span.low)
-
-
-GRAVITY = 9.80665
-"""Standard acceleration of gravity, m/s2."""
-
-
-@dataclass(frozen=True)
-class Energy:
-    """Per metre of the mean circle's path: gross and net work of the servo, J/m, and the cost of
-    transport, dimensionless."""
-
-    gross: float
-    net: float
-    cost_of_transport: float
-
-
-def energy(robot: Robot, steady: SteadyCycle) -> Energy:
-    """The energy of a steady cycle."""
-    rate = steady.gait.rate(steady.t)
-    after, before = steady.torque * rate, steady.torque_before * rate
-    net = float(np.sum(after[:-1] + before[1:])) / 2
-    gross = float(np.sum(_positive(after[:-1], before[1:])))
-    path = abs(steady.speed) * steady.gait.period
-    step = float(steady.t[1] - steady.t[0]) / path
-    weight = (robot.platform1.m + robot.platform2.m) * GRAVITY
-    return Energy(gross * step, net * step, gross * step / weight)
-
-
-def _positive(start: np.ndarray, end: np.ndarray) -> np.ndarray:
-    """Mean of the positive part of lines from start to end, exactly where one crosses zero."""
-    high, low = np.maximum(start, end), np.minimum(start, end)
-    crosses = (high > 0) & (low < 0)
-    above = np.where(crosses, high**2 / np.where(crosses, 2 * (high - low), 1.0), 0.0)
-    return np.where(crosses, above, np.maximum((start + end) / 2, 0.0))
 
 
 _CLAIM = 1e-6

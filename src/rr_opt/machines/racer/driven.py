@@ -172,6 +172,11 @@ def unsteady_effects(robot: Robot) -> tuple[str, ...]:
     )
 
 
+def beyond_optimiser(robot: Robot) -> tuple[str, ...]:
+    """Those of them that the optimiser does not make up for by the servo's response."""
+    return tuple(name for name in unsteady_effects(robot) if not CATALOGUE[name].linear)
+
+
 def drive_optimum(optimum: Optimum) -> DrivenOptimum | None:
     """Drive an optimum, and climb on from it where multiple shooting does not know all effects: not
     from gaits that are no sines, nor round a turn.
@@ -185,7 +190,7 @@ def drive_optimum(optimum: Optimum) -> DrivenOptimum | None:
     problem = optimum.problem
     command_for = problem.command.servo.command_for if problem.command else lambda gait: gait
     start = driven_speed(robot, command_for(best.gait))
-    beyond = tuple(name for name in unsteady_effects(robot) if not CATALOGUE[name].linear)
+    beyond = beyond_optimiser(robot)
     here = DrivenOptimum(beyond, command_for(best.gait), robot, ratio, start, start)
     if not beyond or not isinstance(best.gait, SineGait) or problem.turn:
         return here

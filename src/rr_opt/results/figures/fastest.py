@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from matplotlib.axes import Axes
 
 from rr_opt.formatting import QUANTITIES, number
 from rr_opt.model.gait import SineGait
+from rr_opt.model.problem import LEAST
 from rr_opt.motion.rollout import repeated
 from rr_opt.results.fastest import FastestGait
 from rr_opt.results.figures import style
@@ -30,7 +31,7 @@ def draw(result: FastestGait) -> dict[str, str]:
     drawn = {
         "path": _path(result, replay),
         "cycle": _cycle(result, replay),
-        "prices": style.panel(0.9 + 0.42 * len(lines), lambda ax: prices(ax, lines)),
+        "prices": style.panel(0.9 + 0.42 * len(lines), lambda ax: prices(ax, lines, result.cost)),
     }
     # The map is one of sines.
     return {"speed-map": _speed_map(result, gait), **drawn} if isinstance(gait, SineGait) else drawn
@@ -79,9 +80,9 @@ def gains(limits: Iterable[LimitRow], bounds: Iterable[BoundRow]) -> list[Gain]:
     active, idle = [], []
     for row in limits:
         if row.active:
-            way = -1 if row.name == "singularity" else 1
+            way = -1 if row.name in LEAST else 1
             active.append(Gain(f"limit: {row.name}", 10 * way * row.shadow_price * row.limit))
-        elif math.isfinite(row.limit):
+        elif row.limit and math.isfinite(row.limit):
             idle.append(Gain(f"limit: {row.name}", 0.0, _use(row)))
     for row in bounds:
         if row.active in ("low", "high") and row.shadow_price is not None:
@@ -94,28 +95,29 @@ def gains(limits: Iterable[LimitRow], bounds: Iterable[BoundRow]) -> list[Gain]:
 
 def _use(row: LimitRow) -> str:
     unit, factor = QUANTITIES[row.name].common
-    if row.name == "singularity":
+    if row.name in LEAST:
         least, value = number(row.limit * factor, 3), number(row.value * factor, 3)
         return f"not active: {value} {unit} kept, {least} asked"
     return f"not active: {100 * row.value / row.limit:.0f} % used"
 
 
-def prices(ax: Axes, lines: Sequence[Gain]) -> Axes:
-    """A lollipop for each line, the first on top."""
+def prices(ax: Axes, lines: Sequence[Gain], cost: float | None = None) -> Axes:
+    """A lollipop for each line, the first on top; with a cost of transport in per cent of it."""
+    what, unit = "speed gained by relaxing it by 1 %, mm/s", "mm/s"
+    if cost:
+        lines = [replace(one, gain=0.1 * one.gain / cost) for one in lines]
+        what, unit = "cost of transport saved by relaxing it by 1 %, %", "%"
     reach = max([one.gain for one in lines] + [1e-9])
     for place, one in enumerate(lines):
         ax.plot([0, one.gain], [place, place], color=style.FORWARD, lw=3, solid_capstyle="butt")
         idle = bool(one.remark)
         colour = style.GREY if idle else style.FORWARD
         ax.plot(one.gain, place, "o", ms=6 if idle else 9, color=colour, clip_on=False, zorder=4)
-        text = one.remark or f"{one.gain:+.3g} mm/s"
+        text = one.remark or f"{one.gain:+.3g} {unit}"
         at = max(one.gain, 0.0) + 0.035 * reach
         ax.text(at, place, text, va="center", color=style.GREY if idle else style.INK, fontsize=9.5)
     style.lanes(ax, [one.label for one in lines], pad=9)
-    ax.set(
-        xlim=(min(0.0, *(one.gain for one in lines)), 1.35 * reach),
-        xlabel="speed gained by relaxing it by 1 %, mm/s",
-    )
+    ax.set(xlim=(min(0.0, *(one.gain for one in lines)), 1.35 * reach), xlabel=what)
     return ax
 
 

@@ -115,7 +115,7 @@ def active_areas(ax: Axes, result: SolvedStudy, grid: StudyGrid) -> Axes:
     return ax
 
 
-_COSTS = (("peak_torque", "largest servo torque, N m"), ("energy_per_metre", "energy, J/m"))
+_COSTS = (("peak_torque", "largest servo torque, N m"), ("cost_of_transport", "cost of transport"))
 
 
 def draw(result: SolvedStudy) -> dict[str, str]:

@@ -1,0 +1,130 @@
+"""What drives a machine: its recorded inputs, straight between samples, as effects change them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from types import SimpleNamespace
+
+import numpy as np
+
+from rr_opt.array import Array
+from rr_opt.model.machine import Machine, MachineEffect, MachineRun, Scales, Signals
+from rr_opt.sysid.sensitivities import DriveSlopes
+from rr_opt.sysid.shooting import DrivePath
+
+_KEPT = 8
+"""Sets of constants of which the drives are kept."""
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A part of a recording that is predicted by itself: samples first <= k < until."""
+
+    recording: int
+    first: int
+    until: int
+
+
+@dataclass
+class Drives:
+    """Of all recordings."""
+
+    machine: Machine
+    recordings: Sequence[MachineRun]
+    scales: Scales
+    _kept: dict[tuple, dict] = field(default_factory=dict)
+
+    def with_inputs(self, inputs: Mapping[int, Signals]) -> Drives:
+        """The same with some inputs of some recordings in place of what was recorded."""
+        runs = [
+            replace(run, inputs={**run.inputs, **inputs.get(k, {})})
+            for k, run in enumerate(self.recordings)
+        ]
+        return Drives(self.machine, runs, self.scales)
+
+    def path(
+        self, piece: Piece, signals: Sequence[MachineEffect], values: Mapping[str, float]
+    ) -> DrivePath:
+        """Over a piece.
+
+        signals  effects on the inputs, with constants in values, 0 unless given
+        """
+        constants = tuple(values.get(e.quantity(c.name), 0.0) for e in signals for c in e.constants)
+        key = (tuple(e.name for e in signals), constants)
+        if key not in self._kept:
+            while len(self._kept) >= _KEPT:
+                del self._kept[next(iter(self._kept))]
+            self._kept[key] = {}
+        kept = self._kept[key]
+        if piece not in kept:
+            if piece.recording not in kept:
+                kept[piece.recording] = self._whole(piece.recording, signals, constants)
+            kept[piece] = _cut(kept[piece.recording], piece)
+        return kept[piece]
+
+    def slopes(
+        self,
+        piece: Piece,
+        signals: Sequence[MachineEffect],
+        values: Mapping[str, float],
+        wanted: Sequence[str],
+    ) -> DriveSlopes | None:
+        """How the inputs move with the signals' constants, by differences; None if none is
+        wanted."""
+        own = [(e, c) for e in signals for c in e.constants if e.quantity(c.name) in wanted]
+        if not own:
+            return None
+        here = self.path(piece, signals, values)
+        at = np.zeros((*here.at.shape, len(wanted)))
+        nodes = np.zeros((*here.nodes.shape, len(wanted)))
+        for effect, constant in own:
+            name = effect.quantity(constant.name)
+            step, value = 0.05 * constant.size(self.scales), values.get(name, 0.0)
+            ends = [min(max(value + s, constant.low), constant.high) for s in (step, -step)]
+            up, down = (self.path(piece, signals, {**values, name: x}) for x in ends)
+            k = wanted.index(name)
+            at[..., k] = (up.at - down.at) / (ends[0] - ends[1])
+            nodes[..., k] = (up.nodes - down.nodes) / (ends[0] - ends[1])
+        return DriveSlopes(at, nodes)
+
+    def _whole(
+        self, recording: int, signals: Sequence[MachineEffect], constants: Sequence[float]
+    ) -> DrivePath:
+        run, left = self.recordings[recording], iter(constants)
+        u = run.inputs
+        for effect in signals:
+            c = SimpleNamespace(**{k.name: next(left) for k in effect.constants})
+            u = {**u, **effect.law(run.t, u, c)}
+        rows = [u[c.name] for c in self.machine.inputs]
+        return straight(run.t, rows, len(self.machine.ports), self.machine.step)
+
+
+def straight(t: Array, inputs: Sequence[Array], unknown: int, step: float) -> DrivePath:
+    """Inputs that are straight between samples, and unknown ones that are 0."""
+    usual = float(np.median(np.diff(t)))
+    each = 1 << max(int(np.ceil(np.log2(usual / step))), 0)
+    inner = np.arange(each) / each
+    edges = np.append((t[:-1, None] + np.diff(t)[:, None] * inner).ravel(), t[-1])
+    rows = np.array([np.interp(edges, t, u) for u in inputs])
+    rows = np.vstack([rows, np.zeros((unknown, edges.size))])
+    nodes = np.stack([rows[:, :-1], (rows[:, :-1] + rows[:, 1:]) / 2, rows[:, 1:]], axis=1)
+    return DrivePath(np.diff(edges), nodes, rows[:, ::each], each)
+
+
+def beside(moved: DriveSlopes | None, more: DriveSlopes, wanted: int) -> DriveSlopes:
+    """Slopes by what is wanted, and by more."""
+    if moved is None:
+        shapes = (more.at.shape[:-1], more.nodes.shape[:-1])
+        moved = DriveSlopes(*(np.zeros((*shape, wanted)) for shape in shapes))
+    return DriveSlopes(
+        np.concatenate([moved.at, more.at], axis=-1),
+        np.concatenate([moved.nodes, more.nodes], axis=-1),
+    )
+
+
+def _cut(whole: DrivePath, piece: Piece) -> DrivePath:
+    """Samples first <= k < until."""
+    each = whole.each
+    steps, at = slice(piece.first * each, (piece.until - 1) * each), slice(piece.first, piece.until)
+    return DrivePath(whole.h[steps], whole.nodes[:, :, steps], whole.at[:, at], each)

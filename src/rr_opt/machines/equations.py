@@ -1,0 +1,99 @@
+"""A machine's equations as a system to be stepped, and its numbers as quantities to be fitted."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import lru_cache
+from types import SimpleNamespace
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from rr_opt.array import Array
+from rr_opt.model.machine import Constant, Machine, MachineEffect, MachineRun, Scales
+from rr_opt.model.parameters import Uncertainty
+from rr_opt.sysid.model import EffectInfo, Form, Quantity
+from rr_opt.sysid.shooting import System
+
+_EVERY = 0.05
+"""s, over which a rate is a mean rate, so that noise does not count."""
+
+
+@lru_cache
+def system_of(machine: Machine, effects: tuple[str, ...]) -> tuple[System, tuple[str, ...]]:
+    """The motion with some effects in it, and the names of its parameters."""
+    inside = [one for one in map(machine.effect, effects) if one.port != "signal"]
+    x = {name: ca.SX.sym(name) for name in machine.states}
+    u = {one.name: ca.SX.sym(one.name) for one in machine.inputs}
+    unknown = {port: ca.SX.sym(port) for port, _, _ in machine.ports.values()}
+    p = {one.name: ca.SX.sym(one.name) for one in machine.parameters}
+    p |= {e.quantity(c.name): ca.SX.sym(e.quantity(c.name)) for e in inside for c in e.constants}
+    plain = {name: value for name, value in p.items() if "." not in name}
+
+    def add(port: str, **local: Any) -> ca.SX:
+        total = unknown.get(port, ca.SX(0))
+        names = SimpleNamespace(**{**x, **u, **plain, **local})
+        for effect in inside:
+            if effect.port == port:
+                constants = {c.name: p[effect.quantity(c.name)] for c in effect.constants}
+                total = total + effect.law(names, SimpleNamespace(**constants))
+        return total
+
+    names = SimpleNamespace(**x, **u, **plain)
+    inputs = [ca.vertcat(*x.values()), ca.vertcat(*u.values(), *unknown.values()),
+              ca.vertcat(*p.values())]  # fmt: skip
+    rates, seen = machine.rates(names, add), machine.seen(names, add)
+    system = System(
+        ca.Function("rates", inputs, [ca.vertcat(*(rates[name] for name in machine.states))]),
+        ca.Function("seen", inputs, [ca.vertcat(*(seen[one.name] for one in machine.outputs))]),
+        stiff=machine.stiff,
+        lasts=True,
+    )
+    return system, tuple(p)
+
+
+def scales_of(machine: Machine, runs: Sequence[MachineRun], nominal: Mapping[str, float]) -> Scales:
+    """Usual sizes in some recordings."""
+    sizes = {c.name: _rms([run.inputs[c.name] for run in runs]) for c in machine.inputs}
+    for c in machine.outputs:
+        sizes[f"{c.name}_rate"] = _rms([_rates(run.t, run.outputs[c.name]) for run in runs])
+    return machine.scales({**nominal, **sizes})
+
+
+def parameter_quantity(machine: Machine, name: str, value: float, known: Uncertainty) -> Quantity:
+    """A parameter of the nominal model."""
+    own = machine.parameter(name)
+    assert own is not None
+    if known.factor:
+        low, high = sorted((value / known.factor, value * known.factor))
+        low = low if own.low > 0 else own.low  # friction may be none
+        return Quantity(name, own.unit, value, abs(value), True, low, high, value, free=True)
+    return Quantity(name, own.unit, value, known.sigma, True, own.low, own.high, value)
+
+
+def effect_info(effect: MachineEffect, scales: Scales) -> EffectInfo:
+    """An effect as one that may be missing."""
+    sizes = {c.name: c.size(scales) for c in effect.constants}
+
+    def quantity(c: Constant) -> Quantity:
+        return Quantity(
+            effect.quantity(c.name), c.unit, 0.0, sizes[c.name], False, c.low, c.high, 0.0
+        )
+
+    guess = {effect.quantity(c.name): c.begin * sizes[c.name] for c in effect.constants}
+    form = Form(tuple(map(quantity, effect.constants)), (guess,))
+    return EffectInfo(
+        *(effect.name, effect.family, effect.channel, effect.sentence, (form,)),
+        smooth=effect.smooth,
+        form_error=effect.form_error,
+    )
+
+
+def _rms(parts: Sequence[Array]) -> float:
+    return float(np.sqrt(np.nanmean(np.concatenate(parts) ** 2)))
+
+
+def _rates(t: Array, y: Array) -> Array:
+    every = max(round(_EVERY / float(np.median(np.diff(t)))), 1)
+    return np.diff(y[::every]) / np.diff(t[::every])
