@@ -106,7 +106,7 @@ def test_without_a_layout_it_is_estimated_and_reported(run, tmp_path):
     write_vicon(tmp_path / "run.csv")
     done = run("inspect", "run.csv", "--no-figures", "--out", "res")
     assert done.exit_code == 0, done.stderr
-    assert "The layout was estimated from the file" in " ".join(done.stdout.split())
+    assert "The layout was learnt from the recording" in " ".join(done.stdout.split())
     assert {path.name for path in (tmp_path / "res").iterdir()} == {"inspection.json"}
 
 

@@ -258,7 +258,9 @@ class ExperimentModel(FileModel):
         json_schema_extra={"minItems": 1},
     )
     markers: Annotated[MarkersModel | None, SkipValidation] = Field(
-        default=None, description="Where the markers sit; needed for marker files."
+        default=None,
+        description="Where the markers sit; else it is learnt from the "
+        "recordings, which the robot has to drive in while its joint moves.",
     )
     columns: ColumnsModel = Field(  # pyright: ignore[reportInvalidTypeForm] - it is made
         default_factory=ColumnsModel,

@@ -166,13 +166,13 @@ def _of_noise(
         "channel": channel,
         "noise": size_text(channel, noise.sigma),
         "stated": size_text(channel, stated),
-        "whose": "follow from the markers' residuals" if by_fit else "are stated",
+        "whose": "follow from the markers' or bodies' noise" if by_fit else "are stated",
         "remedy": "" if by_fit else f"Correct `{_KEYS[channel]}` if that is not intended.",
     }
     if times > _MANY:
         yield notice("noise.large", **sizes)
     if times < _FEW:
-        better = "Markers that slip or bend?" if by_fit else "A better capture than stated?"
+        better = "A better capture than stated?"
         yield notice("noise.small", **sizes, why="A filter upstream?" if coloured else better)
     if coloured:
         yield notice("colour.filtered", channel=channel, colour=noise.colour)

@@ -5,9 +5,12 @@ Nothing is put right: the experimenter has to say. A fault of the robot is no re
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
+from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 
@@ -15,10 +18,13 @@ from rr_opt.array import Array
 from rr_opt.files.experiment_file import FILE_NAME, experiment_path, named_files, read_plan
 from rr_opt.files.experiment_plan import ExperimentPlan, PlannedRun
 from rr_opt.files.issue import InvalidFileError, Issue, has_errors
-from rr_opt.model.experiment import CHANNELS, Experiment, Recording, Run
+from rr_opt.messages import shown
+from rr_opt.model.experiment import CHANNELS, Experiment, Layout, Recording, Run
+from rr_opt.model.parameters import Uncertainty
 from rr_opt.outcome import InputError
-from rr_opt.recordings.inspection import Circumstances, Inspection, inspected
-from rr_opt.recordings.readers import ReadOptions, read_file
+from rr_opt.recordings.inspection import Circumstances, Inspection, in_file, read_both
+from rr_opt.recordings.markers.calibration import Calibration, calibration
+from rr_opt.recordings.readers import MarkerData, ReadOptions, read_file
 from rr_opt.recordings.readers.netcdf import commanded_gait
 from rr_opt.recordings.warnings import Notice, notice
 
@@ -59,19 +65,25 @@ def experiment_of(folder: str | Path) -> tuple[Experiment | None, list[Issue]]:
     except InvalidFileError as error:
         return None, [*error.issues, *_in_files(Path(folder))]
     runs: list[Run] = []
-    for number, planned in enumerate(plan.runs):
-        found, more = _inspected(plan, number, planned, estimate=False)
-        issues += more
-        if found is not None:
-            recording = found.recording
-            file = recording.source.get("file", recording.name)
-            doubts = (one for one in recording.doubts if not stops(one))
-            issues += [Issue("warning", "", one, None, file) for one in doubts]
-            runs.append(Run(recording, planned.gait, planned.use, planned.start))
+    learnt, inspections, more = _inspections(plan)
+    issues += more
+    for planned, found in inspections:
+        recording = found.recording
+        file = recording.source.get("file", recording.name)
+        doubts = (one for one in recording.doubts if not stops(one))
+        issues += [Issue("warning", "", one, None, file) for one in doubts]
+        runs.append(Run(recording, planned.gait, planned.use, planned.start))
     if has_errors(issues):
         return None, issues
-    made = Experiment(plan.robot, plan.noise, plan.uncertainty, tuple(runs), plan.name, plan.sha256)
+    zeros = {"psi_zero": _AXES, "phi_zero": _AXES} if learnt else {}
+    uncertainty = MappingProxyType({**zeros, **plan.uncertainty})
+    made = Experiment(plan.robot, plan.noise, uncertainty, tuple(runs), plan.name, plan.sha256)
     return made, issues
+
+
+_AXES = Uncertainty(0.1)
+"""Of the zeros of psi and phi, rad, where they were learnt from the recordings: as free as a robot
+whose axles toe in leaves them, since the recordings are to say everything once only."""
 
 
 def inspect_experiment(path: Path, progress: Progress) -> list[Inspection]:
@@ -79,42 +91,89 @@ def inspect_experiment(path: Path, progress: Progress) -> list[Inspection]:
 
     Raises InvalidFileError with everything that is wrong in the file and in every recording.
     """
-    plan, _ = read_plan(path)
-    inspections: list[Inspection] = []
-    issues: list[Issue] = []
-    for number, planned in enumerate(plan.runs):
-        progress(f"recording {number + 1} of {len(plan.runs)}")
-        found, more = _inspected(plan, number, planned, estimate=True)
-        issues += more
-        inspections += [found] if found is not None else []
+    _, inspections, issues = _inspections(read_plan(path)[0], progress)
     if has_errors(issues):
         raise InvalidFileError(issues)
-    return inspections
+    return [found for _, found in inspections]
 
 
-def _inspected(
-    plan: ExperimentPlan, number: int, planned: PlannedRun, *, estimate: bool
-) -> tuple[Inspection | None, list[Issue]]:
-    """A recording (None if an issue is an error), and all issues; nothing is raised.
+def _inspections(
+    plan: ExperimentPlan, progress: Progress = lambda _: None
+) -> tuple[bool, list[tuple[PlannedRun, Inspection]], list[Issue]]:
+    """Whether markers' places were learnt, the recordings without an error, and all issues."""
+    issues: list[Issue] = []
+    contents: list[tuple[int, PlannedRun, Circumstances, Any]] = []
+    for number, planned in enumerate(plan.runs):
+        progress(f"recording {number + 1} of {len(plan.runs)}")
+        known = Circumstances(
+            robot=plan.robot,
+            layout=plan.markers,
+            options=ReadOptions(plan.noise, plan.counts, plan.columns),
+            gait=planned.gait,
+            start=planned.start,
+            servo_log=planned.servo_log,
+        )
+        with _collected(plan, number, issues):
+            contents.append((number, planned, known, read_both(planned.file, known)))
+    learnt = None
+    if plan.markers is None:
+        several = [(n, read) for n, _, _, (read, _) in contents if isinstance(read, MarkerData)]
+        learnt, more = _learnt(plan, several)
+        issues += more
+    inspections: list[tuple[PlannedRun, Inspection]] = []
+    layout: Layout | Calibration | None = learnt
+    for number, planned, stated, (read, log) in contents:
+        known = stated
+        if isinstance(read, MarkerData):
+            if layout is None and plan.markers is None:
+                continue
+            if learnt is not None:
+                known = replace(known, layout=layout)
+                layout = learnt.layout  # what was learnt is reported once, with the first
+        with _collected(plan, number, issues):
+            found = in_file(planned.file, read, log, known)
+            inspections.append((planned, found))
+            issues += _other_command(plan, number, planned, found.recording.t)
+    return learnt is not None, inspections, issues
 
-    estimate: the places of markers that the plan does not give.
-    """
-    options = ReadOptions(plan.noise, plan.counts, plan.columns)
-    known = Circumstances(
-        robot=plan.robot,
-        layout=plan.markers,
-        options=options,
-        gait=planned.gait,
-        start=planned.start,
-        servo_log=planned.servo_log,
-    )
+
+@contextmanager
+def _collected(plan: ExperimentPlan, number: int, issues: list[Issue]) -> Iterator[None]:
+    """Adds what is wrong with a recording to the issues; nothing is raised."""
     try:
-        found = inspected(planned.file, known, estimate=estimate)
-        return found, _other_command(plan, number, planned, found.recording.t)
+        yield
     except InvalidFileError as error:
-        return None, list(error.issues)
+        issues += error.issues
     except InputError as error:
-        return None, [plan.document.error(("recordings", number, "file"), str(error))]
+        issues.append(plan.document.error(("recordings", number, "file"), str(error)))
+
+
+def _learnt(
+    plan: ExperimentPlan, contents: Sequence[tuple[int, MarkerData]]
+) -> tuple[Calibration | None, list[Issue]]:
+    """Where the markers of all recordings together sit (None if there are none), and issues."""
+    if not contents:
+        return None, []
+    gaits = [plan.runs[number].gait for number, _ in contents]
+    try:
+        found = calibration([read for _, read in contents], plan.robot, gaits)
+    except InputError as error:
+        why = str(error)
+    else:
+        if found.ordered:
+            return found, []
+        why = (
+            "The robot drives too little to show the axes of its platforms."
+            if found.axles is None
+            else "Neither its axles nor phi show which platform is the first."
+        )
+    number, read = contents[0]
+    message = (
+        f"Read the markers {shown(', '.join(read.labels))}. Expected `markers`, the place of each "
+        f"on the robot, or recordings that show it: the robot drives and its joint moves. {why} "
+        "Add the key, or such a recording."
+    )
+    return None, [plan.document.error(("recordings", number, "file"), message)]
 
 
 def _other_command(plan: ExperimentPlan, number: int, planned: PlannedRun, t: Array) -> list[Issue]:

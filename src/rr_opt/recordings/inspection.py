@@ -20,6 +20,7 @@ from rr_opt.model.robot import Robot
 from rr_opt.outcome import InputError
 from rr_opt.recordings.cleaning import Cleaned, clean
 from rr_opt.recordings.clock_fit import ClockFit
+from rr_opt.recordings.markers.calibration import Calibration
 from rr_opt.recordings.markers.pose import MarkerFit, fit_markers
 from rr_opt.recordings.nuisances import nuisances
 from rr_opt.recordings.nuisances.evidence import Evidence
@@ -32,12 +33,12 @@ class Circumstances:
     """What is known of a recording beside its file; all of it may be unknown.
 
     robot    as its builder believes it to be
-    layout   of the markers; None: estimated from the recording
+    layout   of the markers, or as recordings of the robot show it; None: as this one shows it
     options  with which its files are read
     """
 
     robot: Robot | None = None
-    layout: Layout | None = None
+    layout: Layout | Calibration | None = None
     options: ReadOptions = field(default_factory=ReadOptions)
     gait: Gait | None = None
     start: Start = "running"
@@ -89,38 +90,31 @@ def inspect_file(path: Path, known: Circumstances, *, layout: Path | None = None
     return found
 
 
-def inspected(file: Path, known: Circumstances, *, estimate: bool = True) -> Inspection:
+def inspected(file: Path, known: Circumstances) -> Inspection:
     """The content of a file, with all that is known of it.
 
-    estimate: the layout, where it is not known. Raises InvalidFileError with all that is wrong in
-    the file and in the servo's log, and InputError, naming the file, if it is another kind of file.
+    Raises InvalidFileError with all that is wrong in the file and in the servo's log, and
+    InputError, naming the file, if it is another kind of file.
     """
-    read, log = _read_both(file, known)
-    if isinstance(read, ServoLog):
-        raise InputError(
-            f"Read {shown(file.name)}, a servo's log. Expected a recording of the robot. Name the "
-            "log under `servo_log`, or with --servo-log, beside a recording."
-        )
-    if known.servo_log is not None and not isinstance(log, ServoLog):
-        raise InputError(
-            f"Read {shown(known.servo_log.name)}, which is no servo's log. Expected CSV with the "
-            "header row `t,goal,present`. Name it under `file` if it is the recording."
-        )
-    if isinstance(read, MarkerData) and known.layout is None and not estimate:
-        raise InputError(
-            f"Read {shown(file.name)}, a marker file. Expected `markers`, the place of each on the "
-            f"robot; the file has {shown(', '.join(read.labels))}. Add the key. `rr-opt inspect` "
-            "estimates the places from a recording in which the joint moves; turn them so that "
-            "forward is along each platform."
-        )
+    return in_file(file, *read_both(file, known), known)
+
+
+def in_file(
+    file: Path, read: Recording | MarkerData, log: ServoLog | None, known: Circumstances
+) -> Inspection:
+    """The same of its content, read. Raises InvalidFileError if markers make no robot."""
     try:
         return inspect(read, log, known)
     except InputError as error:
         refuse(str(file), str(error))
 
 
-def _read_both(file: Path, known: Circumstances) -> tuple[Any, Any]:
-    """The recording and the servo's log. Raises InvalidFileError with all that is wrong in both."""
+def read_both(file: Path, known: Circumstances) -> tuple[Recording | MarkerData, ServoLog | None]:
+    """What a file and its servo's log hold.
+
+    Raises InvalidFileError with all that is wrong in both, and InputError, naming the file, if one
+    is another kind of file.
+    """
     found: list[Any] = []
     issues: list[Issue] = []
     for path, log in ((file, False), (known.servo_log, True)):
@@ -131,23 +125,35 @@ def _read_both(file: Path, known: Circumstances) -> tuple[Any, Any]:
             issues += error.issues
     if issues:
         raise InvalidFileError(issues)
-    return found[0], found[1]
+    read, log = found
+    if isinstance(read, ServoLog):
+        raise InputError(
+            f"Read {shown(file.name)}, a servo's log. Expected a recording of the robot. Name the "
+            "log under `servo_log`, or with --servo-log, beside a recording."
+        )
+    if known.servo_log is not None and not isinstance(log, ServoLog):
+        raise InputError(
+            f"Read {shown(known.servo_log.name)}, which is no servo's log. Expected CSV with the "
+            "header row `t,goal,present`. Name it under `file` if it is the recording."
+        )
+    noise = known.options.noise
+    if noise is not None and isinstance(read, MarkerData) and read.lever is not None:
+        read = replace(read, lever=noise.position / noise.angle)
+    return read, log
 
 
 def inspect(read: Recording | MarkerData, log: ServoLog | None, known: Circumstances) -> Inspection:
     """Inspect the content of a file. Raises InputError if markers make no robot."""
     markers = synchrony = None
     if isinstance(read, MarkerData):
-        layout = None if known.layout is None else layout_for(read, known.layout)
-        noise = known.options.noise
+        layout, noise = known.layout, known.options.noise
+        if isinstance(layout, Layout):
+            layout = layout_for(read, layout)
         markers = fit_markers(read, layout, noise.position if noise else None)
         recording = markers.recording
-        if read.posed:
+        if read.lever is not None and noise is None:
             # Poses show no noise of their own.
-            sigma = {
-                one: np.full(len(recording), noise.of(one) if noise else np.nan)
-                for one in recording.channels
-            }
+            sigma = {one: np.full(len(recording), np.nan) for one in recording.channels}
             recording = replace(recording, sigma=MappingProxyType(sigma))
             markers = replace(markers, recording=recording)
     else:

@@ -3,6 +3,7 @@
 import numpy as np
 from scipy.optimize import least_squares
 
+from rr_opt.model.experiment import Layout
 from rr_opt.recordings.markers.layout import bodies_of
 from rr_opt.recordings.markers.rigid import fit
 from tests.recordings.clean.world import LAYOUT, markers, motion
@@ -38,6 +39,49 @@ def test_a_general_solver_finds_the_same_frame_by_frame():
         # Rotations curve: the platforms disagree on P by some sigma, over centimetres.
         np.testing.assert_allclose(best.x, start, atol=2e-4)
         assert abs(2 * best.cost - fitted.squares[i]) < 1e-3 * SIGMA**2 * fitted.freedom[i]
+
+
+def poses(seed, place=1e-3, angle=5e-3):
+    """Of two bodies, as points: their origins have noise `place`, their headings `angle`."""
+    rng, moved = np.random.default_rng(seed), motion()
+    points = []
+    for heading, sizes in ((moved.psi, (0.11, 0.03, 0.7)), (moved.psi + moved.phi, (-0.05, 0, 2))):
+        at = moved.x + 1j * moved.y + complex(*sizes[:2]) * np.exp(1j * heading)
+        at = at + place * (rng.normal(size=at.size) + 1j * rng.normal(size=at.size))
+        ahead = 0.1 * np.exp(1j * (heading + sizes[2] + angle * rng.normal(size=at.size)))
+        points += [at, at + ahead, at + 1j * ahead]
+    seen = np.stack(points, 1)
+    first, second = (
+        {f"{name} {i}": (z.real, z.imag) for i, z in enumerate((at, at + ahead, at + 1j * ahead))}
+        for name, at, ahead in (
+            ("a", 0.11 + 0.03j, 0.1 * np.exp(0.7j)),
+            ("b", -0.05 + 0j, 0.1 * np.exp(2j)),
+        )
+    )
+    bodies = bodies_of(Layout(first, second), [*first, *second], place / angle)
+    return bodies, np.stack([seen.real, seen.imag], -1)
+
+
+def test_of_poses_it_is_that_of_places_and_headings():
+    place, angle = 1e-3, 5e-3
+    bodies, seen = poses(1, place, angle)
+    fitted = fit(bodies, seen)
+    origins = seen[:, [0, 3]] @ [1, 1j]
+    measured = np.angle((seen[:, [1, 4]] - seen[:, [0, 3]]) @ [1, 1j]) - [0.7, 2]
+    for i in range(0, 3000, 500):
+
+        def left(p, i=i):
+            miss = origins[i] - p[0] - 1j * p[1] - [0.11 + 0.03j, -0.05] * np.exp(1j * p[2:])
+            return np.concatenate([miss.real, miss.imag, place / angle * off(measured[i] - p[2:])])
+
+        start = [*fitted.joint[i], *fitted.heading[i]]
+        best = least_squares(left, start, xtol=1e-14, ftol=1e-14, gtol=1e-14)
+        np.testing.assert_allclose(best.x, start, atol=3e-4)
+        assert abs(2 * best.cost - fitted.squares[i]) < 0.02 * place**2
+    errors = fitted.joint[:, 0] - motion().x, off(fitted.heading[:, 0] - motion().psi)
+    for error, spread in zip(errors, fitted.spread[:, [0, 2]].T, strict=True):
+        assert abs((error / (place * spread)).std() - 1) < 0.05
+    assert abs(np.sqrt(fitted.squares.mean() / fitted.freedom.mean()) / place - 1) < 0.03
 
 
 def test_without_noise_it_is_the_motion_itself():

@@ -162,9 +162,9 @@ def test_every_mistake_of_every_file_at_once(write, tmp_path):
     ]
     assert told == [
         ("bad.csv", 7, ""),
-        ("experiment.yaml", 8, "recordings[1].file"),
         ("experiment.yaml", 9, "recordings[2].file"),
         ("bad2.csv", 1, ""),
+        ("experiment.yaml", 8, "recordings[1].file"),
     ]
 
 

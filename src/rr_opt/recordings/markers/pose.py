@@ -11,17 +11,16 @@ from numpy.typing import NDArray
 
 from rr_opt.array import Array
 from rr_opt.messages import listed
-from rr_opt.model.experiment import CHANNELS, Flag, Recording
-from rr_opt.outcome import InputError
+from rr_opt.model.experiment import CHANNELS, Flag, Layout, Recording
 from rr_opt.recordings.cleaning import unwrapped
+from rr_opt.recordings.markers.calibration import Calibration, calibration
 from rr_opt.recordings.markers.layout import (
     Bodies,
     Complex,
-    Guessed,
-    Layout,
     bodies_of,
     check_scale,
-    guessed_layout,
+    places_of,
+    seen_from_above,
 )
 from rr_opt.recordings.markers.rigid import RigidFit, fit, marker_noise, refined
 from rr_opt.recordings.markers.swaps import (
@@ -36,33 +35,8 @@ from rr_opt.recordings.markers.swaps import (
 from rr_opt.recordings.readers.marker_rows import MarkerData
 from rr_opt.recordings.warnings import Notice, counted, notice, when
 
-_AXES = {
-    "z": (0, 1, 2, 1.0),
-    "x": (1, 2, 0, 1.0),
-    "y": (2, 0, 1, 1.0),
-    "-z": (1, 0, 2, -1.0),
-    "-x": (2, 1, 0, -1.0),
-    "-y": (0, 2, 1, -1.0),
-}
-"""Columns of x and y as seen from above, of the height, and its sign, by the axis that is up."""
-
 _FEWEST = 3
 """Markers of a platform that show its tilt."""
-
-
-def seen_from_above(positions: Array, up: str) -> tuple[Array, Array]:
-    """x and y (n, k, 2) and height (n, k) of positions (n, k, 3), m.
-
-    A height that is not known does not make a marker missing. Raises InputError for an unknown
-    `up`.
-    """
-    if up not in _AXES:
-        raise InputError(
-            f"The layout's `up` is {up!r}. Expected one of: {', '.join(_AXES)}. Name the axis of "
-            "the capture's frame that points up from the floor."
-        )
-    first, second, height, sign = _AXES[up]
-    return positions[..., [first, second]], sign * positions[..., height]
 
 
 def tilt(bodies: Bodies, height: Array) -> Array:
@@ -104,6 +78,8 @@ def robot_of(
         new, shift = refined(bodies, seen)
         found = marker_noise(fit(new, seen[:: max(1, len(seen) // _SAMPLE)]))
         sigma = max(_or(found, 0.0), noise_sigma or 0.0, LEAST_NOISE)
+        if bodies.lever is not None:  # points of a pose are those of one body
+            return new, shift, seen, swaps, without_ghosts(new, seen, sigma, most=0)
         seen, more = put_right(new, seen, sigma)
         again = bool(more) and not swaps
         swaps += more
@@ -113,10 +89,6 @@ def robot_of(
 
 def _or(value: float, other: float) -> float:
     return value if np.isfinite(value) else other
-
-
-_FARTHEST = 1e12
-"""Places beyond this, m, are no places, and would overflow where they are squared."""
 
 
 @dataclass(frozen=True)
@@ -146,22 +118,21 @@ class MarkerFit:
 
 
 def fit_markers(
-    data: MarkerData, layout: Layout | None, noise_sigma: float | None = None
+    data: MarkerData, known: Layout | Calibration | None, noise_sigma: float | None = None
 ) -> MarkerFit:
     """The motion in a marker file, and all that was found, corrected and left out.
 
-    layout: None has it estimated from the file itself; psi's and phi's zeros are then unknown.
+    known: the layout, or where it was learnt; None: from the file itself.
     noise_sigma: standard deviation of one coordinate of a marker, m; None takes the residuals'.
     Raises InputError if the markers cannot be matched with two platforms.
     """
-    guess = None
-    if layout is None:
-        up = _upright(data)
-        guess = guessed_layout(data.labels, seen_from_above(_places(data), up)[0], up)
-        layout = guess.layout
-    bodies = bodies_of(layout, data.labels)
-    seen, height = seen_from_above(_places(data)[:, bodies.columns], layout.up)
-    always = swapped_throughout(bodies, seen)
+    if known is None:
+        known = calibration([data])
+    learnt = known if isinstance(known, Calibration) else None
+    layout = known.layout if isinstance(known, Calibration) else known
+    bodies = bodies_of(layout, data.labels, data.lever)
+    seen, height = seen_from_above(places_of(data)[:, bodies.columns], layout.up)
+    always = swapped_throughout(bodies, seen) if data.lever is None else None
     if always:
         bodies = _renamed(bodies, always)
     check_scale(bodies, seen, layout.up)
@@ -176,28 +147,8 @@ def fit_markers(
         _rms(fitted.residual),
         tilt(bodies, height), tuple(swaps), ghosts, (),
     )  # fmt: skip
-    doubts = _notices(data, layout, made, guess, always, noise_sigma)
+    doubts = _notices(data, layout, made, learnt, always, noise_sigma)
     return replace(made, doubts=doubts, recording=_with_doubts(made.recording, data, doubts))
-
-
-_FLAT = 0.2
-"""A robot on a floor moves by less than this up and down, relative to along and across."""
-
-
-def _upright(data: MarkerData) -> str:
-    """The axis along which the markers hardly move; the format's own where none stands out."""
-    places = _places(data)
-    seen = places[:, np.isfinite(places[..., 0]).sum(axis=0) > 1]
-    if not seen.size:
-        return data.up
-    moved = np.median(np.nanstd(seen, axis=0), axis=0)
-    least, more, _ = np.argsort(moved)
-    return "xyz"[least] if moved[least] < _FLAT * moved[more] else data.up
-
-
-def _places(data: MarkerData) -> Array:
-    """The positions (n, k, 3), without those that are none."""
-    return np.where(np.abs(data.positions) < _FARTHEST, data.positions, np.nan)
 
 
 def _renamed(bodies: Bodies, order: Order) -> Bodies:
@@ -258,13 +209,13 @@ def _notices(
     data: MarkerData,
     layout: Layout,
     made: MarkerFit,
-    guess: Guessed | None,
+    learnt: Calibration | None,
     always: Order | None,
     noise_sigma: float | None,
 ) -> tuple[Notice, ...]:
     """All of them, the gravest first."""
     return (
-        *_of_layout(data, layout, made, guess),
+        *_of_layout(data, layout, made, learnt),
         *_of_names(data, made, always),
         *_of_ghosts(data, made),
         *_of_noise(made, noise_sigma),
@@ -273,11 +224,10 @@ def _notices(
 
 
 def _of_layout(
-    data: MarkerData, layout: Layout, made: MarkerFit, guess: Guessed | None
+    data: MarkerData, layout: Layout, made: MarkerFit, learnt: Calibration | None
 ) -> Iterator[Notice]:
-    if guess is not None:
-        one, two = (", ".join(names) for names in (guess.layout.platform1, guess.layout.platform2))
-        yield notice("layout.estimated", one=one, two=two, joint=1e3 * guess.joint)
+    if learnt is not None:
+        yield learnt.notice
     used = set(made.bodies.labels)
     absent = [name for name in [*layout.platform1, *layout.platform2] if name not in used]
     if absent:
@@ -286,7 +236,7 @@ def _of_layout(
     if extra:
         yield notice("layout.unused", names=", ".join(extra))
     off = np.hypot(*made.shift.T)
-    if guess is None and off.max() > _MATTERS * np.nan_to_num(made.noise):
+    if learnt is None and off.max() > _MATTERS * np.nan_to_num(made.noise):
         worst, count = int(off.argmax()), int((off > 0).sum())
         name = made.bodies.labels[worst]
         yield notice("layout.moved", name=name, off=1e3 * off[worst], count=count)

@@ -12,6 +12,9 @@ the two platforms' own, weighted by M. The headings follow P by l = (S/T) u. Tha
 the curvature of a rotation over the distance by which the platforms disagree on P. Vectors are
 complex numbers, and there is no loop over frames.
 
+A pose is one point, the body's origin, and a heading that was measured by itself: with the noise of
+a place over that of an angle, L, it has S = 1 and T = |b|^2 + L^2.
+
 The platforms' shapes are the recording's, as a layout is measured by hand. Where the markers sit a
 millimetre from where the layout says, their residuals have a mean in the platform's axes. Put
 right, the fit no longer jumps when a marker goes missing. Axes and origin stay the layout's: the
@@ -69,21 +72,23 @@ def fit(bodies: Bodies, seen: Array) -> RigidFit:
 
 
 def _fit(bodies: Bodies, z: Complex) -> RigidFit:
-    b, used = bodies.places @ np.array([1, 1j]), np.isfinite(z)
+    b, used, placing = bodies.places @ np.array([1, 1j]), np.isfinite(z), bodies.placing
     known = np.where(used, z, 0)
     # By platform: whether it is there, its heading and P alone, S, 1/T, u and l.
     there, heading, own, S, per_T, u = [], [], [], [], [], []
     for one in (0, 1):
         mine = used & (bodies.platform == one)
         there.append(mine.sum(axis=1) >= FEWEST)
-        weight = (mine & there[-1][:, None]).astype(float)
+        turns = (mine & there[-1][:, None]).astype(float)
+        weight = turns * placing
         count = np.where(there[-1], weight.sum(axis=1), 1.0)
         centre, middle = (weight * known).sum(axis=1) / count, weight @ b / count
-        heading.append(np.angle((weight * (known - centre[:, None])) @ np.conj(b)))
+        off = np.conj(b - middle[:, None])
+        heading.append(np.angle(np.sum(turns * (known - centre[:, None]) * off, axis=1)))
         arm = middle * np.exp(1j * heading[-1])
         own.append(centre - arm)
         S.append(np.where(there[-1], count, 0.0))
-        T = weight @ np.abs(b) ** 2
+        T = weight @ np.abs(b) ** 2 + (bodies.lever or 0.0) ** 2
         per_T.append(1 / np.where(T > 0, T, 1.0))
         u.append(1j * arm)
     lever = [s * t * one for s, t, one in zip(S, per_T, u, strict=True)]
@@ -100,9 +105,10 @@ def _fit(bodies: Bodies, z: Complex) -> RigidFit:
         scale = np.where(size > 1e-12 * np.maximum(xx * yy, 1e-300), 1 / size, np.nan)
     Cxx, Cyy, Cxy = scale * yy, scale * xx, -scale * xy
     joint = Cxx * pull.real + Cxy * pull.imag + 1j * (Cxy * pull.real + Cyy * pull.imag)
+    follow = [np.real(np.conj(lv) * (joint - at)) for lv, at in zip(lever, own, strict=True)]
     turned = [
-        np.where(is_there, angle - np.real(np.conj(lv) * (joint - at)), np.nan)
-        for is_there, angle, lv, at in zip(there, heading, lever, own, strict=True)
+        np.where(is_there, angle - by, np.nan)
+        for is_there, angle, by in zip(there, heading, follow, strict=True)
     ]
 
     def spread_of(lv: Complex) -> Array:
@@ -117,14 +123,18 @@ def _fit(bodies: Bodies, z: Complex) -> RigidFit:
         used, z - joint[:, None] - b * np.exp(1j * angles[:, bodies.platform]), np.nan
     )
     unknowns = 2 + there[0].astype(int) + there[1]
-    freedom = 2 * np.isfinite(residual).sum(axis=1) - unknowns
+    squares = np.nansum(placing * np.abs(residual) ** 2, axis=1)
+    freedom = 2 * np.isfinite(residual[:, placing]).sum(axis=1) - unknowns
+    if bodies.lever is not None:
+        squares += bodies.lever**2 * np.nansum(np.square(follow), axis=0)
+        freedom += there[0].astype(int) + there[1]
     return RigidFit(
         np.stack([joint.real, joint.imag], 1),
         angles,
         np.sqrt(np.stack([Cxx, Cyy, psi, phi], 1)),
         Cxy,
         residual,
-        np.nansum(np.abs(residual) ** 2, axis=1),
+        squares,
         np.maximum(freedom, 0),
     )  # fmt: skip
 

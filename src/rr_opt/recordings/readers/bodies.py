@@ -21,7 +21,7 @@ from rr_opt.messages import shown
 from rr_opt.recordings.readers.marker_rows import METRES, MarkerData, marker_data
 
 _ARM = 0.1
-"""From a body's origin to its other points, m."""
+"""From a body's origin to its other points, and so about to the markers it was made of, m."""
 
 
 def body_data(
@@ -57,7 +57,7 @@ def body_data(
             labels.append(f"{name} {'xyz'[axis]}")
             points.append(origin + arm * direction)
     return marker_data(
-        source, labels=labels, positions=np.stack(points, 1), unit=unit, up=up, posed=True, **rows
+        source, labels=labels, positions=np.stack(points, 1), unit=unit, up=up, lever=_ARM, **rows
     )
 
 

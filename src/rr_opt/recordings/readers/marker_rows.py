@@ -32,7 +32,8 @@ class MarkerData:
     rate       frames per second, Hz, as the file states it; else as the times have it
     residual   (n, k), m, of the capture's own triangulation, NaN where unknown; None: not stated
     up         the axis that points up where nobody says otherwise
-    posed      the positions are points of bodies whose poses were given: they show no noise
+    lever      of points of bodies whose poses were given: the noise of a place over that of an
+               angle, m; None of markers
     source     where it came from: file, format, unit, encoding; plain text by name
     doubts     sentences on what looked wrong and what was made of it
     """
@@ -47,7 +48,7 @@ class MarkerData:
     source: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
     doubts: tuple[str, ...] = ()
     up: str = "z"
-    posed: bool = False
+    lever: float | None = None
 
     def __len__(self) -> int:
         return len(self.t)
@@ -108,7 +109,7 @@ def marker_data(
     unit_place: tuple[str, int | None],
     residual: Array | None = None,
     up: str = "z",
-    posed: bool = False,
+    lever: float | None = None,
     doubts: Sequence[Notice] = (),
 ) -> MarkerData:
     """The markers of a file in order of time, in metres, under clean names.
@@ -119,7 +120,7 @@ def marker_data(
     labels     (k,), as written
     positions  (n, k, 3), in `unit`
     unit_place what states the unit, and in which line
-    up, posed  as of MarkerData
+    up, lever  as of MarkerData
 
     Exact zeros are missing markers. Of frames that stand there twice and say different things no
     position is kept. Raises InvalidFileError if the unit is not one of length, or the rate not one
@@ -173,7 +174,7 @@ def marker_data(
         rate=rate,
         residual=None if residual is None else residual[order.rows] * scale,
         up=up,
-        posed=posed,
+        lever=lever,
         source=MappingProxyType({**source, **found}),
         doubts=tuple(doubts),
     )
