@@ -144,15 +144,6 @@ class MachinePlan:
     document: Document
 
 
-def machine_word(path: str | Path) -> str:
-    """What the key `machine` of an experiment file says; `racer` if there is none."""
-    try:
-        word = read_document(experiment_path(Path(path))).data.get("machine", "racer")
-    except InvalidFileError:
-        return "racer"
-    return word if isinstance(word, str) else shown(word)
-
-
 def machine_plan(path: str | Path, machine: Machine) -> tuple[MachinePlan | None, list[Issue]]:
     """The plan (None if an issue is an error), and all issues; recordings are not read."""
     file = experiment_path(Path(path))
