@@ -204,6 +204,10 @@ class OdeModel:
         """See above."""
         return self._state_scale
 
+    def least_process_noise(self, run: int, effects: tuple[str, ...]) -> Array:
+        """None is known."""
+        return np.zeros(self._state_scale.size)
+
     def state_prior(self, effects: tuple[str, ...]) -> Array:
         """Nothing is known."""
         return np.full(self._state_scale.size, np.inf)
