@@ -12,7 +12,7 @@ from pydantic import Field, SkipValidation, create_model
 from rr_opt.files.experiment_file import experiment_path
 from rr_opt.files.experiment_model import ColumnOf, Uncertain
 from rr_opt.files.fields import FileModel, Key, validate
-from rr_opt.files.issue import InvalidFileError, Issue, has_errors
+from rr_opt.files.issue import InvalidFileError, Issue, has_errors, required
 from rr_opt.files.source import fingerprint, read_document, unreadable
 from rr_opt.files.yaml_text import Document
 from rr_opt.messages import shown
@@ -187,7 +187,4 @@ def _given(model: Any) -> dict[str, Any]:
 
 def read_machine_plan(path: str | Path, machine: Machine) -> MachinePlan:
     """The same. Raises InvalidFileError with all that is wrong."""
-    plan, issues = machine_plan(path, machine)
-    if plan is None:
-        raise InvalidFileError(issues)
-    return plan
+    return required(*machine_plan(path, machine))
