@@ -12,7 +12,7 @@ from pydantic import Field, SkipValidation, create_model
 from rr_opt.files.experiment_file import experiment_path
 from rr_opt.files.experiment_model import ColumnOf, Uncertain
 from rr_opt.files.fields import FileModel, Key, validate
-from rr_opt.files.issue import InvalidFileError, Issue, has_errors, required
+from rr_opt.files.issue import Issue, has_errors, required
 from rr_opt.files.source import fingerprint, read_document, unreadable
 from rr_opt.files.yaml_text import Document
 from rr_opt.messages import shown
