@@ -288,7 +288,6 @@ EFFECT = Effect(
     sentence="There is play between the servo and the platform that it turns.",
     actuate=_actuate,
     actuate_all=_actuate_all,
-    backdrivable=True,
     differentiable=False,
     form_error=0.05,
     forms=(("width",), ("width", "joint_friction"), ("width", "joint_friction", "compliance")),

@@ -97,7 +97,7 @@ def circle_of(cycle: Cycle) -> Circle:
 _STEPS = 512
 _NEGLIGIBLE = 1e-4
 """A period that adds less to the lost distance, relative, is the last that is simulated."""
-_MOST_PERIODS = 2000
+_MOST_PERIODS = 1000
 """The geometric series continues from wherever the simulation ends."""
 
 
