@@ -85,3 +85,8 @@ def test_bounds_that_leave_no_gait_give_no_best():
     result = sweep(tight, COUNTS)
     assert result.best is None
     assert result.refined is None
+
+
+def test_where_no_point_keeps_the_other_limits_grip_is_kept_by_none():
+    limits = replace(PROBLEM.limits, torque=1e-6, grip=0.4)
+    assert sweep(replace(PROBLEM, limits=limits), COUNTS).best is None

@@ -16,8 +16,13 @@ import numpy as np
 
 from rr_opt.array import Array
 from rr_opt.machines.drive import Drives, Piece, beside
-from rr_opt.machines.equations import effect_info, parameter_quantity, scales_of, system_of
-from rr_opt.machines.unknown_forces import forces
+from rr_opt.machines.equations import (
+    effect_info,
+    parameter_quantity,
+    scales_of,
+    system_of,
+    unknown_inputs,
+)
 from rr_opt.machines.windows import MODES, SHORTEST, prediction_window, stirred
 from rr_opt.model.machine import MachineEffect, MachineExperiment, Signals
 from rr_opt.sysid.diagnosis import Misfit
@@ -152,7 +157,7 @@ class OdeModel:
         """At each port something that depends on a state or an input."""
         requests = fit.problem.requests(fit.values, fit.states)
         made = self.made(requests, fit.effects)
-        terms, slopes = forces(self.machine, made)
+        terms, slopes = unknown_inputs(self.machine, made)
         out = {}
         for one, more in zip(requests, slopes, strict=True):
             (out[one.segment],) = self._linearised([one], fit.effects, fit.problem.names, more)
@@ -198,6 +203,10 @@ class OdeModel:
     def state_scale(self, effects: tuple[str, ...]) -> Array:
         """See above."""
         return self._state_scale
+
+    def least_process_noise(self, run: int, effects: tuple[str, ...]) -> Array:
+        """None is known."""
+        return np.zeros(self._state_scale.size)
 
     def state_prior(self, effects: tuple[str, ...]) -> Array:
         """Nothing is known."""

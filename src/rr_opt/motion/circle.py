@@ -100,7 +100,7 @@ _STEPS, _FEWER = 512, 128
 is then known to 1e-5."""
 _NEGLIGIBLE = 1e-4
 """A period that adds less to the lost distance, relative, is the last that is simulated."""
-_MOST_PERIODS = 2000
+_MOST_PERIODS = 1000
 """The geometric series continues from wherever the simulation ends."""
 
 

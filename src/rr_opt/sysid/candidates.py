@@ -125,7 +125,8 @@ def fitted(
     best, states = min(trials, key=lambda trial: trial[0].deviance)
     begun_with = {**states, **best.states}
     lacking = best.deviance - rival.deviance_of(some.by_run) if rival else -math.inf
-    if not best.converged and lacking > SETTINGS.patience * max(gain, SETTINGS.tolerance):
+    slow = not best.converged and lacking > SETTINGS.patience * max(gain, SETTINGS.tolerance)
+    if slow or not math.isfinite(best.deviance):
         return Candidate(ordered, estimation.solve(problem, best.values, begun_with, 0), True)
     enough = rival.deviance if rival else math.inf
     fit = estimation.fitted(problem, best.values, begun_with, enough=enough)

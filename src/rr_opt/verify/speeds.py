@@ -237,7 +237,7 @@ def motions(problem: Problem, gaits: Array, phases: int = PHASES, *, grip: bool 
     which, p = _parameters(problem, None if np.isnan(ratio).all() else ratio)
     theta = np.arange(phases)[:, None] * (2 * math.pi / phases)
     model, parts = model_of(problem.robot), []
-    for at in range(0, len(amplitude), _BLOCK):
+    for at in range(0, max(len(amplitude), 1), _BLOCK):
         here = slice(at, at + _BLOCK)
         swing, rate = amplitude[here] * np.sin(theta), amplitude[here] * np.cos(theta)
         angle = swing + offset[here], rate, -swing

@@ -20,7 +20,7 @@ from rr_opt.model.robot import Robot
 from rr_opt.verify.climb import KEPT, Aim, Climbed, climb, cost_of_transport, peak_torque, turn_rows
 from rr_opt.verify.evaluate import Evaluated, Found, Progress, evaluate
 from rr_opt.verify.grid import DECISIONS, Grid, boxes, free_decisions, grid_of, mirrored
-from rr_opt.verify.speeds import least_S1, model_of, robot_with, speed_of, speeds
+from rr_opt.verify.speeds import model_of, robot_with, speed_of, speeds
 
 _SIDE, _TOLERANCE = {True: 120, False: 40}, {True: 1e-3, False: 3e-2}
 """Gaits along each side, and tolerance of their speeds, relative. Other friction than viscous
@@ -28,15 +28,16 @@ _SIDE, _TOLERANCE = {True: 120, False: 40}, {True: 1e-3, False: 3e-2}
 
 
 class SpeedMap(NamedTuple):
-    """Speed over amplitude and period: amplitudes (nA,), rad, periods (nT,), s, signed speed
-    (nT, nA), m/s, peak torque (nT, nA), N m, and least S1 over the cycle (nA,), m. NaN past the
-    singular posture."""
+    """Speed over period and amplitude, at one offset and inertia ratio.
 
-    amplitudes: Array
-    periods: Array
+    period (T,) s; amplitude (A,) rad; speed (A, T) m/s signed; torque (A, T) N m, the peak. Past
+    the singular posture both are NaN.
+    """
+
+    period: Array
+    amplitude: Array
     speed: Array
-    peak_torque: Array
-    least_S1: Array
+    torque: Array
 
 
 def speed_map(problem: Problem, robot: Robot, offset: float) -> SpeedMap:
@@ -49,7 +50,7 @@ def speed_map(problem: Problem, robot: Robot, offset: float) -> SpeedMap:
     T = np.linspace(period.low, period.high, n)
     bare = Problem(robot, problem.limits, problem.gait)
     found = speeds(bare, alpha[:, None], T, offset, tolerance=_TOLERANCE[viscous])
-    return SpeedMap(alpha, T, found.speed.T, found.peak_torque.T, least_S1(robot, alpha, offset))
+    return SpeedMap(T, alpha, found.speed, found.peak_torque)
 
 
 TOLERATED = 1e-4

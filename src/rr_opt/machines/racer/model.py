@@ -33,8 +33,8 @@ SETTLING = 0.05
 
 
 FORM_ERROR = 1e-4
-"""Of the way travelled, by which even a fine simulation of wheels that press on a floor is off."""
-
+"""Of the way travelled, and of the speed over a segment, by which even a fine simulation of wheels
+that press on a floor is off."""
 
 _SETTLED = 0.02
 """s, in which a side speed of a wheel that creeps is gone."""
@@ -167,8 +167,8 @@ class RacerModel:
         return self.simulator.converted(request, before, effects)
 
     def state_scale(self, effects: tuple[str, ...]) -> Array:
-        """As much as the noise; in speeds, as much as that makes in a second, or in the moment for
-        which a side speed lasts."""
+        """As much as the noise as far as it is slow; in speeds, as much as that makes in a second,
+        or in the moment for which a side speed lasts."""
         place, heading = self._stated
         sides = [place / _SETTLED] * 2 if slips(self.simulator.every(effects)) else []
         return np.array([place, place, heading, place, *sides])
@@ -176,8 +176,19 @@ class RacerModel:
     @cached_property
     def _stated(self) -> tuple[float, float]:
         """The noise of the place, m, and of the heading, rad."""
-        place, heading = (float(np.nanmedian(self.runs[0].sigma[:, k])) for k in (0, 2))
+        sigma = self.runs[0].weighted_sigma
+        place, heading = (float(np.nanmedian(sigma[:, k])) for k in (0, 2))
         return place, heading
+
+    def least_process_noise(self, run: int, effects: tuple[str, ...]) -> Array:
+        """In the speed, the form error's share of its mean."""
+        least = np.zeros(self.state_scale(effects).size)
+        least[3] = FORM_ERROR * self._mean_speeds[run]
+        return least
+
+    @cached_property
+    def _mean_speeds(self) -> Array:
+        return np.array([_travelled(run)[-1] / run.duration for run in self.runs])
 
     def state_prior(self, effects: tuple[str, ...]) -> Array:
         """Side speeds are about 0: what they do to the motion is of the order of the noise."""
