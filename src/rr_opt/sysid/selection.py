@@ -68,13 +68,13 @@ class Selection:
 
     def complete(self, candidate: Candidate) -> bool:
         """Whether its simulation leaves nothing: no more than is negligible, beside an effect as
-        much as is none, and than noise leaves by chance. And, without effects, whether recordings
-        agree on its values."""
+        much as is none, than machines of this kind differ by from any model, and than noise leaves
+        by chance. And, without effects, whether recordings agree on its values."""
         if not candidate.choices and constancy(candidate.fit).probability <= SETTINGS.named:
             return False
         chance = 2 * math.sqrt(2 / max(candidate.fit.samples, 1))
         least = SETTINGS.none if candidate.choices else SETTINGS.negligible
-        most = least**2 + chance
+        most = least**2 + self.model.form_error**2 + chance
         # Segments that need not join leave less than whole runs.
         return candidate.fit.excess**2 <= 2 * most and candidate.excess**2 <= most
 
