@@ -10,7 +10,7 @@ import typer
 import rr_opt as rr
 from rr_opt.cli import options
 from rr_opt.cli.options import show
-from rr_opt.cli.steps import Steps
+from rr_opt.cli.steps import StepDisplay
 
 
 def simulate(
@@ -31,7 +31,7 @@ def simulate(
 
     Writes the trajectory, a figure and, on request, an animation.
     """
-    with Steps() as steps, options.naming(source):
+    with StepDisplay() as steps, options.naming(source):
         gait = {"amplitude": amplitude, "period": period, "offset": offset}
         driven = options.read_gait(source, **gait, seconds=seconds, rate=rate)
         folder = options.motion_folder(out, source, kind, animate)
@@ -52,7 +52,7 @@ def circle(
 
     Also shows how a start from rest approaches it. Left is positive, seen from above.
     """
-    with Steps() as steps, options.naming(source):
+    with StepDisplay() as steps, options.naming(source):
         gait = {"amplitude": amplitude, "period": period, "offset": offset}
         answer = rr.circle(options.read_gait(source, **gait), progress=steps)
     show(answer, json=json)
@@ -77,7 +77,7 @@ def export(
     amplitude is lowered. The loss of speed is reported separately for
     the adjusted period, the straight lines between set points, and rounding to counts.
     """
-    with Steps() as steps, options.naming(source):
+    with StepDisplay() as steps, options.naming(source):
         gait = {"amplitude": amplitude, "period": period, "offset": offset}
         driven = options.read_gait(source, **gait, rate=rate)
         file = options.setpoints_file(out, source, kind)
@@ -97,7 +97,7 @@ def route(
 
     The drive is checked by simulation. `rr-opt init route` writes a file to begin with.
     """
-    with Steps() as steps:
+    with StepDisplay() as steps:
         asked = options.read_route(route)
         folder = options.results_folder(out, asked.name)
         driven = rr.route(asked, progress=steps)

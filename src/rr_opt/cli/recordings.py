@@ -10,7 +10,7 @@ import typer
 import rr_opt as rr
 from rr_opt.cli import options
 from rr_opt.cli.options import show
-from rr_opt.cli.steps import Steps
+from rr_opt.cli.steps import StepDisplay
 
 
 def inspect(
@@ -32,7 +32,7 @@ def inspect(
 
     Outliers are flagged, and gaps stay gaps. Writes inspection.json and report.html.
     """
-    with Steps() as steps:
+    with StepDisplay() as steps:
         steps("reading")
         gait = options.read_command(amplitude=amplitude, period=period, offset=offset)
         folder = options.inspection_folder(out, source, netcdf)
@@ -58,7 +58,7 @@ def diagnose(
 
     Writes diagnosis.json, robot-corrected.yaml for the other verbs, and report.html.
     """
-    with Steps() as steps:
+    with StepDisplay() as steps:
         steps("reading")
         experiment = rr.load_experiment(source)
         folder = options.results_folder(out, f"{experiment.name}-diagnosis")
