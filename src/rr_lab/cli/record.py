@@ -48,7 +48,9 @@ def record(
     seal: Annotated[
         Path | None,
         typer.Option(
-            parser=place, metavar="FILE", help="File for the answer; its hash goes to the folder."
+            parser=place,
+            metavar="FILE",
+            help="File for the sealed answer; its hash is written to the folder.",
         ),
     ] = None,
     seed: Annotated[

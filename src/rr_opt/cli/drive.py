@@ -73,9 +73,9 @@ def export(
 ) -> None:
     """Write a gait as set points for a controller.
 
-    A period holds a whole number of set points. Where that takes a gait beyond its limits, the
-    amplitude is lowered. The loss of speed is reported separately for
-    the adjusted period, the straight lines between set points, and rounding to counts.
+    The period is adjusted to a whole number of set points. If that takes the gait beyond its
+    limits, the amplitude is lowered. The loss of speed is reported separately for the adjusted
+    period, the straight lines between set points, and rounding to counts.
     """
     with StepDisplay() as steps, options.naming(source):
         gait = {"amplitude": amplitude, "period": period, "offset": offset}
@@ -95,7 +95,7 @@ def route(
 ) -> None:
     """Drive a route of straights, arcs and waypoints from rest, as fast as the robot can.
 
-    The drive is checked by simulation. `rr-opt init route` writes a file to begin with.
+    The drive is checked by simulation. `rr-opt init route` writes a file to start from.
     """
     with StepDisplay() as steps:
         asked = options.read_route(route)

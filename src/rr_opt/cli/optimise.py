@@ -77,7 +77,7 @@ def turn(
     show(turned, files, json=json)
 
 
-_COLD = "Solve every case from scratch, not from its neighbours."
+_COLD = "Solve every case from scratch rather than from its neighbours."
 _RESTART = "Discard the rows of an earlier run."
 
 

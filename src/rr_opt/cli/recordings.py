@@ -54,7 +54,7 @@ def diagnose(
         bool, typer.Option("--page/--no-page", help="Draw figures and write report.html.")
     ] = True,
 ) -> None:
-    """Find out why recordings differ from the simulation: where, by which physics, and how sure.
+    """Find out why recordings differ from the simulation: where, by which physics, how certainly.
 
     Writes diagnosis.json, robot-corrected.yaml for the other verbs, and report.html.
     """
