@@ -43,6 +43,30 @@ def test_what_is_wrong_is_listed_at_once(tmp_path):
     assert all("engine" in one for one in issues)
 
 
+def test_a_machine_that_there_is_not(tmp_path):
+    file = write(tmp_path, dry=0.0, runs=2, seconds=2.0) / "experiment.yaml"
+    file.write_text(file.read_text().replace("machine: pendulum", "machine: pendulu"))
+    said = f"{file}:1: machine: Read the machine 'pendulu'. Expected one of: racer, pendulum"
+    for verb in (rr.diagnose, rr.inspect):
+        with pytest.raises(rr.InputError) as error:
+            verb(file)
+        assert str(error.value).startswith(said)
+    assert str(rr.lint(file)[0]).startswith(said)
+
+
+def test_inspect_says_what_reads_other_machines(tmp_path):
+    folder = write(tmp_path, dry=0.0, runs=2, seconds=2.0)
+    with pytest.raises(rr.InputError, match="with a pendulum"):
+        rr.inspect(folder)
+
+
+def test_the_roller_racer_may_be_named(tmp_path):
+    rr.init("experiment", tmp_path / "one")
+    file = tmp_path / "one" / "experiment.yaml"
+    file.write_text("machine: racer\n" + file.read_text())
+    assert rr.lint(file) == []
+
+
 def test_times_that_repeat_are_told(tmp_path):
     folder = write(tmp_path, dry=0.0, runs=2, seconds=2.0)
     table = np.loadtxt(folder / "run0.csv", delimiter=",", skiprows=1)

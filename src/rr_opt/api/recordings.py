@@ -13,6 +13,7 @@ import numpy as np
 from rr_opt.api.load import identity, load_experiment
 from rr_opt.documents.archive import file_for_result
 from rr_opt.files.experiment_file import read_plan
+from rr_opt.files.issue import refuse
 from rr_opt.files.source import fingerprint
 from rr_opt.model.experiment import Experiment, Run, Start
 from rr_opt.model.gait import Gait
@@ -59,6 +60,14 @@ def inspect(
         wrong = [name for name, value in given.items() if value is not None]
         if wrong:
             _refuse(wrong)
+        from rr_opt.api.machine import machine_of
+
+        if (machine := machine_of(path)) is not None:
+            refuse(
+                str(path),
+                f"Read an experiment with {machine.words}. Expected a Roller Racer. "
+                "`rr-opt lint` checks this one's recordings.",
+            )
         found = inspect_experiment(path, progress)
         sha256 = read_plan(path)[0].sha256
     else:

@@ -12,7 +12,7 @@ from pydantic import Field, SkipValidation, create_model
 from rr_opt.files.experiment_file import experiment_path
 from rr_opt.files.experiment_model import ColumnOf, Uncertain
 from rr_opt.files.fields import FileModel, Key, validate
-from rr_opt.files.issue import InvalidFileError, Issue, has_errors, required
+from rr_opt.files.issue import Issue, has_errors, required
 from rr_opt.files.source import fingerprint, read_document, unreadable
 from rr_opt.files.yaml_text import FileData
 from rr_opt.messages import shown
@@ -142,15 +142,6 @@ class MachinePlan:
     noise: Mapping[str, float]
     recordings: tuple[PlannedRecording, ...]
     document: FileData
-
-
-def machine_word(path: str | Path) -> str:
-    """What the key `machine` of an experiment file says; `racer` if there is none."""
-    try:
-        word = read_document(experiment_path(Path(path))).data.get("machine", "racer")
-    except InvalidFileError:
-        return "racer"
-    return word if isinstance(word, str) else shown(word)
 
 
 def machine_plan(path: str | Path, machine: Machine) -> tuple[MachinePlan | None, list[Issue]]:

@@ -21,7 +21,7 @@ from rr_opt.outcome import InputError
 
 Kind = Literal["robot", "problem", "study", "experiment", "route", "result"]
 
-_EXPERIMENT = ("recordings", "noise", "uncertainty")
+_EXPERIMENT = ("recordings", "noise", "uncertainty", "machine")
 _STUDY = ("vary", "together", "problem")
 
 
