@@ -126,6 +126,7 @@ WRONG = {
     "over time": (lambda data: data.rename(t="time"), "The variable `t` is missing"),
     "backwards": (lambda data: data.isel(t=[2, 1, 0]), "each above the last"),
     "one row": (lambda data: data.isel(t=[0]), "t has 1 values"),
+    "no sigma": (lambda data: data.assign(x_sigma=data.x_sigma * 1e306), "x_sigma ranges from"),
     "NaN": (lambda data: data.assign_coords(t=[0, np.nan, 1]), "each above the last"),
 }
 
