@@ -35,7 +35,8 @@ def recordings(draw):
         values = np.array(draw(st.lists(NUMBERS, min_size=n, max_size=n)))
         # A value that is not there is flagged so; one that is there may be too.
         values[(flags & 1 == 1) & draw(st.booleans())] = np.nan
-        sigma = np.array(draw(st.lists(NUMBERS | st.just(np.nan), min_size=n, max_size=n)))
+        noise = st.floats(0, 1e6) | st.just(np.nan)
+        sigma = np.array(draw(st.lists(noise, min_size=n, max_size=n)))
         by_channel[name] = (values, sigma, flags)
     return Recording(
         draw(WORDS),
