@@ -28,6 +28,9 @@ _UNSEEN = 0.2
 """Gaps that are bridged, s."""
 _ACCURACY, _DELAY = 0.3, 0.05
 """By how much the nominal robot may be wrong, of its speed, and the servo late, s; 1 sigma."""
+_STEADY = 0.1
+"""Of the largest speed from rest, what a steady acceleration adds by the end, 1 sigma. Random robots
+with unknown friction had 0.06."""
 _OTHER = 2.0
 """Sigmas beyond which the model does not describe the robot."""
 _SURE_SPEED = 4.0
@@ -77,7 +80,7 @@ def _against_model(given: Evidence, robot: Robot, gait: Gait) -> Iterator[Notice
     speed = np.interp(t, grid, rest)
     way = np.interp(t, grid, cumulative_trapezoid(rest, grid, initial=0))
     more = np.interp(t, grid, cumulative_trapezoid(driving - rest, grid, initial=0)) / _SPEED
-    steady = _ACCURACY * float(np.abs(speed).max()) / (t[-1] - t[0])
+    steady = _STEADY * float(np.abs(speed).max()) / (t[-1] - t[0])
     A = np.column_stack([more, way, speed, t**2 / 2, np.ones(n)]) / given.sigma[0]
     b = (np.concatenate([[0.0], np.cumsum(rolled)]) - way) / given.sigma[0]
     known = np.diag([0.0, 1 / _ACCURACY, 1 / _DELAY, 1 / steady, 0.0])
