@@ -29,8 +29,8 @@ _UNSEEN = 0.2
 _ACCURACY, _DELAY = 0.3, 0.05
 """By how much the nominal robot may be wrong, of its speed, and the servo late, s; 1 sigma."""
 _STEADY = 0.1
-"""Of the largest speed from rest, what a steady acceleration adds by the end, 1 sigma. Random robots
-with unknown friction had 0.06."""
+"""Of the largest speed from rest, what a steady acceleration adds by the end, 1 sigma. Random
+robots with unknown friction had 0.06."""
 _OTHER = 2.0
 """Sigmas beyond which the model does not describe the robot."""
 _SURE_SPEED = 4.0
