@@ -14,6 +14,7 @@ from rr_opt.model.machine import Machine, MachineExperiment
 from rr_opt.outcome import InputError, NotConvergedError
 from rr_opt.recordings.machine_run import machine_experiment
 from rr_opt.results.machine_diagnosis import ExplainedMachine
+from rr_opt.results.machine_inspection import InspectedMachine
 from rr_opt.results.result import Progress, quiet
 
 
@@ -52,6 +53,11 @@ def lint_machine(path: str | Path) -> list[Issue] | None:
         return [*issues, *(machine_experiment(plan)[1] if plan else ())]
     except InvalidFileError as error:
         return list(error.issues)
+
+
+def inspect_machine(path: str | Path, machine: Machine) -> InspectedMachine:
+    """What was read of an experiment. Raises InvalidFileError with everything wrong."""
+    return InspectedMachine(load_machine(path, machine))
 
 
 def diagnose_machine(experiment: MachineExperiment, progress: Progress = quiet) -> ExplainedMachine:

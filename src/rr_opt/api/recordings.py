@@ -13,7 +13,6 @@ import numpy as np
 from rr_opt.api.load import identity, load_experiment
 from rr_opt.documents.archive import file_for_result
 from rr_opt.files.experiment_file import read_plan
-from rr_opt.files.issue import refuse
 from rr_opt.files.source import fingerprint
 from rr_opt.model.experiment import Experiment, Run, Start
 from rr_opt.model.gait import Gait
@@ -30,6 +29,7 @@ from rr_opt.results.result import Progress, quiet
 if TYPE_CHECKING:
     from rr_opt.results.diagnosis import ExplainedExperiment
     from rr_opt.results.machine_diagnosis import ExplainedMachine
+    from rr_opt.results.machine_inspection import InspectedMachine
 
 
 def inspect(
@@ -41,7 +41,7 @@ def inspect(
     gait: Gait | None = None,
     start: Start = "running",
     progress: Progress = quiet,
-) -> InspectedRecordings:
+) -> InspectedRecordings | InspectedMachine:
     """A recording, or all of an experiment's folder, read and cleaned.
 
     Nothing is filled in or dropped: outliers are flagged, gaps stay gaps. Of one recording,
@@ -60,14 +60,10 @@ def inspect(
         wrong = [name for name, value in given.items() if value is not None]
         if wrong:
             _refuse(wrong)
-        from rr_opt.api.machine import machine_of
+        from rr_opt.api.machine import inspect_machine, machine_of
 
         if (machine := machine_of(path)) is not None:
-            refuse(
-                str(path),
-                f"Read an experiment with {machine.words}. Expected a Roller Racer. "
-                "`rr-opt lint` checks this one's recordings.",
-            )
+            return inspect_machine(path, machine)
         found = inspect_experiment(path, progress)
         sha256 = read_plan(path)[0].sha256
     else:

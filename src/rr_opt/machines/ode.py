@@ -23,7 +23,7 @@ from rr_opt.machines.equations import (
     system_of,
     unknown_inputs,
 )
-from rr_opt.machines.windows import MODES, SHORTEST, prediction_window, stirred
+from rr_opt.machines.windows import SHORTEST, prediction_window, stirred
 from rr_opt.model.machine import MachineEffect, MachineExperiment, Signals
 from rr_opt.sysid.diagnosis import Misfit
 from rr_opt.sysid.estimation import Fit
@@ -39,10 +39,8 @@ from rr_opt.sysid.model import (
     Simulation,
 )
 from rr_opt.sysid.sensitivities import DriveSlopes, Recorded, Sought, grams
+from rr_opt.sysid.settings import SETTINGS
 from rr_opt.sysid.shooting import DrivePath, Path, System, predict_all
-
-WINDOWS = 2.0
-"""In a part of a recording that is predicted from the others."""
 
 _EARLY = 0.05
 """s, from which the state at the beginning of a segment is seen."""
@@ -79,10 +77,10 @@ class OdeModel:
         self.horizon = self.segment_length = SHORTEST
         self._part([Piece(k, 0, len(run)) for k, run in enumerate(experiment.runs)])
         self.horizon = self.segment_length = prediction_window(self)
-        self.correlation_time = self.horizon / MODES
+        self.correlation_time = self.horizon / SETTINGS.modes
         if not parted:
             # Windows are independent: parts of a recording are predicted from one another.
-            length = WINDOWS * self.horizon
+            length = SETTINGS.windows * self.horizon
             self._part([p for one in self._pieces for p in self._parts(one, length)])
 
     def _part(self, pieces: Sequence[Piece]) -> None:

@@ -588,16 +588,30 @@ def initial(
 def whole_runs(fit: Fit) -> Fit:
     """The same quantities by least squares over whole runs, or windows as long as the machine can
     be predicted: what the model predicts unaided."""
+    single, states = _whole(fit, fit.problem.by_run, fit.values)
+    # What is left has to be known to a fraction of what would be negligible.
+    enough = 0.1 * SETTINGS.negligible**2 * fit.samples
+    return solve(single, fit.values, states, tolerance=enough)
+
+
+def predicted(fit: Fit, runs: Iterable[int], values: Mapping[str, float]) -> Fit:
+    """Any runs, whole or in such windows, with these values: initial states alone are fitted."""
+    single, states = _whole(fit, runs, values)
+    return solve(replace(single, quantities=(), values=dict(values)), values, states)
+
+
+def _whole(
+    fit: Fit, runs: Iterable[int], values: Mapping[str, float]
+) -> tuple[Problem, dict[Segment, Array]]:
+    """Least squares over whole runs, and states to begin with: the fit's own where it has them."""
     problem = fit.problem
-    cut = segments({r: problem.model.runs[r] for r in problem.by_run}, problem.model.horizon)
+    cut = segments({r: problem.model.runs[r] for r in runs}, problem.model.horizon)
     begun = {(s.run, s.first): state for s, state in fit.states.items()}
     states = {
         one: begun[one.run, one.first]
         if (one.run, one.first) in begun
-        else problem.model.initial_state(one, problem.effects, fit.values)
+        else problem.model.initial_state(one, problem.effects, values)
         for one in cut
     }
-    single = replace(problem, segments=cut, robust=False, q=SETTINGS.most_process_noise)
-    # What is left has to be known to a fraction of what would be negligible.
-    enough = 0.1 * SETTINGS.negligible**2 * fit.samples
-    return solve(single, fit.values, states, tolerance=enough)
+    q = SETTINGS.most_process_noise
+    return replace(problem, segments=cut, robust=False, q=q), states
