@@ -22,7 +22,6 @@ HALF = 2 * laws.STRIBECK
         (laws.DIRECTION_FRICTION, {"difference": 0.2}, -0.1),
         # R 4 ohm sees 0.5 ohm more; half of the time, so a quarter of the drop counts.
         (laws.SUPPLY_SAG, {"resistance": 0.5}, -0.5 / 4 * 0.25 * 2.0),
-        (laws.TORQUE_GAIN, {"error": 0.05}, 0.1),
         (laws.TORQUE_OFFSET, {"torque": 0.07}, 0.07),
     ],
     ids=lambda one: getattr(one, "name", ""),
