@@ -55,7 +55,7 @@ class ProblemModel(FileModel):
         default="speed",
         description="What is best: the largest speed, or the least cost of transport.",
     )
-    robust: Annotated[Spreads, Section()] | None = Field(
+    robust: Annotated[Spreads, Keys()] | None = Field(
         default=None,
         description="How well the robot is known. With it a gait is sought too that is fast on "
         "95 % of the robots that it may be.",
