@@ -62,19 +62,15 @@ class Result:
     @cached_property
     def sound(self) -> float:
         """How likely the answer's effects are no imitation of something else: recordings agree on
-        their values, and what is left of the misfit, in those that were fitted and in those that
-        were not, is no more than machines differ from models of such effects."""
-        share = max(
-            self._left(self.best.excess, self.selection.base.excess),
-            self._left(self.final.excess, self.refitted.excess),
-        )
+        their values, those that were not fitted are predicted better with them, and what is left of
+        the misfit is no more than machines differ from models of such effects."""
+        if self.best.choices and self.final.excess > self.refitted.excess:
+            return 0.0
+        first = self.selection.base.excess**2
+        left = self.best.excess**2 - SETTINGS.none**2 - self.selection.model.form_error**2
+        share = math.sqrt(max(left, 0.0) / max(first, 1e-12))
         form = max(self._form_errors.values(), default=math.inf)
         return self.constancy.probability / (1 + (share / form / SETTINGS.form_errors) ** 4)
-
-    def _left(self, after: float, before: float) -> float:
-        """Of an excess, beyond what is none: as a share of that before."""
-        left = after**2 - SETTINGS.none**2 - self.selection.model.form_error**2
-        return math.sqrt(max(left, 0.0)) / max(before, 1e-6)
 
     @property
     def _form_errors(self) -> Mapping[str, float]:
