@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, JsonValue, SkipValidation, WithJsonSchema, create_model
 
-from rr_opt.files.fields import FileModel, Section
+from rr_opt.files.fields import FileModel, Keys
 from rr_opt.files.robot_file import RobotModel
 from rr_opt.model.problem import Direction, GaitBounds, Limits, Objective, RatioChoice, Shape
 
@@ -20,7 +20,7 @@ def _needs(key: str, shape: Shape) -> dict[str, Any]:
     return {"if": {"required": [key]}, "then": then}
 
 
-_GAIT = Section(schema={"allOf": [_needs(key, shape) for key, shape in OWN_SHAPE.items()]})
+_GAIT = Keys(schema={"allOf": [_needs(key, shape) for key, shape in OWN_SHAPE.items()]})
 
 
 class ProblemModel(FileModel):
@@ -34,10 +34,10 @@ class ProblemModel(FileModel):
     gait: Annotated[GaitBounds, _GAIT] = Field(
         default_factory=GaitBounds, description="Which gaits are allowed."
     )
-    inertia_ratio: Annotated[RatioChoice, Section(alone="bounds")] | None = Field(
+    inertia_ratio: Annotated[RatioChoice, Keys(alone="bounds")] | None = Field(
         default=None, description="J20/J10 as a choice. Without it: the robot as it is."
     )
-    limits: Annotated[Limits, Section()] = Field(
+    limits: Annotated[Limits, Keys()] = Field(
         default_factory=Limits,
         description="What a gait may ask of the robot. What is not given is what the robot's servo "
         "can do.",
