@@ -245,6 +245,7 @@ def problem_from(sources: Sources) -> tuple[Problem | None, list[Issue]]:
         inertia_ratio=reachable(ratio, robot) if ratio else None,
         direction=model.direction,
         objective=model.objective,
+        robust=model.robust,
     )
     return problem, issues
 
@@ -265,6 +266,12 @@ def _contradictions(model: ProblemModel, robot: Robot, document: FileData) -> It
             "`shape: sine`, or leave them out."
         )
         yield document.error(("gait", "shape"), message)
+    if model.robust and (model.gait.shape != "sine" or model.objective != "speed"):
+        message = (
+            "Read `robust` with another shape than a sine or another objective than the speed. "
+            "Expected neither: robust gaits are sines that are fast. Leave one of them out."
+        )
+        yield document.error(("robust",), message)
     if ratio := model.inertia_ratio:
         for level, key, message in ratio_findings(ratio, robot):
             yield document.issue(level, ("inertia_ratio", key), message)

@@ -8,7 +8,15 @@ from pydantic import Field, JsonValue, SkipValidation, WithJsonSchema, create_mo
 
 from rr_opt.files.fields import FileModel, Keys
 from rr_opt.files.robot_file import RobotModel
-from rr_opt.model.problem import Direction, GaitBounds, Limits, Objective, RatioChoice, Shape
+from rr_opt.model.problem import (
+    Direction,
+    GaitBounds,
+    Limits,
+    Objective,
+    RatioChoice,
+    Shape,
+    Spreads,
+)
 
 OWN_SHAPE: dict[str, Shape] = {"harmonics": "fourier", "intervals": "free"}
 """Keys of a gait that belong to one shape only."""
@@ -46,6 +54,11 @@ class ProblemModel(FileModel):
     objective: Objective = Field(
         default="speed",
         description="What is best: the largest speed, or the least cost of transport.",
+    )
+    robust: Annotated[Spreads, Keys()] | None = Field(
+        default=None,
+        description="How well the robot is known. With it a gait is sought too that is fast on "
+        "95 % of the robots that it may be.",
     )
 
 
