@@ -37,7 +37,7 @@ _UNMODELLED = np.array([1e-3, 1e-3, 3e-3, 2e-3, 0.01, 1e-3])
 """1 sigma of what a period adds to the first six of z beside the linear map."""
 _ACCURATE, _ON_THE_WAY = 3.0, 0.3
 """How much of each tolerance an error of cost 1 is: a third at the end, three times it on the way."""
-_AMPLITUDE, _OFFSET, _PERIOD = 0.03, 0.1, 0.3
+_AMPLITUDE, _OFFSET, _PERIOD = 0.01, 0.1, 0.2
 """Corrections of cost 1, rad; and the cost of a period's time."""
 _STEPS, _LATE = 13, 3
 """Of a period: until its pose is seen, and then."""
@@ -45,6 +45,11 @@ LOOKS, MARGIN = 96, 0.998
 """Places in a period where the limits are kept, and to what share: between them lies the peak."""
 HALVINGS = 8
 """Parts of the way back to the offset in force that are tried for a correction within limits."""
+_SHORT = 0.25
+"""Of the tolerance, so much before the end is aimed at: what is missing can be driven, but what is
+too much not be braked."""
+_LONGEST = 1.5
+"""So many times as many periods as planned may be made, until the drive goes on to its end."""
 _STATES = 8
 _CHANGE = 1e-4
 """Of the masses, for derivatives."""
@@ -61,7 +66,7 @@ class Feedback:
     place     (K + 1, 3): x (m), y (m), psi (rad) where periods begin; speed (K + 1,), m/s, there
     seen      (K, 3): where the robot is seen, `delay` before the end of a period
     F, B, H, G    (K, 4, 8), (K, 4, 2), (K, 3, 8), (K, 3, 2); L (K, 6, 3) of the filter
-    gain      (K, 2, 8): u = -gain z;  value (K + 1, 8, 8): z' value z is the cost to go
+    gain      (K, 2, 9): u = -gain (z, 1);  value (K + 1, 9, 9): its square form is the cost to go
     """
 
     delay: float
@@ -111,7 +116,11 @@ def feedback(plan: Plan, problem: Problem, delay: float = DELAY) -> Feedback:
         place.append(pose)
         speed.append(v)
     F, B, H, G = (np.array(part) for part in zip(*maps, strict=True))
-    gain, value = _regulator(F, B, command, plan.route.tolerance)
+    last = plan.legs[-1]
+    aim = last.at(last.length - _SHORT * plan.route.tolerance.position)
+    miss = -apart(np.array([aim.x, aim.y, plan.heading]), pose)
+    final = v if plan.route.end == "rest" else 0.0
+    gain, value = _regulator(F, B, np.append(miss, final), plan.route.tolerance)
     bend = _bend(problem, command, max(map(abs, speed)))
     box = np.array([reach(problem), problem.limits.rate, bend])
     return Feedback(
@@ -126,12 +135,18 @@ def _periods(command: Command) -> tuple[Command, Array]:
     for number, u in enumerate(command.segments.T, 1):
         level = np.allclose(u[:3], u[3:6], atol=1e-12)
         cycles = u[7] * (u[2] + u[5]) / (4 * math.pi)
-        whole = max(0, math.floor(cycles - 0.5)) if level else 0
-        period = 2 * math.pi / u[2]
-        durations += [period] * whole + [u[7] - whole * period]
-        knots += [u[3:6]] * (whole + 1)
+        if level and u[0] == 0:
+            # Of a joint at rest one moment is like another.
+            parts = max(1, round(cycles))
+            added, ends = [u[7] / parts] * parts, [number] * parts
+        else:
+            whole = max(0, math.floor(cycles - 0.5)) if level else 0
+            period = 2 * math.pi / u[2]
+            added, ends = [period] * whole + [u[7] - whole * period], [number] * whole + [0]
         group[-1] = number if level else 0
-        group += [number] * whole + [0]
+        group += ends
+        durations += added
+        knots += [u[3:6]] * len(added)
     return Command(np.array(durations), np.array(knots).T), np.array(group)
 
 
@@ -163,29 +178,25 @@ def _map(out: Array, by_friction: Array) -> tuple[Array, Array]:
     return rows[:, :_STATES], rows[:, _STATES:]
 
 
-def _whole(F: Array, B: Array) -> tuple[Array, Array]:
-    """F and B with the rows of what is constant, and of the corrections that come into force."""
-    A, b = np.zeros((_STATES, _STATES)), np.zeros((_STATES, 2))
-    A[:4], b[:4] = F, B
-    A[4, 4] = A[5, 5] = b[6, 0] = b[7, 1] = 1
-    return A, b
-
-
-def _regulator(F: Array, B: Array, command: Command, asked: Tolerance) -> tuple[Array, Array]:
-    """Gains and costs to go, by Riccati's recursion from the end."""
-    way = np.zeros(_STATES)
-    way[:3] = 1 / asked.path, 1 / asked.path, 1 / asked.heading
-    end = np.zeros(_STATES)
-    end[:4] = 1 / asked.position, 1 / asked.position, 1 / asked.heading, 1 / asked.speed
-    on_the_way, P = np.diag((_ON_THE_WAY * way) ** 2), np.diag((_ACCURATE * end) ** 2)
-    R = np.diag([_AMPLITUDE**-2, _OFFSET**-2])
+def _regulator(F: Array, B: Array, miss: Array, asked: Tolerance) -> tuple[Array, Array]:
+    """Gains and costs to go, by Riccati's recursion from the end. miss: rows x, y, psi, v of the
+    planned end against the one asked for."""
+    way, end = np.zeros((3, _STATES + 1)), np.zeros((4, _STATES + 1))
+    np.fill_diagonal(way, _ON_THE_WAY / np.array([asked.path, asked.path, asked.heading]))
+    np.fill_diagonal(end, 1.0)
+    end[:, -1] = miss
+    sizes = asked.position, asked.position, asked.heading, asked.speed
+    end *= _ACCURATE / np.array(sizes)[:, None]
+    P, R = end.T @ end, np.diag([_AMPLITUDE**-2, _OFFSET**-2])
     gains, values = [], [P]
     for k in reversed(range(len(F))):
-        A, b = _whole(F[k], B[k])
+        # Beside the rows of the map, what is constant and the corrections that come into force.
+        A, b = np.diag([1.0] * 6 + [0.0] * 2 + [1.0]), np.zeros((_STATES + 1, 2))
+        A[:4, :_STATES], b[:4], b[6, 0], b[7, 1] = F[k], B[k], 1, 1
         # The joint ends as planned.
         cost = R * (1e12 if k == len(F) - 1 else 1)
         gain = np.linalg.solve(cost + b.T @ P @ b, b.T @ P @ A)
-        P = on_the_way + A.T @ P @ (A - b @ gain)
+        P = way.T @ way + A.T @ P @ (A - b @ gain)
         P = (P + P.T) / 2
         gains.append(gain)
         values.append(P)
@@ -264,16 +275,17 @@ class Follower:
         for k in (begin, begin - 1, begin + 1):
             if k != begin and (
                 not c.group[begin]
-                or k >= len(c.group)
+                or k >= len(c.F)
                 or c.group[k] != c.group[begin]
-                or self.made >= 2 * len(c.F)
+                or self.made >= _LONGEST * len(c.F)
             ):
                 continue
             z = here.copy()
             pose = moved(c.place[begin], np.array([0, here[2], here[0], here[1]]))
             z[:3] = apart(pose, c.place[k])
             z[3] += c.speed[begin] - c.speed[k]
-            cost = float(z @ c.value[k] @ z) + _PERIOD * (len(c.F) - k)
+            whole = np.append(z, 1.0)
+            cost = float(whole @ c.value[k] @ whole) + _PERIOD * (len(c.F) - k)
             if cost < best:
                 best, self.period, self.z = cost, k, z
 
@@ -281,7 +293,7 @@ class Follower:
         c, k = self.control, self.period
         u = c.command.segments[:, k].copy()
         u[:2] += self.u
-        wanted = u[3:5] - c.gain[k] @ self.z
+        wanted = u[3:5] - c.gain[k] @ np.append(self.z, 1.0)
         u[3:5] = within(u, wanted, c.limits)
         self.u = u[3:5] - c.command.segments[3:5, k]
         return u
