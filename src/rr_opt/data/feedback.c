@@ -16,10 +16,10 @@
 #include <math.h>
 
 #define RR_PERIODS {{ c.F|length }}
-#define RR_LOOKS {{ looks }} /* places in a period where the limits are kept */
+#define RR_LOOKS {{ constants.LOOKS }} /* places in a period where the limits are kept */
 
 /* Angle (rad), rate (rad/s) and acceleration (rad/s2). */
-static const double rr_limit[3] = {{ array(c.limits * margin) }};
+static const double rr_limit[3] = {{ array(c.limits * constants.MARGIN) }};
 /* Of each period: amplitude and offset (rad) and frequency (rad/s) at its beginning and its end,
  * phase (rad) at its beginning, duration (s). */
 static const double rr_segment[RR_PERIODS][8] = {{ array(c.command.segments.T) }};
@@ -78,9 +78,9 @@ static void rr_apart(const double pose[3], const double planned[3], double out[3
 static void rr_within(double g[8], double A, double o)
 {
     int part, i, k;
-    for (part = {{ halvings }}; part >= 0; part--) {
+    for (part = {{ constants.WAYS_BACK }}; part >= 0; part--) {
         double low = 0, high = HUGE_VAL;
-        double none[8] = {g[0], g[1], g[2], 0, g[1] + (o - g[1]) * part / {{ halvings }}, g[5], g[6], g[7]};
+        double none[8] = {g[0], g[1], g[2], 0, g[1] + (o - g[1]) * part / {{ constants.WAYS_BACK }}, g[5], g[6], g[7]};
         double unit[8] = {0, 0, g[2], 1, 0, g[5], g[6], g[7]};
         for (i = 0; i <= RR_LOOKS; i++) {
             double rest[3], slope[3];
@@ -159,13 +159,13 @@ static int rr_route_next(rr_route *r, double x, double y, double psi)
         double z[9], cost;
         k = begin + steps[n];
         if (n && (!rr_group[begin] || k >= RR_PERIODS || rr_group[k] != rr_group[begin]
-                  || r->made >= {{ longest }} * RR_PERIODS))
+                  || r->made >= {{ constants.LONGEST }} * RR_PERIODS))
             continue;
         for (i = 0; i < 9; i++)
             z[i] = here[i];
         rr_apart(pose, rr_place[k], z);
         z[3] += rr_speed[begin] - rr_speed[k];
-        cost = {{ period }} * (RR_PERIODS - k);
+        cost = {{ constants.PERIOD }} * (RR_PERIODS - k);
         for (i = 0; i < 9; i++)
             for (j = 0; j < 9; j++)
                 cost += z[i] * rr_value[k][i][j] * z[j];

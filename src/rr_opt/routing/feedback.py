@@ -4,9 +4,9 @@ The drive is cut into periods. About it the state at the beginning of a period i
 
     z' = F z + B u,      y = H z + G u
 
-with z = (x, y, psi, v, friction, bias, A, o): the pose and speed against the planned ones, in the
-frame of platform 1 as planned; two constants that are learnt, the friction's excess against the
-masses and an error of the offset; and the corrections of amplitude and offset in force. u are those
+with z = (x, y, psi, v, inertia, bias, A, o): the pose and speed against the planned ones, in the
+frame of platform 1 as planned; two constants that are learnt, the excess of the masses over the
+friction and an error of the offset; and the corrections of amplitude and offset in force. u are those
 at the period's end, y the pose as it was seen, `delay` before that. A Kalman filter estimates z, a
 linear-quadratic regulator of finite horizon gives u, and its cost to go tells whether a period of a
 stage is to be repeated or left out. Corrections end where the servo's limits do.
@@ -15,7 +15,7 @@ stage is to be repeated or left out. Corrections end where the servo's limits do
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -23,7 +23,7 @@ import numpy as np
 from rr_opt.array import Array
 from rr_opt.model.command import Command, blended
 from rr_opt.model.problem import Problem
-from rr_opt.model.route import Tolerance
+from rr_opt.model.route import Route, Tolerance
 from rr_opt.motion.dynamics import dynamics_of
 from rr_opt.routing.plan import Plan
 from rr_opt.routing.rollout import stepped
@@ -33,22 +33,27 @@ DELAY, NOISE = 0.05, (1e-3, 1e-3, 3e-3)
 """s; m, m and rad, 1 sigma: of the capture system."""
 _FRICTION, _BIAS = 0.2, 0.02
 """What is unknown of them at the start, relative and in rad, 1 sigma."""
-_UNMODELLED = np.array([1e-3, 1e-3, 3e-3, 2e-3, 0.01, 1e-3])
+_UNMODELLED = np.array([1e-3, 1e-3, 3e-3, 6e-3, 0.01, 1e-3])
 """1 sigma of what a period adds to the first six of z beside the linear map."""
 _ACCURATE, _ON_THE_WAY = 3.0, 0.3
-"""How much of each tolerance an error of cost 1 is: a third at the end, three times it on the way."""
-_AMPLITUDE, _OFFSET, _PERIOD = 0.01, 0.1, 0.2
-"""Corrections of cost 1, rad; and the cost of a period's time."""
+"""An error of cost 1 is a tolerance divided by this: a third of it at the end, three of the way."""
+_AMPLITUDE, _LEAST, _OFFSET, PERIOD = 0.07, 1e-3, 0.1, 0.2
+"""Corrections of cost 1: of the amplitude, relative and in rad, as none is below 0 or beyond the
+limit of the rate; of the offset, rad. And the cost of a period's time."""
 _STEPS, _LATE = 13, 3
 """Of a period: until its pose is seen, and then."""
 LOOKS, MARGIN = 96, 0.998
 """Places in a period where the limits are kept, and to what share: between them lies the peak."""
-HALVINGS = 8
+WAYS_BACK = 8
 """Parts of the way back to the offset in force that are tried for a correction within limits."""
+_RATE, _PLACE = 0.95, 0.5
+"""Of the limit on the rate and of the tolerance of the end, so much is planned with."""
 _SHORT = 0.25
 """Of the tolerance, so much before the end is aimed at: what is missing can be driven, but what is
 too much not be braked."""
-_LONGEST = 1.5
+_COAST = 3
+"""Cycles of more coasting, in which a robot of less friction comes to rest, and is seen to."""
+LONGEST = 1.5
 """So many times as many periods as planned may be made, until the drive goes on to its end."""
 _STATES = 8
 _CHANGE = 1e-4
@@ -85,14 +90,14 @@ class Feedback:
     value: Array
 
 
-def feedback(plan: Plan, problem: Problem, delay: float = DELAY) -> Feedback:
+def controller(plan: Plan, problem: Problem, delay: float = DELAY) -> Feedback:
     """The controller of a plan's drive. problem: with the limits that corrections are to keep.
 
     Raises ValueError if the plan has no drive.
     """
     if plan.drive is None:
         raise ValueError("The plan has no drive.")
-    command, group = _periods(plan.drive.command)
+    command, group = _periods(plan.drive.command, rest=plan.route.end == "rest")
     dynamics = dynamics_of(problem.robot)
     p = dynamics.values(problem.robot)
     inert = np.isin(dynamics.parameters, ("m1", "m2", "I1", "I2"))
@@ -120,7 +125,9 @@ def feedback(plan: Plan, problem: Problem, delay: float = DELAY) -> Feedback:
     aim = last.at(last.length - _SHORT * plan.route.tolerance.position)
     miss = -apart(np.array([aim.x, aim.y, plan.heading]), pose)
     final = v if plan.route.end == "rest" else 0.0
-    gain, value = _regulator(F, B, np.append(miss, final), plan.route.tolerance)
+    gain, value = _regulator(
+        F, B, command.knots[0], np.append(miss, final), plan.route.tolerance
+    )
     bend = _bend(problem, command, max(map(abs, speed)))
     box = np.array([reach(problem), problem.limits.rate, bend])
     return Feedback(
@@ -129,24 +136,29 @@ def feedback(plan: Plan, problem: Problem, delay: float = DELAY) -> Feedback:
     )  # fmt: skip
 
 
-def _periods(command: Command) -> tuple[Command, Array]:
-    """The same drive cut into cycles, and which of their beginnings are alike."""
+def with_reserve(route: Route) -> Route:
+    """The route to plan for, so that corrections have room: some of the rate, and of the place."""
+    limits, tolerance = route.problem.limits, route.tolerance
+    limits = replace(limits, rate=_RATE * limits.rate)
+    tolerance = replace(tolerance, position=_PLACE * tolerance.position)
+    return replace(route, problem=replace(route.problem, limits=limits), tolerance=tolerance)
+
+
+def _periods(command: Command, *, rest: bool) -> tuple[Command, Array]:
+    """The same drive cut into cycles, and which of their beginnings are alike. rest: coasting at
+    its end lasts some cycles more, all of them whole."""
     durations, knots, group = list[float](), [command.knots[:, 0]], [0]
     for number, u in enumerate(command.segments.T, 1):
-        level = np.allclose(u[:3], u[3:6], atol=1e-12)
+        level = np.allclose(u[:3], u[3:6], rtol=0, atol=1e-12)
         cycles = u[7] * (u[2] + u[5]) / (4 * math.pi)
-        if level and u[0] == 0:
-            # Of a joint at rest one moment is like another.
-            parts = max(1, round(cycles))
-            added, ends = [u[7] / parts] * parts, [number] * parts
-        else:
-            whole = max(0, math.floor(cycles - 0.5)) if level else 0
-            period = 2 * math.pi / u[2]
-            added, ends = [period] * whole + [u[7] - whole * period], [number] * whole + [0]
+        if rest and number == len(command.durations):
+            cycles = math.ceil(cycles) + _COAST
+        whole = max(0, math.ceil(cycles - 1.5)) if level else 0
+        period = 4 * math.pi / (u[2] + u[5])
+        durations += [period] * whole + [(cycles - whole) * period]
+        knots += [u[3:6]] * (whole + 1)
         group[-1] = number if level else 0
-        group += ends
-        durations += added
-        knots += [u[3:6]] * len(added)
+        group += [number] * whole + [number if level and cycles == whole + 1 else 0]
     return Command(np.array(durations), np.array(knots).T), np.array(group)
 
 
@@ -154,7 +166,7 @@ def moved(pose: Array, local: Array) -> Array:
     """A pose after a motion (v, psi, x, y) in its frame."""
     cos, sin = math.cos(pose[2]), math.sin(pose[2])
     x, y = local[2], local[3]
-    return pose + [cos * x - sin * y, sin * x + cos * y, local[1]]
+    return pose + np.array([cos * x - sin * y, sin * x + cos * y, local[1]])
 
 
 def apart(pose: Array, planned: Array) -> Array:
@@ -178,7 +190,9 @@ def _map(out: Array, by_friction: Array) -> tuple[Array, Array]:
     return rows[:, :_STATES], rows[:, _STATES:]
 
 
-def _regulator(F: Array, B: Array, miss: Array, asked: Tolerance) -> tuple[Array, Array]:
+def _regulator(
+    F: Array, B: Array, amplitude: Array, miss: Array, asked: Tolerance
+) -> tuple[Array, Array]:
     """Gains and costs to go, by Riccati's recursion from the end. miss: rows x, y, psi, v of the
     planned end against the one asked for."""
     way, end = np.zeros((3, _STATES + 1)), np.zeros((4, _STATES + 1))
@@ -187,14 +201,15 @@ def _regulator(F: Array, B: Array, miss: Array, asked: Tolerance) -> tuple[Array
     end[:, -1] = miss
     sizes = asked.position, asked.position, asked.heading, asked.speed
     end *= _ACCURATE / np.array(sizes)[:, None]
-    P, R = end.T @ end, np.diag([_AMPLITUDE**-2, _OFFSET**-2])
+    P = end.T @ end
     gains, values = [], [P]
     for k in reversed(range(len(F))):
         # Beside the rows of the map, what is constant and the corrections that come into force.
         A, b = np.diag([1.0] * 6 + [0.0] * 2 + [1.0]), np.zeros((_STATES + 1, 2))
         A[:4, :_STATES], b[:4], b[6, 0], b[7, 1] = F[k], B[k], 1, 1
         # The joint ends as planned.
-        cost = R * (1e12 if k == len(F) - 1 else 1)
+        most = np.array([_LEAST + _AMPLITUDE * amplitude[k + 1], _OFFSET])
+        cost = np.diag((1e6 if k == len(F) - 1 else 1) / most**2)
         gain = np.linalg.solve(cost + b.T @ P @ b, b.T @ P @ A)
         P = way.T @ way + A.T @ P @ (A - b @ gain)
         P = (P + P.T) / 2
@@ -277,7 +292,7 @@ class Follower:
                 not c.group[begin]
                 or k >= len(c.F)
                 or c.group[k] != c.group[begin]
-                or self.made >= _LONGEST * len(c.F)
+                or self.made >= LONGEST * len(c.F)
             ):
                 continue
             z = here.copy()
@@ -285,7 +300,7 @@ class Follower:
             z[:3] = apart(pose, c.place[k])
             z[3] += c.speed[begin] - c.speed[k]
             whole = np.append(z, 1.0)
-            cost = float(whole @ c.value[k] @ whole) + _PERIOD * (len(c.F) - k)
+            cost = float(whole @ c.value[k] @ whole) + PERIOD * (len(c.F) - k)
             if cost < best:
                 best, self.period, self.z = cost, k, z
 
@@ -313,8 +328,8 @@ def within(u: Array, wanted: Array, limits: Array) -> Array:
     # The path is linear in the four.
     given, by_A, by_o = path(u[0], u[1], 0, 0), path(0, 0, 1, 0), path(0, 0, 0, 1)
     o1, A1 = u[1], 0.0
-    for part in range(HALVINGS, -1, -1):
-        o1 = u[1] + (wanted[1] - u[1]) * part / HALVINGS
+    for part in range(WAYS_BACK, -1, -1):
+        o1 = u[1] + (wanted[1] - u[1]) * part / WAYS_BACK
         rest, slope = given + o1 * by_o, np.where(np.abs(by_A) < 1e-9, 1e-9, by_A)
         ends = (most - rest) / slope, (-most - rest) / slope
         low, high = max(0.0, float(np.minimum(*ends).max())), float(np.maximum(*ends).min())

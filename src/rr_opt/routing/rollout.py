@@ -98,9 +98,9 @@ class Samples:
 
 
 def stepped(effects: tuple[str, ...], p: Array, v: float, u: Array, grid: Array) -> Array:
-    """(1 + 9, 5, n): v (m/s), psi (rad), x, y (m) and torque (N m) of a segment u at grid[1:], parts
-    of its duration (n + 1,), from the speed v, in the frame of its start; then their derivatives by
-    v and u. p: values of the robot's parameters."""
+    """(1 + 9, 5, n): v (m/s), psi (rad), x, y (m) and torque (N m) of a segment u from the speed v,
+    in the frame of its start; then their derivatives by v and u. grid (n + 1,): parts of the
+    duration, the first of them 0. p: values of the robot's parameters."""
     start = np.zeros((5, 1 + _INPUTS))
     start[0, :2] = v, 1.0
     n = len(grid) - 1
