@@ -6,9 +6,9 @@ The drive is cut into periods. About it the state at the beginning of a period i
 
 with z = (x, y, psi, v, inertia, bias, A, o): the pose and speed against the planned ones, in the
 frame of platform 1 as planned; two constants that are learnt, the excess of the masses over the
-friction and an error of the offset; and the corrections of amplitude and offset in force. u are those
-at the period's end, y the pose as it was seen, `delay` before that. A Kalman filter estimates z, a
-linear-quadratic regulator of finite horizon gives u, and its cost to go tells whether a period of a
+friction and an error of the offset; and the corrections of amplitude and offset in force. u are
+those at the period's end, y the pose as it was seen, `delay` before that. A Kalman filter estimates
+z, a linear-quadratic regulator of finite horizon gives u, and its cost to go tells whether a period of a
 stage is to be repeated or left out. Corrections end where the servo's limits do.
 """
 
@@ -31,7 +31,7 @@ from rr_opt.verify.grid import reach
 
 DELAY, NOISE = 0.05, (1e-3, 1e-3, 3e-3)
 """s; m, m and rad, 1 sigma: of the capture system."""
-_FRICTION, _BIAS = 0.2, 0.02
+_INERTIA, _BIAS = 0.2, 0.02
 """What is unknown of them at the start, relative and in rad, 1 sigma."""
 _UNMODELLED = np.array([1e-3, 1e-3, 3e-3, 6e-3, 0.01, 1e-3])
 """1 sigma of what a period adds to the first six of z beside the linear map."""
@@ -107,13 +107,13 @@ def controller(plan: Plan, problem: Problem, delay: float = DELAY) -> Feedback:
     for u in command.segments.T:
         late = max(0.0, 1 - delay / u[7])
         grid = np.append(np.linspace(0, late, _STEPS), np.linspace(late, 1, _LATE + 1)[1:])
-        out, light, heavy = (
-            stepped(dynamics.effects, np.where(inert, p * (1 - e), p), v, u, grid)
+        out, heavy, light = (
+            stepped(dynamics.effects, np.where(inert, p * (1 + e), p), v, u, grid)
             for e in (0.0, _CHANGE, -_CHANGE)
         )
-        # Less mass is more friction, of whatever law.
-        by_friction = (light[0] - heavy[0]) / (2 * _CHANGE)
-        (H, G), ends = (_map(out[:, :, k], by_friction[:, k]) for k in (_STEPS - 2, -1))
+        # More mass is less friction, of whatever law.
+        by_inertia = (heavy[0] - light[0]) / (2 * _CHANGE)
+        (H, G), ends = (_map(out[:, :, k], by_inertia[:, k]) for k in (_STEPS - 2, -1))
         # A pose from before the period tells nothing of it.
         maps.append((*ends, H[:3] * (late > 0), G[:3] * (late > 0)))
         seen.append(moved(pose, out[0, :, _STEPS - 2]))
@@ -176,14 +176,14 @@ def apart(pose: Array, planned: Array) -> Array:
     return np.array([cos * dx + sin * dy, cos * dy - sin * dx, math.remainder(turn, 2 * math.pi)])
 
 
-def _map(out: Array, by_friction: Array) -> tuple[Array, Array]:
+def _map(out: Array, by_inertia: Array) -> tuple[Array, Array]:
     """Rows x, y, psi, v of F and B from a motion (1 + 9, 5) in the frame of its start."""
     local, S = out[0], out[1:]
     d = np.zeros((10, 4))
     # A turn at the start turns the whole way.
     d[0, 2], d[1, 3] = 1, 1
     d[2] = 0, 1, -local[3], local[2]
-    d[3:] = S[0, :4], by_friction[:4], S[2, :4] + S[5, :4], S[1, :4], S[2, :4], S[4, :4], S[5, :4]
+    d[3:] = S[0, :4], by_inertia[:4], S[2, :4] + S[5, :4], S[1, :4], S[2, :4], S[4, :4], S[5, :4]
     cos, sin = math.cos(local[1]), math.sin(local[1])
     v, psi, x, y = d.T
     rows = np.array([cos * x + sin * y, cos * y - sin * x, psi, v])
@@ -220,7 +220,7 @@ def _regulator(
 
 def _filter(F: Array, H: Array) -> Array:
     """Gains of the Kalman filter."""
-    P = np.diag(np.square([*NOISE, 0.0, _FRICTION, _BIAS]))
+    P = np.diag(np.square([*NOISE, 0.0, _INERTIA, _BIAS]))
     noise, gains = np.diag(np.square(NOISE)), []
     for k in range(len(F)):
         h, A = H[k, :, :6], np.eye(6)
