@@ -25,7 +25,7 @@ from rr_opt.results.motion import trajectory_csv
 from rr_opt.results.result import Check, Result, picked
 from rr_opt.routing import feedback as feedback_constants
 from rr_opt.routing.feedback import Feedback
-from rr_opt.routing.plan import Plan
+from rr_opt.routing.plan import RoutePlan
 from rr_opt.routing.replay import RouteReplay
 from rr_opt.version import __version__
 
@@ -51,7 +51,7 @@ class DrivenRoute(Result):
 
     name: str
     sha256: str
-    plan: Plan
+    plan: RoutePlan
     replay: RouteReplay | None
     feedback: Feedback | None = None
 

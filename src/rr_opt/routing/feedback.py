@@ -7,9 +7,9 @@ The drive is cut into periods. About it the state at the beginning of a period i
 with z = (x, y, psi, v, inertia, bias, A, o): the pose and speed against the planned ones, in the
 frame of platform 1 as planned; two constants that are learnt, the excess of the masses over the
 friction and an error of the offset; and the corrections of amplitude and offset in force. u are
-those at the period's end, y the pose as it was seen, `delay` before that. A Kalman filter estimates
-z, a linear-quadratic regulator of finite horizon gives u, and its cost to go tells whether a period of a
-stage is to be repeated or left out. Corrections end where the servo's limits do.
+those at the period's end, y the pose as it was seen, `delay` before that. A Kalman filter estimates z, a
+linear-quadratic regulator of finite horizon gives u, and its cost to go tells whether a period of
+a stage is to be repeated or left out. Corrections end where the servo's limits do.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from rr_opt.model.command import Command, blended
 from rr_opt.model.problem import Problem
 from rr_opt.model.route import Route, Tolerance
 from rr_opt.motion.dynamics import dynamics_of
-from rr_opt.routing.plan import Plan
+from rr_opt.routing.plan import RoutePlan
 from rr_opt.routing.rollout import stepped
 from rr_opt.verify.grid import reach
 
@@ -90,7 +90,7 @@ class Feedback:
     value: Array
 
 
-def controller(plan: Plan, problem: Problem, delay: float = DELAY) -> Feedback:
+def controller(plan: RoutePlan, problem: Problem, delay: float = DELAY) -> Feedback:
     """The controller of a plan's drive. problem: with the limits that corrections are to keep.
 
     Raises ValueError if the plan has no drive.
