@@ -7,9 +7,10 @@ The drive is cut into periods. About it the state at the beginning of a period i
 with z = (x, y, psi, v, inertia, bias, A, o): the pose and speed against the planned ones, in the
 frame of platform 1 as planned; two constants that are learnt, the excess of the masses over the
 friction and an error of the offset; and the corrections of amplitude and offset in force. u are
-those at the period's end, y the pose as it was seen, `delay` before that. A Kalman filter estimates z, a
-linear-quadratic regulator of finite horizon gives u, and its cost to go tells whether a period of
-a stage is to be repeated or left out. Corrections end where the servo's limits do.
+those at the period's end, y the pose as it was seen, `delay` before that. A Kalman filter
+estimates z, a linear-quadratic regulator of finite horizon gives u, and its cost to go tells
+whether a period of a stage is to be repeated or left out. Corrections end where the servo's limits
+do.
 """
 
 from __future__ import annotations
@@ -125,9 +126,7 @@ def controller(plan: RoutePlan, problem: Problem, delay: float = DELAY) -> Feedb
     aim = last.at(last.length - _SHORT * plan.route.tolerance.position)
     miss = -apart(np.array([aim.x, aim.y, plan.heading]), pose)
     final = v if plan.route.end == "rest" else 0.0
-    gain, value = _regulator(
-        F, B, command.knots[0], np.append(miss, final), plan.route.tolerance
-    )
+    gain, value = _regulator(F, B, command.knots[0], np.append(miss, final), plan.route.tolerance)
     bend = _bend(problem, command, max(map(abs, speed)))
     box = np.array([reach(problem), problem.limits.rate, bend])
     return Feedback(
