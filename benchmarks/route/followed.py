@@ -6,10 +6,12 @@ from __future__ import annotations
 import math
 import sys
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 import rr_opt as rr
 from benchmarks.results import FOLDER, machine
@@ -62,7 +64,7 @@ class Guided:
         self.times.append(t)
         self.poses.append(pose)
 
-    def angle(self, t: Array) -> Array:
+    def angle(self, t: NDArray[Any]) -> Array:
         """The angle of each time, rad."""
         return np.array([self._angle(float(one)) for one in t])
 
@@ -94,7 +96,7 @@ class Planned:
     def see(self, t: float, pose: Array) -> None:
         """It looks at nothing."""
 
-    def angle(self, t: Array) -> Array:
+    def angle(self, t: NDArray[Any]) -> Array:
         """Of the command."""
         return self.command.angle(t)
 
@@ -131,7 +133,7 @@ def ends(found: DrivenRoute, guide: Guided | Planned, robot: Robot) -> Array:
     return np.array([*off, speed, guide.over])
 
 
-def within(found: DrivenRoute, ended: Array) -> Array:
+def within(found: DrivenRoute, ended: Array) -> NDArray[np.bool_]:
     """Which of the ends (n, 5) are within the tolerance."""
     asked = found.plan.route.tolerance
     off = np.hypot(ended[:, 0], ended[:, 1]) <= asked.position

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import Any, Protocol
 
 import casadi as ca
 import numpy as np
+from numpy.typing import NDArray
 
 from rr_lab.planar.drive import STEP, fine_enough, require_tame, still
 from rr_lab.planar.layout import layout
@@ -22,7 +23,7 @@ class Guide(Protocol):
         """Told at every sample: x (m), y (m) and heading (rad) of platform 1 at the time t, s."""
         ...
 
-    def angle(self, t: Array) -> Array:
+    def angle(self, t: NDArray[Any]) -> Array:
         """The angle, rad, at times up to the next sample, s."""
         ...
 
