@@ -25,6 +25,8 @@ Mask = NDArray[np.bool_]
 _GAIN, _LENGTH, _STATIONARY = 1e-9, 1e-7, 1e-4
 """A step that gains less, relative, or that is shorter, in scales, is the last; and the slope,
 relative, of what its radius holds back from gaining more."""
+_ROUNDING = 1e-12
+"""Of a row."""
 _FRACTIONS = np.array([1.0, 0.6, 0.3, 0.1, 0.03])
 """Of a step that are tried, all in one call."""
 _RADIUS = 0.2
@@ -32,8 +34,11 @@ _RADIUS = 0.2
 _SHRUNK = 0.1
 """What is left of it after a step that gains nothing."""
 _ITERATIONS = 100
-_DEAREST = 1e5
-"""The largest penalty, in values of the function: what needs a larger one has no solution near."""
+FEASIBLE = 1e-7
+"""Largest violation of a row that still counts as kept."""
+_DEARER, _DEAREST = 10.0, 1e5
+"""What a penalty is raised by where a climb ends with a row that fails, and the largest penalty, in
+values of the function: what needs a larger one has no solution near."""
 _REPEATED, _SETTLED = 8, 1e-2
 """Quadratic programs within a step, at most, and the change, relative, that ends them."""
 _ACROSS, _FLAT, _SLIGHT = 10.0, 1e-6, 1e-3
@@ -143,10 +148,16 @@ def ascend(program: Program, start: Array, penalty: float = 10.0) -> Ascent:
         else:
             radius = float(_FRACTIONS[best - 1]) * length
         # A step that its radius cuts short, or that falls short of its promise, says nothing.
-        small = length <= _LENGTH or abs(gain if best == 1 else promise) <= _GAIN * size
+        noise = penalty * _ROUNDING
+        least = (_GAIN + noise) * size
+        small = length <= _LENGTH or abs(gain if best == 1 else promise) <= least
         converged = length < (1 - _SETTLED) * reach and small
-        if reach <= _LENGTH:
-            converged = 0 <= promise <= _STATIONARY * size * reach
+        ended = converged or reach <= _LENGTH
+        if ended and violation > FEASIBLE and penalty < _DEAREST:
+            # Where the function gains a lot along a row that hardly changes, breaking it paid.
+            penalty, radius, converged = min(_DEARER * penalty, _DEAREST), _RADIUS, False
+        elif reach <= _LENGTH:
+            converged = -noise * size <= promise <= (_STATIONARY * reach + noise) * size
             break
     return Ascent(x, value, violation, prices, names, converged, iterations)
 

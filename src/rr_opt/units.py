@@ -37,6 +37,9 @@ _KINDS = {
 }
 """What base units, as pint writes them, measure."""
 
+LARGEST = 1e30
+"""No quantity is as large, in any unit: products of such numbers overflow."""
+
 _LONGEST = 60
 """Longest text read as a number with a unit, characters."""
 
@@ -202,10 +205,11 @@ class Quantity:
             and (self.at_least is None or number >= self.at_least)
             and (self.at_most is None or number <= self.at_most)
             and (self.below is None or number < self.below)
-            and (math.isfinite(number) or (self.endless and number > 0))
+            and (abs(number) < LARGEST or (self.endless and number == math.inf))
         )
         if not inside:
             known = "" if isinstance(value, int | float) else f", {number:.6g} {self.unit}".rstrip()
+            known += ", more than any quantity" if LARGEST <= abs(number) < math.inf else ""
             raise InputError(
                 f"Read {shown(value)}{known}. Expected {self.range_text()}. "
                 f"Write for example `{self.example}`."

@@ -166,3 +166,10 @@ def test_a_folder_without_a_problem_is_reported_what_is_expected(run, result, tm
     result(EVERY["sine"])
     done = run("export", "mine")
     assert (done.exit_code, done.stderr) == (2, f"mine: {expected}mine/result.json.\n")
+
+
+def test_a_place_that_cannot_be_written_is_told_by_its_own_name(run, result, tmp_path):
+    (tmp_path / "a.csv").symlink_to("b.csv")
+    done = run("export", result(SineGait(0.15, 1.0)), "--out", "a.csv")
+    assert done.exit_code == 2
+    assert done.stderr.splitlines()[-1].startswith("a.csv is a symbolic link.")

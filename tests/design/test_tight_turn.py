@@ -54,3 +54,26 @@ def test_the_gait_is_no_other_than_it_was_known():
     best = maximize_speed(asked(RADIUS)).best
     assert best.gait.offset == pytest.approx(known.offset, rel=1e-3)
     assert best.share == pytest.approx(0.0, abs=1e-6)
+
+
+STICKY = Problem(
+    Robot(
+        Platform(0.3156, 0.001622, 0.1091, 0.05153, 0.05879, 0.08064902956955979),
+        Platform(0.6485, 0.004055, 0.1317, 0.007802, 0.06254, 0.10771503111596697),
+        0.025,
+    ),
+    Limits(0.8694, 3.794, 5.0, 0.03),
+    GaitBounds(Interval(0.2, 0.8), Interval(0.6885, 1.693), Interval(-0.9445, 0.9445)),
+    RatioChoice(Interval(15.6, 15.6)),
+    "either",
+)
+
+
+def test_the_tightest_circle_where_a_faster_gait_is_hardly_wider():
+    """Twice the speed is had 1e-4 beside the circle: a climb may not rest there."""
+    radius = 0.196679
+    optimum = maximize_speed(replace(STICKY, turn=Turn(curvature=Interval(*[1 / radius] * 2))))
+    assert optimum.best is not None, optimum.message
+    cycle = steady_cycle(optimum.robot, optimum.best.gait).cycle
+    assert cycle.radius == pytest.approx(radius, rel=1e-6)
+    assert abs(cycle.speed) == pytest.approx(4.4817e-5, rel=1e-3)

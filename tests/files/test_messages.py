@@ -46,6 +46,7 @@ MESSAGES = {
     ),
     "gait: {period: .inf}": "Read .inf. Expected a number in s above 0.",
     "gait: {offset: .inf}": "Read .inf. Expected a number in rad that is finite.",
+    "gait: {offset: 1e308}": "Read 1e+308, more than any quantity. Expected a number in rad",
     "gait: {period: 3 m}": (
         "Read '3 m', a length. Expected a number, or a number with a unit, in s. "
         "Write for example `1.2 s`."

@@ -17,6 +17,7 @@ REFUSED = {
     "!a b: 1\n": "f:1: Read the tag '!a'. Delete it.",
     "": "f: The file is empty. Expected keys with values, such as `h: 0.020`.",
     "# only a comment\n": "f: The file is empty.",
+    "{}\n": "f:1: The file is empty.",
     "- 1\n": "f:1: Read a list without keys. Expected keys with values",
     "just text": "f:1: Read a text without keys. Expected keys with values",
     "a: 1\n---\nb: 2\n": "f:2: A second document begins here. Expected one document per file.",

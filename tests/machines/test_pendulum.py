@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import rr_opt as rr
-from tests.machines.swings import write
+from tests.machines.swings import NOISE, write
 
 
 def test_dry_friction_is_named(tmp_path):
@@ -43,12 +43,45 @@ def test_what_is_wrong_is_listed_at_once(tmp_path):
     assert all("engine" in one for one in issues)
 
 
+def test_a_machine_that_there_is_not(tmp_path):
+    file = write(tmp_path, dry=0.0, runs=2, seconds=2.0) / "experiment.yaml"
+    file.write_text(file.read_text().replace("machine: pendulum", "machine: pendulu"))
+    said = f"{file}:1: machine: Read the machine 'pendulu'. Expected one of: racer, pendulum"
+    for verb in (rr.diagnose, rr.inspect):
+        with pytest.raises(rr.InputError) as error:
+            verb(file)
+        assert str(error.value).startswith(said)
+    assert str(rr.lint(file)[0]).startswith(said)
+
+
+def test_inspect_says_what_was_read(tmp_path):
+    folder = write(tmp_path, dry=0.0, runs=2, seconds=2.0)
+    found = rr.inspect(folder)
+    first, last = found.record()["recordings"]
+    assert (first["use"], last["use"]) == ("fit", "holdout")
+    assert first["samples"] == 400
+    assert first["rate"] == pytest.approx(200.0)
+    assert first["channels"]["q"]["sigma"] == pytest.approx(NOISE, rel=0.2)
+    assert first["channels"]["u"]["missing"] == 0
+    assert "2 recordings of a pendulum driven by a torque without warnings" in found.summary()
+    pages = found.save(tmp_path / "out")
+    assert {one.name for one in pages} == {"inspection.json", "report.html"}
+    assert "run0.csv: Channels" in (tmp_path / "out" / "report.html").read_text()
+
+
+def test_the_roller_racer_may_be_named(tmp_path):
+    rr.init("experiment", tmp_path / "one")
+    file = tmp_path / "one" / "experiment.yaml"
+    file.write_text("machine: racer\n" + file.read_text())
+    assert rr.lint(file) == []
+
+
 def test_times_that_repeat_are_told(tmp_path):
     folder = write(tmp_path, dry=0.0, runs=2, seconds=2.0)
     table = np.loadtxt(folder / "run0.csv", delimiter=",", skiprows=1)
     table[50, 0] = table[49, 0]
     np.savetxt(folder / "run0.csv", table, "%.9g", ",", header="time,angle,motor", comments="")
-    assert any("repeat a time" in one.message for one in rr.lint(folder))
+    assert any("times repeat" in one.message for one in rr.lint(folder))
 
 
 @pytest.mark.parametrize("machine", ["pendulum", "servo", "car"])

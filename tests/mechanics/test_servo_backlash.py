@@ -7,7 +7,10 @@ import pytest
 from hypothesis import given, settings
 
 from rr_lab.case import record
+from rr_opt import prototype
 from rr_opt.effects import CATALOGUE
+from rr_opt.machines.racer.drive import joint_of
+from rr_opt.machines.racer.parameters import parameters_of
 from rr_opt.mechanics.drive import commanded
 from rr_opt.model.gait import SineGait
 from rr_opt.model.robot import EffectUse
@@ -74,3 +77,14 @@ def test_from_rest_the_joint_waits_for_the_stop():
     until = width / 2 / gait.peak_rate
     waiting = made.at(np.linspace(-1.0, 0.9 * until, 20))[0]
     np.testing.assert_allclose(waiting, gait.offset, atol=1e-3)
+
+
+def test_a_robot_that_hardly_loses_speed_is_not_extrapolated_beyond_it():
+    inertias = {"m1": 0.503, "I1": 0.00233, "m2": 0.0964, "I2": 0.00305}
+    friction = {"kappa1": 2.1e-6, "kappa2": 2.5e-6}
+    joint = joint_of(parameters_of(prototype()) | inertias | friction)
+    t, values = np.arange(0, 3, 0.01), {"width": 0.207, "joint_friction": 0.028}
+    for amplitude in np.linspace(0.44, 0.48, 9):
+        gait = SineGait(amplitude, 0.77, -0.0703)
+        swing = PLAY.actuate(commanded(gait, False), values, joint).at(t)[0]
+        assert np.abs(swing).max() < amplitude + 0.0703 + 0.207

@@ -7,7 +7,8 @@ from matplotlib.figure import Figure
 from rr_opt.motion.rollout import repeated
 from rr_opt.results.figures.fastest import draw, gains, prices
 from rr_opt.results.figures.motion import along_travel, cycle, instants, path
-from rr_opt.results.figures.speed_map import MapData, allowed, speed_map
+from rr_opt.results.figures.speed_map import allowed, speed_map
+from rr_opt.verify.sweep import SpeedMap
 
 
 @pytest.fixture
@@ -15,7 +16,7 @@ def data():
     period, amplitude = np.linspace(0.8, 1.6, 30), np.linspace(0.1, 1.2, 40)
     shape = (40, 30)
     speed = -0.1 * amplitude[:, None] ** 2 / period**2
-    return MapData(period, amplitude, speed, np.full(shape, 0.05))
+    return SpeedMap(period, amplitude, speed, np.full(shape, 0.05))
 
 
 def axes():

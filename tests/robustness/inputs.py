@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Iterator, Mapping
+import json
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from importlib.util import find_spec
 from pathlib import Path
@@ -14,6 +15,7 @@ import numpy as np
 
 import rr_opt as rr
 from rr_lab.formats import MarkerData, c3d_bytes
+from rr_opt.api.files import Kind
 from rr_opt.files.source import SHIPPED
 from rr_opt.model.experiment import Recording
 from rr_opt.recordings.readers import MarkerData as Markers
@@ -23,7 +25,7 @@ from tests.recordings.read.test_experiment import GAIT, HEAD, MARKERS, PLACES, m
 
 Verb = tuple[str, ...]
 
-LONG = {"maximize-speed", "study", "diagnose"}
+LONG = {"maximize-speed", "study", "diagnose", "route"}
 """Verbs that compute for long where the input is right."""
 
 
@@ -156,6 +158,8 @@ def inputs() -> dict[str, Input]:
             ),
         ),
     }
+    found |= dict(_written())
+    found |= dict(_machines())
     found["plain"] = _recording("run.csv", run)
     found["vicon"] = _recording("run.csv", vicon(motion(220)), MARKERS)
     seen = _seen()
@@ -169,6 +173,71 @@ def inputs() -> dict[str, Input]:
         found[f"bodies of {name}"] = _bodies(f"run.{ending}", text().encode())
     found |= dict(_binary(run))
     return found
+
+
+def _written() -> Iterator[tuple[str, Input]]:
+    """What `rr-opt init` writes, with all its comments."""
+    after: dict[Kind, tuple[Verb, ...]] = {
+        "robot": (("circle", "file.yaml"),),
+        "problem": (("maximize-speed", "file.yaml", "--no-figures", "--out", "found"),),
+        "study": (("study", "file.yaml", "--no-figures", "--out", "found"),),
+        "route": (("route", "file.yaml", "--no-figures", "--out", "found"),),
+    }
+    with TemporaryDirectory() as folder:
+        for kind, verbs in after.items():
+            place = Path(folder) / f"{kind}.yaml"
+            rr.init(kind, place)
+            files = {"file.yaml": place.read_bytes()}
+            yield f"init {kind}", Input(files, "file.yaml", (("lint", "file.yaml"), *verbs))
+
+
+def _machines() -> Iterator[tuple[str, Input]]:
+    """Folders of other machines: the experiment file is spoiled, or a recording."""
+    t = np.arange(0, 3, 0.01)
+    wave, q = np.sin(2 * t), 0.3 * np.sin(2 * t - 0.4)
+    tables = {
+        "pendulum": {"time": t, "angle": np.degrees(q), "motor": wave},
+        "servo": {"timestamp": t, "position": q, "goal_position": wave, "load": np.round(9 * wave)},
+        "car": {"time": t, "x": 0.5 * t, "y": q, "psi": q, "speed": 0.5 + 0.1 * wave,
+                "turn": np.sign(wave)},
+    }  # fmt: skip
+    noise = 1e-4 * np.sin(np.arange(t.size) ** 2)[:, None]
+    for machine, columns in tables.items():
+        values = np.column_stack(tuple(columns.values()))
+        written, ending = (_entries, "json") if machine == "servo" else (_table, "csv")
+        files = {
+            f"{name}.{ending}": written(columns, (values + sign * noise).round(6)).encode()
+            for name, sign in (("run", 1), ("other", -1))
+        }
+        text = (
+            f"machine: {machine}\n{MACHINES[machine]}recordings:\n  - {{file: run.{ending}}}\n"
+            f"  - {{file: other.{ending}, use: holdout}}\n"
+        )
+        files["experiment.yaml"] = text.encode()
+        verbs = (("lint", "."), ("diagnose", ".", "--no-page", "--out", "found"))
+        yield machine, Input(files, "experiment.yaml", verbs)
+        yield f"{machine}, data", Input(files, f"run.{ending}", verbs)
+
+
+def _table(columns: Iterable[str], values: np.ndarray) -> str:
+    lines = (",".join(map(str, row)) for row in values.tolist())
+    return "\n".join([",".join(columns), *lines, ""])
+
+
+def _entries(columns: Iterable[str], values: np.ndarray) -> str:
+    entries = [dict(zip(columns, row, strict=True)) for row in values.tolist()]
+    return json.dumps({"mass": 0.5, "length": 0.1, "kp": 100, "entries": entries})
+
+
+MACHINES = {
+    "pendulum": "parameters: {J: 0.05, ml: 0.1, b: 0.02}\nuncertainty: {J: 5 %, ml: unknown}\n"
+    "noise: {q: 0.2 deg}\ncolumns: {t: time, q: {column: angle, factor: 1 deg}, u: motor}\n",
+    "servo": "parameters: {kt: 0.4, R: 4, armature: 0.002, b: 0.004, fc: 0.013}\n"
+    "columns: {t: timestamp, q: position, goal: goal_position, volts: 7.4, kp: kp, m: mass, "
+    "l: length}\n",
+    "car": "parameters: {L: 0.1735, mf: 847 g, mr: 0.733, gain: 0.35, zero: 0, ahead: 115 mm, "
+    "left: -0.01}\ncolumns: {t: time, x: x, y: y, psi: psi, vx: speed, steering: turn}\n",
+}
 
 
 def _seen() -> MarkerData:

@@ -44,12 +44,14 @@ class LinearModel:
         true: Mapping[str, float] = TRUE,
         disturbed: float = 0.0,
         prior: tuple[float, float] = (np.inf, 0.7),
+        least: float | Array = 0.0,
     ) -> None:
         """disturbed: a random push of the state at every sample, which the model lacks."""
         rng = np.random.default_rng(seed)
         t = np.arange(41) / 10
         self._inputs = rng.normal(size=(runs, t.size, 2))
         self._prior = np.array(prior)
+        self.least = np.zeros(2) + least
         self.runs: Sequence[Data] = []
         for k in range(runs):
             x, values = 0.5 * rng.normal(size=2), []
@@ -77,6 +79,10 @@ class LinearModel:
     def state_scale(self, effects: tuple[str, ...]) -> Array:
         """Two different ones."""
         return np.array([0.1, 0.02])
+
+    def least_process_noise(self, run: int, effects: tuple[str, ...]) -> Array:
+        """As set."""
+        return self.least
 
     def state_prior(self, effects: tuple[str, ...]) -> Array:
         """The second may be known."""
@@ -146,7 +152,7 @@ def stacked(problem, runs, states, values):
     quantities, without any elimination; the quantities' prior is not among them."""
     parts = [one for one in problem.segments if one.run in runs]
     model, names = problem.model, problem.names
-    tight = 1 / (problem.q * model.state_scale(()))
+    tight = 1 / np.hypot(problem.q * model.state_scale(()), model.least)
     weak = 1 / model.state_prior(())
 
     def residuals(x):

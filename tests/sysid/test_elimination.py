@@ -9,10 +9,11 @@ from rr_opt.sysid.estimation import initial, solve
 from tests.sysid.linear_model import LinearModel, stacked
 
 
+@pytest.mark.parametrize("least", [0.0, 0.03])
 @pytest.mark.parametrize("q", [0.1, 1.0, 30.0])
 @pytest.mark.parametrize("prior", [(np.inf, 0.7), (np.inf, np.inf)], ids=["known", "unknown"])
-def test_as_by_brute_force(q, prior):
-    model = LinearModel(disturbed=0.1, prior=prior)
+def test_as_by_brute_force(q, prior, least):
+    model = LinearModel(disturbed=0.1, prior=prior, least=least)
     values = {"a": 0.1, "b": 0.2}
     problem, states = initial(model, (), model.parameters, values, [0, 1])
     problem = replace(problem, q=q, robust=False)
@@ -34,6 +35,7 @@ def test_as_by_brute_force(q, prior):
         assert found.at(d) == pytest.approx(np.sum((left + across @ d) ** 2), rel=1e-6)
     # The states' determinant, in units of their scale, and the densities of what joins them.
     units = np.tile(model.state_scale(()), 4)
-    log = np.linalg.slogdet((X * units).T @ (X * units))[1] + 2 * 2 * 3 * np.log(q)
+    log = np.linalg.slogdet((X * units).T @ (X * units))[1]
+    log += 2 * 3 * np.sum(np.log(np.hypot(q, least / model.state_scale(()))))
     log += 4 * 2 * np.log(0.7 / 0.02) if np.isfinite(prior[1]) else 0.0
     assert found.log == pytest.approx(log, rel=1e-6)

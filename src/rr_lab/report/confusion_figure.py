@@ -2,22 +2,14 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 from matplotlib.axes import Axes
 from matplotlib.patches import Rectangle
 
 from rr_lab.report.proof import Proof
 from rr_lab.trial.counts import Confusion, confusion
-from rr_opt.results.figures.style import (
-    BACKWARD,
-    FAINT,
-    FORWARD,
-    GREY,
-    INK,
-    PAPER,
-    figure,
-    styled,
-    svg,
-)
+from rr_opt.results.figures import style
 
 _CELL = 0.42
 """Inches."""
@@ -26,10 +18,10 @@ _CELL = 0.42
 def draw(proof: Proof) -> dict[str, str]:
     """The figure as SVG text by its name."""
     counted = confusion(proof.opened.cases)
-    with styled():
-        drawn = figure(3.2 + _CELL * len(counted.columns), 2.6 + _CELL * len(counted.rows))
+    with style.styled():
+        drawn = style.figure(3.2 + _CELL * len(counted.columns), 2.6 + _CELL * len(counted.rows))
         matrix(drawn.subplots(), counted)
-        return {"confusion": svg(drawn)}
+        return {"confusion": style.svg(drawn)}
 
 
 def matrix(ax: Axes, counted: Confusion) -> None:
@@ -60,20 +52,17 @@ def matrix(ax: Axes, counted: Confusion) -> None:
 
 def _cell(ax: Axes, x: int, y: int, count: int, total: int, *, right: bool) -> None:
     share = count / total if total else 0.0
-    colour = FORWARD if right else BACKWARD
-    ax.add_patch(
-        Rectangle((x + 0.04, y + 0.04), 0.92, 0.92, facecolor=PAPER, edgecolor=FAINT, lw=0.6)
-    )
+    colour = style.FORWARD if right else style.BACKWARD
+    square = partial(Rectangle, (x + 0.04, y + 0.04), 0.92, 0.92)
+    ax.add_patch(square(facecolor=style.PAPER, edgecolor=style.FAINT, lw=0.6))
     if count:
         # A miss stands out, however rare it is.
         shade = 0.25 + 0.75 * share if right else 1.0
-        ax.add_patch(
-            Rectangle((x + 0.04, y + 0.04), 0.92, 0.92, facecolor=colour, alpha=shade, lw=0)
-        )
-        ink = PAPER if shade > 0.6 else INK
+        ax.add_patch(square(facecolor=colour, alpha=shade, lw=0))
+        ink = style.PAPER if shade > 0.6 else style.INK
         ax.text(x + 0.5, y + 0.52, str(count), ha="center", va="center", color=ink, weight="bold")
     elif right:
-        ax.text(x + 0.5, y + 0.5, "0", ha="center", va="center", color=GREY)
+        ax.text(x + 0.5, y + 0.5, "0", ha="center", va="center", color=style.GREY)
 
 
 def _words(name: str) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from itertools import starmap
 from pathlib import Path
 from typing import Any
 
@@ -13,18 +14,7 @@ from rr_lab.trial.counts import COUNTS, TEXTS, TITLES, breakdown, by_engine
 from rr_lab.trial.outcome import Case
 from rr_lab.trial.statistics import SIZES, Rate
 from rr_lab.trial.trial import OpenedTrial, tidy
-from rr_opt.documents.document import (
-    Block,
-    Document,
-    Fact,
-    Facts,
-    Figure,
-    Gallery,
-    Link,
-    Section,
-    Table,
-    table,
-)
+from rr_opt.documents import document as doc
 from rr_opt.formatting import number
 from rr_opt.results.result import Progress, Result, quiet
 
@@ -57,11 +47,11 @@ class Proof(Result):
     def _tables(self) -> dict[str, str]:
         return {"cases.csv": cases_csv(self.opened)}
 
-    def document(self, figures: Sequence[Figure] = ()) -> Document:
+    def document(self, figures: Sequence[doc.Figure] = ()) -> doc.Document:
         """Counts, breakdowns and misses."""
         return proof_document(self.opened, figures)
 
-    def _page(self, document: Document) -> Document:
+    def _page(self, document: doc.Document) -> doc.Document:
         """On the page alone the misses lead to their reports: these are not published."""
         return proof_document(self.opened, document.figures, linked=True)
 
@@ -83,13 +73,13 @@ def headline(opened: OpenedTrial) -> str:
 
 
 def proof_document(
-    opened: OpenedTrial, figures: Sequence[Figure] = (), *, linked: bool = False
-) -> Document:
+    opened: OpenedTrial, figures: Sequence[doc.Figure] = (), *, linked: bool = False
+) -> doc.Document:
     """The whole report; linked: the misses lead to their reports, which lie next to the page."""
     cases = opened.cases
     rates = {one: one.rate(cases) for one in COUNTS}
     every = {one: rate for one, rate in rates.items() if rate.total}
-    key = tuple(Fact(one.title, _of(rate)) for one, rate in every.items() if one.name in _KEY)
+    key = tuple(doc.Fact(one.title, _of(rate)) for one, rate in every.items() if one.name in _KEY)
     counts = [(one.title, *_cells(rate), one.definition) for one, rate in every.items()]
     broken_down = [
         (what, name, *_cells(rate))
@@ -98,34 +88,35 @@ def proof_document(
     ]
     covered = statistics.coverage(statistics.intervals(cases))
     sections = (
-        Section("", (Facts(key, key=True),)),
-        Section("", (Gallery(tuple(figures), wide=True),)),
-        Section("Counts", (table(("what", "count", SHARE, "what is counted"), counts),), False),
+        doc.Section("", (doc.Facts(key, key=True),)),
+        doc.Section("", (doc.Gallery(tuple(figures), wide=True),)),
+        doc.Section("Counts",
+                    (doc.table(("what", "count", SHARE, "what is counted"), counts),), brief=False),
         _section("By engine", TEXTS["engines"], _by_engine(cases)),
         _section("By effect, realisation and disturbance", _SAYS["breakdown"],
-                 table(("by", "what", "right", SHARE), broken_down)),
+                 doc.table(("by", "what", "right", SHARE), broken_down)),
         _section("Coverage of the 95 % intervals", _SAYS["coverage"],
-                 table(("quantity", "count", SHARE),
+                 doc.table(("quantity", "count", SHARE),
                        [(name, *_cells(rate)) for name, rate in covered.items()])),
         _section("Held-out error, medians", _SAYS["held_out"], _held_out(cases)),
         _section("Remainder", _SAYS["remainder"], _remainders(cases)),
         _section("p-values where nothing is hidden", _SAYS["p_values"], _p_values(cases)),
         _section("Time", _SAYS["time"], _times(cases)),
-        Section("Misses",
-                (TEXTS["again"], _misses(opened, linked)) if opened.misses else ("None.",)),
-        Section("Cases that the laboratory could not make",
-                (Facts(tuple(Fact(case, why) for case, why in opened.failed.items())),)),
+        doc.Section("Misses",
+                    (TEXTS["again"], _misses(opened, linked)) if opened.misses else ("None.",)),
+        doc.Section("Cases that the laboratory could not make",
+                    (doc.Facts(tuple(starmap(doc.Fact, opened.failed.items()))),)),
     )  # fmt: skip
     lead = f"{len(cases)} cases. {TEXTS['isolation']}"
     lead += f" {TEXTS['changed']}" if opened.changed else ""
     footer = (f"rr-opt {opened.version}", f"seed `{opened.seed}`", f"code SHA-256 `{opened.code}`")
-    return Document("", "blind trial of the diagnosis", headline(opened), lead, sections,
+    return doc.Document("", "blind trial of the diagnosis", headline(opened), lead, sections,
                     footer=footer)  # fmt: skip
 
 
-def _section(title: str, definition: str, numbers: Table) -> Section:
-    blocks: tuple[Block, ...] = (definition, numbers) if numbers else ()
-    return Section(title, blocks, brief=False)
+def _section(title: str, definition: str, numbers: doc.Table) -> doc.Section:
+    blocks: tuple[doc.Block, ...] = (definition, numbers) if numbers else ()
+    return doc.Section(title, blocks, brief=False)
 
 
 def _of(one: Rate) -> str:
@@ -145,10 +136,10 @@ def _numbers(values: Iterable[float | None]) -> list[str]:
     return ["–" if value is None else number(value, 3) for value in values]
 
 
-def _by_engine(cases: Sequence[Case]) -> Table:
+def _by_engine(cases: Sequence[Case]) -> doc.Table:
     """A row for each count with a column for each engine; counts without cases are left out."""
     engines = by_engine(cases)
-    return table(
+    return doc.table(
         ("what", *(word for name in engines for word in (name, "share"))),
         [
             (title, *(cell for rates in engines.values() for cell in _cells(rates[name])))
@@ -158,48 +149,48 @@ def _by_engine(cases: Sequence[Case]) -> Table:
     )
 
 
-def _held_out(cases: Sequence[Case]) -> Table:
+def _held_out(cases: Sequence[Case]) -> doc.Table:
     rows = [
         (kind, str(row["after"]["count"]),
          *_numbers([*(row[when]["median"] for when in row), row["after"]["quantile90"]]))
         for kind, row in statistics.held_out(cases).items()
     ]  # fmt: skip
     head = ("kind", "cases", "nominal", "re-fitted", "corrected", "corrected, 90 % below")
-    return table(head, rows)
+    return doc.table(head, rows)
 
 
-def _remainders(cases: Sequence[Case]) -> Table:
+def _remainders(cases: Sequence[Case]) -> doc.Table:
     rows = [
         (kind, *(str(row[size]) for size in SIZES), *_numbers([row["share"]]))
         for kind, row in statistics.remainders(cases).items()
     ]
-    return table(("kind", *SIZES, "median share"), rows)
+    return doc.table(("kind", *SIZES, "median share"), rows)
 
 
-def _p_values(cases: Sequence[Case]) -> Table:
+def _p_values(cases: Sequence[Case]) -> doc.Table:
     rows = [
         (test, str(one["count"]), number(one["distance"], 2), number(one["chance"], 2),
          str(one["below_005"]))
         for test, one in statistics.uniformity(cases).items()
     ]  # fmt: skip
-    return table(("test", "nulls", "distance", "p-value", "below 0.05"), rows)
+    return doc.table(("test", "nulls", "distance", "p-value", "below 0.05"), rows)
 
 
-def _times(cases: Sequence[Case]) -> Table:
+def _times(cases: Sequence[Case]) -> doc.Table:
     rows = [
         (f"{name}, s", *_numbers(one[at] for at in ("median", "quantile90", "largest")))
         for name, one in statistics.times(cases).items()
     ]
-    return table(("", "median", "90 % below", "most"), rows)
+    return doc.table(("", "median", "90 % below", "most"), rows)
 
 
-def _misses(opened: OpenedTrial, linked: bool) -> Table:
+def _misses(opened: OpenedTrial, linked: bool) -> doc.Table:
     head = ("case", "outcome", "engine", "hidden", "size", "said")
-    return table(
+    return doc.table(
         head,
         [
-            (Link(case.id, page_of(case)) if linked else case.id, case.outcome, case.truth.engine,
-             hidden_text(case), size_text(case), said_text(case))
+            (doc.Link(case.id, page_of(case)) if linked else case.id, case.outcome,
+             case.truth.engine, hidden_text(case), size_text(case), said_text(case))
             for case in opened.misses
         ],
     )  # fmt: skip

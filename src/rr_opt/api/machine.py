@@ -4,20 +4,35 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from rr_opt.files.experiment_file import experiment_path
 from rr_opt.files.issue import InvalidFileError, Issue, has_errors
-from rr_opt.files.machine_file import machine_plan, machine_word, read_machine_plan
+from rr_opt.files.machine_file import machine_plan, read_machine_plan
+from rr_opt.files.source import read_document
 from rr_opt.machines.registry import RACER, machine_named
+from rr_opt.messages import shown
 from rr_opt.model.machine import Machine, MachineExperiment
 from rr_opt.outcome import InputError, NotConvergedError
 from rr_opt.recordings.machine_run import machine_experiment
 from rr_opt.results.machine_diagnosis import ExplainedMachine
+from rr_opt.results.machine_inspection import InspectedMachine
 from rr_opt.results.result import Progress, quiet
 
 
 def machine_of(path: str | Path) -> Machine | None:
-    """The machine of an experiment; None for a Roller Racer's. Raises InputError."""
-    word = machine_word(path)
-    return None if word == RACER else machine_named(word)
+    """The machine of an experiment; None for a Roller Racer's, and for a file that is no YAML.
+
+    Raises InvalidFileError for a machine that there is not.
+    """
+    try:
+        document = read_document(experiment_path(Path(path)))
+    except InvalidFileError:
+        return None
+    word = document.data.get("machine", RACER)
+    try:
+        known = word if isinstance(word, str) else shown(word)
+        return None if known == RACER else machine_named(known)
+    except InputError as error:
+        raise InvalidFileError([document.error(("machine",), str(error))]) from None
 
 
 def load_machine(path: str | Path, machine: Machine) -> MachineExperiment:
@@ -38,8 +53,11 @@ def lint_machine(path: str | Path) -> list[Issue] | None:
         return [*issues, *(machine_experiment(plan)[1] if plan else ())]
     except InvalidFileError as error:
         return list(error.issues)
-    except InputError as error:
-        return [Issue("error", "machine", str(error), None, str(path))]
+
+
+def inspect_machine(path: str | Path, machine: Machine) -> InspectedMachine:
+    """What was read of an experiment. Raises InvalidFileError with everything wrong."""
+    return InspectedMachine(load_machine(path, machine))
 
 
 def diagnose_machine(experiment: MachineExperiment, progress: Progress = quiet) -> ExplainedMachine:

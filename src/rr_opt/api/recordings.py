@@ -29,6 +29,7 @@ from rr_opt.results.result import Progress, quiet
 if TYPE_CHECKING:
     from rr_opt.results.diagnosis import ExplainedExperiment
     from rr_opt.results.machine_diagnosis import ExplainedMachine
+    from rr_opt.results.machine_inspection import InspectedMachine
 
 
 def inspect(
@@ -40,7 +41,7 @@ def inspect(
     gait: Gait | None = None,
     start: Start = "running",
     progress: Progress = quiet,
-) -> InspectedRecordings:
+) -> InspectedRecordings | InspectedMachine:
     """A recording, or all of an experiment's folder, read and cleaned.
 
     Nothing is filled in or dropped: outliers are flagged, gaps stay gaps. Of one recording,
@@ -59,6 +60,10 @@ def inspect(
         wrong = [name for name, value in given.items() if value is not None]
         if wrong:
             _refuse(wrong)
+        from rr_opt.api.machine import inspect_machine, machine_of
+
+        if (machine := machine_of(path)) is not None:
+            return inspect_machine(path, machine)
         found = inspect_experiment(path, progress)
         sha256 = read_plan(path)[0].sha256
     else:

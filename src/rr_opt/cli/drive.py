@@ -31,11 +31,13 @@ def simulate(
 
     Writes the trajectory, a figure and, on request, an animation.
     """
-    with Steps() as steps, options.naming(source):
-        gait = {"amplitude": amplitude, "period": period, "offset": offset}
-        driven = options.read_gait(source, **gait, seconds=seconds, rate=rate)
+    with Steps() as steps:
+        with options.naming(source):
+            gait = {"amplitude": amplitude, "period": period, "offset": offset}
+            driven = options.read_gait(source, **gait, seconds=seconds, rate=rate)
         folder = options.motion_folder(out, source, kind, animate)
-        motion = rr.simulate(driven, None, seconds, start=start, rate=rate, progress=steps)
+        with options.naming(source):
+            motion = rr.simulate(driven, None, seconds, start=start, rate=rate, progress=steps)
         files = motion.save(folder, format=kind, film=animate, progress=steps)
     show(motion, files, json=json)
 
@@ -77,12 +79,14 @@ def export(
     amplitude is lowered. The loss of speed is reported separately for
     the adjusted period, the straight lines between set points, and rounding to counts.
     """
-    with Steps() as steps, options.naming(source):
-        gait = {"amplitude": amplitude, "period": period, "offset": offset}
-        driven = options.read_gait(source, **gait, rate=rate)
+    with Steps() as steps:
+        with options.naming(source):
+            gait = {"amplitude": amplitude, "period": period, "offset": offset}
+            driven = options.read_gait(source, **gait, rate=rate)
         file = options.setpoints_file(out, source, kind)
-        how = {"keep_period": keep_period, "within_limits": within_limits}
-        points = rr.export(driven, format=kind, rate=rate, **how, progress=steps)
+        with options.naming(source):
+            how = {"keep_period": keep_period, "within_limits": within_limits}
+            points = rr.export(driven, format=kind, rate=rate, **how, progress=steps)
         files = points.save(file)
     show(points, files, json=json)
 

@@ -39,7 +39,8 @@ def inspect(
         given = {"layout": layout, "servo_log": servo_log, "gait": gait, "start": start}
         named = options.read_columns(columns)
         found = rr.inspect(source, columns=named, **given, progress=steps)
-        files = found.save(folder, figures=figures, netcdf=netcdf, progress=steps)
+        more = {"netcdf": netcdf} if netcdf else {}
+        files = found.save(folder, figures=figures, progress=steps, **more)
     show(found, files, json=json)
 
 

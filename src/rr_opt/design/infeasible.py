@@ -22,12 +22,13 @@ from rr_opt.design.decisions import (
     settings_of,
 )
 from rr_opt.design.seeds import THOROUGH, tops
-from rr_opt.design.sines import FEASIBLE, FEWEST, WAYS, climbed
+from rr_opt.design.sines import FEWEST, WAYS, climbed
 from rr_opt.design.terrain import Aim, Terrain
 from rr_opt.design.turn_target import Nearest, asked_text, reached_text
 from rr_opt.messages import listed
 from rr_opt.model.gait import SineGait
 from rr_opt.model.problem import Interval, Problem, Turn
+from rr_opt.sqp import FEASIBLE
 
 _ROUNDING = 1 + 1e-9
 _ENOUGH = 1 + 1e-5

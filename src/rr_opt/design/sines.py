@@ -18,12 +18,10 @@ from rr_opt.design.terrain import Terrain
 from rr_opt.model.gait import SineGait
 from rr_opt.motion.steady_cycle import steady_cycle
 from rr_opt.outcome import NotConvergedError
-from rr_opt.sqp import Ascent, ascend
+from rr_opt.sqp import FEASIBLE, Ascent, ascend
 
 WAYS = {"forward": 1, "backward": -1, "either": 0}
 
-FEASIBLE = 1e-7
-"""Largest violation of a row that still counts as kept."""
 FEWEST, _MOST = 96, 3072
 """Phases of a cycle."""
 _ORDER = 4

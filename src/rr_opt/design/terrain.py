@@ -402,7 +402,7 @@ class Terrain:
             found["singularity"] = -posture / (robot.platform1.c * math.sin(self.box.reach))
         sides, prices = self._sides, ascent.prices
         if math.isfinite(limits.rate):
-            found["rate"] = float(prices.linear[2]) * period / (2 * math.pi)
+            found["rate"] = float(prices.linear[2] * period) / (2 * math.pi)
         for name, price in zip(ascent.names[len(sides) :], prices.rows[len(sides) :], strict=True):
             found[name] += (-1 if name in LEAST else 1) * float(price) / getattr(limits, name)
         slopes = self._turn.slopes(speed, turn, period) if self._turn else {}

@@ -117,7 +117,6 @@ class Effect:
 
     For predictions and fits:
     stiff               it lets the axles slip, which they stop doing within a step
-    backdrivable        the joint moves freely at times, so its angle depends on the robot's values
     near_discontinuous  its force all but jumps with the speed, so predictions need short steps
     differentiable      the prediction has derivatives by its parameters where the effect vanishes
     candidate           a diagnosis may propose it; not so a curve fit without a physical meaning,
@@ -139,7 +138,6 @@ class Effect:
     observe: Callable[[Observation, Mapping[str, ca.SX]], Observation] | None = None
     delay: str | None = None
     stiff: bool = False
-    backdrivable: bool = False
     near_discontinuous: bool = False
     differentiable: bool = True
     candidate: bool = True

@@ -82,7 +82,7 @@ EFFECT = Effect(
     family="contact",
     port=Port.CONSTRAINT,
     parameters=(
-        Parameter("creep_compliance", "m/(N s)", (0.0, 1.0), 0.002),
+        Parameter("creep_compliance", "m/(N s)", (0.0, 20.0), 0.002),
         Parameter(
             *("mu", "dimensionless", (0.001, 10.0), 0.1),
             neutral=10.0,

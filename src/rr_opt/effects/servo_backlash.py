@@ -173,21 +173,22 @@ def _periodic(servos: Sequence[_Servo], joint: FreeJoint | None) -> list[_Play]:
     before = [one.first for one in servos]
     states = _integrated(servos, joint, before)
     for _ in range(_EXTRAPOLATIONS):
-        moving = []
+        begun, open_by = {}, {}
         for k, path in enumerate(states):
             ends = path[_STEPS - 1 :: _STEPS, 2]
             first, second = np.diff([before[k][2], *ends])
             if abs(second) <= _CLOSED:
                 continue
-            before[k] = path[-1, :3].copy()
+            begun[k], open_by[k] = path[-1, :3].copy(), abs(second)
             converges = 0 < second / first < 1 if first else False
-            before[k][2] += second**2 / (first - second) if converges else 0.0
-            moving.append(k)
-        if not moving:
+            begun[k][2] += second**2 / (first - second) if converges else 0.0
+        if not begun:
             break
-        again = _integrated([servos[k] for k in moving], joint, [before[k] for k in moving])
-        for k, path in zip(moving, again, strict=True):
-            states[k] = path
+        again = _integrated([servos[k] for k in begun], joint, [*begun.values()])
+        for k, path in zip(begun, again, strict=True):
+            # A robot that hardly loses speed may be extrapolated far beyond its own.
+            if abs(path[-1, 2] - path[_STEPS - 1, 2]) <= open_by[k]:
+                before[k], states[k] = begun[k], path
     # The last period is closed: what is left to converge is spread over it.
     out = []
     for servo, start, path in zip(servos, before, states, strict=True):
@@ -287,7 +288,6 @@ EFFECT = Effect(
     sentence="There is play between the servo and the platform that it turns.",
     actuate=_actuate,
     actuate_all=_actuate_all,
-    backdrivable=True,
     differentiable=False,
     form_error=0.05,
     forms=(("width",), ("width", "joint_friction"), ("width", "joint_friction", "compliance")),

@@ -1,27 +1,67 @@
-"""An experiment file to a checked plan of what was done."""
+"""An experiment file to a checked plan of what was done; no recording is read yet."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from rr_opt.files.experiment_model import (
     ExperimentModel,
+    MarkersModel,
     RecordingModel,
     shares_of_nothing,
     uncertainty_of,
 )
-from rr_opt.files.experiment_plan import ExperimentPlan, PlannedRun, layout_from
 from rr_opt.files.fields import validate
-from rr_opt.files.issue import InvalidFileError, Issue, has_errors
-from rr_opt.files.problem_file import ROBOT, kind_of
+from rr_opt.files.issue import InvalidFileError, Issue, has_errors, required
+from rr_opt.files.problem_file import ROBOT, read_as
 from rr_opt.files.record import gait_from
 from rr_opt.files.robot_file import robot_from
-from rr_opt.files.source import is_result, linked, read_document, unreadable
+from rr_opt.files.source import fingerprint, is_result, linked, read_document, unreadable
 from rr_opt.files.yaml_text import Document
 from rr_opt.messages import shown
+from rr_opt.model.experiment import Column, CountScale, Layout, Noise, Start, Uncertainty, Use
 from rr_opt.model.gait import Gait
 from rr_opt.model.robot import Robot
+
+
+@dataclass(frozen=True)
+class PlannedRun:
+    """An entry of `recordings`, as Run has it; servo_log: the file of the servo's log."""
+
+    file: Path
+    gait: Gait
+    use: Use
+    start: Start
+    servo_log: Path | None
+
+
+@dataclass(frozen=True)
+class ExperimentPlan:
+    """What an experiment file says.
+
+    document  the file, for issues that only show when a recording is read
+    paths     every file that makes up the experiment
+    """
+
+    name: str
+    document: Document
+    robot: Robot
+    noise: Noise
+    uncertainty: Mapping[str, Uncertainty]
+    runs: tuple[PlannedRun, ...]
+    markers: Layout | None
+    counts: CountScale
+    columns: Mapping[str, Column]
+    paths: tuple[Path, ...]
+
+    @property
+    def sha256(self) -> str:
+        """The fingerprint of every file."""
+        return fingerprint(self.paths)
 
 
 def runs_from(document: Document, file: Path) -> tuple[tuple[PlannedRun, ...], list[Issue]]:
@@ -121,17 +161,12 @@ def read_plan(path: str | Path) -> tuple[ExperimentPlan, list[Issue]]:
     Raises InvalidFileError with all that is wrong; recordings are not read.
     """
     file = experiment_path(Path(path))
-    document = read_document(file)
-    if kind_of(document) != "experiment":
-        message = (
-            "Read a file that names no recordings. Expected an experiment, with `robot`, `noise` "
-            "and `recordings`. `rr-opt schema experiment` lists its keys."
-        )
-        raise InvalidFileError([document.error((), message)])
-    plan, issues = plan_from(document, file)
-    if plan is None:
-        raise InvalidFileError(issues)
-    return plan, issues
+    expected = (
+        "Read a file that names no recordings. Expected an experiment, with `robot`, `noise` "
+        "and `recordings`. `rr-opt schema experiment` lists its keys."
+    )
+    plan, issues = plan_from(read_as("experiment", file, expected), file)
+    return required(plan, issues), issues
 
 
 def named_files(path: Path) -> list[Path]:
@@ -192,6 +227,33 @@ def plan_from(document: Document, file: Path) -> tuple[ExperimentPlan | None, li
         ),
     )
     return plan, issues
+
+
+def layout_from(document: Document) -> tuple[Layout | None, list[Issue]]:
+    """The places that the section `markers` gives (None if there are issues), and all issues."""
+    model, issues = validate(MarkersModel, document)
+    given = [document.data.get(name) for name in ("platform1", "platform2")]
+    first, second = (one if isinstance(one, dict) else {} for one in given)
+    for name in second:
+        if name in first:
+            message = f"Read the marker {shown(name)} on both platforms. Keep it on one of them."
+            issues.append(document.error(("platform2", name), message))
+    if model is None:
+        return None, issues
+    for platform in ("platform1", "platform2"):
+        taken: dict[tuple[float, ...], str] = {}
+        for name, place in getattr(model, platform).items():
+            other = taken.setdefault(place[:2], name)
+            if other != name and len(place) == 2:
+                message = (
+                    f"Read the place of {shown(other)} again. Expected another one. Measure it."
+                )
+                issues.append(document.error((platform, name), message))
+    if issues:
+        return None, issues
+    return Layout(
+        MappingProxyType(model.platform1), MappingProxyType(model.platform2), model.up
+    ), []
 
 
 def _markers(document: Document) -> tuple[Any, list[Issue]]:

@@ -246,6 +246,9 @@ class RecordingModel(FileModel):
 class ExperimentModel(FileModel):
     """A robot as its builder believes it to be, and recordings of it in one floor frame."""
 
+    machine: Literal["racer"] = Field(
+        default="racer", description="What was recorded: the Roller Racer. Others have other keys."
+    )
     robot: Annotated[str | RobotModel, SkipValidation] = Field(
         description="A robot file, relative to this one, or the robot itself: nominal values."
     )

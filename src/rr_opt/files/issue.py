@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Literal, NoReturn
+from typing import Literal, NoReturn, TypeVar
 
 from rr_opt.outcome import InputError
 
 Level = Literal["error", "warning"]
+Read = TypeVar("Read")
 
 
 @dataclass(frozen=True)
@@ -39,6 +40,13 @@ class InvalidFileError(InputError):
     def __init__(self, issues: Iterable[Issue]):
         self.issues = tuple(issues)
         super().__init__("\n".join(str(issue) for issue in self.issues))
+
+
+def required(read: Read | None, issues: Iterable[Issue]) -> Read:
+    """What was read. Raises InvalidFileError with all issues if it could not be."""
+    if read is None:
+        raise InvalidFileError(issues)
+    return read
 
 
 def has_errors(issues: Iterable[Issue]) -> bool:

@@ -12,7 +12,7 @@ from pydantic import Field, SkipValidation, create_model
 from rr_opt.files.experiment_file import experiment_path
 from rr_opt.files.experiment_model import ColumnOf, Uncertain
 from rr_opt.files.fields import FileModel, Key, validate
-from rr_opt.files.issue import InvalidFileError, Issue, has_errors
+from rr_opt.files.issue import Issue, has_errors, required
 from rr_opt.files.source import fingerprint, read_document, unreadable
 from rr_opt.files.yaml_text import Document
 from rr_opt.messages import shown
@@ -144,15 +144,6 @@ class MachinePlan:
     document: Document
 
 
-def machine_word(path: str | Path) -> str:
-    """What the key `machine` of an experiment file says; `racer` if there is none."""
-    try:
-        word = read_document(experiment_path(Path(path))).data.get("machine", "racer")
-    except InvalidFileError:
-        return "racer"
-    return word if isinstance(word, str) else shown(word)
-
-
 def machine_plan(path: str | Path, machine: Machine) -> tuple[MachinePlan | None, list[Issue]]:
     """The plan (None if an issue is an error), and all issues; recordings are not read."""
     file = experiment_path(Path(path))
@@ -196,7 +187,4 @@ def _given(model: Any) -> dict[str, Any]:
 
 def read_machine_plan(path: str | Path, machine: Machine) -> MachinePlan:
     """The same. Raises InvalidFileError with all that is wrong."""
-    plan, issues = machine_plan(path, machine)
-    if plan is None:
-        raise InvalidFileError(issues)
-    return plan
+    return required(*machine_plan(path, machine))

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Literal
 
 from rr_opt.files.fields import another_file, validate
-from rr_opt.files.issue import InvalidFileError, Issue, Level, has_errors
+from rr_opt.files.issue import InvalidFileError, Issue, Level, has_errors, required
 from rr_opt.files.problem_model import OWN_SHAPE, ProblemModel
 from rr_opt.files.robot_file import RobotModel, robot_from
 from rr_opt.files.source import SHIPPED, fingerprint, is_result, linked, problem_path, read_document
@@ -21,7 +21,7 @@ from rr_opt.outcome import InputError
 
 Kind = Literal["robot", "problem", "study", "experiment", "route", "result"]
 
-_EXPERIMENT = ("recordings", "noise", "uncertainty")
+_EXPERIMENT = ("recordings", "noise", "uncertainty", "machine")
 _STUDY = ("vary", "together", "problem")
 
 
@@ -39,6 +39,14 @@ def kind_of(document: Document) -> Kind:
     meant = [nearest(key, [*robot, *problem]) for key in document.data]
     of_robot = sum(key in robot for key in meant)
     return "robot" if of_robot > sum(key in problem for key in meant) else "problem"
+
+
+def read_as(kind: Kind, file: Path, expected: str) -> Document:
+    """The data of a file. Raises InvalidFileError with what was expected if it is another kind."""
+    document = read_document(file)
+    if kind_of(document) != kind:
+        raise InvalidFileError([document.error((), expected)])
+    return document
 
 
 Finding = tuple[Level, str, str]
@@ -202,9 +210,7 @@ def read_problem(path: str | Path | None = None) -> Problem:
     Raises InvalidFileError with everything that is wrong in the problem and its robot.
     """
     sources = problem_sources(path)
-    problem, issues = problem_from(sources)
-    if problem is None:
-        raise InvalidFileError(issues)
+    problem = required(*problem_from(sources))
     return problem.read_from(name_of(path), fingerprint(sources.paths))
 
 

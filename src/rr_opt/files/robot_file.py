@@ -12,7 +12,7 @@ from pydantic import ConfigDict, Field, GetJsonSchemaHandler, SkipValidation
 from pydantic_core import CoreSchema
 
 from rr_opt.files.fields import FileModel, Key, Section, keys_of, validate
-from rr_opt.files.issue import InvalidFileError, Issue, has_errors
+from rr_opt.files.issue import Issue, has_errors, required
 from rr_opt.files.source import read_document
 from rr_opt.files.yaml_text import Document, KeyPath, path_text
 from rr_opt.messages import shown, unknown_word
@@ -221,10 +221,7 @@ def read_provenance(document: Document) -> tuple[Mapping[str, str], list[Issue]]
 
 def read_robot(path: str | Path) -> Robot:
     """The robot of a file. Raises InvalidFileError with everything that is wrong in it."""
-    robot, issues = robot_from(read_document(Path(path)))
-    if robot is None:
-        raise InvalidFileError(issues)
-    return robot
+    return required(*robot_from(read_document(Path(path))))
 
 
 def robot_from(document: Document) -> tuple[Robot | None, list[Issue]]:

@@ -9,10 +9,10 @@ from typing import Annotated, Literal
 from pydantic import Field, SkipValidation
 
 from rr_opt.files.fields import FileModel, Section, validate
-from rr_opt.files.issue import InvalidFileError, Issue, has_errors
-from rr_opt.files.problem_file import base_sources, kind_of, problem_from
+from rr_opt.files.issue import InvalidFileError, Issue, has_errors, required
+from rr_opt.files.problem_file import base_sources, problem_from, read_as
 from rr_opt.files.problem_model import ProblemModel
-from rr_opt.files.source import fingerprint, read_document
+from rr_opt.files.source import fingerprint
 from rr_opt.files.yaml_text import Document
 from rr_opt.messages import shown
 from rr_opt.model.problem import Direction
@@ -67,14 +67,9 @@ class RouteModel(FileModel):
 def read_route(path: str | Path) -> tuple[Route, list[Issue]]:
     """The route of a file, and warnings. Raises InvalidFileError with all that is wrong."""
     file = Path(path)
-    document = read_document(file)
-    if kind_of(document) != "route":
-        message = "Read a file without `route`. Expected the pieces of a route under this key."
-        raise InvalidFileError([document.error((), message)])
-    route, issues = route_from(document, file)
-    if route is None:
-        raise InvalidFileError(issues)
-    return route, issues
+    expected = "Read a file without `route`. Expected the pieces of a route under this key."
+    route, issues = route_from(read_as("route", file, expected), file)
+    return required(route, issues), issues
 
 
 def route_from(document: Document, file: Path) -> tuple[Route | None, list[Issue]]:

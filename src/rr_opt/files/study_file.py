@@ -11,10 +11,10 @@ from pathlib import Path
 from typing import Any
 
 from rr_opt.files.fields import validate
-from rr_opt.files.issue import InvalidFileError, Issue, has_errors
-from rr_opt.files.problem_file import base_sources, kind_of, problem_from
+from rr_opt.files.issue import InvalidFileError, Issue, has_errors, required
+from rr_opt.files.problem_file import base_sources, problem_from, read_as
 from rr_opt.files.problem_model import StudyModel
-from rr_opt.files.source import fingerprint, read_document
+from rr_opt.files.source import fingerprint
 from rr_opt.files.study_axes import Axis, Line, axes_of
 from rr_opt.files.study_keys import Setting, with_values
 from rr_opt.files.yaml_text import Document
@@ -138,17 +138,12 @@ class Study:
 def read_study(path: str | Path) -> tuple[Study, list[Issue]]:
     """The study of a file, and warnings. Raises InvalidFileError with all that is wrong."""
     file = Path(path)
-    document = read_document(file)
-    if kind_of(document) != "study":
-        message = (
-            "Read a file that varies nothing. Expected a study, with `problem` and `vary`. "
-            "A single problem is solved by `rr-opt maximize-speed`."
-        )
-        raise InvalidFileError([document.error((), message)])
-    study, issues = study_from(document, file)
-    if study is None:
-        raise InvalidFileError(issues)
-    return study, issues
+    expected = (
+        "Read a file that varies nothing. Expected a study, with `problem` and `vary`. "
+        "A single problem is solved by `rr-opt maximize-speed`."
+    )
+    study, issues = study_from(read_as("study", file, expected), file)
+    return required(study, issues), issues
 
 
 def study_from(document: Document, file: Path) -> tuple[Study | None, list[Issue]]:
@@ -162,7 +157,7 @@ def study_from(document: Document, file: Path) -> tuple[Study | None, list[Issue
         return None, [*issues, *error.issues]
     if has_errors(issues):
         # Mistakes in the problem itself are reported together with those in what is varied.
-        return None, _distinct([*issues, *problem_from(base)[1]])
+        return None, list(dict.fromkeys([*issues, *problem_from(base)[1]]))
     problems: list[Problem] = []
     paths = [file, *base.paths]
     found_in = CaseIssues(document, axes)
@@ -185,7 +180,3 @@ def _settings(axes: list[Axis], steps: Iterable[int]) -> list[Setting]:
         for axis, step in zip(axes, steps, strict=True)
         for line in axis.lines
     ]
-
-
-def _distinct(issues: list[Issue]) -> list[Issue]:
-    return list(dict.fromkeys(issues))

@@ -146,12 +146,12 @@ class _Reading:
             )
         except (yaml.YAMLError, ValueError, OverflowError) as error:
             self._stop(f"The text is not YAML: {shown(str(error))}. Correct it.")
-        if not isinstance(data, dict):
+        if not isinstance(data, dict) or not data:
             # Not what it says: the file may be any file.
             kind = (
                 "text" if isinstance(data, str) else "list" if isinstance(data, list) else "value"
             )
-            read = "The file is empty" if data is None else f"Read a {kind} without keys"
+            read = "The file is empty" if data in (None, {}) else f"Read a {kind} without keys"
             self._stop(f"{read}. Expected keys with values, such as `h: 0.020`.", line)
         if self.issues:
             raise InvalidFileError(self.issues)

@@ -13,7 +13,7 @@ import casadi as ca
 import numpy as np
 
 from rr_opt.array import Array
-from rr_opt.model.machine import Constant, MachineEffect, Names, Signals
+from rr_opt.model.machine import Channel, Constant, MachineEffect, Names, Signals
 
 G = 9.81
 """m/s2."""
@@ -36,6 +36,16 @@ def sign(w: Any) -> Any:
 def size(x: Any, small: float = 1e-3) -> Any:
     """|x|, smooth."""
     return ca.sqrt(x**2 + small**2)
+
+
+JOINT: dict[str, Any] = {
+    "states": ("q", "w"),
+    "outputs": (Channel("q", "rad", "the angle", angle=True),),
+    "seen": lambda v, _: {"q": v.q},
+    "start": lambda seen: {"q": seen["q"], "w": seen["q_rate"]},
+    "ports": {"friction": ("torque", "N m", "a torque")},
+}
+"""What machines with one joint have in common: its angle q is seen, its speed is w."""
 
 
 def _torque(name: str = "torque", low: float = 0.0) -> Constant:

@@ -16,9 +16,14 @@ import numpy as np
 
 from rr_opt.array import Array
 from rr_opt.machines.drive import Drives, Piece, beside
-from rr_opt.machines.equations import effect_info, parameter_quantity, scales_of, system_of
-from rr_opt.machines.unknown_forces import forces
-from rr_opt.machines.windows import MODES, SHORTEST, prediction_window, stirred
+from rr_opt.machines.equations import (
+    effect_info,
+    parameter_quantity,
+    scales_of,
+    system_of,
+    unknown_inputs,
+)
+from rr_opt.machines.windows import SHORTEST, prediction_window, stirred
 from rr_opt.model.machine import MachineEffect, MachineExperiment, Signals
 from rr_opt.sysid.diagnosis import Misfit
 from rr_opt.sysid.estimation import Fit
@@ -34,10 +39,8 @@ from rr_opt.sysid.model import (
     Simulation,
 )
 from rr_opt.sysid.sensitivities import DriveSlopes, Recorded, Sought, grams
+from rr_opt.sysid.settings import SETTINGS
 from rr_opt.sysid.shooting import DrivePath, Path, System, predict_all
-
-WINDOWS = 2.0
-"""In a part of a recording that is predicted from the others."""
 
 _EARLY = 0.05
 """s, from which the state at the beginning of a segment is seen."""
@@ -74,10 +77,10 @@ class OdeModel:
         self.horizon = self.segment_length = SHORTEST
         self._part([Piece(k, 0, len(run)) for k, run in enumerate(experiment.runs)])
         self.horizon = self.segment_length = prediction_window(self)
-        self.correlation_time = self.horizon / MODES
+        self.correlation_time = self.horizon / SETTINGS.modes
         if not parted:
             # Windows are independent: parts of a recording are predicted from one another.
-            length = WINDOWS * self.horizon
+            length = SETTINGS.windows * self.horizon
             self._part([p for one in self._pieces for p in self._parts(one, length)])
 
     def _part(self, pieces: Sequence[Piece]) -> None:
@@ -152,7 +155,7 @@ class OdeModel:
         """At each port something that depends on a state or an input."""
         requests = fit.problem.requests(fit.values, fit.states)
         made = self.made(requests, fit.effects)
-        terms, slopes = forces(self.machine, made)
+        terms, slopes = unknown_inputs(self.machine, made)
         out = {}
         for one, more in zip(requests, slopes, strict=True):
             (out[one.segment],) = self._linearised([one], fit.effects, fit.problem.names, more)
@@ -198,6 +201,10 @@ class OdeModel:
     def state_scale(self, effects: tuple[str, ...]) -> Array:
         """See above."""
         return self._state_scale
+
+    def least_process_noise(self, run: int, effects: tuple[str, ...]) -> Array:
+        """None is known."""
+        return np.zeros(self._state_scale.size)
 
     def state_prior(self, effects: tuple[str, ...]) -> Array:
         """Nothing is known."""

@@ -16,24 +16,13 @@ from rr_opt.array import Array
 from rr_opt.model.machine import MachineExperiment, MachineRun, Signals
 from rr_opt.sysid.model import Data, Linearisation, Request, Segment, segments
 from rr_opt.sysid.sensitivities import Recorded
+from rr_opt.sysid.settings import SETTINGS
 from rr_opt.sysid.shooting import DrivePath, Path
-
-SPOILT = 7.4
-"""e^2: a window is no longer than errors take to grow so many times anywhere."""
 
 _LENGTHS = (0.125, 0.25, 0.5, 1.0, 2.0)
 """Of windows, s."""
 
 SHORTEST = _LENGTHS[0]
-
-DROWNED = 0.005
-"""Of the motion in the longest windows (RMS): what noise of the inputs leaves in one, at most,"""
-
-HIDDEN = 6.0
-"""or RMS in sigma."""
-
-MODES = 4
-"""Of the errors that a force left out makes in a window, beside those that its start takes up."""
 
 _DRAWS = 3
 """Of the inputs' noise."""
@@ -73,11 +62,12 @@ def prediction_window(model: Predictable) -> float:
     steps: dict[int, list[Array]] = {}
     for one, linear in zip(cut, model.linearise(_guessed(model, cut), (), ()), strict=True):
         steps.setdefault(one.run, []).append(linear.end)
-    trusted, motion = SHORTEST, _motion(model)
+    trusted = SHORTEST
+    unseen = max(SETTINGS.input_share * _motion(model), SETTINGS.input_noise)
     for length in _LENGTHS:
         count = round(length / SHORTEST)
         grown = max(_growth(every, count) for every in steps.values())
-        if not (grown <= SPOILT and stirred(model, length) <= max(DROWNED * motion, HIDDEN)):
+        if not (grown <= SETTINGS.growth and stirred(model, length) <= unseen):
             break
         trusted = length
     return trusted

@@ -28,6 +28,13 @@ INLINE V all(double x) {
 }
 
 INLINE V pick(Bits which, V a, V b) { return (V)((which & (Bits)a) | (~which & (Bits)b)); }
+/* Whether one of the lanes is picked. */
+INLINE int any(Bits which) {
+  long long some = 0;
+  int l;
+  for (l = 0; l < L; ++l) some |= which[l];
+  return some != 0;
+}
 INLINE V v_abs(V x) { return pick(x < all(0.0), -x, x); }
 INLINE V v_min(V a, V b) { return pick(a < b, a, b); }
 INLINE V v_max(V a, V b) { return pick(a > b, a, b); }

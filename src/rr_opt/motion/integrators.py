@@ -30,7 +30,11 @@ STATE = ("v", "psi", "x", "y", "s")
 _SNAP = 1e-9
 """A time this near to the end of a piece, relative to its length, is that end."""
 
-_CVODES = {"reltol": 1e-12, "abstol": 1e-13, "max_num_steps": 10_000_000}
+_STABLE, _LOOKED_AT = 2.0, 33
+"""Decay over a step that steps of order 6 follow without running away, with a margin; and times
+of a period at which it is looked at."""
+
+_TIGHT = 1e-12
 
 
 @dataclass(frozen=True)
@@ -88,10 +92,12 @@ def whole_steps(gait: Gait, steps: int) -> int:
 def fixed_steps(
     robot: Robot, gait: Gait, v0: float, *, steps: int, method: Tableau = BUTCHER6
 ) -> Array:
-    """States (5, n + 1) over one period from v(0) = v0, at n = whole_steps(gait, steps)."""
+    """States (5, n + 1) over one period from v(0) = v0, at n = whole_steps(gait, steps), or at so
+    many times as many that they do not run away."""
     dynamics = dynamics_of(robot)
     form, coefficients = _pieces(gait)
     n = whole_steps(gait, steps)
+    n *= max(math.ceil(_fastest_decay(robot, gait) * gait.period / n / _STABLE), 1)
     each, h = n // gait.pieces, gait.period / n
     path = _path(dynamics.effects, form, method, n)
     t = np.tile(np.arange(each) * h, gait.pieces)
@@ -101,8 +107,24 @@ def fixed_steps(
     return np.column_stack([_start(v0), np.asarray(out)])
 
 
-def cvodes(robot: Robot, gait: Gait, v0: float, times: ArrayLike) -> Array:
-    """States (5, len(times)) at `times` (s, increasing from 0) by CVODES at 1e-12, relative.
+def _fastest_decay(robot: Robot, gait: Gait) -> float:
+    """The largest rate at which viscous friction takes a deviation of v back, 1/s; 0 where friction
+    is of another kind, whose rate depends on v."""
+    dynamics = dynamics_of(robot)
+    if not dynamics.linear:
+        return 0.0
+    t = np.tile(np.linspace(0.0, gait.period, _LOOKED_AT), 2)
+    v = np.repeat([0.0, 1.0], _LOOKED_AT)
+    inputs = np.vstack([v, gait.angle(t), gait.rate(t), gait.acceleration(t)])
+    values = np.tile(dynamics.values(robot)[:, None], len(t))
+    still, moving = np.asarray(dynamics.motion(*inputs[:, None], values)[0]).reshape(2, -1)
+    return float((still - moving).max())
+
+
+def cvodes(
+    robot: Robot, gait: Gait, v0: float, times: ArrayLike, tolerance: float = _TIGHT
+) -> Array:
+    """States (5, len(times)) at `times` (s, increasing from 0) by CVODES; tolerance: relative.
 
     Raises NotConvergedError where it cannot go on.
     """
@@ -120,7 +142,7 @@ def cvodes(robot: Robot, gait: Gait, v0: float, times: ArrayLike) -> Array:
         # Rounded, so that pieces with the same grid share an integrator.
         grid = tuple(np.round(at[inside] - k, 12))
         grid += () if grid and grid[-1] == 1.0 else (1.0,)
-        integrator = _cvodes(dynamics.effects, form, grid)
+        integrator = _cvodes(dynamics.effects, form, grid, tolerance)
         p = np.concatenate([[length], coefficients[:, k % gait.pieces], values])
         try:
             out = np.asarray(integrator(x0=state, p=p)["xf"])
@@ -154,13 +176,16 @@ def _stepper(effects: tuple[str, ...], form: _Form, method: Tableau) -> ca.Funct
 
 
 @lru_cache
-def _cvodes(effects: tuple[str, ...], form: _Form, grid: tuple[float, ...]) -> ca.Function:
+def _cvodes(
+    effects: tuple[str, ...], form: _Form, grid: tuple[float, ...], tolerance: float
+) -> ca.Function:
     """Time is in lengths of the piece, so that the length is a parameter."""
     state, t, p, rhs = _symbols(effects, form)
     part, length = ca.SX.sym("part"), ca.SX.sym("length")
     ode = length * ca.substitute(rhs, t, part * length)
     dae = {"x": state, "t": part, "p": ca.vertcat(length, p), "ode": ode}
-    return ca.integrator("reference", "cvodes", dae, 0.0, np.array(grid), _CVODES)
+    options = {"reltol": tolerance, "abstol": 0.1 * tolerance, "max_num_steps": 10_000_000}
+    return ca.integrator("reference", "cvodes", dae, 0.0, np.array(grid), options)
 
 
 @lru_cache

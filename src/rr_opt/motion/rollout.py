@@ -15,6 +15,7 @@ from rr_opt.motion.dynamics import require_friction
 from rr_opt.motion.integrators import cvodes, whole_steps
 from rr_opt.motion.steady_cycle import (
     SteadyCycle,
+    Trajectory,
     cycle_of,
     require_regular,
     steady_cycle,
@@ -26,24 +27,6 @@ from rr_opt.outcome import InputError
 Start = Literal["rest", "steady"]
 
 MOST_SAMPLES = 1_000_000
-
-
-@dataclass(frozen=True)
-class Trajectory:
-    """A motion at equal steps of time.
-
-    t (s); x, y (m) the joint P; psi (rad) the heading of platform 1; phi (rad) the joint angle;
-    v (m/s) the speed of axle 1 along platform 1; torque (N m) of the servo on platform 2, where it
-    jumps the value after the jump
-    """
-
-    t: Array
-    x: Array
-    y: Array
-    psi: Array
-    phi: Array
-    v: Array
-    torque: Array
 
 
 def rollout(robot: Robot, gait: Gait, seconds: float, start: Start, rate: float) -> Trajectory:
@@ -67,11 +50,6 @@ def rollout(robot: Robot, gait: Gait, seconds: float, start: Start, rate: float)
     t = np.arange(count + 1) / rate
     v, psi, x, y, _ = cvodes(robot, gait, v0, t)
     return Trajectory(t, x, y, psi, gait.angle(t), v, torque_after(robot, gait, t, v))
-
-
-def one_period(steady: SteadyCycle) -> Trajectory:
-    """The steady cycle as a trajectory."""
-    return Trajectory(steady.t, steady.x, steady.y, steady.psi, steady.phi, steady.v, steady.torque)
 
 
 def repeated(steady: SteadyCycle, cycles: int) -> Trajectory:

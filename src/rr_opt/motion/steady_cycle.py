@@ -135,23 +135,33 @@ _FLAT = 1e-12
 
 
 @dataclass(frozen=True)
-class SteadyCycle:
-    """One steady period at N + 1 equal steps: t (s), phi (rad), v (m/s), psi (rad), x, y (m),
-    torque (N m), and its rigid motion.
+class Trajectory:
+    """A motion at equal steps of time.
+
+    t (s); x, y (m) the joint P; psi (rad) the heading of platform 1; phi (rad) the joint angle;
+    v (m/s) the speed of axle 1 along platform 1; torque (N m) of the servo on platform 2, where it
+    jumps the value after the jump
+    """
+
+    t: Array
+    x: Array
+    y: Array
+    psi: Array
+    phi: Array
+    v: Array
+    torque: Array
+
+
+@dataclass(frozen=True)
+class SteadyCycle(Trajectory):
+    """One steady period at N + 1 equal steps, and its rigid motion.
 
     Every jump of the acceleration is at a sample, where the torque has two values: `torque` is the
     one after the jump, `torque_before` the one before.
     """
 
-    gait: Gait
-    t: Array
-    phi: Array
-    v: Array
-    psi: Array
-    x: Array
-    y: Array
-    torque: Array
     torque_before: Array
+    gait: Gait
     cycle: Cycle
 
     @property
@@ -208,7 +218,7 @@ def _steady(robot: Robot, gait: Gait, path: Array) -> SteadyCycle:
     after = torque_after(robot, gait, t, v)
     before = torque_before(robot, gait, t, v) if gait.pieces > 1 else after
     cycle = cycle_of(gait.period, x, y, psi)
-    return SteadyCycle(gait, t, gait.angle(t), v, psi, x, y, after, before, cycle)
+    return SteadyCycle(t, x, y, psi, gait.angle(t), v, after, before, gait, cycle)
 
 
 BETWEEN = 16

@@ -13,7 +13,7 @@ import numpy as np
 
 from rr_opt.array import Array
 from rr_opt.model.experiment import Flag, Recording
-from rr_opt.recordings.gaps import Gap, Jump, gaps, jumps, without_copies
+from rr_opt.recordings.gaps import Gap, Jump, gaps, jumps, without_inventions
 from rr_opt.recordings.noise import NoiseEstimate
 from rr_opt.recordings.nuisances.units import unit_notices
 from rr_opt.recordings.outliers import outliers, step_of, usual_noise
@@ -59,7 +59,7 @@ class Cleaned:
 
 def clean(recording: Recording) -> Cleaned:
     """Look at every channel of a recording; its own doubts stay with it."""
-    recording, copies = without_copies(_of_numbers(recording))
+    recording, inventions = without_inventions(_of_numbers(recording))
     turns = {one: turns_taken(recording.data(one)) for one in _ANGLES}
     units = unit_notices(recording)
     if units:
@@ -89,7 +89,7 @@ def clean(recording: Recording) -> Cleaned:
     holes = gaps(made)
     turned = [notice("turns.angle", angle=one, count=n) for one, n in turns.items() if n]
     channels = channel_notices(made, noise, steps, holes, found, stated=recording.sigma)
-    doubts = (*units, *copies, *turned, *channels)
+    doubts = (*units, *inventions, *turned, *channels)
     return Cleaned(made, MappingProxyType(noise), holes, MappingProxyType(found), doubts)
 
 

@@ -16,8 +16,14 @@ from typing import Any
 import numpy as np
 
 from rr_opt.array import Array
-from rr_opt.files.experiment_file import FILE_NAME, experiment_path, named_files, read_plan
-from rr_opt.files.experiment_plan import ExperimentPlan, PlannedRun
+from rr_opt.files.experiment_file import (
+    FILE_NAME,
+    ExperimentPlan,
+    PlannedRun,
+    experiment_path,
+    named_files,
+    read_plan,
+)
 from rr_opt.files.issue import InvalidFileError, Issue, has_errors
 from rr_opt.messages import shown
 from rr_opt.model.experiment import CHANNELS, Experiment, Layout, Recording, Run

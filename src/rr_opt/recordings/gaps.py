@@ -84,37 +84,60 @@ def bridged(t: Array, y: Array, longest: float = SHORT) -> Array:
     return bridge
 
 
-_FEWEST = 3
+_COPIES = 3
 """Copies in a row, in every channel, that noise does not make."""
+_ORDER = 4
+"""Of the differences that a curve drawn through a gap does not have, but noise does."""
+_VANISHING = 0.02
+"""Of the usual differences: less in every channel, for as many rows, is no chance."""
+_ROWS = 8
 _COMMON = 0.2
-"""A recording of which a larger part repeats has no noise: it is computed."""
+"""A recording of which a larger part is so has no noise: it is computed."""
 
 
-def without_copies(recording: Recording) -> tuple[Recording, tuple[Notice, ...]]:
-    """The recording with samples that repeat the last one in every channel flagged OUTLIER.
+def without_inventions(recording: Recording) -> tuple[Recording, tuple[Notice, ...]]:
+    """The recording with samples that were not measured flagged OUTLIER, and what was found.
 
-    They are no measurements: a capture that hangs writes its last values again.
+    A capture that hangs writes its last values again; gaps are filled by a smooth curve. Neither
+    has noise.
     """
-    same = np.ones(max(len(recording) - 1, 0), bool)
-    for channel in CHANNELS:
-        same &= np.diff(recording.data(channel)) == 0
-    copied = np.concatenate([[False], same])
-    stretches = [(a, b) for a, b in runs(copied) if b - a >= _FEWEST]
-    count = sum(b - a for a, b in stretches)
-    if not stretches or count > _COMMON * len(recording):
-        return recording, ()
-    member = np.zeros(len(recording), bool)
-    for first, last in stretches:
-        member[first:last] = True
-    flags = {
-        channel: np.where(member, flag | np.uint8(Flag.OUTLIER), flag).astype(np.uint8)
-        for channel, flag in recording.flags.items()
-    }
-    first, last = max(stretches, key=lambda one: one[1] - one[0])
-    start, end = recording.t[first - 1], recording.t[last - 1]
-    times = counted(len(stretches), "time")
-    found = notice("held.rows", count=count, times=times, longest=end - start, start=start)
-    return replace(recording, flags=MappingProxyType(flags)), (found,)
+    steps = np.stack([np.diff(recording.data(channel)) for channel in CHANNELS])
+    copied = np.append(False, (steps == 0).all(axis=0))
+    found = []
+    for kind, member in (
+        ("held.rows", _long(copied, _COPIES)),
+        ("filled.rows", _long(_smooth(steps), _ROWS) & ~copied),
+    ):
+        stretches = runs(member)
+        if not stretches or member.mean() > _COMMON:
+            continue
+        flag = (member * np.uint8(Flag.OUTLIER)).astype(np.uint8)
+        flags = {channel: own | flag for channel, own in recording.flags.items()}
+        recording = replace(recording, flags=MappingProxyType(flags))
+        first, last = max(stretches, key=lambda one: one[1] - one[0])
+        start, end = recording.t[max(first - 1, 0)], recording.t[last - 1]
+        times, count = counted(len(stretches), "time"), int(member.sum())
+        found.append(notice(kind, count=count, times=times, longest=end - start, start=start))
+    return recording, tuple(found)
+
+
+def _smooth(steps: Array) -> NDArray[np.bool_]:
+    """Whether a row (n,) is among some whose differences vanish; steps (channels, n - 1)."""
+    size = np.abs(np.diff(steps, _ORDER - 1, axis=1))
+    known = np.isfinite(size).any(axis=1)
+    if not known.any() or not size.shape[1]:
+        return np.zeros(steps.shape[1] + 1, bool)
+    usual = np.nanmedian(size[known], axis=1, keepdims=True)
+    vanishing = (size[known] <= _VANISHING * usual).all(axis=0)
+    return np.convolve(vanishing, np.ones(_ORDER + 1)) > 0
+
+
+def _long(member: NDArray[np.bool_], fewest: int) -> NDArray[np.bool_]:
+    """Without the shorter stretches."""
+    kept = np.zeros_like(member)
+    for first, last in runs(member):
+        kept[first:last] = last - first >= fewest
+    return kept
 
 
 _SIDE = 7

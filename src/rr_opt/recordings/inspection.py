@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from rr_opt.files.experiment_plan import layout_from
-from rr_opt.files.issue import InvalidFileError, Issue, refuse
+from rr_opt.files.experiment_file import layout_from
+from rr_opt.files.issue import InvalidFileError, Issue, refuse, required
 from rr_opt.files.problem_file import kind_of
 from rr_opt.files.source import read_document
 from rr_opt.messages import shown
@@ -206,7 +206,4 @@ def read_layout(path: Path) -> Layout:
     elif "robot" in document.data and kind_of(document) == "experiment":
         message = "Read an experiment without `markers`. Expected the places of markers. Add them."
         raise InvalidFileError([document.error((), message)])
-    places, issues = layout_from(document)
-    if places is None:
-        raise InvalidFileError(issues)
-    return places
+    return required(*layout_from(document))

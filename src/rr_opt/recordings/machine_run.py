@@ -56,7 +56,7 @@ def _run(plan: MachinePlan, one: PlannedRecording) -> MachineRun:
     keep = np.append(True, np.diff(np.maximum.accumulate(t)) > 0) & np.isfinite(t)
     doubts = []
     if not keep.all():
-        doubts.append(f"{(~keep).sum()} rows repeat a time, or fall back, and were left out.")
+        doubts.append(f"Rows left out, as their times repeat or fall back: {(~keep).sum()}.")
     data = {c.name: _channel(one, table, c)[keep] for c in machine.channels}
     t = t[keep] - t[keep][0]
     if t.size < 50:
@@ -66,7 +66,7 @@ def _run(plan: MachinePlan, one: PlannedRecording) -> MachineRun:
         y = np.unwrap(data[c.name]) if c.angle else data[c.name]
         y, wild = _without_wild(y)
         if wild:
-            doubts.append(f"{c.name}: {wild} wild samples were left out.")
+            doubts.append(f"{c.name}: wild samples left out: {wild}.")
         inner = c in machine.inputs
         if inner or c.angle:
             known = np.isfinite(y)

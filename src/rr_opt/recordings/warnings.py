@@ -130,6 +130,8 @@ noise.markers        warning  The markers keep to rigid platforms to {noise:.2g}
     noise is {stated:.2g} mm. A platform that bends, or more noise than stated?
 held.rows            warning  {count} samples repeat the previous one in every channel, {times}; the
     longest stretch lasts {longest:.3g} s, from t = {start:.6g} s. A frozen stream? Flagged.
+filled.rows          warning  {count} samples follow a smooth curve in every channel, {times}; the
+    longest stretch lasts {longest:.3g} s, from t = {start:.6g} s. Gaps that were filled? Flagged.
 turns.angle          note     {angle} jumps by a whole turn {count} times. It was unwrapped.
 steps.channel        warning  {channel} comes in steps of {step}, larger than its noise: it was
     rounded. Its errors are then not independent; => export more digits.

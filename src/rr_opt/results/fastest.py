@@ -21,7 +21,6 @@ from rr_opt.model.gait import Gait
 from rr_opt.model.problem import LARGEST_EXCESS, NEEDS_GRIP, Problem
 from rr_opt.model.robot import Robot
 from rr_opt.motion.energy import Energy, energy
-from rr_opt.motion.rollout import one_period
 from rr_opt.motion.steady_cycle import Cycle
 from rr_opt.outcome import Status
 from rr_opt.results.gait import gait_facts, robot_table, signed_fact, speed_fact
@@ -458,7 +457,7 @@ class FastestGait(Result):
         """The cycle as CSV; nothing without a gait."""
         if self.replay is None:
             return {}
-        return {"trajectory.csv": trajectory_csv(one_period(self.replay.steady))}
+        return {"trajectory.csv": trajectory_csv(self.replay.steady)}
 
 
 LARGEST_DRIVEN_ERROR = 0.01

@@ -14,7 +14,7 @@ from rr_opt.model.command import Command, blended
 from rr_opt.model.problem import Problem
 from rr_opt.model.route import Pose
 from rr_opt.motion.dynamics import derive, dynamics_of
-from rr_opt.motion.rollout import Trajectory
+from rr_opt.motion.steady_cycle import Trajectory
 from rr_opt.routing.path import Leg
 
 _CVODES = {"reltol": 1e-10, "abstol": 1e-12, "max_num_steps": 1_000_000}

@@ -12,7 +12,7 @@ import numpy as np
 from rr_opt.array import Array
 from rr_opt.sysid import estimation
 from rr_opt.sysid.estimation import Fit, Problem
-from rr_opt.sysid.model import Choice, Model, Quantity, Request, Segment, segments
+from rr_opt.sysid.model import Choice, Model, Quantity, Request, Segment
 from rr_opt.sysid.settings import SETTINGS
 
 
@@ -125,7 +125,8 @@ def fitted(
     best, states = min(trials, key=lambda trial: trial[0].deviance)
     begun_with = {**states, **best.states}
     lacking = best.deviance - rival.deviance_of(some.by_run) if rival else -math.inf
-    if not best.converged and lacking > SETTINGS.patience * max(gain, SETTINGS.tolerance):
+    slow = not best.converged and lacking > SETTINGS.patience * max(gain, SETTINGS.tolerance)
+    if slow or not math.isfinite(best.deviance):
         return Candidate(ordered, estimation.solve(problem, best.values, begun_with, 0), True)
     enough = rival.deviance if rival else math.inf
     fit = estimation.fitted(problem, best.values, begun_with, enough=enough)
@@ -165,29 +166,6 @@ def _converted(
         one: model.converted(Request(one, values, state), parent.effects, effects)
         for one, state in parent.states.items()
     }
-
-
-def evaluated(candidate: Fit, runs: Iterable[int], values: Mapping[str, float]) -> Fit:
-    """Runs predicted whole, or in windows as long as the machine can be predicted, with these
-    values: initial states alone are fitted."""
-    problem = candidate.problem
-    cut = segments({run: problem.model.runs[run] for run in runs}, problem.model.horizon)
-    single = replace(
-        problem,
-        quantities=(),
-        segments=cut,
-        values=dict(values),
-        robust=False,
-        q=SETTINGS.most_process_noise,
-    )
-    begun = {(s.run, s.first): state for s, state in candidate.states.items()}
-    states = {
-        one: begun[one.run, one.first]
-        if (one.run, one.first) in begun
-        else problem.model.initial_state(one, problem.effects, values)
-        for one in cut
-    }
-    return estimation.solve(single, values, states)
 
 
 def weights(candidates: Sequence[Candidate], draws: int = 2000) -> Array:

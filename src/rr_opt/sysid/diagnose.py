@@ -135,20 +135,16 @@ def identified(model: Machine, watch: Stopwatch) -> Result:
             model = model.with_noise(noise)
             base = first(model, runs)
     with watch("looking for what is missing"):
-        selection = Selection(model, base, watch.progress)
-        selection.drive()
+        selection = Selection.begun(model, base, watch.progress)
         if quieter := _quieter(selection):
-            model = model.with_noise(quieter)
-            selection = Selection(model, first(model, runs), watch.progress)
-            selection.drive()
-        best = selection.run()
+            selection = selection.again(quieter)
+        selection.run()
         if quieter := _quieter(selection):
             watch.progress("the noise is less than it looked; once more")
-            model = model.with_noise(quieter)
-            selection = Selection(model, first(model, runs), watch.progress)
-            selection.drive()
-            best = selection.run()
-        best = turned(model, best)
+            selection = selection.again(quieter)
+            selection.run()
+        model = selection.model
+        best = turned(model, selection.best)
     with watch("looking for wrong values"):
         fit = best.fit
         if selection.complete(best) or best.excess <= model.form_error:

@@ -3,10 +3,12 @@ r"""Estimation by multiple shooting, with process noise.
 A run is cut into segments, each with an initial state of its own. Where one segment ends and the
 next begins the states may differ by process noise of strength q (in units of `Model.state_scale`):
 
-    E_r = sum of squared residuals of run r + sum over gaps |end_k - start_k+1|^2/(q scale)^2
+    E_r = sum of squared residuals of run r
+          + sum over gaps |end_k - start_k+1|^2/((q scale)^2 + least^2)
 
-With q = 0 this is single shooting; with q large the segments are independent. A model that is
-right is best with next to none; one that lacks something needs as much as what it lacks. q is
+`least` is what machines of this kind differ by from any model (`Model.least_process_noise`). With
+q = 0 and least = 0 this is single shooting; with q large the segments are independent. A model that
+is right is best with next to none; one that lacks something needs as much as what it lacks. q is
 estimated by the marginal likelihood (Laplace's approximation), so that a wrong model is not asked
 to predict for longer than it can, and the parameters of a run are not bent by it.
 
@@ -15,9 +17,8 @@ independent from sample to sample: a run's misfit beyond its noise counts as
 
     loss = n + K log(1 + (E - n)/K),
 
-K the number of correlation times in the run's channels, n its degrees of
-freedom: the marginal of a variance
-of model error that is estimated from the run itself. Where the fit is good this is E.
+K the number of correlation times in the run's channels, n its degrees of freedom: the marginal of
+a variance of model error that is estimated from the run itself. Where the fit is good this is E.
 
 References: Bock (1983) for multiple shooting; Kristensen, Madsen, Jorgensen (2004) for process
 noise in grey-box models; Kennedy and O'Hagan (2001) for model error.
@@ -62,6 +63,13 @@ class Evidence:
     H: Array
     shift: Array
     follow: Array
+
+    @classmethod
+    def diverged(cls, samples: float, states: int, quantities: int) -> Evidence:
+        """Of a run that cannot be simulated there, or close by."""
+        g, H = np.zeros(quantities), np.zeros((quantities, quantities))
+        shift, follow = np.zeros(states), np.zeros((states, quantities))
+        return cls(samples, math.inf, math.inf, 0.0, g, H, shift, follow)
 
     def at(self, d: Array) -> float:
         """The loss after a change d."""
@@ -191,13 +199,17 @@ class Problem:
         n = self.degrees(run)
         return n + robust(misfit - n, self.correlation_times(run))
 
+    def process_noise(self, run: int, q: float) -> Array:
+        """Of each state over a segment of a run, with strength q: one sigma."""
+        least = self.model.least_process_noise(run, self.effects)
+        return np.hypot(q * self.model.state_scale(self.effects), least)
+
     def misfits(self, made: Mapping[Segment, Simulation], states: States) -> dict[int, float]:
         """E of each run."""
         weak = 1 / self.model.state_prior(self.effects)
-        scale = self.model.state_scale(self.effects)
         out = {}
         for run, parts in self.by_run.items():
-            tight = 1 / (self.q * self.model.runs[run].pushed * scale)
+            tight = 1 / self.process_noise(run, self.q)
             total = sum(made[one].cost + float(np.sum((weak * states[one]) ** 2)) for one in parts)
             if np.isfinite(total):
                 for one, after in itertools.pairwise(parts):
@@ -238,8 +250,8 @@ class Linear:
         problem, parts = self.problem, self.problem.by_run[run]
         model = problem.model
         scale, known = model.state_scale(problem.effects), model.state_prior(problem.effects)
-        q = q * model.runs[run].pushed
-        size, tight, prior = scale.size, 1 / (q * scale), 1 / known**2
+        noise = problem.process_noise(run, q)
+        size, tight, prior = scale.size, 1 / noise, 1 / known**2
         # Of the quantities, and of whatever else was linearised in.
         nq = self.parts[parts[0]][1].shape[1] - size
         own = size * len(parts)
@@ -262,6 +274,9 @@ class Linear:
                 H[np.ix_(both, both)] += by.T @ by
                 g[both] += by.T @ gap
                 value += float(gap @ gap)
+        n = problem.degrees(run)
+        if not (np.isfinite(H).all() and np.isfinite(value)):
+            return Evidence.diverged(n, own, nq)
         # In the states' own scales, as their units differ.
         units = np.tile(scale, len(parts))
         S = H[:own, :own] * units * units[:, None]
@@ -272,11 +287,10 @@ class Linear:
         shift = -cho_solve(factor, units * g[:own])
         misfit = value + float(units * g[:own] @ shift)
         log = 2 * float(np.sum(np.log(np.diag(factor[0]))))
-        log += 2 * size * (len(parts) - 1) * math.log(q)
+        log += 2 * (len(parts) - 1) * float(np.sum(np.log(noise / scale)))
         proper = np.isfinite(known)
         log += len(parts) * 2 * float(np.sum(np.log(known[proper] / scale[proper])))
-        n, weight = problem.degrees(run), 1.0
-        excess = misfit - n
+        excess, weight = misfit - n, 1.0
         if problem.robust:
             weight = 1 / (1 + max(excess / problem.correlation_times(run), 0.0))
         return Evidence(
@@ -420,9 +434,13 @@ def solve(
         if better is None:
             converged = True
             break
-        gain, here = here.cost - better.cost, better
-        linear = here.linear()
-        evidences = linear.evidences(problem.q)
+        gain = here.cost - better.cost
+        there = better.linear()
+        found = there.evidences(problem.q)
+        if math.isinf(_deviance(problem, found, better.u)) and math.isfinite(here.cost):
+            # At the edge of where the model can be simulated.
+            break
+        here, linear, evidences = better, there, found
         if gain < tolerance:
             converged = True
             break
@@ -570,16 +588,30 @@ def initial(
 def whole_runs(fit: Fit) -> Fit:
     """The same quantities by least squares over whole runs, or windows as long as the machine can
     be predicted: what the model predicts unaided."""
+    single, states = _whole(fit, fit.problem.by_run, fit.values)
+    # What is left has to be known to a fraction of what would be negligible.
+    enough = 0.1 * SETTINGS.negligible**2 * fit.samples
+    return solve(single, fit.values, states, tolerance=enough)
+
+
+def predicted(fit: Fit, runs: Iterable[int], values: Mapping[str, float]) -> Fit:
+    """Any runs, whole or in such windows, with these values: initial states alone are fitted."""
+    single, states = _whole(fit, runs, values)
+    return solve(replace(single, quantities=(), values=dict(values)), values, states)
+
+
+def _whole(
+    fit: Fit, runs: Iterable[int], values: Mapping[str, float]
+) -> tuple[Problem, dict[Segment, Array]]:
+    """Least squares over whole runs, and states to begin with: the fit's own where it has them."""
     problem = fit.problem
-    cut = segments({r: problem.model.runs[r] for r in problem.by_run}, problem.model.horizon)
+    cut = segments({r: problem.model.runs[r] for r in runs}, problem.model.horizon)
     begun = {(s.run, s.first): state for s, state in fit.states.items()}
     states = {
         one: begun[one.run, one.first]
         if (one.run, one.first) in begun
-        else problem.model.initial_state(one, problem.effects, fit.values)
+        else problem.model.initial_state(one, problem.effects, values)
         for one in cut
     }
-    single = replace(problem, segments=cut, robust=False, q=SETTINGS.most_process_noise)
-    # What is left has to be known to a fraction of what would be negligible.
-    enough = 0.1 * SETTINGS.negligible**2 * fit.samples
-    return solve(single, fit.values, states, tolerance=enough)
+    q = SETTINGS.most_process_noise
+    return replace(problem, segments=cut, robust=False, q=q), states

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import chi2
 
-from rr_opt.sysid.candidates import Candidate, evaluated
+from rr_opt.sysid.candidates import Candidate
 from rr_opt.sysid.diagnosis import Misfit, Mismatch
-from rr_opt.sysid.estimation import Fit
+from rr_opt.sysid.estimation import Fit, predicted
 from rr_opt.sysid.model import Request
 
 
@@ -52,13 +52,13 @@ def mismatch(base: Candidate) -> Mismatch:
 def evaluation(fit: Fit, values: Mapping[str, float]) -> Evaluation:
     """Of all runs of the fit's model, with its effects and with these values."""
     model = fit.problem.model
-    single = evaluated(fit, range(len(model.runs)), values)
+    single = predicted(fit, range(len(model.runs)), values)
     return Evaluation(values, tuple(_misfit(single, k) for k in range(len(model.runs))))
 
 
 def _misfit(fit: Fit, run: int) -> Misfit:
     model, data = fit.problem.model, fit.problem.model.runs[run]
-    predicted = np.concatenate(
+    made = np.concatenate(
         [
             model.predicted(Request(one, fit.values, fit.states[one]), fit.effects)[
                 : one.until - one.first
@@ -66,11 +66,11 @@ def _misfit(fit: Fit, run: int) -> Misfit:
             for one in fit.problem.by_run[run]
         ]
     )
-    r = (predicted - data.values) / data.sigma
+    r = (made - data.values) / data.sigma
     channels = {
         name: float(np.sqrt(np.nanmean(r[:, k] ** 2)))
         for k, name in enumerate(model.channels)
         if np.isfinite(r[:, k]).any()
     }
     total = float(np.sqrt(np.nanmean(r**2)))
-    return Misfit(data.name, data.held_out, total, channels, data.t, predicted, r, data.sigma)
+    return Misfit(data.name, data.held_out, total, channels, data.t, made, r, data.sigma)

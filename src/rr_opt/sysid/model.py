@@ -118,7 +118,6 @@ class Noise:
 class Data:
     """One recorded run: t (n,) s; values, sigma (n, channels), NaN where there are no data.
 
-    pushed  how strong process noise is in it, relative to other runs
     correlation  (channels,) samples that are worth one with independent noise
     """
 
@@ -127,7 +126,6 @@ class Data:
     values: Array
     sigma: Array
     held_out: bool
-    pushed: float = 1.0
     correlation: Array | float = 1.0
 
     @property
@@ -255,6 +253,11 @@ class Model(Protocol):
 
     def state_scale(self, effects: tuple[str, ...]) -> Array:
         """By how much process noise of strength 1 moves each state over a segment."""
+        ...
+
+    def least_process_noise(self, run: int, effects: tuple[str, ...]) -> Array:
+        """By how much machines of this kind move each state over a segment of a run, whatever the
+        model."""
         ...
 
     def state_prior(self, effects: tuple[str, ...]) -> Array:

@@ -12,10 +12,10 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from rr_opt.sysid.candidates import Candidate, fitted, polished, quantities_of
+from rr_opt.sysid.candidates import Candidate, first, fitted, polished, quantities_of
 from rr_opt.sysid.constancy import constancy
 from rr_opt.sysid.machine import Machine
-from rr_opt.sysid.model import Choice
+from rr_opt.sysid.model import Choice, Noise
 from rr_opt.sysid.score_test import scores
 from rr_opt.sysid.settings import SETTINGS
 
@@ -38,6 +38,18 @@ class Selection:
 
     def __post_init__(self) -> None:
         self.best = self.tried[()] = self.base
+
+    @classmethod
+    def begun(cls, model: Machine, base: Candidate, progress: Progress) -> Selection:
+        """A search with the drive looked at."""
+        selection = cls(model, base, progress)
+        selection.drive()
+        return selection
+
+    def again(self, noise: Sequence[Noise]) -> Selection:
+        """From the beginning, with other noise."""
+        model = self.model.with_noise(noise)
+        return self.begun(model, first(model, self.base.fit.problem.by_run), self.progress)
 
     def run(self) -> Candidate:
         """Search; the candidate that was chosen."""

@@ -46,6 +46,20 @@ class Settings:
     named                 confidence above which an effect is named
     false_alarm           chance that any value is called wrong where all are right
     identifiable          standard deviation over that believed, above which data say nothing
+
+    Of machines:
+
+    form_error            of the way travelled, and of the speed over a segment: by so much even a
+                          fine simulation of wheels that press on a floor is off
+    starting              s; after a start from rest the motor saturates, which is left out
+    creeping              s, in which a side speed of a wheel that creeps is gone
+    growth                e^2: a window is no longer than errors take to grow so many times anywhere
+    input_share           of the motion in the longest windows (RMS): the noise of the inputs leaves
+                          no more than that in a window,
+    input_noise           or than that RMS in sigma
+    modes                 of the errors that a force left out makes in a window, beside those that
+                          its start takes up
+    windows               in a part of a recording that is predicted from the others
     """
 
     correlation_time: float = 1.0
@@ -77,6 +91,14 @@ class Settings:
     named: float = 0.5
     false_alarm: float = 0.01
     identifiable: float = 0.999
+    form_error: float = 1e-4
+    starting: float = 0.05
+    creeping: float = 0.02
+    growth: float = 7.4
+    input_share: float = 0.005
+    input_noise: float = 6.0
+    modes: int = 4
+    windows: int = 2
 
 
 SETTINGS = Settings()

@@ -40,7 +40,7 @@ class _Care(NamedTuple):
     repeats: int
 
 
-_ROUGH, _FINE = _Care(PHASES // 2, 1e-6, 30, 1), _Care(2 * PHASES, 1e-13, 100, 4)
+_ROUGH, _FINE = _Care(PHASES // 2, 1e-6, 30, 1), _Care(2 * PHASES, 1e-10, 100, 4)
 _SETTLED, _STEPS, _LONGEST = 1e-9, 5, 0.01
 _AHEAD = 1e-6
 """Least V . E/|V|: at 0 a gait would go neither forward nor backward."""

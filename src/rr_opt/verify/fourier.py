@@ -171,6 +171,8 @@ def _tail(x: Array, flipping: bool) -> Array:
 
 _STIFF = 15.0
 """Range of A beyond which rounding, which exp(A) magnifies, is more than `solve_stiff` errs."""
+_SHARE, _REPLACED = 0.8, 120
+"""To which an error falls from one to the next, at most, where `_by_replacing` goes on so often."""
 _REACH = 1.0
 """a times a step up to which `solve_stiff` resolves the step; beyond, its integrals are off."""
 
@@ -188,8 +190,9 @@ def _weights() -> Array:
 _WEIGHTS = _weights()
 
 
-def solve(a: Array, b: Array, span: Array) -> tuple[Array, Array]:
-    """v (n, K), and the mean of a (K,), harmonic by harmonic.
+def solve(a: Array, b: Array, span: Array) -> tuple[Array, Array, Array]:
+    """v (n, K), the mean of a (K,), and what rounding makes of v, relative, (K,), harmonic by
+    harmonic.
 
     y = v exp(-A) obeys dy/dt = mean y + b exp(-A), whose coefficient is constant: every
     harmonic of y is that of b exp(-A) over (i omega - mean).
@@ -199,12 +202,29 @@ def solve(a: Array, b: Array, span: Array) -> tuple[Array, Array]:
     growth = np.exp(A)
     forcing = harmonics(b / growth)
     forcing /= omega - mean
-    v = growth * samples(forcing, len(a))
-    resolved = np.abs(a).max(axis=0) * span / len(a) <= _REACH
-    stiff = (np.ptp(A, axis=0) > _STIFF) & resolved
-    if stiff.any():
-        v[:, stiff] = solve_stiff(a[:, stiff], b[:, stiff], span[stiff])[0]
-    return v, mean
+    v, magnified = growth * samples(forcing, len(a)), np.ptp(A, axis=0)
+    rounding = np.finfo(float).eps * np.exp(magnified)
+    least, most = a.min(axis=0), a.max(axis=0)
+    stiff = magnified > _STIFF
+    even = stiff & (most - least < -_SHARE * (most + least))
+    resolved = stiff & ~even & (np.maximum(-least, most) * span / len(a) <= _REACH)
+    for which, way in ((even, _by_replacing), (resolved, solve_stiff)):
+        if which.any():
+            v[:, which] = way(a[:, which], b[:, which], span[which])[0]
+            rounding[which] = 0.0
+    return v, mean, rounding
+
+
+def _by_replacing(a: Array, b: Array, span: Array) -> tuple[Array, Array]:
+    """v (n, K), and the constant (K,) that is put for a, again and again with what is left of a v
+    added to b: where a is never 0 the error falls each time by (most - least)/(most + least)."""
+    middle = (a.max(axis=0) + a.min(axis=0)) / 2
+    divisor, rest, v = frequencies(len(a), span) - middle, a - middle, np.zeros_like(b)
+    for _ in range(_REPLACED):
+        before, v = v, samples(harmonics(b + rest * v) / divisor, len(a))
+        if not (np.abs(v - before).max(axis=0) > 1e-13 * np.abs(v).max(axis=0)).any():
+            break
+    return v, middle
 
 
 def solve_stiff(a: Array, b: Array, span: Array) -> tuple[Array, Array]:

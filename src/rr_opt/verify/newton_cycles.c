@@ -94,13 +94,6 @@ static void refine(Work* k, long long n) {
   for (i = 0; i < n; ++i) k->v[i] = pick(k->fine[i] - k->fine[i] == all(0.0), k->fine[i], all(0.0));
 }
 
-INLINE int any(Bits which) {
-  long long some = 0;
-  int l;
-  for (l = 0; l < L; ++l) some |= which[l];
-  return some != 0;
-}
-
 /* Newton's steps until the last is a small share of v, or they do not die out: where they have. */
 static Bits settle(Work* k, const V* robot, long long n, V h, double share, int steps) {
   V damp = all(1.0), before = all(INFINITY), out[5];

@@ -82,8 +82,9 @@ class _Angle(NamedTuple):
 
 
 _Means = tuple[Array, Array, Array]
-_Motion = tuple[Array, Array, Array, Array, NDArray[np.bool_]]
-"""v, w, side and torque (n, G B); whether v is a steady cycle (G B,)."""
+_Motion = tuple[Array, Array, Array, Array, Array]
+"""v, w, side and torque (n, G B); what rounding makes of v, relative, inf where v is no steady
+cycle (G B,)."""
 
 
 class Motion(NamedTuple):
@@ -171,15 +172,16 @@ class SteadyFourier:
             here = _Angle(phi, rate, bend, 2 * math.pi / T)
             if powers is not None:
                 known = Powers(*(_columns(part, block) for part in powers))
-                v, w, side, torque, settled = _by_powers(known, here, span)
+                v, w, side, torque, rounding = _by_powers(known, here, span)
             else:
-                v, w, side, torque, settled = self._by_newton(
+                v, w, side, torque, rounding = self._by_newton(
                     _columns(p, block), here, span, tolerance
                 )
             speed, turn = _mean_speed(v, w, side, span, straight)
-            scale = np.maximum(np.abs(speed), _SMALL * np.abs(v).max(axis=0)) + _TINY
-            error = (tail(v, False) + tail(side, straight)) / scale
-            error = np.where(settled & np.isfinite(speed), error, np.inf)
+            top = np.abs(v).max(axis=0)
+            scale = np.maximum(np.abs(speed), _SMALL * top) + _TINY
+            error = (tail(v, False) + tail(side, straight) + rounding * top) / scale
+            error = np.where(np.isfinite(error) & np.isfinite(speed), error, np.inf)
             results = (speed, turn, peak(torque, straight), error, scale)
             parts.append([result.reshape(T.shape) for result in results])
         return Steady(*(np.concatenate(results) for results in zip(*parts, strict=True)))
@@ -211,7 +213,7 @@ class SteadyFourier:
         angle = np.array([phi, rate * omega, bend * omega**2])
         v, settled = self._newton(angle, p, span, 1e-2 * tolerance, _STEPS)
         _, w, side, torque = self._motion(v, *angle, *p)
-        return v, w, side, torque, settled
+        return v, w, side, torque, np.where(settled, 0.0, np.inf)
 
     def _newton(
         self, angle: Array, p: Array, span: Array, last: float, steps: int
@@ -254,14 +256,14 @@ def _by_powers(powers: Powers, gaits: _Angle, span: Array) -> _Motion:
     # In powers of omega: what stands in brackets is computed once for all periods.
     a = (c.a_vq * q) * omega + c.a_v
     b = ((c.a_qq * q**2 + c.a_r * r) * omega + c.a_q * q) * omega
-    v, mean = solve(a.reshape(len(a), -1), b.reshape(len(b), -1), span)
+    v, mean, rounding = solve(a.reshape(len(a), -1), b.reshape(len(b), -1), span)
     u = v.reshape(a.shape)
     w = c.w_v * u + (c.w_q * q) * omega
     side = c.s_v * u + (c.s_q * q) * omega
     torque = (c.t_vv * u + (c.t_vq * q) * omega + c.t_v) * u
     torque += ((c.t_qq * q**2 + c.t_r * r) * omega + c.t_q * q) * omega
     w, side, torque = (part.reshape(v.shape) for part in (w, side, torque))
-    return v, w, side, torque, mean * span < _DAMPED
+    return v, w, side, torque, np.where(mean * span < _DAMPED, rounding, np.inf)
 
 
 def _means(v: Array, w: Array, side: Array, span: Array, straight: bool) -> _Means:

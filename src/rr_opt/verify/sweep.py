@@ -17,10 +17,10 @@ from rr_opt.array import Array
 from rr_opt.model.gait import Gait, SineGait
 from rr_opt.model.problem import Problem
 from rr_opt.model.robot import Robot
-from rr_opt.verify.climb import KEPT, Aim, climb, cost_of_transport, peak_torque, turn_rows
+from rr_opt.verify.climb import KEPT, Aim, Climbed, climb, cost_of_transport, peak_torque, turn_rows
 from rr_opt.verify.evaluate import Evaluated, Found, Progress, evaluate
 from rr_opt.verify.grid import DECISIONS, Grid, boxes, free_decisions, grid_of, mirrored
-from rr_opt.verify.speeds import least_S1, model_of, robot_with, speed_of, speeds
+from rr_opt.verify.speeds import model_of, robot_with, speed_of, speeds
 
 _SIDE, _TOLERANCE = {True: 120, False: 40}, {True: 1e-3, False: 3e-2}
 """Gaits along each side, and tolerance of their speeds, relative. Other friction than viscous
@@ -28,15 +28,16 @@ _SIDE, _TOLERANCE = {True: 120, False: 40}, {True: 1e-3, False: 3e-2}
 
 
 class SpeedMap(NamedTuple):
-    """Speed over amplitude and period: amplitudes (nA,), rad, periods (nT,), s, signed speed
-    (nT, nA), m/s, peak torque (nT, nA), N m, and least S1 over the cycle (nA,), m. NaN past the
-    singular posture."""
+    """Speed over period and amplitude, at one offset and inertia ratio.
 
-    amplitudes: Array
-    periods: Array
+    period (T,) s; amplitude (A,) rad; speed (A, T) m/s signed; torque (A, T) N m, the peak. Past
+    the singular posture both are NaN.
+    """
+
+    period: Array
+    amplitude: Array
     speed: Array
-    peak_torque: Array
-    least_S1: Array
+    torque: Array
 
 
 def speed_map(problem: Problem, robot: Robot, offset: float) -> SpeedMap:
@@ -49,7 +50,7 @@ def speed_map(problem: Problem, robot: Robot, offset: float) -> SpeedMap:
     T = np.linspace(period.low, period.high, n)
     bare = Problem(robot, problem.limits, problem.gait)
     found = speeds(bare, alpha[:, None], T, offset, tolerance=_TOLERANCE[viscous])
-    return SpeedMap(alpha, T, found.speed.T, found.peak_torque.T, least_S1(robot, alpha, offset))
+    return SpeedMap(T, alpha, found.speed, found.peak_torque)
 
 
 TOLERATED = 1e-4
@@ -74,7 +75,9 @@ _EFFORT = {
     True: _Effort(10_000, 1e-4, 1e-8, 4, 12, 1e-6),
     False: _Effort(600, 0.03, 5e-5, 2, 2, 1e-4),
 }
-_FINALISTS = 3
+_FINALISTS, _ALIKE = 3, 1e-3
+"""Most climbs that go on to their ends, from gaits that differ by more than this in one decision's
+range."""
 _OFF, _MOST_OFF = 2.0, 5.0
 """Share of the speed that an excess of 1, relative, costs a start, and the largest that counts."""
 
@@ -163,11 +166,21 @@ def climbed(problem: Problem, starts: Array, aim: Aim = "speed") -> tuple[Found 
     """The best that climbs from gaits (4, K) lead to, None if none of the best keeps every limit;
     and how many gaits were evaluated. All climb a little, and the best of them to their ends."""
     rough = [climb(problem, start, aim, rough=True) for start in starts.T]
-    rough.sort(key=lambda end: -end.value)
-    fine = [climb(problem, end.decisions, aim) for end in rough[:_FINALISTS]]
+    fine = [climb(problem, end, aim) for end in _finalists(problem, rough)]
     ends = sorted((end for end in fine if end.kept), key=lambda end: -end.value)
     found = next((one for end in ends if (one := _resolved(problem, end.decisions))), None)
     return found, sum(end.points for end in (*rough, *fine))
+
+
+def _finalists(problem: Problem, ends: Sequence[Climbed]) -> list[Array]:
+    """Of gaits that climbs led to the best few, (4,) each, no two of them alike."""
+    spans = np.array([boxes(problem)[name].high - boxes(problem)[name].low for name in DECISIONS])
+    chosen: list[Array] = []
+    for end in sorted(ends, key=lambda end: -end.value):
+        apart = [np.abs(end.decisions - one) > _ALIKE * spans for one in chosen]
+        if len(chosen) < _FINALISTS and all(part.any() for part in apart):
+            chosen.append(end.decisions)
+    return chosen
 
 
 def _resolved(problem: Problem, decisions: Array) -> Found | None:

@@ -57,6 +57,22 @@ def test_a_stream_that_stood_still_is_flagged():
     assert "held" not in kinds(clean(noisy()).doubts)
 
 
+@pytest.mark.parametrize("cut", [None, 0.1, 0.2])
+def test_gaps_filled_by_a_curve_are_flagged(cut):
+    def fill(y):
+        y = y if cut is None else filtfilt(*butter(2, cut), y)
+        gap, near = np.arange(500, 525), np.r_[485:500, 525:540]
+        y[gap] = np.polynomial.Polynomial.fit(near, y[near], 3)(gap)
+        return y
+
+    made = clean(noisy(fill))
+    for name in CHANNELS:
+        rows = np.flatnonzero(made.recording.flags[name])
+        assert set(range(500, 525)) <= set(rows.tolist()) <= set(range(496, 529))
+    assert "filled" in kinds(made.doubts)
+    assert "filled" not in kinds(clean(noisy()).doubts)
+
+
 def test_a_floor_frame_set_anew_is_one_doubt():
     recording = noisy()
     turn = np.exp(0.3j)

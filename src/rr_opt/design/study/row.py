@@ -9,6 +9,7 @@ from typing import Any, Literal, get_args
 
 from rr_opt.model.gait import FourierGait, FreeGait, Gait, SineGait
 from rr_opt.outcome import Status
+from rr_opt.units import LARGEST
 
 Started = Literal["cold", "warm", "warm and cold"]
 
@@ -171,7 +172,7 @@ def _numbers(
 def _check_number(name: str, value: Any, *, whole: bool = False) -> None:
     number = isinstance(value, (float, int)) and not isinstance(value, bool)
     # An integer may be too large for a float.
-    if not number or not abs(value) <= sys.float_info.max:
+    if not number or not abs(value) < LARGEST:
         raise ValueError(f"`{name}` is {_shown(value)}, not a finite number")
     if whole and not isinstance(value, int):
         raise ValueError(f"`{name}` is {_shown(value)}, not a whole number")

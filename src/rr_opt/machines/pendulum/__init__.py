@@ -27,7 +27,7 @@ PENDULUM = Machine(
     name="pendulum",
     words="a pendulum driven by a torque",
     equation="J q'' = u - b q' - ml g sin q",
-    states=("q", "w"),
+    **laws.JOINT,
     parameters=(
         MachineParameter("J", "kg m^2", "moment of inertia about the axis", "0.06",
                          Spread(factor=5.0), 1e-12),
@@ -36,7 +36,6 @@ PENDULUM = Machine(
         MachineParameter("b", "N m s", "viscous friction", "0.05", Spread(factor=5.0)),
     ),
     inputs=(Channel("u", "N m", "the torque"),),
-    outputs=(Channel("q", "rad", "the angle", angle=True),),
     effects=(
         laws.COULOMB,
         laws.STRIBECK_FRICTION,
@@ -48,9 +47,6 @@ PENDULUM = Machine(
         laws.late("clock_offset", "the torque", "u"),
     ),
     rates=_rates,
-    seen=lambda v, _: {"q": v.q},
-    start=lambda seen: {"q": seen["q"], "w": seen["q_rate"]},
     scales=lambda s: {"torque": s["u"], "speed": max(s["q_rate"], 1e-3)},
-    ports={"friction": ("torque", "N m", "a torque")},
     variables={"w": ("speed", "rad/s"), "q": ("angle", "rad"), "u": ("torque", "N m")},
 )  # fmt: skip

@@ -28,17 +28,6 @@ from rr_opt.sysid.model import (
 )
 from rr_opt.sysid.settings import SETTINGS
 
-SETTLING = 0.05
-"""After a start from rest the motor saturates for some 20 ms; that much, s, is left out."""
-
-
-FORM_ERROR = 1e-4
-"""Of the way travelled, by which even a fine simulation of wheels that press on a floor is off."""
-
-
-_SETTLED = 0.02
-"""s, in which a side speed of a wheel that creeps is gone."""
-
 
 class RacerModel:
     """An experiment with a Roller Racer: what was recorded, and what a simulation says of it."""
@@ -93,7 +82,7 @@ class RacerModel:
     @cached_property
     def _form_error(self) -> float:
         squares = [
-            np.nanmean((FORM_ERROR * _travelled(run)[:, None] / run.sigma[:, :2]) ** 2)
+            np.nanmean((SETTINGS.form_error * _travelled(run)[:, None] / run.sigma[:, :2]) ** 2)
             for run in self.runs
         ]
         # In x and y together as much as along the way, in psi and phi nothing.
@@ -167,17 +156,28 @@ class RacerModel:
         return self.simulator.converted(request, before, effects)
 
     def state_scale(self, effects: tuple[str, ...]) -> Array:
-        """As much as the noise; in speeds, as much as that makes in a second, or in the moment for
-        which a side speed lasts."""
+        """As much as the noise as far as it is slow; in speeds, as much as that makes in a second,
+        or in the moment for which a side speed lasts."""
         place, heading = self._stated
-        sides = [place / _SETTLED] * 2 if slips(self.simulator.every(effects)) else []
+        sides = [place / SETTINGS.creeping] * 2 if slips(self.simulator.every(effects)) else []
         return np.array([place, place, heading, place, *sides])
 
     @cached_property
     def _stated(self) -> tuple[float, float]:
         """The noise of the place, m, and of the heading, rad."""
-        place, heading = (float(np.nanmedian(self.runs[0].sigma[:, k])) for k in (0, 2))
+        sigma = self.runs[0].weighted_sigma
+        place, heading = (float(np.nanmedian(sigma[:, k])) for k in (0, 2))
         return place, heading
+
+    def least_process_noise(self, run: int, effects: tuple[str, ...]) -> Array:
+        """In the speed, the form error's share of its mean."""
+        least = np.zeros(self.state_scale(effects).size)
+        least[3] = SETTINGS.form_error * self._mean_speeds[run]
+        return least
+
+    @cached_property
+    def _mean_speeds(self) -> Array:
+        return np.array([_travelled(run)[-1] / run.duration for run in self.runs])
 
     def state_prior(self, effects: tuple[str, ...]) -> Array:
         """Side speeds are about 0: what they do to the motion is of the order of the noise."""
@@ -223,7 +223,7 @@ def _data(run: Run, noise: Sequence[Noise]) -> Data:
     recording = run.recording
     values = np.column_stack([recording.data(name) for name in CHANNELS])
     if run.start == "rest":
-        values[(recording.t >= 0) & (recording.t < SETTLING)] = np.nan
+        values[(recording.t >= 0) & (recording.t < SETTINGS.starting)] = np.nan
     sigma = np.column_stack([recording.sigma[name] for name in CHANNELS])
     sigma = sigma * [one.level for one in noise]
     correlation = np.array([one.correlation for one in noise])

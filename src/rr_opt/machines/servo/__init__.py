@@ -34,7 +34,7 @@ SERVO = Machine(
     name="servo",
     words="a servo that lifts a mass on an arm",
     equation="(m l^2 + armature) q'' = kt V/R - kt^2 w/R - b w - fc sign w - m g l sin q",
-    states=("q", "w"),
+    **laws.JOINT,
     parameters=(
         MachineParameter("kt", "N m/A", "torque constant at the arm", "0.4",
                          Spread(relative=0.2), 1e-6),
@@ -52,7 +52,6 @@ SERVO = Machine(
         Channel("m", "kg", "the mass"),
         Channel("l", "m", "the arm's length"),
     ),
-    outputs=(Channel("q", "rad", "the angle", angle=True),),
     effects=(
         laws.STRIBECK_FRICTION,
         laws.LOAD_FRICTION,
@@ -64,9 +63,6 @@ SERVO = Machine(
         laws.late("command_delay", "the set point", "goal"),
     ),
     rates=_rates,
-    seen=lambda v, _: {"q": v.q},
-    start=lambda seen: {"q": seen["q"], "w": seen["q_rate"]},
     scales=lambda s: {"torque": s["m"] * laws.G * s["l"], "speed": max(s["q_rate"], 1e-3)},
-    ports={"friction": ("torque", "N m", "a torque")},
     variables={"w": ("speed", "rad/s"), "q": ("angle", "rad"), "goal": ("set point", "rad")},
 )  # fmt: skip

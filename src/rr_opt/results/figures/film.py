@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from rr_opt.documents.archive import whole
 from rr_opt.model.robot import Robot
-from rr_opt.motion.rollout import Trajectory
+from rr_opt.motion.steady_cycle import Trajectory
 from rr_opt.outcome import InputError, RollerRacerError
 from rr_opt.results.figures.motion import frames
 

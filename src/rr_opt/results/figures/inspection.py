@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 from rr_opt.array import Array
 from rr_opt.model.experiment import Flag, Recording
 from rr_opt.model.gait import Gait
+from rr_opt.model.machine import Machine, MachineRun
 from rr_opt.recordings.clock_fit import ClockFit
 from rr_opt.recordings.gaps import Gap, bridged
 from rr_opt.recordings.inspection import Inspection
@@ -265,3 +266,19 @@ def draw(found: Inspection) -> dict[str, str]:
             by_marker(below, markers)
             drawn["rigid"] = style.svg(one)
     return {name: small(text) for name, text in drawn.items()}
+
+
+def draw_machine(one: tuple[Machine, MachineRun]) -> dict[str, str]:
+    """SVG text by name."""
+    machine, run = one
+    data = {**run.inputs, **run.outputs}
+    shown = [c for c in machine.channels if c.name in data]
+    with style.styled():
+        made = style.figure(height=0.6 + 1.2 * len(shown))
+        axes = np.atleast_1d(made.subplots(len(shown), 1, sharex=True))
+        for ax, c in zip(axes, shown, strict=True):
+            ax.plot(*thinned(run.t, data[c.name]), color=style.INK, lw=1.1)
+            ax.set(ylabel=f"{c.name}, {c.unit}", xlim=(run.t[0], run.t[-1]))
+            _limits(ax, data[c.name])
+        axes[-1].set_xlabel("time, s")
+        return {"channels": small(style.svg(made))}

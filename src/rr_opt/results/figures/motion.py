@@ -16,8 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from rr_opt.formatting import number
 from rr_opt.model.problem import Limits
 from rr_opt.model.robot import Robot
-from rr_opt.motion.rollout import Trajectory
-from rr_opt.motion.steady_cycle import Cycle, SteadyCycle
+from rr_opt.motion.steady_cycle import Cycle, SteadyCycle, Trajectory
 from rr_opt.results.figures import style
 from rr_opt.results.motion import SimulatedMotion
 from rr_opt.results.route import DrivenRoute

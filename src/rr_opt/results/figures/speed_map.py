@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -19,24 +19,11 @@ from rr_opt.model.robot import Robot
 from rr_opt.results.figures import style
 from rr_opt.results.figures.readout import cells
 from rr_opt.results.sweep import Sweep
+from rr_opt.verify.sweep import SpeedMap
 from rr_opt.verify.sweep import speed_map as evaluated_map
 
 
-@dataclass(frozen=True)
-class MapData:
-    """What the map shows, at one offset and inertia ratio.
-
-    period (T,) s; amplitude (A,) rad; speed (A, T) m/s signed; torque (A, T) N m, the peak.
-    Where the robot would pass its singular posture both are nan.
-    """
-
-    period: Array
-    amplitude: Array
-    speed: Array
-    torque: Array
-
-
-def map_data(problem: Problem, robot: Robot, best: SineGait) -> MapData:
+def map_data(problem: Problem, robot: Robot, best: SineGait) -> SpeedMap:
     """Speed and peak torque around the optimum, over the problem's bounds.
 
     A quantity that the problem fixes is shown from half to one and a half times its value.
@@ -47,11 +34,10 @@ def map_data(problem: Problem, robot: Robot, best: SineGait) -> MapData:
 
     gait = problem.gait
     bounds = GaitBounds(opened(gait.amplitude), opened(gait.period), gait.offset)
-    found = evaluated_map(replace(problem, gait=bounds), robot, best.offset)
-    return MapData(found.periods, found.amplitudes, found.speed.T, found.peak_torque.T)
+    return evaluated_map(replace(problem, gait=bounds), robot, best.offset)
 
 
-def uses(data: MapData, problem: Problem, robot: Robot, offset: float) -> dict[str, Array]:
+def uses(data: SpeedMap, problem: Problem, robot: Robot, offset: float) -> dict[str, Array]:
     """How much of each limit every gait of the map uses, (A, T): more than 1 exceeds it."""
     one, two, limits = robot.platform1, robot.platform2, problem.limits
     cosine = (limits.singularity - two.c) / one.c
@@ -67,14 +53,14 @@ def uses(data: MapData, problem: Problem, robot: Robot, offset: float) -> dict[s
     }
 
 
-def allowed(data: MapData, problem: Problem, robot: Robot, offset: float) -> NDArray[np.bool_]:
+def allowed(data: SpeedMap, problem: Problem, robot: Robot, offset: float) -> NDArray[np.bool_]:
     """Which gaits of the map respect every limit, (A, T)."""
     return np.max(list(uses(data, problem, robot, offset).values()), axis=0) <= 1
 
 
 def speed_map(
     ax: Axes,
-    data: MapData,
+    data: SpeedMap,
     problem: Problem,
     robot: Robot,
     best: SineGait,
@@ -126,7 +112,7 @@ def label(ax: Axes) -> None:
     ax.set(xlabel="period T, s", ylabel="amplitude α, rad")
 
 
-def _edges(ax: Axes, data: MapData, shares: dict[str, Array], limits: Limits) -> None:
+def _edges(ax: Axes, data: SpeedMap, shares: dict[str, Array], limits: Limits) -> None:
     """The edges of what is allowed, each with its name."""
     texts = {
         "rate": f"rate {number(limits.rate * 30 / math.pi, 3)} rpm",
