@@ -305,6 +305,8 @@ def test_segments_of_two_bodies_are_linted_inspected_and_diagnosed(tmp_path):
         assert found.exit_code == 0, found.output
         assert "P is known to" in " ".join(found.output.split()), found.output
     assert "consistent: The model explains the recordings" in found.output
+    corrected = called("lint", str(tmp_path / "diagnose" / "robot-corrected.yaml"))
+    assert corrected.exit_code == 0, corrected.output  # the zeros are the capture's
     uncertainty = read_experiment(place).uncertainty
     assert 1e-6 < uncertainty["c1"].sigma < 1e-3  # as well as P is known
     assert 2e-3 < uncertainty["c2"].sigma < 2.1e-3
