@@ -144,7 +144,7 @@ def steady_cycle(
     robot = robots if isinstance(robots, Robot) else stacked(robots)
     alpha, T = (np.atleast_1d(np.asarray(part, float)) for part in (amplitude, period))
     angle = sine(alpha, T, samples, first=0.0)
-    v, damping = solve(*equation3(robot, *angle, signs), T / 2)
+    v, damping, _ = solve(*equation3(robot, *angle, signs), T / 2)
     speed = mean_speed(v, yaw_rate(robot, v, angle.phi, angle.rate), T)
     return Cycle(v, np.where(damping < 0, speed, np.nan))
 

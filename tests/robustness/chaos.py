@@ -2,7 +2,8 @@
 
 After every disturbance the same command is given again until it ends, and what it wrote is held
 against that of an undisturbed run: no case lost, done twice or different. Writes the counts, with
-the seed, to --out.
+the seed, to --out. With --broken each scene is played once with its protection taken away, and has
+to notice that.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ import argparse
 import csv
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -18,9 +20,10 @@ import sys
 import tempfile
 import time
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -34,14 +37,76 @@ problem:
 vary:
   limits.rate: {from: 10 rpm, to: 60 rpm, count: 13}
 """
-RR_OPT = (sys.executable, "-c", "from rr_opt.cli.entry import main; main()")
-STUDY_RUN = (*RR_OPT, "study", "study.yaml", "--out", "res", "--no-figures")
-MAKE_RUN = (
-    *RR_OPT, "prove", "--cases", "4", "--seed", "5eed", "--kinds", "null", "--engine", "planar",
-    "--make-only", "--workers", "1", "--out", "res",
+BROKEN = {
+    "study killed": """
+import json, time
+from rr_opt.batch.journal import Journal
+class Uncut:
+    def __init__(self, file):
+        self.file = file
+    def __getattr__(self, name):
+        return getattr(self.file, name)
+    def truncate(self, size):
+        pass
+lock = Journal._lock
+def locked(self):
+    lock(self)
+    self._file = Uncut(self._file)
+def slow(self, record):
+    line = json.dumps(record).encode() + b"\\n"
+    for piece in (line[:9], line[9:]):
+        self._file.write(piece)
+        self._file.flush()
+        time.sleep(0.3)
+Journal._lock, Journal._write = locked, slow
+""",
+    "two runs": """
+from rr_opt.batch.journal import Journal
+Journal._lock = lambda self: None
+""",
+    "disk full": """
+from rr_opt.batch.journal import Journal
+kept = Journal._write
+def quiet(self, record):
+    try:
+        kept(self, record)
+    except OSError:
+        pass
+Journal._write = quiet
+""",
+    "clock set back": """
+import time
+time.monotonic = time.time
+""",
+    "worker killed": """
+from rr_opt.batch import run
+run._outcome = lambda pool, future: future.result() if future.exception() is None else run.LOST
+""",
+    "prove killed": """
+import threading
+from rr_lab.trial.trial import Trial
+files = Trial._made
+def later(self, id, made):
+    threading.Timer(3.0, files, (self, id, made)).start()
+    return {"seal": made.seal, "failed": "", "seconds": 1.0}
+Trial._made = later
+""",
+}
+"""By scene, what is run before the program so that its protection is gone."""
+
+
+def program(broken: str = "") -> tuple[str, ...]:
+    """The command, after some code."""
+    return sys.executable, "-c", f"{broken}\nfrom rr_opt.cli.entry import main; main()"
+
+
+CASES = 13
+STUDY_VERB = ("study", "study.yaml", "--out", "res", "--no-figures")
+PROVE_VERB = (
+    "prove", "--cases", "2", "--seed", "5eed", "--kinds", "null", "--engine", "planar",
+    "--workers", "1", "--out", "res",
 )  # fmt: skip
 Random = np.random.Generator
-Study = list[dict[str, str]]
 SIGNALS = (signal.SIGKILL, signal.SIGTERM, signal.SIGINT)
 CLOSE = 1e-6
 """Relative difference of a number from that of the undisturbed run: a neighbour that is not there
@@ -129,32 +194,48 @@ def rows(journal: Path) -> dict[int, str]:
     return found
 
 
-def study_of(folder: Path) -> Study:
-    """The rows of study.csv."""
-    with (folder / "res" / "study.csv").open() as file:
-        return list(csv.DictReader(file))
+def study_of(folder: Path) -> Any:
+    """The rows of study.csv, and of the journal their number."""
+    place = folder / "res"
+    with (place / "study.csv").open() as file:
+        return {"rows": list(csv.DictReader(file)), "kept": sorted(rows(place / "journal.jsonl"))}
 
 
-def same(one: Study, two: Study) -> str:
-    """How two studies differ; empty if they do not."""
-    if [row["case"] for row in one] != [row["case"] for row in two]:
-        return f"{len(one)} rows, and {len(two)}"
-    for left, right in zip(one, two, strict=True):
-        for key in left:
-            if any(word in key for word in ("seconds", "started")):
-                continue
-            if not _close(left[key], right[key]):
-                return f"case {left['case']}: {key} {left[key]} and {right[key]}"
-    return ""
+def trial_of(folder: Path) -> Any:
+    """What a trial wrote: the answers, each that of its seal, and what was said of the cases."""
+    place = folder / "res"
+    check = ("sha256sum", "--check", "--status", "seals.txt")
+    answers = sorted((place / "answers").glob("*.json"))
+    return {
+        "sealed": not subprocess.run(check, cwd=place, check=False).returncode,
+        "answers": {one.name: json.loads(one.read_text()) for one in answers},
+        "made": sorted(rows(place / "made.jsonl")),
+        "said": {n: json.loads(line)["claim"] for n, line in rows(place / "said.jsonl").items()},
+        "cases": (place / "cases.csv").exists(),
+    }
 
 
-def _close(one: str, two: str) -> bool:
-    if one == two:
-        return True
+def same(one: Any, two: Any, where: str = "") -> str:
+    """How two results differ, times apart; empty if they do not."""
+    if isinstance(one, Mapping) and isinstance(two, Mapping) and one.keys() == two.keys():
+        pairs = [(key, one[key], two[key]) for key in one if not TIMES.search(str(key))]
+    elif isinstance(one, list) and isinstance(two, list) and len(one) == len(two):
+        pairs = [(key, *pair) for key, pair in enumerate(zip(one, two, strict=True))]
+    elif _close(one, two):
+        return ""
+    else:
+        return f"{where}: {str(one)[:80]} and {str(two)[:80]}"
+    return next(filter(None, (same(a, b, f"{where}.{key}") for key, a, b in pairs)), "")
+
+
+TIMES = re.compile("seconds|started|wall|cpu")
+
+
+def _close(one: Any, two: Any) -> bool:
     try:
         a, b = float(one), float(two)
-    except ValueError:
-        return False
+    except (TypeError, ValueError):
+        return one == two
     return abs(a - b) <= CLOSE * max(abs(a), abs(b), 1e-3)
 
 
@@ -165,36 +246,68 @@ def fresh() -> Path:
     return folder
 
 
-def undisturbed(command: Sequence[str], log: Log) -> Study:
-    """The study that nothing disturbs."""
-    folder = fresh()
-    end = ended(begun(command, folder), log, "undisturbed")
-    log.check(end.code == 0, f"undisturbed: {end}")
-    found = study_of(folder)
-    shutil.rmtree(folder)
-    return found
+@dataclass
+class Scene:
+    """A command that is disturbed.
 
-
-def killed(
-    name: str, command: Sequence[str], journal: str, kills: int, rng: Random, log: Log,
-    finished: Callable[[Path], str],
-) -> None:  # fmt: skip
-    """Kill runs at random moments, give the command again, and look at what it wrote at its end.
-
-    finished: what is wrong with the folder of a run that ended
+    command   as it is given each time
+    written   what it wrote into a folder, to be held against that of an undisturbed run
+    journals  files of rows that stay as they are
     """
+
+    name: str
+    command: Sequence[str]
+    written: Callable[[Path], Any]
+    journals: Sequence[str]
+    rng: Random
+    log: Log
+
+    def undisturbed(self, *more: str) -> Any:
+        """What a run writes that nothing disturbs."""
+        folder = fresh()
+        end = ended(begun((*self.command, *more), folder), self.log, f"{self.name}, undisturbed")
+        self.log.check(end.code == 0, f"{self.name}, undisturbed: {end}")
+        found = self.written(folder)
+        shutil.rmtree(folder)
+        return found
+
+    def ends_as(self, right: Any, folder: Path, end: Ended) -> None:
+        """Note a run that did not end well, or wrote something else."""
+        why = str(end)[-300:]
+        if end.code == 0:
+            try:
+                why = same(self.written(folder), right)
+            except (OSError, ValueError, KeyError) as error:
+                why = repr(error)
+        self.log.check(not why, f"{self.name}: {why}")
+
+    def rows(self, folder: Path) -> dict[tuple[str, int], str]:
+        """Of all journals."""
+        found = {}
+        for name in self.journals:
+            for case, line in rows(folder / "res" / name).items():
+                found[name, case] = line
+        return found
+
+    def wait_for_row(self, folder: Path, running: subprocess.Popen[str]) -> None:
+        """Wait for the first, as long as the run lasts."""
+        end = time.monotonic() + PATIENCE
+        while not self.rows(folder) and running.poll() is None and time.monotonic() < end:
+            time.sleep(0.02)
+
+
+def killed(scene: Scene, kills: int) -> None:
+    """Kill runs at random moments, give the command again, and look at what it wrote at its end."""
+    log, rng, name = scene.log, scene.rng, scene.name
     begin = time.monotonic()
-    folder = fresh()
-    ended(begun(command, folder), log, f"{name}, undisturbed")
+    right = scene.undisturbed()
     longest = time.monotonic() - begin
-    log.check(not finished(folder), f"{name}, undisturbed: {finished(folder)}")
-    shutil.rmtree(folder)
     folder, before = fresh(), {}
     while kills:
-        running = begun(command, folder)
+        running = begun(scene.command, folder)
         time.sleep(rng.uniform(0.0, longest))
         number = SIGNALS[rng.integers(3)]
-        lived = running.poll() is None
+        lived, done = running.poll() is None, scene.rows(folder)
         if lived:
             # As Ctrl-C in a terminal, which goes to the whole group, or to the process alone.
             to_all = number == signal.SIGINT and rng.random() < 0.5
@@ -203,40 +316,43 @@ def killed(
         if lived:
             kills -= 1
             log.done[f"{name}, {number.name}"] += 1
+            log.done[f"{name}, with rows done"] += bool(done)
             # A signal may come before the run has taken it over, or after its work is done.
             codes = {0, -number} if number == signal.SIGKILL else {0, 130, -number}
-            log.check(
-                end.code in codes, f"{name}, {number.name}: exit {end.code}: {end.err[-300:]}"
-            )
-        now = rows(folder / "res" / journal)
-        lost = [case for case, line in before.items() if now.get(case) != line]
+            log.check(end.code in codes, f"{name}, {number.name}: exit {str(end)[-300:]}")
+        now = scene.rows(folder)
+        lost = [case for case, line in (before | done).items() if now.get(case) != line]
         log.check(not lost, f"{name}, {number.name}: rows {lost} are lost or changed")
         before = now
+        if not lived and end.code != 0:
+            log.check(False, f"{name}: exit {str(end)[-300:]}")
+            break
         if end.code == 0:
             log.done[f"{name}, finished"] += 1
-            log.check(not finished(folder), f"{name}: {finished(folder)}")
+            scene.ends_as(right, folder, end)
             shutil.rmtree(folder)
             folder, before = fresh(), {}
-    end = ended(begun(command, folder), log, f"{name}, at last")
-    log.check(end.code == 0 and not finished(folder), f"{name}, at last: {end} {finished(folder)}")
+    scene.ends_as(right, folder, ended(begun(scene.command, folder), log, f"{name}, at last"))
     shutil.rmtree(folder)
 
 
-def two_runs(rounds: int, reference: Study, log: Log) -> None:
+def two_runs(scene: Scene, rounds: int) -> None:
     """Two runs into one folder: one ends, the other is refused."""
+    right = scene.undisturbed()
     for _ in range(rounds):
         folder = fresh()
-        both = [begun(STUDY_RUN, folder) for _ in range(2)]
-        ends = [ended(one, log, "two runs") for one in both]
-        codes = sorted(end.code for end in ends)
-        log.done["two runs into one folder"] += 1
-        log.check(codes in ([0, 2], [0, 0]), f"two runs: exit {codes}")
-        log.check(not same(study_of(folder), reference), "two runs: another study")
+        both = [begun(scene.command, folder) for _ in range(2)]
+        ends = sorted((ended(one, scene.log, scene.name) for one in both), key=lambda e: e.code)
+        scene.log.done["two runs into one folder"] += 1
+        codes = [end.code for end in ends]
+        scene.log.check(codes in ([0, 2], [0, 0]), f"two runs: exit {codes}")
+        scene.ends_as(right, folder, ends[0])
         shutil.rmtree(folder)
 
 
-def disk_full(rounds: int, reference: Study, rng: Random, log: Log) -> None:
+def disk_full(scene: Scene, rounds: int) -> None:
     """A disk that is full in between."""
+    right, log = scene.undisturbed(), scene.log
     for _ in range(rounds):
         folder = fresh()
         disk = folder / "res"
@@ -248,31 +364,30 @@ def disk_full(rounds: int, reference: Study, rng: Random, log: Log) -> None:
         try:
             ballast = disk / "ballast"
             with ballast.open("wb") as file:
-                free = 256 * 1024 - 4096 * int(rng.integers(0, 6))
+                free = 256 * 1024 - 4096 * int(scene.rng.integers(0, 6))
                 file.write(b"\0" * (free - 4096))
-            end = ended(begun(STUDY_RUN, folder), log, "disk full")
+            end = ended(begun(scene.command, folder), log, "disk full")
             log.done["disk full"] += 1
             said = "No space left" in end.err or "full" in end.err
             log.check(end.code == 2 and said, f"disk full: exit {end.code}: {end.err[-300:]}")
-            before = rows(disk / "journal.jsonl")
+            before = scene.rows(folder)
             ballast.unlink()
-            end = ended(begun(STUDY_RUN, folder), log, "disk with room again")
-            now = rows(disk / "journal.jsonl")
-            log.check(
-                all(now.get(case) == line for case, line in before.items()), "disk full: lost"
-            )
-            right = end.code == 0 and not same(study_of(folder), reference)
-            log.check(right, f"disk with room again: exit {end.code}: {end.err[-300:]}")
+            end = ended(begun(scene.command, folder), log, "disk with room again")
+            now = scene.rows(folder)
+            lost = [case for case, line in before.items() if now.get(case) != line]
+            log.check(not lost, f"disk full: rows {lost} are lost or changed")
+            scene.ends_as(right, folder, end)
         finally:
             subprocess.run(("umount", str(disk)), check=False)
         shutil.rmtree(folder)
 
 
-def clock_back(rounds: int, reference: Study, rng: Random, log: Log) -> None:
+def clock_back(scene: Scene, rounds: int) -> None:
     """The clock of the machine set back by a day during a run, and a run killed after that."""
     if shutil.which("faketime") is None:
-        log.done["clock set back: faketime is not installed"] += 1
+        scene.log.done["clock set back: faketime is not installed"] += 1
         return
+    right, rng, log = scene.undisturbed(), scene.rng, scene.log
     for _ in range(rounds):
         folder = fresh()
         clock = folder / "clock"
@@ -281,18 +396,17 @@ def clock_back(rounds: int, reference: Study, rng: Random, log: Log) -> None:
             "FAKETIME_TIMESTAMP_FILE": str(clock), "FAKETIME_NO_CACHE": "1",
             "FAKETIME_DONT_FAKE_MONOTONIC": "1", "LD_PRELOAD": _faketime(),
         }  # fmt: skip
-        running = begun(STUDY_RUN, folder, **fake)
-        time.sleep(rng.uniform(0.5, 4.0))
+        running = begun(scene.command, folder, **fake)
+        scene.wait_for_row(folder, running)
+        time.sleep(rng.uniform(0.0, 1.0))
         clock.write_text("-1d")
+        log.done["clock set back"] += running.poll() is None
         if rng.random() < 0.5:
-            time.sleep(rng.uniform(0.5, 2.0))
+            time.sleep(rng.uniform(0.0, 1.0))
             running.send_signal(signal.SIGKILL)
             ended(running, log, "clock set back, killed")
-            running = begun(STUDY_RUN, folder, **fake)
-        end = ended(running, log, "clock set back")
-        log.done["clock set back"] += 1
-        right = end.code == 0 and not same(study_of(folder), reference)
-        log.check(right, f"clock set back: exit {end.code}: {end.err[-300:]}")
+            running = begun(scene.command, folder, **fake)
+        scene.ends_as(right, folder, ended(running, log, "clock set back"))
         shutil.rmtree(folder)
 
 
@@ -306,29 +420,28 @@ def _faketime() -> str:
     return found.stdout.strip()
 
 
-def worker_killed(rounds: int, rng: Random, log: Log) -> None:
-    """A worker of a dask cluster is killed at a random moment."""
-    reference = undisturbed((*STUDY_RUN, "--cold"), log)
+def worker_killed(scene: Scene, rounds: int) -> None:
+    """A worker of a dask cluster is killed in the midst of its cases."""
+    right, log = scene.undisturbed(), scene.log
     address = f"tcp://127.0.0.1:{free_port()}"
     cluster = [begun((sys.executable, *SCHEDULER, address), Path.cwd())]
     try:
-        spare = begun((sys.executable, *WORKER, address), Path.cwd())
-        cluster.append(spare)
-        for _ in range(rounds):
+        cluster.append(begun((sys.executable, *WORKER, address), Path.cwd()))
+        while rounds:
             folder = fresh()
             worker = begun((sys.executable, *WORKER, address), folder)
             cluster.append(worker)
-            time.sleep(3.0)
-            running = begun((*STUDY_RUN, "--scheduler", address, "--cold"), folder)
-            end = time.monotonic() + PATIENCE
-            while not rows(folder / "res" / "journal.jsonl") and time.monotonic() < end:
-                time.sleep(0.05)
-            time.sleep(rng.uniform(0.0, 2.0))
+            time.sleep(5.0)
+            running = begun((*scene.command, "--scheduler", address), folder)
+            scene.wait_for_row(folder, running)
+            time.sleep(scene.rng.uniform(0.0, 1.0))
+            lived, done = running.poll() is None, len(scene.rows(folder))
             worker.kill()
-            found = ended(running, log, "worker killed")
-            log.done["worker of a cluster killed"] += 1
-            other = same(study_of(folder), reference) if found.code == 0 else found.err[-300:]
-            log.check(not other, f"worker killed: exit {found.code}: {other}")
+            end = ended(running, log, scene.name)
+            scene.ends_as(right, folder, end)
+            if lived and done < CASES:
+                rounds -= 1
+                log.done["worker of a cluster killed"] += 1
             shutil.rmtree(folder, ignore_errors=True)
     finally:
         for one in cluster:
@@ -336,17 +449,33 @@ def worker_killed(rounds: int, rng: Random, log: Log) -> None:
             one.communicate()
 
 
-def sealed(folder: Path) -> str:
-    """What is wrong with the cases that were made; empty if nothing is."""
-    place = folder / "res"
-    made = rows(place / "made.jsonl")
-    answers = sorted(path.name for path in (place / "answers").glob("*.json"))
-    if sorted(made) != [1, 2, 3, 4] or len(answers) != 4:
-        return f"cases {sorted(made)}, answers {answers}"
-    check = ("sha256sum", "--check", "--status", "seals.txt")
-    if subprocess.run(check, cwd=place, check=False).returncode:
-        return "an answer is not that of its seal"
-    return ""
+def played(names: Sequence[str], given: argparse.Namespace, log: Log, *, broken: bool) -> None:
+    """Play scenes, each with random numbers of its own; broken: without its protection."""
+    begin = time.monotonic()
+    for name in names:
+        rng = np.random.default_rng([given.seed, list(BROKEN).index(name)])
+        command = program(BROKEN[name] if broken else "")
+        more = ("--cold",) if name == "worker killed" else ()
+        scene = Scene(name, (*command, *STUDY_VERB, *more), study_of, ["journal.jsonl"], rng, log)
+        if name == "prove killed":
+            verb = (*command, *PROVE_VERB)
+            scene = Scene(name, verb, trial_of, ["made.jsonl", "said.jsonl"], rng, log)
+            killed(scene, given.kills // 4)
+        elif name == "study killed":
+            killed(scene, given.kills - given.kills // 4)
+        else:
+            OTHERS[name](scene, given.rounds)
+        print(f"{time.monotonic() - begin:6.0f} s  {name}  {dict(log.done)}", flush=True)
+        if given.out and not broken:
+            write_json(given.out, {"seed": given.seed, "done": log.done, "wrong": log.wrong})
+
+
+OTHERS = {
+    "two runs": two_runs,
+    "disk full": disk_full,
+    "clock set back": clock_back,
+    "worker killed": worker_killed,
+}
 
 
 def main() -> None:
@@ -355,32 +484,23 @@ def main() -> None:
     parser.add_argument("--kills", type=int, default=200)
     parser.add_argument("--rounds", type=int, default=5, help="of every other scene")
     parser.add_argument("--seed", type=int, default=int(time.time()))
+    parser.add_argument("--scenes", nargs="+", choices=BROKEN, default=list(BROKEN))
+    parser.add_argument("--broken", action="store_true", help="each has to notice what is missing")
     parser.add_argument("--out", type=Path, help="a JSON file for the counts")
     given = parser.parse_args()
     # Runs in the background ignore it, and so would all that they start.
     signal.signal(signal.SIGINT, signal.default_int_handler)
-    rng, log = np.random.default_rng(given.seed), Log()
-    reference = undisturbed(STUDY_RUN, log)
-    begin = time.monotonic()
-    scenes: dict[str, Callable[[], None]] = {
-        "study killed": lambda: killed(
-            "study", STUDY_RUN, "journal.jsonl", given.kills - given.kills // 4, rng, log,
-            lambda place: same(study_of(place), reference),
-        ),
-        "two runs": lambda: two_runs(given.rounds, reference, log),
-        "disk full": lambda: disk_full(given.rounds, reference, rng, log),
-        "clock set back": lambda: clock_back(given.rounds, reference, rng, log),
-        "worker killed": lambda: worker_killed(given.rounds, rng, log),
-        "prove killed": lambda: killed(
-            "prove", MAKE_RUN, "made.jsonl", given.kills // 4, rng, log, sealed
-        ),
-    }  # fmt: skip
-    for name, scene in scenes.items():
-        scene()
-        print(f"{time.monotonic() - begin:6.0f} s  {name}  {dict(log.done)}", flush=True)
-        if given.out:
-            write_json(given.out, {"seed": given.seed, "done": log.done, "wrong": log.wrong})
-    sys.exit(bool(log.wrong))
+    if not given.broken:
+        log = Log()
+        played(given.scenes, given, log, broken=False)
+        sys.exit(bool(log.wrong))
+    noticed = {}
+    for name in given.scenes:
+        log = Log()
+        played([name], given, log, broken=True)
+        noticed[name] = len(log.wrong)
+    print(noticed)
+    sys.exit(not all(noticed.values()))
 
 
 if __name__ == "__main__":

@@ -20,6 +20,7 @@ import time
 import traceback
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, TextIO
@@ -32,7 +33,7 @@ from tests.robustness.spoil import spoiled
 
 SECONDS, BYTES = 10.0, 2**30
 """Of the processor and of memory that a verb may take for a spoiled file."""
-PATIENCE = 120.0
+PATIENCE = 600.0
 """s after which a process that does not end is killed: others may be using the processor."""
 STOP = 1.5
 """s after which a verb is interrupted that has taken the input and computes."""
@@ -69,7 +70,7 @@ def ended(verbs: Sequence[Verb], folder: Path, stop: float | None = None) -> lis
         child = os.fork()
         if child == 0:
             _child(verbs, folder, report, stop)
-        signal.signal(signal.SIGALRM, lambda *_: os.kill(child, signal.SIGKILL))
+        signal.signal(signal.SIGALRM, lambda *_: _kill(child))
         signal.setitimer(signal.ITIMER_REAL, PATIENCE)
         _, status, used = os.wait4(child, 0)
         signal.setitimer(signal.ITIMER_REAL, 0)
@@ -80,6 +81,11 @@ def ended(verbs: Sequence[Verb], folder: Path, stop: float | None = None) -> lis
     if len(ends) < len(verbs):  # as by a signal, or by os._exit where it was interrupted
         ends.append(Ended(code, *_texts(folder), used.ru_utime + used.ru_stime, size))
     return [replace(end, bytes=size) for end in ends]
+
+
+def _kill(child: int) -> None:
+    with suppress(ProcessLookupError):  # it may have ended at that moment
+        os.kill(child, signal.SIGKILL)
 
 
 OUT, ERR = "..out", "..err"

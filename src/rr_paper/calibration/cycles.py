@@ -147,7 +147,7 @@ _FIRST_STEP = 0.1  # m/s
 
 def viscous_speed(found: Coefficients, period: Array) -> Array:
     """Mean speed of P (G,), m/s, positive along platform 1; NaN where no motion is steady."""
-    v, damping = solve(found.slope, found.drive, period / 2)
+    v, damping, _ = solve(found.slope, found.drive, period / 2)
     return np.where(damping < 0, mean_speed(v, found.turn * v + found.yaw, period), np.nan)
 
 

@@ -35,7 +35,8 @@ def recordings(draw):
         values = np.array(draw(st.lists(NUMBERS, min_size=n, max_size=n)))
         # A value that is not there is flagged so; one that is there may be too.
         values[(flags & 1 == 1) & draw(st.booleans())] = np.nan
-        sigma = np.array(draw(st.lists(NUMBERS | st.just(np.nan), min_size=n, max_size=n)))
+        noise = st.floats(0, 1e6) | st.just(np.nan)
+        sigma = np.array(draw(st.lists(noise, min_size=n, max_size=n)))
         by_channel[name] = (values, sigma, flags)
     return Recording(
         draw(WORDS),
@@ -126,6 +127,7 @@ WRONG = {
     "over time": (lambda data: data.rename(t="time"), "The variable `t` is missing"),
     "backwards": (lambda data: data.isel(t=[2, 1, 0]), "each above the last"),
     "one row": (lambda data: data.isel(t=[0]), "t has 1 values"),
+    "no sigma": (lambda data: data.assign(x_sigma=data.x_sigma * 1e306), "x_sigma ranges from"),
     "NaN": (lambda data: data.assign_coords(t=[0, np.nan, 1]), "each above the last"),
 }
 

@@ -108,6 +108,10 @@ def to_dataset(recording: Recording, gait: Gait | None = None) -> xarray.Dataset
     return data
 
 
+_NO_NOISE = 1e6
+"""Nothing is measured with as much noise, in m, rad or N m."""
+
+
 def from_dataset(data: xarray.Dataset, file: str, noise: Noise | None = None) -> Recording:
     """The recording of a dataset that `to_dataset` made, or of any with t, x, y, psi and phi.
 
@@ -127,6 +131,12 @@ def from_dataset(data: xarray.Dataset, file: str, noise: Noise | None = None) ->
         missing = np.isnan(values[name])
         if f"{name}_sigma" in data:
             sigma[name] = numbers_of(data, f"{name}_sigma", UNITS[name], file)
+            if ((sigma[name] < 0) | (sigma[name] > _NO_NOISE)).any():
+                raise InputError(
+                    f"{file}: {name}_sigma ranges from {np.nanmin(sigma[name]):.3g} to "
+                    f"{np.nanmax(sigma[name]):.3g}. Expected standard deviations of noise. "
+                    "Write the file once more."
+                )
         else:
             sigma[name] = np.full(len(t), noise.of(name) if noise else np.nan)
         flags[name] = np.where(missing, Flag.MISSING, 0).astype(np.uint8)
