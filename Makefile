@@ -70,6 +70,7 @@ results: $(DEV) ## write the results that are kept in results/
 	$(BIN)/rr-opt turn-chart --out results/turn-chart
 	$(BIN)/rr-opt route problems/routes/around.yaml --out results/route
 	$(BIN)/rr-opt study problems/studies/servo.yaml --restart --out results/servo
+	$(BIN)/rr-opt maximize-speed problems/robust --out results/robust
 	$(BIN)/rr-opt study problems/studies/economy.yaml --restart --out results/economy
 	$(BIN)/python -m benchmarks.lab_agreement
 	$(BIN)/rr-opt reproduce --out results/paper

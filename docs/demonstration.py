@@ -1,8 +1,8 @@
 """Five minutes with the whole tool: `python docs/demonstration.py [--seed N]`.
 
 A robot with something hidden in it is recorded, and the answer sealed. The diagnosis sees the
-recordings alone. Then the seal is opened, the fastest gait is looked for with the model as believed
-and with the model as found, both are driven by the robot that has the hidden effect, and what was
+recordings alone. Then the seal is opened, the fastest gait is looked for with the nominal
+and with the corrected model, both are driven by the robot that has the hidden effect, and what was
 predicted is held against what was recorded. Every step is a command that is shown, and can be given
 by hand. Files go to out/demonstration.
 """
@@ -46,7 +46,7 @@ PROBLEM = """\
 robot: {robot}
 gait: {{amplitude: [0.3, 2], period: [0.5 s, 4 s], offset: 0}}
 """
-ROBOTS = {"believed": "robot.yaml", "found": "diagnosis/robot-corrected.yaml"}
+ROBOTS = {"nominal": "robot.yaml", "corrected": "diagnosis/robot-corrected.yaml"}
 
 
 def main() -> None:
@@ -58,7 +58,7 @@ def main() -> None:
     say("2. The diagnosis sees the recordings alone.")
     print(run("diagnose", f"{asked.out}/recorded", "--out", f"{asked.out}/diagnosis"))
     effects = open_seal(asked.out)
-    say("4. The fastest gait, by the model as believed and by the model as found.")
+    say("4. The fastest gait, by the nominal and by the corrected model.")
     gaits = {name: fastest(asked.out, name) for name in ROBOTS}
     hold_together(asked.out, gaits, effects)
     print(f"\nThe diagnosis's page: {asked.out}/diagnosis/report.html")
@@ -89,7 +89,7 @@ def open_seal(out: Path) -> list[str]:
 def hold_together(out: Path, gaits: dict[str, dict[str, Any]], effects: list[str]) -> None:
     """Record each gait with the hidden effects, and print it beside what each model predicts."""
     say("5. The robot that hides it drives both, from rest, and each model predicts both.")
-    lines = [f"{'gait chosen by':<24}{'recorded':>14}{'as believed':>20}{'as found':>20}"]
+    lines = [f"{'gait chosen by':<24}{'recorded':>14}{'nominal':>20}{'corrected':>20}"]
     for chosen, gait in gaits.items():
         told, folder = f"{gait['amplitude']:.6g}, {gait['period']:.6g} s", f"{out}/best-{chosen}"
         words = ("--seconds", str(DRIVE), "--out", folder)
@@ -97,7 +97,7 @@ def hold_together(out: Path, gaits: dict[str, dict[str, Any]], effects: list[str
         seen = mean_speed(Path(folder) / "run01.csv", gait["period"])
         said = [predicted(out, gait, name) for name in ROBOTS]
         cells = "".join(f"{1e3 * one:>10.1f} ({100 * (one / seen - 1):+.1f} %)" for one in said)
-        lines.append(f"{'the model as ' + chosen:<24}{1e3 * seen:>9.1f} mm/s{cells}")
+        lines.append(f"{f'the {chosen} model':<24}{1e3 * seen:>9.1f} mm/s{cells}")
     print("\n" + "\n".join(lines))
 
 
@@ -106,7 +106,7 @@ def fastest(out: Path, name: str) -> dict[str, Any]:
     (out / f"problem-{name}.yaml").write_text(PROBLEM.format(robot=ROBOTS[name]))
     words = ("--no-figures", "--json", "--out", f"{out}/fastest-{name}")
     gait = json.loads(run("maximize-speed", f"{out}/problem-{name}.yaml", *words))["gait"]
-    print(f"  as {name}: amplitude {gait['amplitude']:.4g} rad, period {gait['period']:.4g} s")
+    print(f"  {name}: amplitude {gait['amplitude']:.4g} rad, period {gait['period']:.4g} s")
     return gait
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-INPUTS, PARTS = 2000, 4
+INPUTS, PARTS = 2000, 2
 
 
 @pytest.mark.parametrize("part", range(PARTS))

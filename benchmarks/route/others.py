@@ -9,11 +9,11 @@ import numpy as np
 
 from rr_opt.model.command import Command
 from rr_opt.model.route import Route
-from rr_opt.routing.plan import Plan
+from rr_opt.routing.plan import RoutePlan
 from rr_opt.routing.rollout import rollout, steps_for
 
 
-def glued(plan: Plan) -> Command:
+def glued(plan: RoutePlan) -> Command:
     """The steady gait of each leg for a whole number of periods, then coasting. The way of coasting
     is left out of the last leg."""
     assert plan.coasting
@@ -38,7 +38,7 @@ OFFSETS = np.linspace(-0.03, 0.03, 13)
 COUNTS = np.arange(-6, 7)
 
 
-def brute_force(plan: Plan, route: Route) -> float:
+def brute_force(plan: RoutePlan, route: Route) -> float:
     """The least time, s, of all drives along a straight line of one gait, of several periods and
     offsets at the rate limit, for several numbers of cycles, and then coasting; inf if none ends
     within the tolerance."""

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 import re
+import sys
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -117,8 +118,16 @@ def _worth(written: str, unit: str, text: str) -> float:
 
 @lru_cache
 def _registry() -> Any:
-    import pint  # half a second that files without units can do without
-
+    # It takes half a second that files without units can do without, a third of it for arrays of
+    # dask, which it would load to know them.
+    absent = "dask" not in sys.modules
+    if absent:
+        sys.modules["dask"] = None  # type: ignore[assignment]
+    try:
+        import pint
+    finally:
+        if absent:
+            del sys.modules["dask"]
     return pint.UnitRegistry()
 
 

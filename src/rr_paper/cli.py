@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Annotated
 
 from rr_opt.cli.options import Figures, json_option, out_option, results_folder, show
-from rr_opt.cli.steps import Steps
+from rr_opt.cli.steps import StepDisplay
 
 
 def calibrate(
@@ -18,7 +18,7 @@ def calibrate(
     Uses the nine averages of Tables 2 and 3, for both readings of their columns, and shows which
     unknowns they do not identify. Takes two to three minutes.
     """
-    with Steps() as steps:
+    with StepDisplay() as steps:
         steps("starting")
         folder = results_folder(out, "calibration")
         from rr_paper.calibration.calibration import calibrate as compute
@@ -37,7 +37,7 @@ def reproduce(
 
     Takes about a minute. The robot is the shipped prototype.
     """
-    with Steps() as steps:
+    with StepDisplay() as steps:
         steps("reading")
         from rr_opt.api.load import shipped
 

@@ -12,11 +12,11 @@ ENTRY = "from rr_opt.cli.entry import main; main()"
 PROGRAM = f"""
 import sys
 from rr_opt.cli import steps
-reported = steps.Steps.__call__
+reported = steps.StepDisplay.__call__
 def tell(self, text):
     print(text, file=sys.stderr, flush=True)
     reported(self, text)
-steps.Steps.__call__ = tell
+steps.StepDisplay.__call__ = tell
 {ENTRY}
 """
 LOADING = f"""

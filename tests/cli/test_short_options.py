@@ -4,7 +4,7 @@ import pytest
 from typer.main import get_command
 
 from rr_opt.cli.main import app
-from rr_opt.cli.steps import Steps
+from rr_opt.cli.steps import StepDisplay
 
 GROUP = get_command(app)
 VERBS = GROUP.list_commands(None)
@@ -26,7 +26,7 @@ def test_a_stage_is_a_line_with_the_time(run):
 
 
 def test_of_many_equal_steps_each_quarter_is_reported(capsys):
-    with Steps() as steps:
+    with StepDisplay() as steps:
         for number in range(1, 41):
             steps(f"case {number} of 40")
         steps("files")

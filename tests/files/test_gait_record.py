@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from rr_opt.files.record import gait_from, gait_record
-from rr_opt.files.yaml_text import Document
+from rr_opt.files.yaml_text import FileData
 from rr_opt.model.gait import Gait, SineGait
 from tests.motion.gaits import EVERY, FOURIER, FREE
 
@@ -17,7 +17,7 @@ from tests.motion.gaits import EVERY, FOURIER, FREE
 def read(record: object) -> tuple[Gait | None, list[str]]:
     """Through the text of a result, as a user's file comes."""
     data = json.loads(json.dumps({"gait": record}))
-    gait, issues = gait_from(Document("result.json", data, {}).section("gait"))
+    gait, issues = gait_from(FileData("result.json", data, {}).section("gait"))
     return gait, [str(issue) for issue in issues]
 
 
@@ -83,7 +83,7 @@ def test_wrong(record: dict[str, Any], message: str):
 def test_any_value_is_refused_in_words(shape: str, value: object):
     for key in gait_record(EVERY[shape]):
         gait, issues = gait_from(
-            Document("f", {"gait": {**gait_record(EVERY[shape]), key: value}}, {}).section("gait")
+            FileData("f", {"gait": {**gait_record(EVERY[shape]), key: value}}, {}).section("gait")
         )
         assert gait is None, key
         assert [issue.path for issue in issues if issue.path.startswith(f"gait.{key}")], key

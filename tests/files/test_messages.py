@@ -13,7 +13,7 @@ MESSAGES = {
     ),
     "zzz: 1": (
         "Read the key 'zzz'. Expected one of: robot, gait, inertia_ratio, limits, direction, "
-        "objective. Correct it, or delete it."
+        "objective, robust. Correct it, or delete it."
     ),
     "Direction: forward": "Did you mean `direction`?",
     "gait: {shape: square}": (

@@ -37,9 +37,7 @@ problem:
 vary:
   limits.rate: {from: 10 rpm, to: 60 rpm, count: 13}
 """
-BROKEN = {
-    "study killed": """
-import json, time
+UNCUT = """
 from rr_opt.batch.journal import Journal
 class Uncut:
     def __init__(self, file):
@@ -52,28 +50,27 @@ lock = Journal._lock
 def locked(self):
     lock(self)
     self._file = Uncut(self._file)
+Journal._lock = locked
+"""
+"""A torn last line of a journal stays."""
+TORN = """
+import json, time
 def slow(self, record):
     line = json.dumps(record).encode() + b"\\n"
     for piece in (line[:9], line[9:]):
         self._file.write(piece)
         self._file.flush()
         time.sleep(0.3)
-Journal._lock, Journal._write = locked, slow
-""",
+Journal._write = slow
+"""
+"""Lines are torn more often."""
+BROKEN = {
+    "study killed": UNCUT + TORN,
     "two runs": """
 from rr_opt.batch.journal import Journal
 Journal._lock = lambda self: None
 """,
-    "disk full": """
-from rr_opt.batch.journal import Journal
-kept = Journal._write
-def quiet(self, record):
-    try:
-        kept(self, record)
-    except OSError:
-        pass
-Journal._write = quiet
-""",
+    "disk full": UNCUT,
     "clock set back": """
 import time
 time.monotonic = time.time

@@ -10,7 +10,7 @@ from rr_opt.model.command import Command
 from rr_opt.model.problem import Problem
 from rr_opt.model.route import Pose, Tolerance
 from rr_opt.routing.path import Leg
-from rr_opt.routing.program import DriveProgram, Stage
+from rr_opt.routing.program import DriveProgram, DriveStage
 from rr_opt.routing.replay import simulate
 
 DRY = rr.EffectUse("coulomb_friction", {"force1": 0.005, "force2": 0.005})
@@ -19,7 +19,7 @@ DRY = rr.EffectUse("coulomb_friction", {"force1": 0.005, "force2": 0.005})
 def program(robot: rr.Robot) -> DriveProgram:
     leg = Leg(0, Pose(0.1, 0.2, 0.3), 1.0, 0.5)
     sizes = [(2.3, 0.2, 0.05, 15.0), (7.1, 0.15, 0.3, 20.0), (3.4, 0.0, -0.1, 18.0)]
-    stages = [Stage(*size, leg, ends=True) for size in sizes]
+    stages = [DriveStage(*size, leg, ends=True) for size in sizes]
     return DriveProgram(Problem(robot), stages, Tolerance(), leg.start, math.pi, True)
 
 

@@ -10,6 +10,8 @@ from rr_opt.sysid.constancy import constancy
 
 RUNS, VALUES, SAMPLES = 7, 4, 60
 NAMES = ("a", "b", "drag.k", "drag.n")
+FORM = 0.5
+"""By which machines differ from any model, RMS in sigma."""
 
 
 @dataclass
@@ -35,6 +37,7 @@ class LinearFit:
             scale=np.ones(VALUES),
             samples=lambda _: float(SAMPLES),
             correlation_times=lambda _: 10.0,
+            model=SimpleNamespace(form_error=FORM),
         )
 
     def information(self):
@@ -49,8 +52,8 @@ def drawn(rng, spread=0.0):
     return LinearFit(J, y)
 
 
-def constancy_of(fit, explained=0.0, form=0.0):
-    return constancy(fit, dict.fromkeys(range(RUNS), explained), {"drag": form})
+def constancy_of(fit, explained=0.0, form=0.0, left=0.0):
+    return constancy(fit, left, dict.fromkeys(range(RUNS), explained), {"drag": form})
 
 
 def test_as_large_as_expected_where_values_are_constant():
@@ -94,6 +97,25 @@ def test_machines_may_differ_from_models():
     )
 
 
+def test_what_machines_differ_by_from_any_model_is_slow():
+    """Noise, and an error of the model that lasts for a correlation time, six samples."""
+    ratios = []
+    for seed in range(200):
+        rng = np.random.default_rng(seed)
+        # Slow motion, as only that makes slow errors count.
+        J = [np.repeat(rng.normal(size=(10, VALUES)), 6, axis=0) * 30 for _ in range(RUNS)]
+        slow = [FORM * np.repeat(rng.normal(size=10), 6) for _ in J]
+        y = [
+            a @ np.ones(VALUES) + b + rng.normal(size=SAMPLES) for a, b in zip(J, slow, strict=True)
+        ]
+        fit = LinearFit(J, y)
+        plain, allowed = constancy_of(fit), constancy_of(fit, left=3.0)
+        ratios.append((plain.statistic / plain.degrees, allowed.statistic / allowed.degrees))
+    assert np.mean(ratios, axis=0) == pytest.approx([1 + FORM**2 * 6, 1.0], rel=0.1)
+    # No more is allowed for than is left.
+    assert constancy_of(fit, left=0.1).statistic == pytest.approx(plain.statistic / 1.06)
+
+
 def test_nothing_is_known_without_values():
     fit = SimpleNamespace(problem=SimpleNamespace(names=()))
-    assert constancy(fit, {}, {}).probability == 0.5
+    assert constancy(fit, 0.0).probability == 0.5

@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 import typer
 
 from rr_opt.cli.options import Scheduler, Workers, out_option, show
-from rr_opt.cli.steps import Steps
+from rr_opt.cli.steps import StepDisplay
 
 
 def prove(
@@ -63,7 +63,7 @@ def prove(
 
     An interrupted run resumes when the same command is repeated.
     """
-    with Steps() as steps:
+    with StepDisplay() as steps:
         from rr_lab import prove as trial
 
         folder, basis = trial.basis(

@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 import typer
 
 from rr_opt.cli.options import Summary, out_option, place, read_options, show
-from rr_opt.cli.steps import Steps
+from rr_opt.cli.steps import StepDisplay
 
 
 def record(
@@ -48,7 +48,9 @@ def record(
     seal: Annotated[
         Path | None,
         typer.Option(
-            parser=place, metavar="FILE", help="File for the answer; its hash goes to the folder."
+            parser=place,
+            metavar="FILE",
+            help="File for the sealed answer; its hash is written to the folder.",
         ),
     ] = None,
     seed: Annotated[
@@ -90,7 +92,7 @@ def record(
 
     Writes an experiment folder: experiment.yaml, and a recording for each run.
     """
-    with Steps() as steps:
+    with StepDisplay() as steps:
         from rr_lab.random_case import Request
         from rr_lab.record import nominal_robot, read_effects, read_noise, read_runs
         from rr_lab.record import record as written

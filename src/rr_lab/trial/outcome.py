@@ -122,8 +122,8 @@ class Claim:
     """verdict    consistent, parameters, missing_physics or unexplained
     named       strongest first
     groups      names that the recordings cannot distinguish
-    before, refitted, after  held-out misfit, RMS in sigma, 1 is the noise: as believed, with the
-                parameters alone, with all that was found; None where it is unknown
+    before, refitted, after  held-out misfit, RMS in sigma, 1 is the noise: nominal, with the
+                parameters alone re-fitted, corrected; None where it is unknown
     p_values    by the test's name
     remainder   what is left with the named effects: none, small, large, or empty if not stated
     share       of the first mismatch that is left

@@ -20,7 +20,7 @@ from rr_opt.files.problem_file import kind_of, name_of, read_problem
 from rr_opt.files.record import gait_from
 from rr_opt.files.robot_file import read_robot, robot_from
 from rr_opt.files.source import read_document
-from rr_opt.files.yaml_text import Document
+from rr_opt.files.yaml_text import FileData
 from rr_opt.formatting import with_unit
 from rr_opt.messages import shown
 from rr_opt.model.ballast import inertia_ratio, load_count, with_inertia_ratio, with_load_count
@@ -232,7 +232,7 @@ def _with_nearest_ratio(robot: Robot, choice: RatioChoice) -> tuple[Robot, tuple
     )
 
 
-def _of_result(document: Document) -> RobotWithGait:
+def _of_result(document: FileData) -> RobotWithGait:
     """Raises InputError if it holds no gait, or a wrong one."""
     robot: Any = document.data.get("robot")
     if not isinstance(document.data.get("gait"), dict) or not isinstance(robot, dict):
@@ -259,7 +259,7 @@ def _of_result(document: Document) -> RobotWithGait:
     return RobotWithGait(read, gait, status if isinstance(status, str) else shown(status), (doubt,))
 
 
-def _limits(document: Document) -> Limits | None:
+def _limits(document: FileData) -> Limits | None:
     """The limits that a result names; None if it does not. Raises InputError for wrong ones."""
     rows: Any = document.data.get("limits")
     if not isinstance(rows, list):

@@ -10,6 +10,8 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from rr_opt.api.load import PathLike, identity, problem_of, read_arguments
 from rr_opt.batch.journal import Journal
 from rr_opt.batch.run import Pool, pool_of, run
@@ -17,6 +19,7 @@ from rr_opt.design import maximize_speed as design
 from rr_opt.design.decisions import decisions
 from rr_opt.design.infeasible import posture_clashes
 from rr_opt.design.maximize_speed import Optimum
+from rr_opt.design.robust import RELIABLE, RobustGait, robust_gait
 from rr_opt.design.study.case import solve_case, solve_study
 from rr_opt.design.study.plan import plan
 from rr_opt.design.study.row import Row, row_from, row_record
@@ -25,11 +28,14 @@ from rr_opt.design.turn_target import Target, checked
 from rr_opt.documents.archive import folder_for_results
 from rr_opt.files.study_file import Study, read_study
 from rr_opt.messages import listed
-from rr_opt.model.problem import Problem
+from rr_opt.model.ballast import inertia_ratio
+from rr_opt.model.gait import SineGait
+from rr_opt.model.problem import Problem, Spreads
 from rr_opt.motion.dynamics import require_friction
 from rr_opt.outcome import InputError, Status
 from rr_opt.results.fastest import FastestGait
 from rr_opt.results.result import Progress, quiet
+from rr_opt.results.robust import Robust
 from rr_opt.results.shapes import FastestShapes, family_name
 from rr_opt.results.study import SolvedStudy
 from rr_opt.results.sweep import Sweep
@@ -38,6 +44,7 @@ from rr_opt.results.turn_chart import TurnChart
 from rr_opt.verify import sweep as verify
 from rr_opt.verify.grid import free_decisions
 from rr_opt.verify.replay import Replay, check_circle, replay
+from rr_opt.verify.spread import drawn
 from rr_opt.verify.sweep import SweepCheck, SweepResult, check_optimum
 from rr_opt.verify.turn_chart import radius_claim, sign_claim, tightest, turn_map
 from rr_opt.version import __version__
@@ -51,13 +58,17 @@ def maximize_speed(problem: Problem | PathLike, *, progress: Progress = quiet) -
     fastest, or that of the least cost of transport.
 
     Where no gait respects every limit, or a check fails, the result's `status` and `message` say
-    so. Raises InputError for a robot without friction, which has no steady speed.
+    so. With `robust` it has besides the gait that is fast on most of the robots that the file may
+    mean. Raises InputError for a robot without friction, which has no steady speed.
     """
     problem = problem_of(problem)
     _require_known(problem)
     optimum, replayed, swept = _checked(design.maximize_speed(problem, progress), progress)
     driven = _driven(optimum, progress)
     best = FastestGait(*identity(problem), optimum, replayed, swept, driven=driven)
+    if problem.robust and best.gait is not None:
+        progress("the robust gait")
+        best = replace(best, robust=_robust(best, problem.robust))
     if optimum.best is None or not best.rebuilt:
         return best
     progress("the robot as built")
@@ -87,6 +98,65 @@ def _driven(optimum: Optimum, progress: Progress) -> DrivenOptimum | None:
 
     progress("drive with all effects")
     return drive_optimum(optimum)
+
+
+_MARGIN, _TIGHTENED = 1e-3, 6
+"""By so much more than enough robots shall keep the limit, so that the next try does; tries."""
+_SCALES = tuple(np.linspace(0.0, 2.0, 9).tolist())
+
+
+def _robust(best: FastestGait, spreads: Spreads) -> Robust | None:
+    """The robust gait beside the nominal optimum, and what robots drawn at random make of both."""
+    torque, choice = best.problem.limits.torque, best.problem.inertia_ratio
+    nominal = best.optimum.best.gait if best.optimum.best else None
+    if not isinstance(nominal, SineGait):
+        return None
+    found = _kept_by_most(best.optimum, spreads)
+    if found is None:
+        return None
+    gaits = (found.robot, found.gait), (best.robot, nominal)
+    seen, mine = (drawn(*one, spreads) for one in gaits)
+    other, speed = drawn(found.robot, found.gait, spreads, seed=2), seen.reached(RELIABLE)
+    first, second = (
+        tuple(drawn(*one, spreads, scale).reached(RELIABLE) for scale in _SCALES) for one in gaits
+    )
+    return Robust(
+        gait=best.command_for(found.gait),
+        ratio=inertia_ratio(found.robot, choice.about if choice else "joint"),
+        speed=speed,
+        nominal=found.nominal,
+        without=mine.reached(RELIABLE),
+        kept=mine.keeping(torque),
+        reaching=other.reaching(speed),
+        keeping=other.keeping(torque),
+        scales=_SCALES,
+        curves=(first, second),
+    )
+
+
+def _kept_by_most(optimum: Optimum, spreads: Spreads) -> RobustGait | None:
+    """The robust gait, the limit on torque tightened until enough of the robots drawn keep it."""
+    problem, torque = optimum.problem, optimum.problem.limits.torque
+    tightened = torque
+    for _ in range(_TIGHTENED):
+        limits = replace(problem.limits, torque=tightened)
+        found = robust_gait(replace(optimum, problem=replace(problem, limits=limits)), spreads)
+        if found is None:
+            return None
+        seen = drawn(found.robot, found.gait, spreads)
+        if seen.keeping(torque) >= RELIABLE:
+            return found
+        tightened *= torque / float(np.quantile(seen.torque, RELIABLE + _MARGIN))
+    return None
+
+
+def _require_exact(problem: Problem) -> None:
+    """Raise InputError where robust gaits are asked for that only `maximize_speed` knows."""
+    if problem.robust:
+        raise InputError(
+            "Read `robust` in the problem. Robust gaits are found by `maximize-speed` only, not "
+            "for turns, other shapes or studies. Leave it out here."
+        )
 
 
 _RESUMED = 2
@@ -143,6 +213,7 @@ def shapes(problem: Problem | PathLike, *, progress: Progress = quiet) -> Fastes
     InputError for a robot without friction.
     """
     problem = problem_of(problem)
+    _require_exact(problem)
     name, sha256 = identity(problem)
     optima = design.compare_shapes(problem, progress)
     swept = None
@@ -184,6 +255,7 @@ def turn(
     target = checked(Target(**read_arguments(asked), whole=whole))
     problem = problem_of(problem)
     _require_known(problem)
+    _require_exact(problem)
     name, sha256 = identity(problem)
     turned = fastest_turn(problem, target, progress)
     optimum, replayed, swept = _checked(turned.optimum, progress)
@@ -229,6 +301,7 @@ def study(
     """
     if not isinstance(asked, Study):
         asked = load_study(asked)
+    _require_exact(asked.problems[0])
     pool = partial(pool_of, workers, scheduler)
     if folder is None:
         return _solved(asked, {}, lambda *_: None, pool, progress, cold=cold)

@@ -10,7 +10,7 @@ import typer
 import rr_opt as rr
 from rr_opt.cli import options
 from rr_opt.cli.options import show
-from rr_opt.cli.steps import Steps
+from rr_opt.cli.steps import StepDisplay
 
 
 def simulate(
@@ -31,7 +31,7 @@ def simulate(
 
     Writes the trajectory, a figure and, on request, an animation.
     """
-    with Steps() as steps:
+    with StepDisplay() as steps:
         with options.naming(source):
             gait = {"amplitude": amplitude, "period": period, "offset": offset}
             driven = options.read_gait(source, **gait, seconds=seconds, rate=rate)
@@ -54,7 +54,7 @@ def circle(
 
     Also shows how a start from rest approaches it. Left is positive, seen from above.
     """
-    with Steps() as steps, options.naming(source):
+    with StepDisplay() as steps, options.naming(source):
         gait = {"amplitude": amplitude, "period": period, "offset": offset}
         answer = rr.circle(options.read_gait(source, **gait), progress=steps)
     show(answer, json=json)
@@ -75,11 +75,11 @@ def export(
 ) -> None:
     """Write a gait as set points for a controller.
 
-    A period holds a whole number of set points. Where that takes a gait beyond its limits, the
-    amplitude is lowered. The loss of speed is reported separately for
-    the adjusted period, the straight lines between set points, and rounding to counts.
+    The period is adjusted to a whole number of set points. If that takes the gait beyond its
+    limits, the amplitude is lowered. The loss of speed is reported separately for the adjusted
+    period, the straight lines between set points, and rounding to counts.
     """
-    with Steps() as steps:
+    with StepDisplay() as steps:
         with options.naming(source):
             gait = {"amplitude": amplitude, "period": period, "offset": offset}
             driven = options.read_gait(source, **gait, rate=rate)
@@ -99,9 +99,9 @@ def route(
 ) -> None:
     """Drive a route of straights, arcs and waypoints from rest, as fast as the robot can.
 
-    The drive is checked by simulation. `rr-opt init route` writes a file to begin with.
+    The drive is checked by simulation. `rr-opt init route` writes a file to start from.
     """
-    with Steps() as steps:
+    with StepDisplay() as steps:
         asked = options.read_route(route)
         folder = options.results_folder(out, asked.name)
         driven = rr.route(asked, progress=steps)

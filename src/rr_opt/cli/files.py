@@ -15,7 +15,7 @@ from rr_opt.cli import options
 from rr_opt.outcome import EXIT_WRONG_INPUT
 
 _KIND = "robot, problem, study, experiment or route."
-_OUT = "The file to write; of an experiment its folder."
+_OUT = "The file to write; for an experiment, its folder."
 
 
 def init(
@@ -63,10 +63,10 @@ def lint(
 
 
 def schema(
-    kind: Annotated[str, typer.Argument(help=f"Which file: {_KIND}")],
+    kind: Annotated[str, typer.Argument(help=f"Kind of file: {_KIND}")],
     machine: Annotated[
-        str, typer.Option(help="Of an experiment: racer, pendulum, servo or car.")
+        str, typer.Option(help="For an experiment: racer, pendulum, servo or car.")
     ] = "racer",
 ) -> None:
-    """Print the JSON Schema of an input file, with which editors complete and check it."""
+    """Print the JSON Schema of an input file, which lets editors complete and check it."""
     typer.echo(json.dumps(rr.schema(kind, machine), indent=2))

@@ -10,7 +10,7 @@ import typer
 import rr_opt as rr
 from rr_opt.cli import options
 from rr_opt.cli.options import show
-from rr_opt.cli.steps import Steps
+from rr_opt.cli.steps import StepDisplay
 
 
 def maximize_speed(
@@ -24,7 +24,7 @@ def maximize_speed(
 
     The answer is checked by a simulation and a sweep, and reported with its active limits.
     """
-    with Steps() as steps:
+    with StepDisplay() as steps:
         posed = options.read_problem(problem)
         folder = options.fastest_folder(out, posed.name, force=force)
         best = rr.maximize_speed(posed, progress=steps)
@@ -42,7 +42,7 @@ def shapes(
 
     All satisfy the same limits, and each is checked. The problem's own shape is ignored.
     """
-    with Steps() as steps:
+    with StepDisplay() as steps:
         posed = options.read_problem(problem)
         folder = options.results_folder(out, f"{posed.name}-shapes")
         compared = rr.shapes(posed, progress=steps)
@@ -68,7 +68,7 @@ def turn(
     Give --radius; or --heading with --radius, --within or --length. Left is positive, seen from
     above, in either direction of travel. The problem sets the direction of travel.
     """
-    with Steps() as steps:
+    with StepDisplay() as steps:
         asked = options.read_options(radius=radius, heading=heading, within=within, length=length)
         posed = options.read_problem(problem)
         folder = options.turn_folder(out, posed.name, asked, cycles, force=force)
@@ -77,7 +77,7 @@ def turn(
     show(turned, files, json=json)
 
 
-_COLD = "Solve every case from scratch, not from its neighbours."
+_COLD = "Solve every case from scratch rather than from its neighbours."
 _RESTART = "Discard the rows of an earlier run."
 
 
@@ -96,7 +96,7 @@ def study(
 
     An interrupted run resumes when the same command is repeated.
     """
-    with Steps() as steps:
+    with StepDisplay() as steps:
         asked = rr.load_study(study)
         folder = options.study_folder(out, asked.name, netcdf=netcdf)
         given = {"workers": workers, "scheduler": scheduler, "cold": cold, "restart": restart}
@@ -118,7 +118,7 @@ def sweep(
 
     Writes every gait, the best one and a figure. No solver is involved.
     """
-    with Steps() as steps:
+    with StepDisplay() as steps:
         posed = options.read_problem(problem)
         folder = options.results_folder(out, f"{posed.name}-sweep")
         swept = rr.sweep(posed, points, progress=steps)
@@ -136,7 +136,7 @@ def turn_chart(
     Finds the tightest circle within the limits, and reports where the offset alone does not
     determine the circle. The inertia ratio is the robot's own.
     """
-    with Steps() as steps:
+    with StepDisplay() as steps:
         posed = options.read_problem(problem)
         folder = options.results_folder(out, f"{posed.name}-turn-chart")
         chart = rr.turn_chart(posed, progress=steps)

@@ -88,7 +88,9 @@ Scheduler = Annotated[
 ]
 
 
-Force = Annotated[bool, typer.Option("--force", help="Write over the answer to another question.")]
+Force = Annotated[
+    bool, typer.Option("--force", help="Overwrite a result that answers another question.")
+]
 
 
 def results_folder(out: Path | None, name: str) -> Path:
@@ -277,11 +279,13 @@ Heading = Annotated[
     str | None,
     typer.Option(help="Change of heading in rad, or with a unit: '90 deg'; positive to the left."),
 ]
-Within = Annotated[str | None, typer.Option(help="Longest time for the change of heading, s.")]
-Length = Annotated[str | None, typer.Option(help="Longest path for the change of heading, m.")]
+Within = Annotated[str | None, typer.Option(help="Maximum time for the change of heading, s.")]
+Length = Annotated[
+    str | None, typer.Option(help="Maximum path length for the change of heading, m.")
+]
 Cycles = Annotated[
     Literal["any", "whole"],
-    typer.Option(help="whole: the change of heading takes a whole number of periods."),
+    typer.Option(help="whole: change the heading in a whole number of periods."),
 ]
 
 SetPoints = Annotated[
@@ -299,8 +303,8 @@ KeepPeriod = Annotated[
 WithinLimits = Annotated[
     bool | None,
     typer.Option(
-        help="Lower the amplitude until every step is within the limits, or never; default: where "
-        "the adjusted period takes the gait beyond them.",
+        help="Lower the amplitude until every step is within the limits, or never do; default: "
+        "only if the adjusted period takes the gait beyond them.",
         show_default=False,
     ),
 ]

@@ -10,7 +10,7 @@ import typer
 import rr_opt as rr
 from rr_opt.cli import options
 from rr_opt.cli.options import show
-from rr_opt.cli.steps import Steps
+from rr_opt.cli.steps import StepDisplay
 
 
 def inspect(
@@ -32,7 +32,7 @@ def inspect(
 
     Outliers are flagged, and gaps stay gaps. Writes inspection.json and report.html.
     """
-    with Steps() as steps:
+    with StepDisplay() as steps:
         steps("reading")
         gait = options.read_command(amplitude=amplitude, period=period, offset=offset)
         folder = options.inspection_folder(out, source, netcdf)
@@ -55,11 +55,11 @@ def diagnose(
         bool, typer.Option("--page/--no-page", help="Draw figures and write report.html.")
     ] = True,
 ) -> None:
-    """Find out why recordings differ from the simulation: where, by which physics, and how sure.
+    """Find out why recordings differ from the simulation: where, by which physics, how certainly.
 
     Writes diagnosis.json, robot-corrected.yaml for the other verbs, and report.html.
     """
-    with Steps() as steps:
+    with StepDisplay() as steps:
         steps("reading")
         experiment = rr.load_experiment(source)
         folder = options.results_folder(out, f"{experiment.name}-diagnosis")

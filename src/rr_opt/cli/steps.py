@@ -28,7 +28,7 @@ def silent() -> bool:
     return _quiet
 
 
-class Steps:
+class StepDisplay:
     """A context within which `steps(text)` shows the step; `start 3 of 8` moves a bar.
 
     On a terminal one line is redrawn; elsewhere each stage is a line. A call also ends the work if

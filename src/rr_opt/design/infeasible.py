@@ -118,8 +118,8 @@ def _terrains(problem: Problem, box: Decisions) -> list[Terrain]:
 def _evidence(found: Attempt, box: Decisions) -> str:
     apart = found.scanned ** (-1 / max(len(box.free), 1))
     return (
-        f"This rests on {found.scanned} gaits all over the bounds, neighbours {apart:.1%} of each "
-        "range apart, and on climbs from the best of them."
+        f"This rests on {found.scanned} gaits all over the bounds, neighbours "
+        f"{100 * apart:.2g} % of each range apart, and on climbs from the best of them."
     )
 
 

@@ -21,7 +21,7 @@ from rr_opt.files.problem_file import ROBOT, read_as
 from rr_opt.files.record import gait_from
 from rr_opt.files.robot_file import robot_from
 from rr_opt.files.source import fingerprint, is_result, linked, read_document, unreadable
-from rr_opt.files.yaml_text import Document
+from rr_opt.files.yaml_text import FileData
 from rr_opt.messages import shown
 from rr_opt.model.experiment import Column, CountScale, Layout, Noise, Start, Uncertainty, Use
 from rr_opt.model.gait import Gait
@@ -48,7 +48,7 @@ class ExperimentPlan:
     """
 
     name: str
-    document: Document
+    document: FileData
     robot: Robot
     noise: Noise
     uncertainty: Mapping[str, Uncertainty]
@@ -64,7 +64,7 @@ class ExperimentPlan:
         return fingerprint(self.paths)
 
 
-def runs_from(document: Document, file: Path) -> tuple[tuple[PlannedRun, ...], list[Issue]]:
+def runs_from(document: FileData, file: Path) -> tuple[tuple[PlannedRun, ...], list[Issue]]:
     """The runs that could be read, and all issues; files are named relative to `file`."""
     sections, issues = document.entries(
         "recordings",
@@ -82,7 +82,7 @@ def runs_from(document: Document, file: Path) -> tuple[tuple[PlannedRun, ...], l
     return tuple(runs), issues or _uses(document, runs)
 
 
-def _run(document: Document, file: Path) -> tuple[PlannedRun | None, list[Issue]]:
+def _run(document: FileData, file: Path) -> tuple[PlannedRun | None, list[Issue]]:
     model, issues = validate(RecordingModel, document)
     gait, found = _gait(document, file) if "gait" in document.data else (None, [])
     issues += found
@@ -97,7 +97,7 @@ def _run(document: Document, file: Path) -> tuple[PlannedRun | None, list[Issue]
     return PlannedRun(file.parent / model.file, gait, model.use, model.start, log), issues
 
 
-def _gait(document: Document, file: Path) -> tuple[Gait | None, list[Issue]]:
+def _gait(document: FileData, file: Path) -> tuple[Gait | None, list[Issue]]:
     """The gait written in the entry, or that of the result that it names."""
     expected = (
         "the gait, or the name of a result that has it. Write for example "
@@ -117,7 +117,7 @@ def _gait(document: Document, file: Path) -> tuple[Gait | None, list[Issue]]:
     return gait_from(found.section("gait"))
 
 
-def _twice(document: Document, entries: list[object]) -> list[Issue]:
+def _twice(document: FileData, entries: list[object]) -> list[Issue]:
     """A recording that is there twice would be fitted and held out, or count double."""
     issues: list[Issue] = []
     seen: dict[str, int] = {}
@@ -132,7 +132,7 @@ def _twice(document: Document, entries: list[object]) -> list[Issue]:
     return issues
 
 
-def _uses(document: Document, runs: list[PlannedRun]) -> list[Issue]:
+def _uses(document: FileData, runs: list[PlannedRun]) -> list[Issue]:
     """What cannot be done with the recordings there are."""
     uses = [run.use for run in runs]
     if "fit" not in uses:
@@ -185,7 +185,7 @@ def named_files(path: Path) -> list[Path]:
     return [one for one in files if not unreadable(one)]
 
 
-def plan_from(document: Document, file: Path) -> tuple[ExperimentPlan | None, list[Issue]]:
+def plan_from(document: FileData, file: Path) -> tuple[ExperimentPlan | None, list[Issue]]:
     """The plan (None if an issue is an error), and all issues of the file and its robot."""
     model, issues = validate(ExperimentModel, document)
     robot, paths, runs, markers = None, (), (), None
@@ -229,7 +229,7 @@ def plan_from(document: Document, file: Path) -> tuple[ExperimentPlan | None, li
     return plan, issues
 
 
-def layout_from(document: Document) -> tuple[Layout | None, list[Issue]]:
+def layout_from(document: FileData) -> tuple[Layout | None, list[Issue]]:
     """The places that the section `markers` gives (None if there are issues), and all issues."""
     model, issues = validate(MarkersModel, document)
     given = [document.data.get(name) for name in ("platform1", "platform2")]
@@ -256,7 +256,7 @@ def layout_from(document: Document) -> tuple[Layout | None, list[Issue]]:
     ), []
 
 
-def _markers(document: Document) -> tuple[Any, list[Issue]]:
+def _markers(document: FileData) -> tuple[Any, list[Issue]]:
     given = document.data["markers"]
     if isinstance(given, dict):
         return layout_from(document.section("markers"))
@@ -264,7 +264,7 @@ def _markers(document: Document) -> tuple[Any, list[Issue]]:
     return None, [document.error(("markers",), message)]
 
 
-def _beyond_the_model(document: Document, robot: Robot, peaks: list[float]) -> list[Issue]:
+def _beyond_the_model(document: FileData, robot: Robot, peaks: list[float]) -> list[Issue]:
     """Recordings that reach the posture where a model without side slip means nothing."""
     message = (
         "The gait reaches |phi| = {peak:.4g} rad, and beyond {limit:.4g} rad lies the singular "

@@ -10,7 +10,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, SkipValidation, create_model
 
-from rr_opt.files.fields import FileModel, Key, Section
+from rr_opt.files.fields import FileModel, Key, Keys
 from rr_opt.files.record import FourierRecord, FreeRecord, SineRecord
 from rr_opt.files.robot_file import RobotModel
 from rr_opt.messages import shown, unknown_word
@@ -252,7 +252,7 @@ class ExperimentModel(FileModel):
     robot: Annotated[str | RobotModel, SkipValidation] = Field(
         description="A robot file, relative to this one, or the robot itself: nominal values."
     )
-    noise: Annotated[Noise, Section()] = Field(description="How well the capture system sees.")
+    noise: Annotated[Noise, Keys()] = Field(description="How well the capture system sees.")
     uncertainty: UncertaintyModel = Field(  # pyright: ignore[reportInvalidTypeForm] - it is made
         default_factory=UncertaintyModel, description="How well nominal values are known."
     )
@@ -269,6 +269,6 @@ class ExperimentModel(FileModel):
         default_factory=ColumnsModel,
         description="Columns of text files that have another name, or another unit.",
     )
-    servo_counts: Annotated[CountScale, Section()] = Field(
+    servo_counts: Annotated[CountScale, Keys()] = Field(
         default_factory=CountScale, description="What the counts of servo logs mean."
     )

@@ -1,7 +1,7 @@
 """The keys of files as pydantic models, made from the model's dataclasses, and their errors.
 
 A dataclass of `rr_opt.model` declares unit, range and description of its fields; `keys_of` makes
-the pydantic model of them, and `Section` reads a mapping of a file as such an object.
+the pydantic model of them, and `Keys` reads a mapping of a file as such an object.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from pydantic import (
 from pydantic_core import CoreSchema, core_schema
 
 from rr_opt.files.issue import Issue
-from rr_opt.files.yaml_text import Document
+from rr_opt.files.yaml_text import FileData
 from rr_opt.messages import nearest, one_of, shown, unknown_word
 from rr_opt.model.fields import Interval, Range, Reader
 from rr_opt.outcome import InputError
@@ -58,7 +58,7 @@ class Key:
 
 
 @dataclass(frozen=True, eq=False)
-class Section:
+class Keys:
     """Annotates a dataclass of the model, which a file gives as a mapping.
 
     alone   the field that anything but a mapping stands for
@@ -102,7 +102,7 @@ def keys_of(cls: type) -> Any:
             reader = one.metadata.get("reader")
             kind = Annotated[Any, Key(reader)] if reader else hints[one.name]
             if dataclasses.is_dataclass(kind):
-                kind = Annotated[kind, Section()]
+                kind = Annotated[kind, Keys()]
             keys[one.name] = kind, described(one, reader)
     return create_model(cls.__name__, __base__=FileModel, __doc__=cls.__doc__, **keys)
 
@@ -126,7 +126,7 @@ def described(one: dataclasses.Field[Any], reader: Reader | None) -> Any:
 Model = TypeVar("Model", bound=BaseModel)
 
 
-def another_file(model: type[BaseModel], document: Document) -> list[Issue]:
+def another_file(model: type[BaseModel], document: FileData) -> list[Issue]:
     """An issue if a whole file has none of the model's keys: whatever it holds is not quoted."""
     known, keys = list(model.model_fields), document.data
     if document.prefix or len(keys) < 2 or any(nearest(key, known) for key in keys):
@@ -149,7 +149,7 @@ _EXPECTED = {
 }
 
 
-def validate(model: type[Model], document: Document) -> tuple[Model | None, list[Issue]]:
+def validate(model: type[Model], document: FileData) -> tuple[Model | None, list[Issue]]:
     """The document as a model, or None and every issue found."""
     if wrong := another_file(model, document):
         return None, wrong

@@ -12,7 +12,7 @@ from rr_opt.files.robot_file import robot_from, singular_posture
 from rr_opt.files.route_file import route_from
 from rr_opt.files.source import problem_path, read_document
 from rr_opt.files.study_file import study_from
-from rr_opt.files.yaml_text import Document
+from rr_opt.files.yaml_text import FileData
 
 
 def lint_file(path: str | Path) -> list[Issue]:
@@ -57,7 +57,7 @@ def _file_of(path: Path) -> Path:
     return problem
 
 
-def _robot_issues(document: Document) -> list[Issue]:
+def _robot_issues(document: FileData) -> list[Issue]:
     """Those of a robot that stands alone, without a problem to keep it from singular postures."""
     robot, issues = robot_from(document)
     notice = singular_posture(robot) if robot else None

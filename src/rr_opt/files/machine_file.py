@@ -14,7 +14,7 @@ from rr_opt.files.experiment_model import ColumnOf, Uncertain
 from rr_opt.files.fields import FileModel, Key, validate
 from rr_opt.files.issue import Issue, has_errors, required
 from rr_opt.files.source import fingerprint, read_document, unreadable
-from rr_opt.files.yaml_text import Document
+from rr_opt.files.yaml_text import FileData
 from rr_opt.messages import shown
 from rr_opt.model.experiment import Column, Use
 from rr_opt.model.machine import Machine, MachineExperiment
@@ -141,7 +141,7 @@ class MachinePlan:
     experiment: MachineExperiment
     noise: Mapping[str, float]
     recordings: tuple[PlannedRecording, ...]
-    document: Document
+    document: FileData
 
 
 def machine_plan(path: str | Path, machine: Machine) -> tuple[MachinePlan | None, list[Issue]]:

@@ -8,14 +8,14 @@ from typing import Any
 from rr_opt.effects import OF_ROBOTS
 from rr_opt.effects.effect import Effect, Parameter
 from rr_opt.files.issue import Issue
-from rr_opt.files.yaml_text import Document
+from rr_opt.files.yaml_text import FileData
 from rr_opt.messages import shown, unknown_word
 from rr_opt.model.robot import EffectUse
 from rr_opt.outcome import InputError
 from rr_opt.units import Quantity
 
 
-def read_effects(document: Document) -> tuple[tuple[EffectUse, ...], list[Issue]]:
+def read_effects(document: FileData) -> tuple[tuple[EffectUse, ...], list[Issue]]:
     """The effects under `physics` of a robot; a parameter that is not given is neutral."""
     if document.data["physics"] == []:
         return (), []

@@ -12,7 +12,7 @@ from rr_opt.files.issue import InvalidFileError, Issue, Level, has_errors, requi
 from rr_opt.files.problem_model import OWN_SHAPE, ProblemModel
 from rr_opt.files.robot_file import RobotModel, robot_from
 from rr_opt.files.source import SHIPPED, fingerprint, is_result, linked, problem_path, read_document
-from rr_opt.files.yaml_text import Document
+from rr_opt.files.yaml_text import FileData
 from rr_opt.messages import nearest, shown
 from rr_opt.model.ballast import with_inertia_ratio
 from rr_opt.model.problem import GaitBounds, Problem, RatioChoice, reachable
@@ -25,7 +25,7 @@ _EXPERIMENT = ("recordings", "noise", "uncertainty", "machine")
 _STUDY = ("vary", "together", "problem")
 
 
-def kind_of(document: Document) -> Kind:
+def kind_of(document: FileData) -> Kind:
     """The kind whose keys the file has most of; misspelt keys count too, and a tie is a problem."""
     if is_result(document.data):
         return "result"
@@ -41,7 +41,7 @@ def kind_of(document: Document) -> Kind:
     return "robot" if of_robot > sum(key in problem for key in meant) else "problem"
 
 
-def read_as(kind: Kind, file: Path, expected: str) -> Document:
+def read_as(kind: Kind, file: Path, expected: str) -> FileData:
     """The data of a file. Raises InvalidFileError with what was expected if it is another kind."""
     document = read_document(file)
     if kind_of(document) != kind:
@@ -86,7 +86,7 @@ LONGEST_PERIOD = 60.0
 """Longer ones are taken for a slip of the unit, s."""
 
 
-def gait_findings(gait: GaitBounds, document: Document) -> Iterator[Issue]:
+def gait_findings(gait: GaitBounds, document: FileData) -> Iterator[Issue]:
     """Gaits that say nothing, or whose steady cycle nobody could compute or wait for."""
     for key, shape in OWN_SHAPE.items():
         if key in document.data.get("gait", {}) and gait.shape != shape:
@@ -126,8 +126,8 @@ class Sources:
     """
 
     paths: tuple[Path, ...]
-    problem: Document
-    robot: Document | None
+    problem: FileData
+    robot: FileData | None
     issues: tuple[Issue, ...] = ()
 
 
@@ -161,18 +161,18 @@ def problem_sources(path: str | Path | None) -> Sources:
     return with_robot(document, file, (file,))
 
 
-def _shipped_problem_with(robot: Document, file: Path) -> Sources:
+def _shipped_problem_with(robot: FileData, file: Path) -> Sources:
     problem = read_document(SHIPPED / "problem.yaml")
     limits = problem.section("limits").without("angle", "rate", "torque").data
     data = {**problem.without("robot", "inertia_ratio").data, "limits": limits}
-    shipped = Document(f"the shipped problem, with {file}", data, problem.lines)
+    shipped = FileData(f"the shipped problem, with {file}", data, problem.lines)
     return Sources((SHIPPED / "problem.yaml", file), shipped, robot)
 
 
 ROBOT = "the name of a robot file, or the robot itself"
 
 
-def with_robot(problem: Document, file: Path, paths: tuple[Path, ...] = ()) -> Sources:
+def with_robot(problem: FileData, file: Path, paths: tuple[Path, ...] = ()) -> Sources:
     """The problem and the robot that it names, relative to `file`; without one, the shipped."""
     if "robot" not in problem.data:
         named = SHIPPED / "robot.yaml"
@@ -188,7 +188,7 @@ def with_robot(problem: Document, file: Path, paths: tuple[Path, ...] = ()) -> S
     return Sources((*paths, *named), problem, robot, tuple(issues))
 
 
-def base_sources(document: Document, file: Path) -> Sources:
+def base_sources(document: FileData, file: Path) -> Sources:
     """The problem of a study or a route file. Raises InvalidFileError if it cannot be read."""
     entry = document.data.get("problem")
     if isinstance(entry, dict):
@@ -245,11 +245,12 @@ def problem_from(sources: Sources) -> tuple[Problem | None, list[Issue]]:
         inertia_ratio=reachable(ratio, robot) if ratio else None,
         direction=model.direction,
         objective=model.objective,
+        robust=model.robust,
     )
     return problem, issues
 
 
-def _contradictions(model: ProblemModel, robot: Robot, document: Document) -> Iterator[Issue]:
+def _contradictions(model: ProblemModel, robot: Robot, document: FileData) -> Iterator[Issue]:
     """What the problem asks for and its robot cannot do."""
     yield from gait_findings(model.gait, document)
     if robot.k1 == robot.k2 == 0 and not robot.physics:
@@ -265,6 +266,12 @@ def _contradictions(model: ProblemModel, robot: Robot, document: Document) -> It
             "`shape: sine`, or leave them out."
         )
         yield document.error(("gait", "shape"), message)
+    if model.robust and (model.gait.shape != "sine" or model.objective != "speed"):
+        message = (
+            "Read `robust` with another shape than a sine or another objective than the speed. "
+            "Expected neither: robust gaits are sines that are fast. Leave one of them out."
+        )
+        yield document.error(("robust",), message)
     if ratio := model.inertia_ratio:
         for level, key, message in ratio_findings(ratio, robot):
             yield document.issue(level, ("inertia_ratio", key), message)

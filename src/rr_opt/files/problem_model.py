@@ -6,9 +6,17 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, JsonValue, SkipValidation, WithJsonSchema, create_model
 
-from rr_opt.files.fields import FileModel, Section
+from rr_opt.files.fields import FileModel, Keys
 from rr_opt.files.robot_file import RobotModel
-from rr_opt.model.problem import Direction, GaitBounds, Limits, Objective, RatioChoice, Shape
+from rr_opt.model.problem import (
+    Direction,
+    GaitBounds,
+    Limits,
+    Objective,
+    RatioChoice,
+    Shape,
+    Spreads,
+)
 
 OWN_SHAPE: dict[str, Shape] = {"harmonics": "fourier", "intervals": "free"}
 """Keys of a gait that belong to one shape only."""
@@ -20,7 +28,7 @@ def _needs(key: str, shape: Shape) -> dict[str, Any]:
     return {"if": {"required": [key]}, "then": then}
 
 
-_GAIT = Section(schema={"allOf": [_needs(key, shape) for key, shape in OWN_SHAPE.items()]})
+_GAIT = Keys(schema={"allOf": [_needs(key, shape) for key, shape in OWN_SHAPE.items()]})
 
 
 class ProblemModel(FileModel):
@@ -34,10 +42,10 @@ class ProblemModel(FileModel):
     gait: Annotated[GaitBounds, _GAIT] = Field(
         default_factory=GaitBounds, description="Which gaits are allowed."
     )
-    inertia_ratio: Annotated[RatioChoice, Section(alone="bounds")] | None = Field(
+    inertia_ratio: Annotated[RatioChoice, Keys(alone="bounds")] | None = Field(
         default=None, description="J20/J10 as a choice. Without it: the robot as it is."
     )
-    limits: Annotated[Limits, Section()] = Field(
+    limits: Annotated[Limits, Keys()] = Field(
         default_factory=Limits,
         description="What a gait may ask of the robot. What is not given is what the robot's servo "
         "can do.",
@@ -46,6 +54,11 @@ class ProblemModel(FileModel):
     objective: Objective = Field(
         default="speed",
         description="What is best: the largest speed, or the least cost of transport.",
+    )
+    robust: Annotated[Spreads, Keys()] | None = Field(
+        default=None,
+        description="How well the robot is known. With it a gait is sought too that is fast on "
+        "95 % of the robots that it may be.",
     )
 
 

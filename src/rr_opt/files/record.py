@@ -17,7 +17,7 @@ from pydantic import Field
 
 from rr_opt.files.fields import FileModel, Key, keys_of, validate
 from rr_opt.files.issue import Issue
-from rr_opt.files.yaml_text import Document
+from rr_opt.files.yaml_text import FileData
 from rr_opt.messages import shown, unknown_word
 from rr_opt.model.gait import AMPLITUDE, OFFSET, FourierGait, FreeGait, Gait, SineGait
 from rr_opt.model.robot import Robot
@@ -138,7 +138,7 @@ def gait_record(gait: Gait) -> dict[str, Any]:
     return size | {key: list(v) if isinstance(v, tuple) else v for key, v in values.items()}
 
 
-def gait_from(document: Document) -> tuple[Gait | None, list[Issue]]:
+def gait_from(document: FileData) -> tuple[Gait | None, list[Issue]]:
     """The gait that a mapping describes (None if there are issues), and all issues."""
     shape = document.data.get("shape", "sine")
     if not isinstance(shape, str):

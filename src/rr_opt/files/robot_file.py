@@ -11,10 +11,10 @@ from typing import Annotated, Any
 from pydantic import ConfigDict, Field, GetJsonSchemaHandler, SkipValidation
 from pydantic_core import CoreSchema
 
-from rr_opt.files.fields import FileModel, Key, Section, keys_of, validate
+from rr_opt.files.fields import FileModel, Key, Keys, keys_of, validate
 from rr_opt.files.issue import Issue, has_errors, required
 from rr_opt.files.source import read_document
-from rr_opt.files.yaml_text import Document, KeyPath, path_text
+from rr_opt.files.yaml_text import FileData, KeyPath, path_text
 from rr_opt.messages import shown, unknown_word
 from rr_opt.model.ballast import inertia_ratio
 from rr_opt.model.parameters import SYMBOLS
@@ -164,7 +164,7 @@ class RobotModel(FileModel):
         default=None,
         description="Wheel radius, m. Needed with kappa or physics; else 20 mm, without effect.",
     )
-    servo: Annotated[Servo, Section()] = Field(
+    servo: Annotated[Servo, Keys()] = Field(
         default_factory=Servo, description="The servo's limits."
     )
     physics: Annotated[list[dict[str, Any]], SkipValidation, _EffectsSchema()] = Field(
@@ -187,7 +187,7 @@ _KEYS: dict[str, tuple[str, ...]] = {
 }
 
 
-def read_provenance(document: Document) -> tuple[Mapping[str, str], list[Issue]]:
+def read_provenance(document: FileData) -> tuple[Mapping[str, str], list[Issue]]:
     """Key path -> the sentence that says where the value comes from.
 
     A friction given as `k` is reported under `kappa`, the name by which the robot keeps it.
@@ -224,7 +224,7 @@ def read_robot(path: str | Path) -> Robot:
     return required(*robot_from(read_document(Path(path))))
 
 
-def robot_from(document: Document) -> tuple[Robot | None, list[Issue]]:
+def robot_from(document: FileData) -> tuple[Robot | None, list[Issue]]:
     """The robot that a mapping describes (None if an issue is an error), and all issues."""
     model, issues = validate(RobotModel, document)
     issues += _friction_and_radius(document)
@@ -259,7 +259,7 @@ def _platform(model: PlatformModel, h: float) -> Platform:
     return Platform(m=model.m, I=model.I, c=model.c, a=model.a, b=model.b, kappa=kappa)
 
 
-def _friction_and_radius(document: Document) -> list[Issue]:
+def _friction_and_radius(document: FileData) -> list[Issue]:
     """Exactly one of kappa and k for each platform, and h where its value matters."""
     issues: list[Issue] = []
     reasons = ["`physics`"] if document.data.get("physics") else []

@@ -8,12 +8,12 @@ from typing import Annotated, Literal
 
 from pydantic import Field, SkipValidation
 
-from rr_opt.files.fields import FileModel, Section, validate
+from rr_opt.files.fields import FileModel, Keys, validate
 from rr_opt.files.issue import InvalidFileError, Issue, has_errors, required
 from rr_opt.files.problem_file import base_sources, problem_from, read_as
 from rr_opt.files.problem_model import ProblemModel
 from rr_opt.files.source import fingerprint
-from rr_opt.files.yaml_text import Document
+from rr_opt.files.yaml_text import FileData
 from rr_opt.messages import shown
 from rr_opt.model.problem import Direction
 from rr_opt.model.route import Arc, Piece, Pose, Route, Straight, Tolerance, Waypoint
@@ -22,13 +22,13 @@ from rr_opt.model.route import Arc, Piece, Pose, Route, Straight, Tolerance, Way
 class PieceModel(FileModel):
     """A piece of the route: one of the three."""
 
-    straight: Annotated[Straight, Section(alone="length")] | None = Field(
+    straight: Annotated[Straight, Keys(alone="length")] | None = Field(
         default=None, description="A straight line ahead, m."
     )
-    arc: Annotated[Arc, Section()] | None = Field(
+    arc: Annotated[Arc, Keys()] | None = Field(
         default=None, description="An arc that begins ahead: its radius and change of heading."
     )
-    to: Annotated[Waypoint, Section()] | None = Field(
+    to: Annotated[Waypoint, Keys()] | None = Field(
         default=None, description="A pose to be reached over arcs and a straight line."
     )
 
@@ -45,13 +45,13 @@ class RouteModel(FileModel):
         description="A problem file, relative to this file, or the problem itself: robot, bounds "
         "and limits. Without it: the paper's prototype.",
     )
-    start: Annotated[Pose, Section()] = Field(
+    start: Annotated[Pose, Keys()] = Field(
         default_factory=Pose, description="Where the path begins; the robot is at rest there."
     )
     route: Annotated[list[PieceModel], SkipValidation] = Field(
         min_length=1, description=f"The pieces, one after another: each is {_ONE}."
     )
-    tolerance: Annotated[Tolerance, Section()] = Field(
+    tolerance: Annotated[Tolerance, Keys()] = Field(
         default_factory=Tolerance, description="How exactly the route is driven."
     )
     direction: Direction = Field(
@@ -72,7 +72,7 @@ def read_route(path: str | Path) -> tuple[Route, list[Issue]]:
     return required(route, issues), issues
 
 
-def route_from(document: Document, file: Path) -> tuple[Route | None, list[Issue]]:
+def route_from(document: FileData, file: Path) -> tuple[Route | None, list[Issue]]:
     """The route (None if an issue is an error), and all issues of it and of its problem."""
     model, issues = validate(RouteModel, document)
     pieces, found = _pieces(document)
@@ -99,7 +99,7 @@ def route_from(document: Document, file: Path) -> tuple[Route | None, list[Issue
     return route, issues
 
 
-def _pieces(document: Document) -> tuple[list[Piece], list[Issue]]:
+def _pieces(document: FileData) -> tuple[list[Piece], list[Issue]]:
     if "route" not in document.data:
         return [], []
     sections, issues = document.entries("route", f"a list of pieces, each {_ONE}", _EACH)

@@ -15,7 +15,7 @@ from importlib.resources import files
 from pathlib import Path
 
 from rr_opt.files.issue import InvalidFileError, Issue, refuse
-from rr_opt.files.yaml_text import Document, parse_yaml
+from rr_opt.files.yaml_text import FileData, parse_yaml
 from rr_opt.messages import shown
 from rr_opt.outcome import InputError
 
@@ -23,7 +23,7 @@ _MARKS = ("status", "input_sha256")
 """Keys that every result has and no input."""
 
 
-def parse_result(content: bytes, file: str) -> Document | None:
+def parse_result(content: bytes, file: str) -> FileData | None:
     """The data of a result; None if the content is anything else.
 
     A result may hold more numbers than an input file may, and no line of it is worth naming.
@@ -34,7 +34,7 @@ def parse_result(content: bytes, file: str) -> Document | None:
         data = json.loads(content)
     except (ValueError, RecursionError):
         return None
-    return Document(file, data, {}) if is_result(data) else None
+    return FileData(file, data, {}) if is_result(data) else None
 
 
 def is_result(data: object) -> bool:
@@ -46,15 +46,15 @@ SHIPPED = Path(str(files("rr_opt"))) / "data" / "prototype"
 """The folder with the paper's prototype: robot.yaml and problem.yaml."""
 
 
-def read_document(path: Path) -> Document:
+def read_document(path: Path) -> FileData:
     """The data of a YAML file, or of a result. Raises InvalidFileError with all that is wrong."""
     content = read_content(path)
     return parse_result(content, str(path)) or parse_yaml(content, str(path))
 
 
 def linked(
-    document: Document, key: str, folder: Path, expected: str
-) -> tuple[Document | None, tuple[Path, ...], list[Issue]]:
+    document: FileData, key: str, folder: Path, expected: str
+) -> tuple[FileData | None, tuple[Path, ...], list[Issue]]:
     """What stands under a key: a mapping, or the document in the file that it names.
 
     None where it cannot be read, with all issues; and the file that it is in, if it is another.

@@ -13,7 +13,7 @@ from rr_opt.files.fields import validate
 from rr_opt.files.issue import Issue
 from rr_opt.files.problem_model import MOST_CASES, RangeModel
 from rr_opt.files.study_keys import ProblemKey, key_of
-from rr_opt.files.yaml_text import Document, KeyPath
+from rr_opt.files.yaml_text import FileData, KeyPath
 from rr_opt.messages import shown
 from rr_opt.outcome import InputError
 from rr_opt.units import to_si, unit_written
@@ -162,7 +162,7 @@ class Line:
 
 
 def line_at(
-    document: Document,
+    document: FileData,
     place: KeyPath,
     seen: dict[KeyPath, tuple[ProblemKey, object]],
     issues: list[Issue],
@@ -192,10 +192,10 @@ def line_at(
 
 
 def _ranged(
-    document: Document, place: KeyPath, key: ProblemKey, data: dict[str, Any], issues: list[Issue]
+    document: FileData, place: KeyPath, key: ProblemKey, data: dict[str, Any], issues: list[Issue]
 ) -> Line | None:
     """The line of a range; None where a key of the range is wrong. Raises InputError as ranges."""
-    inner = Document(document.file, data, document.lines, place)
+    inner = FileData(document.file, data, document.lines, place)
     model, found = validate(RangeModel, inner)
     if model is None:
         for issue in found:
@@ -257,7 +257,7 @@ class Axis:
         return list(zip(*(line.values for line in self.lines), strict=True))
 
 
-def axes_of(document: Document) -> tuple[list[Axis], list[Issue]]:
+def axes_of(document: FileData) -> tuple[list[Axis], list[Issue]]:
     """The axes of a study file that can be used, and what is wrong with the others."""
     issues: list[Issue] = []
 
@@ -291,7 +291,7 @@ def axes_of(document: Document) -> tuple[list[Axis], list[Issue]]:
 
 
 def _groups(
-    document: Document, note: Callable[[KeyPath, str], None]
+    document: FileData, note: Callable[[KeyPath, str], None]
 ) -> list[tuple[KeyPath, dict[str, Any]]]:
     """The keys of each axis or axes, and where they stand."""
     groups: list[tuple[KeyPath, dict[str, Any]]] = []

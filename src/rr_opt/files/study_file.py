@@ -17,8 +17,7 @@ from rr_opt.files.problem_model import StudyModel
 from rr_opt.files.source import fingerprint
 from rr_opt.files.study_axes import Axis, Line, axes_of
 from rr_opt.files.study_keys import Setting, with_values
-from rr_opt.files.yaml_text import Document
-from rr_opt.files.yaml_text import KeyPath as Keys
+from rr_opt.files.yaml_text import FileData, KeyPath
 from rr_opt.messages import shown
 from rr_opt.model.problem import Problem
 
@@ -32,7 +31,7 @@ class CaseIssues:
     which case has it first; one of the problem itself, which every case has, stands where it is.
     """
 
-    def __init__(self, document: Document, axes: Sequence[Axis]):
+    def __init__(self, document: FileData, axes: Sequence[Axis]):
         self._document, self._axes = document, axes
         self._lines = [line for axis in axes for line in axis.lines]
         self._cases = 0
@@ -48,13 +47,13 @@ class CaseIssues:
     def issues(self) -> list[Issue]:
         """All of them, those of one place together."""
         new: list[Issue] = []
-        warned: set[tuple[Keys, str]] = set()
+        warned: set[tuple[KeyPath, str]] = set()
         for issue, (steps, count) in self._seen.items():
             line = self._reason(issue)
             if line is None and count == self._cases:
                 new.append(issue)
                 continue
-            place: Keys = line.place if line else ()
+            place: KeyPath = line.place if line else ()
             # A warning about one value says what it would say about the next.
             alike = place, _NUMBERS.sub("", issue.message)
             if issue.level == "warning" and alike in warned:
@@ -146,7 +145,7 @@ def read_study(path: str | Path) -> tuple[Study, list[Issue]]:
     return required(study, issues), issues
 
 
-def study_from(document: Document, file: Path) -> tuple[Study | None, list[Issue]]:
+def study_from(document: FileData, file: Path) -> tuple[Study | None, list[Issue]]:
     """The study (None if an issue is an error), and all issues of it and of every case."""
     _, issues = validate(StudyModel, document)
     axes, found = axes_of(document)

@@ -35,7 +35,7 @@ def path_text(path: KeyPath) -> str:
 
 
 @dataclass(frozen=True)
-class Document:
+class FileData:
     """A mapping of a file: the whole of it, or the section at `prefix`.
 
     file   the file as the user named it
@@ -48,11 +48,11 @@ class Document:
     lines: Mapping[KeyPath, int]
     prefix: KeyPath = ()
 
-    def section(self, key: str) -> Document:
+    def section(self, key: str) -> FileData:
         """The mapping under a key, which keeps its place in the file."""
         return replace(self, data=self.data[key], prefix=(*self.prefix, key))
 
-    def entries(self, key: str, whole: str, each: str) -> tuple[list[Document], list[Issue]]:
+    def entries(self, key: str, whole: str, each: str) -> tuple[list[FileData], list[Issue]]:
         """The mappings of a list that is not empty, and an issue for whatever is something else.
 
         whole, each  what the list and an entry should be, for the messages
@@ -60,7 +60,7 @@ class Document:
         given = self.data.get(key)
         if not isinstance(given, list) or not given:
             return [], [self.error((key,), f"Read {shown(given)}. Expected {whole}.")]
-        sections, issues = list[Document](), list[Issue]()
+        sections, issues = list[FileData](), list[Issue]()
         for index, entry in enumerate(given):
             if isinstance(entry, dict):
                 sections.append(replace(self, data=entry, prefix=(*self.prefix, key, index)))
@@ -69,7 +69,7 @@ class Document:
                 issues.append(self.error((key, index), message))
         return sections, issues
 
-    def without(self, *keys: str) -> Document:
+    def without(self, *keys: str) -> FileData:
         """The same without some keys."""
         return replace(self, data={k: v for k, v in self.data.items() if k not in keys})
 
@@ -106,7 +106,7 @@ _WORDS |= {sign + ".inf": float(sign + "inf") for sign in ("", "+", "-")}
 _WORDS |= {".nan": float("nan"), ".NaN": float("nan"), ".Inf": float("inf")}
 
 
-def parse_yaml(content: bytes, file: str) -> Document:
+def parse_yaml(content: bytes, file: str) -> FileData:
     """The data of a YAML file whose content is one mapping.
 
     Raises InvalidFileError, naming `file`, with everything that was found wrong.
@@ -129,7 +129,7 @@ class _Reading:
         self.issues: list[Issue] = []
         self.values = 0
 
-    def document(self) -> Document:
+    def document(self) -> FileData:
         try:
             data, line = self._only_document()
         except yaml.MarkedYAMLError as error:
@@ -155,7 +155,7 @@ class _Reading:
             self._stop(f"{read}. Expected keys with values, such as `h: 0.020`.", line)
         if self.issues:
             raise InvalidFileError(self.issues)
-        return Document(self.file, data, self.lines)
+        return FileData(self.file, data, self.lines)
 
     def _only_document(self) -> tuple[Any, int | None]:
         next(self.events)

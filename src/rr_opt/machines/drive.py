@@ -27,7 +27,7 @@ class Piece:
 
 
 @dataclass
-class Drives:
+class MeasuredDrives:
     """Of all recordings."""
 
     machine: Machine
@@ -35,13 +35,13 @@ class Drives:
     scales: Scales
     _kept: dict[tuple, dict] = field(default_factory=dict)
 
-    def with_inputs(self, inputs: Mapping[int, Signals]) -> Drives:
+    def with_inputs(self, inputs: Mapping[int, Signals]) -> MeasuredDrives:
         """The same with some inputs of some recordings in place of what was recorded."""
         runs = [
             replace(run, inputs={**run.inputs, **inputs.get(k, {})})
             for k, run in enumerate(self.recordings)
         ]
-        return Drives(self.machine, runs, self.scales)
+        return MeasuredDrives(self.machine, runs, self.scales)
 
     def path(
         self, piece: Piece, signals: Sequence[MachineEffect], values: Mapping[str, float]

@@ -112,16 +112,6 @@ TORQUE_OFFSET = MachineEffect(
     (_torque(low=-1e3),),
     lambda _, c: c.torque,
 )
-TORQUE_GAIN = MachineEffect(
-    "torque_gain",
-    "motor",
-    "actuation",
-    "torque",
-    "a wrong gain of the torque",
-    "The motor gives another share of its reading.",
-    (Constant("error", "dimensionless", lambda _: _SHARE, -0.9, 9.0),),
-    lambda v, c: c.error * v.drive,
-)
 ANGLE_OFFSET = MachineEffect(
     "angle_offset",
     "measurement",

@@ -15,7 +15,7 @@ from functools import cached_property
 import numpy as np
 
 from rr_opt.array import Array
-from rr_opt.machines.drive import Drives, Piece, beside
+from rr_opt.machines.drive import MeasuredDrives, Piece, beside
 from rr_opt.machines.equations import (
     effect_info,
     parameter_quantity,
@@ -60,7 +60,7 @@ class OdeModel:
         self._noise: Sequence[Noise] = [Noise()] * len(self.channels)
         self.nominal = dict(experiment.nominal)
         self._scales = scales_of(machine, experiment.runs, self.nominal)
-        self._drives = Drives(machine, experiment.runs, self._scales)
+        self._drives = MeasuredDrives(machine, experiment.runs, self._scales)
         self._given = {name.partition(".")[0] for name in self.nominal if "." in name}
         self.parameters = tuple(
             parameter_quantity(machine, name, self.nominal[name], experiment.uncertainty[name])

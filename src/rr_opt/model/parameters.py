@@ -51,7 +51,7 @@ class Spread:
 
 
 @dataclass(frozen=True)
-class Parameter:
+class RobotParameter:
     """A parameter of the robot.
 
     symbol       as in the paper: m, I, c, a, b, kappa, h
@@ -106,26 +106,26 @@ class Parameter:
 
 # fmt: off
 _TABLE = (
-    Parameter("m", "kg", "mass", "masses", "Mass",
+    RobotParameter("m", "kg", "mass", "masses", "Mass",
               "469 g", Spread(relative=0.01), "5 g", above=0),
-    Parameter("I", "kg m^2", "moment of inertia", "moments of inertia",
+    RobotParameter("I", "kg m^2", "moment of inertia", "moments of inertia",
               "Moment of inertia about the vertical through the centre of mass",
               "0.00386", Spread(relative=0.05), "1e-4", above=0),
-    Parameter("c", "m", "distance from axle to joint", "distances from axle to joint",
+    RobotParameter("c", "m", "distance from axle to joint", "distances from axle to joint",
               "Distance from the axle's centre to the joint P",
               "186 mm", Spread(2e-3), "2 mm", above=0),
-    Parameter("a", "m", "distance from axle to centre of mass",
+    RobotParameter("a", "m", "distance from axle to centre of mass",
               "distances from axle to centre of mass",
               "Distance from the axle's centre to the centre of mass, towards P",
               "20 mm", Spread(2e-3), "2 mm"),
-    Parameter("b", "m", "half track", "half tracks",
+    RobotParameter("b", "m", "half track", "half tracks",
               "Half track: from the axle's centre to each wheel",
               "50 mm", Spread(2e-3), "2 mm", above=0),
     # Bearings and tyres of one design differ more than any datasheet says: recordings decide.
-    Parameter("kappa", "N m s", "viscous wheel friction", "viscous wheel frictions",
+    RobotParameter("kappa", "N m s", "viscous wheel friction", "viscous wheel frictions",
               "Viscous friction of one wheel about its axle",
               "6.2e-5", Spread(factor=UNKNOWN_FACTOR), "1e-6", at_least=0),
-    Parameter("h", "m", "wheel radius", "wheel radii", "Wheel radius",
+    RobotParameter("h", "m", "wheel radius", "wheel radii", "Wheel radius",
               "20 mm", Spread(5e-4), "0.5 mm", above=0),
 )
 # fmt: on

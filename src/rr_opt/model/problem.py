@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
@@ -169,6 +169,26 @@ class Turn:
     )
 
 
+_SHARE = Quantity("", "5 %", at_least=0.0, below=1.0)
+
+
+@data
+class Spreads:
+    """How well a robot is known: of both platforms, each for itself, the standard deviation of the
+    logarithm of a value, which for a small one is that of the value, relative."""
+
+    m: SI = declared(_SHARE, "Of the masses, a share of the nominal value.", default=0.0)
+    I: SI = declared(_SHARE, "Of the moments of inertia, likewise.", default=0.0)
+    a: SI = declared(_SHARE, "Of the distances from axle to centre of mass.", default=0.0)
+    kappa: SI = declared(_SHARE, "Of the viscous friction of the wheels.", default=0.0)
+
+    def of(self, parameters: Sequence[str]) -> dict[int, float]:
+        """The spreads above 0 of parameters of the equations of motion, by their index."""
+        own = {"m": self.m, "I": self.I, "a": self.a, "k": self.kappa}
+        found = {i: own.get(name[:-1], 0.0) for i, name in enumerate(parameters)}
+        return {i: spread for i, spread in found.items() if spread}
+
+
 @dataclass(frozen=True)
 class Problem:
     """Which gait drives `robot` fastest within `gait`, `inertia_ratio`, `limits` and `turn`, or at
@@ -176,6 +196,8 @@ class Problem:
 
     `inertia_ratio` None: the robot as it is; `turn` None: straight or on any circle.
 
+    robust   None: the robot is what it says; else a gait is sought too that is fast on most of the
+             robots that it may be
     command  None: gaits are commands to the servo; else they are motions of the joint
     sha256  fingerprint of the files it was read from; empty if it was made or changed in Python
     """
@@ -188,6 +210,7 @@ class Problem:
     objective: Objective = "speed"
     turn: Turn | None = None
     command: CommandBounds | None = None
+    robust: Spreads | None = None
     name: str = field(default="", compare=False)
     sha256: str = field(default="", init=False, compare=False, repr=False)
 

@@ -15,12 +15,12 @@ come back in the opposite order. Both are exact for any times and gaps, without 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import factorial
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import get_lapack_funcs, solveh_banded
 from scipy.optimize import minimize_scalar
-from scipy.special import factorial
 
 from rr_opt.array import Array
 from rr_opt.recordings.noise import noise_of

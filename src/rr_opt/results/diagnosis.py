@@ -115,7 +115,7 @@ class ExplainedExperiment(Explained[Experiment]):
         self, path: str | Path, *, figures: bool = True, progress: Progress = quiet
     ) -> list[Path]:
         """Write diagnosis.json, robot-corrected.yaml, the figures and the page."""
-        progress("the best gait, as believed and as found")
+        progress("the best gaits of the nominal and the corrected robot")
         return super().save(path, figures=figures, progress=progress)
 
     def document(self, figures: Sequence[doc.Figure] = ()) -> doc.Document:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -61,19 +61,20 @@ def candidate_words(effects: Sequence[str]) -> str:
     return " + ".join(names) or "none (parameters only)"
 
 
-def headline(found: Diagnosis) -> str:
-    """The verdict in a sentence."""
+def headline(
+    found: Diagnosis,
+    effect: Callable[[str], str] = effect_words,
+    parameter: Callable[[str], str] = parameter_words,
+) -> str:
+    """The verdict in a sentence; effect, parameter: their words, by name."""
     names = [one.name for one in found.findings]
     if found.verdict == "consistent":
         return "The model explains the recordings"
     if found.verdict == "parameters":
-        several = len(names) > 1
-        return (
-            f"The model is right, but {listed(map(parameter_words, names)) or 'a value'} "
-            f"{'are' if several else 'is'} not as believed"
-        )
+        values = listed(map(parameter, names)) or "a value"
+        return f"The model is right, but {values} differ{'s' * (len(names) < 2)} from nominal"
     if found.verdict == "missing_physics":
-        return f"The model leaves out {listed(map(effect_words, names)) or 'something'}"
+        return f"The model leaves out {listed(map(effect, names)) or 'something'}"
     return "Physics is missing, and no known effect accounts for it"
 
 
@@ -222,7 +223,7 @@ def _candidate(one: Tried, tried: Sequence[Tried]) -> str:
 
 
 def parameters_table(found: Diagnosis, experiment: Experiment) -> doc.Table:
-    """The robot's own parameters: as believed, and as estimated."""
+    """The robot's own parameters: nominal, and as estimated."""
     nominal = parameters_of(experiment.robot)
     moved = {
         name
@@ -245,12 +246,12 @@ def parameters_table(found: Diagnosis, experiment: Experiment) -> doc.Table:
     columns = {
         "Parameter": lambda each: each[0],
         "What": lambda each: parameter_words(each[0]),
-        "As believed": lambda each: believed(*each),
+        "Nominal": lambda each: believed(*each),
         "Estimated": lambda each: number_text(each[1], each[1].value),
         "95 % interval": lambda each: interval_text(each[1]),
     }
     if moved:
-        changed = doc.Badge("not as believed", "warn")
+        changed = doc.Badge("off nominal", "warn")
         columns["Verdict"] = lambda each: changed if each[0] in moved else ""
     return doc.table_of([one for one in found.parameters.items() if "." not in one[0]], columns)
 

@@ -37,6 +37,7 @@ from rr_opt.results.limits import (
 )
 from rr_opt.results.motion import trajectory_csv
 from rr_opt.results.result import Check, Result, picked
+from rr_opt.results.robust import Robust
 from rr_opt.verify.replay import Replay
 from rr_opt.verify.sweep import TOLERATED, SweepCheck
 
@@ -65,6 +66,8 @@ class FastestGait(Result):
                    where there is no optimum to check
     driven         the gait driven with all effects of the robot, and climbed on where the optimiser
                    does not know them all; None where the optimum has them all
+    robust         the gait that is fast on most of the robots that the file may mean; None where
+                   the problem asks for none, and where none was found
     as_built       speed of the fastest gait of the robot as it is, m/s, where the optimum has
                    another inertia ratio; None elsewhere, and if that robot has no such gait
     """
@@ -81,6 +84,7 @@ class FastestGait(Result):
     sweep: SweepCheck | None = None
     as_built: float | None = None
     driven: DrivenOptimum | None = None
+    robust: Robust | None = None
 
     @property
     def problem(self) -> Problem:
@@ -255,6 +259,7 @@ class FastestGait(Result):
                     f"relative error {error:.1e} (tolerance {LARGEST_COST_ERROR:.0e})."
                 )
                 checks.append(Check(error <= LARGEST_COST_ERROR, own))
+        checks += self.robust.checks if self.robust else []
         return checks + (_driven_checks(self.driven, self.optimum) if self.driven else [])
 
     @property
@@ -298,8 +303,10 @@ class FastestGait(Result):
         best = self.optimum.best
         if best is None:
             return []
-        texts = []
-        texts += self._slippery
+        texts = list(self._slippery)
+        if self.problem.robust:
+            robust = self.robust
+            texts.append(robust.sentence(best.speed) if robust else "No robust gait was found.")
         if self.climbed:
             texts.append(_climbed(self.climbed, self.optimum))
         if self.driven and self.driven.driven.left_out:
@@ -386,6 +393,7 @@ class FastestGait(Result):
                 "replay_speed": replay.speed,
                 "limit_excess": replay.excess,
             },
+            "robust": self.robust and self.robust.record(),
             "driven": driven
             and {
                 **picked(driven.driven, "effects left_out speeds"),
@@ -430,6 +438,7 @@ class FastestGait(Result):
             sections=(
                 doc.Section("", (doc.Facts(tuple(_facts(self)), key=True),)),
                 self._lead(),
+                self.robust.section() if self.robust else doc.Section("", ()),
                 doc.Section(
                     "Checks", (doc.checks((one.passed, one.sentence) for one in self.checks),)
                 ),

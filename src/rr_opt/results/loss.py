@@ -194,14 +194,14 @@ def pace(speed: float) -> str:
 
 
 def loss_sentences(one: Loss | LossUnknown | None) -> str:
-    """A few sentences; nothing where the robot as believed is right."""
+    """A few sentences; nothing where the nominal robot is right."""
     if one is None:
         return ""
     if isinstance(one, LossUnknown):
         return one.sentence
     text = (
-        f"The best gait of the robot as believed ({gait_words(one.believed)}) promises "
-        f"{pace(one.promised)}; the robot as found reaches {pace(one.reached)} with it. Its own "
+        f"The best gait of the nominal robot ({gait_words(one.believed)}) promises "
+        f"{pace(one.promised)}; the corrected robot reaches {pace(one.reached)} with it. Its own "
         f"best gait ({gait_words(one.best)}) reaches {pace(one.speed)}. "
         f"Speed lost through the wrong model: {share_lost(one)}"
         f"{', as it drives the robot the other way' if one.share > 1 else ''}."
@@ -216,8 +216,8 @@ def loss_line(one: Loss | LossUnknown) -> str:
     if isinstance(one, LossUnknown):
         return one.sentence
     return (
-        f"{share_lost(one)}: the best gait as believed promises {pace(one.promised)} and reaches "
-        f"{pace(one.reached)}; the best as found reaches {pace(one.speed)}"
+        f"{share_lost(one)}: the nominal model's best gait promises {pace(one.promised)} and "
+        f"reaches {pace(one.reached)}; the corrected model's reaches {pace(one.speed)}"
     )
 
 
@@ -228,7 +228,7 @@ def gait_words(gait: Gait) -> str:
 
 
 def loss_record(one: Loss | LossUnknown | None) -> dict[str, Any] | None:
-    """diagnosis.json's `loss`: null where the robot as believed is right; SI."""
+    """diagnosis.json's `loss`: null where the nominal robot is right; SI."""
     if one is None:
         return None
     if isinstance(one, LossUnknown):

@@ -12,7 +12,6 @@ from rr_opt.documents import document as doc
 from rr_opt.documents.texts import captions
 from rr_opt.files.record import yaml_text
 from rr_opt.formatting import with_unit
-from rr_opt.messages import listed
 from rr_opt.model.machine import MachineExperiment, MachineRun
 from rr_opt.results import diagnosis_tables as tables
 from rr_opt.results.explained import Explained
@@ -32,7 +31,7 @@ class ExplainedMachine(Explained[MachineExperiment]):
     window: float
 
     def errors(self, *, held_out: bool) -> dict[str, dict[str, float]]:
-        """RMS error of each output, SI: as believed, with parameters fitted, as found."""
+        """RMS error of each output, SI: nominal, with parameters fitted, corrected."""
         found = self.found
         levels = {"before": found.nominal, "parameters": found.refitted, "after": found.final}
         return {
@@ -46,14 +45,12 @@ class ExplainedMachine(Explained[MachineExperiment]):
     @property
     def headline(self) -> str:
         """The verdict in a sentence."""
-        machine, found = self.experiment.machine, self.found
-        if found.verdict == "missing_physics":
-            names = [machine.effect(each.name).words for each in found.findings]
-            return f"The model leaves out {listed(names)}"
-        if found.verdict == "parameters":
-            names = [p.words for each in found.findings if (p := machine.parameter(each.name))]
-            return f"The model is right, but the {listed(names)} not as believed"
-        return tables.headline(found)
+        machine = self.experiment.machine
+        return tables.headline(
+            self.found,
+            lambda name: machine.effect(name).words,
+            lambda name: f"the {one.words}" if (one := machine.parameter(name)) else name,
+        )
 
     def _record(self) -> dict[str, Any]:
         record = super()._record()
@@ -121,7 +118,7 @@ class ExplainedMachine(Explained[MachineExperiment]):
                 shown = [with_unit(x, channel.unit, 3) for x in errors.values()]
                 rows.append(["held out" if held else "fitted", channel.words, *shown])
         note = f"RMS over windows of {self.window:g} s, whose initial states alone are fitted."
-        head = ["Recordings", "Output", "As believed", "Values fitted", "As found"]
+        head = ["Recordings", "Output", "Nominal", "Values fitted", "Corrected"]
         return doc.table(head, rows, note)
 
     def _parameters(self) -> doc.Table:
@@ -131,7 +128,7 @@ class ExplainedMachine(Explained[MachineExperiment]):
             {
                 "Parameter": lambda p: p.name,
                 "What": lambda p: p.words,
-                "As believed": lambda p: with_unit(nominal[p.name], p.unit, 4),
+                "Nominal": lambda p: with_unit(nominal[p.name], p.unit, 4),
                 "Estimated [95 %]": lambda p: (
                     tables.value_text(estimates[p.name]) if p.name in estimates else "exact"
                 ),
@@ -139,7 +136,7 @@ class ExplainedMachine(Explained[MachineExperiment]):
         )
 
     def _tables(self) -> dict[str, str]:
-        """The machine's values as found, as the keys of an experiment file, and its effects."""
+        """The machine's corrected values, as the keys of an experiment file, and its effects."""
         machine, values = self.experiment.machine, self.found.values
         nominal = self.experiment.nominal
         own = {p.name: _rounded(values.get(p.name, nominal[p.name])) for p in machine.parameters}

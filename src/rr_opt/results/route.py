@@ -21,7 +21,7 @@ from rr_opt.outcome import Status
 from rr_opt.results.gait import ignored_effects
 from rr_opt.results.motion import trajectory_csv
 from rr_opt.results.result import Check, Result, picked
-from rr_opt.routing.plan import Plan
+from rr_opt.routing.plan import RoutePlan
 from rr_opt.routing.replay import RouteReplay
 
 _RATE = 125.0
@@ -43,7 +43,7 @@ class DrivenRoute(Result):
 
     name: str
     sha256: str
-    plan: Plan
+    plan: RoutePlan
     replay: RouteReplay | None
 
     @property

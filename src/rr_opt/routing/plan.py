@@ -16,7 +16,7 @@ from rr_opt.motion.dynamics import require_friction
 from rr_opt.outcome import InputError, Status
 from rr_opt.routing.gaits import Chart, Coasting, Way, binding_limits, chart, coasting
 from rr_opt.routing.path import Leg, legs_of
-from rr_opt.routing.program import BROKEN, Drive, DriveProgram, Stage, slip
+from rr_opt.routing.program import BROKEN, DriveProgram, DriveStage, SolvedDrive, slip
 
 Progress = Callable[[str], None]
 
@@ -37,7 +37,7 @@ _LONGEST = 1.2
 
 
 @dataclass(frozen=True)
-class Plan:
+class RoutePlan:
     """The answer to a route.
 
     problem   the route's, with the robot that drives: of a free inertia ratio the fastest
@@ -55,7 +55,7 @@ class Plan:
     gaits: tuple[SineGait, ...] = ()
     speeds: tuple[float, ...] = ()
     coasting: Coasting | None = None
-    drive: Drive | None = None
+    drive: SolvedDrive | None = None
 
     @property
     def turned(self) -> float:
@@ -70,7 +70,7 @@ class Plan:
         return along + slip(self.problem, self.legs[-1], self.turned) if running else along
 
 
-def plan_route(route: Route, progress: Progress = lambda _: None) -> Plan:
+def plan_route(route: Route, progress: Progress = lambda _: None) -> RoutePlan:
     """The fastest drive found along a route.
 
     The status is OPTIMAL, INFEASIBLE (the message names piece, limit and what can be driven) or
@@ -97,14 +97,14 @@ def plan_route(route: Route, progress: Progress = lambda _: None) -> Plan:
 
     way = min(ways, key=time)
     if not math.isfinite(time(way)):
-        return Plan(Status.INFEASIBLE, _why_not(route, charts, paths), route, problem, way)
+        return RoutePlan(Status.INFEASIBLE, _why_not(route, charts, paths), route, problem, way)
     legs = tuple(paths[way])
     found = [charts[way].fastest(leg.curvature) for leg in legs]
     gaits, speeds = zip(*(one for one in found if one), strict=True)
     sign = 1 if way == "forward" else -1
     coast = coasting(problem, sign * speeds[-1], route.tolerance.speed)
-    plan = Plan(Status.OPTIMAL, "", route, problem, way, legs, gaits, speeds, coast)
-    best: Drive | None = None
+    plan = RoutePlan(Status.OPTIMAL, "", route, problem, way, legs, gaits, speeds, coast)
+    best: SolvedDrive | None = None
     for brakes in (True, False) if route.end == "rest" else (False,):
         stages = _stages(plan, coast if route.end == "rest" else None, brakes=brakes)
         program = DriveProgram(
@@ -140,7 +140,7 @@ def _near_the_path(problem: Problem, width: float) -> Problem:
     return replace(problem, gait=replace(problem.gait, amplitude=amplitude))
 
 
-def _rank(drive: Drive) -> tuple[bool, float]:
+def _rank(drive: SolvedDrive) -> tuple[bool, float]:
     broken = drive.violation > BROKEN
     return broken, drive.violation if broken else drive.command.seconds
 
@@ -158,9 +158,9 @@ def _path(route: Route, gaits: Chart) -> list[Leg]:
     return legs_of(route, gaits.cost, 1 / np.array(useful or [curvatures[0]]))
 
 
-def _stages(plan: Plan, coast: Coasting | None, *, brakes: bool) -> list[Stage]:
+def _stages(plan: RoutePlan, coast: Coasting | None, *, brakes: bool) -> list[DriveStage]:
     """A guess: each part of a leg with its gait, then a stage to brake, then one to coast."""
-    stages = list[Stage]()
+    stages = list[DriveStage]()
     left = coast.distance if coast else 0.0
     parts = [
         (part, gait, speed)
@@ -179,10 +179,10 @@ def _stages(plan: Plan, coast: Coasting | None, *, brakes: bool) -> list[Stage]:
         if part.curvature != before:
             # The launch, or a transition: until P moves at another angle to platform 1.
             first = min(0.3 * cycles, _ENTRY / (speed * gait.period))
-            stages.append(Stage(first, *shape, part))
+            stages.append(DriveStage(first, *shape, part))
             cycles = max(cycles - first - 1, 0.1)
             before = part.curvature
-        stages.append(Stage(cycles, *shape, part, ends=True))
+        stages.append(DriveStage(cycles, *shape, part, ends=True))
     if coast:
         part, gait, speed = parts[-1]
         stages[-1] = replace(stages[-1], ends=False)
@@ -195,9 +195,9 @@ def _stages(plan: Plan, coast: Coasting | None, *, brakes: bool) -> list[Stage]:
         omega = 2 * math.pi / gait.period
         if brakes:
             shape = 0.1 * gait.amplitude, 0.5 * gait.offset, omega
-            stages.append(Stage(0.3 * coast.seconds / gait.period, *shape, part))
+            stages.append(DriveStage(0.3 * coast.seconds / gait.period, *shape, part))
         cycles = 0.7 * coast.seconds / gait.period
-        stages.append(Stage(cycles, 0.0, 0.0, omega, part, ends=True, coasts=True))
+        stages.append(DriveStage(cycles, 0.0, 0.0, omega, part, ends=True, coasts=True))
     return stages
 
 

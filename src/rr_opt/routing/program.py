@@ -64,7 +64,7 @@ that it is: between them P swings with the gait."""
 
 
 @dataclass(frozen=True)
-class Stage:
+class DriveStage:
     """A stage of the drive: guesses of its unknowns, the leg it is on, whether its end is that of
     the leg, and whether it only coasts."""
 
@@ -78,7 +78,7 @@ class Stage:
 
 
 @dataclass(frozen=True)
-class Drive:
+class SolvedDrive:
     """An answer of the solver.
 
     violation   largest share by which a bound is broken; where says which
@@ -157,7 +157,7 @@ class DriveProgram:
     def __init__(
         self,
         problem: Problem,
-        stages: list[Stage],
+        stages: list[DriveStage],
         tolerance: Tolerance,
         pose: Pose,
         turned: float,
@@ -280,7 +280,7 @@ class DriveProgram:
             found += [(_FEWEST, math.inf), amplitude, offset, omega]
         return [(low / s, high / s) for (low, high), s in zip(found, self.scale, strict=True)]
 
-    def solve(self, progress: Callable[[str], None]) -> Drive:
+    def solve(self, progress: Callable[[str], None]) -> SolvedDrive:
         """The fastest drive near the guess: linear steps until it keeps all bounds, as they lead
         there from far away, then sequential quadratic programming, which follows curved bounds."""
         low, high = np.array(self.bounds).T
@@ -331,7 +331,9 @@ class DriveProgram:
             seen.clear()
             best = look(x)
         worst = int(np.argmin(best.values))
-        return Drive(best.command, best.samples, best.violation, *best.names[worst], steps, success)
+        return SolvedDrive(
+            best.command, best.samples, best.violation, *best.names[worst], steps, success
+        )
 
     def _farthest(self, samples: Samples) -> float:
         """The largest distance of P from the leg that it is on, at all samples, m."""

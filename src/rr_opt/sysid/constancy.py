@@ -9,7 +9,8 @@ among them, its score where the others have their optimum is
 
 No machine is its model, though. F is the variance by which machines differ from the model of an
 effect in its values; and in the motion they differ by that share, e, of what the effect explains
-of the run, m (RMS in sigma), for about a correlation time: phi = 1 + (e m)^2 n/K with the samples n
+of the run, m (RMS in sigma), and by f, that of what is left which machines of the kind differ by
+from any model, for about a correlation time each: phi = 1 + ((e m)^2 + f^2) n/K with the samples n
 and correlation times K of the run.
 
 T, the sum of s' Var^-1 s over all runs, is k on average, the number of values that each run shows,
@@ -56,10 +57,14 @@ _NONE: Mapping = MappingProxyType({})
 
 
 def constancy(
-    fit: Fit, explained: Mapping[int, float] = _NONE, form_errors: Mapping[str, float] = _NONE
+    fit: Fit,
+    left: float,
+    explained: Mapping[int, float] = _NONE,
+    form_errors: Mapping[str, float] = _NONE,
 ) -> Constancy:
     """Of a fit to all runs.
 
+    left         RMS in sigma beyond the noise in simulations of whole runs
     explained    of each run, the mean square in sigma that the effects explain; 0 if left out
     form_errors  by how much, relative, machines differ from the model of an effect, by its name
     """
@@ -87,6 +92,7 @@ def constancy(
         total = float(np.sum((ways.T @ score)[shown] ** 2 / variance[shown]))
         per_time = problem.samples(run) / problem.correlation_times(run)
         share = max(form_errors.values(), default=0.0)
-        statistic += total / (1 + share**2 * explained.get(run, 0.0) * per_time)
+        off = share**2 * explained.get(run, 0.0) + min(left, problem.model.form_error) ** 2
+        statistic += total / (1 + off * per_time)
         degrees += int(shown.sum())
     return Constancy(statistic, degrees)

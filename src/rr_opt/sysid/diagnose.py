@@ -147,7 +147,7 @@ def identified(model: Machine, watch: Stopwatch) -> Result:
         best = turned(model, selection.best)
     with watch("looking for wrong values"):
         fit = best.fit
-        if selection.complete(best) or best.excess <= model.form_error:
+        if selection.complete(best):
             fit = released(fit)
         best = Candidate(best.choices, fit)
     with watch("predicting every recording"):

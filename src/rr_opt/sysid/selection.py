@@ -68,15 +68,17 @@ class Selection:
 
     def complete(self, candidate: Candidate) -> bool:
         """Whether its simulation leaves nothing: no more than is negligible, beside an effect as
-        much as is none, and than noise leaves by chance. And, without effects, whether recordings
-        agree on its values."""
-        if not candidate.choices and constancy(candidate.fit).probability <= SETTINGS.named:
-            return False
+        much as is none, than machines of this kind differ by from any model, and than noise leaves
+        by chance. And, without effects, whether recordings agree on its values."""
         chance = 2 * math.sqrt(2 / max(candidate.fit.samples, 1))
         least = SETTINGS.none if candidate.choices else SETTINGS.negligible
-        most = least**2 + chance
+        most = least**2 + self.model.form_error**2 + chance
         # Segments that need not join leave less than whole runs.
-        return candidate.fit.excess**2 <= 2 * most and candidate.excess**2 <= most
+        if candidate.fit.excess**2 > 2 * most or candidate.excess**2 > most:
+            return False
+        if candidate.choices:
+            return True
+        return constancy(candidate.fit, candidate.excess).probability > SETTINGS.named
 
     def _better(self, candidate: Candidate, other: Candidate) -> bool:
         """Whether a larger candidate predicts better than one that leaves something."""

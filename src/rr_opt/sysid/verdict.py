@@ -81,7 +81,7 @@ class Result:
     def constancy(self) -> Constancy:
         """How well recordings agree on the answer's values."""
         explained = {run: max(one.rms**2 - 1, 0.0) for run, one in enumerate(self.refitted.misfits)}
-        return constancy(self.everywhere.fit, explained, self._form_errors)
+        return constancy(self.everywhere.fit, self.best.excess, explained, self._form_errors)
 
     @property
     def shown(self) -> tuple[Choice, ...]:
@@ -104,8 +104,7 @@ class Result:
         if self.constancy.probability <= SETTINGS.named:
             return False
         both = (self.best, self.everywhere)
-        slight = self.selection.model.form_error
-        if all(self.selection.complete(one) or one.excess <= slight for one in both):
+        if all(self.selection.complete(one) for one in both):
             return True
         most = max(one.excess for one in both)
         noisier = (1 + SETTINGS.misstated) ** 2 - 1

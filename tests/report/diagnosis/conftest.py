@@ -137,7 +137,7 @@ def missing():
 
 @pytest.fixture(scope="session")
 def wrong_values(missing):
-    """A parameter that is not as believed, and no stages tested."""
+    """A parameter that differs from nominal, and no stages tested."""
     kappa = missing.found.parameters["kappa1"]
     found = replace(
         missing.found,

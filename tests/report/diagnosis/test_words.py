@@ -31,7 +31,7 @@ def test_an_interval_alone():
 def test_headlines_say_the_verdict(every):
     said = {verdict: headline(one.found) for verdict, one in every.items()}
     assert said["missing_physics"] == "The model leaves out Coulomb friction"
-    assert "wheel friction of platform 1 is not as believed" in said["parameters"]
+    assert "wheel friction of platform 1 differs from nominal" in said["parameters"]
     assert "explains the recordings" in said["consistent"]
     assert "no known effect" in said["unexplained"]
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -29,6 +29,8 @@ _TRIED = 14
 """Initial values of an effect without derivatives, between next to nothing and a lot."""
 _PAIRED = 2
 """Of the effects alone, how many are tried in pairs."""
+_PARTS, _SIZES = (1.0, 0.5, 0.25), (0.25, 1.0, 4.0)
+"""Of what a simpler form took for its first quantity, and of the usual size of a new one."""
 _DIFFERENCE = 1e-4
 """Relative step of a difference quotient."""
 _SCANNED = 3
@@ -121,11 +123,16 @@ def actuation_sets(
         return [((), {})]
 
     def tried(choices: Sequence[Choice]) -> list[_Set]:
-        return [_fitted(angle, racer, (one,), free, _guesses(racer, one)) for one in choices]
+        found: list[_Set] = []
+        for one in choices:
+            guesses = [*_guesses(racer, one), *_shared(racer, one, [*alone, *found])]
+            found.append(_fitted(angle, racer, (one,), free, guesses))
+        return found
 
     def best_first(sets: Sequence[_Set]) -> list[_Set]:
         return sorted(sets, key=lambda one: one.score)
 
+    alone: list[_Set] = []
     alone = best_first(tried(plain))
     # Where one effect leaves next to nothing, only what costs next to nothing is tried beside it.
     quick = angle.explained(alone[0])
@@ -166,6 +173,18 @@ def _guesses(racer: RacerModel, choice: Choice) -> list[dict[str, float]]:
     sizes = np.geomspace(0.25, 1.0, _TRIED) if q.neutral else np.geomspace(0.05, 5.0, _TRIED)
     values = np.clip(q.scale * sizes, q.low, q.high).tolist()
     return [{**guess, q.name: value} for value in values for guess in form.guesses]
+
+
+def _shared(racer: RacerModel, choice: Choice, found: Sequence[_Set]) -> Iterator[dict[str, float]]:
+    """What simpler forms of a set took for their first quantity is shared with a new one."""
+    form = racer.catalogue[choice.name].forms[choice.form]
+    first, names = form.quantities[0], {q.name for q in form.quantities}
+    for simpler in found:
+        if simpler.values.keys() < names and first.name in simpler.values:
+            more = {q.name: q.scale for q in form.quantities if q.name not in simpler.values}
+            for part, size in itertools.product(_PARTS, _SIZES):
+                own = {first.name: part * simpler.values[first.name]}
+                yield {**simpler.values, **own, **{k: size * v for k, v in more.items()}}
 
 
 def _fitted(

@@ -17,7 +17,7 @@ import numpy as np
 
 from rr_opt.files.issue import InvalidFileError, refuse
 from rr_opt.files.record import gait_from, gait_record
-from rr_opt.files.yaml_text import Document
+from rr_opt.files.yaml_text import FileData
 from rr_opt.model.experiment import CHANNELS, UNITS, Flag, Noise, Recording
 from rr_opt.model.gait import Gait
 from rr_opt.outcome import InputError
@@ -165,7 +165,7 @@ def gait_of(data: xarray.Dataset, file: str) -> Gait | None:
     record = from_json(data, "gait", dict, file)
     if not record:
         return None
-    gait, issues = gait_from(Document(file, record, {}))
+    gait, issues = gait_from(FileData(file, record, {}))
     if gait is None:
         raise InvalidFileError(issues)
     return gait

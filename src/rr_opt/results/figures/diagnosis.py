@@ -1,4 +1,4 @@
-"""How well the model as believed and the model as found predict the recordings, in sigma."""
+"""How well the nominal and the corrected model predict the recordings, in sigma."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def bands(one: ExplainedExperiment) -> tuple[Figure, str]:
     axes = list(made.subplots(len(CHANNELS), 1, sharex=True))
     for k, (ax, name) in enumerate(zip(axes, CHANNELS, strict=True)):
         largest = 0.0
-        levels = (nominal, style.NOMINAL, "as believed"), (final, style.FOUND, "as found")
+        levels = (nominal, style.NOMINAL, "nominal"), (final, style.FOUND, "corrected")
         for level, colour, words in levels:
             for start, each in zip(starts, level, strict=False):
                 at, low, high = _band(each.t, each.residuals[:, k])
@@ -62,7 +62,7 @@ def bands(one: ExplainedExperiment) -> tuple[Figure, str]:
                      transform=axes[0].get_xaxis_transform())  # fmt: skip
     axes[-1].set_xlabel("time, one recording after the other, s")
     made.align_ylabels()
-    for words, colour in (("as believed", style.NOMINAL), ("as found", style.FOUND)):
+    for words, colour in (("nominal", style.NOMINAL), ("corrected", style.FOUND)):
         axes[0].fill_between([], [], [], color=colour, alpha=0.45, label=words)
     axes[0].plot([], [], color=style.GREY, ls=style.DASHED, lw=1, label="the noise")
     style.legend_below(made, axes[0])
@@ -93,9 +93,9 @@ def misfits(one: ExplainedExperiment) -> tuple[Figure, str]:
     made = style.figure(height=1.3 + 0.3 * len(final))
     ax = made.subplots()
     ax.hlines(lanes, found, nominal, color=style.FAINT, lw=4)
-    ax.plot(nominal, lanes, "o", ms=7, mfc="white", mec=style.NOMINAL, mew=1.8, label="as believed")
+    ax.plot(nominal, lanes, "o", ms=7, mfc="white", mec=style.NOMINAL, mew=1.8, label="nominal")
     ax.plot(refitted, lanes, "|", ms=11, mew=2, color=style.GREY, label="parameters re-estimated")
-    ax.plot(found, lanes, "o", ms=7, color=style.FOUND, label="as found")
+    ax.plot(found, lanes, "o", ms=7, color=style.FOUND, label="corrected")
     ax.axvline(1.0, color=style.GREY, lw=1, ls=style.DASHED)
     names = [each.recording.removesuffix(".csv") for each in final]
     held = [", held out" if each.held_out else "" for each in final]
@@ -217,8 +217,8 @@ def _path(ax: Axes, recording: Recording, nominal: Misfit, final: Misfit) -> Non
     step = max(1, len(seen) // _POINTS)
     ax.plot(*seen[::step].T, color="#b4bdc6", lw=5, solid_capstyle="round", label="recorded")
     for one, colour, line, words in (
-        (nominal, style.NOMINAL, "--", "as believed"),
-        (final, style.FOUND, "-", "as found"),
+        (nominal, style.NOMINAL, "--", "nominal"),
+        (final, style.FOUND, "-", "corrected"),
     ):
         ax.plot(*one.predicted[::step, :2].T, line, color=colour, lw=1.4, label=words)
     known = np.flatnonzero(np.isfinite(seen).all(axis=1))
@@ -256,8 +256,8 @@ def _loss(one: ExplainedExperiment) -> tuple[Figure, str] | None:
     made = style.figure(height=3.0)
     ax = made.subplots()
     bars = (
-        ("the model as believed promises", loss.believed, loss.promised, "none", nominal),
-        ("the robot as found reaches with it", loss.believed, loss.reached, nominal, nominal),
+        ("the nominal model promises", loss.believed, loss.promised, "none", nominal),
+        ("the corrected robot reaches with it", loss.believed, loss.reached, nominal, nominal),
         ("its own best gait reaches", loss.best, loss.speed, found, found),
     )
     for row, (words, gait, speed, inside, edge) in enumerate(bars):
@@ -291,7 +291,7 @@ def _errors(one: ExplainedMachine) -> Figure:
     for k, (ax, channel) in enumerate(zip(axes, outputs, strict=True)):
         for level, colour, label in (
             (found.refitted, style.NOMINAL, "values fitted, no effect"),
-            (found.final, style.FOUND, "as found"),
+            (found.final, style.FOUND, "corrected"),
         ):
             start = 0.0
             for row in rows[:_MOST_PARTS]:

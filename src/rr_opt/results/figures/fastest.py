@@ -18,6 +18,7 @@ from rr_opt.results.figures import style
 from rr_opt.results.figures.motion import along_travel, cycle, cycles_to_show, path
 from rr_opt.results.figures.speed_map import map_data, speed_map
 from rr_opt.results.limits import BoundRow, LimitRow
+from rr_opt.results.robust import Robust
 from rr_opt.results.shapes import FastestShapes, family
 from rr_opt.verify.replay import Replay
 
@@ -33,8 +34,26 @@ def draw(result: FastestGait) -> dict[str, str]:
         "cycle": _cycle(result, replay),
         "prices": style.panel(0.9 + 0.42 * len(lines), lambda ax: prices(ax, lines, result.cost)),
     }
+    if result.robust and result.problem.robust:
+        robust = result.robust
+        drawn["robust"] = style.panel(3.4, lambda ax: certainty(ax, robust))
     # The map is one of sines.
     return {"speed-map": _speed_map(result, gait), **drawn} if isinstance(gait, SineGait) else drawn
+
+
+def certainty(ax: Axes, robust: Robust) -> Axes:
+    """What 95 % of the robots reach, mm/s, over the size of all spreads, with both gaits."""
+    for curve, colour, label in zip(
+        robust.curves, (style.FORWARD, style.GREY), ("robust gait", "nominal gait"), strict=True
+    ):
+        ax.plot(robust.scales, 1e3 * np.abs(curve), color=colour, label=label)
+    ax.plot(1.0, 1e3 * abs(robust.speed), "o", color=style.FORWARD, zorder=4)
+    ax.set(xlabel="spreads, in those of the file", ylabel="95 % reach, mm/s")
+    ax.set(xlim=(robust.scales[0], robust.scales[-1]))
+    ax.set_ylim(bottom=0)
+    style.note(ax, f"nominal gait: {100 * robust.kept:.0f} % keep the limit on torque")
+    ax.legend(loc="upper right")
+    return ax
 
 
 def _speed_map(result: FastestGait, gait: SineGait) -> str:

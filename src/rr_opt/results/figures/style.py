@@ -22,7 +22,7 @@ FORWARD, BACKWARD = "#0072b2", "#d55e00"
 PLATFORM1, PLATFORM2, WHEEL = "#009e73", "#e69f00", "#2b3440"
 LIMIT, OPTIMUM = "#9b2d5d", "#f0e442"
 NOMINAL, FOUND = BACKWARD, FORWARD
-"""The model as believed is orange, as found blue."""
+"""The nominal model is orange, the corrected one blue."""
 
 SIGNED = LinearSegmentedColormap.from_list(
     "signed", ["#7a2e00", "#d55e00", "#f5b98a", "#f7f5f2", "#8fc1e0", "#0072b2", "#003a5d"]

@@ -1,0 +1,97 @@
+"""The gait that is fast on most of the robots that a file may mean, beside the nominal optimum."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from rr_opt.design.robust import RELIABLE
+from rr_opt.documents import document as doc
+from rr_opt.files.record import plain
+from rr_opt.formatting import number, with_unit
+from rr_opt.model.gait import Gait
+from rr_opt.results.result import Check
+from rr_opt.verify.spread import DRAWN
+
+_ALIKE = 1e-6
+SHORT = 0.01
+"""By so much the share of other robots that reach the speed and keep the limit on torque may fall
+short of what is told; four standard deviations of it."""
+
+
+@dataclass(frozen=True)
+class Robust:
+    """The robust gait, as commanded, and what it and the nominal optimum do.
+
+    speed      that 95 % of the robots reach with the robust gait, m/s, negative backward
+    nominal    its speed on the robot as it is given
+    without    what 95 % reach with the nominal optimum; certainty costs nominal's speed for this
+    kept       the share of the robots that keep the limit on torque with the nominal optimum
+    reaching   the share of other robots that reach the speed with the robust gait, and `keeping`
+               that of those that keep the limit on torque
+    scales, curves  what 95 % reach with the robust gait and with the nominal optimum where all
+               spreads are so many times as large
+    """
+
+    gait: Gait
+    ratio: float
+    speed: float
+    nominal: float
+    without: float
+    kept: float
+    reaching: float
+    keeping: float
+    scales: tuple[float, ...]
+    curves: tuple[tuple[float, ...], tuple[float, ...]]
+
+    @property
+    def checks(self) -> list[Check]:
+        """Other robots than those that the speed was read from."""
+        share = f"{100 * RELIABLE:g} %"
+        return [
+            Check(
+                min(self.reaching, self.keeping) >= RELIABLE - SHORT,
+                f"{DRAWN} other robots drawn: {100 * self.reaching:.1f} % reach the speed that "
+                f"{share} are to reach with the robust gait, and {100 * self.keeping:.1f} % keep "
+                f"the limit on torque (tolerance {100 * SHORT:g} %).",
+            )
+        ]
+
+    def sentence(self, best: float) -> str:
+        """What certainty costs, best: the speed of the nominal optimum, m/s."""
+        speed, without = (1e3 * abs(one) for one in (self.speed, self.without))
+        slower = 1 - abs(self.nominal / best)
+        first = f"95 % of the robots that this one may be reach {speed:.1f} mm/s with "
+        if slower < _ALIKE:
+            return f"{first}it, and no other gait takes more of them further."
+        return (
+            f"{first}the robust gait, which goes {100 * slower:.2g} % slower on the nominal robot. "
+            f"With the nominal gait they reach {without:.1f} mm/s, and {100 * self.kept:.0f} % "
+            "keep the limit on torque."
+        )
+
+    def section(self) -> doc.Section:
+        """Of the report."""
+        rows = [
+            ("amplitude", with_unit(self.gait.amplitude, "rad")),
+            ("period", with_unit(self.gait.period, "s")),
+            ("offset", with_unit(self.gait.offset, "rad")),
+            ("J20/J10", number(self.ratio)),
+            ("95 % reach", f"{1e3 * self.speed:+.2f} mm/s"),
+            ("nominal", f"{1e3 * self.nominal:+.2f} mm/s"),
+        ]
+        return doc.Section("Robust gait", (doc.Facts(tuple(doc.Fact(*row) for row in rows)),))
+
+    def record(self) -> dict[str, Any]:
+        """As plain data."""
+        return {
+            "gait": plain(self.gait),
+            "inertia_ratio": self.ratio,
+            "share": RELIABLE,
+            "method": "second-order expansion; the speed is read from robots drawn at random",
+            "speed": self.speed,
+            "speed_nominal": self.nominal,
+            "speed_of_nominal_gait": self.without,
+            "torque_kept_by_nominal_gait": self.kept,
+            "check": {"robots": DRAWN, "reaching": self.reaching, "keeping": self.keeping},
+        }
