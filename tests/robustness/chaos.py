@@ -136,10 +136,10 @@ class Ended:
 
 
 def begun(command: Sequence[str], folder: Path, **more: str) -> subprocess.Popen[str]:
-    """The command under way in a session of its own."""
+    """The command under way in a process group of its own."""
     return subprocess.Popen(
         command, cwd=folder, env={**os.environ, "OPENBLAS_NUM_THREADS": "1", **more},
-        stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, start_new_session=True,
+        stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, process_group=0,
     )  # fmt: skip
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from dataclasses import replace
 from pathlib import Path
 from typing import Literal, Protocol
 
@@ -23,6 +24,7 @@ from rr_opt.results.motion import DrivenCircle, SimulatedMotion
 from rr_opt.results.result import Progress, quiet
 from rr_opt.results.route import DrivenRoute
 from rr_opt.results.setpoints import ExportedGait, Format, text_of
+from rr_opt.routing.feedback import controller, with_reserve
 from rr_opt.routing.plan import plan_route
 from rr_opt.routing.replay import replay
 
@@ -159,17 +161,28 @@ def load_route(path: PathLike) -> Route:
     return route
 
 
-def route(asked: Route | PathLike, *, progress: Progress = quiet) -> DrivenRoute:
+def route(
+    asked: Route | PathLike, *, feedback: bool = False, progress: Progress = quiet
+) -> DrivenRoute:
     """The fastest drive found along a route, from rest, checked by simulation.
+
+    feedback  also the controller that keeps the robot on it; the drive is a little slower, as
+              corrections need room
 
     Raises InputError for a robot without friction, and for a route without pieces.
     """
     if isinstance(asked, str | Path):
         asked = load_route(asked)
-    plan = plan_route(asked, progress)
-    check = None
+    plan = plan_route(with_reserve(asked) if feedback else asked, progress)
+    plan = replace(plan, route=asked)
+    check = control = None
     if plan.drive:
         progress("replay by CVODES")
         command = plan.drive.command
         check = replay(plan.problem, command, asked.start, plan.legs, plan.turned, plan.heading)
-    return DrivenRoute(asked.name, asked.sha256 or fingerprint(asked), plan, check)
+        if feedback:
+            progress("feedback")
+            control = controller(plan, replace(plan.problem, limits=asked.problem.limits))
+    return DrivenRoute(
+        asked.name, asked.sha256 or fingerprint(asked), plan, check, feedback=control
+    )

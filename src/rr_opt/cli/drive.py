@@ -96,6 +96,12 @@ def route(
     out: Annotated[Path | None, options.out_option("out/NAME")] = None,
     json: Annotated[bool, options.json_option("route.json")] = False,
     figures: options.Figures = True,
+    feedback: Annotated[
+        bool,
+        typer.Option(
+            "--feedback", help="Also write the controller that keeps the robot on it: JSON and C."
+        ),
+    ] = False,
 ) -> None:
     """Drive a route of straights, arcs and waypoints from rest, as fast as the robot can.
 
@@ -104,6 +110,6 @@ def route(
     with StepDisplay() as steps:
         asked = options.read_route(route)
         folder = options.results_folder(out, asked.name)
-        driven = rr.route(asked, progress=steps)
+        driven = rr.route(asked, feedback=feedback, progress=steps)
         files = driven.save(folder, figures=figures, progress=steps)
     show(driven, files, json=json)

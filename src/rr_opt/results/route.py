@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -10,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from rr_opt.documents import document as doc
+from rr_opt.documents.archive import strict_json
 from rr_opt.documents.texts import captions
 from rr_opt.files.record import plain
 from rr_opt.formatting import number, with_unit
@@ -21,11 +23,16 @@ from rr_opt.outcome import Status
 from rr_opt.results.gait import ignored_effects
 from rr_opt.results.motion import trajectory_csv
 from rr_opt.results.result import Check, Result, picked
+from rr_opt.routing import feedback as feedback_constants
+from rr_opt.routing.feedback import Feedback
 from rr_opt.routing.plan import RoutePlan
 from rr_opt.routing.replay import RouteReplay
+from rr_opt.version import __version__
 
 _RATE = 125.0
 """Set points a second."""
+_WIDTH = 100
+"""Of lines of C."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -34,10 +41,11 @@ class DrivenRoute(Result):
 
     plan    path, gaits and drive; `plan.drive.command` is the servo's angle over time
     replay  the drive by CVODES from rest; None if there is no drive
+    feedback  the controller that keeps the robot on it, if it was asked for
     """
 
     FILE = "route.json"
-    OTHERS = ("trajectory.csv", "setpoints.csv")
+    OTHERS = ("trajectory.csv", "setpoints.csv", "feedback.json", "feedback.c")
     DRAW = "rr_opt.results.figures.motion.draw_route"
     CAPTIONS = captions("route")
 
@@ -45,6 +53,7 @@ class DrivenRoute(Result):
     sha256: str
     plan: RoutePlan
     replay: RouteReplay | None
+    feedback: Feedback | None = None
 
     @property
     def robot(self) -> Robot:
@@ -179,7 +188,34 @@ class DrivenRoute(Result):
         points = doc.csv_text(
             ("t [s]", "phi [rad]", "phi [deg]", "count"), zip(*columns, strict=True)
         )
-        return {"trajectory.csv": trajectory_csv(self.replay.trajectory), "setpoints.csv": points}
+        tables = {"trajectory.csv": trajectory_csv(self.replay.trajectory), "setpoints.csv": points}
+        if self.feedback:
+            tables["feedback.json"] = strict_json(plain(self.feedback))
+            tables["feedback.c"] = c_text(self.feedback)
+        return tables
+
+
+def c_text(control: Feedback) -> str:
+    """The controller as C, to be included."""
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+
+    def array(values: Any) -> str:
+        if np.ndim(values):
+            return "{" + ", ".join(map(array, values)) + "}"
+        return f"{values:.12g}"
+
+    environment = Environment(
+        loader=PackageLoader("rr_opt", "data"), undefined=StrictUndefined, autoescape=False
+    )
+    text = environment.get_template("feedback.c").render(
+        c=control, array=array, version=__version__, constants=feedback_constants
+    )
+    return "\n".join(line for row in text.splitlines() for line in _folded(row)) + "\n"
+
+
+def _folded(line: str) -> list[str]:
+    """A line of an array in lines of a width that compilers and people can read."""
+    return textwrap.wrap(line, _WIDTH, subsequent_indent="    ") if len(line) > _WIDTH else [line]
 
 
 def _facts(result: DrivenRoute) -> Iterator[doc.Fact]:
@@ -190,6 +226,9 @@ def _facts(result: DrivenRoute) -> Iterator[doc.Fact]:
     yield doc.Fact("time", with_unit(result.seconds, "s"), f"{number(length)} m of path")
     leads = "platform 1 leads" if plan.way == "forward" else "platform 2 leads"
     yield doc.Fact("direction", plan.way, leads)
+    if result.feedback:
+        count = len(result.feedback.F)
+        yield doc.Fact("feedback", f"{count} periods", "corrected at the end of each")
     yield doc.Fact("end", f"{1e3 * replay.position:.1f} mm from its place")
     yield doc.Fact("", f"{math.degrees(replay.heading):.2f} deg from its heading")
     yield doc.Fact("way", f"within {1e3 * replay.path:.1f} mm of the path")

@@ -97,6 +97,18 @@ class Samples:
     slopes: Array
 
 
+def stepped(effects: tuple[str, ...], p: Array, v: float, u: Array, grid: Array) -> Array:
+    """(1 + 9, 5, n): v (m/s), psi (rad), x, y (m) and torque (N m) of a segment u from the speed v,
+    in the frame of its start; then their derivatives by v and u. grid (n + 1,): parts of the
+    duration, the first of them 0. p: values of the robot's parameters."""
+    start = np.zeros((5, 1 + _INPUTS))
+    start[0, :2] = v, 1.0
+    n = len(grid) - 1
+    parts = grid[None, :-1], np.diff(grid)[None], np.tile(u[:, None], n), np.tile(p[:, None], n)
+    out = _steps(effects, n)(start.ravel("F"), *parts)
+    return np.asarray(out).reshape(1 + _INPUTS, 5, n)
+
+
 def rollout(
     robot: Robot,
     command: Command,
@@ -110,24 +122,15 @@ def rollout(
     steps   of each segment
     """
     dynamics = dynamics_of(robot)
-    p = dynamics.values(robot)[:, None]
+    p = dynamics.values(robot)
     unknowns = slopes.shape[2]
     v, dv = 0.0, np.zeros(unknowns)
     x, y, psi = pose
     dx, dy, dpsi = (np.zeros(unknowns) for _ in range(3))
     found, at = [], 0.0
     for k, (u, n) in enumerate(zip(command.segments.T, steps, strict=True)):
-        start = np.zeros((5, 1 + _INPUTS))
-        start[0, :2] = v, 1.0
-        grid = np.arange(n) / n
-        out = _steps(dynamics.effects, n)(
-            start.ravel("F"),
-            grid[None],
-            np.full((1, n), 1 / n),
-            np.tile(u[:, None], n),
-            np.tile(p, n),
-        )
-        out = np.asarray(out).reshape(1 + _INPUTS, 5, n)
+        grid = np.arange(n + 1) / n
+        out = stepped(dynamics.effects, p, v, u, grid)
         local, S = out[0], out[1:]
         inputs = np.vstack([dv, slopes[:, k]])
         d = np.einsum("isn,iz->snz", S, inputs)
@@ -139,7 +142,7 @@ def rollout(
         path[3] = y + sin * local[2] + cos * local[3]
         dpath[2] = dx + cos * d[2] - sin * d[3] - np.outer(path[3] - y, dpsi)
         dpath[3] = dy + sin * d[2] + cos * d[3] + np.outer(path[2] - x, dpsi)
-        found.append((np.full(n, k), at + u[7] * (grid + 1 / n), path, dpath))
+        found.append((np.full(n, k), at + u[7] * grid[1:], path, dpath))
         at += u[7]
         v, psi, x, y = path[:4, -1]
         dv, dpsi, dx, dy = dpath[:4, -1]

@@ -1,0 +1,338 @@
+"""A controller that keeps the robot on its drive, once a period, from the pose that a camera gives.
+
+The drive is cut into periods. About it the state at the beginning of a period is linear,
+
+    z' = F z + B u,      y = H z + G u
+
+with z = (x, y, psi, v, inertia, bias, A, o): the pose and speed against the planned ones, in the
+frame of platform 1 as planned; two constants that are learnt, the excess of the masses over the
+friction and an error of the offset; and the corrections of amplitude and offset in force. u are
+those at the period's end, y the pose as it was seen, `delay` before that. A Kalman filter
+estimates z, a linear-quadratic regulator of finite horizon gives u, and its cost to go tells
+whether a period of a stage is to be repeated or left out. Corrections end where the servo's limits
+do.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from rr_opt.array import Array
+from rr_opt.model.command import Command, blended
+from rr_opt.model.problem import Problem
+from rr_opt.model.route import Route, Tolerance
+from rr_opt.motion.dynamics import dynamics_of
+from rr_opt.routing.plan import RoutePlan
+from rr_opt.routing.rollout import stepped
+from rr_opt.verify.grid import reach
+
+DELAY, NOISE = 0.05, (1e-3, 1e-3, 3e-3)
+"""s; m, m and rad, 1 sigma: of the capture system."""
+_INERTIA, _BIAS = 0.2, 0.02
+"""What is unknown of them at the start, relative and in rad, 1 sigma."""
+_UNMODELLED = np.array([1e-3, 1e-3, 3e-3, 6e-3, 0.01, 1e-3])
+"""1 sigma of what a period adds to the first six of z beside the linear map."""
+_ACCURATE, _ON_THE_WAY = 3.0, 0.3
+"""An error of cost 1 is a tolerance divided by this: a third of it at the end, three of the way."""
+_AMPLITUDE, _LEAST, _OFFSET, PERIOD = 0.07, 1e-3, 0.1, 0.2
+"""Corrections of cost 1: of the amplitude, relative and in rad, as none is below 0 or beyond the
+limit of the rate; of the offset, rad. And the cost of a period's time."""
+_STEPS, _LATE = 13, 3
+"""Of a period: until its pose is seen, and then."""
+LOOKS, MARGIN = 96, 0.998
+"""Places in a period where the limits are kept, and to what share: between them lies the peak."""
+WAYS_BACK = 8
+"""Parts of the way back to the offset in force that are tried for a correction within limits."""
+_RATE, _PLACE = 0.95, 0.5
+"""Of the limit on the rate and of the tolerance of the end, so much is planned with."""
+_SHORT = 0.25
+"""Of the tolerance, so much before the end is aimed at: what is missing can be driven, but what is
+too much not be braked."""
+_COAST = 3
+"""Cycles of more coasting, in which a robot of less friction comes to rest, and is seen to."""
+LONGEST = 1.5
+"""So many times as many periods as planned may be made, until the drive goes on to its end."""
+_STATES = 8
+_CHANGE = 1e-4
+"""Of the masses, for derivatives."""
+
+
+@dataclass(frozen=True)
+class Feedback:
+    """The controller of a drive of K periods.
+
+    delay     s, from when a pose was true to when a period begins with it
+    limits    (3,): |phi| (rad), |dphi/dt| (rad/s), |d2phi/dt2| (rad/s2), the last for the torque
+    command   the drive, a segment for each period
+    group     (K + 1,): periods of a number above 0 that they share are alike
+    place     (K + 1, 3): x (m), y (m), psi (rad) where periods begin; speed (K + 1,), m/s, there
+    seen      (K, 3): where the robot is seen, `delay` before the end of a period
+    F, B, H, G    (K, 4, 8), (K, 4, 2), (K, 3, 8), (K, 3, 2); L (K, 6, 3) of the filter
+    gain      (K, 2, 9): u = -gain (z, 1);  value (K + 1, 9, 9): its square form is the cost to go
+    """
+
+    delay: float
+    limits: Array
+    command: Command
+    group: Array
+    place: Array
+    speed: Array
+    seen: Array
+    F: Array
+    B: Array
+    H: Array
+    G: Array
+    L: Array
+    gain: Array
+    value: Array
+
+
+def controller(plan: RoutePlan, problem: Problem, delay: float = DELAY) -> Feedback:
+    """The controller of a plan's drive. problem: with the limits that corrections are to keep.
+
+    Raises ValueError if the plan has no drive.
+    """
+    if plan.drive is None:
+        raise ValueError("The plan has no drive.")
+    command, group = _periods(plan.drive.command, rest=plan.route.end == "rest")
+    dynamics = dynamics_of(problem.robot)
+    p = dynamics.values(problem.robot)
+    inert = np.isin(dynamics.parameters, ("m1", "m2", "I1", "I2"))
+    start = plan.route.start
+    v, pose = 0.0, np.array([start.x, start.y, start.heading + plan.turned])
+    place, speed, seen, maps = [pose], [v], [], []
+    for u in command.segments.T:
+        late = max(0.0, 1 - delay / u[7])
+        grid = np.append(np.linspace(0, late, _STEPS), np.linspace(late, 1, _LATE + 1)[1:])
+        out, heavy, light = (
+            stepped(dynamics.effects, np.where(inert, p * (1 + e), p), v, u, grid)
+            for e in (0.0, _CHANGE, -_CHANGE)
+        )
+        # More mass is less friction, of whatever law.
+        by_inertia = (heavy[0] - light[0]) / (2 * _CHANGE)
+        (H, G), ends = (_map(out[:, :, k], by_inertia[:, k]) for k in (_STEPS - 2, -1))
+        # A pose from before the period tells nothing of it.
+        maps.append((*ends, H[:3] * (late > 0), G[:3] * (late > 0)))
+        seen.append(moved(pose, out[0, :, _STEPS - 2]))
+        pose, v = moved(pose, out[0, :, -1]), float(out[0, 0, -1])
+        place.append(pose)
+        speed.append(v)
+    F, B, H, G = (np.array(part) for part in zip(*maps, strict=True))
+    last = plan.legs[-1]
+    aim = last.at(last.length - _SHORT * plan.route.tolerance.position)
+    miss = -apart(np.array([aim.x, aim.y, plan.heading]), pose)
+    final = v if plan.route.end == "rest" else 0.0
+    gain, value = _regulator(F, B, command.knots[0], np.append(miss, final), plan.route.tolerance)
+    bend = _bend(problem, command, max(map(abs, speed)))
+    box = np.array([reach(problem), problem.limits.rate, bend])
+    return Feedback(
+        delay, box, command, group, np.array(place), np.array(speed), np.array(seen),
+        F, B, H, G, _filter(F, H), gain, value,
+    )  # fmt: skip
+
+
+def with_reserve(route: Route) -> Route:
+    """The route to plan for, so that corrections have room: some of the rate, and of the place."""
+    limits, tolerance = route.problem.limits, route.tolerance
+    limits = replace(limits, rate=_RATE * limits.rate)
+    tolerance = replace(tolerance, position=_PLACE * tolerance.position)
+    return replace(route, problem=replace(route.problem, limits=limits), tolerance=tolerance)
+
+
+def _periods(command: Command, *, rest: bool) -> tuple[Command, Array]:
+    """The same drive cut into cycles, and which of their beginnings are alike. rest: coasting at
+    its end lasts some cycles more, all of them whole."""
+    durations, knots, group = list[float](), [command.knots[:, 0]], [0]
+    for number, u in enumerate(command.segments.T, 1):
+        level = np.allclose(u[:3], u[3:6], rtol=0, atol=1e-12)
+        cycles = u[7] * (u[2] + u[5]) / (4 * math.pi)
+        if rest and number == len(command.durations):
+            cycles = math.ceil(cycles) + _COAST
+        whole = max(0, math.ceil(cycles - 1.5)) if level else 0
+        period = 4 * math.pi / (u[2] + u[5])
+        durations += [period] * whole + [(cycles - whole) * period]
+        knots += [u[3:6]] * (whole + 1)
+        group[-1] = number if level else 0
+        group += [number] * whole + [number if level and cycles == whole + 1 else 0]
+    return Command(np.array(durations), np.array(knots).T), np.array(group)
+
+
+def moved(pose: Array, local: Array) -> Array:
+    """A pose after a motion (v, psi, x, y) in its frame."""
+    cos, sin = math.cos(pose[2]), math.sin(pose[2])
+    x, y = local[2], local[3]
+    return pose + np.array([cos * x - sin * y, sin * x + cos * y, local[1]])
+
+
+def apart(pose: Array, planned: Array) -> Array:
+    """A pose in the frame of another, its heading within half a turn."""
+    cos, sin = math.cos(planned[2]), math.sin(planned[2])
+    dx, dy, turn = pose - planned
+    return np.array([cos * dx + sin * dy, cos * dy - sin * dx, math.remainder(turn, 2 * math.pi)])
+
+
+def _map(out: Array, by_inertia: Array) -> tuple[Array, Array]:
+    """Rows x, y, psi, v of F and B from a motion (1 + 9, 5) in the frame of its start."""
+    local, S = out[0], out[1:]
+    d = np.zeros((10, 4))
+    # A turn at the start turns the whole way.
+    d[0, 2], d[1, 3] = 1, 1
+    d[2] = 0, 1, -local[3], local[2]
+    d[3:] = S[0, :4], by_inertia[:4], S[2, :4] + S[5, :4], S[1, :4], S[2, :4], S[4, :4], S[5, :4]
+    cos, sin = math.cos(local[1]), math.sin(local[1])
+    v, psi, x, y = d.T
+    rows = np.array([cos * x + sin * y, cos * y - sin * x, psi, v])
+    return rows[:, :_STATES], rows[:, _STATES:]
+
+
+def _regulator(
+    F: Array, B: Array, amplitude: Array, miss: Array, asked: Tolerance
+) -> tuple[Array, Array]:
+    """Gains and costs to go, by Riccati's recursion from the end. miss: rows x, y, psi, v of the
+    planned end against the one asked for."""
+    way, end = np.zeros((3, _STATES + 1)), np.zeros((4, _STATES + 1))
+    np.fill_diagonal(way, _ON_THE_WAY / np.array([asked.path, asked.path, asked.heading]))
+    np.fill_diagonal(end, 1.0)
+    end[:, -1] = miss
+    sizes = asked.position, asked.position, asked.heading, asked.speed
+    end *= _ACCURATE / np.array(sizes)[:, None]
+    P = end.T @ end
+    gains, values = [], [P]
+    for k in reversed(range(len(F))):
+        # Beside the rows of the map, what is constant and the corrections that come into force.
+        A, b = np.diag([1.0] * 6 + [0.0] * 2 + [1.0]), np.zeros((_STATES + 1, 2))
+        A[:4, :_STATES], b[:4], b[6, 0], b[7, 1] = F[k], B[k], 1, 1
+        # The joint ends as planned.
+        most = np.array([_LEAST + _AMPLITUDE * amplitude[k + 1], _OFFSET])
+        cost = np.diag((1e6 if k == len(F) - 1 else 1) / most**2)
+        gain = np.linalg.solve(cost + b.T @ P @ b, b.T @ P @ A)
+        P = way.T @ way + A.T @ P @ (A - b @ gain)
+        P = (P + P.T) / 2
+        gains.append(gain)
+        values.append(P)
+    return np.array(gains[::-1]), np.array(values[::-1])
+
+
+def _filter(F: Array, H: Array) -> Array:
+    """Gains of the Kalman filter."""
+    P = np.diag(np.square([*NOISE, 0.0, _INERTIA, _BIAS]))
+    noise, gains = np.diag(np.square(NOISE)), []
+    for k in range(len(F)):
+        h, A = H[k, :, :6], np.eye(6)
+        A[:4] = F[k, :, :6]
+        L = np.linalg.solve(noise + h @ P @ h.T, h @ P).T
+        P = A @ (P - L @ h @ P) @ A.T + np.diag(_UNMODELLED**2)
+        gains.append(L)
+    return np.array(gains)
+
+
+def _bend(problem: Problem, command: Command, v: float) -> float:
+    """The largest |d2phi/dt2|, rad/s2, at which the torque is within its limit at all angles and
+    rates and up to half more than a speed, m/s; no less than what the drive makes."""
+    most = float(np.abs(command.at(np.linspace(0, command.seconds, 20_000))[2]).max())
+    dynamics = dynamics_of(problem.robot)
+    p = dynamics.values(problem.robot)
+    room, rate, limit = reach(problem), problem.limits.rate, problem.limits.torque
+    if not math.isfinite(limit):
+        return 1e6
+    rate = rate if math.isfinite(rate) else float(np.abs(command.at(command.times)[1]).max())
+    parts = [-1.5 * v, 0, 1.5 * v], np.linspace(-room, room, 41), [-rate, 0, rate]
+    box = np.stack(np.meshgrid(*parts)).reshape(3, -1)
+
+    def torque(bend: float) -> Array:
+        inputs = [part[None] for part in (*box, np.full(box.shape[1], bend))]
+        return np.asarray(dynamics.motion(*inputs, np.tile(p[:, None], box.shape[1]))[3]).ravel()
+
+    still = torque(0.0)
+    room_left = (limit - np.abs(still)) / np.maximum(np.abs(torque(1.0) - still), 1e-12)
+    return max(most, float(room_left.min()))
+
+
+@dataclass
+class Follower:
+    """A drive under way with its controller: `first` and then, at the end of every period, `next`
+    give the segment (A0, o0, omega0, A1, o1, omega1, theta0, D) that the joint makes now.
+
+    period  the one under way, from 0;  z  the estimate at its beginning
+    """
+
+    control: Feedback
+    period: int = 0
+    made: int = 0
+    z: Array = field(default_factory=lambda: np.zeros(_STATES))
+    u: Array = field(default_factory=lambda: np.zeros(2))
+
+    def first(self) -> Array:
+        """The first segment."""
+        return self._segment()
+
+    def next(self, pose: Array) -> Array | None:
+        """The segment after a pose x (m), y (m), psi (rad) seen `delay` before the end of the one
+        under way; None at the end of the drive."""
+        c, k, z, u = self.control, self.period, self.z, self.u
+        surprise = apart(pose, c.seen[k]) - c.H[k] @ z - c.G[k] @ u
+        z[:6] += c.L[k] @ surprise
+        z[:4] = c.F[k] @ z + c.B[k] @ u
+        z[6:] = u
+        self.made += 1
+        self._go_to(k + 1)
+        return None if self.period == len(c.F) else self._segment()
+
+    def _go_to(self, begin: int) -> None:
+        """Go on with a period, or with the one before or after it if that is alike and better."""
+        c, here = self.control, self.z
+        best = math.inf
+        for k in (begin, begin - 1, begin + 1):
+            if k != begin and (
+                not c.group[begin]
+                or k >= len(c.F)
+                or c.group[k] != c.group[begin]
+                or self.made >= LONGEST * len(c.F)
+            ):
+                continue
+            z = here.copy()
+            pose = moved(c.place[begin], np.array([0, here[2], here[0], here[1]]))
+            z[:3] = apart(pose, c.place[k])
+            z[3] += c.speed[begin] - c.speed[k]
+            whole = np.append(z, 1.0)
+            cost = float(whole @ c.value[k] @ whole) + PERIOD * (len(c.F) - k)
+            if cost < best:
+                best, self.period, self.z = cost, k, z
+
+    def _segment(self) -> Array:
+        c, k = self.control, self.period
+        u = c.command.segments[:, k].copy()
+        u[:2] += self.u
+        wanted = u[3:5] - c.gain[k] @ np.append(self.z, 1.0)
+        u[3:5] = within(u, wanted, c.limits)
+        self.u = u[3:5] - c.command.segments[3:5, k]
+        return u
+
+
+def within(u: Array, wanted: Array, limits: Array) -> Array:
+    """The amplitude and offset nearest to those wanted at the end of a segment with which angle,
+    rate and acceleration are within limits all along it: the offset as far as there is such an
+    amplitude, then the amplitude."""
+    s = np.arange(LOOKS + 1) / LOOKS
+    most = MARGIN * np.repeat(limits, LOOKS + 1)
+
+    def path(A0: float, o0: float, A1: float, o1: float) -> Any:
+        part = (A0, o0, u[2], A1, o1, u[5], u[6], u[7])
+        return np.concatenate(blended(s, part, np.sin, np.cos))
+
+    # The path is linear in the four.
+    given, by_A, by_o = path(u[0], u[1], 0, 0), path(0, 0, 1, 0), path(0, 0, 0, 1)
+    o1, A1 = u[1], 0.0
+    for part in range(WAYS_BACK, -1, -1):
+        o1 = u[1] + (wanted[1] - u[1]) * part / WAYS_BACK
+        rest, slope = given + o1 * by_o, np.where(np.abs(by_A) < 1e-9, 1e-9, by_A)
+        ends = (most - rest) / slope, (-most - rest) / slope
+        low, high = max(0.0, float(np.minimum(*ends).max())), float(np.maximum(*ends).min())
+        A1 = max(0.0, min(max(wanted[0], low), high))
+        if low <= high:
+            break
+    return np.array([A1, o1])
