@@ -59,8 +59,8 @@ format: $(DEV) ## format the code and sort its imports
 	$(BIN)/ruff check --select I --fix .
 	$(BIN)/ruff format .
 
-readme: $(DEV) ## run every command of README.md
-	$(BIN)/python -m tests.readme_commands README.md
+readme: $(DEV) ## run every command of README.md and docs/how-to-diagnose.md
+	$(BIN)/python -m tests.readme_commands README.md docs/how-to-diagnose.md
 
 results: $(DEV) ## write the results that are kept in results/
 	$(BIN)/rr-opt maximize-speed --out results/prototype

@@ -60,7 +60,7 @@ def diagnosed(experiment: Path, name: str) -> None:
     with tempfile.TemporaryDirectory() as folder:
         found.save(folder)
         (OUT / name).mkdir(parents=True, exist_ok=True)
-        for file in ("diagnosis.json", "report.html"):
+        for file in ("diagnosis.json", "report.html", "errors.svg"):
             shutil.copyfile(Path(folder) / file, OUT / name / file)
     print(f"{name}: {found.headline}, {time.process_time() - began:.0f} s CPU", flush=True)
 

@@ -1,4 +1,4 @@
-"""Run every command that a Markdown file shows, in order, and hold what it shows against them.
+"""Run every command that Markdown files show, in order, and hold what it shows against them.
 
 A fenced block means, by its language:
 
@@ -131,9 +131,14 @@ def _run(step: Commands, folder: Path) -> None:
 
 
 def main() -> None:
-    text = Path(sys.argv[1]).read_text(encoding="utf-8")
+    for page in sys.argv[1:]:
+        _follow(steps(Path(page).read_text(encoding="utf-8")))
+
+
+def _follow(given: list[File | Commands | Script]) -> None:
+    """Do the steps of one page, in a folder of its own."""
     with tempfile.TemporaryDirectory() as folder:
-        for step in steps(text):
+        for step in given:
             if isinstance(step, File):
                 (Path(folder) / step.name).write_text(step.text, encoding="utf-8")
             elif isinstance(step, Script):

@@ -5,7 +5,8 @@ Nothing is put right: the experimenter has to say. A fault of the robot is no re
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -81,8 +82,7 @@ def experiment_of(folder: str | Path) -> tuple[Experiment | None, list[Issue]]:
         runs.append(Run(recording, planned.gait, planned.use, planned.start))
     if has_errors(issues):
         return None, issues
-    zeros = {"psi_zero": _AXES, "phi_zero": _AXES} if learnt else {}
-    uncertainty = MappingProxyType({**zeros, **plan.uncertainty})
+    uncertainty = plan.uncertainty if learnt is None else _with_learnt(plan.uncertainty, learnt)
     made = Experiment(plan.robot, plan.noise, uncertainty, tuple(runs), plan.name, plan.sha256)
     return made, issues
 
@@ -90,6 +90,21 @@ def experiment_of(folder: str | Path) -> tuple[Experiment | None, list[Issue]]:
 _AXES = Uncertainty(0.1)
 """Of the zeros of psi and phi, rad, where they were learnt from the recordings: as free as a robot
 whose axles toe in leaves them, since the recordings are to say everything once only."""
+
+
+def _with_learnt(
+    stated: Mapping[str, Uncertainty], learnt: Calibration
+) -> Mapping[str, Uncertainty]:
+    """The uncertainty of an experiment whose markers' places were learnt from its recordings.
+
+    A servo that swings little leaves P unknown along the robot. To the recordings that is another
+    distance from P to both axles.
+    """
+    known = {"psi_zero": _AXES, "phi_zero": _AXES, **stated}
+    for name in ("c1", "c2"):
+        one = known.get(name, Uncertainty(0.0))
+        known[name] = replace(one, sigma=math.hypot(one.sigma, learnt.joint))
+    return MappingProxyType(known)
 
 
 def inspect_experiment(path: Path, progress: Progress) -> list[Inspection]:
@@ -105,8 +120,8 @@ def inspect_experiment(path: Path, progress: Progress) -> list[Inspection]:
 
 def _inspections(
     plan: ExperimentPlan, progress: Progress = lambda _: None
-) -> tuple[bool, list[tuple[PlannedRun, Inspection]], list[Issue]]:
-    """Whether markers' places were learnt, the recordings without an error, and all issues."""
+) -> tuple[Calibration | None, list[tuple[PlannedRun, Inspection]], list[Issue]]:
+    """What was learnt of markers' places, the recordings without an error, and all issues."""
     issues: list[Issue] = []
     contents: list[tuple[int, PlannedRun, Circumstances, Any]] = []
     for number, planned in enumerate(plan.runs):
@@ -140,7 +155,7 @@ def _inspections(
             found = in_file(planned.file, read, log, known)
             inspections.append((planned, found))
             issues += _other_command(plan, number, planned, found.recording.t)
-    return learnt is not None, inspections, issues
+    return learnt, inspections, issues
 
 
 @contextmanager

@@ -75,16 +75,20 @@ def _provenance(experiment: Experiment, found: Diagnosis) -> dict[str, str]:
     source = f"{used} recording{'s' if used != 1 else ''} of {experiment.name or 'an experiment'}"
     origins = {}
     for name, one in found.parameters.items():
+        key = _key(name)
+        if key is None:
+            continue
         interval = f"{one.low:.4g} to {one.high:.4g} {one.unit}".removesuffix(" dimensionless")
-        origins[_key(name)] = f"fitted: {interval} (95 %), {source}"
+        origins[key] = f"fitted: {interval} (95 %), {source}"
     return origins
 
 
-def _key(name: str) -> str:
-    """Where a robot file keeps a quantity: `kappa1` under `platform1.kappa`."""
+def _key(name: str) -> str | None:
+    """Where a robot file keeps a quantity: `kappa1` under `platform1.kappa`; None of the capture's
+    zeros, which are not the robot's."""
     if name in PARAMETERS:
         return ".".join(PARAMETERS[name].key)
-    return f"physics.{name}" if "." in name else name
+    return f"physics.{name}" if "." in name else None
 
 
 def _rounded(value: float) -> float:

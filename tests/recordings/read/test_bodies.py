@@ -6,12 +6,15 @@ motion has P and the angles by definition; the bodies sit askew on their platfor
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
+from typer.testing import CliRunner
 
+from rr_opt.cli.main import app
 from rr_opt.files.issue import InvalidFileError
 from rr_opt.model.experiment import Layout, Noise
 from rr_opt.recordings.experiment import experiment_of, read_experiment
@@ -26,18 +29,23 @@ TILT = Rotation.from_euler("xyz", [0.05, -0.03, 0.0])
 N = 300
 
 
-def poses(n=N, noise=0.0):
-    """By body: places (n, 3), m, and rotations, with z up."""
+def poses(moved=None, noise=(0.0, 0.0)):
+    """By body: places (n, 3), m, and rotations, with z up; moved: x, y, psi, phi, (n,).
+
+    noise: of each coordinate, m, and of each angle, rad
+    """
     rng = np.random.default_rng(0)
-    _, x, y, psi, phi = motion(n)
-    found = {}
+    x, y, psi, phi = motion(N)[1:] if moved is None else moved
+    n, found = len(x), {}
     for name, (platform, forward, left, turn) in SPOTS.items():
         heading = psi + (phi if platform == 2 else 0)
         at = x + 1j * y + (forward + 1j * left) * np.exp(1j * heading)
         places = np.stack([at.real, at.imag, np.full(n, 0.07)], 1)
         found[name] = (
-            places + noise * rng.normal(size=(n, 3)),
-            Rotation.from_euler("z", (heading + turn)[:, None]) * TILT,
+            places + noise[0] * rng.normal(size=(n, 3)),
+            Rotation.from_rotvec(noise[1] * rng.normal(size=(n, 3)))
+            * Rotation.from_euler("z", (heading + turn)[:, None])
+            * TILT,
         )
     return found
 
@@ -46,7 +54,8 @@ def rows(cells, separator=","):
     return "".join(separator.join(row) + "\n" for row in cells)
 
 
-def vicon(title, kind):
+def vicon(title, kind, bodies=None):
+    bodies = bodies or poses()
     turns = "RX,RY,RZ,RW" if kind == "quaternion" else "RX,RY,RZ"
     unit = {"quaternion": ",,,", "deg": "deg,deg,deg", "rad": "rad,rad,rad"}[kind]
     blank = "," * (turns.count(",") + 4)
@@ -54,11 +63,11 @@ def vicon(title, kind):
         f"{title}\n100\n,,{blank.join(f'{one}:{one}' for one in SPOTS)}{blank[1:]}\n"
         f"Frame,Sub Frame{f',{turns},TX,TY,TZ' * 2}\n,{f',{unit},mm,mm,mm' * 2}\n"
     )
-    body = [[str(k + 1), "0"] for k in range(N)]
-    for places, turned in poses().values():
+    body = [[str(k + 1), "0"] for k in range(len(bodies["rear"][0]))]
+    for places, turned in bodies.values():
         size = np.degrees(1) if kind == "deg" else 1.0
         r = turned.as_quat() if kind == "quaternion" else size * turned.as_rotvec()
-        for k in range(N):
+        for k in range(len(places)):
             body[k] += [f"{v:.8f}" for v in (*r[k], *(1000 * places[k]))]
     return head + rows(body)
 
@@ -250,11 +259,16 @@ ROBOT = """robot:
 GAIT = "gait: {amplitude: 0.5, period: 1 s, offset: 0.1}"
 
 
-@pytest.mark.parametrize("name", ["Nexus", "Motive", "Qualisys"])
+@pytest.mark.parametrize("name", ["Nexus", "Motive", "Qualisys", "mcap"])
 def test_an_experiment_learns_from_its_recordings_where_the_bodies_are(write, tmp_path, name):
-    for file in ("one", "two"):
-        write(TEXTS[name](), f"{file}.txt")
-    recordings = f"- {{file: one.txt, {GAIT}}}\n- {{file: two.txt, {GAIT}, use: holdout}}\n"
+    files = []
+    for stem in ("one", "two"):
+        folder = tmp_path / stem
+        folder.mkdir()
+        file = bag(folder, name) if name == "mcap" else write(TEXTS[name](), f"{stem}.txt")
+        files.append(file.relative_to(tmp_path))
+    one, two = files
+    recordings = f"- {{file: {one}, {GAIT}}}\n- {{file: {two}, {GAIT}, use: holdout}}\n"
     text = f"{ROBOT}noise: {{position: 1 mm, angle: 3 mrad}}\nrecordings:\n{recordings}"
     write(text, "experiment.yaml")
     experiment, issues = experiment_of(tmp_path)
@@ -264,11 +278,42 @@ def test_an_experiment_learns_from_its_recordings_where_the_bodies_are(write, tm
             np.testing.assert_allclose(run.recording.values[channel], true, atol=2e-3)
     learnt = [issue.message for issue in issues if "was learnt" in issue.message]
     assert len(learnt) == 1
-    assert "rear x" in learnt[0].partition("on platform 1")[0]
+    assert "rear" in learnt[0].partition("on platform 1")[0]
     assert experiment.uncertainty["psi_zero"].sigma > 0.05
     stated = text.replace("noise:", "uncertainty: {psi_zero: 2 mrad}\nnoise:")
     write(stated, "experiment.yaml")
     assert read_experiment(tmp_path).uncertainty["psi_zero"].sigma == pytest.approx(2e-3)
+
+
+def test_segments_of_two_bodies_are_linted_inspected_and_diagnosed(tmp_path):
+    """The laboratory drives, and what an experiment's file says of P is nothing."""
+    runs = ("0.3, 1 s, 0, rest", "0.6, 1.2 s, 10 deg", "0.4, 0.9 s, 5 deg, holdout")
+    gaits = [word for run in runs for word in ("--gait", run)]
+    place, noise = tmp_path / "lab", (5e-4, 2e-3)
+    least = ("--noise", "0.1 um, 0.1 urad", "--seconds", "6", "--engine", "planar")
+    assert called("record", *gaits, *least, "--out", str(place)).exit_code == 0
+    for file in place.glob("run*.csv"):
+        moved = np.loadtxt(file, delimiter=",", skiprows=1).T[1:5]
+        file.write_text(vicon("Segments", "rad", poses(moved, noise)))
+    text = (place / "experiment.yaml").read_text()
+    stated = re.sub(r"noise: .*", "noise: {position: 0.5 mm, angle: 2 mrad}", text)
+    exact = re.sub(r'"c1": [^,]*', '"c1": 0', stated)
+    (place / "experiment.yaml").write_text(exact)
+    for verb in ("lint", "inspect", "diagnose"):
+        out = () if verb == "lint" else ("--out", str(tmp_path / verb))
+        found = called(verb, str(place), *out)
+        assert found.exit_code == 0, found.output
+        assert "P is known to" in " ".join(found.output.split()), found.output
+    assert "consistent: The model explains the recordings" in found.output
+    corrected = called("lint", str(tmp_path / "diagnose" / "robot-corrected.yaml"))
+    assert corrected.exit_code == 0, corrected.output  # the zeros are the capture's
+    uncertainty = read_experiment(place).uncertainty
+    assert 1e-6 < uncertainty["c1"].sigma < 1e-3  # as well as P is known
+    assert 2e-3 < uncertainty["c2"].sigma < 2.1e-3
+
+
+def called(*words):
+    return CliRunner().invoke(app, words)
 
 
 def test_one_body_alone_and_a_bag_without_poses_are_refused(write, tmp_path):

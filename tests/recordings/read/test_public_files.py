@@ -5,6 +5,7 @@ Each is the head of a public file and its first rows, cut to a few columns where
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from rr_opt.files.issue import InvalidFileError
 from rr_opt.recordings.readers import MarkerData, read_file
@@ -72,6 +73,17 @@ OBJECT = (
     ",-0.000965,0.005072,-0.005272,0.999973,570.935425,-1259.963135,49.471977",
 )
 
+SEGMENTS = """\
+Segments
+200
+,,Subject01:Head,,,,,,Subject01:L_Collar,,,,,,
+Frame,Sub Frame,RX,RY,RZ,TX,TY,TZ,RX,RY,RZ,TX,TY,TZ
+,,deg,deg,deg,mm,mm,mm,deg,deg,deg,mm,mm,mm
+1,0,0.191,-1.8347,2.44866,-16.9,40.3,443.2,-5.679,73.5419,-57.3109,-12.4,29.5,324.6
+2,0,0.191,-1.8347,2.44866,-16.9,40.3,443.2,,,,,,
+"""
+"""The head of a Nexus export that a public script repeats, two of its 22 segments in one pose."""
+
 TRC = """\
 PathFileType\t4\t(X/Y/Z)\tarm26_elbow_flex_translated.trc
 DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate\tOrigDataStartFrame\tOrigNumFrames
@@ -125,6 +137,21 @@ def test_vicon_tracker_objects(write):
     np.testing.assert_allclose(at[label][0], [0.570915405, -1.260010986, 0.049566303])
     ahead = (at[f"{label} x"] - at[label])[0]
     assert np.arctan2(ahead[1], ahead[0]) == pytest.approx(2 * -0.005212, abs=1e-4)
+
+
+def test_vicon_nexus_segments(write):
+    data = read_file(write(SEGMENTS))
+    assert data.rate == 200
+    at = {label: data.positions[:, k] for k, label in enumerate(data.labels)}
+    assert {"Head", "Head x", "Head y", "L_Collar"} < set(at)
+    np.testing.assert_allclose(at["Head"][0], [-0.0169, 0.0403, 0.4432])
+    ahead = (at["Head x"] - at["Head"])[0]
+    assert np.degrees(np.arctan2(ahead[1], ahead[0])) == pytest.approx(2.449, abs=0.01)
+    # The rotation is a vector, 93 degrees long, and not angles about three axes.
+    turned = Rotation.from_rotvec([-5.679, 73.5419, -57.3109], degrees=True).as_matrix()
+    ahead = (at["L_Collar y"] - at["L_Collar"])[0]
+    assert np.arctan2(ahead[1], ahead[0]) == pytest.approx(np.arctan2(turned[1, 1], turned[0, 1]))
+    assert np.isnan(at["L_Collar"][1]).all()
 
 
 def test_trc(write):
