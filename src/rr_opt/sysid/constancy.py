@@ -9,9 +9,9 @@ among them, its score where the others have their optimum is
 
 No machine is its model, though. F is the variance by which machines differ from the model of an
 effect in its values; and in the motion they differ by that share, e, of what the effect explains
-of the run, m (RMS in sigma), and by f, that of what is left which machines of the kind differ by
-from any model, for about a correlation time each: phi = 1 + ((e m)^2 + f^2) n/K with the samples n
-and correlation times K of the run.
+of the run, m (RMS in sigma), or, without an effect, by f, the part of what is left by which
+machines of the kind differ from any model, for about a correlation time:
+phi = 1 + ((e m)^2 + f^2) n/K with the samples n and correlation times K of the run.
 
 T, the sum of s' Var^-1 s over all runs, is k on average, the number of values that each run shows,
 added up. If the values are not constant it is larger by an unknown factor, which is given a

@@ -81,7 +81,9 @@ class Result:
     def constancy(self) -> Constancy:
         """How well recordings agree on the answer's values."""
         explained = {run: max(one.rms**2 - 1, 0.0) for run, one in enumerate(self.refitted.misfits)}
-        return constancy(self.everywhere.fit, self.best.excess, explained, self._form_errors)
+        # Effects have form errors of their own.
+        left = 0.0 if self.best.choices else self.best.excess
+        return constancy(self.everywhere.fit, left, explained, self._form_errors)
 
     @property
     def shown(self) -> tuple[Choice, ...]:
