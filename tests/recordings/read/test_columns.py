@@ -84,6 +84,8 @@ def test_what_is_missing_is_guessed(write):
     told = str(caught.value)
     assert "write `columns: {t: time, x: x_m, y: y_m, psi: yaw, phi: phi_rad}`" in told
     assert '--columns "t=time,x=x_m,y=y_m,psi=yaw,phi=phi_rad"' in told
+    with pytest.raises(InvalidFileError, match="psi=yaw,phi=theta"):
+        read_file(write("time,x_m,y_m,theta,yaw\n0,1,2,3,4\n1,1,2,3,4\n"))
 
 
 def test_an_experiment_file_says_them(write, tmp_path):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -191,26 +191,24 @@ def columns_from(given: Mapping[str, str]) -> dict[str, Column]:
 _FOREIGN = {
     "t": ("time", "timestamp", "seconds", "sec"),
     "psi": ("yaw", "heading", "theta", "orientation"),
-    "phi": ("joint", "steering", "servo", "angle", "alpha"),
+    "phi": ("joint", "steering", "servo", "angle", "alpha", "theta"),
     "torque": ("load", "moment", "tau"),
 }
-"""What others call the channels."""
+"""What others call the channels, the likeliest first."""
 
 
-def guesses(names: Iterable[str], missing: Sequence[str]) -> dict[str, str]:
+def guesses(names: Collection[str], missing: Sequence[str]) -> dict[str, str]:
     """By channel, the columns that may be the missing ones, by the beginning of their names."""
     found: dict[str, str] = {}
     for channel in missing:
-        words = (channel, *_FOREIGN.get(channel, ()))
+        free = [name for name in names if name not in found.values()]
         meant = [
             name
-            for name in names
-            if name not in found.values()
-            and (
-                any(re.split(r"[^a-z]", name)[0] == word for word in words)
-                or nearest(name, [channel]) == channel
-            )
+            for word in (channel, *_FOREIGN.get(channel, ()))
+            for name in free
+            if re.split(r"[^a-z]", name)[0] == word
         ]
+        meant += [name for name in free if nearest(name, [channel]) == channel]
         if meant:
             found[channel] = meant[0]
     return found
