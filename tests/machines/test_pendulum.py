@@ -76,6 +76,28 @@ def test_the_roller_racer_may_be_named(tmp_path):
     assert rr.lint(file) == []
 
 
+@pytest.mark.parametrize("wrong", ["", "nan", "1e308"])
+def test_a_sample_that_is_none_spoils_no_other(tmp_path, wrong):
+    folder = write(tmp_path, dry=0.0, runs=2, seconds=2.0)
+    rows = (folder / "run0.csv").read_text().splitlines()
+    for k, column in ((101, 1), (150, 2)):
+        cells = rows[k].split(",")
+        cells[column] = wrong
+        rows[k] = ",".join(cells)
+    (folder / "run0.csv").write_text("\n".join(rows) + "\n")
+    run = rr.load_experiment(folder).runs[0]
+    assert np.isnan(run.outputs["q"]).sum() == 1
+    assert np.isfinite(run.inputs["u"]).all()
+
+
+def test_a_channel_without_numbers_is_refused(tmp_path):
+    folder = write(tmp_path, dry=0.0, runs=2, seconds=2.0)
+    rows = (folder / "run0.csv").read_text().splitlines()
+    empty = [rows[0], *(f"{row.split(',')[0]},,{row.split(',')[2]}" for row in rows[1:])]
+    (folder / "run0.csv").write_text("\n".join(empty) + "\n")
+    assert "Read 0 numbers for q" in str(rr.lint(folder)[0])
+
+
 def test_times_that_repeat_are_told(tmp_path):
     folder = write(tmp_path, dry=0.0, runs=2, seconds=2.0)
     table = np.loadtxt(folder / "run0.csv", delimiter=",", skiprows=1)

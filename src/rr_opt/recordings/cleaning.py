@@ -36,7 +36,7 @@ def turns_taken(angle: Array) -> int:
 
 
 _ANGLES = ("psi", "phi")
-_LARGEST = 1e12
+LARGEST = 1e12
 """What is beyond is no measurement in any unit, and would overflow where it is squared."""
 
 
@@ -96,7 +96,7 @@ def clean(recording: Recording) -> Cleaned:
 def _of_numbers(recording: Recording) -> Recording:
     """The same with what is no measurement in any unit flagged."""
     flags = {
-        channel: np.where(np.abs(recording.data(channel)) > _LARGEST, flag | Flag.OUTLIER, flag)
+        channel: np.where(np.abs(recording.data(channel)) > LARGEST, flag | Flag.OUTLIER, flag)
         for channel, flag in recording.flags.items()
     }
     return replace(recording, flags=MappingProxyType(flags))

@@ -17,6 +17,7 @@ from rr_opt.messages import shown
 from rr_opt.model.experiment import Column
 from rr_opt.model.machine import Channel, MachineExperiment, MachineRun
 from rr_opt.outcome import InputError
+from rr_opt.recordings.cleaning import LARGEST
 from rr_opt.recordings.readers.text import decode, find_header, read_table
 
 _WILD = 8.0
@@ -30,6 +31,9 @@ _CROSSED = 5.0
 
 _STILL, _JUMP = 5, 3.0
 """Samples that repeat, and the step after them over usual large ones, where a sensor was stuck."""
+
+_FEWEST = 50
+"""Numbers of a channel that say anything."""
 
 _UPDATES = 50
 """Of the inputs, from which their clock is seen."""
@@ -59,11 +63,18 @@ def _run(plan: MachinePlan, one: PlannedRecording) -> MachineRun:
         doubts.append(f"Rows left out, as their times repeat or fall back: {(~keep).sum()}.")
     data = {c.name: _channel(one, table, c)[keep] for c in machine.channels}
     t = t[keep] - t[keep][0]
-    if t.size < 50:
-        raise InputError(f"Read {t.size} rows. Expected 50 or more. Record for longer.")
+    if t.size < _FEWEST:
+        raise InputError(f"Read {t.size} rows. Expected {_FEWEST} or more. Record for longer.")
     sigma: dict[str, float] = {}
     for c in machine.channels:
-        y = np.unwrap(data[c.name]) if c.angle else data[c.name]
+        known = np.abs(data[c.name]) < LARGEST
+        if known.sum() < _FEWEST:
+            raise InputError(
+                f"Read {known.sum()} numbers for {c.name} ({c.words}). Expected {_FEWEST} or more. "
+                "Correct `columns`, or leave the recording out."
+            )
+        y = np.full(t.size, np.nan)
+        y[known] = np.unwrap(data[c.name][known]) if c.angle else data[c.name][known]
         y, wild = _without_wild(y)
         if wild:
             doubts.append(f"{c.name}: wild samples left out: {wild}.")
