@@ -117,7 +117,7 @@ def _edges(ax: Axes, data: SpeedMap, shares: dict[str, Array], limits: Limits) -
     texts = {
         "rate": f"rate {number(limits.rate * 30 / math.pi, 3)} rpm",
         "torque": f"torque {number(limits.torque, 3)} N m",
-        "singularity": f"S1 = {number(1e3 * limits.singularity, 3)} mm: singular posture near",
+        "singularity": f"S1 = {number(1e3 * limits.singularity, 3)} mm: nearly singular",
         "angle": f"|φ| = {number(limits.angle, 3)} rad",
     }
     halo = [withStroke(linewidth=3, foreground=style.PAPER, alpha=0.85)]
@@ -133,13 +133,19 @@ def _edges(ax: Axes, data: SpeedMap, shares: dict[str, Array], limits: Limits) -
         )  # fmt: skip
         pieces = edge.get_paths()[0].to_polygons(closed_only=False)
         line = max(map(np.asarray, pieces), key=len)
-        # Near the right end of a long line, beside the middle of a short one.
-        right = np.ptp(line[:, 0]) > 0.5 * np.ptp(data.period)
         line = line[line[:, 0].argsort()]
-        x = float(np.quantile(line[[0, -1], 0], 0.85 if right else 0.5))
+        # Near the right end of a long line, beside the middle of a short one; at the left of a flat
+        # one, which a rising one may meet at its right.
+        if np.ptp(line[:, 1]) < 0.02 * np.ptp(data.amplitude):
+            at, side = 0.03, "left"
+        elif np.ptp(line[:, 0]) > 0.5 * np.ptp(data.period):
+            at, side = 0.85, "right"
+        else:
+            at, side = 0.5, "left"
+        x = float(np.quantile(line[[0, -1], 0], at))
         y = float(np.interp(x, *line.T))
         ax.text(x, y, f" {texts[name]} ", color=style.LIMIT, fontsize=9, zorder=5, va="bottom",
-                ha="right" if right else "left", path_effects=halo)  # fmt: skip
+                ha=side, path_effects=halo)  # fmt: skip
 
 
 _MANY = 2000
