@@ -90,7 +90,9 @@ class FourierShape:
             *(rate / z["period"] for _, rate, _ in seen),
         )
 
-    def path_rows(self, z: Symbols, local: Symbols, theta: Any, width: Any) -> tuple[Any, ...]:
+    def path_rows(
+        self, z: Symbols, local: Symbols, theta: Any, width: Any, at: Any
+    ) -> tuple[Any, ...]:
         """None."""
         return ()
 

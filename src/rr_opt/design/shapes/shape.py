@@ -98,8 +98,10 @@ class Shape(Protocol):
         """The rows of `limits`."""
         ...
 
-    def path_rows(self, z: Symbols, local: Symbols, theta: Any, width: Any) -> tuple[Any, ...]:
-        """The rows of `path` of the interval from theta to theta + width."""
+    def path_rows(
+        self, z: Symbols, local: Symbols, theta: Any, width: Any, at: Any
+    ) -> tuple[Any, ...]:
+        """The rows of `path` of the interval from theta on, and `at` a fraction of its width."""
         ...
 
     def given(self, problem: Problem, added: Array) -> Array:
