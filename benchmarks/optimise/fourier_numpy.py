@@ -63,12 +63,27 @@ def steady_cycle(one: Body, two: Body, gait: Sequence[Array], nodes: int, torque
     Kane's equations with w = -i (s v + c2 q), w2 = w + q, u2 = i (S2 v + c1 c2 s q),
     i = 1/S1, q = dphi: the gyroscopic terms of both collapse to m a products over S1.
     """
-    (m1, J1, ma1, c1, b1, k1), (m2, J2, ma2, c2, b2, k2) = one, two
     alpha, T, phi0 = gait
     angle = 2 * np.pi * np.arange(nodes) / nodes
     omega = 2 * np.pi / T
     phi = alpha * np.sin(angle) + phi0
     q, dq = alpha * omega * np.cos(angle), -alpha * omega**2 * np.sin(angle)
+    a, f = coefficients(one, two, phi, q, dq)
+    wave = 1j * omega * np.arange(nodes // 2 + 1)
+    ak = rfft(a)
+    mean = ak[:, :1].real / nodes
+    ak[:, 0] = 0.0
+    E = np.exp(irfft(np.divide(ak, wave, out=ak, where=wave != 0), nodes))
+    v = E * irfft(rfft(f / E) / (wave - mean), nodes)
+    vdot = a * v + f
+    w = yaw_rate(one, two, phi, q, v)
+    tau = servo_torque(one, two, phi, q, dq, v, vdot) if torque else None
+    return Cycle(v, vdot, w, tau)
+
+
+def coefficients(one: Body, two: Body, phi: Array, q: Array, dq: Array) -> tuple[Array, Array]:
+    """a and f of vdot = a v + f, where phi, its rate q and that one's rate dq are these."""
+    (m1, J1, ma1, c1, b1, k1), (m2, J2, ma2, c2, b2, k2) = one, two
     s, c = np.sin(phi), np.cos(phi)
     S1, S2 = c1 * c + c2, c1 + c2 * c
     ss, i = s * s, 1 / S1
@@ -86,26 +101,33 @@ def steady_cycle(one: Body, two: Body, gait: Sequence[Array], nodes: int, torque
         + q * q * (c1 * c2 * (j * ss * i + m2 * S1) + ma1 * c2**2 - ma2 * c1**2 * c)
         + qs * (drag1 * c2 - drag2 * c1 * c + 2 * k2 * c1 * c2 * S2)
     )
-    wave = 1j * omega * np.arange(nodes // 2 + 1)
-    ak = rfft(a)
-    mean = ak[:, :1].real / nodes
-    ak[:, 0] = 0.0
-    E = np.exp(irfft(np.divide(ak, wave, out=ak, where=wave != 0), nodes))
-    v = E * irfft(rfft(f / E) / (wave - mean), nodes)
-    vdot = a * v + f
-    w = -i * (s * v + c2 * q)
-    if not torque:
-        return Cycle(v, vdot, w, None)
+    return a, f
+
+
+def yaw_rate(one: Body, two: Body, phi: Array, q: Array, v: Array) -> Array:
+    """psi-dot."""
+    return -(np.sin(phi) * v + two.c * q) / (one.c * np.cos(phi) + two.c)
+
+
+def servo_torque(
+    one: Body, two: Body, phi: Array, q: Array, dq: Array, v: Array, vdot: Array
+) -> Array:
+    """On platform 2."""
+    (_, J1, ma1, c1, b1, k1), (m2, J2, ma2, c2, b2, k2) = one, two
+    s, c = np.sin(phi), np.cos(phi)
+    S1, S2 = c1 * c + c2, c1 + c2 * c
+    i, lever = 1 / S1, c1**2 - c2**2
+    drag1, drag2 = 2 * k1 * b1**2, 2 * k2 * b2**2
+    w = yaw_rate(one, two, phi, q, v)
     w2, u2 = w + q, i * (S2 * v + c1 * c2 * s * q)
     dw = -i * (s * vdot + c2 * dq + q * i * (S2 * v + c1 * c2 * s * q))
     du2 = i * (S2 * vdot + c1 * c2 * s * dq + q * i * (lever * s * v + c1 * c2 * S2 * q))
-    tau = i * (
+    return i * (
         c1 * c * (J2 * (dw + dq) + drag2 * w2)
         - c2 * (J1 * dw + drag1 * w)
         + c1 * c2 * s * (m2 * du2 + 2 * k2 * u2)
         + v * (ma1 * c2 * w + ma2 * c1 * w2)
     )
-    return Cycle(v, vdot, w, tau)
 
 
 def mean_speed(cycle: Cycle, T: Array, c1: float) -> tuple[Array, Array, Array]:

@@ -24,7 +24,7 @@ def program(request):
     shape = FreeShape() if request.param == "free" else FourierShape(3)
     checks = shape.given(Problem(robot), np.array([0.03]))
     looks = 0 if request.param in {"inertia", "loads"} else 2
-    places = np.linspace(0.2, 0.7, N * looks)
+    places = np.linspace(0.2, 0.7, N * (looks + 1))
     p = [*dynamics.values(robot), *LOADS, *ballast, *checks, -1.0, *phases, *places]
     program = shooting(dynamics.effects, by, shape, N, looks, substeps=2)
     layout, rng = program.layout, np.random.default_rng(1)

@@ -94,7 +94,7 @@ class IntervalTerms:
         parameters = derive(effects).parameters
         z = ca.SX.sym("z", len(COMMON + shape.decisions))
         local_names = DYNAMIC + shape.states + shape.controls
-        local, places = ca.SX.sym("local", len(local_names)), ca.SX.sym("looks", looks)
+        local, places = ca.SX.sym("local", len(local_names)), ca.SX.sym("looks", looks + 1)
         fixed = ca.SX.sym("fixed", len(parameters) + 5)
         theta, width = ca.SX.sym("theta"), ca.SX.sym("width")
         decided = named(COMMON + shape.decisions, z)
@@ -108,8 +108,8 @@ class IntervalTerms:
                 end[:2],
                 *shape.angle(decided, interval.here, theta + width, width)[: len(shape.states)],
                 end[2:],
-                *shape.path_rows(decided, interval.here, theta, width),
-                *interval.along(loads, end, ca.vertsplit(places)),
+                *shape.path_rows(decided, interval.here, theta, width, places[looks]),
+                *interval.along(loads, end, ca.vertsplit(places)[:looks]),
             )
         )
         inner = ca.vertcat(local, z)

@@ -25,8 +25,6 @@ Robot, limits and node phases are parameters: one compiled program serves every 
 kind.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
@@ -65,7 +63,7 @@ class Shooting:
     """The program for one shape and number of intervals.
 
     A solver is an nlpsol over the unknowns and rows of `layout`, p = (robot, loads, ballast range,
-    checked phases, direction, node phases, looks interval by interval).
+    checked phases, direction, node phases, looks and turn interval by interval).
     """
 
     layout: Layout
@@ -112,7 +110,7 @@ class _Program:
         self.states, self.wrt = len(layout.states), len(layout.local) + nz
         self.x = ca.MX.sym("x", nz + nm + n * len(layout.local))
         checks = layout.shape.checks
-        self.p = ca.MX.sym("p", terms.shared + checks + 1 + n + n * layout.looks)
+        self.p = ca.MX.sym("p", terms.shared + checks + 1 + n + n * (layout.looks + 1))
         self.z, self.mean, rest = ca.vertsplit(self.x, [0, nz, nz + nm, self.x.numel()])
         ends = [terms.shared, terms.shared + checks, terms.shared + checks + 1]
         ends.append(ends[-1] + n)

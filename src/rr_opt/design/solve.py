@@ -1,7 +1,5 @@
 """One multiple-shooting solve: a start in, a candidate optimum or an honest failure out."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 
@@ -13,7 +11,7 @@ from rr_opt.design.decisions import Setting, decisions, robot_of
 from rr_opt.design.landscape import Cycles, Landscape
 from rr_opt.design.multiple_shooting import shooting
 from rr_opt.design.shapes import shape_of
-from rr_opt.design.shapes.shape import PATH, path_bounds
+from rr_opt.design.shapes.shape import path_bounds
 from rr_opt.design.transcription import GRIPS, MEANS, TURN, ZERO, Layout, Mesh
 from rr_opt.model.gait import Gait, SineGait
 from rr_opt.model.problem import Interval
@@ -58,7 +56,7 @@ def solve(setting: Setting, sign: int, gait: Gait, share: float, mesh: Mesh) -> 
             shape.given(problem, mesh.checks),
             [sign],
             mesh.phases,
-            mesh.looks.ravel(),
+            np.column_stack([mesh.looks, mesh.turns]).ravel(),
         ]
     )
     lbx, ubx, lbg, ubg = _bounds(setting, layout, mesh.margin)
@@ -174,7 +172,7 @@ class Dense:
     speed   m/s, signed
     used    the largest share that it uses of a limit
     peaks   phases in [0, 1) at which torque or grip peak near their limits
-    checks  phases at which angle or rate do, where a shape checks these at some phases
+    checks  phases at which angle or rate do
     """
 
     speed: float
@@ -204,19 +202,21 @@ def dense(setting: Setting, gait: Gait, share: float) -> Dense:
         height, at = _peaks(np.abs(load), smooth)
         used, peaks = max(used, height), np.append(peaks, at)
     for shares in _path_shares(setting, gait):
-        height, at = _peaks(np.abs(shares), smooth)
+        height, at = _peaks(np.abs(shares), True)
         used, checks = max(used, height), np.append(checks, at)
     return Dense(speed, used, peaks, checks)
 
 
 def _path_shares(setting: Setting, gait: Gait) -> list[Array]:
-    """Shares that phi, phi - phi0 and dphi/dt use of their bounds, where its shape checks these."""
-    if gait.shape != "fourier":
+    """Shares that phi, phi - phi0 and dphi/dt use of their bounds between the nodes."""
+    if gait.shape == "sine":
         return []
     t = np.arange(_SAMPLES) / _SAMPLES * gait.period
     phi, bounds = gait.angle(t), path_bounds(setting.problem)
-    used = {"angle": phi, "swing": phi - gait.offset, "rate": gait.rate(t)}
-    return [used[name] / bounds[name].high for name in PATH]
+    used = {"angle": phi, "swing": phi - gait.offset}
+    if gait.pieces == 1:  # else it is largest at a node
+        used["rate"] = gait.rate(t)
+    return [share / bounds[name].high for name, share in used.items()]
 
 
 def _peaks(size: Array, smooth: bool) -> tuple[float, Array]:

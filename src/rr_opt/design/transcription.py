@@ -16,7 +16,7 @@ node for each name, those along the path.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -47,13 +47,15 @@ class Mesh:
     substeps  steps of the integrator in each interval
     looks     (N, M) fractions of the intervals at which the torque is held beside the nodes: LOOKS
               of them, or none
-    checks    (K,) phases at which angle and rate are, beside the shape's regular grid
+    turns     (N,) fractions of the intervals at which the angle of a free gait is
+    checks    (K,) phases at which angle and rate of others are, beside the shape's regular grid
     margin    kept from the torque's limit everywhere, relative
     """
 
     phases: Array
     substeps: int
     looks: Array
+    turns: Array
     checks: Array
     margin: float = 0.0
 
@@ -73,22 +75,29 @@ class Mesh:
         looks = self.looks.copy()
         if not looks.shape[1]:
             looks = np.tile(LOOKS, (self.intervals, 1))
-        ends = np.append(self.phases, self.phases[0] + 1)
-        for peak in ends[0] + (peaks - ends[0]) % 1:
-            k = int(np.searchsorted(ends, peak, side="right")) - 1
-            fraction = (peak - ends[k]) / (ends[k + 1] - ends[k])
+        for k, fraction in self._placed(peaks):
             looks[k, _REGULAR + np.abs(looks[k, _REGULAR:] - fraction).argmax()] = fraction
         return replace(self, looks=looks)
 
     def with_checks_at(self, phases: Array) -> Mesh:
         """With angle and rate held at these phases too."""
-        return replace(self, checks=np.append(self.checks, phases))
+        turns = self.turns.copy()
+        for k, fraction in self._placed(phases):
+            turns[k] = fraction
+        return replace(self, turns=turns, checks=np.append(self.checks, phases))
+
+    def _placed(self, phases: Array) -> Iterator[tuple[int, float]]:
+        """The interval of each phase, and which fraction of it."""
+        ends = np.append(self.phases, self.phases[0] + 1)
+        for phase in ends[0] + (phases - ends[0]) % 1:
+            k = int(np.searchsorted(ends, phase, side="right")) - 1
+            yield k, (phase - ends[k]) / (ends[k + 1] - ends[k])
 
 
 def regular(intervals: int) -> Mesh:
     """Equal intervals, the torque held at nodes alone."""
     phases = np.arange(intervals) / intervals
-    return Mesh(phases, 1, np.zeros((intervals, 0)), np.zeros(0))
+    return Mesh(phases, 1, np.zeros((intervals, 0)), np.full(intervals, 0.5), np.zeros(0))
 
 
 def intervals_for(intervals: int, error: float, wanted: float) -> int:

@@ -25,8 +25,6 @@ by about a tenth in the force that lets go. So sliding is fitted together with c
 to s0 as a root of squares and stands for how gradual it is.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import replace
 

@@ -51,9 +51,9 @@ LARGEST_REPLAY_ERROR = 1e-6
 LARGEST_COST_ERROR = 1e-4
 """Of the cost of transport, where that is the objective, relative: it is added up from samples."""
 
-LARGEST_SLACK = {True: 1e-5, False: 1e-3}
+LARGEST_SLACK = {True: 1e-5, False: 1e-4}
 """Of the speed, what prices times distances may be: of sines (True), which are solved as functions
-of their decisions, and of other shapes, whose peaks the solver moves a little aside of limits."""
+of their decisions, and of other shapes, of which a limit is held at some phases."""
 
 
 @dataclass(frozen=True, repr=False)

@@ -5,8 +5,6 @@ the phases at which an answer breaks limits are added to the checked ones, and n
 until the peaks have nowhere to go.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Any
@@ -90,7 +88,9 @@ class FourierShape:
             *(rate / z["period"] for _, rate, _ in seen),
         )
 
-    def path_rows(self, z: Symbols, local: Symbols, theta: Any, width: Any) -> tuple[Any, ...]:
+    def path_rows(
+        self, z: Symbols, local: Symbols, theta: Any, width: Any, at: Any
+    ) -> tuple[Any, ...]:
         """None."""
         return ()
 

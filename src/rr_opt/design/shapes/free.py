@@ -1,12 +1,11 @@
 """No given shape: the servo's acceleration is the control, constant on each interval.
 
-phi is then a quadratic in theta on every interval, and stays within the triangle of its ends and
-the point where the tangents at them meet. That point is (phi + width/2 dphi/dtheta) at the node;
-with equal widths a node lies halfway between two such points. So a bound on them bounds phi
-everywhere and not at nodes alone.
-"""
+phi is then a quadratic in theta on every interval. It is bounded at the node and at one more place:
+where it is extreme, once that is known.
 
-from __future__ import annotations
+At which phase the first harmonic begins is open. The intervals are where they are, so a gait moved
+along them by a part of one is another gait, and not one of these.
+"""
 
 import math
 from dataclasses import dataclass
@@ -41,8 +40,8 @@ class FreeShape:
     states = ("phi", "slope")
     controls = ("bend",)
     integrals = ("mean_angle", "first_sine", "first_cosine")
-    limits = ("centred",)
-    path = PATH
+    limits = ("centred", "first")
+    path = ("rate", *(f"{name}{k}" for name in ("angle", "swing") for k in (0, 1)))
     checks = 0
 
     def angle(self, z: Symbols, local: Symbols, theta: Any, since: Any) -> tuple[Any, Any, Any]:
@@ -57,27 +56,27 @@ class FreeShape:
     def limit_rows(
         self, z: Symbols, means: Symbols, checks: tuple[Any, ...], c1: Any, c2: Any
     ) -> tuple[Any, ...]:
-        """The offset is the mean angle."""
-        return (means["mean_angle"] - z["offset"],)
+        """The offset is the mean angle; the size of the first harmonic."""
+        first = ca.hypot(means["first_sine"], means["first_cosine"])
+        return means["mean_angle"] - z["offset"], first
 
-    def path_rows(self, z: Symbols, local: Symbols, theta: Any, width: Any) -> tuple[Any, ...]:
-        """phi and phi - phi0 where the tangents meet, and dphi/dt at the node."""
-        peak = local["phi"] + width / 2 * local["slope"]
-        return peak, peak - z["offset"], local["slope"] / z["period"]
+    def path_rows(
+        self, z: Symbols, local: Symbols, theta: Any, width: Any, at: Any
+    ) -> tuple[Any, ...]:
+        """dphi/dt at the node, phi and phi - phi0 there and at the place."""
+        both = [self.angle(z, local, theta, since)[0] for since in (0.0, at * width)]
+        return local["slope"] / z["period"], *both, *(phi - z["offset"] for phi in both)
 
     def given(self, problem: Problem, added: Array) -> Array:
         """None."""
         return np.zeros(0)
 
     def bounds(self, problem: Problem) -> Bounds:
-        """The first harmonic is at least the least amplitude, and begins at phase 0."""
-        box, gait = decisions(problem), problem.gait
-        unknowns = {
-            "offset": box.offset if box.offset.fixed else gait.offset,
-            "first_sine": Interval(gait.amplitude.low, math.inf),
-            "first_cosine": ZERO,
-        }
-        return Bounds(unknowns, {**path_bounds(problem), "centred": ZERO})
+        """The first harmonic is at least the least amplitude."""
+        box, gait, bounds = decisions(problem), problem.gait, path_bounds(problem)
+        rows = {name: bounds[name.rstrip("01")] for name in self.path}
+        rows |= {"centred": ZERO, "first": Interval(gait.amplitude.low, math.inf)}
+        return Bounds({"offset": box.offset if box.offset.fixed else gait.offset}, rows)
 
     def start(self, gait: Gait, phases: Array) -> dict[str, Any]:
         """Sampled at the nodes."""
@@ -106,9 +105,14 @@ class FreeShape:
 
     def prices(self, problem: Problem, multipliers: Values) -> dict[str, float]:
         """From the rows at the nodes."""
-        return path_prices(problem, multipliers)
+        return path_prices(problem, self._along(multipliers))
 
     def bound_prices(self, on_bounds: Values, multipliers: Values) -> dict[str, float]:
         """From the first harmonic, the swing and the offset."""
-        amplitude = amplitude_price(on_bounds["first_sine"], multipliers)
+        amplitude = amplitude_price(multipliers["first"], self._along(multipliers))
         return {"amplitude": amplitude, "offset": float(on_bounds["offset"])}
+
+    def _along(self, multipliers: Values) -> dict[str, Array]:
+        """Multipliers of PATH, all of each."""
+        rows = {name: [row for row in self.path if row.startswith(name)] for name in PATH}
+        return {name: np.concatenate([multipliers[r] for r in own]) for name, own in rows.items()}

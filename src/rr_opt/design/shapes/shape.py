@@ -5,8 +5,6 @@ not one formula, unknowns at every node. Rates are in radians per period until t
 them, so that it does not get into the shape.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -98,8 +96,10 @@ class Shape(Protocol):
         """The rows of `limits`."""
         ...
 
-    def path_rows(self, z: Symbols, local: Symbols, theta: Any, width: Any) -> tuple[Any, ...]:
-        """The rows of `path` of the interval from theta to theta + width."""
+    def path_rows(
+        self, z: Symbols, local: Symbols, theta: Any, width: Any, at: Any
+    ) -> tuple[Any, ...]:
+        """The rows of `path` of the interval from theta on, and `at` a fraction of its width."""
         ...
 
     def given(self, problem: Problem, added: Array) -> Array:
