@@ -22,7 +22,7 @@ _WILD = 8.0
 """Times its usual distance from its neighbours' median, from which a sample is wild."""
 
 _MANY = 100
-"""Samples, with which a function can be told from a measurement."""
+"""Samples from which a function can be distinguished from a measurement."""
 
 _CROSSED = 5.0
 """Times its range a function of the angle goes up and down along it, at most."""
