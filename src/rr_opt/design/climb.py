@@ -7,8 +7,6 @@ where an interval ends, often right where the optimum is, so it is formed from t
 not fitted itself.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import combinations

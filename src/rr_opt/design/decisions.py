@@ -22,8 +22,6 @@ phi0 are tightened until every choice leaves an amplitude, and the amplitude is 
 share of what is left. Every point of the box then keeps these limits; only the torque is open.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 

@@ -11,8 +11,6 @@ the cycle closes at the fixed point of their product. Other friction is replaced
 and those again, until the cycle stands still.
 """
 
-from __future__ import annotations
-
 import ctypes
 import math
 from dataclasses import dataclass, fields

@@ -6,8 +6,6 @@ weigh the turn twice: lightly, as a strict weight makes of the layer a ridge alo
 hardly move, and strictly, as with a light one they would rather go fast beside the turn.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import partial

@@ -6,8 +6,6 @@ own that follows the peak along the cycle: held at fixed phases instead, the tor
 beside them, and along a limit the gaits are so alike that an optimum can slide far.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import cached_property

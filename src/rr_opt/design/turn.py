@@ -5,8 +5,6 @@ answer is no whole one, again for those below it and for those above it. A part 
 than a whole number already found is left.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace

@@ -24,8 +24,6 @@ Contacts begin to slide more or less gradually. So sliding is fitted together wi
 to s0 as a root of squares and stands for how gradual it is.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import replace
 

@@ -9,8 +9,6 @@ along the circle. So a period from rest falls behind by T (|V| - V_rest . V/|V|)
 until the deviation has died out; the rest is a geometric series.
 """
 
-from __future__ import annotations
-
 import math
 import sys
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Recordings of any machine: CSV with a header row, or JSON with `entries`."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """How near an optimum comes to each limit and bound, and what it would gain by more."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """The gait that is fast on most of the robots that a file may mean, beside the nominal optimum."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

@@ -1,7 +1,5 @@
 """A driven route: the drive that was found, and its replay."""
 
-from __future__ import annotations
-
 import math
 import textwrap
 from collections.abc import Iterator, Mapping, Sequence

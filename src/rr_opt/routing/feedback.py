@@ -13,8 +13,6 @@ whether a period of a stage is to be repeated or left out. Corrections end where
 do.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field, replace
 from typing import Any

@@ -12,8 +12,6 @@ With dA/dt = a less its mean, A periodic, exp(-A) is the integrating factor. Two
 exact for every harmonic, one that stays accurate however much A varies.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import lru_cache
 

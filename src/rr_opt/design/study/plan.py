@@ -16,8 +16,6 @@ solved from which does not depend on how many processes work or on how often the
 interrupted.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence

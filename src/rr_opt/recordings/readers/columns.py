@@ -1,7 +1,5 @@
 """The columns of a text file with a header row, whatever they are called, in order of time."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace

@@ -6,8 +6,6 @@ five lines of header: its title; its rate, Hz; the names, each above the first o
 `Frame,Sub Frame,X,Y,Z,...`; the units. It ends with a blank line.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
