@@ -196,4 +196,4 @@ def _unread(text: Text, start: int, last: int, head: Head) -> Iterator[Notice]:
         yield notice("file.sections", names=", ".join(dict.fromkeys(others)))
 
 
-READER = Reader("Vicon Nexus CSV", sniff, read)
+READER = Reader("Vicon CSV", sniff, read)
