@@ -76,8 +76,13 @@ import time
 time.monotonic = time.time
 """,
     "worker killed": """
-from rr_opt.batch import run
-run._outcome = lambda pool, future: future.result() if future.exception() is None else run.LOST
+from rr_opt.batch.pools import ClusterPool
+check = ClusterPool._check_versions
+def frail(self):
+    check(self)
+    give_up = lambda dask_scheduler: setattr(dask_scheduler, "allowed_failures", 0)
+    self._client.run_on_scheduler(give_up)
+ClusterPool._check_versions = frail
 """,
     "prove killed": """
 import threading
@@ -404,7 +409,9 @@ def clock_back(scene: Scene, rounds: int) -> None:
             running.send_signal(signal.SIGKILL)
             ended(running, log, "clock set back, killed")
             running = begun(scene.command, folder, **fake)
-        scene.ends_as(right, folder, ended(running, log, "clock set back"))
+        end = ended(running, log, "clock set back")
+        log.check(not re.search(r"^ *-\d", end.err, re.MULTILINE), f"clock set back: {end.err}")
+        scene.ends_as(right, folder, end)
         shutil.rmtree(folder)
 
 

@@ -32,7 +32,7 @@ class Terrain(Protocol):
 
 @dataclass(frozen=True)
 class Effort:
-    """How long to climb: at most so many iterations, with stencils of the `first` size until
+    """How long to climb: at most `iterations`, with stencils of the `first` size until
     nothing is gained with stencils of the `last`."""
 
     iterations: int

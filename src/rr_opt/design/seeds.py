@@ -38,7 +38,7 @@ _MOST = 12
 
 @dataclass(frozen=True)
 class Patience:
-    """points   so many times as many points, and climbers, as usual"""
+    """points   factor on the usual numbers of points and climbers"""
 
     points: int = 1
     climbers: int = 1
@@ -78,7 +78,7 @@ def share_of(best: float, share: float) -> float:
 
 def _unit(terrain: Terrain, seen: Array) -> float:
     """The largest speed of gaits that keep the rows nearly, m/s: others can be a hundred times as
-    fast, and would drown what is to be told apart."""
+    fast, and would drown what is to be distinguished."""
     if terrain.aim != "speed":
         return 1.0
     near = terrain.merit(1.0, 1.0, 1.0)(_still(seen)) >= -_OFF

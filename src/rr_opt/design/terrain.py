@@ -27,7 +27,7 @@ _UNSETTLED = 10.0
 _SEEN_FROM = 0.5
 """Share of the torque's limit from which a peak is a row."""
 _DENSER, _WITHIN = 4, 12
-"""So many times as many phases, by Fourier series, show a peak; phases to either side within which
+"""Factor of oversampling, by Fourier series, that shows a peak; phases to either side within which
 it is followed."""
 _AS_BADLY = 0.9
 _WIDE = 0.05

@@ -204,7 +204,7 @@ class Plan:
 
 
 def plan(axes: Sequence[Numbers], shape: Sequence[int]) -> Plan:
-    """The plan for the product of axes with so many steps each, the last one fastest."""
+    """The plan for the product of axes with these numbers of steps, the last one fastest."""
     around = [_around(numbers, count) for numbers, count in zip(axes, shape, strict=True)]
     anchors: list[int] = []
     donors: dict[int, tuple[tuple[int, float], ...]] = {}
