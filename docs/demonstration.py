@@ -91,9 +91,9 @@ def hold_together(out: Path, gaits: dict[str, dict[str, Any]], effects: list[str
     say("5. The robot that hides it drives both, from rest, and each model predicts both.")
     lines = [f"{'gait chosen by':<24}{'recorded':>14}{'nominal':>20}{'corrected':>20}"]
     for chosen, gait in gaits.items():
-        told, folder = f"{gait['amplitude']:.6g}, {gait['period']:.6g} s", f"{out}/best-{chosen}"
+        command, folder = f"{gait['amplitude']:.6g}, {gait['period']:.6g} s", f"{out}/best-{chosen}"
         words = ("--seconds", str(DRIVE), "--out", folder)
-        run("record", f"{out}/robot.yaml", "--gait", f"{told}, rest", *effects, *NOISE, *words)
+        run("record", f"{out}/robot.yaml", "--gait", f"{command}, rest", *effects, *NOISE, *words)
         seen = mean_speed(Path(folder) / "run01.csv", gait["period"])
         said = [predicted(out, gait, name) for name in ROBOTS]
         cells = "".join(f"{1e3 * one:>10.1f} ({100 * (one / seen - 1):+.1f} %)" for one in said)

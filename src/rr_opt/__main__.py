@@ -1,7 +1,5 @@
 """`python -m rr_opt`, the same as `rr-opt`."""
 
-from __future__ import annotations
-
 from rr_opt.cli.entry import main
 
 if __name__ == "__main__":

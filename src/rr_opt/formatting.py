@@ -1,7 +1,5 @@
 """How numbers and quantities are written for people: the SI value, and the unit they think in."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -6,8 +6,6 @@ enough: where there are other threads, one of those takes the signal, and Python
 in the main thread all the same.
 """
 
-from __future__ import annotations
-
 import signal
 import threading
 from collections.abc import Callable, Iterator

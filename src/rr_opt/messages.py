@@ -1,7 +1,5 @@
 """How messages quote what was read, list names, and guess the known word that was meant."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Sequence
 from difflib import get_close_matches

@@ -1,7 +1,5 @@
 """How a piece of work can end: a status, a sentence, and an exit code."""
 
-from __future__ import annotations
-
 from enum import StrEnum
 
 

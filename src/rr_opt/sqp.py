@@ -7,8 +7,6 @@ solved as a least-distance problem by non-negative least squares, as SLSQP does 
 Hanson, Solving Least Squares Problems, 1974, chapter 23).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache

@@ -7,8 +7,6 @@ text is split here into names and small integer powers, so a hostile expression 
 Angles are kept apart from plain numbers: 30 Hz is not 30 rad/s, and 5 % is not an angle.
 """
 
-from __future__ import annotations
-
 import math
 import re
 import sys

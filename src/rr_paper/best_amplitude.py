@@ -1,7 +1,5 @@
 """What remains of the paper's conclusion that there is a best amplitude, of about 1 rad."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace

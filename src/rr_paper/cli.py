@@ -1,7 +1,5 @@
 """The verbs of the paper: `rr-opt reproduce` and `rr-opt calibrate`."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated
 

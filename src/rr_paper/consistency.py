@@ -8,8 +8,6 @@ of random sets of nine - fitted such squares that exceed it. That is approximate
 fitted unknown to account for one row.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Figures of the audit: signs, readings and the period."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

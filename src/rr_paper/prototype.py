@@ -6,8 +6,6 @@ platform 2 without saying about which points J20 and J10 are taken; section 2 al
 J2, which involve both platforms and the joint.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace

@@ -16,8 +16,6 @@ Known errata and omissions:
 The points of the paper's figures are not printed as numbers, so none of them is here.
 """
 
-from __future__ import annotations
-
 import math
 import tomllib
 from dataclasses import dataclass

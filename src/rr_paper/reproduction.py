@@ -1,7 +1,5 @@
 """The paper recomputed: its tables and figures, and the audit of its statements; as a report."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass

@@ -8,8 +8,6 @@ equation, and because the audits and the calibration need thousands of robots at
 functions broadcast, and a `Robot` may hold arrays (see `stacked`).
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from typing import Any, NamedTuple

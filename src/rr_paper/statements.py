@@ -1,7 +1,5 @@
 """Statements of the paper, audited: its gaits and the servo, circles and offset, the period."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

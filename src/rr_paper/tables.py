@@ -1,7 +1,5 @@
 """Tables 2 and 3, Fig. 3, and the speed surfaces of Figs. 4 and 5, recomputed."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -11,8 +11,6 @@ independent check of Kane's method and of equation (3): it uses only the paper's
 nothing of `rr_opt.mechanics`.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -98,6 +98,14 @@ def test_a_channel_without_numbers_is_refused(tmp_path):
     assert "Read 0 numbers for q" in str(rr.lint(folder)[0])
 
 
+def test_times_that_are_no_numbers_are_refused(tmp_path):
+    folder = write(tmp_path, dry=0.0, runs=2, seconds=2.0)
+    rows = (folder / "run0.csv").read_text().splitlines()
+    empty = [rows[0], *(f",{row.partition(',')[2]}" for row in rows[1:])]
+    (folder / "run0.csv").write_text("\n".join(empty) + "\n")
+    assert "Read 0 rows" in str(rr.lint(folder)[0])
+
+
 def test_times_that_repeat_are_told(tmp_path):
     folder = write(tmp_path, dry=0.0, runs=2, seconds=2.0)
     table = np.loadtxt(folder / "run0.csv", delimiter=",", skiprows=1)

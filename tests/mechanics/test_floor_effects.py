@@ -62,7 +62,7 @@ def gripping(robot: Robot, values: dict) -> Law:
 
     def grip(wheel: Wheel, s: float) -> float:
         most = values["mu"] * weight[wheel.number - 1]
-        return -s / math.hypot(values["creep_compliance"], math.hypot(s, 2.5e-4) / most)
+        return -s / math.hypot(values["creep_compliance"], math.hypot(s, 1e-4) / most)
 
     return grip
 

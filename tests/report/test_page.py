@@ -58,3 +58,9 @@ def test_provenance_is_shown(answer):
     text = page(answer)
     assert 'badge good">measured' in text
     assert 'badge warn">assumed' in text
+
+
+def test_no_line_breaks_within_a_number(answer):
+    text = page(answer)
+    assert "tolerance 1e\N{NON-BREAKING HYPHEN}06" in text
+    assert not re.search(r"\de-\d", text.partition("<figure")[0])

@@ -76,8 +76,13 @@ import time
 time.monotonic = time.time
 """,
     "worker killed": """
-from rr_opt.batch import run
-run._outcome = lambda pool, future: future.result() if future.exception() is None else run.LOST
+from rr_opt.batch.pools import ClusterPool
+check = ClusterPool._check_versions
+def frail(self):
+    check(self)
+    give_up = lambda dask_scheduler: setattr(dask_scheduler, "allowed_failures", 0)
+    self._client.run_on_scheduler(give_up)
+ClusterPool._check_versions = frail
 """,
     "prove killed": """
 import threading
@@ -213,9 +218,9 @@ def trial_of(folder: Path) -> Any:
 
 
 def same(one: Any, two: Any, where: str = "") -> str:
-    """How two results differ, times apart; empty if they do not."""
+    """How two results differ, times and salts apart; empty if they do not."""
     if isinstance(one, Mapping) and isinstance(two, Mapping) and one.keys() == two.keys():
-        pairs = [(key, one[key], two[key]) for key in one if not TIMES.search(str(key))]
+        pairs = [(key, one[key], two[key]) for key in one if not ANYTHING.search(str(key))]
     elif isinstance(one, list) and isinstance(two, list) and len(one) == len(two):
         pairs = [(key, *pair) for key, pair in enumerate(zip(one, two, strict=True))]
     elif _close(one, two):
@@ -225,7 +230,8 @@ def same(one: Any, two: Any, where: str = "") -> str:
     return next(filter(None, (same(a, b, f"{where}.{key}") for key, a, b in pairs)), "")
 
 
-TIMES = re.compile("seconds|started|wall|cpu")
+ANYTHING = re.compile("seconds|started|wall|cpu|salt")
+"""Keys whose values differ from run to run."""
 
 
 def _close(one: Any, two: Any) -> bool:
@@ -403,7 +409,9 @@ def clock_back(scene: Scene, rounds: int) -> None:
             running.send_signal(signal.SIGKILL)
             ended(running, log, "clock set back, killed")
             running = begun(scene.command, folder, **fake)
-        scene.ends_as(right, folder, ended(running, log, "clock set back"))
+        end = ended(running, log, "clock set back")
+        log.check(not re.search(r"^ *-\d", end.err, re.MULTILINE), f"clock set back: {end.err}")
+        scene.ends_as(right, folder, end)
         shutil.rmtree(folder)
 
 
@@ -457,11 +465,15 @@ def played(names: Sequence[str], given: argparse.Namespace, log: Log, *, broken:
         if name == "prove killed":
             verb = (*command, *PROVE_VERB)
             scene = Scene(name, verb, trial_of, ["made.jsonl", "said.jsonl"], rng, log)
-            killed(scene, given.kills // 4)
+            rounds, play = given.kills // 4, killed
         elif name == "study killed":
-            killed(scene, given.kills - given.kills // 4)
+            rounds, play = given.kills - given.kills // 4, killed
         else:
-            OTHERS[name](scene, given.rounds)
+            rounds, play = given.rounds, OTHERS[name]
+        try:
+            play(scene, rounds)
+        except ValueError as error:
+            log.check(False, f"{name}: a journal cannot be read: {error}")
         print(f"{time.monotonic() - begin:6.0f} s  {name}  {dict(log.done)}", flush=True)
         if given.out and not broken:
             write_json(given.out, {"seed": given.seed, "done": log.done, "wrong": log.wrong})

@@ -26,23 +26,19 @@ class LinearFit:
         self.prior = np.full(VALUES, 1e-6)
         H = np.diag(self.prior) + sum(J.T @ J for J in self.J)
         self.u = np.linalg.solve(H, sum(J.T @ y for J, y in zip(self.J, self.y, strict=True)))
-        self.H, self.g = H, np.zeros(VALUES)
         self.evidences = {
             k: SimpleNamespace(H=J.T @ J, g=J.T @ (J @ self.u - y))
             for k, (J, y) in enumerate(zip(self.J, self.y, strict=True))
         }
         self.problem = SimpleNamespace(
             names=NAMES,
+            prior=self.prior,
             centre=np.zeros(VALUES),
             scale=np.ones(VALUES),
             samples=lambda _: float(SAMPLES),
             correlation_times=lambda _: 10.0,
             model=SimpleNamespace(form_error=FORM),
         )
-
-    def information(self):
-        g = self.prior * self.u + sum(e.g for e in self.evidences.values())
-        return self.H, g, 0.0
 
 
 def drawn(rng, spread=0.0):

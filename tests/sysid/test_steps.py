@@ -38,7 +38,7 @@ def test_as_with_steps_of_half_a_millisecond(effect, monkeypatch):
     for longest in (None, 5e-4):
         if longest:
             monkeypatch.setattr(racer_steps, "_LONGEST", longest)
-            monkeypatch.setattr(racer_steps, "_FINE", longest)
+            monkeypatch.setattr(racer_steps, "_SHARP", longest)
         model = RollerRacer(experiment(seconds=20.0, rate=100.0))
         start = np.array([0.0, 0.0, 0.3, 0.05, 0.0, 0.0])
         paths.append(predicted(model, 1, values, (effect,), start))

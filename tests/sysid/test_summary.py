@@ -1,9 +1,13 @@
 """The summary says what was found, what it is worth, what remains, and what to record next."""
 
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
+import numpy as np
 import pytest
 
+from rr_opt.machines.racer.racer import RollerRacer
 from rr_opt.sysid.diagnosis import Remainder
 from rr_opt.sysid.summary import summary_of
 from tests.report.diagnosis.conftest import _experiment, _found
@@ -18,8 +22,8 @@ def found():
     ("verdict", "said"),
     [
         ("consistent", "The nominal model explains the recordings."),
-        ("parameters", "The model is right, but the value of coulomb friction is not."),
-        ("missing_physics", "The model leaves out coulomb friction (confidence 99%)."),
+        ("parameters", "The model is right, but the value of Coulomb friction is not."),
+        ("missing_physics", "The model leaves out Coulomb friction (confidence 99%)."),
         ("unexplained", "Something is left out, and no effect of the catalogue accounts for it."),
     ],
 )
@@ -27,6 +31,16 @@ def test_it_opens_with_the_verdict(found, verdict, said):
     text = summary_of(replace(found, verdict=verdict))
     assert text.startswith(f"{said} On recordings that were not fitted, the misfit fell from")
     assert "from 8.10 to 1.02 sigma, where 1 is the noise." in text
+
+
+@pytest.mark.parametrize(("off", "said"), [(0.05, "50.0 mm"), (0.0, "less than 0.1 mm")])
+def test_a_place_is_never_said_to_be_off_by_nothing(off, said):
+    recorded = np.zeros((50, 4))
+    seen: Any = SimpleNamespace(
+        held_out=True, predicted=np.tile([off, 0.0, 0, 0], (50, 1)), recorded=recorded, sigma=1e-6
+    )
+    nobody: Any = None
+    assert f"is {said} off" in RollerRacer.accuracy(nobody, [seen])
 
 
 def test_what_remains_is_told_with_what_it_depends_on(found):

@@ -1,7 +1,5 @@
 """A gait or a route, driven: motion, circle, set points for a controller, the drive itself."""
 
-from __future__ import annotations
-
 import warnings
 from dataclasses import replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Input files: what is wrong in them, and new ones to fill in."""
 
-from __future__ import annotations
-
 from importlib.resources import files
 from pathlib import Path
 from typing import Any, Literal

@@ -1,7 +1,5 @@
 """What users give, files and numbers with units, as objects with a name and a fingerprint."""
 
-from __future__ import annotations
-
 import dataclasses
 import hashlib
 import math

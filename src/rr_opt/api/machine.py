@@ -1,7 +1,5 @@
 """Experiments with a machine other than the Roller Racer."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from rr_opt.files.experiment_file import experiment_path

@@ -5,8 +5,6 @@ writes leaves at most a torn last line, which the next run cuts off. Any other l
 row of the batch is refused, with its number.
 """
 
-from __future__ import annotations
-
 import fcntl
 import json
 import os

@@ -1,7 +1,5 @@
 """Processes of this machine, or of a cluster, handed out by a dask scheduler."""
 
-from __future__ import annotations
-
 import os
 import re
 import signal

@@ -4,8 +4,6 @@ If a process dies, nothing says which case it died over. So every case that was 
 again, each alone in the pool: the one over which a process dies once more is reported as lost.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Future, wait
 from typing import Any, Protocol, TypeVar

@@ -1,7 +1,5 @@
 """Verbs that drive: a given gait, its circle, its set points for a controller; a route."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated
 

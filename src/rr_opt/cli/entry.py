@@ -1,7 +1,5 @@
 """Where `rr-opt` begins, and how Ctrl-C ends it."""
 
-from __future__ import annotations
-
 import os
 
 # An interrupt while these are loaded shows a traceback, so they are few and light.

@@ -1,7 +1,5 @@
 """Verbs about input files: new ones, what is wrong in them, and their schemas."""
 
-from __future__ import annotations
-
 import json
 import json as json_format
 from dataclasses import asdict

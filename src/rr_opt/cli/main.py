@@ -5,8 +5,6 @@ A verb is loaded when it is asked for, and heavy libraries by the verb that need
 comes at once. Other packages add verbs by the entry points `rr_opt.verbs`.
 """
 
-from __future__ import annotations
-
 from importlib import import_module
 from typing import Annotated, Any
 

@@ -1,7 +1,5 @@
 """Verbs that look for gaits: by the optimiser, over a study, and by plain sweeps."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated
 

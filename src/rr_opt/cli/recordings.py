@@ -1,7 +1,5 @@
 """Verbs that read recordings: what looks wrong in them, and why the robot moves differently."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated
 

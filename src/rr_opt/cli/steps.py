@@ -1,7 +1,5 @@
 """Progress on stderr: which step a verb is at, and for how long it has been running."""
 
-from __future__ import annotations
-
 import re
 import sys
 import time

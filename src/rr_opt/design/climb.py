@@ -7,8 +7,6 @@ where an interval ends, often right where the optimum is, so it is formed from t
 not fitted itself.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import combinations
@@ -34,7 +32,7 @@ class Terrain(Protocol):
 
 @dataclass(frozen=True)
 class Effort:
-    """How long to climb: at most so many iterations, with stencils of the `first` size until
+    """How long to climb: at most `iterations`, with stencils of the `first` size until
     nothing is gained with stencils of the `last`."""
 
     iterations: int

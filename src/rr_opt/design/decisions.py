@@ -22,8 +22,6 @@ phi0 are tightened until every choice leaves an amplitude, and the amplitude is 
 share of what is left. Every point of the box then keeps these limits; only the torque is open.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 
@@ -117,7 +115,7 @@ class Decisions:
     ballast          I2 (kg m2) or number of loads
     reach            largest |phi| that angle and singularity allow, rad
     turn             what the problem asks of the turn; it bounds no decision by itself
-    command          bounds of the amplitude as the servo is told it, where it lags
+    command          bounds of the commanded amplitude, where the servo lags
     two_sided        the robot's two sides are alike: gaits at phi0 and -phi0 are mirror images
     """
 

@@ -5,8 +5,6 @@ them all. So the optima of each family are starts in the next, which can only be
 shapes at random are other starts.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import replace
 

@@ -5,8 +5,6 @@ are known exactly. For the torque the smallest peak that any allowed gait has is
 a turn the nearest that any allowed gait makes: by a scan whose resolution is reported, and climbs.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace

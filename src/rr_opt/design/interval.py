@@ -49,7 +49,7 @@ class Code:
         return self._compiled
 
     def used(self, evaluations: int) -> None:
-        """Count so many more evaluations of the functions."""
+        """Add to the count of evaluations of the functions."""
         before, self._asked = self._asked, self._asked + evaluations
         if self._compiled is None and any(before < some <= self._asked for some in (_FEW, _PAYS)):
             make = self._asked >= _PAYS

@@ -1,17 +1,10 @@
 """Speed and peak torque of many gaits at once, coarsely: where multiple shooting should start.
 
-The steady cycles of `landscape` as machine code, where a C compiler is at hand and it pays.
-
-Some gaits at a time in the processor's vector registers, by the same steps; sines of robots with
-viscous friction only.
-
 The steady cycle of K gaits over N phases in whole-array arithmetic. Where friction is viscous
 vdot = a v + b, so each step of an integrator is an affine map of v, known for all steps at once;
 the cycle closes at the fixed point of their product. Other friction is replaced by lines in v,
 and those again, until the cycle stands still.
 """
-
-from __future__ import annotations
 
 import ctypes
 import math
@@ -40,6 +33,8 @@ _PAYS = 500_000
 
 class LandscapeCode:
     """The loop over the gaits, for one model: compiled once it is used often, or before.
+
+    Some gaits at a time in the processor's vector registers; sines, with viscous friction only.
 
     affine  (phi, dphi, ddphi, p) -> gain on v and shift of vdot, w and side, one after the other
     torque  (v, phi, dphi, ddphi, p) -> torque
@@ -160,12 +155,7 @@ class Landscape:
         )
 
     def _block(self, gaits: Array, nodes: int) -> Cycles:
-        amplitude, period, offset, share = gaits
-        theta = 2 * math.pi * (np.arange(2 * nodes) / (2 * nodes))[:, None]
-        omega = 2 * math.pi / period
-        sine = amplitude * np.sin(theta)
-        angle = (sine + offset, amplitude * omega * np.cos(theta), -(omega**2) * sine)
-        return self.along(angle, period, share)
+        return self.along(_angle(gaits, 2 * nodes), gaits[1], gaits[3])
 
     def along(self, angle: tuple[Array, Array, Array], period: Array, share: Array) -> Cycles:
         """Steady cycles along phi (rad), dphi (rad/s), ddphi (rad/s2) of any shape.
@@ -190,16 +180,13 @@ class Landscape:
 
     def grips(self, cycles: Cycles, gaits: Array) -> Array:
         """Side force of each axle over its load, (2, N, K), on the cycles of these gaits (4, K)."""
-        amplitude, period, offset, share = gaits
-        theta = 2 * math.pi * np.arange(len(cycles.v))[:, None] / len(cycles.v)
-        omega, sine = 2 * math.pi / period, amplitude * np.sin(theta)
-        angle = (sine + offset, amplitude * omega * np.cos(theta), -(omega**2) * sine)
-        found = _grip(self._effects)(cycles.v, *angle, *self._parameters(share))
+        angle = _angle(gaits, len(cycles.v))
+        found = _grip(self._effects)(cycles.v, *angle, *self._parameters(gaits[3]))
         return np.array(np.broadcast_arrays(*found))
 
     def costs(self, cycles: Cycles, gaits: Array, denser: int = 1) -> tuple[Array, Array]:
         """Mean positive power of the servo, W, and cost of transport, (K,), on the cycles of these
-        gaits (4, K); from so many times as many phases."""
+        gaits (4, K); `denser`: factor of oversampling."""
         amplitude, period, _, share = gaits
         n, omega = len(cycles.torque) * denser, 2 * math.pi / period
         theta = 2 * math.pi * np.arange(n)[:, None] / n
@@ -244,6 +231,14 @@ class Landscape:
             if np.all(change < _SETTLED):
                 break
         return np.where(change < _SETTLED, v, settled)[::2]
+
+
+def _angle(gaits: Array, phases: int) -> tuple[Array, Array, Array]:
+    """phi, dphi and ddphi (phases, K) of sines (4, K)."""
+    amplitude, period, offset = gaits[:3]
+    theta = 2 * math.pi * (np.arange(phases) / phases)[:, None]
+    omega, sine = 2 * math.pi / period, amplitude * np.sin(theta)
+    return sine + offset, amplitude * omega * np.cos(theta), -(omega**2) * sine
 
 
 @lru_cache
@@ -336,7 +331,7 @@ def _summary(v: Array, w: Array, side: Array, torque: Array, period: Array) -> C
 
 
 def dense(x: Array, times: int) -> Array:
-    """Periodic functions (N, K) at so many times as many phases."""
+    """Periodic functions (N, K) oversampled by a factor."""
     if times == 1 or not np.isfinite(x).all():
         return np.repeat(x, times, axis=0)
     return np.fft.irfft(np.fft.rfft(x, axis=0), times * len(x), axis=0) * times

@@ -6,8 +6,6 @@ success and speed, in this order. The winner is solved again on a mesh whose acc
 checked and whose nodes lie where the torque peaks, so that limits hold between the nodes too.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

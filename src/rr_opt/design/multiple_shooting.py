@@ -25,8 +25,6 @@ Robot, limits and node phases are parameters: one compiled program serves every 
 kind.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 

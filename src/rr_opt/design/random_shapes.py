@@ -1,7 +1,5 @@
 """Initial guesses for shapes that are no sines: many at random, seen coarsely."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

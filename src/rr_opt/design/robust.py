@@ -9,8 +9,6 @@ function of the gait, and is climbed as the nominal one is. Robots drawn at rand
 expansion holds.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 

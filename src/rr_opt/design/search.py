@@ -1,7 +1,5 @@
 """All optima among sines: tops all over the box, each climbed to its end."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 from rr_opt.design.candidate import Finds

@@ -6,8 +6,6 @@ weigh the turn twice: lightly, as a strict weight makes of the layer a ridge alo
 hardly move, and strictly, as with a light one they would rather go fast beside the turn.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import partial
@@ -40,7 +38,7 @@ _MOST = 12
 
 @dataclass(frozen=True)
 class Patience:
-    """points   so many times as many points, and climbers, as usual"""
+    """points   factor on the usual numbers of points and climbers"""
 
     points: int = 1
     climbers: int = 1
@@ -80,7 +78,7 @@ def share_of(best: float, share: float) -> float:
 
 def _unit(terrain: Terrain, seen: Array) -> float:
     """The largest speed of gaits that keep the rows nearly, m/s: others can be a hundred times as
-    fast, and would drown what is to be told apart."""
+    fast, and would drown what is to be distinguished."""
     if terrain.aim != "speed":
         return 1.0
     near = terrain.merit(1.0, 1.0, 1.0)(_still(seen)) >= -_OFF

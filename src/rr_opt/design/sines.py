@@ -4,8 +4,6 @@ A sine has four decisions, and its steady cycle is known as a function of them, 
 decisions alone is all it takes. Shapes with dozens of coefficients are left to multiple shooting.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """One multiple-shooting solve: a start in, a candidate optimum or an honest failure out."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

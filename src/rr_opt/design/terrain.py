@@ -6,8 +6,6 @@ own that follows the peak along the cycle: held at fixed phases instead, the tor
 beside them, and along a limit the gaits are so alike that an optimum can slide far.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import cached_property
@@ -29,7 +27,7 @@ _UNSETTLED = 10.0
 _SEEN_FROM = 0.5
 """Share of the torque's limit from which a peak is a row."""
 _DENSER, _WITHIN = 4, 12
-"""So many times as many phases, by Fourier series, show a peak; phases to either side within which
+"""Factor of oversampling, by Fourier series, that shows a peak; phases to either side within which
 it is followed."""
 _AS_BADLY = 0.9
 _WIDE = 0.05

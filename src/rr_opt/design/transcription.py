@@ -101,7 +101,7 @@ def regular(intervals: int) -> Mesh:
 
 
 def intervals_for(intervals: int, error: float, wanted: float) -> int:
-    """How many intervals make the wanted error, if so many make this one."""
+    """How many intervals make the wanted error, given how many make this one."""
     needed = intervals * (error / wanted) ** (1 / _ORDER)
     return at_least(needed)
 

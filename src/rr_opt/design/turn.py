@@ -5,8 +5,6 @@ answer is no whole one, again for those below it and for those above it. A part 
 than a whole number already found is left.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -130,7 +128,7 @@ def _whole(problem: Problem, heading: float, relaxed: Optimum, progress: Progres
 
 
 def _with_periods(problem: Problem, heading: float, low: float, high: float) -> Problem:
-    """The problem where the heading takes between so many periods."""
+    """The problem with the number of periods for the heading bounded."""
     ends = sorted((heading / high, heading / low))
     turn = replace(problem.turn, heading=Interval(*ends)) if problem.turn else None
     return replace(problem, turn=turn)

@@ -6,8 +6,6 @@ Left is positive, counter-clockwise seen from above, whichever way the robot dri
 change and the circle it is made on have one sign, so of the two the heading says it.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 

@@ -5,8 +5,6 @@ over it in one step; a run that is stopped leaves what was there before. Only re
 replaced: a device, a pipe or a link in the place of a result is refused, and stays.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import tempfile

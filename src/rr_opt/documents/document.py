@@ -5,8 +5,6 @@ A document has a verdict and sections; a section holds text, facts, tables, chec
 `something in backticks`, it is a command, a key or a file name.
 """
 
-from __future__ import annotations
-
 import csv
 import io
 import math

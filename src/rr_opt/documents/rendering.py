@@ -166,10 +166,11 @@ def _template() -> Template:
 
 
 def _code(text: str) -> Markup:
-    """The text escaped, and what stands in backticks as code."""
+    """The text escaped, what stands in backticks as code, and no line break within a number."""
     from markupsafe import Markup, escape
 
-    return Markup(re.sub("`([^`]+)`", r"<code>\1</code>", str(escape(text))))
+    whole = re.sub(r"(?<=\de)-(?=\d)", "\N{NON-BREAKING HYPHEN}", text.replace("->", "→"))
+    return Markup(re.sub("`([^`]+)`", r"<code>\1</code>", str(escape(whole))))
 
 
 def _data_uri(svg: str) -> str:

@@ -5,8 +5,6 @@ write a number: `n(3)` to three significant digits, `f(1)` to one decimal, `e` a
 `span` as a range.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from importlib.resources import files

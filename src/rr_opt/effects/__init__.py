@@ -3,8 +3,6 @@
 To add an effect, add a file that defines `EFFECT` and name it in `_MODULES`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from importlib import import_module
 from types import MappingProxyType

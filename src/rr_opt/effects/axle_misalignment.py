@@ -1,7 +1,5 @@
 """Axles that are not square to their platforms: the wheels roll off to one side."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import casadi as ca

@@ -1,7 +1,5 @@
 """A recording with a clock of its own: its time t is the command's time t + offset."""
 
-from __future__ import annotations
-
 from rr_opt.effects.effect import Effect, Parameter, Port
 
 EFFECT = Effect(

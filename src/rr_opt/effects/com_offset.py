@@ -1,7 +1,5 @@
 """Centres of mass to one side of the platforms' axes."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import replace
 

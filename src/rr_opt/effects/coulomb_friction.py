@@ -8,8 +8,6 @@ the other gives an axle's force half as large or twice as large as it is. So in 
 parameter, `onset`, to which the change of speed that the friction makes in 5 ms is added.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import casadi as ca

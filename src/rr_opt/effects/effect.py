@@ -1,7 +1,5 @@
 """What an effect is: data, and the one port where it enters the mechanism."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass

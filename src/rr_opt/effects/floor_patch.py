@@ -8,8 +8,6 @@ speed, such as that of the air.
 The border is smoothed over 5 mm, about the length of a wheel's contact with a carpet.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 

@@ -1,7 +1,5 @@
 """A floor that is not level: gravity pulls every mass downhill."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import replace
 

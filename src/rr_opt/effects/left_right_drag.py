@@ -1,7 +1,5 @@
 """Wheels of a pair that differ in friction about their mean."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import casadi as ca

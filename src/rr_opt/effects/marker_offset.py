@@ -1,7 +1,5 @@
 """A tracked point beside the joint P, on platform 1."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Drag that grows with the square of the rolling speed, shared equally by the four wheels."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import casadi as ca

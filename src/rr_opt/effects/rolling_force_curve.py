@@ -5,8 +5,6 @@ Each wheel resists with force0 at rest, and with force1 to force4 at 1/8, 1/4, 1
 the jump at u = 0 is smoothed like that of dry friction.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import casadi as ca

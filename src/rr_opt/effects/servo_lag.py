@@ -6,8 +6,6 @@ term by term with 1/(1 + i w tau - w^2 beta). From rest the response is that to 
 plus free terms that make up for the difference in angle and rate at t = 0, and decay.
 """
 
-from __future__ import annotations
-
 import cmath
 from collections.abc import Mapping
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """A servo whose zero is off: a constant is added to the commanded angle."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import replace
 

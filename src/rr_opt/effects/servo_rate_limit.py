@@ -5,8 +5,6 @@ the command again from where they meet. These times are found one after the othe
 the last of which repeats; between them the angle is known exactly.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import NamedTuple

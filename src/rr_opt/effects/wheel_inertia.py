@@ -1,7 +1,5 @@
 """The wheels' own moment of inertia about their axles, which spins up as they roll."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """A capture system whose zeros are off: a constant is added to heading and servo angle."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import replace
 

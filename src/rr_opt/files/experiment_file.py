@@ -1,7 +1,5 @@
 """An experiment file to a checked plan of what was done; no recording is read yet."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The experiment file's keys: the robot, the capture system, and what was recorded."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass

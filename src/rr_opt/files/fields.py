@@ -4,8 +4,6 @@ A dataclass of `rr_opt.model` declares unit, range and description of its fields
 the pydantic model of them, and `Keys` reads a mapping of a file as such an object.
 """
 
-from __future__ import annotations
-
 import dataclasses
 from dataclasses import MISSING, dataclass, field
 from functools import lru_cache

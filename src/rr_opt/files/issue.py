@@ -1,7 +1,5 @@
 """What is wrong with a file, as data: one issue per problem, and the error that carries them."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Literal, NoReturn, TypeVar

@@ -1,7 +1,5 @@
 """Every problem of a file at once, before anything is computed from it."""
 
-from __future__ import annotations
-
 from contextlib import suppress
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """An experiment file of a machine other than the racer: `machine: pendulum | servo | car`."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The robot file's `physics`: effects of the catalogue with the values of their parameters."""
 
-from __future__ import annotations
-
 from types import MappingProxyType
 from typing import Any
 

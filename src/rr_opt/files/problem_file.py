@@ -1,7 +1,5 @@
 """A problem file to a `Problem`, and the fingerprint of what was read."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path

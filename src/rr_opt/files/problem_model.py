@@ -1,7 +1,5 @@
 """The keys of problem and study files: their types, units, bounds and descriptions."""
 
-from __future__ import annotations
-
 from typing import Annotated, Any, Literal
 
 from pydantic import Field, JsonValue, SkipValidation, WithJsonSchema, create_model

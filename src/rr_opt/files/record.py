@@ -4,8 +4,6 @@ Of a gait `shape`, `amplitude`, `period` and `offset` are always there; a fourie
 and `cosines`, a free gait `angle0`, `rate0` and `accelerations`.
 """
 
-from __future__ import annotations
-
 import dataclasses
 import math
 from collections.abc import Iterator, Mapping

@@ -1,7 +1,5 @@
 """A robot file, or the robot inside another file, to a `Robot`."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping
 from pathlib import Path

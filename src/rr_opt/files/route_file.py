@@ -1,7 +1,5 @@
 """A route file to a `Route`: its problem, its pieces, and everything that is wrong with them."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Literal

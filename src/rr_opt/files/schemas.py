@@ -1,7 +1,5 @@
 """The JSON Schemas of the input files, with which editors complete and check them."""
 
-from __future__ import annotations
-
 from typing import Any, Literal, get_args
 
 from pydantic import BaseModel

@@ -4,8 +4,6 @@ Only regular files of bounded size are read: a pipe or a device may never end. I
 of a link; output never replaces or follows one.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 import os

@@ -1,7 +1,5 @@
 """What a study varies, as axes: each a row of values, which are combined with every other's."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass

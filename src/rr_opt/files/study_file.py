@@ -1,7 +1,5 @@
 """A study file to its cases, each a problem of its own that was checked like any other."""
 
-from __future__ import annotations
-
 import itertools
 import math
 import re

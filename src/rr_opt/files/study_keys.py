@@ -1,7 +1,5 @@
 """The keys that a study may vary: what each is and its unit, and the problem with others set."""
 
-from __future__ import annotations
-
 import copy
 import re
 from collections.abc import Sequence

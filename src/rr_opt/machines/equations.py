@@ -1,8 +1,6 @@
 """A machine's equations as a system to be stepped, its numbers as quantities to be fitted, and
 what may push it that the model lacks: at each port a function of a state or an input."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache

@@ -5,8 +5,6 @@ A law sees the state and input names of its machine and, of a joint, `w` (rad/s)
 q; a signal sees times and inputs.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import casadi as ca

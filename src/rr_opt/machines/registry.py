@@ -1,7 +1,5 @@
 """The machines that an experiment file may name; the Roller Racer has an experiment of its own."""
 
-from __future__ import annotations
-
 from importlib import import_module
 
 from rr_opt.messages import unknown_word

@@ -4,8 +4,6 @@ An unstable posture multiplies every error, and noise of the inputs pushes a mac
 is no longer than either takes to spoil its prediction.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Protocol

@@ -6,8 +6,6 @@ its own: in a sweep what the robot determines once for a whole gait, and what th
 once for all iterates of the speed; in a diagnosis what the parameters determine once for all steps.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from importlib.resources import files

@@ -9,8 +9,6 @@ fails this test, libraries go to a folder that lasts as long as the process.
 Without a C compiler, or where files have no owners, everything runs without compiled code.
 """
 
-from __future__ import annotations
-
 import atexit
 import ctypes
 import hashlib

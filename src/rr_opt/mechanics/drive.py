@@ -1,7 +1,5 @@
 """The joint angle as a function of time: periodic, or from standing still."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

@@ -12,8 +12,6 @@ dphi gives the servo torque, which acts on platform 2 and reacts on platform 1. 
 velocities and rates of change are CasADi's.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import casadi as ca

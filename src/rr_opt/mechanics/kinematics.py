@@ -26,8 +26,6 @@ axle 2 the joint gives, in that direction alone,
     w1 (c1 cos(phi + toe2) + c2 cos toe2) = (V_1 rotated by -phi) . n2 - s2 - c2 cos toe2 dphi
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from types import MappingProxyType

@@ -1,7 +1,5 @@
 """x[k + 1] = step(x[k], inputs[k], p), over many steps and for several runs at once."""
 
-from __future__ import annotations
-
 import ctypes
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Explicit Runge-Kutta methods as data, and one stepper for all of them."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, TypeVar

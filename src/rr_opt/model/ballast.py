@@ -8,8 +8,6 @@ of inertia I of platform 2 alone, or adding loads, which change its mass, centre
 inertia together.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from typing import Any, Literal

@@ -10,8 +10,6 @@ Angle and rate are continuous; the acceleration jumps at knots. Between two equa
 makes a plain sine; with the amplitude 0 it stands still and the robot coasts.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any

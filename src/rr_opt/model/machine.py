@@ -4,8 +4,6 @@ A machine is data. Its equations are functions of names: states, inputs, paramet
 them by ports, each a place where something may be left out.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import SimpleNamespace

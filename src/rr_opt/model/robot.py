@@ -3,8 +3,6 @@
 Symbols are the paper's (section 2, Fig. 1 and Table 1). Everything is SI.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field

@@ -1,7 +1,5 @@
 """A route as plain data: where the robot starts, what it drives along, and how exactly."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field
 from typing import Literal

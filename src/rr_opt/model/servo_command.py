@@ -9,8 +9,6 @@ harmonic 1 + i w tau - w^2 beta times as much. Gaits are optimised as what the j
 knows no servo, and reported as commands.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Any

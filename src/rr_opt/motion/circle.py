@@ -9,8 +9,6 @@ along the circle. So a period from rest falls behind by T (|V| - V_rest . V/|V|)
 until the deviation has died out; the rest is a geometric series.
 """
 
-from __future__ import annotations
-
 import math
 import sys
 from dataclasses import dataclass
@@ -128,7 +126,7 @@ def transient(robot: Robot, steady: SteadyCycle) -> Transient:
     """The transient from rest to a known steady cycle."""
     period = steady.gait.period
     path = fixed_steps(robot, steady.gait, float(steady.v[0]), steps=_STEPS)
-    # Friction that stops the robot within a small part of a period leaves less than can be told.
+    # Friction that stops the robot within a small part of a period leaves too little to measure.
     factor = max(float(path[4, -1]), sys.float_info.min)
     path = fixed_steps(robot, steady.gait, float(steady.v[0]), steps=_FEWER)
     V = _mean_velocity(path, period)

@@ -10,8 +10,6 @@ the servo makes of its command, what the floor does in one place and not another
 capture system makes of the motion.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from functools import lru_cache
 

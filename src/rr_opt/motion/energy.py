@@ -7,8 +7,6 @@ which is never less than the net. The cost of transport is the gross work per me
 robot's weight. Losses within the servo are in neither.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

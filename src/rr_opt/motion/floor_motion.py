@@ -20,8 +20,6 @@ While the servo exerts no torque phi is free, and the joint obeys
 of which the first is affine in ddphi. An impact on the joint changes dphi at once and z not at all.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import lru_cache

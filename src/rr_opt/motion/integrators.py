@@ -8,8 +8,6 @@ of pieces between jumps, which differ in their coefficients alone: one expressio
 them all, and gaits of one form share what is compiled from it. A smooth gait is one piece.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import lru_cache

@@ -1,7 +1,5 @@
 """A gait driven for some time, from rest or from the steady state, and measures of the motion."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Literal

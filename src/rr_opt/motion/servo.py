@@ -4,8 +4,6 @@ Gaits are optimised as the angle of the joint, in which lag, zero and rate limit
 bounds and no physics. Only play is more: where its stops are depends on how the robot moves.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import reduce
 

@@ -9,8 +9,6 @@ jerks that no servo follows, as the rate they need shows. What the servo of the 
 motion counts if `physics` lists it, such as a lag.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 

@@ -3,8 +3,6 @@
 Nothing is filled in, nothing is smoothed and no value is changed but for whole turns of an angle.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType

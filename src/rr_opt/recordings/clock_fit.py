@@ -13,8 +13,6 @@ covariance is the sandwich with Bartlett's weights over lags (W. K. Newey and K.
 Econometrica 55, 1987, pp. 703-708), so that what is left may be coloured.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace

@@ -3,8 +3,6 @@
 Nothing is put right: the experimenter has to say. A fault of the robot is no reason to refuse.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager

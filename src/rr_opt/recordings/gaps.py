@@ -5,8 +5,6 @@ samples before and one through the seven after are compared half way between the
 meet, at a jump they do not.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 

@@ -1,7 +1,5 @@
 """The one way in: a recording read, put on the command's clock, cleaned and looked at."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import MappingProxyType

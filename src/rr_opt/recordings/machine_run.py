@@ -1,7 +1,5 @@
 """Recordings of any machine: CSV with a header row, or JSON with `entries`."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -24,7 +22,7 @@ _WILD = 8.0
 """Times its usual distance from its neighbours' median, from which a sample is wild."""
 
 _MANY = 100
-"""Samples, with which a function can be told from a measurement."""
+"""Samples from which a function can be distinguished from a measurement."""
 
 _CROSSED = 5.0
 """Times its range a function of the angle goes up and down along it, at most."""
@@ -62,9 +60,10 @@ def _run(plan: MachinePlan, one: PlannedRecording) -> MachineRun:
     if not keep.all():
         doubts.append(f"Rows left out, as their times repeat or fall back: {(~keep).sum()}.")
     data = {c.name: _channel(one, table, c)[keep] for c in machine.channels}
-    t = t[keep] - t[keep][0]
+    t = t[keep]
     if t.size < _FEWEST:
         raise InputError(f"Read {t.size} rows. Expected {_FEWEST} or more. Record for longer.")
+    t = t - t[0]
     sigma: dict[str, float] = {}
     for c in machine.channels:
         known = np.abs(data[c.name]) < LARGEST

@@ -7,8 +7,6 @@ Extreme differences are cut off, at three standard deviations, so that a kink or
 count. The uncertainties are those of the mean over pieces of the recording.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

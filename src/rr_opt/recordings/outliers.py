@@ -7,8 +7,6 @@ start, a servo at its rate limit) a smooth curve through both sides misses good 
 side alone predicts them: a sample is an outlier only if neither side does.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -5,8 +5,6 @@ gives the log's time, and the log's goal against the gait the command's. What th
 late by lies between goal and present, so it stays in the recording; the clocks' part is taken out.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace

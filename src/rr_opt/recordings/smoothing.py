@@ -12,8 +12,6 @@ cyclic reduction: every other block is eliminated, all at once, until one is lef
 come back in the opposite order. Both are exact for any times and gaps, without a loop over samples.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from math import factorial
 

@@ -1,7 +1,5 @@
 """The times of a recording: in order, at which rate, and what is odd about them."""
 
-from __future__ import annotations
-
 from bisect import bisect_right
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass

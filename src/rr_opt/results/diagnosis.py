@@ -1,7 +1,5 @@
 """The diagnosis of an experiment: what was found, the corrected robot, and the report."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property

@@ -1,7 +1,5 @@
 """How findings are written for people: names, verdicts, values with their intervals."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 

@@ -1,7 +1,5 @@
 """What every diagnosis has, whatever the machine: verdict, effects, message, diagnosis.json."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar

@@ -523,7 +523,7 @@ def _sweep_sentence(sweep: SweepCheck, shape: str, cost: float | None) -> str:
     head = f"Sweep of {sweep.points} {gaits}, climbing from the best of them and from the optimum: "
     at, worse, better = f"{1e3 * best.speed:+.3f} mm/s", "slower", "faster"
     if cost:
-        at, worse, better = f"a cost of transport of {number(1 / best.merit)}", "dearer", "cheaper"
+        at, worse, better = f"a cost of transport of {number(1 / best.merit)}", "higher", "lower"
     head += f"it reaches {at}, "
     if abs(sweep.gap) < sweep.tolerated:
         return head + f"equal to the optimum to within {sweep.tolerated:.0e}."

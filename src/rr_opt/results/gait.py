@@ -1,7 +1,5 @@
 """A gait, its speed and its robot as facts and tables, and the effects that the gait ignores."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 from rr_opt.documents import document as doc

@@ -1,7 +1,5 @@
 """Recordings as they were found: what was read of each, and everything that looks wrong."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """How near an optimum comes to each limit and bound, and what it would gain by more."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
@@ -101,7 +99,7 @@ def bound_rows(optimum: Optimum, commanded: Gait, ratio: float) -> dict[str, Bou
     return rows
 
 
-def worst_slack(optimum: Optimum, told: Gait, reached: Mapping[str, float]) -> tuple[str, float]:
+def worst_slack(optimum: Optimum, command: Gait, reached: Mapping[str, float]) -> tuple[str, float]:
     """Complementary slackness: at an optimum what has a price is at its limit, and no price has the
     wrong sign. The limit or bound that fails it most, and how: its price times its distance, or
     times itself where the sign is wrong, relative to the speed or the cost of transport.
@@ -119,7 +117,7 @@ def worst_slack(optimum: Optimum, told: Gait, reached: Mapping[str, float]) -> t
     boxes = {"period": gait.period, "offset": gait.offset}
     if problem.gait.shape == "sine" and not problem.command:
         boxes["amplitude"] = gait.amplitude
-    places = [(name, getattr(told, name), box) for name, box in boxes.items()]
+    places = [(name, getattr(command, name), box) for name, box in boxes.items()]
     for name, value, box in (*places, ("ballast", best.share, Interval(0.0, 1.0))):
         away = max(box.high - value if prices[name] > 0 else value - box.low, 0.0)
         worth[f"bound on {name}"] = 0.0 if box.fixed else abs(prices[name]) * away

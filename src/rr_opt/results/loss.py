@@ -5,8 +5,6 @@ that robot's own best gait. Both are optimised within the limits of the robot's 
 of the shipped problem, with the robot's inertias as they are.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace

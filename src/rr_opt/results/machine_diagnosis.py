@@ -1,7 +1,5 @@
 """The diagnosis of a machine other than the Roller Racer."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any

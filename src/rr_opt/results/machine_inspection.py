@@ -1,7 +1,5 @@
 """Recordings of a machine other than the Roller Racer, as they were found."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import PurePath

@@ -1,7 +1,5 @@
 """What driving a gait gives: a simulated motion and its files, and the circle of the gait."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields

@@ -1,7 +1,5 @@
 """What every result can do: say how it ended, and be printed, drawn and saved."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib import import_module

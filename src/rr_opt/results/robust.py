@@ -1,7 +1,5 @@
 """The gait that is fast on most of the robots that a file may mean, beside the nominal optimum."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,7 +14,7 @@ from rr_opt.verify.spread import DRAWN
 _ALIKE = 1e-6
 SHORT = 0.01
 """By so much the share of other robots that reach the speed and keep the limit on torque may fall
-short of what is told; four standard deviations of it."""
+short of what is reported; four standard deviations of it."""
 
 
 @dataclass(frozen=True)
@@ -30,7 +28,7 @@ class Robust:
     reaching   the share of other robots that reach the speed with the robust gait, and `keeping`
                that of those that keep the limit on torque
     scales, curves  what 95 % reach with the robust gait and with the nominal optimum where all
-               spreads are so many times as large
+               spreads are scaled by these factors
     """
 
     gait: Gait

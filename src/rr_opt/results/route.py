@@ -1,7 +1,5 @@
 """A driven route: the drive that was found, and its replay."""
 
-from __future__ import annotations
-
 import math
 import textwrap
 from collections.abc import Iterator, Mapping, Sequence
@@ -102,8 +100,9 @@ class DrivenRoute(Result):
             Check(
                 end,
                 f"End by CVODES: P is {1e3 * replay.position:.1f} mm from its place (at most "
-                f"{1e3 * asked.position:.4g}), platform 1 {math.degrees(replay.heading):.2f} deg "
-                f"from its heading (at most {math.degrees(asked.heading):.4g}).",
+                f"{1e3 * asked.position:.4g}), and the heading is off by "
+                f"{math.degrees(replay.heading):.2f} deg (at most "
+                f"{math.degrees(asked.heading):.4g}).",
             ),
             Check(
                 replay.path <= asked.path,
@@ -112,8 +111,12 @@ class DrivenRoute(Result):
             ),
             Check(
                 replay.excess <= LARGEST_EXCESS,
-                "Limits: rate, angle, torque and singularity are kept throughout "
-                f"(worst {100 * replay.excess:+.2f} % of its limit).",
+                "Limits of rate, angle, torque and singularity: "
+                + (
+                    f"the worst is exceeded by {100 * replay.excess:.2g} %."
+                    if replay.excess > 0
+                    else f"all are kept, the nearest with {-100 * replay.excess:.2f} % to spare."
+                ),
             ),
         ]
         if self.plan.route.end == "rest":
@@ -165,7 +168,7 @@ class DrivenRoute(Result):
             checks = doc.checks((check.passed, check.sentence) for check in self.checks)
             sections.append(doc.Section("Checks", (checks,)))
         good = self.status is Status.OPTIMAL
-        title = self.message if good else f"No drive: {self.status.words}"
+        title = self.message.removesuffix(".") if good else f"No drive: {self.status.words}"
         return doc.Document(
             self.name,
             "route",
@@ -257,6 +260,9 @@ def _legs(result: DrivenRoute) -> doc.Table:
                 1e3 * speed,
             )
         )  # fmt: skip
-    head = ("piece", "way", "m", "amplitude, rad", "period, s", "offset, rad", "mm/s, steady")
+    head = (
+        *("piece", "way", "length, m", "amplitude, rad", "period, s", "offset, rad"),
+        "steady speed, mm/s",
+    )
     note = "Steady gaits that the drive begins from; the drive changes them together."
     return doc.table(head, rows, note)

@@ -1,7 +1,5 @@
 """A gait as set points for a controller, their file, and what they cost in speed."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass

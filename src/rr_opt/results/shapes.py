@@ -1,7 +1,5 @@
 """What waveforms are worth: the fastest gait of each family, side by side."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise

@@ -1,7 +1,5 @@
 """What a study varies, in words: its keys, and their values in the unit that people think in."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """A plain sweep: every gait tried, the best of them, and a row for each as CSV."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any

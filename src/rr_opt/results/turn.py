@@ -1,7 +1,5 @@
 """The fastest turn: a fastest gait with the arc it drives and the check of its circle."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace

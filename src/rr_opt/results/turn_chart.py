@@ -1,7 +1,5 @@
 """The turning chart of a robot: its circles, the tightest of them, and the paper's claim."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

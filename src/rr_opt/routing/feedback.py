@@ -13,8 +13,6 @@ whether a period of a stage is to be repeated or left out. Corrections end where
 do.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -55,7 +53,7 @@ too much not be braked."""
 _COAST = 3
 """Cycles of more coasting, in which a robot of less friction comes to rest, and is seen to."""
 LONGEST = 1.5
-"""So many times as many periods as planned may be made, until the drive goes on to its end."""
+"""Periods that may be driven over those planned, before the drive goes on to its end."""
 _STATES = 8
 _CHANGE = 1e-4
 """Of the masses, for derivatives."""

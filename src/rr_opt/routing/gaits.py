@@ -1,7 +1,5 @@
 """Which gait goes round a circle fastest: a chart of steady gaits, and what coasting does."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 from typing import Literal

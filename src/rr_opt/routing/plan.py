@@ -1,7 +1,5 @@
 """From a route to the fastest drive found: path, gaits of its legs, then one program of all."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace

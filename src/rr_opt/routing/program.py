@@ -13,8 +13,6 @@ The motion and all derivatives are those of `rollout`; the solver is sequential 
 quadratic, programming.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

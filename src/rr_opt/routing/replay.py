@@ -1,7 +1,5 @@
 """A drive simulated by CVODES from rest, as if nothing were known of it but its command."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import lru_cache

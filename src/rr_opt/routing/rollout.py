@@ -10,8 +10,6 @@ whose Jacobians are small. Segments are then chained: each depends on those befo
 the phase and its frame alone.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

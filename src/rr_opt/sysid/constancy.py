@@ -73,7 +73,8 @@ def constancy(
         return Constancy(0.0, 0)
     values = fit.u + problem.centre / problem.scale
     form = [form_errors.get(name.split(".")[0], 0.0) for name in problem.names]
-    H, g, _ = fit.information()
+    H = np.diag(problem.prior) + sum(one.H for one in fit.evidences.values())
+    g = problem.prior * fit.u + sum(one.g for one in fit.evidences.values())
     # In units in which all that is known of the values is the unit matrix.
     units = np.sqrt(np.diag(H))
     L = root(H / units / units[:, None])

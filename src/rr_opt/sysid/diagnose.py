@@ -158,10 +158,12 @@ def identified(model: Machine, watch: Stopwatch) -> Result:
             evaluation(base, base.values),
             evaluation(fit, fit.values),
         )
-        everywhere = best
+        everywhere, plain = best, selection.base
         if len(runs) < len(model.runs):
-            everywhere = refitted(best, range(len(model.runs)))
+            every = range(len(model.runs))
+            plain = refitted(plain, every)
+            everywhere = refitted(best, every) if best.choices else plain
     with watch("locating the fault"):
         before = dependences(base, *model.unknown_inputs(base))
         after = dependences(fit, *model.unknown_inputs(fit)) if best.choices else before
-    return Result(selection, best, everywhere, *levels, before, after)
+    return Result(selection, best, everywhere, plain, *levels, before, after)

@@ -75,6 +75,22 @@ class Evidence:
         """The loss after a change d."""
         return float(self.value + 2 * self.g @ d + d @ self.H @ d)
 
+    def spread(self, sigma: Array) -> Evidence:
+        """That of a run whose scaled quantities differ from the others' by as much (one sigma)."""
+        if not sigma.any() or math.isinf(self.value):
+            return self
+        across = self.H * sigma
+        factor = cholesky(np.eye(sigma.size) + sigma[:, None] * across, lower=True)
+        root = solve_triangular(factor, across.T, lower=True)
+        pull = solve_triangular(factor, sigma * self.g, lower=True)
+        return replace(
+            self,
+            value=self.value - float(pull @ pull),
+            log=self.log + 2 * float(np.sum(np.log(np.diag(factor)))),
+            g=self.g - root.T @ pull,
+            H=self.H - root.T @ root,
+        )
+
 
 def robust(excess: float, correlation_times: float) -> float:
     """The part of a run's loss that is beyond its degrees of freedom."""
@@ -146,6 +162,14 @@ class Problem:
         """Precision of the scaled quantities."""
         wide = SETTINGS.effect_prior**-2
         return np.array([1.0 if q.known else wide for q in self.quantities])
+
+    @cached_property
+    def form(self) -> Array:
+        """By what share of its value each quantity of an effect differs between recordings, as
+        machines differ from the effect's model: one sigma."""
+        catalogue = self.model.catalogue
+        effects = [name.partition(".") for name in self.names]
+        return np.array([catalogue[one].form_error if dot else 0.0 for one, dot, _ in effects])
 
     @cached_property
     def box(self) -> tuple[Array, Array]:
@@ -352,10 +376,16 @@ class Fit:
         """That of some runs alone, at these values."""
         return _deviance(self.problem, {run: self.evidences[run] for run in runs}, self.u)
 
-    def _without(self, run: int) -> float:
-        """The deviance of the others, at their own best."""
+    @cached_property
+    def marginal(self) -> Mapping[int, Evidence]:
+        """The evidences, where each run may have values of its own, about the common ones."""
+        sigma = np.abs(self.problem.form * (self.u + self.problem.centre / self.problem.scale))
+        return {run: e.spread(sigma) for run, e in self.evidences.items()}
+
+    def _least(self, evidences: Mapping[int, Evidence]) -> float:
+        """The deviance of runs, at their own best."""
         problem = self.problem
-        H, g, value = _summed(problem, _but(self.evidences, run), self.u)
+        H, g, value = _summed(problem, evidences, self.u)
         if not self.u.size:
             return value
         low, high = problem.box
@@ -364,12 +394,13 @@ class Fit:
 
     def information(self) -> tuple[Array, Array, float]:
         """H, g and value of the runs with the prior: of value + 2 g'd + d'Hd."""
-        return _summed(self.problem, self.evidences, self.u)
+        return _summed(self.problem, self.marginal, self.u)
 
     @cached_property
     def predictive(self) -> Mapping[int, float]:
         """Log density of each run as the others predict it."""
-        return {run: (self._without(run) - self.deviance) / 2 for run in self.evidences}
+        every = self._least(self.marginal)
+        return {run: (self._least(_but(self.marginal, run)) - every) / 2 for run in self.marginal}
 
     @property
     def samples(self) -> float:

@@ -28,7 +28,7 @@ _Z = float(norm.isf(0.025))
 
 def covariance(fit: Fit) -> Array:
     """Of the scaled quantities (nq, nq); see above."""
-    every = list(fit.evidences.values())
+    every = list(fit.marginal.values())
     prior = np.diag(fit.problem.prior)
     model = sum((e.H for e in every), np.zeros_like(prior))
     C = np.linalg.pinv(prior + model, hermitian=True)

@@ -35,6 +35,7 @@ class Selection:
     progress: Progress = lambda _: None
     tried: dict[tuple[Choice, ...], Candidate] = field(default_factory=dict)
     _upstream: Sequence[tuple[tuple[Choice, ...], Mapping[str, float]]] = ()
+    _compared: set[tuple[Candidate, tuple[Choice, ...]]] = field(default_factory=set)
 
     def __post_init__(self) -> None:
         self.best = self.tried[()] = self.base
@@ -244,8 +245,18 @@ class Selection:
 
     def _fewer(self, candidate: Candidate) -> Iterator[Candidate]:
         for choice in candidate.choices:
-            rest = [c for c in candidate.choices if c is not choice]
-            yield self.fitted(rest, [{}], candidate)
+            yield self._part(candidate, tuple(c for c in candidate.choices if c is not choice))
+
+    def _part(self, whole: Candidate, key: tuple[Choice, ...]) -> Candidate:
+        """A candidate with fewer effects; before it counts as worse, fitted from the whole's
+        values, as its own search may have ended in another minimum."""
+        part = self.fitted(key, [{}], whole)
+        if key and whole.predicts_better(part) and (whole, key) not in self._compared:
+            self._compared.add((whole, key))
+            again = fitted(self.model, key, whole.fit, [{}], part.fit)
+            if not again.given_up and again.fit.deviance < part.fit.deviance:
+                self.tried[key] = part = again
+        return part
 
     def _simpler(self, candidate: Candidate) -> Iterator[Candidate]:
         for choice in candidate.choices:

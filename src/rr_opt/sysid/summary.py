@@ -10,7 +10,8 @@ def summary_of(found: Diagnosis, worth: str = "") -> str:
 
     worth  what it is worth in the machine's own terms: `the place was 8 mm off and is 1 mm off; `
     """
-    listed = " and ".join(one.name.replace("_", " ") for one in found.findings)
+    names = (one.name.replace("_", " ").replace("coulomb", "Coulomb") for one in found.findings)
+    listed = " and ".join(names)
     sure = ", ".join(f"{one.confidence:.0%}" for one in found.findings)
     opening = {
         "consistent": "The nominal model explains the recordings.",

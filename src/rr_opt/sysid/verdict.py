@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from scipy.special import expit
 
 from rr_opt.sysid.candidates import Candidate, weights
 from rr_opt.sysid.constancy import Constancy, constancy
@@ -30,7 +31,8 @@ class Result:
     """What the diagnosis rests on.
 
     best      the candidate that was chosen, with values that are wrong released
-    everywhere  the same fitted to all recordings, also those that are held out
+    everywhere  the same fitted to all recordings, also those that are held out;  plain, the nominal
+                model likewise
     nominal, refitted, final   as believed; with the parameters fitted; with what is missing
     before, after  what unknown inputs would explain beside the nominal model and beside the answer
     """
@@ -38,6 +40,7 @@ class Result:
     selection: Selection
     best: Candidate
     everywhere: Candidate
+    plain: Candidate
     nominal: Evaluation
     refitted: Evaluation
     final: Evaluation
@@ -64,13 +67,21 @@ class Result:
         """How likely the answer's effects are no imitation of something else: recordings agree on
         their values, those that were not fitted are predicted better with them, and what is left of
         the misfit is no more than machines differ from models of such effects."""
-        if self.best.choices and self.final.excess > self.refitted.excess:
-            return 0.0
         first = self.selection.base.excess**2
         left = self.best.excess**2 - SETTINGS.none**2 - self.selection.model.form_error**2
         share = math.sqrt(max(left, 0.0) / max(first, 1e-12))
         form = max(self._form_errors.values(), default=math.inf)
-        return self.constancy.probability / (1 + (share / form / SETTINGS.form_errors) ** 4)
+        imitates = 1 / (1 + (share / form / SETTINGS.form_errors) ** 4)
+        return self.constancy.probability * imitates * self._predicts
+
+    @property
+    def _predicts(self) -> float:
+        """How likely recordings that were not fitted are with the answer, and not with the nominal
+        model."""
+        runs = self.selection.model.runs
+        own, other = self.everywhere.predictive, self.plain.predictive
+        gains = [own[k] - other[k] for k, run in enumerate(runs) if run.held_out]
+        return float(expit(sum(gains))) if gains and self.best.choices else 1.0
 
     @property
     def _form_errors(self) -> Mapping[str, float]:

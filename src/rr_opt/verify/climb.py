@@ -5,8 +5,6 @@ of several peaks has a kink where they change places, and by its logarithm, as i
 hundredfold near the singular posture. Slopes are central differences, all of them in one call.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Speeds of a grid's points, which limits each keeps, and finer grids about the best."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass

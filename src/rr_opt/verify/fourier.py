@@ -1,7 +1,5 @@
 """Calculus on samples of periodic functions by Fourier series, and linear equations with them.
 
-Calculus on samples of periodic functions by Fourier series, many functions at once.
-
 Samples x (n, K): n equal steps (n even) along the first axis, over one `span` (K,), s, of K
 functions. A span is what a function repeats after. Over half a period of a straight gait some
 functions repeat and some change sign; the latter are `flipping` and repeat after two spans.
@@ -11,8 +9,6 @@ The repeating solution of dv/dt = a v + b, with a and b sampled over a span.
 With dA/dt = a less its mean, A periodic, exp(-A) is the integrating factor. Two ways on: one
 exact for every harmonic, one that stays accurate however much A varies.
 """
-
-from __future__ import annotations
 
 from collections.abc import Callable
 from functools import lru_cache
@@ -30,7 +26,7 @@ _DENSE = 64
 """Samples up to which one matrix product is faster than the transforms it stands for."""
 
 _FINER = 4
-"""So many times as many samples show where a function changes sign."""
+"""Factor of oversampling that shows where a function changes sign."""
 
 _SMOOTH = 256
 """Samples from which on a peak is resolved well enough for a parabola."""

@@ -5,8 +5,6 @@ grid is given, besides, the amplitude that the angle and the singular posture le
 offset, and the period that the rate asks for at each amplitude.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace

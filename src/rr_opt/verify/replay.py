@@ -5,8 +5,6 @@ between the optimiser's nodes too, and on both sides of every jump of the torque
 for many periods on its circle, and from rest.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

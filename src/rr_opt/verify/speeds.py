@@ -1,7 +1,5 @@
 """Speed and peak torque of any number of gaits, each from as many samples as it needs."""
 
-from __future__ import annotations
-
 import math
 from functools import lru_cache
 from typing import NamedTuple

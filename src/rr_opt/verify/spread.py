@@ -1,7 +1,5 @@
 """What many robots, drawn at random from those that a file may mean, make of a gait."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

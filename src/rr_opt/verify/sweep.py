@@ -4,8 +4,6 @@ It shares robot, problem and derived physics with the optimiser and nothing else
 cycle is found by Fourier series, the best point by looking everywhere.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

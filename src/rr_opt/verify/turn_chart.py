@@ -1,8 +1,6 @@
 """The circles of a robot's gaits: curvature and speed over offset, the tightest of them, and the
 paper's claim that the offset alone decides on the circle."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace

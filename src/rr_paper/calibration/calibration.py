@@ -1,7 +1,5 @@
 """The calibration: what the nine averages say of the paper's robot, and of the models."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

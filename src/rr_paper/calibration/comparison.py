@@ -5,8 +5,6 @@ for its unknowns (AICc), predicts each row from the other eight, and is compared
 that it generated itself.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -20,8 +20,6 @@ limited     dphi/dt = R tanh((command - phi)/(R tau)): like a lag of tau, but no
             amplitude R T/4 whatever the command.
 """
 
-from __future__ import annotations
-
 import math
 from functools import lru_cache
 from typing import NamedTuple

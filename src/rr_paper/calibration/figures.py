@@ -1,7 +1,5 @@
 """Figures of `rr-opt calibrate`."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

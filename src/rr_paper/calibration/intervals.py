@@ -4,8 +4,6 @@ A value is inside the 95 % interval if the deviance there, minimised over the ot
 within 3.84 of the least. That holds asymptotically, for many data.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass

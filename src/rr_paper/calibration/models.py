@@ -1,7 +1,5 @@
 """The unknowns of the calibration, each with its box and the reason for it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType

@@ -1,7 +1,5 @@
 """calibration.json and its CSV files."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any

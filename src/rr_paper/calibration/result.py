@@ -1,7 +1,5 @@
 """What a calibration finds: models compared, intervals of the unknowns, and the shipped robot's."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 

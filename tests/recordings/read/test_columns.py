@@ -1,5 +1,7 @@
 """`columns` maps names, units and counts of foreign files; what it cannot map is refused."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -86,6 +88,22 @@ def test_what_is_missing_is_guessed(write):
     assert '--columns "t=time,x=x_m,y=y_m,psi=yaw,phi=phi_rad"' in told
     with pytest.raises(InvalidFileError, match="psi=yaw,phi=theta"):
         read_file(write("time,x_m,y_m,theta,yaw\n0,1,2,3,4\n1,1,2,3,4\n"))
+
+
+def test_a_guess_keeps_the_unit_that_the_name_ends_with(write):
+    file = write("time_ms,x_mm,y_mm,yaw_deg,phi_rad\n0,1000,2,90,0.1\n10,1001,2,91,0.2\n")
+    with pytest.raises(InvalidFileError) as caught:
+        read_file(file)
+    told = str(caught.value)
+    assert "x: {column: x_mm, factor: 1 mm}" in told
+    assert "phi: phi_rad}" in told
+    option = re.search('--columns "(.*?)"', told)
+    assert option
+    given = dict(pair.split("=") for pair in option[1].split(","))
+    run = read_file(file, ReadOptions(columns=columns_from(given)))
+    np.testing.assert_allclose(run.t, [0, 0.01])
+    np.testing.assert_allclose(run.values["x"], [1, 1.001])
+    np.testing.assert_allclose(run.values["psi"], np.radians([90, 91]))
 
 
 def test_an_experiment_file_says_them(write, tmp_path):

@@ -1,7 +1,5 @@
 """Shapes of gaits: what each adds to the unknowns and rows of multiple shooting."""
 
-from __future__ import annotations
-
 from rr_opt.design.shapes.fourier import FourierShape
 from rr_opt.design.shapes.free import FreeShape
 from rr_opt.design.shapes.shape import Shape

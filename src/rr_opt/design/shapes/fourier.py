@@ -5,8 +5,6 @@ the phases at which an answer breaks limits are added to the checked ones, and n
 until the peaks have nowhere to go.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Any

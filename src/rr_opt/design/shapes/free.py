@@ -7,8 +7,6 @@ At which phase the first harmonic begins is open. The intervals are where they a
 along them by a part of one is another gait, and not one of these.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Any

@@ -5,8 +5,6 @@ not one formula, unknowns at every node. Rates are in radians per period until t
 them, so that it does not get into the shape.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field

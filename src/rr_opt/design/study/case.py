@@ -1,7 +1,5 @@
 """A study: one problem solved with many values of its keys, neighbours from neighbours' optima."""
 
-from __future__ import annotations
-
 import math
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence

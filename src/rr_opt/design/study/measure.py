@@ -1,7 +1,5 @@
 """An optimum, measured: how far it goes, what holds it, what it costs."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace

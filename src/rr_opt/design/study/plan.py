@@ -16,8 +16,6 @@ solved from which does not depend on how many processes work or on how often the
 interrupted.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -206,7 +204,7 @@ class Plan:
 
 
 def plan(axes: Sequence[Numbers], shape: Sequence[int]) -> Plan:
-    """The plan for the product of axes with so many steps each, the last one fastest."""
+    """The plan for the product of axes with these numbers of steps, the last one fastest."""
     around = [_around(numbers, count) for numbers, count in zip(axes, shape, strict=True)]
     anchors: list[int] = []
     donors: dict[int, tuple[tuple[int, float], ...]] = {}

@@ -1,7 +1,5 @@
 """What a case of a study came to: one row of its table, plain enough to be kept as JSON."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields

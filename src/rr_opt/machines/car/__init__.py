@@ -3,8 +3,6 @@
 Wheels press back sideways with 1/compliance per slip angle; without an effect they hardly slip.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

@@ -3,8 +3,6 @@
 J q'' = u - b q' - ml g sin q
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import casadi as ca

@@ -17,8 +17,9 @@ from rr_opt.motion.floor_motion import free_joint_of
 from rr_opt.sysid.sensitivities import DriveSlopes
 from rr_opt.sysid.shooting import DrivePath
 
-_LONGEST, _FINE = 0.012, 0.003
-"""A step is no longer, s; than the second where the wheels slip or friction is dry."""
+_LONGEST, _SHARP, _STIFF = 0.012, 0.003, 0.0015
+"""A step is no longer, s; than the second where friction is dry; than the third where wheels slip:
+with twice that, derivatives across the onset of sliding are off by a factor."""
 _APART = 1e-6
 """A jump of dphi so near to an end of a step, s, is at it."""
 _MOST = 3
@@ -44,7 +45,7 @@ def steps_of(
 
     Not where states settle at once: what a jump does to those is spread over its step.
     """
-    longest = _FINE if stiff or sharp else _LONGEST
+    longest = _STIFF if stiff else _SHARP if sharp else _LONGEST
     jumps = drive.jumps_within(t[0] + late, t[-1] + late) - late if not stiff else np.zeros(0)
     k = np.searchsorted(t, jumps, side="right") - 1
     inside = (jumps - t[k] > _APART) & (t[k + 1] - jumps > _APART)

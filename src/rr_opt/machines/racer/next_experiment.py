@@ -69,10 +69,11 @@ def next_experiment(
         return None
     k, quantity, factor, apart = known
     gait = plans[k].gait
+    words = " of ".join(reversed(quantity.replace("_", " ").split(".")))
     sentence = (
         f"Record {plans[k].seconds:.0f} s of amplitude {gait.amplitude:.2f} rad, period "
         f"{gait.period:.2f} s, offset {gait.offset:.2f} rad, from {plans[k].start}: it makes the "
-        f"interval of {quantity}, the value known worst, {factor:.1f} times narrower."
+        f"interval of {words}, the value known worst, {factor:.1f} times narrower."
     )
     return _answer(plans[k], (_names(best), quantity), apart, sentence)
 

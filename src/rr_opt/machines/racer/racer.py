@@ -76,17 +76,17 @@ class RollerRacer(RacerModel):
     def worth(self, before: Sequence[Misfit], after: Sequence[Misfit]) -> str:
         """By how much the simulated place is off."""
         return (
-            f"the simulated place was {_off(before):.1f} mm off (RMS beyond the noise) and is "
-            f"{_off(after):.1f} mm off now; "
+            f"the simulated place was {_off(before)} off (RMS beyond the noise) and is "
+            f"{_off(after)} off now; "
         )
 
     def accuracy(self, misfits: Sequence[Misfit]) -> str:
         """The same, of the corrected simulation."""
-        return f"The corrected simulation places the robot to within {_off(misfits):.1f} mm (RMS)."
+        return f"The corrected simulation is {_off(misfits)} off the place (RMS beyond the noise)."
 
 
-def _off(misfits: Sequence[Misfit]) -> float:
-    """RMS distance, mm, of the simulated from the recorded place, less the noise; of held-out
+def _off(misfits: Sequence[Misfit]) -> str:
+    """RMS distance of the simulated from the recorded place, less the noise; of held-out
     recordings if there are any."""
     some = [one for one in misfits if one.held_out] or list(misfits)
     squares = []
@@ -94,4 +94,5 @@ def _off(misfits: Sequence[Misfit]) -> float:
         off = np.sum((one.predicted[:, :2] - one.recorded[:, :2]) ** 2, axis=1)
         noise = np.broadcast_to(one.sigma, one.predicted.shape)[:, :2]
         squares.append(off - np.sum(noise**2, axis=1))
-    return 1e3 * float(np.sqrt(max(np.nanmean(np.concatenate(squares)), 0.0)))
+    distance = 1e3 * float(np.sqrt(max(np.nanmean(np.concatenate(squares)), 0.0)))
+    return f"{distance:.1f} mm" if distance > 0.1 else "less than 0.1 mm"

@@ -4,8 +4,6 @@
 V = volts clip(kp (goal - q) 4096/(2 pi)/(256 885), -1, 1)
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 

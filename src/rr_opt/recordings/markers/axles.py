@@ -14,8 +14,6 @@ the noise of a sum is that of its ends.
 What is found is where the wheels roll to: an axle that toes in has turned its platform's axes.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

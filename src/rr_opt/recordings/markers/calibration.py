@@ -6,8 +6,6 @@ platforms' axes, as the motion of the servo shows. The axes follow from the whee
 Which platform is the first shows in the distances of its axles from P, or in the sign of phi.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import NoReturn

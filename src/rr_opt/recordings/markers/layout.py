@@ -1,7 +1,5 @@
 """Which marker sits where on the robot, and how a capture's frame is seen from above."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations

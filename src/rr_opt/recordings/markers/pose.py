@@ -1,7 +1,5 @@
 """The motion of P and both angles from the markers of a file, and what is odd about them."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType

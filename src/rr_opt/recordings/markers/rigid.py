@@ -22,8 +22,6 @@ residuals of a least-squares fit have no mean shift or turn of a platform that w
 apart.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, fields, replace
 
 import numpy as np

@@ -10,8 +10,6 @@ then each pair. The smallest set whose absence makes the frame fit is to blame. 
 size do, all of them are left out. A frame that nothing makes fit is not taken as data.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import combinations, permutations

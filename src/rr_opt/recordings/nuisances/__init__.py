@@ -6,8 +6,6 @@ forces are, and the command ties the angle to the clock. So a nuisance shows in 
 an effect of the robot's physics, which obeys them or nearly so, does not pass for one.
 """
 
-from __future__ import annotations
-
 from rr_opt.recordings.nuisances import clock, command, enough, frame, late, push, start, units
 from rr_opt.recordings.nuisances.evidence import Evidence, Look
 from rr_opt.recordings.warnings import Notice

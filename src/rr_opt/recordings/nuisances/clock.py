@@ -1,7 +1,5 @@
 """The period of an angle; and a clock whose rate changes while the robot drives on as before."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np

@@ -1,7 +1,5 @@
 """An angle that is not that of its command: another gait, unit or sign, or a clock that is off."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np

@@ -1,7 +1,5 @@
 """An uninformative recording: empty, short, full of gaps, still, or drowned in noise."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A floor frame, a zero or a sign that is wrong, or platforms that were mistaken for each other."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping
 from itertools import combinations
 

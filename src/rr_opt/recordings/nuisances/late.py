@@ -1,7 +1,5 @@
 """A channel that is late: it was filtered, buffered or stamped apart from the others."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A push: the robot moves, for a moment, as its wheels cannot roll, or surges and is slow again."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np

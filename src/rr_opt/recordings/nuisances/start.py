@@ -6,8 +6,6 @@ of the motion from rest, later, and a steady acceleration. From rest the initial
 what the jump of the joint's rate gives to a robot whose joint is not straight, or in between.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Numbers in another unit, which no robot makes, or not this one."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Files of recordings, read by what they hold; a format is a module here with a READER."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import NoReturn
 

@@ -7,8 +7,6 @@ or from a layout that names these points, `NAME`, `NAME x` and `NAME y`. Only th
 axis that is up is taken of a body's rotation.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import Any
 

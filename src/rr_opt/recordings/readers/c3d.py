@@ -7,8 +7,6 @@ by a library: the usual one ends the program on damaged files, and reads no more
 11 minutes at 100 Hz.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import prod

@@ -1,7 +1,5 @@
 """The columns of a text file with a header row, whatever they are called, in order of time."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -148,13 +146,18 @@ def _check(header: Header, needed: Sequence[str], known: Sequence[str], file: st
     if missing:
         others = [_WITH_UNIT.sub(r"\1", name) for name in header.names if name not in known]
         meant_by = guesses(others, missing)
-        meant = ", ".join(f"{name}: {column}" for name, column in meant_by.items())
         advice = "Add what is missing."
         if meant_by:
-            option = ",".join(f"{name}={column}" for name, column in meant_by.items())
+            entries, options = [], []
+            for name, column in meant_by.items():
+                unit = _unit_in(column, name)
+                entries.append(
+                    f"{name}: " + (f"{{column: {column}, factor: 1 {unit}}}" if unit else column)
+                )
+                options.append(f"{name}={column}" + (f" [{unit}]" if unit else ""))
             advice = (
-                f"Rename them, or write `columns: {{{meant}}}` in the experiment file, or "
-                f'--columns "{option}" for one recording.'
+                f"Rename them, or write `columns: {{{', '.join(entries)}}}` in the experiment "
+                f'file, or --columns "{",".join(options)}" for one recording.'
             )
         # A letter alone is like no other: the columns that there are say more.
         wrong.append(
@@ -163,6 +166,15 @@ def _check(header: Header, needed: Sequence[str], known: Sequence[str], file: st
         )
     if wrong:
         refuse(file, " ".join(wrong), line)
+
+
+def _unit_in(name: str, channel: str) -> str:
+    """The unit at the end of a name, as in `x_mm`; empty if there is none or it is SI."""
+    unit = name.rpartition("_")[2]
+    try:
+        return "" if to_si(f"1 {unit}", UNITS.get(channel, "")) == 1.0 else unit
+    except InputError:
+        return ""
 
 
 def _is_number(cell: str) -> bool:

@@ -1,7 +1,5 @@
 """Rows of marker positions, as any format has them, to MarkerData."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Mapping, Sequence

@@ -7,8 +7,6 @@ is where Motive's own fit has them.
 Motive's y axis points up unless set otherwise: `up: y`.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The plain CSV: a header row `t,x,y,psi,phi[,torque]`, then a row a sample, in SI units."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from types import MappingProxyType
 

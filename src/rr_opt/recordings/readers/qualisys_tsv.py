@@ -5,8 +5,6 @@ the rotation matrix, column by column. The row `Frame`, `Time`, ... and these tw
 there if the export was set to write them; else frames come at `FREQUENCY`.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -7,8 +7,6 @@ by a straight line and the shortest turn between the two poses about each; what 
 one and a half steps stays missing. A `JointState` is the servo's own log.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any

@@ -1,7 +1,5 @@
 """The servo's log as CSV: a header row `t,goal,present`, then a row a control step, in counts."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field

@@ -1,7 +1,5 @@
 """What readers share: the bytes of a file, its lines whatever its encoding, and its columns."""
 
-from __future__ import annotations
-
 import codecs
 import re
 from collections.abc import Callable, Mapping, Sequence

@@ -5,8 +5,6 @@ others. Line 4 is `Frame#`, `Time` and each marker's name above the first of its
 X1, Y1, Z1, X2 and so on. Rows follow, as a rule after a blank line.
 """
 
-from __future__ import annotations
-
 from rr_opt.files.issue import refuse
 from rr_opt.messages import shown
 from rr_opt.recordings.readers.marker_rows import (

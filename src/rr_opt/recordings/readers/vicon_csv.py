@@ -6,8 +6,6 @@ five lines of header: its title; its rate, Hz; the names, each above the first o
 `Frame,Sub Frame,X,Y,Z,...`; the units. It ends with a blank line.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -198,4 +196,4 @@ def _unread(text: Text, start: int, last: int, head: Head) -> Iterator[Notice]:
         yield notice("file.sections", names=", ".join(dict.fromkeys(others)))
 
 
-READER = Reader("Vicon Nexus CSV", sniff, read)
+READER = Reader("Vicon CSV", sniff, read)

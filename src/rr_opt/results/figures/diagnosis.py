@@ -1,7 +1,5 @@
 """How well the nominal and the corrected model predict the recordings, in sigma."""
 
-from __future__ import annotations
-
 import itertools
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The figures of a fastest gait, as SVG text by name: among them what each limit costs."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """Pictures to a film: GIF by pillow, MP4 by the program ffmpeg."""
 
-from __future__ import annotations
-
 import shutil
 import subprocess
 from collections.abc import Callable, Iterable, Iterator

@@ -1,7 +1,5 @@
 """Figures of a recording: the path, its channels, its command, its noise."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping, Sequence
 

@@ -1,7 +1,5 @@
 """The path of P, with the robot drawn at a few instants, and as a film; a driven route."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace

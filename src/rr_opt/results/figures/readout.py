@@ -4,8 +4,6 @@ A JSON text in the SVG's `metadata`: for each axes its place, in shares of the p
 and from the top; both scales; and the lines, bands and cells drawn on it.
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Sequence
 from typing import Any

@@ -1,7 +1,5 @@
 """Speed over period and amplitude: where the limits leave room, and where the optimum lies."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import replace

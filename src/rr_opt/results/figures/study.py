@@ -1,7 +1,5 @@
 """A study over two of its inputs: a map of the speed, and the active limits and bounds."""
 
-from __future__ import annotations
-
 import itertools
 from collections import Counter
 from collections.abc import Iterator

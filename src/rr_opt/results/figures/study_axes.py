@@ -1,7 +1,5 @@
 """What a study varies as the axes of a figure: one axis, and the map over two."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

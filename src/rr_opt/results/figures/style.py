@@ -1,7 +1,5 @@
 """How every figure looks: colours that colour-blind readers can distinguish, one type size."""
 
-from __future__ import annotations
-
 import io
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager

@@ -1,7 +1,5 @@
 """The figures of a turn: those of a fastest gait, with the circle that was asked for."""
 
-from __future__ import annotations
-
 import math
 
 import matplotlib as mpl
