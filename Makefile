@@ -29,7 +29,7 @@ BENCHMARKS ?= startup optimise turn route sweep fit study recordings diagnose ef
 MEASURE := OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 $(BENCH_VENV)/bin/python -W ignore
 
 .DEFAULT_GOAL := help
-.PHONY: help run test check format-check lint types contracts format readme results fuzz chaos bench real prove settings demo docs dist pins clean
+.PHONY: help run test check format-check lint types contracts format readme results fuzz chaos bench real prove settings demo docs pictures dist pins clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/\1|\2/p' $(MAKEFILE_LIST) | \
@@ -118,6 +118,9 @@ pins: $(RUN) ## pin the newest dependencies that pyproject.toml allows
 
 docs: $(DOCS) ## build the documentation's site, into out/site
 	$(BIN)/python -m mkdocs build --quiet --strict --site-dir out/site
+
+pictures: $(DEV) ## photograph the pages of the gallery, into docs/pages (needs chromium)
+	$(BIN)/python docs/pictures.py
 
 dist: $(DEV) ## build the source distribution and the wheel, into dist/
 	rm -rf dist build

@@ -27,6 +27,11 @@ from rr_opt.model.robot import Robot
 
 Array = NDArray[np.float64]
 
+_MAGNIFIED = 1e5
+"""Largest exp(E) over the least up to which rounding stays below 1e-10."""
+_AT_ONCE = 128
+"""Gaits."""
+
 
 class Cycle(NamedTuple):
     """One steady period on (gaits, nodes): v, its rate, psi-dot and the servo's torque."""
@@ -75,10 +80,28 @@ def steady_cycle(one: Body, two: Body, gait: Sequence[Array], nodes: int, torque
     ak[:, 0] = 0.0
     E = np.exp(irfft(np.divide(ak, wave, out=ak, where=wave != 0), nodes))
     v = E * irfft(rfft(f / E) / (wave - mean), nodes)
+    magnified = ~(E.max(axis=1) < _MAGNIFIED * E.min(axis=1))
+    if magnified.any():
+        v[magnified] = _collocated(a[magnified], f[magnified], T[magnified])
     vdot = a * v + f
     w = yaw_rate(one, two, phi, q, v)
     tau = servo_torque(one, two, phi, q, dq, v, vdot) if torque else None
     return Cycle(v, vdot, w, tau)
+
+
+def _collocated(a: Array, f: Array, T: Array) -> Array:
+    """The periodic solution where friction is so strong that exp(-E) magnifies rounding: the same
+    Fourier series as linear equations at the nodes, some gaits at a time."""
+    nodes = a.shape[1]
+    wave = 2j * np.pi * np.arange(nodes // 2 + 1)
+    wave[-1] = 0.0
+    slope = irfft(wave[:, None] * rfft(np.eye(nodes), axis=0), nodes, axis=0)
+    v = np.empty_like(a)
+    for at in range(0, len(a), _AT_ONCE):
+        some = slice(at, at + _AT_ONCE)
+        matrix = slope / T[some, :, None] - a[some, :, None] * np.eye(nodes)
+        v[some] = np.linalg.solve(matrix, f[some, :, None])[..., 0]
+    return v
 
 
 def coefficients(one: Body, two: Body, phi: Array, q: Array, dq: Array) -> tuple[Array, Array]:

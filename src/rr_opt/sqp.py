@@ -34,7 +34,7 @@ _SHRUNK = 0.1
 _ITERATIONS = 100
 FEASIBLE = 1e-7
 """Largest violation of a row that still counts as kept."""
-_DEARER, _DEAREST = 10.0, 1e5
+_DEARER, DEAREST = 10.0, 1e5
 """What a penalty is raised by where a climb ends with a row that fails, and the largest penalty, in
 values of the function: what needs a larger one has no solution near."""
 _REPEATED, _SETTLED = 8, 1e-2
@@ -128,7 +128,7 @@ def ascend(program: Program, start: Array, penalty: float = 10.0) -> Ascent:
         size = max(abs(value), size)
         step, prices, promise = _step(program, x, models, radius, penalty * size)
         dearest = float(np.abs(prices.rows).max(initial=0.0)) / size
-        penalty = max(penalty, min(2 * dearest, _DEAREST))
+        penalty = max(penalty, min(2 * dearest, DEAREST))
         length, reach = float(np.abs(step).max(initial=0.0)), radius
         tried = x + _FRACTIONS[:, None] * program.scale * step
         tried = np.vstack([x, np.clip(tried, program.low, program.high)])
@@ -151,9 +151,9 @@ def ascend(program: Program, start: Array, penalty: float = 10.0) -> Ascent:
         small = length <= _LENGTH or abs(gain if best == 1 else promise) <= least
         converged = length < (1 - _SETTLED) * reach and small
         ended = converged or reach <= _LENGTH
-        if ended and violation > FEASIBLE and penalty < _DEAREST:
+        if ended and violation > FEASIBLE and penalty < DEAREST:
             # Where the function gains a lot along a row that hardly changes, breaking it paid.
-            penalty, radius, converged = min(_DEARER * penalty, _DEAREST), _RADIUS, False
+            penalty, radius, converged = min(_DEARER * penalty, DEAREST), _RADIUS, False
         elif reach <= _LENGTH:
             converged = -noise * size <= promise <= (_STATIONARY * reach + noise) * size
             break

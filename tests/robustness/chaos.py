@@ -497,6 +497,7 @@ def main() -> None:
     parser.add_argument("--broken", action="store_true", help="each has to notice what is missing")
     parser.add_argument("--out", type=Path, help="a JSON file for the counts")
     given = parser.parse_args()
+    print(f"seed {given.seed}", flush=True)
     # Runs in the background ignore it, and so would all that they start.
     signal.signal(signal.SIGINT, signal.default_int_handler)
     if not given.broken:

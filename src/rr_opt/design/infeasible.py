@@ -31,7 +31,7 @@ from rr_opt.sqp import FEASIBLE
 _ROUNDING = 1 + 1e-9
 _ENOUGH = 1 + 1e-5
 """What a limit is raised to beyond the least that was found."""
-_NODES = 768
+NODES = 768
 _NEAR = 0.01
 _OPPOSITE = {"forward": "backward", "backward": "forward"}
 
@@ -61,7 +61,7 @@ def attempt(terrains: list[Terrain]) -> Attempt:
         for start in terrain.box.physical(points).T:
             found = _climbed(terrain, start, FEWEST)
             if found.excess < best.excess:
-                best = _climbed(terrain, found.gait, _NODES)
+                best = _climbed(terrain, found.gait, NODES)
             if best.excess <= FEASIBLE:
                 return best
     return replace(best, scanned=count)
@@ -84,7 +84,7 @@ def clash(problem: Problem, box: Decisions, settings: list[Setting]) -> str | At
     if problem.limits.economy and found.excess <= FEASIBLE:
         found = seek(("torque", "economy"), "rows", 0)
     if found.excess > FEASIBLE:
-        names = Terrain(found.setting, box, 0).clashing(found.gait, _NODES, found.excess)
+        names = Terrain(found.setting, box, 0).clashing(found.gait, NODES, found.excess)
         words = _load(problem, names[0], found) if len(names) == 1 else _both(problem, names, found)
         return f"{_told([words])} {_evidence(found, box)}"
     if way:
@@ -252,7 +252,7 @@ def _ballast(box: Decisions) -> list[str]:
 
 
 def _nearest(found: Attempt) -> Nearest:
-    cycle = found.setting.landscape.cycles(found.gait[:, None], _NODES)
+    cycle = found.setting.landscape.cycles(found.gait[:, None], NODES)
     amplitude, period, offset, share = found.gait.tolist()
     turn, speed = float(cycle.turn[0]), float(cycle.speed[0])
     return Nearest(

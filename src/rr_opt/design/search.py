@@ -4,9 +4,9 @@ from collections.abc import Callable
 
 from rr_opt.design.candidate import Finds
 from rr_opt.design.decisions import decisions, scanned, settings_of
-from rr_opt.design.infeasible import clash, posture_clashes
+from rr_opt.design.infeasible import NODES, clash, posture_clashes
 from rr_opt.design.seeds import tops
-from rr_opt.design.sines import WAYS, solve_sine
+from rr_opt.design.sines import WAYS, solve_from_kept, solve_sine
 from rr_opt.design.terrain import Terrain
 from rr_opt.model.problem import Problem
 
@@ -36,4 +36,4 @@ def find_sines(problem: Problem, progress: Progress) -> Finds:
     if isinstance(found, str):
         return finds + Finds(clash=found)
     setting = found.setting
-    return finds + Finds([(setting, solve_sine(setting, way, found.gait))])
+    return finds + Finds([(setting, solve_from_kept(setting, way, found.gait, NODES))])

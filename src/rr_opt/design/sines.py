@@ -16,7 +16,7 @@ from rr_opt.design.terrain import Terrain
 from rr_opt.model.gait import SineGait
 from rr_opt.motion.steady_cycle import steady_cycle
 from rr_opt.outcome import NotConvergedError
-from rr_opt.sqp import FEASIBLE, Ascent, ascend
+from rr_opt.sqp import DEAREST, FEASIBLE, Ascent, ascend
 
 WAYS = {"forward": 1, "backward": -1, "either": 0}
 
@@ -45,6 +45,15 @@ def solve_sine(setting: Setting, sign: int, start: Array) -> Candidate:
     """Maximise the speed in direction `sign`, 0 for either, from amplitude, period, offset and the
     ballast's share (4,), with the fewest phases."""
     return _candidate(Terrain(setting, decisions(setting.problem), sign), start, FEWEST)
+
+
+def solve_from_kept(setting: Setting, sign: int, start: Array, nodes: int) -> Candidate:
+    """The same from a gait that keeps all limits with so many phases, which fewer may deny."""
+    terrain = Terrain(setting, decisions(setting.problem), sign)
+    candidate = _candidate(terrain, start, FEWEST)
+    if candidate.feasible and candidate.success:
+        return candidate
+    return _candidate(terrain, start, nodes)
 
 
 def refine_sine(setting: Setting, candidate: Candidate) -> Candidate:
@@ -77,6 +86,11 @@ def _settled(setting: Setting, candidate: Candidate) -> Candidate:
 
 def _candidate(terrain: Terrain, start: Array, nodes: int) -> Candidate:
     ascent, end = climbed(terrain, start, nodes)
+    if ascent.violation <= FEASIBLE and not ascent.converged:
+        # Rows that leave hardly any room bend away from a step that may break them a little.
+        program, x = terrain.program(end, nodes)
+        ascent = ascend(program, x, DEAREST)
+        end = terrain.gait_at(end, ascent.x)
     cycles, sign = terrain.setting.landscape.cycles(end[:, None], nodes), terrain.way
     speed = float(cycles.speed[0])
     prices, bound_prices = terrain.prices(end, speed, float(cycles.turn[0]), ascent)

@@ -32,7 +32,8 @@ _STABLE, _LOOKED_AT = 2.0, 33
 """Decay over a step that steps of order 6 follow without running away, with a margin; and times
 of a period at which it is looked at."""
 
-_TIGHT = 1e-12
+_TIGHT, TIGHTEST = 1e-12, 1e-14
+"""Tolerances of CVODES, relative."""
 
 
 @dataclass(frozen=True)

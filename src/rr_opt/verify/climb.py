@@ -77,7 +77,7 @@ def climb(problem: Problem, start: Array, aim: Aim = "speed", *, rough: bool = F
             options={"ftol": care.tolerance, "maxiter": care.iterations},
         )  # fmt: skip
         there = np.clip(end.x, 0.0, 1.0)
-        if not all(np.isfinite(part).all() for part in local.look(there)):
+        if not local.settles(there):
             break
         there = local.inside(there)
         moved = float(np.abs(there - z).max())
@@ -137,8 +137,15 @@ class _Local:
             if not (fails < -0.1 * KEPT).any():
                 break
             change = np.linalg.lstsq(rows[off], 0.2 * KEPT - fails[off], rcond=1e-9)[0]
-            z = np.clip(z + np.clip(change, -_LONGEST, _LONGEST), 0.0, 1.0)
+            moved = np.clip(z + np.clip(change, -_LONGEST, _LONGEST), 0.0, 1.0)
+            if not self.settles(moved):
+                break
+            z = moved
         return z
+
+    def settles(self, z: Array) -> bool:
+        """Whether the gait and those around it have settled cycles."""
+        return all(np.isfinite(part).all() for part in self.look(z))
 
     def keeps(self, z: Array) -> bool:
         """Whether all rows hold."""

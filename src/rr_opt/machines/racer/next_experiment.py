@@ -69,7 +69,8 @@ def next_experiment(
         return None
     k, quantity, factor, apart = known
     gait = plans[k].gait
-    words = " of ".join(reversed(quantity.replace("_", " ").split(".")))
+    words = quantity.replace("_", " ").replace("coulomb", "Coulomb")
+    words = " of ".join(reversed(words.split(".")))
     sentence = (
         f"Record {plans[k].seconds:.0f} s of amplitude {gait.amplitude:.2f} rad, period "
         f"{gait.period:.2f} s, offset {gait.offset:.2f} rad, from {plans[k].start}: it makes the "
