@@ -66,20 +66,26 @@ class Guided:
 
     def angle(self, t: NDArray[Any]) -> Array:
         """The angle of each time, rad."""
-        return np.array([self._angle(float(one)) for one in t])
-
-    def _angle(self, t: float) -> float:
-        while t > self.begin + self.u[7] and self.over == math.inf:
+        angles, now = np.empty(len(t)), 0
+        while now < len(t):
             end = self.begin + self.u[7]
-            times, poses = self.times[-_KEPT:], np.array(self.poses[-_KEPT:])
-            seen = np.array([np.interp(end - DELAY, times, row) for row in poses.T])
-            after = self.follower.next(seen + NOISE * self.rng.standard_normal(3))
-            if after is None:
-                self.over = end
-            else:
-                self.begin, self.u = end, after
-        s = min((t - self.begin) / self.u[7], 1.0)
-        return float(blended(s, self.u, math.sin, math.cos)[0])
+            past = int(np.searchsorted(t, end, "right")) if self.over == math.inf else len(t)
+            s = np.minimum((t[now:past] - self.begin) / self.u[7], 1.0)
+            angles[now:past] = blended(s, self.u, np.sin, np.cos)[0]
+            if past < len(t):
+                self._go_on(end)
+            now = past
+        return angles
+
+    def _go_on(self, end: float) -> None:
+        """With the segment after the one that ends now."""
+        times, poses = self.times[-_KEPT:], np.array(self.poses[-_KEPT:])
+        seen = np.array([np.interp(end - DELAY, times, row) for row in poses.T])
+        after = self.follower.next(seen + NOISE * self.rng.standard_normal(3))
+        if after is None:
+            self.over = end
+        else:
+            self.begin, self.u = end, after
 
 
 @dataclass

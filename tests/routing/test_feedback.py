@@ -3,6 +3,7 @@ limits, and is the same in C."""
 
 import json
 import math
+import re
 import shutil
 import subprocess
 from dataclasses import replace
@@ -14,7 +15,8 @@ import rr_opt as rr
 from rr_opt.model.ballast import with_inertia_ratio
 from rr_opt.model.command import blended
 from rr_opt.motion.dynamics import dynamics_of
-from rr_opt.routing.feedback import DELAY, Follower, apart, moved
+from rr_opt.results.route import c_text
+from rr_opt.routing.feedback import DELAY, MARGIN, Follower, apart, moved
 from rr_opt.routing.rollout import stepped
 
 PROBLEM = replace(rr.shipped(), inertia_ratio=None).with_robot(
@@ -92,6 +94,19 @@ def test_the_linear_map_is_that_of_the_motion(straight):
         assert made == pytest.approx(control.F[k, :, which], abs=2e-3)
 
 
+def test_every_number_in_c(straight):
+    control = straight.feedback
+    named = {"limit": control.limits * MARGIN, "segment": control.command.segments.T}
+    written = dict(
+        re.findall(r"static const \w+ rr_(\w+)\[.*?= (.*?);", c_text(control), re.DOTALL)
+    )
+    assert len(written) == 13
+    for name, numbers in written.items():
+        read = json.loads(numbers.translate(str.maketrans("{}", "[]")))
+        expected = named[name] if name in named else getattr(control, name)
+        np.testing.assert_allclose(read, expected, rtol=1e-11, err_msg=name)
+
+
 @pytest.mark.skipif(not shutil.which("gcc"), reason="needs gcc")
 def test_c_is_the_same(straight, tmp_path):
     straight.save(tmp_path, figures=False)
@@ -115,8 +130,9 @@ def test_c_is_the_same(straight, tmp_path):
         }
         """
     )
-    strict = ["gcc", "-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", "main.c", "-lm"]
-    subprocess.run(strict, cwd=tmp_path, check=True)
+    strict = ["gcc", "-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic"]
+    for one in ("-c", "feedback.c"), ("main.c", "-lm"):
+        subprocess.run([*strict, *one], cwd=tmp_path, check=True)
     given = "\n".join(" ".join(f"{value:.17g}" for value in pose) for pose in poses)
     out = subprocess.run(
         ["./a.out"], cwd=tmp_path, input=given, capture_output=True, text=True, check=True

@@ -19,6 +19,11 @@ from rr_opt.array import Array
 class Guide(Protocol):
     """A command that depends on what is seen of the robot."""
 
+    @property
+    def over(self) -> float:
+        """When it has ended, s; inf until that is known."""
+        ...
+
     def see(self, t: float, pose: Array) -> None:
         """Told at every sample: x (m), y (m) and heading (rad) of platform 1 at the time t, s."""
         ...
@@ -29,8 +34,9 @@ class Guide(Protocol):
 
 
 def guided(rig: Rig, guide: Guide, conditions: Conditions, step: float = STEP) -> Motion:
-    """Drive from rest by a guide and write down the motion, without torque. The servo's faults are
-    left out. Raises NotConvergedError if the motion is lost."""
+    """Drive from rest by a guide until it is over, at most as long as the conditions say, and write
+    down the motion, without torque. The servo's faults are left out. Raises NotConvergedError if
+    the motion is lost."""
     built = layout(rig)
     n = len(built.names)
     every = max(1, round(1 / (conditions.rate * fine_enough(rig, step))))
@@ -42,6 +48,8 @@ def guided(rig: Rig, guide: Guide, conditions: Conditions, step: float = STEP) -
     half = state.numel() // 2
     q = [state[half : half + n]]
     for at in range(round(conditions.seconds * conditions.rate)):
+        if at > guide.over * conditions.rate:
+            break
         guide.see(at / conditions.rate, np.asarray(ends(q[-1])[0]).ravel())
         t = at / conditions.rate + dt * np.arange(1, every + 1)
         asked = np.append(asked[-2:], guide.angle(t))

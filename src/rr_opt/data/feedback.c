@@ -57,7 +57,7 @@ static void rr_blended(double s, const double g[8], double out[3])
         + A * ((g[5] - g[2]) / D * along - w * w * wave);
 }
 
-static double rr_route_angle(const rr_route *r, double t)
+double rr_route_angle(const rr_route *r, double t)
 {
     double out[3];
     rr_blended(t / r->segment[7], r->segment, out);
@@ -118,7 +118,7 @@ static void rr_enter(rr_route *r)
         r->u[i] = r->segment[3 + i] - rr_segment[k][3 + i];
 }
 
-static void rr_route_begin(rr_route *r)
+void rr_route_begin(rr_route *r)
 {
     int i;
     r->period = r->made = 0;
@@ -129,7 +129,7 @@ static void rr_route_begin(rr_route *r)
 }
 
 /* 1, and the segment after a pose; 0 at the end of the drive. */
-static int rr_route_next(rr_route *r, double x, double y, double psi)
+int rr_route_next(rr_route *r, double x, double y, double psi)
 {
     static const int steps[3] = {0, -1, 1};
     int i, j, n, k = r->period, begin = k + 1;
