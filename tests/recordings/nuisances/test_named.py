@@ -101,6 +101,18 @@ def test_a_clock_that_changes_its_rate(times):
     assert abs(after / (times * GAIT.period) - 1) < 0.05
 
 
+@pytest.mark.parametrize("seed", [4, 12, 34, 37])
+def test_gaps_are_no_change_of_the_clock(seed):
+    def change(v):
+        rng = np.random.default_rng(seed)
+        for start in rng.uniform(0, 20, 8):
+            lost = (v["t"] > start) & (v["t"] < start + rng.uniform(0.3, 0.6) * GAIT.period)
+            for name in ("x", "y", "psi", "phi"):
+                v[name] = np.where(lost, np.nan, v[name])
+
+    assert "clock.change" not in told(recording(change=change))[0]
+
+
 @pytest.mark.parametrize("seconds", [0.0, 0.2, 0.5])
 @pytest.mark.parametrize("direction", np.arange(4) * np.pi / 2)
 def test_a_push(seconds, direction):

@@ -15,6 +15,8 @@ _LEAST = 0.1
 _STEADY = 0.05
 _FEWEST = 3
 """Windows to either side of the change."""
+_GAP = 0.25
+"""Of a period without data, at most, within a window: a line across it is no sine."""
 _SINE = 0.75
 """Of phi's variance in a window that a sine explains, where the angle is that of a gait."""
 
@@ -22,11 +24,18 @@ _SINE = 0.75
 def look(given: Evidence) -> Iterator[Notice]:
     """A clock that changes its rate."""
     t, phi = given.t, given.motion[3]
+    known = np.isfinite(phi)
     usual = given.gait.period if given.gait else dominant(t, phi)[0]
     for length in _LENGTHS if usual > 0 else ():
         starts = np.arange(t[0], t[-1] - length * usual, max(usual / 4, (t[-1] - t[0]) / 400))
-        pieces = [(t >= one) & (t <= one + length * usual) for one in starts]
-        found = [dominant(t[one], phi[one]) if one.any() else (np.nan, 0.0) for one in pieces]
+        ends = starts + length * usual
+        pieces = [known & (t >= a) & (t <= b) for a, b in zip(starts, ends, strict=True)]
+        gaps = [np.diff(t[one], prepend=a, append=b).max()
+                for one, a, b in zip(pieces, starts, ends, strict=True)]  # fmt: skip
+        found = [
+            dominant(t[one], phi[one]) if gap < _GAP * usual else (np.nan, 0.0)
+            for one, gap in zip(pieces, gaps, strict=True)
+        ]
         periods = np.array([period if share > _SINE else np.nan for period, share in found])
         if at := _change(np.log(periods)):
             before, after = (float(np.nanmedian(one)) for one in (periods[:at], periods[at:]))
