@@ -30,7 +30,9 @@ if TYPE_CHECKING:
     from rr_opt.api.drive import circle as circle
     from rr_opt.api.drive import export as export
     from rr_opt.api.drive import load_route as load_route
+    from rr_opt.api.drive import load_routes as load_routes
     from rr_opt.api.drive import route as route
+    from rr_opt.api.drive import routes as routes
     from rr_opt.api.drive import simulate as simulate
     from rr_opt.api.files import init as init
     from rr_opt.api.files import lint as lint
@@ -83,6 +85,7 @@ if TYPE_CHECKING:
     from rr_opt.results.motion import DrivenCircle as DrivenCircle
     from rr_opt.results.motion import SimulatedMotion as SimulatedMotion
     from rr_opt.results.route import DrivenRoute as DrivenRoute
+    from rr_opt.results.routes import DrivenRoutes as DrivenRoutes
     from rr_opt.results.setpoints import ExportedGait as ExportedGait
     from rr_opt.results.shapes import FastestShapes as FastestShapes
     from rr_opt.results.study import SolvedStudy as SolvedStudy
@@ -91,7 +94,7 @@ if TYPE_CHECKING:
     from rr_opt.results.turn_chart import TurnChart as TurnChart
 
 _HOMES = {
-    "api.drive": "circle export load_route route simulate",
+    "api.drive": "circle export load_route load_routes route routes simulate",
     "api.files": "init lint schema",
     "api.load": "InputWarning RobotWithGait load load_experiment "
     "load_gait load_robot prototype shipped",
@@ -108,6 +111,7 @@ _HOMES = {
     "results.inspection": "InspectedRecordings",
     "results.motion": "DrivenCircle SimulatedMotion",
     "results.route": "DrivenRoute",
+    "results.routes": "DrivenRoutes",
     "results.setpoints": "ExportedGait",
     "results.shapes": "FastestShapes",
     "results.study": "SolvedStudy",

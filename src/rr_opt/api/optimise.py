@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rr_opt.api.load import PathLike, identity, problem_of, read_arguments
-from rr_opt.batch.journal import Journal
+from rr_opt.batch.journal import JOURNAL, Journal
 from rr_opt.batch.run import Pool, pool_of, run
 from rr_opt.design import maximize_speed as design
 from rr_opt.design.decisions import decisions
@@ -268,9 +268,6 @@ def turn(
     circle = check_circle(robot, best.gait, wanted.low if wanted.fixed else arc.curvature)
     driven = _driven(optimum, progress)
     return replace(found, replay=replayed, sweep=swept, arc=arc, circle=circle, driven=driven)
-
-
-JOURNAL = "journal.jsonl"
 
 
 def load_study(path: str | Path) -> Study:

@@ -16,6 +16,9 @@ from typing import Any, Generic, Self, TypeVar
 from rr_opt.files.source import require_regular
 from rr_opt.outcome import InputError
 
+JOURNAL = "journal.jsonl"
+"""Its name in the folder of a study."""
+
 _CHANGES = {
     "input_sha256": "the study file or a file that it names",
     "version": "the version of rr-opt",

@@ -75,12 +75,13 @@ def turn(
     show(turned, files, json=json)
 
 
+_STUDY = "Study file: a problem and what is varied, or route files."
 _COLD = "Solve every case from scratch rather than from its neighbours."
 _RESTART = "Discard the rows of an earlier run."
 
 
 def study(
-    study: Annotated[Path, typer.Argument(help="Study file: a problem and what is varied.")],
+    study: Annotated[Path, typer.Argument(help=_STUDY)],
     out: Annotated[Path | None, options.out_option("out/NAME")] = None,
     workers: options.Workers = None,
     scheduler: options.Scheduler = None,
@@ -90,16 +91,23 @@ def study(
     json: Annotated[bool, options.json_option("study.json")] = False,
     figures: options.Figures = True,
 ) -> None:
-    """Solve a problem for many values of its keys: limits, robot parameters, bounds.
+    """Solve a problem for many values of its keys: limits, robot parameters, bounds. Or drive
+    several routes.
 
     An interrupted run resumes when the same command is repeated.
     """
+    given = {"workers": workers, "scheduler": scheduler, "restart": restart}
     with StepDisplay() as steps:
-        asked = rr.load_study(study)
-        folder = options.study_folder(out, asked.name, netcdf=netcdf)
-        given = {"workers": workers, "scheduler": scheduler, "cold": cold, "restart": restart}
-        solved = rr.study(asked, folder=folder, **given, progress=steps)
-        files = solved.save(folder, figures=figures, netcdf=netcdf, progress=steps)
+        if options.names_routes(study):
+            routes = options.read_routes(study)
+            folder = options.results_folder(out, routes.name)
+            solved = rr.routes(routes, folder=folder, **given, progress=steps)
+            files = solved.save(folder, figures=figures, progress=steps)
+        else:
+            asked = rr.load_study(study)
+            folder = options.study_folder(out, asked.name, netcdf=netcdf)
+            solved = rr.study(asked, folder=folder, **given, cold=cold, progress=steps)
+            files = solved.save(folder, figures=figures, netcdf=netcdf, progress=steps)
     show(solved, files, json=json)
 
 

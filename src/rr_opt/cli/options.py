@@ -16,6 +16,7 @@ from rr_opt.outcome import InputError, Status
 
 if TYPE_CHECKING:
     from rr_opt.api.load import RobotWithGait
+    from rr_opt.files.route_study_file import RouteStudy
     from rr_opt.model.gait import Gait
     from rr_opt.model.problem import Problem
     from rr_opt.model.route import Route
@@ -200,6 +201,21 @@ def read_route(path: Path) -> Route:
     from rr_opt.api.drive import load_route
 
     return _warned(lambda: load_route(path))
+
+
+def names_routes(path: Path) -> bool:
+    """Whether a study file is one of routes. Raises InputError if it cannot be read."""
+    from rr_opt.files.route_study_file import is_of_routes
+    from rr_opt.files.source import read_document
+
+    return is_of_routes(read_document(path))
+
+
+def read_routes(path: Path) -> RouteStudy:
+    """The routes of a study file; what looks wrong goes to stderr."""
+    from rr_opt.api.drive import load_routes
+
+    return _warned(lambda: load_routes(path))
 
 
 def _warned(read: Callable[[], Read]) -> Read:

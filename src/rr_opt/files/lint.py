@@ -8,6 +8,7 @@ from rr_opt.files.issue import InvalidFileError, Issue
 from rr_opt.files.problem_file import kind_of, problem_from, problem_sources
 from rr_opt.files.robot_file import robot_from, singular_posture
 from rr_opt.files.route_file import route_from
+from rr_opt.files.route_study_file import is_of_routes, routes_from
 from rr_opt.files.source import problem_path, read_document
 from rr_opt.files.study_file import study_from
 from rr_opt.files.yaml_text import FileData
@@ -27,7 +28,8 @@ def lint_file(path: str | Path) -> list[Issue]:
         if kind == "robot":
             return _robot_issues(document)
         if kind == "study":
-            return study_from(document, Path(path))[1]
+            of_routes = is_of_routes(document)
+            return (routes_from if of_routes else study_from)(document, Path(path))[1]
         if kind == "route":
             return route_from(document, file)[1]
         if kind == "experiment":

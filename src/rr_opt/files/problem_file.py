@@ -20,7 +20,7 @@ from rr_opt.outcome import InputError
 Kind = Literal["robot", "problem", "study", "experiment", "route", "result"]
 
 _EXPERIMENT = ("recordings", "noise", "uncertainty", "machine")
-_STUDY = ("vary", "together", "problem")
+_STUDY = ("vary", "together", "problem", "routes")
 
 
 def kind_of(document: FileData) -> Kind:

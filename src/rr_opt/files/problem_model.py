@@ -122,3 +122,8 @@ class StudyModel(FileModel):
         default_factory=list,
         description="Groups of keys whose values, as many for each key, are taken in step.",
     )
+    routes: list[str] | None = Field(
+        default=None,
+        min_length=1,
+        description="Instead of all others: route files, relative to this file, each a case.",
+    )

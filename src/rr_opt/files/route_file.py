@@ -31,6 +31,7 @@ class PieceModel(FileModel):
     )
 
 
+ROUTE_EXPECTED = "Read a file without `route`. Expected the pieces of a route under this key."
 _ONE = "`straight`, `arc` or `to`"
 _EACH = f"one key, {_ONE}, such as `- straight: 1 m`"
 
@@ -65,8 +66,7 @@ class RouteModel(FileModel):
 def read_route(path: str | Path) -> tuple[Route, list[Issue]]:
     """The route of a file, and warnings. Raises InvalidFileError with all that is wrong."""
     file = Path(path)
-    expected = "Read a file without `route`. Expected the pieces of a route under this key."
-    route, issues = route_from(read_as("route", file, expected), file)
+    route, issues = route_from(read_as("route", file, ROUTE_EXPECTED), file)
     return required(route, issues), issues
 
 

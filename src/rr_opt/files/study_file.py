@@ -12,6 +12,7 @@ from rr_opt.files.fields import validate
 from rr_opt.files.issue import InvalidFileError, Issue, has_errors, required
 from rr_opt.files.problem_file import base_sources, problem_from, read_as
 from rr_opt.files.problem_model import StudyModel
+from rr_opt.files.route_study_file import is_of_routes
 from rr_opt.files.source import fingerprint
 from rr_opt.files.study_axes import Axis, Line, axes_of
 from rr_opt.files.study_keys import Setting, with_values
@@ -139,7 +140,11 @@ def read_study(path: str | Path) -> tuple[Study, list[Issue]]:
         "Read a file that varies nothing. Expected a study, with `problem` and `vary`. "
         "A single problem is solved by `rr-opt maximize-speed`."
     )
-    study, issues = study_from(read_as("study", file, expected), file)
+    document = read_as("study", file, expected)
+    if is_of_routes(document):
+        message = "Read a study of routes. Expected one of a problem. `rr.routes` drives them."
+        raise InvalidFileError([document.error(("routes",), message)])
+    study, issues = study_from(document, file)
     return required(study, issues), issues
 
 

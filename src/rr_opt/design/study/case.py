@@ -177,16 +177,14 @@ def solve_study(
             yield case, rows[case]
 
     first = range(len(problems)) if cold else planned.anchors
-    yield from found(
-        {case: _solve_study_cold(problems[case]) for case in first if case not in rows}
-    )
+    yield from found({case: Task(portable(problems[case])) for case in first if case not in rows})
     if cold:
         return
     left = {case: donors for case, donors in planned.donors.items() if case not in rows}
     yield from found(
         {
             case: replace(
-                _solve_study_cold(problems[case]),
+                Task(portable(problems[case])),
                 footholds=tuple(footholds(donors, rows)),
                 expected=expected_speed(problems[case], donors, rows, problems),
             )
@@ -195,7 +193,7 @@ def solve_study(
     )
 
 
-def _solve_study_cold(problem: Problem) -> Task:
-    """A task that can be sent to another process, without what it does not need there."""
+def portable(problem: Problem) -> Problem:
+    """A problem that can be sent to another process, without what it does not need there."""
     physics = tuple(replace(use, values=dict(use.values)) for use in problem.robot.physics)
-    return Task(replace(problem, robot=replace(problem.robot, provenance={}, physics=physics)))
+    return replace(problem, robot=replace(problem.robot, provenance={}, physics=physics))

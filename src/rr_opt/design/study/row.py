@@ -142,17 +142,17 @@ def _optimum_from(record: Mapping[str, Any]) -> Optimum:
     return Optimum(**{**values, "held": tuple(held)})
 
 
-_PLAIN = {"str": (str, "a text"), "bool": (bool, "true or false")}
+_PLAIN: dict[Any, str] = {str: "a text", bool: "true or false"}
 
 
 def _check_fields(kind: type, values: Mapping[str, Any]) -> None:
     """Raise KeyError for a field that is missing, ValueError for a wrong number, text or truth."""
     for one in fields(kind):
         value = values[one.name]
-        if one.type in ("float", "int") or (one.type == "float | None" and value is not None):
-            _check_number(one.name, value, whole=one.type == "int")
-        elif one.type in _PLAIN and not isinstance(value, _PLAIN[one.type][0]):
-            raise ValueError(f"`{one.name}` is {_shown(value)}, not {_PLAIN[one.type][1]}")
+        if one.type in (float, int) or (one.type == float | None and value is not None):
+            _check_number(one.name, value, whole=one.type is int)
+        elif one.type in (str, bool) and type(value) is not one.type:
+            raise ValueError(f"`{one.name}` is {_shown(value)}, not {_PLAIN[one.type]}")
 
 
 def _numbers(
