@@ -79,6 +79,25 @@ def test_files(turned, tmp_path):
     assert np.abs(np.diff(points["phi_rad"])).max() <= PROBLEM.limits.rate / 125 * 1.001
 
 
+def test_the_grip_needed_is_checked(turned):
+    needed = turned.replay.reached["grip"]
+    assert 0.1 < needed < 1
+    limits = replace(turned.plan.problem.limits, grip=0.9 * needed)
+    problem = replace(turned.plan.problem, limits=limits)
+    found = rr.route(replace(turned.plan.route, problem=problem))
+    assert found.status is rr.Status.NOT_CONVERGED
+    assert "grip is exceeded by" in found.message
+
+
+def test_a_film(turned, tmp_path):
+    still = replace(turned.replay.trajectory, t=turned.replay.trajectory.t / 40)
+    short = replace(turned, replay=replace(turned.replay, trajectory=still))
+    short.save(tmp_path, figures=False, film="gif")
+    assert (tmp_path / "motion.gif").read_bytes()[:6] == b"GIF89a"
+    with pytest.raises(rr.InputError, match=r"setpoints\.csv"):
+        rr.export(tmp_path / "route.json")
+
+
 def test_without_pieces():
     with pytest.raises(rr.InputError, match="at least one"):
         rr.route(rr.Route(PROBLEM, ()))
