@@ -10,6 +10,7 @@ import pytest
 
 import rr_opt as rr
 from rr_opt.model.ballast import with_inertia_ratio
+from rr_opt.motion.steady_cycle import grip_needed, steady_cycle
 
 PROBLEM = replace(rr.shipped(), inertia_ratio=None).with_robot(
     with_inertia_ratio(rr.prototype(), 0.3)
@@ -81,7 +82,9 @@ def test_files(turned, tmp_path):
 
 def test_the_grip_needed_is_checked(turned):
     needed = turned.replay.reached["grip"]
-    assert 0.1 < needed < 1
+    gaits = (steady_cycle(turned.robot, gait) for gait in turned.plan.gaits)
+    steady = max(max(grip_needed(one, turned.robot)) for one in gaits)
+    assert needed == pytest.approx(steady, rel=0.25)
     limits = replace(turned.plan.problem.limits, grip=0.9 * needed)
     problem = replace(turned.plan.problem, limits=limits)
     found = rr.route(replace(turned.plan.route, problem=problem))
