@@ -269,8 +269,8 @@ def _loss(one: ExplainedExperiment) -> tuple[Figure, str] | None:
     return made, loss_sentences(loss)
 
 
-_MOST_PARTS = 12
-"""Parts of recordings, the held-out ones if there are any."""
+_MOST_PARTS, _MOST_POINTS = 12, 2000
+"""Parts of recordings, the held-out ones if there are any; points of a line in all."""
 
 
 def draw_machine(one: ExplainedMachine) -> dict[str, str]:
@@ -284,6 +284,8 @@ def _errors(one: ExplainedMachine) -> Figure:
     outputs = one.experiment.machine.outputs
     found = one.found
     rows = [k for k, m in enumerate(found.final) if m.held_out] or list(range(len(found.final)))
+    shown = rows[:_MOST_PARTS]
+    every = max(sum(found.final[row].t.size for row in shown) // _MOST_POINTS, 1)
     made = style.figure(height=0.8 + 1.7 * len(outputs))
     axes = np.atleast_1d(made.subplots(len(outputs), 1, sharex=True))
     for k, (ax, channel) in enumerate(zip(axes, outputs, strict=True)):
@@ -292,11 +294,17 @@ def _errors(one: ExplainedMachine) -> Figure:
             (found.final, style.FOUND, "corrected"),
         ):
             start = 0.0
-            for row in rows[:_MOST_PARTS]:
+            for row in shown:
                 m = level[row]
                 t = m.t - m.t[0] + start
                 off = (m.predicted - m.recorded)[:, k]
-                ax.plot(t, off, color=colour, lw=1.2, label=label if start == 0 else None)
+                ax.plot(
+                    t[::every],
+                    off[::every],
+                    color=colour,
+                    lw=1.2,
+                    label=label if start == 0 else None,
+                )
                 start = float(t[-1])
         ax.axhline(0, color=style.GREY, lw=0.8)
         ax.set(ylabel=f"{channel.name} off, {channel.unit}")
