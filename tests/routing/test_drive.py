@@ -10,6 +10,7 @@ import pytest
 
 import rr_opt as rr
 from rr_opt.model.ballast import with_inertia_ratio
+from rr_opt.motion.steady_cycle import grip_needed, steady_cycle
 
 PROBLEM = replace(rr.shipped(), inertia_ratio=None).with_robot(
     with_inertia_ratio(rr.prototype(), 0.3)
@@ -77,6 +78,27 @@ def test_files(turned, tmp_path):
     points = np.genfromtxt(tmp_path / "setpoints.csv", delimiter=",", names=True)
     assert points["phi_rad"] == pytest.approx(turned.command.angle(points["t_s"]), abs=1e-6)
     assert np.abs(np.diff(points["phi_rad"])).max() <= PROBLEM.limits.rate / 125 * 1.001
+
+
+def test_the_grip_needed_is_checked(turned):
+    needed = turned.replay.reached["grip"]
+    gaits = (steady_cycle(turned.robot, gait) for gait in turned.plan.gaits)
+    steady = max(max(grip_needed(one, turned.robot)) for one in gaits)
+    assert needed == pytest.approx(steady, rel=0.25)
+    limits = replace(turned.plan.problem.limits, grip=0.9 * needed)
+    problem = replace(turned.plan.problem, limits=limits)
+    found = rr.route(replace(turned.plan.route, problem=problem))
+    assert found.status is rr.Status.NOT_CONVERGED
+    assert "grip is exceeded by" in found.message
+
+
+def test_a_film(turned, tmp_path):
+    still = replace(turned.replay.trajectory, t=turned.replay.trajectory.t / 40)
+    short = replace(turned, replay=replace(turned.replay, trajectory=still))
+    short.save(tmp_path, figures=False, film="gif")
+    assert (tmp_path / "motion.gif").read_bytes()[:6] == b"GIF89a"
+    with pytest.raises(rr.InputError, match=r"setpoints\.csv"):
+        rr.export(tmp_path / "route.json")
 
 
 def test_without_pieces():

@@ -233,6 +233,11 @@ def _with_nearest_ratio(robot: Robot, choice: RatioChoice) -> tuple[Robot, tuple
 def _of_result(document: FileData) -> RobotWithGait:
     """Raises InputError if it holds no gait, or a wrong one."""
     robot: Any = document.data.get("robot")
+    if "command" in document.data:
+        raise InputError(
+            f"{document.file}: Read the drive of a route, which is no gait. Its set points are in "
+            "setpoints.csv beside it; `rr-opt route --animate gif` films it."
+        )
     if not isinstance(document.data.get("gait"), dict) or not isinstance(robot, dict):
         raise InputError(
             f"{document.file}: The result has no gait: its status is "

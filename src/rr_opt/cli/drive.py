@@ -100,6 +100,7 @@ def route(
             "--feedback", help="Also write the controller that keeps the robot on it: JSON and C."
         ),
     ] = False,
+    animate: options.Film = None,
 ) -> None:
     """Drive a route of straights, arcs and waypoints from rest, as fast as the robot can.
 
@@ -107,7 +108,7 @@ def route(
     """
     with StepDisplay() as steps:
         asked = options.read_route(route)
-        folder = options.results_folder(out, asked.name)
+        folder = options.route_folder(out, asked.name, animate)
         driven = rr.route(asked, feedback=feedback, progress=steps)
-        files = driven.save(folder, figures=figures, progress=steps)
+        files = driven.save(folder, figures=figures, progress=steps, film=animate)
     show(driven, files, json=json)

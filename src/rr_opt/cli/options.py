@@ -109,6 +109,14 @@ def motion_folder(out: Path | None, source: Path | None, format: Any, film: Any)
     return results_folder(out, f"{result_name(source)}-motion")
 
 
+def route_folder(out: Path | None, name: str, film: Any) -> Path:
+    """The folder of a route. Raises InputError also for a film that cannot be made here."""
+    from rr_opt.results.motion import check_files
+
+    check_files("csv", film)
+    return results_folder(out, name)
+
+
 def study_folder(out: Path | None, name: str, *, netcdf: bool) -> Path:
     """The folder of a study. Raises InputError also for a netCDF file that cannot be made here."""
     from rr_opt.results.study import check_files

@@ -4,6 +4,7 @@ import math
 import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -19,8 +20,8 @@ from rr_opt.model.robot import Robot
 from rr_opt.motion.setpoints import CENTRE, COUNT
 from rr_opt.outcome import Status
 from rr_opt.results.gait import ignored_effects
-from rr_opt.results.motion import trajectory_csv
-from rr_opt.results.result import Check, Result, picked
+from rr_opt.results.motion import Film, check_files, trajectory_csv
+from rr_opt.results.result import Check, Progress, Result, picked, quiet
 from rr_opt.routing import feedback as feedback_constants
 from rr_opt.routing.feedback import Feedback
 from rr_opt.routing.plan import RoutePlan
@@ -43,7 +44,10 @@ class DrivenRoute(Result):
     """
 
     FILE = "route.json"
-    OTHERS = ("trajectory.csv", "setpoints.csv", "feedback.json", "feedback.c")
+    OTHERS = (
+        *("trajectory.csv", "setpoints.csv", "feedback.json", "feedback.c"),
+        *("motion.gif", "motion.mp4"),
+    )
     DRAW = "rr_opt.results.figures.motion.draw_route"
     CAPTIONS = captions("route")
 
@@ -95,6 +99,7 @@ class DrivenRoute(Result):
         replay, asked = self.replay, self.plan.route.tolerance
         if replay is None:
             return []
+        worst = self.plan.problem.limits.worst(replay.reached)[0]
         end = replay.position <= asked.position and replay.heading <= asked.heading
         checks = [
             Check(
@@ -111,9 +116,9 @@ class DrivenRoute(Result):
             ),
             Check(
                 replay.excess <= LARGEST_EXCESS,
-                "Limits of rate, angle, torque and singularity: "
+                "Limits of rate, angle, torque, singularity and grip: "
                 + (
-                    f"the worst is exceeded by {100 * replay.excess:.2g} %."
+                    f"{worst} is exceeded by {100 * replay.excess:.2g} %."
                     if replay.excess > 0
                     else f"all are kept, the nearest with {-100 * replay.excess:.2f} % to spare."
                 ),
@@ -179,6 +184,27 @@ class DrivenRoute(Result):
             footer=doc.versions(self.sha256),
         )
 
+    def save(
+        self,
+        path: str | Path,
+        *,
+        figures: bool = True,
+        progress: Progress = quiet,
+        film: Film | None = None,
+    ) -> list[Path]:
+        """Write the result and, if asked for and there is a drive, a film: motion.gif or .mp4.
+
+        Returns the files. Raises InputError for a file that cannot be made here.
+        """
+        check_files("csv", film)
+        written = super().save(path, figures=figures, progress=progress)
+        if film and self.replay:
+            from rr_opt.results.figures.film import write_film
+
+            place, motion = Path(path) / f"motion.{film}", self.replay.trajectory
+            written.append(write_film(place, self.robot, motion, film, progress))
+        return written
+
     def _tables(self) -> Mapping[str, str]:
         """trajectory.csv, and set points of the whole drive."""
         command = self.command
@@ -234,6 +260,7 @@ def _facts(result: DrivenRoute) -> Iterator[doc.Fact]:
         yield doc.Fact("feedback", f"{count} periods", "corrected at the end of each")
     yield doc.Fact("end", f"{1e3 * replay.position:.1f} mm from its place")
     yield doc.Fact("", f"{math.degrees(replay.heading):.2f} deg from its heading")
+    yield doc.Fact("grip", number(replay.reached["grip"], 3), "largest side force over load")
     yield doc.Fact("way", f"within {1e3 * replay.path:.1f} mm of the path")
     if plan.route.end == "rest":
         yield doc.Fact("speed at the end", f"{1e3 * replay.speed:.2f} mm/s")

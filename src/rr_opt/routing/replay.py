@@ -31,7 +31,7 @@ class RouteReplay:
     speed      of axle 1 at the end, m/s
     path       largest distance of P from the path, m
     reached    extreme of each limited quantity: rate (rad/s), angle (rad), torque (N m),
-               singularity (least S1, m)
+               singularity (least S1, m), grip (largest side force of an axle over the load on it)
     excess     by how much the worst limit is exceeded, relative to it; negative if all are kept
     """
 
@@ -64,6 +64,7 @@ def replay(
         "angle": float(np.abs(fine[0]).max()),
         "torque": float(np.abs(driven.torque).max()),
         "singularity": float(S1.min()),
+        "grip": max(grip_needed(problem, command, driven)),
     }
     return RouteReplay(
         driven,
@@ -74,6 +75,15 @@ def replay(
         reached,
         problem.limits.worst(reached)[1],
     )
+
+
+def grip_needed(problem: Problem, command: Command, driven: Trajectory) -> tuple[float, float]:
+    """Of axles 1 and 2 the largest side force over the load on them, at all samples."""
+    dynamics = dynamics_of(problem.robot)
+    p = np.tile(dynamics.values(problem.robot)[:, None], len(driven.t))
+    sides = dynamics.grip(driven.v[None], *command.at(driven.t)[:, None], p)
+    one, two = (float(np.abs(np.asarray(side)).max()) for side in sides)
+    return one, two
 
 
 def distances(legs: tuple[Leg, ...], x: Array, y: Array) -> Array:
