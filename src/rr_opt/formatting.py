@@ -73,6 +73,11 @@ def with_unit(value: float, unit: str, digits: int = 4) -> str:
     return f"{number(value, digits)} {unit}".strip()
 
 
+def words_of(name: str) -> str:
+    """An effect's name as words: `coulomb_friction` as `Coulomb friction`."""
+    return name.replace("_", " ").replace("coulomb", "Coulomb")
+
+
 def counted(count: int, singular: str, plural: str = "") -> str:
     """`1 iteration`, `2 iterations`; plural: where it is not the singular with an s."""
     return f"{count} {singular if count == 1 else plural or f'{singular}s'}"

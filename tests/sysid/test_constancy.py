@@ -27,7 +27,7 @@ class LinearFit:
         H = np.diag(self.prior) + sum(J.T @ J for J in self.J)
         self.u = np.linalg.solve(H, sum(J.T @ y for J, y in zip(self.J, self.y, strict=True)))
         self.evidences = {
-            k: SimpleNamespace(H=J.T @ J, g=J.T @ (J @ self.u - y))
+            k: SimpleNamespace(H=J.T @ J, g=J.T @ (J @ self.u - y), value=0.0, log=0.0)
             for k, (J, y) in enumerate(zip(self.J, self.y, strict=True))
         }
         self.problem = SimpleNamespace(

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from rr_opt.documents import document as doc
-from rr_opt.formatting import number, with_unit
+from rr_opt.formatting import number, with_unit, words_of
 from rr_opt.messages import listed
 from rr_opt.model.experiment import Experiment, Run
 from rr_opt.model.parameters import PARAMETERS, parameters_of
@@ -55,8 +55,7 @@ def parameter_words(name: str) -> str:
 
 def candidate_words(effects: Sequence[str]) -> str:
     """A set of effects."""
-    names = (one.replace("_", " ").replace("coulomb", "Coulomb") for one in effects)
-    return " + ".join(names) or "none (parameters only)"
+    return " + ".join(map(words_of, effects)) or "none (parameters only)"
 
 
 def headline(

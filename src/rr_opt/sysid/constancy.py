@@ -30,7 +30,7 @@ from types import MappingProxyType
 import numpy as np
 from scipy.linalg import solve_triangular
 
-from rr_opt.sysid.estimation import Fit, root
+from rr_opt.sysid.estimation import Fit, root, summed
 from rr_opt.sysid.settings import SETTINGS
 
 
@@ -73,8 +73,7 @@ def constancy(
         return Constancy(0.0, 0)
     values = fit.u + problem.centre / problem.scale
     form = [form_errors.get(name.split(".")[0], 0.0) for name in problem.names]
-    H = np.diag(problem.prior) + sum(one.H for one in fit.evidences.values())
-    g = problem.prior * fit.u + sum(one.g for one in fit.evidences.values())
+    H, g, _ = summed(problem, fit.evidences, fit.u)
     # In units in which all that is known of the values is the unit matrix.
     units = np.sqrt(np.diag(H))
     L = root(H / units / units[:, None])

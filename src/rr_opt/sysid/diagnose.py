@@ -161,8 +161,8 @@ def identified(model: Machine, watch: Stopwatch) -> Result:
         everywhere, plain = best, selection.base
         if len(runs) < len(model.runs):
             every = range(len(model.runs))
-            plain = refitted(plain, every)
-            everywhere = refitted(best, every) if best.choices else plain
+            everywhere = refitted(best, every)
+            plain = refitted(plain, every) if best.choices else everywhere
     with watch("locating the fault"):
         before = dependences(base, *model.unknown_inputs(base))
         after = dependences(fit, *model.unknown_inputs(fit)) if best.choices else before

@@ -81,14 +81,14 @@ class Evidence:
             return self
         across = self.H * sigma
         factor = cholesky(np.eye(sigma.size) + sigma[:, None] * across, lower=True)
-        root = solve_triangular(factor, across.T, lower=True)
+        half = solve_triangular(factor, across.T, lower=True)
         pull = solve_triangular(factor, sigma * self.g, lower=True)
         return replace(
             self,
             value=self.value - float(pull @ pull),
             log=self.log + 2 * float(np.sum(np.log(np.diag(factor)))),
-            g=self.g - root.T @ pull,
-            H=self.H - root.T @ root,
+            g=self.g - half.T @ pull,
+            H=self.H - half.T @ half,
         )
 
 
@@ -385,7 +385,7 @@ class Fit:
     def _least(self, evidences: Mapping[int, Evidence]) -> float:
         """The deviance of runs, at their own best."""
         problem = self.problem
-        H, g, value = _summed(problem, evidences, self.u)
+        H, g, value = summed(problem, evidences, self.u)
         if not self.u.size:
             return value
         low, high = problem.box
@@ -394,7 +394,7 @@ class Fit:
 
     def information(self) -> tuple[Array, Array, float]:
         """H, g and value of the runs with the prior: of value + 2 g'd + d'Hd."""
-        return _summed(self.problem, self.marginal, self.u)
+        return summed(self.problem, self.marginal, self.u)
 
     @cached_property
     def predictive(self) -> Mapping[int, float]:
@@ -420,7 +420,7 @@ def _but(evidences: Mapping[int, Evidence], run: int) -> dict[int, Evidence]:
 
 def _deviance(problem: Problem, evidences: Mapping[int, Evidence], u: Array) -> float:
     """-2 log of the marginal likelihood of runs."""
-    H, _, value = _summed(problem, evidences, u)
+    H, _, value = summed(problem, evidences, u)
     return value + _volume(problem, H)
 
 
@@ -451,7 +451,7 @@ def solve(
     linear = here.linear()
     evidences = linear.evidences(problem.q)
     for step in range(steps):
-        H, g, _ = _summed(problem, evidences, here.u)
+        H, g, _ = summed(problem, evidences, here.u)
         better, share = None, 1.0
         for _ in range(6):
             d = _step(H, g, radius, here.u, problem.box)
@@ -481,7 +481,7 @@ def solve(
     return Fit(problem, problem.valued(here.u), here.states, linear, evidences, converged)
 
 
-def _summed(
+def summed(
     problem: Problem, evidences: Mapping[int, Evidence], u: Array
 ) -> tuple[Array, Array, float]:
     """H, g and value of the runs with the prior: of value + 2 g'd + d'Hd."""

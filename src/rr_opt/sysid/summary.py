@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from rr_opt.formatting import words_of
 from rr_opt.sysid.diagnosis import Diagnosis
 
 
@@ -10,7 +11,7 @@ def summary_of(found: Diagnosis, worth: str = "") -> str:
 
     worth  what it is worth in the machine's own terms: `the place was 8 mm off and is 1 mm off; `
     """
-    names = (one.name.replace("_", " ").replace("coulomb", "Coulomb") for one in found.findings)
+    names = (words_of(one.name) for one in found.findings)
     listed = " and ".join(names)
     sure = ", ".join(f"{one.confidence:.0%}" for one in found.findings)
     opening = {

@@ -16,6 +16,7 @@ from dataclasses import replace
 import numpy as np
 
 from rr_opt.array import Array
+from rr_opt.formatting import words_of
 from rr_opt.machines.racer.model import RacerModel
 from rr_opt.model.experiment import CHANNELS, Recording, Run, Start
 from rr_opt.model.gait import SineGait
@@ -69,8 +70,7 @@ def next_experiment(
         return None
     k, quantity, factor, apart = known
     gait = plans[k].gait
-    words = quantity.replace("_", " ").replace("coulomb", "Coulomb")
-    words = " of ".join(reversed(words.split(".")))
+    words = " of ".join(reversed(words_of(quantity).split(".")))
     sentence = (
         f"Record {plans[k].seconds:.0f} s of amplitude {gait.amplitude:.2f} rad, period "
         f"{gait.period:.2f} s, offset {gait.offset:.2f} rad, from {plans[k].start}: it makes the "
