@@ -40,3 +40,9 @@ def test_a_notice_is_its_text_and_keeps_its_code():
 )
 def test_a_size_reads_as_it_would_be_written(channel, size, text):
     assert size_text(channel, size) == text
+
+
+def test_an_error_says_what_was_expected_or_what_to_do():
+    errors = {code: one for code, one in TABLE.items() if one.level == "error"}
+    assert errors
+    assert not [c for c, e in errors.items() if not ("Expected" in e.sentence or e.remedy)]

@@ -132,7 +132,8 @@ class Limits:
         return {name: limit for name, limit in given.items() if 0 < limit < math.inf}
 
     def worst(self, reached: Mapping[str, float]) -> tuple[str, float]:
-        """The limit that is broken most, or kept most narrowly, and its excess relative to it.
+        """The limit that is broken most, or kept most narrowly, and its excess relative to it;
+        ("", -inf) where none is set.
 
         reached: the extreme of what each limit bounds, by the limit's name, SI.
         """
@@ -142,8 +143,8 @@ class Limits:
             for name, limit in limits.items()
             if limit and math.isfinite(limit)
         }
-        name = max(excess, key=lambda one: excess[one])
-        return name, excess[name]
+        name = max(excess, key=lambda one: excess[one], default="")
+        return name, excess.get(name, -math.inf)
 
 
 ANY = Interval(-math.inf, math.inf)

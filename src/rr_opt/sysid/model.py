@@ -7,6 +7,7 @@ own, so that a fit never has to simulate for longer than the model can be truste
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -164,9 +165,10 @@ def segments(runs: Mapping[int, Data], length: float = np.inf) -> tuple[Segment,
     out = []
     for run, data in runs.items():
         parts = max(round(data.duration / length), 1)
-        edges = np.searchsorted(data.t, np.linspace(data.t[0], data.t[-1], parts + 1))
-        edges[-1] = data.t.size
-        for first, until in zip(edges[:-1].tolist(), edges[1:].tolist(), strict=True):
+        begun = np.searchsorted(data.t, np.linspace(data.t[0], data.t[-1], parts + 1)[:-1])
+        # In a hole nothing begins, nor at the last sample, after which there is no step.
+        inner = np.unique(begun[(begun > 0) & (begun < data.t.size - 1)])
+        for first, until in itertools.pairwise([0, *inner.tolist(), data.t.size]):
             out.append(Segment(run, first, until, min(until, data.t.size - 1)))
     return tuple(out)
 
