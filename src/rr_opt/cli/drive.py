@@ -36,8 +36,7 @@ def simulate(
         folder = options.motion_folder(out, source, kind, animate)
         with options.naming(source):
             motion = rr.simulate(driven, None, seconds, start=start, rate=rate, progress=steps)
-        files = motion.save(folder, format=kind, film=animate, progress=steps)
-    show(motion, files, json=json)
+    show(motion, steps, folder, json=json, format=kind, film=animate)
 
 
 def circle(
@@ -85,8 +84,7 @@ def export(
         with options.naming(source):
             how = {"keep_period": keep_period, "within_limits": within_limits}
             points = rr.export(driven, format=kind, rate=rate, **how, progress=steps)
-        files = points.save(file)
-    show(points, files, json=json)
+    show(points, steps, file, json=json)
 
 
 def route(
@@ -110,5 +108,4 @@ def route(
         asked = options.read_route(route)
         folder = options.route_folder(out, asked.name, animate)
         driven = rr.route(asked, feedback=feedback, progress=steps)
-        files = driven.save(folder, figures=figures, progress=steps, film=animate)
-    show(driven, files, json=json)
+    show(driven, steps, folder, json=json, figures=figures, film=animate)

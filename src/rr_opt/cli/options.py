@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar
 
 import typer
 
-from rr_opt.cli.steps import silent
+from rr_opt.cli.steps import StepDisplay, silent
 from rr_opt.outcome import InputError, Status
 
 if TYPE_CHECKING:
@@ -385,13 +385,33 @@ NetCDF = Annotated[
 ]
 
 
-def show(result: Result, files: Sequence[Path] = (), *, json: bool) -> None:
-    """Print a result and its warnings. Ends the command if it is not what was asked for."""
+def show(
+    result: Result,
+    steps: StepDisplay | None = None,
+    place: Path | None = None,
+    *,
+    json: bool,
+    **how: Any,
+) -> None:
+    """Print a result and its warnings, write it to a place as asked (`how`), and print its files.
+
+    The text comes first: figures take longer. Ends the command if it is not what was asked for.
+    """
     from rr_opt.documents.archive import strict_json
+    from rr_opt.documents.rendering import columns
 
     warn(result.warnings)
-    text = strict_json(result.record(files)) if json else result.summary(files)
-    typer.echo(text, nl=False)
+    files: Sequence[Path] = ()
+    if not json:
+        typer.echo(result.summary(), nl=False)
+    if steps and place:
+        with steps:
+            files = result.save(place, progress=steps, **how)
+    if json:
+        typer.echo(strict_json(result.record(files)), nl=False)
+    elif files:
+        rows = [("" if k else "files", str(file)) for k, file in enumerate(files)]
+        typer.echo("\n".join(["", *columns(rows)]))
     if result.status is not Status.OPTIMAL:
         typer.echo(result.message, err=True)
         raise typer.Exit(result.status.exit_code)
