@@ -1,5 +1,7 @@
 """Robots that are not as stated, on a route in the laboratory, open loop and with feedback:
-`nice python -m benchmarks.route.followed [DRAWS [SEED]]`. It writes results/bench/route-feedback.md."""
+`nice python -m benchmarks.route.followed [DRAWS [SEED]]`.
+
+It writes results/bench/route-feedback.md."""
 
 from __future__ import annotations
 
@@ -166,7 +168,8 @@ def scatter(shown: dict[str, dict[str, Array]]) -> None:
 def main(draws: int, seed: int) -> None:
     """The table and the figure."""
     robot, problem = next(iter(ROBOTS.items()))
-    lines = ["# Routes with feedback", "", f"{machine()}; {draws} draws a route, seed {seed:#x}.", "", NOTES, ""]
+    drawn_from = f"{machine()}; {draws} draws a route, seed {seed:#x}."
+    lines = ["# Routes with feedback", "", drawn_from, "", NOTES, ""]
     lines += [f"## {robot}", "", "| route | loop | within | median, mm | 95 %, mm | time, s |"]
     lines.append("|" + "---|" * 6)
     shown: dict[str, dict[str, Array]] = {}
