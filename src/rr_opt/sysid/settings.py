@@ -52,6 +52,8 @@ class Settings:
     form_error            of the way travelled, and of the speed over a segment: by so much even a
                           fine simulation of wheels that press on a floor is off
     starting              s; after a start from rest the motor saturates, which is left out
+    bouncing              of a period; after a start from rest a joint with play bounces between its
+                          stops, how much nobody knows: its angle is left out
     creeping              s, in which a side speed of a wheel that creeps is gone
     growth                e^2: a window is no longer than errors take to grow so many times anywhere
     input_share           of the motion in the longest windows (RMS): the noise of the inputs leaves
@@ -93,6 +95,7 @@ class Settings:
     identifiable: float = 0.999
     form_error: float = 1e-4
     starting: float = 0.05
+    bouncing: float = 0.5
     creeping: float = 0.02
     growth: float = 7.4
     input_share: float = 0.005

@@ -105,7 +105,7 @@ class Simulator:
     @cached_property
     def drives(self) -> Drives:
         """What the servo makes of the gaits."""
-        return Drives(self._runs, self._nominal)
+        return Drives(self._runs)
 
     def angle(self, run: int, values: Mapping[str, float], effects: tuple[str, ...]) -> Array:
         """phi (n,) of a run as the servo makes it and it is recorded, rad, at the samples."""
