@@ -1,7 +1,5 @@
 """A rig in the plane driven by a command that depends on what is seen of it."""
 
-from __future__ import annotations
-
 from typing import Any, Protocol
 
 import casadi as ca

@@ -3,8 +3,6 @@
 `make settings` halves and doubles each on the same cases; `results/settings` shows what changes.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 

@@ -5,8 +5,6 @@ and that leave no more than an imitation would not; what is left beside them is 
 where no effect is shown is the answer `unexplained`.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """The joint's angle in a run, its steps, and how it changes with what the servo does wrong."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

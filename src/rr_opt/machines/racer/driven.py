@@ -10,8 +10,6 @@ Multiple shooting knows no play, slip or tilt. Its optima are where a simplex me
 climbs on the speed of this simulation.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace

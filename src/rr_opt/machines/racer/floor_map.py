@@ -8,8 +8,6 @@ Places and speeds are those recorded: with them a drag is right however strong i
 predicted ones would have the robot drive on.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Callable, Mapping, Sequence

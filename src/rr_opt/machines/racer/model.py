@@ -1,7 +1,5 @@
 """The Roller Racer as a model that can be identified; answers `sysid.model.Model`."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace

@@ -4,8 +4,6 @@ The state is x, y, psi and z = v - g dphi, which jumps of the servo's rate leave
 axles may slip it is x, y, psi, v and both side speeds.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from functools import cached_property, lru_cache
 

@@ -6,8 +6,6 @@ anything else is a function of time along the recorded path, so the motion answe
 in one pass, the same way as it answers to the servo's drive.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import lru_cache
