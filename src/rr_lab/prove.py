@@ -29,7 +29,7 @@ class MadeCases(Result):
         """As plain data."""
         return {"status": "made", "cases": self.cases, "folder": str(self.folder)}
 
-    def summary(self, files: Sequence[Path] = ()) -> str:  # noqa: ARG002
+    def summary(self) -> str:
         """Where they are."""
         cases, answers = self.folder / "cases", self.folder / "answers"
         return f"{self.cases} cases in {cases}, their answers in {answers}\n"

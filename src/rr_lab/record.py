@@ -13,7 +13,7 @@ from rr_lab.formats import drawn_clock
 from rr_lab.random_case import Request
 from rr_opt.api.load import load_robot, prototype, read_arguments
 from rr_opt.documents.archive import file_for_result, folder_for_results, write_bytes, write_text
-from rr_opt.files.experiment_file import FILE_NAME
+from rr_opt.files.source import EXPERIMENT
 from rr_opt.formatting import QUANTITIES
 from rr_opt.model.experiment import Noise
 from rr_opt.model.gait import SineGait
@@ -151,7 +151,7 @@ class Recorded(Result):
         data = {"folder": str(self.folder), "files": list(self.files)}
         return {**data, "seal": str(self.seal), "sha256": self.digest} if self.seal else data
 
-    def summary(self, files: Sequence[Path] = ()) -> str:  # noqa: ARG002
+    def summary(self) -> str:
         """For a person."""
         text = f"{self.folder}: {len(self.case.plans)} recordings, {len(self.files)} files\n"
         if self.seal is None:
@@ -221,7 +221,7 @@ def _require_apart(folder: Path, seal: Path | None) -> None:
 
 def _require_own(folder: Path) -> None:
     """Raise InputError if an experiment is there that `record` did not write."""
-    file = folder / FILE_NAME
+    file = folder / EXPERIMENT
     if file.is_file() and not file.read_bytes().startswith(WRITTEN.encode()):
         raise InputError(
             f"{file} was not written by `rr-opt record`, which would write over it. Give another "

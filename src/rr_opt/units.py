@@ -1,8 +1,8 @@
 """Numbers with units, such as `30 rpm`, to SI.
 
-pint knows the units, and is loaded only when one is written. It never sees the text itself: the
-text is split here into names and small integer powers, so a hostile expression such as
-`9**9**9**9` is refused, not computed.
+The common ones are in a table; pint knows the others, and is loaded only when one is written. It
+never sees the text itself: the text is split here into names and small integer powers, so a hostile
+expression such as `9**9**9**9` is refused, not computed.
 
 Angles are kept apart from plain numbers: 30 Hz is not 30 rad/s, and 5 % is not an angle.
 """
@@ -10,6 +10,7 @@ Angles are kept apart from plain numbers: 30 Hz is not 30 rad/s, and 5 % is not 
 import math
 import re
 import sys
+from collections import Counter
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -20,21 +21,21 @@ from rr_opt.outcome import InputError
 _KINDS = {
     "": "a plain number",
     "m": "a length",
-    "m²": "an area",
+    "m^2": "an area",
     "s": "a time",
     "1/s": "a frequency",
     "kg": "a mass",
     "rad": "an angle",
     "rad/s": "an angular rate",
     "m/s": "a speed",
-    "m/s²": "an acceleration",
-    "kg·m/s²": "a force",
-    "kg·m²/s²": "a torque",
-    "kg·m²": "a moment of inertia",
-    "kg·m²/s": "a torque per angular rate",
+    "m/s^2": "an acceleration",
+    "kg m/s^2": "a force",
+    "kg m^2/s^2": "a torque",
+    "kg m^2": "a moment of inertia",
+    "kg m^2/s": "a torque per angular rate",
     "kg/s": "a force per speed",
 }
-"""What base units, as pint writes them, measure."""
+"""What base units measure."""
 
 LARGEST = 1e30
 """No quantity is as large, in any unit: products of such numbers overflow."""
@@ -49,7 +50,25 @@ _TOKEN = re.compile(
     r"|(?P<sign>[*·/()1])|\s+"
 )
 _SPELLINGS = {"Nm": "N m", "Nms": "N m s", "Ns": "N s", "RPM": "rpm", "°": "deg", "Nmm": "N mm"}
-_COMMON = ("m", "cm", "mm", "kg", "g", "s", "ms", "min", "rad", "deg", "mrad", "rpm", "N", "kgf")
+_COMMON = {
+    "m": (1.0, "m"),
+    "cm": (0.01, "m"),
+    "mm": (0.001, "m"),
+    "kg": (1.0, "kg"),
+    "g": (0.001, "kg"),
+    "s": (1.0, "s"),
+    "ms": (0.001, "s"),
+    "min": (60.0, "s"),
+    "rad": (1.0, "rad"),
+    "deg": (math.pi / 180, "rad"),
+    "mrad": (0.001, "rad"),
+    "rpm": (math.pi / 30, "rad/s"),
+    "N": (1.0, "kg m/s^2"),
+    "kgf": (9.80665, "kg m/s^2"),
+    "Hz": (1.0, "1/s"),
+    "%": (0.01, ""),
+}
+"""What one is worth in base units, and those."""
 # A moment may be written per radian: the angle it is divided by says how it is used.
 _ALSO = {"N m s": ("N m s/rad",), "N m": ("N m/rad",)}
 
@@ -107,7 +126,8 @@ def _worth(written: str, unit: str, text: str) -> float:
         expected_factor, expected = _base(accepted)
         if dimension == expected:
             return factor / expected_factor
-    what = _KINDS.get(dimension, "another kind of quantity")
+    kinds = (kind for base, kind in _KINDS.items() if dimension == _base(base)[1])
+    what = next(kinds, "another kind of quantity")
     advice = ""
     if unit == "rad/s" and dimension == _base("Hz")[1]:
         advice = " Turns per second or radians per second? Write rpm, rad/s or deg/s."
@@ -116,8 +136,7 @@ def _worth(written: str, unit: str, text: str) -> float:
 
 @lru_cache
 def _registry() -> Any:
-    # It takes half a second that files without units can do without, a third of it for arrays of
-    # dask, which it would load to know them.
+    # It takes a third of a second, and more for arrays of dask, which it would load to know them.
     absent = "dask" not in sys.modules
     if absent:
         sys.modules["dask"] = None  # type: ignore[assignment]
@@ -130,26 +149,29 @@ def _registry() -> Any:
 
 
 @lru_cache(maxsize=256)
-def _base(written: str) -> tuple[float, str]:
-    """What one `written` is worth in base units, and those base units as text."""
-    registry = _registry()
-    total = registry.Unit("dimensionless")
+def _base(written: str) -> tuple[float, frozenset[tuple[str, int]]]:
+    """What one `written` is worth in base units, and their powers."""
+    worth, powers = 1.0, Counter[str]()
     for name, power in _factors(written):
-        total = total * _named(name) ** power
-    factor, base = registry.get_base_units(total)
-    return float(factor), f"{base:~P}"
+        factor, base = _COMMON.get(name) or _rare(name)
+        worth *= factor**power
+        for part, own in _factors(base):
+            powers[part] += own * power
+    return worth, frozenset((part, power) for part, power in powers.items() if power)
 
 
-def _named(name: str) -> Any:
+def _rare(name: str) -> tuple[float, str]:
+    """What one is worth in base units, and those, as pint knows it."""
     registry = _registry()
     try:
         unit = registry.parse_units(name)
         # Zero degrees Celsius or decibel is not nothing: such scales have no factor.
         if registry.Quantity(0.0, unit).to_base_units().magnitude == 0.0:
-            return unit
+            factor, base = registry.get_base_units(unit)
+            return float(factor), f"{base:~C}"
     except (AttributeError, ValueError, TypeError):
         pass
-    near = nearest(name, _COMMON)
+    near = nearest(name, list(_COMMON))
     advice = f" Did you mean `{near}`?" if near else ""
     raise _UnitError(f"The unit {shown(name)} is not known.{advice}")
 

@@ -22,8 +22,7 @@ def calibrate(
         from rr_paper.calibration.calibration import calibrate as compute
 
         found = compute(steps)
-        files = found.save(folder, progress=steps)
-    show(found, files, json=json)
+    show(found, steps, folder, json=json)
 
 
 def reproduce(
@@ -43,5 +42,4 @@ def reproduce(
         from rr_paper import reproduction
 
         found = reproduction.reproduce(problem, steps)
-        files = found.save(folder, figures=figures, progress=steps)
-    show(found, files, json=json)
+    show(found, steps, folder, json=json, figures=figures)

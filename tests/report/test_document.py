@@ -113,12 +113,11 @@ def test_a_table_for_people_and_for_scripts():
     assert CASES.records[1]["speed"] is None
 
 
-def test_the_terminal_gets_the_brief_sections_and_the_files(tmp_path):
+def test_the_terminal_gets_the_brief_sections():
     parts = Section("Shown", ("long words " * 20,)), Section("Hidden", ("x",), brief=False)
-    text = terminal(Document("name", "kind", "Title", "Lead.", parts), [tmp_path / "a", tmp_path])
+    text = terminal(Document("name", "kind", "Title", "Lead.", parts))
     assert text.startswith("name: Title. Lead.\n\nShown\n  long words")
     assert "Hidden" not in text
-    assert text.endswith(f"files   {tmp_path / 'a'}\n        {tmp_path}\n")
     assert max(len(line) for line in text.splitlines() if "long" in line) <= 102
 
 

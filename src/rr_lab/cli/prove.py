@@ -75,5 +75,4 @@ def prove(
                 folder, basis, cases, workers=workers, scheduler=scheduler, restart=restart,
                 make_only=make_only, progress=steps,
             )  # fmt: skip
-        files = found.save(folder, progress=steps)
-    show(found, files, json=json)
+    show(found, steps, folder, json=json)

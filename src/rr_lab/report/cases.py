@@ -92,7 +92,7 @@ class ProvedCase(Result):
         """Both as plain data."""
         return case_record(self.case)
 
-    def summary(self, files: Sequence[Path] = ()) -> str:  # noqa: ARG002
+    def summary(self) -> str:
         """Both for a terminal, with the folder of its files."""
         case = self.case
         rows = [

@@ -8,9 +8,10 @@ import numpy as np
 
 from rr_opt.documents.archive import file_for_result, write_text
 from rr_opt.files import schemas
-from rr_opt.files.experiment_file import FILE_NAME, read_plan
+from rr_opt.files.experiment_file import read_plan
 from rr_opt.files.issue import Issue
 from rr_opt.files.lint import experiment_file, lint_file
+from rr_opt.files.source import EXPERIMENT
 from rr_opt.outcome import InputError
 
 
@@ -70,7 +71,7 @@ def init(kind: Kind, path: str | Path | None = None, *, force: bool = False) -> 
         _require_new([place], force)
         return [write_text(place, text)]
     folder = Path(path or kind)
-    places = [folder / FILE_NAME, *(folder / f"run{number}.csv" for number in (1, 2, 3))]
+    places = [folder / EXPERIMENT, *(folder / f"run{number}.csv" for number in (1, 2, 3))]
     _require_new(places, force)
     # The recordings go first: the experiment file names them.
     for place in places[1:]:

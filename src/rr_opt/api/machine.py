@@ -2,10 +2,9 @@
 
 from pathlib import Path
 
-from rr_opt.files.experiment_file import experiment_path
 from rr_opt.files.issue import InvalidFileError, Issue, has_errors
 from rr_opt.files.machine_file import machine_plan, read_machine_plan
-from rr_opt.files.source import read_document
+from rr_opt.files.source import experiment_path, read_document
 from rr_opt.machines.registry import RACER, machine_named
 from rr_opt.messages import shown
 from rr_opt.model.machine import Machine, MachineExperiment

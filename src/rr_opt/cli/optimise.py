@@ -26,8 +26,7 @@ def maximize_speed(
         posed = options.read_problem(problem)
         folder = options.fastest_folder(out, posed.name, force=force)
         best = rr.maximize_speed(posed, progress=steps)
-        files = best.save(folder, figures=figures, progress=steps)
-    show(best, files, json=json)
+    show(best, steps, folder, json=json, figures=figures)
 
 
 def shapes(
@@ -44,8 +43,7 @@ def shapes(
         posed = options.read_problem(problem)
         folder = options.results_folder(out, f"{posed.name}-shapes")
         compared = rr.shapes(posed, progress=steps)
-        files = compared.save(folder, figures=figures, progress=steps)
-    show(compared, files, json=json)
+    show(compared, steps, folder, json=json, figures=figures)
 
 
 def turn(
@@ -71,8 +69,7 @@ def turn(
         posed = options.read_problem(problem)
         folder = options.turn_folder(out, posed.name, asked, cycles, force=force)
         turned = rr.turn(posed, **asked, whole=cycles == "whole", progress=steps)
-        files = turned.save(folder, figures=figures, progress=steps)
-    show(turned, files, json=json)
+    show(turned, steps, folder, json=json, figures=figures)
 
 
 _STUDY = "Study file: a problem and what is varied, or route files."
@@ -102,13 +99,13 @@ def study(
             routes = options.read_routes(study)
             folder = options.results_folder(out, routes.name)
             solved = rr.routes(routes, folder=folder, **given, progress=steps)
-            files = solved.save(folder, figures=figures, progress=steps)
+            more = {}
         else:
             asked = rr.load_study(study)
             folder = options.study_folder(out, asked.name, netcdf=netcdf)
             solved = rr.study(asked, folder=folder, **given, cold=cold, progress=steps)
-            files = solved.save(folder, figures=figures, netcdf=netcdf, progress=steps)
-    show(solved, files, json=json)
+            more = {"netcdf": netcdf}
+    show(solved, steps, folder, json=json, figures=figures, **more)
 
 
 _POINTS = "Approximate number of gaits on the grid; at least two values of each quantity."
@@ -128,8 +125,7 @@ def sweep(
         posed = options.read_problem(problem)
         folder = options.results_folder(out, f"{posed.name}-sweep")
         swept = rr.sweep(posed, points, progress=steps)
-        files = swept.save(folder, progress=steps)
-    show(swept, files, json=json)
+    show(swept, steps, folder, json=json)
 
 
 def turn_chart(
@@ -146,5 +142,4 @@ def turn_chart(
         posed = options.read_problem(problem)
         folder = options.results_folder(out, f"{posed.name}-turn-chart")
         chart = rr.turn_chart(posed, progress=steps)
-        files = chart.save(folder, progress=steps)
-    show(chart, files, json=json)
+    show(chart, steps, folder, json=json)

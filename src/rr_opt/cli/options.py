@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar
 
 import typer
 
-from rr_opt.cli.steps import silent
+from rr_opt.cli.steps import StepDisplay, silent
 from rr_opt.outcome import InputError, Status
 
 if TYPE_CHECKING:
@@ -325,12 +325,7 @@ KeepPeriod = Annotated[
 ]
 
 WithinLimits = Annotated[
-    bool | None,
-    typer.Option(
-        help="Lower the amplitude until every step is within the limits, or never do; default: "
-        "only if the adjusted period takes the gait beyond them.",
-        show_default=False,
-    ),
+    bool, typer.Option(help="Lower the amplitude until every step is within the limits.")
 ]
 
 Trajectory = Annotated[Literal["csv", "netcdf"], typer.Option("--format", help="Trajectory file.")]
@@ -341,7 +336,14 @@ From = Annotated[
 
 Seconds = Annotated[float, typer.Option(help="Simulated time, s.")]
 Samples = Annotated[float, typer.Option(help="Samples per second.")]
-PointRate = Annotated[float, typer.Option(help="Set points per second.")]
+PointRate = Annotated[
+    float | None,
+    typer.Option(
+        help="Set points per second; default: 125 or, for servo, the most below at which the "
+        "largest step is a whole number of counts.",
+        show_default=False,
+    ),
+]
 PointFile = Annotated[Path | None, out_option("out/NAME-...", "The file to write.", "FILE")]
 MotionFolder = Annotated[Path | None, out_option("out/NAME-motion", "Folder for the files.")]
 
@@ -385,13 +387,33 @@ NetCDF = Annotated[
 ]
 
 
-def show(result: Result, files: Sequence[Path] = (), *, json: bool) -> None:
-    """Print a result and its warnings. Ends the command if it is not what was asked for."""
+def show(
+    result: Result,
+    steps: StepDisplay | None = None,
+    place: Path | None = None,
+    *,
+    json: bool,
+    **how: Any,
+) -> None:
+    """Print a result and its warnings, write it to a place as asked (`how`), and print its files.
+
+    The text comes first: figures take longer. Ends the command if it is not what was asked for.
+    """
     from rr_opt.documents.archive import strict_json
+    from rr_opt.documents.rendering import columns
 
     warn(result.warnings)
-    text = strict_json(result.record(files)) if json else result.summary(files)
-    typer.echo(text, nl=False)
+    files: Sequence[Path] = ()
+    if not json:
+        typer.echo(result.summary(), nl=False)
+    if steps and place:
+        with steps:
+            files = result.save(place, progress=steps, **how)
+    if json:
+        typer.echo(strict_json(result.record(files)), nl=False)
+    elif files:
+        rows = [("" if k else "files", str(file)) for k, file in enumerate(files)]
+        typer.echo("\n".join(["", *columns(rows)]))
     if result.status is not Status.OPTIMAL:
         typer.echo(result.message, err=True)
         raise typer.Exit(result.status.exit_code)

@@ -37,9 +37,8 @@ def inspect(
         given = {"layout": layout, "servo_log": servo_log, "gait": gait, "start": start}
         named = options.read_columns(columns)
         found = rr.inspect(source, columns=named, **given, progress=steps)
-        more = {"netcdf": netcdf} if netcdf else {}
-        files = found.save(folder, figures=figures, progress=steps, **more)
-    show(found, files, json=json)
+    more = {"netcdf": netcdf} if netcdf else {}
+    show(found, steps, folder, json=json, figures=figures, **more)
 
 
 def diagnose(
@@ -62,5 +61,4 @@ def diagnose(
         experiment = rr.load_experiment(source)
         folder = options.results_folder(out, f"{experiment.name}-diagnosis")
         found = rr.diagnose(experiment, progress=steps)
-        files = found.save(folder, figures=page, progress=steps)
-    show(found, files, json=json)
+    show(found, steps, folder, json=json, figures=page)

@@ -5,9 +5,8 @@ from __future__ import annotations
 import base64
 import re
 import textwrap
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from functools import cache
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rr_opt.documents import document as doc
@@ -20,14 +19,13 @@ if TYPE_CHECKING:
 _WIDTH = 100
 
 
-def terminal(document: doc.Document, files: Iterable[Path] = ()) -> str:
-    """The brief sections as text, and the files that were written."""
+def terminal(document: doc.Document) -> str:
+    """The brief sections as text."""
     head = f"{document.name}: {document.title}" if document.name else document.title
     # Why there is no result goes to stderr.
     lead = f". {document.lead}" if document.lead and document.good else ""
     parts = [_wrapped(head + lead)] if head else []
     parts += [_section(section) for section in document.sections if section.brief]
-    parts.append(columns([("files" if not k else "", str(file)) for k, file in enumerate(files)]))
     return "\n\n".join("\n".join(lines) for lines in parts if lines) + "\n"
 
 

@@ -18,7 +18,14 @@ from rr_opt.files.issue import InvalidFileError, Issue, has_errors, required
 from rr_opt.files.problem_file import ROBOT, read_as
 from rr_opt.files.record import gait_from
 from rr_opt.files.robot_file import robot_from
-from rr_opt.files.source import fingerprint, is_result, linked, read_document, unreadable
+from rr_opt.files.source import (
+    experiment_path,
+    fingerprint,
+    is_result,
+    linked,
+    read_document,
+    unreadable,
+)
 from rr_opt.files.yaml_text import FileData
 from rr_opt.messages import shown
 from rr_opt.model.experiment import Column, CountScale, Layout, Noise, Start, Uncertainty, Use
@@ -140,17 +147,6 @@ def _uses(document: FileData, runs: list[PlannedRun]) -> list[Issue]:
     else:
         return []
     return [document.warning(("recordings",), message)]
-
-
-FILE_NAME = "experiment.yaml"
-
-
-def experiment_path(path: Path) -> Path:
-    """The experiment file of a folder; any other path as it is."""
-    try:
-        return path / FILE_NAME if path.is_dir() else path
-    except (OSError, ValueError):
-        return path
 
 
 def read_plan(path: str | Path) -> tuple[ExperimentPlan, list[Issue]]:

@@ -3,14 +3,10 @@
 from contextlib import suppress
 from pathlib import Path
 
-from rr_opt.files.experiment_file import experiment_path, plan_from
 from rr_opt.files.issue import InvalidFileError, Issue
 from rr_opt.files.problem_file import kind_of, problem_from, problem_sources
 from rr_opt.files.robot_file import robot_from, singular_posture
-from rr_opt.files.route_file import route_from
-from rr_opt.files.route_study_file import is_of_routes, routes_from
-from rr_opt.files.source import problem_path, read_document
-from rr_opt.files.study_file import study_from
+from rr_opt.files.source import experiment_path, problem_path, read_document
 from rr_opt.files.yaml_text import FileData
 
 
@@ -18,8 +14,8 @@ def lint_file(path: str | Path) -> list[Issue]:
     """All issues of a robot, problem, study or experiment file, and of the files that it names.
 
     A folder stands for its problem.yaml, or else its experiment.yaml, whose recordings are not
-    read. The keys of a file show its kind. Nothing is raised: a file that cannot be read
-    is an issue too.
+    read. The keys of a file show its kind, and only what reads that kind is loaded. Nothing is
+    raised: a file that cannot be read is an issue too.
     """
     try:
         file = _file_of(Path(path))
@@ -28,11 +24,18 @@ def lint_file(path: str | Path) -> list[Issue]:
         if kind == "robot":
             return _robot_issues(document)
         if kind == "study":
+            from rr_opt.files.route_study_file import is_of_routes, routes_from
+            from rr_opt.files.study_file import study_from
+
             of_routes = is_of_routes(document)
             return (routes_from if of_routes else study_from)(document, Path(path))[1]
         if kind == "route":
+            from rr_opt.files.route_file import route_from
+
             return route_from(document, file)[1]
         if kind == "experiment":
+            from rr_opt.files.experiment_file import plan_from
+
             return plan_from(document, file)[1]
         return problem_from(problem_sources(file))[1]
     except InvalidFileError as error:

@@ -7,11 +7,10 @@ from typing import Annotated, Any
 
 from pydantic import Field, SkipValidation, create_model
 
-from rr_opt.files.experiment_file import experiment_path
 from rr_opt.files.experiment_model import ColumnOf, Uncertain
 from rr_opt.files.fields import FileModel, Key, validate
 from rr_opt.files.issue import Issue, has_errors, required
-from rr_opt.files.source import fingerprint, read_document, unreadable
+from rr_opt.files.source import experiment_path, fingerprint, read_document, unreadable
 from rr_opt.files.yaml_text import FileData
 from rr_opt.messages import shown
 from rr_opt.model.experiment import Column, Use

@@ -90,9 +90,21 @@ def fingerprint(paths: Iterable[Path]) -> str:
 
 def problem_path(path: Path) -> Path:
     """The problem file of a folder; any other path as it is."""
+    return _inside(path, "problem.yaml")
+
+
+EXPERIMENT = "experiment.yaml"
+
+
+def experiment_path(path: Path) -> Path:
+    """The experiment file of a folder; any other path as it is."""
+    return _inside(path, EXPERIMENT)
+
+
+def _inside(path: Path, name: str) -> Path:
     try:
-        return path / "problem.yaml" if path.is_dir() else path
-    except OSError:
+        return path / name if path.is_dir() else path
+    except (OSError, ValueError):
         return path
 
 

@@ -14,15 +14,9 @@ from typing import Any
 import numpy as np
 
 from rr_opt.array import Array
-from rr_opt.files.experiment_file import (
-    FILE_NAME,
-    ExperimentPlan,
-    PlannedRun,
-    experiment_path,
-    named_files,
-    read_plan,
-)
+from rr_opt.files.experiment_file import ExperimentPlan, PlannedRun, named_files, read_plan
 from rr_opt.files.issue import InvalidFileError, Issue, has_errors
+from rr_opt.files.source import EXPERIMENT, experiment_path
 from rr_opt.messages import shown
 from rr_opt.model.experiment import CHANNELS, Experiment, Layout, Recording, Run
 from rr_opt.model.parameters import Uncertainty
@@ -50,7 +44,7 @@ def read_experiment(folder: str | Path) -> Experiment:
     file = experiment_path(Path(folder))
     if file != Path(folder) and not file.exists():
         raise InputError(
-            f"{folder}: Read a folder without {FILE_NAME}. Expected that file, which names the "
+            f"{folder}: Read a folder without {EXPERIMENT}. Expected that file, which names the "
             "robot and the recordings. `rr-opt schema experiment` lists its keys."
         )
     experiment, issues = experiment_of(folder)

@@ -150,9 +150,9 @@ class ExplainedExperiment(Explained[Experiment]):
             ),
         )
 
-    def summary(self, files: Sequence[Path] = ()) -> str:
+    def summary(self) -> str:
         """The verdict, what was found with its intervals, before and after, and what to do next."""
-        return terminal(facts_alone(_summary_facts(self), self.found.summary), files)
+        return terminal(facts_alone(_summary_facts(self), self.found.summary))
 
     def drawn(self, progress: Progress = quiet) -> tuple[doc.Figure, ...]:
         """The figures, each with the caption that was drawn for it."""

@@ -120,9 +120,9 @@ class Result:
         """Text files beside the record, by name."""
         return {}
 
-    def summary(self, files: Sequence[Path] = ()) -> str:
-        """The result as text, with the names of its files."""
-        return terminal(self.document(), files)
+    def summary(self) -> str:
+        """The result as text."""
+        return terminal(self.document())
 
     def _draw(self, what: Any) -> Mapping[str, Any]:
         """SVG texts by name; matplotlib is loaded only now."""
