@@ -23,7 +23,7 @@ class Guide(Protocol):
         ...
 
     def see(self, t: float, pose: Array) -> None:
-        """Told at every sample: x (m), y (m) and heading (rad) of platform 1 at the time t, s."""
+        """Called at every sample: t (s), and x (m), y (m) and heading (rad) of platform 1."""
         ...
 
     def angle(self, t: NDArray[Any]) -> Array:

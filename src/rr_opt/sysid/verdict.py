@@ -97,7 +97,7 @@ class Result:
     @property
     def shown(self) -> tuple[Choice, ...]:
         """The effects that are missing with more likelihood than not: each, or another one of those
-        that cannot be told from it."""
+        that are indistinguishable from it."""
         tried, alike = self._ended, self.selection.alike()
         own = list(zip(weights(tried), tried, strict=True))
         return tuple(

@@ -107,7 +107,7 @@ class Drives:
         self._kept: dict[Made, Drive] = {}
 
     def of(self, run: int, given: Mapping[str, float], effects: tuple[str, ...]) -> Drive:
-        """What the servo makes of the gait that it is told in a run."""
+        """The angle that the servo makes of the gait commanded in a run."""
         return self.every([(run, given)], effects)[0]
 
     def every(
