@@ -109,7 +109,7 @@ pins: $(RUN) ## pin the newest dependencies that pyproject.toml allows
 	    echo "The extras of $$1 change pins of run: give pyproject.toml narrower bounds." >&2; exit 1; \
 	  fi; \
 	}; \
-	freeze run .; freeze dev '.[netcdf,ros,animate,cluster,lab,dev]'; freeze docs '.[docs]'; \
+	freeze run .; freeze dev '.[netcdf,ros,cluster,lab,dev]'; freeze docs '.[docs]'; \
 	{ \
 	  sed '/^# \[run\]/,$$d' requirements.lock; echo '# [run]'; cat "$$new/run"; \
 	  for name in dev docs; do printf '\n# [%s]\n' $$name; comm -13 "$$new/run" "$$new/$$name"; done; \

@@ -126,7 +126,10 @@ def ascend(program: Program, start: Array, penalty: float = 10.0) -> Ascent:
             break
         # It never falls: a penalty that does would let the climb go round in a circle.
         size = max(abs(value), size)
-        step, prices, promise = _step(program, x, models, radius, penalty * size)
+        step, priced, promise = _step(program, x, models, radius, penalty * size)
+        if not np.isfinite(step).all():
+            break
+        prices = priced
         dearest = float(np.abs(prices.rows).max(initial=0.0)) / size
         penalty = max(penalty, min(2 * dearest, DEAREST))
         length, reach = float(np.abs(step).max(initial=0.0)), radius
@@ -160,6 +163,8 @@ def ascend(program: Program, start: Array, penalty: float = 10.0) -> Ascent:
     return Ascent(x, value, violation, prices, names, converged, iterations)
 
 
+# Models may be so large that they overflow.
+@np.errstate(over="ignore", divide="ignore", invalid="ignore")
 def _step(
     program: Program, x: Array, models: Array, radius: float, penalty: float
 ) -> tuple[Array, Prices, float]:
@@ -189,6 +194,9 @@ def _step(
         at = np.concatenate([room - straight @ step, high - step, low + step, [0.0]])
         h = np.concatenate([-here[1:], here[1 : 1 + equal], np.maximum(at, 0.0)])
         bend = np.tensordot(price, bends[1:], 1) - bends[0]
+        if not np.isfinite(bend).all():
+            step = np.full(n, np.nan)
+            break
         least = max(np.abs(slopes[0]).max(initial=0.0), _SLIGHT * penalty)
         # Where rows contradict each other none of them settles the step across it.
         settled = found[:-1] > np.where(

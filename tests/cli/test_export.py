@@ -43,14 +43,15 @@ def test_every_format_of_a_result(run, result, tmp_path, kind, name):
     done = run("export", result(SineGait(0.15, 0.3)), "--format", kind)
     assert done.exit_code == 0, done.stderr
     assert {path.name for path in (tmp_path / "out").iterdir()} == {name}
-    assert "changed from 0.3 s (+1.33 %)" in done.stdout
+    assert "changed from 0.3 s (" in done.stdout
     assert "holding" in done.stdout
     assert ("rounding" in done.stdout) == (kind == "servo")
 
 
 @pytest.mark.parametrize("gait", EVERY.values(), ids=EVERY)
 def test_every_shape(run, result, tmp_path, gait):
-    done = run("export", result(gait), "--rate", "100", "--out", "below/a.csv", "--json")
+    options = ("--rate", "100", "--no-within-limits", "--out", "below/a.csv", "--json")
+    done = run("export", result(gait), *options)
     assert done.exit_code == 0, done.stderr
     reported = json.loads(done.stdout)
     assert reported["gait"] == gait_record(gait)
@@ -65,7 +66,8 @@ def test_every_shape(run, result, tmp_path, gait):
 
 
 def test_options_as_those_of_simulate(run, tmp_path):
-    done = run("export", "--amplitude", "30 deg", "--period", "800 ms", "--out", "a.csv")
+    sizes = ("--amplitude", "30 deg", "--period", "800 ms")
+    done = run("export", *sizes, "--no-within-limits", "--out", "a.csv")
     assert done.exit_code == 0, done.stderr
     table = rows(tmp_path / "a.csv")
     assert len(table) == 101
@@ -81,9 +83,16 @@ def test_keeping_the_period_changes_the_rate(run, result):
 
 
 def test_steps_too_fast_for_the_servo_are_reported(run, result):
-    done = run("export", result(SineGait(0.5, 0.3)))
+    done = run("export", result(SineGait(0.5, 0.3)), "--no-within-limits")
     assert done.exit_code == 0
     assert "warning: A step between set points needs" in done.stderr
+
+
+def test_a_gait_beyond_the_limits_is_lowered(run, result):
+    # 0.5 rad in 0.3 s are 100 rpm of 30.
+    done = run("export", result(SineGait(0.5, 0.3)), "--keep-period", "--json")
+    assert json.loads(done.stdout)["amplitude"] == pytest.approx(0.15, rel=1e-2)
+    assert "warning" not in done.stderr
 
 
 def test_a_changed_period_lowers_the_amplitude_to_stay_within_the_limits(run, result):
@@ -101,17 +110,21 @@ def test_a_changed_period_lowers_the_amplitude_to_stay_within_the_limits(run, re
     assert abs(lowered["speed_left"]) < abs(json.loads(broken.stdout)["speed_left"])
 
 
-def test_steps_between_counts_are_within_the_limits_if_asked(run, result, tmp_path):
+def test_steps_between_counts_are_within_the_limits(run, result, tmp_path):
     def steps(*more):
-        done = run("export", result(SineGait(0.15, 0.3)), "--format", "servo", *more, "-o", "a.csv")
+        options = ("--format", "servo", *more, "--out", "a.csv", "--json")
+        done = run("export", result(SineGait(0.15, 0.3)), *options)
         counts = [int(row[1]) for row in rows(tmp_path / "a.csv")[1:]]
-        return done, max(abs(b - a) for a, b in zip(counts, counts[1:] + counts[:1], strict=True))
+        most = max(abs(b - a) for a, b in zip(counts, counts[1:] + counts[:1], strict=True))
+        return most, json.loads(done.stdout)["amplitude"], done.stderr
 
-    # 30 rpm are 4.9 counts in 8 ms.
-    rounded, most = steps()
-    assert (most, "up to 1.734 mrad behind" in rounded.stderr) == (5, True)
-    strict, most = steps("--within-limits")
-    assert (most, strict.stderr.count("warning")) == (4, 0)
+    # 30 rpm are 4.9 counts in 8 ms, and 5 in 8.14 ms.
+    most, amplitude, said = steps()
+    assert (most, amplitude, "warning" in said) == (5, 0.15, False)
+    most, amplitude, said = steps("--rate", "125")
+    assert (most, amplitude < 0.15, "warning" in said) == (4, True, False)
+    most, amplitude, said = steps("--rate", "125", "--no-within-limits")
+    assert (most, amplitude, "up to 1.734 mrad behind" in said) == (5, 0.15, True)
 
 
 def test_the_limits_of_a_result_are_those_of_its_problem(run, result, tmp_path):

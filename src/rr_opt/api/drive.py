@@ -17,7 +17,7 @@ from rr_opt.files.issue import Issue
 from rr_opt.files.route_file import read_route
 from rr_opt.files.route_study_file import RouteStudy, read_routes
 from rr_opt.model.gait import Gait
-from rr_opt.model.problem import LARGEST_EXCESS, Limits, Problem
+from rr_opt.model.problem import Limits, Problem
 from rr_opt.model.robot import Robot
 from rr_opt.model.route import Route
 from rr_opt.motion import setpoints
@@ -125,37 +125,39 @@ def export(
     gait: Gait | None = None,
     *,
     format: Format = "csv",
-    rate: float | str = 125.0,
+    rate: float | str | None = None,
     keep_period: bool = False,
-    within_limits: bool | None = None,
+    within_limits: bool = True,
     progress: Progress = quiet,
 ) -> ExportedGait:
     """A gait as set points for a controller, and what they cost in speed.
 
     format       csv: time and angle; c-header: an array for C; servo: counts of the CDS5516
-    rate         set points a second
+    rate         set points a second; None: 125 or, for the servo's counts, the most below that at
+                 which the largest step of a whole number of counts is the limit of the rate
     keep_period  change the rate and not the period, so that a whole number of them fits in
-    within_limits  lower the amplitude until the steps between set points, as they are written,
-                 are within the limits; None: where the changed period takes a gait beyond them;
-                 False: never
+    within_limits  lower the amplitude until the gait and the steps between set points, as they
+                 are written, are within the limits
 
-    Raises InputError for an angle beyond the servo's counts.
+    Raises InputError for an angle beyond the servo's counts, and where no amplitude is within the
+    limits.
     """
     source = load_gait(robot) if isinstance(robot, str | Path) else robot
     limits = _limits_of(source)
     robot, gait, status = _driven(source, gait)
-    each_second = read_arguments({"rate": rate})["rate"]
+    limits = limits or Problem(robot).limits
+    if rate is None:
+        each_second = setpoints.usual_rate(*([limits.rate] if format == "servo" else []))
+    else:
+        each_second = read_arguments({"rate": rate})["rate"]
     points = setpoints.set_points(gait, each_second, keep_period=keep_period)
     # Before the work, as an angle may be beyond the counts.
     text_of(points, format)
-    if within_limits is not False:
+    if within_limits:
         progress("limits")
-        limits = limits or Problem(robot).limits
         require_friction(robot)
         require_regular(robot, servo_made(robot, gait))
-        if within_limits or setpoints.excess(robot, limits, gait) <= LARGEST_EXCESS:
-            strict = bool(within_limits) and format == "servo"
-            points = setpoints.within_limits(robot, limits, points, rounded=strict)
+        points = setpoints.within_limits(robot, limits, points, rounded=format == "servo")
     progress("what the set points cost")
     lost = setpoints.cost(robot, points, rounded=format == "servo")
     return ExportedGait(robot, gait, status, points, lost, format)

@@ -61,9 +61,9 @@ def export(
     source: options.Driven = None,
     *,
     kind: options.SetPoints = "csv",
-    rate: options.PointRate = 125.0,
+    rate: options.PointRate = None,
     keep_period: options.KeepPeriod = False,
-    within_limits: options.WithinLimits = None,
+    within_limits: options.WithinLimits = True,
     amplitude: options.Amplitude = None,
     period: options.Period = None,
     offset: options.Offset = None,
@@ -72,9 +72,9 @@ def export(
 ) -> None:
     """Write a gait as set points for a controller.
 
-    The period is adjusted to a whole number of set points. If that takes the gait beyond its
-    limits, the amplitude is lowered. The loss of speed is reported separately for the adjusted
-    period, the straight lines between set points, and rounding to counts.
+    The period is adjusted to a whole number of set points. If the gait or a step between set points
+    is beyond the limits, the amplitude is lowered. The loss of speed is reported separately for the
+    adjusted period, the straight lines between set points, and rounding to counts.
     """
     with StepDisplay() as steps:
         with options.naming(source):
@@ -82,8 +82,14 @@ def export(
             driven = options.read_gait(source, **gait, rate=rate)
         file = options.setpoints_file(out, source, kind)
         with options.naming(source):
-            how = {"keep_period": keep_period, "within_limits": within_limits}
-            points = rr.export(driven, format=kind, rate=rate, **how, progress=steps)
+            points = rr.export(
+                driven,
+                format=kind,
+                rate=rate,
+                keep_period=keep_period,
+                within_limits=within_limits,
+                progress=steps,
+            )
     show(points, steps, file, json=json)
 
 

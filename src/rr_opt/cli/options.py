@@ -325,12 +325,7 @@ KeepPeriod = Annotated[
 ]
 
 WithinLimits = Annotated[
-    bool | None,
-    typer.Option(
-        help="Lower the amplitude until every step is within the limits, or never do; default: "
-        "only if the adjusted period takes the gait beyond them.",
-        show_default=False,
-    ),
+    bool, typer.Option(help="Lower the amplitude until every step is within the limits.")
 ]
 
 Trajectory = Annotated[Literal["csv", "netcdf"], typer.Option("--format", help="Trajectory file.")]
@@ -341,7 +336,14 @@ From = Annotated[
 
 Seconds = Annotated[float, typer.Option(help="Simulated time, s.")]
 Samples = Annotated[float, typer.Option(help="Samples per second.")]
-PointRate = Annotated[float, typer.Option(help="Set points per second.")]
+PointRate = Annotated[
+    float | None,
+    typer.Option(
+        help="Set points per second; default: 125 or, for servo, the most below at which the "
+        "largest step is a whole number of counts.",
+        show_default=False,
+    ),
+]
 PointFile = Annotated[Path | None, out_option("out/NAME-...", "The file to write.", "FILE")]
 MotionFolder = Annotated[Path | None, out_option("out/NAME-motion", "Folder for the files.")]
 

@@ -48,7 +48,7 @@ def solve_sine(setting: Setting, sign: int, start: Array) -> Candidate:
 
 
 def solve_from_kept(setting: Setting, sign: int, start: Array, nodes: int) -> Candidate:
-    """The same from a gait that keeps all limits with so many phases, which fewer may deny."""
+    """The same from a gait within all limits at this many phases; at fewer it may not be."""
     terrain = Terrain(setting, decisions(setting.problem), sign)
     candidate = _candidate(terrain, start, FEWEST)
     if candidate.feasible and candidate.success:
@@ -86,11 +86,14 @@ def _settled(setting: Setting, candidate: Candidate) -> Candidate:
 
 def _candidate(terrain: Terrain, start: Array, nodes: int) -> Candidate:
     ascent, end = climbed(terrain, start, nodes)
-    if ascent.violation <= FEASIBLE and not ascent.converged:
-        # Rows that leave hardly any room bend away from a step that may break them a little.
-        program, x = terrain.program(end, nodes)
+    kept = ascent.violation <= FEASIBLE
+    if not (kept and ascent.converged):
+        # Rows that leave hardly any room bend away from a step that may break them a little; and
+        # where breaking them gains a lot, the climb left the gaits that keep them for good.
+        near = end if kept else start
+        program, x = terrain.program(near, nodes)
         ascent = ascend(program, x, DEAREST)
-        end = terrain.gait_at(end, ascent.x)
+        end = terrain.gait_at(near, ascent.x)
     cycles, sign = terrain.setting.landscape.cycles(end[:, None], nodes), terrain.way
     speed = float(cycles.speed[0])
     prices, bound_prices = terrain.prices(end, speed, float(cycles.turn[0]), ascent)

@@ -29,7 +29,7 @@ COUNT = math.radians(300) / 1024
 CENTRE, LAST = 512, 1023
 """The count of phi = 0, and the largest one."""
 
-_FEWEST, _MOST = 8, 20_000
+_FEWEST, _MOST, _USUAL = 8, 20_000, 125.0
 BLEND = 8
 """Time between two set points over the duration of a blend."""
 
@@ -66,6 +66,13 @@ class SetPoints:
     def rounded(self) -> Array:
         """The angles that the counts stand for, rad. Raises InputError as `counts`."""
         return COUNT * (self.counts.astype(float) - CENTRE)
+
+
+def usual_rate(rate_limit: float = math.inf) -> float:
+    """Of set points, 1/s: the most, up to 125, at which a rate limit (rad/s) is a whole number of
+    counts a step, so that rounding to counts takes no gait beyond it."""
+    counts = rate_limit / COUNT
+    return counts / math.ceil(counts / _USUAL) if math.isfinite(counts) else _USUAL
 
 
 def set_points(gait: Gait, rate: float, *, keep_period: bool = False) -> SetPoints:
@@ -160,7 +167,7 @@ def within_limits(
     if not low:
         raise InputError(
             "No amplitude keeps the set points within the limits. Expected steps of one count to "
-            "do. Lower --rate, or raise the limits."
+            "do. Lower --rate, raise the limits, or give --no-within-limits."
         )
     return scaled(low)
 

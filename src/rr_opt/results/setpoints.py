@@ -50,7 +50,7 @@ class ExportedGait(GaitResult):
         return (
             f"A step between set points needs {both(needed)}, but the servo's rate limit is "
             f"{both(limit)}: at it the servo is up to {number(1e3 * behind)} mrad behind. The cost "
-            "in speed ignores this. --within-limits lowers the amplitude until no step does.",
+            "in speed ignores this.",
         )
 
     def record(self, files: Sequence[Path] = ()) -> dict[str, Any]:

@@ -10,6 +10,7 @@ from typing import IO, Literal
 
 import numpy as np
 from numpy.typing import NDArray
+from PIL import Image
 
 from rr_opt.documents.archive import whole
 from rr_opt.model.robot import Robot
@@ -30,14 +31,6 @@ def check_film(kind: Film) -> None:
             "MP4 films need the program ffmpeg, which was not found. Install ffmpeg, or make a "
             "GIF with --animate gif."
         )
-    if kind == "gif":
-        try:
-            import PIL  # noqa: F401
-        except ImportError:
-            raise InputError(
-                "GIF films need pillow, which is not installed. "
-                "Run `pip install 'rr-opt[animate]'`."
-            ) from None
 
 
 def write_film(
@@ -69,8 +62,6 @@ def write_film(
 
 def _gif(path: Path, pictures: Iterator[NDArray], rate: int, fullest: NDArray) -> None:
     """One palette, of the fullest picture: colours then stay the same from frame to frame."""
-    from PIL import Image
-
     palette = Image.fromarray(fullest).quantize(128, method=Image.Quantize.MAXCOVERAGE)
     indexed = (
         Image.fromarray(picture).quantize(palette=palette, dither=Image.Dither.NONE)
