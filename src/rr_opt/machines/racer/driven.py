@@ -1,4 +1,4 @@
-"""The fastest gait of a robot driven with all its effects, as its servo is told it.
+"""The fastest gait, as commanded, of a robot driven with all its effects.
 
 By the same simulation as predicts recordings, so that servo, contact and floor are what a diagnosis
 found them to be. One period is mapped onto the next until the speed repeats. Where the floor is
@@ -9,8 +9,6 @@ out.
 Multiple shooting knows no play, slip or tilt. Its optima are where a simplex method starts that
 climbs on the speed of this simulation.
 """
-
-from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
@@ -141,7 +139,7 @@ class DrivenOptimum:
     """The fastest gait of a robot driven with all its effects.
 
     beyond        names of the effects that multiple shooting does not know
-    gait          as the servo is told it
+    gait          as commanded
     robot, ratio  with the inertia ratio that goes with it
     driven        what it comes to
     start         what the optimum of multiple shooting comes to
