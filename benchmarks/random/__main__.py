@@ -71,7 +71,7 @@ def turn(number: int, seed: str) -> tuple[Problem, float, float]:
     raise ValueError(f"No turn for number {number}.")
 
 
-def held(kind: str, number: int, seed: str) -> dict | None:
+def held(kind: str, number: int, seed: str) -> dict:
     """One case: what was answered, and what brute force has."""
     times, radius = math.nan, None
     if kind == "turn":
