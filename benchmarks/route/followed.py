@@ -1,5 +1,7 @@
 """Robots that are not as stated, on a route in the laboratory, open loop and with feedback:
-`nice python -m benchmarks.route.followed [DRAWS]`. It writes results/bench/route-feedback.md."""
+`nice python -m benchmarks.route.followed [DRAWS [SEED]]`.
+
+It writes results/bench/route-feedback.md."""
 
 from __future__ import annotations
 
@@ -163,10 +165,11 @@ def scatter(shown: dict[str, dict[str, Array]]) -> None:
         figure.savefig(FOLDER / "route-feedback.svg", metadata={"Date": None})
 
 
-def main(draws: int) -> None:
+def main(draws: int, seed: int) -> None:
     """The table and the figure."""
     robot, problem = next(iter(ROBOTS.items()))
-    lines = ["# Routes with feedback", "", f"{machine()}; {draws} draws a route.", "", NOTES, ""]
+    drawn_from = f"{machine()}; {draws} draws a route, seed {seed:#x}."
+    lines = ["# Routes with feedback", "", drawn_from, "", NOTES, ""]
     lines += [f"## {robot}", "", "| route | loop | within | median, mm | 95 %, mm | time, s |"]
     lines.append("|" + "---|" * 6)
     shown: dict[str, dict[str, Array]] = {}
@@ -179,7 +182,7 @@ def main(draws: int) -> None:
         ):
             ended = []
             for draw in range(draws):
-                rng = stream(2028, name, draw)
+                rng = stream(seed, name, draw)
                 other = drawn(problem.robot, rng)
                 assert found.command
                 guide = Guided(found.feedback, rng) if found.feedback else Planned(found.command)
@@ -197,4 +200,5 @@ def main(draws: int) -> None:
 
 
 if __name__ == "__main__":
-    main(int(sys.argv[1]) if len(sys.argv) > 1 else 100)
+    given = [int(word, 0) for word in sys.argv[1:]]
+    main(*given, *(100, 2028)[len(given) :])

@@ -4,8 +4,6 @@ The engines share what is hidden, the command as the servo's faults shape it, an
 system; no equation of motion and no contact.
 """
 
-from __future__ import annotations
-
 import zlib
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace

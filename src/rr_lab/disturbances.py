@@ -3,8 +3,6 @@
 None of it is physics: the right diagnosis of a disturbed recording is that of an undisturbed one.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """A case as the files of its folder: experiment.yaml, recordings, logs; its sealed answer."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import secrets

@@ -1,7 +1,5 @@
 """Markers on the robot as a motion capture system sees them, and the files of laboratories."""
 
-from __future__ import annotations
-
 import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

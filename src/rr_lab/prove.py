@@ -1,7 +1,5 @@
 """The blind trial of the diagnosis on sealed cases."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import closing
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Random effects, plans of runs, robots, and wrong nominal values."""
 
-from __future__ import annotations
-
 import math
 import secrets
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """Recordings of a virtual robot: the folder of a case, and its sealed answer apart from it."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path

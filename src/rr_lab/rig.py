@@ -3,8 +3,6 @@
 A rig that no effect has touched is the nominal robot. It is plain data that every engine reads.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field

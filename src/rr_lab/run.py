@@ -1,7 +1,5 @@
 """A run: the robot let go with a gait, what a capture system makes of it, and a recording of it."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Literal

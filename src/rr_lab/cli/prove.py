@@ -1,7 +1,5 @@
 """`rr-opt prove`: random sealed cases, diagnosed blind, opened and scored."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated, Literal
 

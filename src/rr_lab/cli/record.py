@@ -1,7 +1,5 @@
 """`rr-opt record [ROBOT]`: recordings of a virtual robot, with known or sealed physics in it."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated, Literal
 

@@ -1,7 +1,5 @@
 """The effects that the laboratory can hide, by name and realisation."""
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Iterable, Mapping
 from pathlib import Path

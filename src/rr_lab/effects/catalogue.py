@@ -1,7 +1,5 @@
 """What each effect does to the rig; `effects.toml` names the functions, without the underscore."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

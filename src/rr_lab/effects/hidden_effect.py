@@ -4,8 +4,6 @@ An effect of the catalogue may have several realisations: different physics that
 by the same name. Each is a `HiddenEffect` of its own.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """A gait driven on a rig: MuJoCo steps it, and its motion is written down."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -12,8 +12,6 @@ a stiff spring with a damper that fades in over the first depth, so that its for
 a touch nor ever pulls.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """A rig in the plane driven by a command that depends on what is seen of it."""
 
-from __future__ import annotations
-
 from typing import Any, Protocol
 
 import casadi as ca
@@ -25,7 +23,7 @@ class Guide(Protocol):
         ...
 
     def see(self, t: float, pose: Array) -> None:
-        """Told at every sample: x (m), y (m) and heading (rad) of platform 1 at the time t, s."""
+        """Called at every sample: t (s), and x (m), y (m) and heading (rad) of platform 1."""
         ...
 
     def angle(self, t: NDArray[Any]) -> Array:

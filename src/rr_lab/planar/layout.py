@@ -5,8 +5,6 @@ turned by phi against that. What only some rigs have is a coordinate more: the m
 which there is play, the two ways of a loose pin, a bend of each platform, a load's shift.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import casadi as ca

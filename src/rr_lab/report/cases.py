@@ -1,7 +1,5 @@
 """The record of a trial: what was hidden in each case, what was said, and how it came out."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path

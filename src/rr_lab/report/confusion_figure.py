@@ -1,7 +1,5 @@
 """Diagnosis against truth: right is blue and on the diagonal, wrong is orange."""
 
-from __future__ import annotations
-
 from functools import partial
 
 from matplotlib.axes import Axes

@@ -1,7 +1,5 @@
 """The outcome of a blind trial: README.md and page, proof.json, cases.csv, and the figure."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import starmap

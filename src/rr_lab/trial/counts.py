@@ -1,7 +1,5 @@
 """The counts of a trial, which `texts.toml` defines in words; and the confusion matrix."""
 
-from __future__ import annotations
-
 import tomllib
 from collections import Counter
 from collections.abc import Callable, Sequence

@@ -8,8 +8,6 @@ composition, shuffled. A case depends on nothing but seed, kinds and its own num
 extended, and one case can be made again by itself.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 import secrets

@@ -9,8 +9,6 @@ What it does not: the process belongs to the same user, who may read all files o
 program that went to look for the answer would find it. `rr-opt diagnose` does not look.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import signal

@@ -6,8 +6,6 @@ keep a line for each finished case, from which an interrupted trial resumes. In 
 wrote.
 """
 
-from __future__ import annotations
-
 import json
 import shutil
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence

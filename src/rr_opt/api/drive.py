@@ -197,7 +197,7 @@ def route(
     """
     if isinstance(asked, str | Path):
         asked = load_route(asked)
-    plan = plan_route(with_reserve(asked) if feedback else asked, progress)
+    plan = plan_route(with_reserve(asked) if feedback else asked, progress, creeps=feedback)
     plan = replace(plan, route=asked)
     check = control = None
     if plan.drive:

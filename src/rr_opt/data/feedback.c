@@ -16,6 +16,7 @@
 #include <math.h>
 
 #define RR_PERIODS {{ c.F|length }}
+#define RR_HOLD {{ c.hold }} /* the period that is repeated until the robot is at rest */
 #define RR_LOOKS {{ constants.LOOKS }} /* places in a period where the limits are kept */
 
 /* Angle (rad), rate (rad/s) and acceleration (rad/s2). */
@@ -101,17 +102,26 @@ static void rr_within(double g[8], double A, double o)
     }
 }
 
+/* An estimate with the speed as one that the planned robot would coast as far with. */
+static void rr_coasted(const double z[9], double out[9])
+{
+    int i;
+    for (i = 0; i < 9; i++)
+        out[i] = i == 3 ? z[3] * (1 + z[4]) : z[i];
+}
+
 static void rr_enter(rr_route *r)
 {
     int i, j, k = r->period;
-    double wanted[2];
+    double wanted[2], z[9];
+    rr_coasted(r->z, z);
     for (i = 0; i < 8; i++)
         r->segment[i] = rr_segment[k][i];
     for (i = 0; i < 2; i++) {
         r->segment[i] += r->u[i];
         wanted[i] = r->segment[3 + i];
         for (j = 0; j < 9; j++)
-            wanted[i] -= rr_gain[k][i][j] * r->z[j];
+            wanted[i] -= rr_gain[k][i][j] * z[j];
     }
     rr_within(r->segment, wanted[0], wanted[1]);
     for (i = 0; i < 2; i++)
@@ -131,9 +141,8 @@ void rr_route_begin(rr_route *r)
 /* 1, and the segment after a pose; 0 at the end of the drive. */
 int rr_route_next(rr_route *r, double x, double y, double psi)
 {
-    static const int steps[3] = {0, -1, 1};
-    int i, j, n, k = r->period, begin = k + 1;
-    double pose[3] = {x, y, psi}, surprise[3], moved[4], here[9], best = HUGE_VAL;
+    int i, j, k = r->period, begin = k + 1, late, moves;
+    double pose[3] = {x, y, psi}, surprise[3], moved[4], here[9], whole[9], best = HUGE_VAL;
     rr_apart(pose, rr_seen[k], surprise);
     for (i = 0; i < 3; i++) {
         for (j = 0; j < 8; j++)
@@ -150,25 +159,26 @@ int rr_route_next(rr_route *r, double x, double y, double psi)
     }
     for (i = 0; i < 9; i++)
         here[i] = i < 4 ? moved[i] : i == 6 || i == 7 ? r->u[i - 6] : r->z[i];
-    /* Go on with the next period, or with one beside it that is alike and better. */
+    /* Go on with the next period, or with one that is alike and better; coast on until at rest. */
     pose[0] = rr_place[begin][0] + cos(rr_place[begin][2]) * here[0] - sin(rr_place[begin][2]) * here[1];
     pose[1] = rr_place[begin][1] + sin(rr_place[begin][2]) * here[0] + cos(rr_place[begin][2]) * here[1];
     pose[2] = rr_place[begin][2] + here[2];
-    r->made++;
-    for (n = 0; n < 3; n++) {
+    late = ++r->made >= {{ constants.LONGEST }} * RR_PERIODS;
+    moves = fabs(rr_speed[begin] + here[3]) > {{ c.rest }};
+    for (k = 0; k <= RR_PERIODS; k++) {
+        int alike = rr_group[begin] && rr_group[k] == rr_group[begin] && (k > begin || !late);
         double z[9], cost;
-        k = begin + steps[n];
-        if (n && (!rr_group[begin] || k >= RR_PERIODS || rr_group[k] != rr_group[begin]
-                  || r->made >= {{ constants.LONGEST }} * RR_PERIODS))
+        if (begin == RR_HOLD + 1 && moves && !late ? k != RR_HOLD : k != begin && !alike)
             continue;
         for (i = 0; i < 9; i++)
             z[i] = here[i];
         rr_apart(pose, rr_place[k], z);
         z[3] += rr_speed[begin] - rr_speed[k];
         cost = {{ constants.PERIOD }} * (RR_PERIODS - k);
+        rr_coasted(z, whole);
         for (i = 0; i < 9; i++)
             for (j = 0; j < 9; j++)
-                cost += z[i] * rr_value[k][i][j] * z[j];
+                cost += whole[i] * rr_value[k][i][j] * whole[j];
         if (cost < best) {
             best = cost;
             r->period = k;

@@ -48,7 +48,7 @@ def solve_sine(setting: Setting, sign: int, start: Array) -> Candidate:
 
 
 def solve_from_kept(setting: Setting, sign: int, start: Array, nodes: int) -> Candidate:
-    """The same from a gait that keeps all limits with so many phases, which fewer may deny."""
+    """The same from a gait within all limits at this many phases; at fewer it may not be."""
     terrain = Terrain(setting, decisions(setting.problem), sign)
     candidate = _candidate(terrain, start, FEWEST)
     if candidate.feasible and candidate.success:

@@ -77,7 +77,7 @@ class Parameter:
 
 
 ActuateAll = Callable[
-    [Sequence[Drive], Sequence[Mapping[str, float]], FreeJoint | None], list[Drive]
+    [Sequence[Drive], Sequence[Mapping[str, float]], Sequence[FreeJoint | None]], list[Drive]
 ]
 
 
@@ -107,6 +107,7 @@ class Effect:
     enter       (mechanism, symbols) -> the mechanism with it: ports constraint, mass and force
     actuate     (command, values, joint) -> what the servo makes of its command: port actuation
     actuate_all  the same of several commands with their values, where that is faster
+    frees_joint  the servo lets go of the joint at times, which then moves as the mechanism does
     linear      (values) -> the same as a linear servo, where it is one: gaits are then optimised
                 with it
     observe     (observation, symbols) -> what is recorded: port measurement
@@ -132,6 +133,7 @@ class Effect:
     enter: Callable[[Mechanism, Mapping[str, ca.SX]], Mechanism] | None = None
     actuate: Actuate | None = None
     actuate_all: ActuateAll | None = None
+    frees_joint: bool = False
     linear: Callable[[Mapping[str, float]], LinearServo] | None = None
     observe: Callable[[Observation, Mapping[str, ca.SX]], Observation] | None = None
     delay: str | None = None
@@ -146,10 +148,10 @@ class Effect:
         self,
         commands: Sequence[Drive],
         values: Sequence[Mapping[str, float]],
-        joint: FreeJoint | None,
+        joints: Sequence[FreeJoint | None],
     ) -> list[Drive]:
-        """What the servo makes of each command, with the values of each."""
+        """What the servo makes of each command, with the values and the joint of each."""
         if self.actuate_all:
-            return self.actuate_all(commands, values, joint)
+            return self.actuate_all(commands, values, joints)
         actuate = self.actuate or (lambda command, *_: command)
-        return [actuate(one, own, joint) for one, own in zip(commands, values, strict=True)]
+        return [actuate(*one) for one in zip(commands, values, joints, strict=True)]

@@ -39,7 +39,8 @@ period; and the change of z over a period, m/s, that is none."""
 _INERTIA = 1e-3
 """Of the joint of a robot of which nothing is known, kg m2."""
 _RIGID = 1e-9
-"""Compliance of a gear that does not give, rad/(N m)."""
+"""Compliance of a gear that does not give, rad/(N m): small, and not 0, as a stop that pulls has to
+be left for certain, whatever is rounded."""
 _MISSED = 2.0
 """As the fraction of a step at which a stop is hit: it is not."""
 
@@ -85,11 +86,13 @@ class _Play:
 
 
 def _actuate(command: Drive, values: Mapping[str, float], joint: FreeJoint | None = None) -> Drive:
-    return _actuate_all([command], [values], joint)[0]
+    return _actuate_all([command], [values], [joint])[0]
 
 
 def _actuate_all(
-    commands: Sequence[Drive], values: Sequence[Mapping[str, float]], joint: FreeJoint | None = None
+    commands: Sequence[Drive],
+    values: Sequence[Mapping[str, float]],
+    joints: Sequence[FreeJoint | None],
 ) -> list[Drive]:
     """Several at once, which are integrated side by side."""
     gears = [
@@ -100,8 +103,8 @@ def _actuate_all(
     out = list(commands)
     for rest in (True, False):
         some = [k for k in loose if commands[k].rest == rest]
-        runs = [_Servo.of(commands[k], gears[k]) for k in some]
-        plays = _from_rest(runs, joint) if rest else _periodic(runs, joint)
+        runs = [_Servo.of(commands[k], gears[k], joints[k]) for k in some]
+        plays = _from_rest(runs) if rest else _periodic(runs)
         for k, play in zip(some, plays, strict=True):
             out[k] = _driven(commands[k], play, gears[k][0])
     return out
@@ -130,21 +133,22 @@ def _driven(command: Drive, play: _Play, half: float) -> Drive:
 @dataclass(frozen=True)
 class _Servo:
     """Its angle and rate (2, steps + 1) at the ends of the steps of the periods, their length, s,
-    and its gear; and what it begins from: phi, dphi and z."""
+    its gear and the joint; and what that begins from: phi, dphi and z."""
 
     path: Array
     dt: float
     gear: _Gear
+    joint: FreeJoint | None
     first: Array
 
     @classmethod
-    def of(cls, command: Drive, gear: _Gear) -> _Servo:
+    def of(cls, command: Drive, gear: _Gear, joint: FreeJoint | None) -> _Servo:
         """That follows a command."""
         dt = command.period / _STEPS
         periods = _FROM_REST if command.rest else _PERIODS
         path = command.at(dt * np.arange(periods * _STEPS + 1.0))[:2]
         first = command.at(np.array([-1.0]))[:2, 0] if command.rest else path[:, 0]
-        return cls(path, dt, gear, np.append(first, 0.0))
+        return cls(path, dt, gear, joint, np.append(first, 0.0))
 
     @cached_property
     def inputs(self) -> Array:
@@ -158,20 +162,18 @@ class _Servo:
         return _Play(self.dt, lead[:, 0], lead[:, 1], states[:, 3])
 
 
-def _from_rest(servos: Sequence[_Servo], joint: FreeJoint | None) -> list[_Play]:
+def _from_rest(servos: Sequence[_Servo]) -> list[_Play]:
     before = [one.first for one in servos]
     return [
         servo.play(start, states)
-        for servo, start, states in zip(
-            servos, before, _integrated(servos, joint, before), strict=True
-        )
+        for servo, start, states in zip(servos, before, _integrated(servos, before), strict=True)
     ]
 
 
-def _periodic(servos: Sequence[_Servo], joint: FreeJoint | None) -> list[_Play]:
+def _periodic(servos: Sequence[_Servo]) -> list[_Play]:
     """Periodic motion: z at the ends of periods is extrapolated by Aitken's delta-squared."""
     before = [one.first for one in servos]
-    states = _integrated(servos, joint, before)
+    states = _integrated(servos, before)
     for _ in range(_EXTRAPOLATIONS):
         begun, open_by = {}, {}
         for k, path in enumerate(states):
@@ -184,7 +186,7 @@ def _periodic(servos: Sequence[_Servo], joint: FreeJoint | None) -> list[_Play]:
             begun[k][2] += second**2 / (first - second) if converges else 0.0
         if not begun:
             break
-        again = _integrated([servos[k] for k in begun], joint, [*begun.values()])
+        again = _integrated([servos[k] for k in begun], [*begun.values()])
         for k, path in zip(begun, again, strict=True):
             # A robot that hardly loses speed may be extrapolated far beyond its own.
             if abs(path[-1, 2] - path[_STEPS - 1, 2]) <= open_by[k]:
@@ -200,16 +202,19 @@ def _periodic(servos: Sequence[_Servo], joint: FreeJoint | None) -> list[_Play]:
     return out
 
 
-def _integrated(
-    servos: Sequence[_Servo], joint: FreeJoint | None, before: Sequence[Array]
-) -> list[Array]:
+def _integrated(servos: Sequence[_Servo], before: Sequence[Array]) -> list[Array]:
     """phi, dphi, z and the fraction at which a stop is hit (steps, 4) after each step, from phi,
     dphi and z before."""
-    swing, p = (joint.swing, joint.p) if joint else (_coasting(), ())
-    own = np.array(p, float)
+    if not servos:
+        return []
+    swing = servos[0].joint.swing if servos[0].joint else _coasting()
     return _stepper(swing)(
         [
-            Course(np.append(start, _MISSED), servo.inputs, own)
+            Course(
+                np.append(start, _MISSED),
+                servo.inputs,
+                np.array(servo.joint.p if servo.joint else (), float),
+            )
             for servo, start in zip(servos, before, strict=True)
         ]
     )
@@ -257,11 +262,12 @@ def _stepper(swing: ca.Function) -> Recurrence:
     outward = ca.sign(side)
     free, _, _ = swing(stop + side, rate, z, p)
     push = outward * ((free - (rate - servo_rate) / h) / mobility - friction * ca.sign(rate))
-    twist = compliance * push
+    give = compliance + _RIGID
+    twist = give * push
     left = ca.if_else(impact, h * (1 - hit), h)
     past = ca.if_else(impact, 0.0, ca.fmax(ca.fabs(a) - half, 0.0))
     speed = ca.if_else(impact, outward * (u + 2 * f * hit), ca.fabs(u) * ca.sign(u * outward)) / h
-    omega = ca.sqrt(mobility / (compliance + _RIGID))
+    omega = ca.sqrt(mobility / give)
     decay, bend = ca.exp(-omega * left), speed + omega * (past - twist)
     past = twist + (past - twist + bend * left) * decay
     speed = (speed - omega * bend * left) * decay
@@ -288,6 +294,7 @@ EFFECT = Effect(
     sentence="There is play between the servo and the platform that it turns.",
     actuate=_actuate,
     actuate_all=_actuate_all,
+    frees_joint=True,
     differentiable=False,
     form_error=0.05,
     forms=(("width",), ("width", "joint_friction"), ("width", "joint_friction", "compliance")),

@@ -9,8 +9,10 @@ frame of platform 1 as planned; two constants that are learnt, the excess of the
 friction and an error of the offset; and the corrections of amplitude and offset in force. u are
 those at the period's end, y the pose as it was seen, `delay` before that. A Kalman filter
 estimates z, a linear-quadratic regulator of finite horizon gives u, and its cost to go tells
-whether a period of a stage is to be repeated or left out. Corrections end where the servo's limits
-do.
+whether periods of a stage are to be repeated or left out. Corrections end where the servo's limits
+do. The drive ends by coasting for as long as the robot is seen to move; its end is where it comes
+to rest. What a robot coasts is its speed times the excess of its masses, the one product of states
+that counts: v is taken times 1 + inertia where corrections are chosen.
 """
 
 import math
@@ -50,8 +52,9 @@ _RATE, _PLACE = 0.95, 0.5
 _SHORT = 0.25
 """Of the tolerance, so much before the end is aimed at: what is missing can be driven, but what is
 too much not be braked."""
-_COAST = 3
-"""Cycles of more coasting, in which a robot of less friction comes to rest, and is seen to."""
+_COAST, _REST = 6, 4.0
+"""Cycles of coasting after the robot is seen to be at rest, as it is seen with some error; and the
+time, over that of coasting from the speed of the drive, in which every robot comes to rest."""
 LONGEST = 1.5
 """Periods that may be driven over those planned, before the drive goes on to its end."""
 _STATES = 8
@@ -64,6 +67,7 @@ class Feedback:
     """The controller of a drive of K periods.
 
     delay     s, from when a pose was true to when a period begins with it
+    rest      m/s, below which it is at rest;  hold  the period that is repeated until it is
     limits    (3,): |phi| (rad), |dphi/dt| (rad/s), |d2phi/dt2| (rad/s2), the last for the torque
     command   the drive, a segment for each period
     group     (K + 1,): periods of a number above 0 that they share are alike
@@ -74,6 +78,8 @@ class Feedback:
     """
 
     delay: float
+    rest: float
+    hold: int
     limits: Array
     command: Command
     group: Array
@@ -96,26 +102,33 @@ def controller(plan: RoutePlan, problem: Problem, delay: float = DELAY) -> Feedb
     """
     if plan.drive is None:
         raise ValueError("The plan has no drive.")
-    command, group = _periods(plan.drive.command, rest=plan.route.end == "rest")
+    rests = plan.route.end == "rest"
+    command, group = _periods(plan.drive.command, rests=rests)
+    count = len(group) - 1
     dynamics = dynamics_of(problem.robot)
     p = dynamics.values(problem.robot)
     inert = np.isin(dynamics.parameters, ("m1", "m2", "I1", "I2"))
     start = plan.route.start
     v, pose = 0.0, np.array([start.x, start.y, start.heading + plan.turned])
     place, speed, seen, maps = [pose], [v], [], []
-    for u in command.segments.T:
+    driven = list(command.segments.T)
+    if rests and plan.coasting:
+        coasts = np.array([0, 0, 1, 0, 0, 1, 0, _REST * plan.coasting.seconds])
+        driven.append(coasts)
+    for u in driven:
         late = max(0.0, 1 - delay / u[7])
-        grid = np.append(np.linspace(0, late, _STEPS), np.linspace(late, 1, _LATE + 1)[1:])
+        steps = math.ceil(_STEPS * max(1.0, u[7] * u[2] / (2 * math.pi)))
+        grid = np.append(np.linspace(0, late, steps), np.linspace(late, 1, _LATE + 1)[1:])
         out, heavy, light = (
             stepped(dynamics.effects, np.where(inert, p * (1 + e), p), v, u, grid)
             for e in (0.0, _CHANGE, -_CHANGE)
         )
         # More mass is less friction, of whatever law.
         by_inertia = (heavy[0] - light[0]) / (2 * _CHANGE)
-        (H, G), ends = (_map(out[:, :, k], by_inertia[:, k]) for k in (_STEPS - 2, -1))
+        (H, G), ends = (_map(out[:, :, k], by_inertia[:, k]) for k in (steps - 2, -1))
         # A pose from before the period tells nothing of it.
         maps.append((*ends, H[:3] * (late > 0), G[:3] * (late > 0)))
-        seen.append(moved(pose, out[0, :, _STEPS - 2]))
+        seen.append(moved(pose, out[0, :, steps - 2]))
         pose, v = moved(pose, out[0, :, -1]), float(out[0, 0, -1])
         place.append(pose)
         speed.append(v)
@@ -123,13 +136,15 @@ def controller(plan: RoutePlan, problem: Problem, delay: float = DELAY) -> Feedb
     last = plan.legs[-1]
     aim = last.at(last.length - _SHORT * plan.route.tolerance.position)
     miss = -apart(np.array([aim.x, aim.y, plan.heading]), pose)
-    final = v if plan.route.end == "rest" else 0.0
-    gain, value = _regulator(F, B, command.knots[0], np.append(miss, final), plan.route.tolerance)
+    amplitude = np.pad(command.knots[0], (0, 1))
+    gain, value = _regulator(F, B, amplitude, miss, plan.route.tolerance)
     bend = _bend(problem, command, max(map(abs, speed)))
     box = np.array([reach(problem), problem.limits.rate, bend])
+    at, of = slice(count + 1), slice(count)
     return Feedback(
-        delay, box, command, group, np.array(place), np.array(speed), np.array(seen),
-        F, B, H, G, _filter(F, H), gain, value,
+        delay, plan.route.tolerance.speed, count - 1 - _COAST if rests else count, box, command,
+        group, np.array(place)[at], np.array(speed)[at], np.array(seen)[of],
+        F[of], B[of], H[of], G[of], _filter(F, H)[of], gain[of], value[at],
     )  # fmt: skip
 
 
@@ -141,21 +156,23 @@ def with_reserve(route: Route) -> Route:
     return replace(route, problem=replace(route.problem, limits=limits), tolerance=tolerance)
 
 
-def _periods(command: Command, *, rest: bool) -> tuple[Command, Array]:
-    """The same drive cut into cycles, and which of their beginnings are alike. rest: coasting at
-    its end lasts some cycles more, all of them whole."""
+def _periods(command: Command, *, rests: bool) -> tuple[Command, Array]:
+    """The same drive cut into cycles, and which of their beginnings are alike. rests: coasting at
+    its end lasts some cycles more, all of them whole, and none is left out."""
     durations, knots, group = list[float](), [command.knots[:, 0]], [0]
     for number, u in enumerate(command.segments.T, 1):
         level = np.allclose(u[:3], u[3:6], rtol=0, atol=1e-12)
         cycles = u[7] * (u[2] + u[5]) / (4 * math.pi)
-        if rest and number == len(command.durations):
+        coasts = rests and number == len(command.durations)
+        if coasts:
             cycles = math.ceil(cycles) + _COAST
         whole = max(0, math.ceil(cycles - 1.5)) if level else 0
         period = 4 * math.pi / (u[2] + u[5])
         durations += [period] * whole + [(cycles - whole) * period]
         knots += [u[3:6]] * (whole + 1)
-        group[-1] = number if level else 0
-        group += [number] * whole + [number if level and cycles == whole + 1 else 0]
+        alike = number if level and not coasts else 0
+        group[-1] = alike
+        group += [alike] * whole + [alike if cycles == whole + 1 else 0]
     return Command(np.array(durations), np.array(knots).T), np.array(group)
 
 
@@ -190,13 +207,13 @@ def _map(out: Array, by_inertia: Array) -> tuple[Array, Array]:
 def _regulator(
     F: Array, B: Array, amplitude: Array, miss: Array, asked: Tolerance
 ) -> tuple[Array, Array]:
-    """Gains and costs to go, by Riccati's recursion from the end. miss: rows x, y, psi, v of the
-    planned end against the one asked for."""
-    way, end = np.zeros((3, _STATES + 1)), np.zeros((4, _STATES + 1))
-    np.fill_diagonal(way, _ON_THE_WAY / np.array([asked.path, asked.path, asked.heading]))
+    """Gains and costs to go, by Riccati's recursion from the end. miss: rows x, y, psi of the
+    planned end against the one asked for. To be ahead or behind on the way costs nothing."""
+    way, end = np.zeros((3, _STATES + 1)), np.zeros((3, _STATES + 1))
+    np.fill_diagonal(way, [0.0, _ON_THE_WAY / asked.path, _ON_THE_WAY / asked.heading])
     np.fill_diagonal(end, 1.0)
     end[:, -1] = miss
-    sizes = asked.position, asked.position, asked.heading, asked.speed
+    sizes = asked.position, asked.position, asked.heading
     end *= _ACCURATE / np.array(sizes)[:, None]
     P = end.T @ end
     gains, values = [], [P]
@@ -281,23 +298,24 @@ class Follower:
         return None if self.period == len(c.F) else self._segment()
 
     def _go_to(self, begin: int) -> None:
-        """Go on with a period, or with the one before or after it if that is alike and better."""
-        c, here = self.control, self.z
+        """Go on with a period, or with one that is alike and better; coast on until at rest."""
+        c, here, K = self.control, self.z, len(self.control.F)
+        late = self.made >= LONGEST * K
+        moves = abs(c.speed[begin] + here[3]) > c.rest
         best = math.inf
-        for k in (begin, begin - 1, begin + 1):
-            if k != begin and (
-                not c.group[begin]
-                or k >= len(c.F)
-                or c.group[k] != c.group[begin]
-                or self.made >= LONGEST * len(c.F)
-            ):
+        for k in range(K + 1):
+            alike = c.group[begin] and c.group[k] == c.group[begin] and (k > begin or not late)
+            if begin == c.hold + 1 and moves and not late:
+                if k != c.hold:
+                    continue
+            elif k != begin and not alike:
                 continue
             z = here.copy()
             pose = moved(c.place[begin], np.array([0, here[2], here[0], here[1]]))
             z[:3] = apart(pose, c.place[k])
             z[3] += c.speed[begin] - c.speed[k]
-            whole = np.append(z, 1.0)
-            cost = float(whole @ c.value[k] @ whole) + PERIOD * (len(c.F) - k)
+            whole = _coasted(z)
+            cost = float(whole @ c.value[k] @ whole) + PERIOD * (K - k)
             if cost < best:
                 best, self.period, self.z = cost, k, z
 
@@ -305,10 +323,15 @@ class Follower:
         c, k = self.control, self.period
         u = c.command.segments[:, k].copy()
         u[:2] += self.u
-        wanted = u[3:5] - c.gain[k] @ np.append(self.z, 1.0)
+        wanted = u[3:5] - c.gain[k] @ _coasted(self.z)
         u[3:5] = within(u, wanted, c.limits)
         self.u = u[3:5] - c.command.segments[3:5, k]
         return u
+
+
+def _coasted(z: Array) -> Array:
+    """(z, 1) with the speed as one that a robot of the planned masses would coast as far with."""
+    return np.array([*z[:3], z[3] * (1 + z[4]), *z[4:], 1.0])
 
 
 def within(u: Array, wanted: Array, limits: Array) -> Array:

@@ -33,6 +33,10 @@ _ENTRY = 0.1
 _LONGEST = 1.2
 """m: longer parts of a leg get an offset of their own, with which the drive is steered."""
 
+_CREEP, _CREPT = 0.4, 8.0
+"""Of the gait's amplitude, with which the robot comes to its end if it is to be steered there, as
+what is left is driven at little more than 1/6 of the speed; and cycles of it."""
+
 
 @dataclass(frozen=True)
 class RoutePlan:
@@ -68,8 +72,10 @@ class RoutePlan:
         return along + slip(self.problem, self.legs[-1], self.turned) if running else along
 
 
-def plan_route(route: Route, progress: Progress = lambda _: None) -> RoutePlan:
-    """The fastest drive found along a route.
+def plan_route(
+    route: Route, progress: Progress = lambda _: None, *, creeps: bool = False
+) -> RoutePlan:
+    """The fastest drive found along a route. creeps: that comes to its end slowly.
 
     The status is OPTIMAL, INFEASIBLE (the message names piece, limit and what can be driven) or
     NOT_CONVERGED. Raises InputError for a robot without friction, and for a route without pieces.
@@ -104,7 +110,7 @@ def plan_route(route: Route, progress: Progress = lambda _: None) -> RoutePlan:
     plan = RoutePlan(Status.OPTIMAL, "", route, problem, way, legs, gaits, speeds, coast)
     best: SolvedDrive | None = None
     for brakes in (True, False) if route.end == "rest" else (False,):
-        stages = _stages(plan, coast if route.end == "rest" else None, brakes=brakes)
+        stages = _stages(plan, coast if route.end == "rest" else None, brakes=brakes, creeps=creeps)
         program = DriveProgram(
             problem, stages, route.tolerance, route.start, plan.turned, route.end == "rest"
         )
@@ -156,8 +162,10 @@ def _path(route: Route, gaits: Chart) -> list[Leg]:
     return legs_of(route, gaits.cost, 1 / np.array(useful or [curvatures[0]]))
 
 
-def _stages(plan: RoutePlan, coast: Coasting | None, *, brakes: bool) -> list[DriveStage]:
-    """A guess: each part of a leg with its gait, then a stage to brake, then one to coast."""
+def _stages(
+    plan: RoutePlan, coast: Coasting | None, *, brakes: bool, creeps: bool
+) -> list[DriveStage]:
+    """A guess: each part of a leg with its gait, then stages to brake, to creep, and to coast."""
     stages = list[DriveStage]()
     left = coast.distance if coast else 0.0
     parts = [
@@ -191,11 +199,14 @@ def _stages(plan: RoutePlan, coast: Coasting | None, *, brakes: bool) -> list[Dr
             stages.append(replace(stages[-1], cycles=cycles, offset=0.5 * gait.offset))
             stages[-2] = replace(stages[-2], cycles=rest)
         omega = 2 * math.pi / gait.period
-        if brakes:
+        if brakes and not creeps:
             shape = 0.1 * gait.amplitude, 0.5 * gait.offset, omega
             stages.append(DriveStage(0.3 * coast.seconds / gait.period, *shape, part))
+        if creeps:
+            shape = _CREEP * gait.amplitude, 0.5 * gait.offset, omega
+            stages.append(DriveStage(_CREPT, *shape, part, fixed=True, fewest=_CREPT))
         cycles = 0.7 * coast.seconds / gait.period
-        stages.append(DriveStage(cycles, 0.0, 0.0, omega, part, ends=True, coasts=True))
+        stages.append(DriveStage(cycles, 0.0, 0.0, omega, part, ends=True, fixed=True))
     return stages
 
 

@@ -42,8 +42,6 @@ _PEAKS = 3
 """Largest torques of a segment that are bounded."""
 _TIGHT = 0.999
 """The program keeps to this share of each limit: its bounds are good to `BROKEN`."""
-_FEWEST = 0.05
-"""Cycles of a stage after its blend, at least."""
 BROKEN = 1e-3
 """By so much, relative, a bound may be broken, and the drive counts as keeping it."""
 _TURNS, _TURN = 6, 0.5
@@ -64,7 +62,8 @@ that it is: between them P swings with the gait."""
 @dataclass(frozen=True)
 class DriveStage:
     """A stage of the drive: guesses of its unknowns, the leg it is on, whether its end is that of
-    the leg, and whether it only coasts."""
+    the leg, whether its amplitude and frequency are as guessed, and the fewest cycles that it
+    takes."""
 
     cycles: float
     amplitude: float
@@ -72,7 +71,13 @@ class DriveStage:
     omega: float
     leg: Leg
     ends: bool = False
-    coasts: bool = False
+    fixed: bool = False
+    fewest: float = 0.05
+
+    @property
+    def coasts(self) -> bool:
+        """Whether the joint is held straight."""
+        return self.fixed and self.amplitude == 0
 
 
 @dataclass(frozen=True)
@@ -272,10 +277,11 @@ class DriveProgram:
         for stage in self.stages:
             omega = 2 * math.pi / box.period.high, 2 * math.pi / box.period.low
             amplitude, offset = (0.0, min(box.amplitude.high, room)), (-room, room)
+            if stage.fixed:
+                amplitude, omega = (stage.amplitude,) * 2, (stage.omega,) * 2
             if stage.coasts:
-                amplitude = offset = (0.0, 0.0)
-                omega = (stage.omega, stage.omega)
-            found += [(_FEWEST, math.inf), amplitude, offset, omega]
+                offset = (0.0, 0.0)
+            found += [(stage.fewest, math.inf), amplitude, offset, omega]
         return [(low / s, high / s) for (low, high), s in zip(found, self.scale, strict=True)]
 
     def solve(self, progress: Callable[[str], None]) -> SolvedDrive:

@@ -5,8 +5,6 @@ processor's vector registers; the loops over the steps are those of diagnose_lan
 compiled is kept in the user's cache folder, by the hash of its source.
 """
 
-from __future__ import annotations
-
 import ctypes
 import itertools
 from collections.abc import Callable, Sequence

@@ -20,8 +20,6 @@ log-uniform prior from 1 to `inconstant`. By Laplace's approximation the odds of
     (T/k)^(k/2) exp(-(T - k)/2) sqrt(k/(4 pi)) ln(inconstant)    where T > k.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass

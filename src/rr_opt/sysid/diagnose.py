@@ -60,7 +60,7 @@ class _Timed:
 
 
 def diagnose(model: Machine, progress: Callable[[str], None] = lambda _: None) -> Diagnosis:
-    """Diagnose any machine from its runs; progress is told each step."""
+    """Diagnose any machine from its runs; `progress` is called with each step."""
     watch = Stopwatch(progress)
     result = identified(model, watch)
     with watch("planning the next recording"):

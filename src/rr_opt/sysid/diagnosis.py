@@ -1,7 +1,5 @@
 """What a diagnosis found, as frozen data; `diagnosis.json` and the page show it."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal

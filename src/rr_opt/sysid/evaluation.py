@@ -1,7 +1,5 @@
 """What a model with its values leaves of every recording, also of those it was not fitted to."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

@@ -8,8 +8,6 @@ as many times as there are recordings:
     V = H^-1 (P + (B_model + B_recordings)/2) H^-1,    P the prior's precision.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import replace

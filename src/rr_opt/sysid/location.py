@@ -4,8 +4,6 @@ An input enters by a channel of the machine, a force or a motion, as a function 
 as the speed. The channel whose input explains most is at fault; the others follow the motion.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np

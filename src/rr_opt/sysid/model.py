@@ -5,8 +5,6 @@ effects), and a state that it steps. Runs are cut into segments, each with an in
 own, so that a fit never has to simulate for longer than the model can be trusted.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Mapping, Sequence

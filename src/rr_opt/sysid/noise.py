@@ -10,8 +10,6 @@ by medians over neighbouring frequencies and over runs, which lines do not move,
 to low frequencies as that of an exponentially correlated process, 1/S = (1 + f^2/f0^2)/S0.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import replace

@@ -5,8 +5,6 @@ variable at a time. A score test says how much likelier each makes the recording
 be fitted.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 

@@ -5,8 +5,6 @@ information matrix it says what a Newton step would gain, in likelihood, everyth
 (Rao 1948), and where that step leads: a first guess. Only the few that promise most are fitted.
 """
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace

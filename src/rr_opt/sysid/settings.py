@@ -3,63 +3,62 @@
 `make settings` halves and doubles each on the same cases; `results/settings` shows what changes.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
 class Settings:
-    """correlation_time      s; errors of a model are taken as independent after this long: about
-                          the period of a gait
-    effect_prior          an effect's quantities are expected within so many of their usual sizes,
-                          a value that is certainly wrong within so many of its sigmas
-    least_process_noise   of the grid, half decades: less is as good as none
-    most_process_noise    of the grid: segments are as good as independent
-    stride                in scales; a step in a quantity is no longer
-    tolerance             of the deviance, nats, at which a fit has converged
-    trial_runs            those explained worst, on which initial guesses are tried
-    trial_steps           Gauss-Newton steps of the better half of the guesses, of the better half
+    """correlation_time      s after which a model's errors count as independent: about a period
+    effect_prior          prior standard deviation of an effect's quantities, in their usual sizes;
+                          and of a value known to be wrong, in its stated sigmas
+    least_process_noise   lower end of the grid: less is as good as none
+    most_process_noise    upper end of the grid, which has half decades: segments are independent
+    stride                longest step in a quantity, in its scales
+    tolerance             nats of deviance below which a fit has converged
+    trial_runs            how many runs, those explained worst, initial guesses are tried on
+    trial_steps           Gauss-Newton steps for the better half of the guesses, for the better half
                           of those, and so on
-    first_steps           of a fit, before the process noise is estimated
-    patience              steps like its last one after which a fit that is still worse than another
-                          is given up
-    steps                 at most, for a fit
-    negligible            RMS in sigma beyond the noise that the nominal model may leave
-    none                  the same beside an effect, from which machines differ
-    small                 share of the first excess misfit: what remains is small
-    accounted             share of what is left without an effect that it has to account for
-    slow                  Hz; what moves slower may be the machine, what is faster is noise
-    shown                 of what is known of a combination of values: a recording that brings less
+    first_steps           steps of a fit before the process noise is estimated
+    patience              a fit that is behind another is given up unless this many steps like its
+                          last one would catch up
+    steps                 most steps of a fit
+    negligible            RMS in sigma, beyond the noise, that the nominal model may leave
+    none                  the same with an effect, as no machine is its model of one
+    small                 share of the first excess misfit below which a remainder is small
+    accounted             an effect has to account for this share of what is left without it
+    slow                  Hz, below which motion may be the machine's; above it is noise
+    shown                 share of what is known of a combination of values, below which a recording
                           says nothing of it
-    inconstant            by as large a factor, at most, an imitation's values vary more between
-                          recordings than their uncertainty (mean square)
-    form_errors           of an effect, by which what is left beside it is as likely an imitation's
-                          as a machine's
-    misstated             relative; a level of the noise that differs by more is not as stated
-    correlated            as many samples worth one are more than white noise has by chance
-    certain               chance of so much by noise, below which an unknown input is there
-    most_effects          that are looked for at once; and values that may be wrong
-    promising             candidates of a score test that are fitted, of one effect and of two
-    evidence              nats by which an effect has to improve the predictions of recordings
-    standard_errors       and by so many standard errors over recordings
+    inconstant            largest factor by which an imitation's values vary more between recordings
+                          than their uncertainty (mean square)
+    form_errors           multiples of an effect's form error at which a remainder is as likely an
+                          imitation's as a machine's
+    misstated             relative difference from which the level of the noise is not as stated
+    correlated            samples worth one independent sample, more than white noise has by chance
+    certain               p-value below which an unknown input is there
+    most_effects          most effects sought at once, and most values that may be wrong
+    promising             candidates fitted after a score test, of one effect and of two
+    evidence              nats by which an effect has to improve the predictions of recordings,
+    standard_errors       and standard errors of that improvement over recordings
     named                 confidence above which an effect is named
     false_alarm           chance that any value is called wrong where all are right
-    identifiable          standard deviation over that believed, above which data say nothing
+    identifiable          posterior over prior standard deviation above which data say nothing
 
     Of machines:
 
-    form_error            of the way travelled, and of the speed over a segment: by so much even a
-                          fine simulation of wheels that press on a floor is off
-    starting              s; after a start from rest the motor saturates, which is left out
-    creeping              s, in which a side speed of a wheel that creeps is gone
-    growth                e^2: a window is no longer than errors take to grow so many times anywhere
-    input_share           of the motion in the longest windows (RMS): the noise of the inputs leaves
-                          no more than that in a window,
-    input_noise           or than that RMS in sigma
-    modes                 of the errors that a force left out makes in a window, beside those that
-                          its start takes up
-    windows               in a part of a recording that is predicted from the others
+    form_error            share of the way travelled, and of a segment's speed, by which even a fine
+                          simulation of wheels that press on a floor is off
+    starting              s after a start from rest that are left out: the motor saturates
+    bouncing              share of a period after a start from rest for which the joint's angle is
+                          left out: a joint with play bounces from stop to stop, how much is unknown
+    creeping              s in which the side speed of a creeping wheel decays
+    growth                factor by which errors may grow within a window: e^2
+    input_share           what the noise of the inputs may leave in a window: this share of the
+                          motion in the longest windows (RMS),
+    input_noise           or this RMS in sigma
+    modes                 modes of the errors that a missing force makes in a window, beside those
+                          that its initial state takes up
+    windows               windows in a part of a recording that is predicted from the others
     """
 
     correlation_time: float = 1.0
@@ -93,6 +92,7 @@ class Settings:
     identifiable: float = 0.999
     form_error: float = 1e-4
     starting: float = 0.05
+    bouncing: float = 0.5
     creeping: float = 0.02
     growth: float = 7.4
     input_share: float = 0.005

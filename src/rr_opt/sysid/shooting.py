@@ -6,8 +6,6 @@ where there is a compiler, and then several runs are stepped at once. For how a 
 on everything see `linear`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache

@@ -1,7 +1,5 @@
 """The diagnosis in a paragraph."""
 
-from __future__ import annotations
-
 from rr_opt.formatting import words_of
 from rr_opt.sysid.diagnosis import Diagnosis
 

@@ -5,8 +5,6 @@ and that leave no more than an imitation would not; what is left beside them is 
 where no effect is shown is the answer `unexplained`.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -99,7 +97,7 @@ class Result:
     @property
     def shown(self) -> tuple[Choice, ...]:
         """The effects that are missing with more likelihood than not: each, or another one of those
-        that cannot be told from it."""
+        that are indistinguishable from it."""
         tried, alike = self._ended, self.selection.alike()
         own = list(zip(weights(tried), tried, strict=True))
         return tuple(

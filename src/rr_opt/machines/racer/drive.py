@@ -1,7 +1,5 @@
 """The joint's angle in a run, its steps, and how it changes with what the servo does wrong."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -97,24 +95,19 @@ def drive_path(drive: Drive, steps: Steps, late: float, *, mean: bool = False) -
     return DrivePath(h, nodes, at, steps.each)
 
 
-Made = tuple[int, tuple[tuple[str, tuple[tuple[str, float], ...]], ...]]
-"""A run, and the effects of its servo with their values."""
+Made = tuple[int, tuple[tuple[str, tuple[tuple[str, float], ...]], ...], FreeJoint | None]
+"""A run, the effects of its servo with their values, and the joint where they leave it free."""
 
 
 class Drives:
-    """The drives of runs, each kept until others were asked for.
+    """The drives of runs, each kept until others were asked for."""
 
-    A joint that is free at times moves as that of the nominal robot, whose inertia is known well
-    enough for that.
-    """
-
-    def __init__(self, runs: Sequence[Run], nominal: Mapping[str, float]) -> None:
+    def __init__(self, runs: Sequence[Run]) -> None:
         self._runs = runs
-        self._joint = joint_of(nominal)
         self._kept: dict[Made, Drive] = {}
 
     def of(self, run: int, given: Mapping[str, float], effects: tuple[str, ...]) -> Drive:
-        """What the servo makes of the gait that it is told in a run."""
+        """The angle that the servo makes of the gait commanded in a run."""
         return self.every([(run, given)], effects)[0]
 
     def every(
@@ -122,6 +115,7 @@ class Drives:
     ) -> list[Drive]:
         """The same of several runs with their values; faster at once than one by one."""
         moving = [name for name in effects if CATALOGUE[name].actuate]
+        free = any(CATALOGUE[name].frees_joint for name in moving)
         keys: list[Made] = [
             (
                 run,
@@ -129,14 +123,16 @@ class Drives:
                     (name, tuple((q.name, given[f"{name}.{q.name}"]) for q in effect.parameters))
                     for name, effect in ((name, CATALOGUE[name]) for name in moving)
                 ),
+                joint_of(given) if free else None,
             )
             for run, given in asked
         ]
         new = [key for key in dict.fromkeys(keys) if key not in self._kept]
-        drives = [commanded(self._runs[k].gait, self._runs[k].start == "rest") for k, _ in new]
+        drives = [commanded(self._runs[k].gait, self._runs[k].start == "rest") for k, _, _ in new]
+        joints = [joint for _, _, joint in new]
         for n, name in enumerate(moving):
-            values = [dict(own[n][1]) for _, own in new]
-            drives = CATALOGUE[name].actuated(drives, values, self._joint)
+            values = [dict(own[n][1]) for _, own, _ in new]
+            drives = CATALOGUE[name].actuated(drives, values, joints)
         self._kept |= dict(zip(new, drives, strict=True))
         found = [self._kept[key] for key in keys]
         for oldest in list(self._kept)[: max(len(self._kept) - _KEPT, 0)]:

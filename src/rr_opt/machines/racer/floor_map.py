@@ -8,8 +8,6 @@ Places and speeds are those recorded: with them a drag is right however strong i
 predicted ones would have the robot drive on.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -168,7 +166,7 @@ _RADII = (0.06, 0.1, 0.15, 0.22, 0.32, 0.45)
 _DIRECTIONS, _BORDERS = 36, 36
 
 _SEEDS, _BEST = 5, 2
-"""So many unlike ones are moved to where they gain most, and so many of those are proposed."""
+"""How many distinct ones are moved to where they gain most, and how many of those are proposed."""
 
 _ALIKE = 0.9
 """The cosine between two that cover about the same."""

@@ -4,8 +4,6 @@ Wheels that slide do so where the side force over the load is largest, so a fric
 lies below the largest that was needed.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 

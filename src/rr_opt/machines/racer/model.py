@@ -1,7 +1,5 @@
 """The Roller Racer as a model that can be identified; answers `sysid.model.Model`."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -224,6 +222,8 @@ def _data(run: Run, noise: Sequence[Noise]) -> Data:
     values = np.column_stack([recording.data(name) for name in CHANNELS])
     if run.start == "rest":
         values[(recording.t >= 0) & (recording.t < SETTINGS.starting)] = np.nan
+        bounces = SETTINGS.bouncing * run.gait.period
+        values[(recording.t >= 0) & (recording.t < bounces), CHANNELS.index("phi")] = np.nan
     sigma = np.column_stack([recording.sigma[name] for name in CHANNELS])
     sigma = sigma * [one.level for one in noise]
     correlation = np.array([one.correlation for one in noise])

@@ -6,8 +6,6 @@ Fedorov 1975). Where one candidate alone is left, the recording is sought that n
 value that is known worst. Both are linearised: every gait that can be made is one linearised run.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Mapping, Sequence

@@ -1,7 +1,5 @@
 """The motion that was recorded of a Roller Racer: where its wheels went, and how fast."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import lru_cache
 

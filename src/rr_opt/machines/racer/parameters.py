@@ -1,7 +1,5 @@
 """What may be fitted of a Roller Racer: its own values, and those of the effects."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Iterator, Mapping, Sequence

@@ -1,7 +1,5 @@
 """The Roller Racer as a machine that can be diagnosed; answers `sysid.machine.Machine`."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType

@@ -4,8 +4,6 @@ The state is x, y, psi and z = v - g dphi, which jumps of the servo's rate leave
 axles may slip it is x, y, psi, v and both side speeds.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from functools import cached_property, lru_cache
 
@@ -105,7 +103,7 @@ class Simulator:
     @cached_property
     def drives(self) -> Drives:
         """What the servo makes of the gaits."""
-        return Drives(self._runs, self._nominal)
+        return Drives(self._runs)
 
     def angle(self, run: int, values: Mapping[str, float], effects: tuple[str, ...]) -> Array:
         """phi (n,) of a run as the servo makes it and it is recorded, rad, at the samples."""

@@ -6,8 +6,6 @@ anything else is a function of time along the recorded path, so the motion answe
 in one pass, the same way as it answers to the servo's drive.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import lru_cache
@@ -35,7 +33,7 @@ DRIVES = (*PUSHES[:6], "side1dot", "side2dot", "angle", "angledot")
 """What drives the motion beside the servo, a side speed and an angle with their rates of change."""
 
 FURTHER = 8
-"""So many of them are none of the servo's own."""
+"""How many of them are not the servo's own."""
 
 _SIDES = slice(4, 6)
 
