@@ -1,6 +1,7 @@
 """With play the joint swings free between two stops, as multipliers say, and as MuJoCo finds it."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -56,6 +57,15 @@ def test_against_the_laboratory(robot, width, gait):
     # A tenth of what a capture system tells of an angle; the widest play is 60 mrad.
     assert np.sqrt(np.mean(off**2)) < 3e-4
     assert np.abs(off).max() < 3e-3
+
+
+def test_against_the_laboratory_with_friction():
+    built, values = prototype(), {"width": 0.02, "joint_friction": 0.05}
+    robot = replace(built, platform2=replace(built.platform2, I=0.00554))
+    gait = SineGait(0.15, 0.3, 0.0)
+    seen = record(robot, gait, 5.0, "running", [EffectUse("servo_backlash", values)])
+    made = PLAY.actuate(commanded(gait, False), values, free_joint(robot)).at(seen.t)[0]
+    assert np.sqrt(np.mean((made - seen.values["phi"])[seen.t > 2] ** 2)) < 3e-4
 
 
 def test_stops_hold_and_the_swing_grows_by_half_the_play():

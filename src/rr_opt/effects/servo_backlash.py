@@ -39,7 +39,8 @@ period; and the change of z over a period, m/s, that is none."""
 _INERTIA = 1e-3
 """Of the joint of a robot of which nothing is known, kg m2."""
 _RIGID = 1e-9
-"""Compliance of a gear that does not give, rad/(N m)."""
+"""Compliance of a gear that does not give, rad/(N m): small, and not 0, as a stop that pulls has to
+be left for certain, whatever is rounded."""
 _MISSED = 2.0
 """As the fraction of a step at which a stop is hit: it is not."""
 
@@ -261,11 +262,12 @@ def _stepper(swing: ca.Function) -> Recurrence:
     outward = ca.sign(side)
     free, _, _ = swing(stop + side, rate, z, p)
     push = outward * ((free - (rate - servo_rate) / h) / mobility - friction * ca.sign(rate))
-    twist = compliance * push
+    give = compliance + _RIGID
+    twist = give * push
     left = ca.if_else(impact, h * (1 - hit), h)
     past = ca.if_else(impact, 0.0, ca.fmax(ca.fabs(a) - half, 0.0))
     speed = ca.if_else(impact, outward * (u + 2 * f * hit), ca.fabs(u) * ca.sign(u * outward)) / h
-    omega = ca.sqrt(mobility / (compliance + _RIGID))
+    omega = ca.sqrt(mobility / give)
     decay, bend = ca.exp(-omega * left), speed + omega * (past - twist)
     past = twist + (past - twist + bend * left) * decay
     speed = (speed - omega * bend * left) * decay

@@ -40,7 +40,7 @@ _SAMPLES = 256
 _HEADINGS = 8
 _ROUNDS, _REPEATS = 60, 1e-7
 """Periods at most, and the change of v over one, relative, that is none."""
-_FIRST = 0.01
+_FIRST = 0.05
 """m/s, the first change of v whose effect is tried."""
 
 
@@ -228,10 +228,9 @@ def drive_optimum(optimum: Optimum) -> DrivenOptimum | None:
 
 _SHARE = 3
 """Where the ballast stands among the decisions."""
-_GAIN = 1e-6
 
 
-_FIRST, _RESTARTS, _GAIN = 0.05, 6, 1e-5
+_SPAN, _RESTARTS, _GAIN = 0.05, 6, 1e-5
 _WORST = 1e9
 
 
@@ -252,7 +251,7 @@ def _polished(
 
     for _ in range(_RESTARTS if free else 0):
         corner = best[free]
-        simplex = corner + np.vstack([np.zeros(len(free)), _FIRST * np.eye(len(free))])
+        simplex = corner + np.vstack([np.zeros(len(free)), _SPAN * np.eye(len(free))])
         simplex = np.where(simplex > 1, 2 * corner - simplex, simplex)
         how = {"initial_simplex": simplex, "xatol": 1e-6, "fatol": 1e-8, "maxfev": 300}
         bounds = [(0.0, 1.0)] * len(free)
