@@ -52,7 +52,7 @@ def has_errors(issues: Iterable[Issue]) -> bool:
     return any(issue.level == "error" for issue in issues)
 
 
-_MOST = 20
+MOST_LISTED = 20
 """A file that is wrong in every row is described by its first ones."""
 
 
@@ -61,10 +61,12 @@ def refuse(file: str, message: str, line: int | None = None) -> NoReturn:
     raise InvalidFileError([Issue("error", "", message, line, file)])
 
 
-def refuse_all(file: str, found: Sequence[tuple[int, str]]) -> NoReturn:
-    """Raise InvalidFileError with a line and a message for each mistake, the first of many."""
-    issues = [Issue("error", "", message, line, file) for line, message in found[:_MOST]]
-    if len(found) > _MOST:
-        more = f"There are {len(found) - _MOST} more mistakes of this kind. Correct the first ones."
+def refuse_all(file: str, found: Sequence[tuple[int, str]], count: int) -> NoReturn:
+    """Raise InvalidFileError with line and message of each of the first of `count` mistakes."""
+    issues = [Issue("error", "", message, line, file) for line, message in found]
+    if count > MOST_LISTED:
+        more = (
+            f"There are {count - MOST_LISTED} more mistakes of this kind. Correct the first ones."
+        )
         issues.append(Issue("error", "", more, None, file))
     raise InvalidFileError(issues)

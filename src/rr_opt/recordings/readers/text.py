@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rr_opt.array import Array
-from rr_opt.files.issue import refuse, refuse_all
+from rr_opt.files.issue import MOST_LISTED, refuse, refuse_all
 from rr_opt.messages import shown
 from rr_opt.model.experiment import Column, CountScale, Noise
 from rr_opt.recordings.warnings import Notice, notice
@@ -187,26 +187,31 @@ def read_table(
     doubts = [notice("file.cut", line=rows.pop() + 1)] if cut else []
     values = np.full((len(rows), width), np.nan)
     wrong: list[tuple[int, str]] = []
+    mistakes = 0
     short: list[int] = []
     for row, at in enumerate(rows):
         line = text.lines[at]
         cells = (line if separator == "," else line.replace(",", ".")).split(separator)
+        messages: list[str] = []
         if len(cells) < width:
             short.append(at + 1)
             cells += [""] * (width - len(cells))
         elif any(map(str.strip, cells[width:])):
-            message = f"Read {len(cells)} cells. Expected {width}, as the header has. Check them."
-            wrong.append((at + 1, message))
+            messages.append(
+                f"Read {len(cells)} cells. Expected {width}, as the header has. Check them."
+            )
         try:
             if "_" in line or not line.isascii():
                 raise ValueError
             values[row] = [float(cell) if cell else np.nan for cell in cells[:width]]
         except ValueError:
-            numbers, messages = _one_by_one(cells, names)
-            values[row] = numbers
-            wrong += [(at + 1, message) for message in messages]
-    if wrong:
-        refuse_all(text.file, wrong)
+            values[row], others = _one_by_one(cells, names)
+            messages += others
+        mistakes += len(messages)
+        # A file of another kind may have millions.
+        wrong += [(at + 1, message) for message in messages[: MOST_LISTED - len(wrong)]]
+    if mistakes:
+        refuse_all(text.file, wrong, mistakes)
     if short:
         doubts.append(notice("file.short", rows=_rows_text(short)))
     lines = np.array(rows, np.int64) + 1
