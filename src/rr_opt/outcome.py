@@ -1,5 +1,6 @@
 """How a piece of work can end: a status, a sentence, and an exit code."""
 
+from collections.abc import Mapping
 from enum import StrEnum
 
 
@@ -14,6 +15,12 @@ class Status(StrEnum):
     def words(self) -> str:
         """`not converged`."""
         return self.value.replace("_", " ")
+
+    @classmethod
+    def of_cases(cls, counts: Mapping["Status", int]) -> "Status":
+        """Of many cases: OPTIMAL if any is, else NOT_CONVERGED if any is, else INFEASIBLE."""
+        order = (cls.OPTIMAL, cls.NOT_CONVERGED)
+        return next((one for one in order if counts[one]), cls.INFEASIBLE)
 
     @property
     def exit_code(self) -> int:

@@ -36,14 +36,18 @@ def rows(path):
 
 
 @pytest.mark.parametrize(
-    ("kind", "name"),
-    [("csv", "mine-angles.csv"), ("servo", "mine-counts.csv"), ("c-header", "mine.h")],
+    ("kind", "name", "change"),
+    [
+        ("csv", "mine-angles.csv", "+1.33 %"),
+        ("servo", "mine-counts.csv", "+0.37 %"),
+        ("c-header", "mine.h", "+1.33 %"),
+    ],
 )
-def test_every_format_of_a_result(run, result, tmp_path, kind, name):
+def test_every_format_of_a_result(run, result, tmp_path, kind, name, change):
     done = run("export", result(SineGait(0.15, 0.3)), "--format", kind)
     assert done.exit_code == 0, done.stderr
     assert {path.name for path in (tmp_path / "out").iterdir()} == {name}
-    assert "changed from 0.3 s (" in done.stdout
+    assert f"changed from 0.3 s ({change})" in done.stdout
     assert "holding" in done.stdout
     assert ("rounding" in done.stdout) == (kind == "servo")
 

@@ -20,8 +20,8 @@ def test_a_joint_that_is_free_moves_as_the_robot_that_is_fitted():
     drives = model.simulator.drives
     t = np.linspace(0.0, 2.0, 201)
     nominal = model.simulator.given(PLAY | {"servo_backlash.compliance": 0.0})
-    heavy = {**nominal, "kappa1": 3 * nominal["kappa1"]}
-    loose = [drives.of(1, given, ("servo_backlash",)).at(t)[0] for given in (nominal, heavy)]
+    braked = {**nominal, "kappa1": 3 * nominal["kappa1"]}
+    loose = [drives.of(1, given, ("servo_backlash",)).at(t)[0] for given in (nominal, braked)]
     assert np.abs(loose[1] - loose[0]).max() > 1e-4
-    stiff = [drives.of(1, given, ()) for given in (nominal, heavy)]
+    stiff = [drives.of(1, given, ()) for given in (nominal, braked)]
     assert stiff[0] is stiff[1]

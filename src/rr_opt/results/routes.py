@@ -40,10 +40,7 @@ class DrivenRoutes(Result):
     @property
     def status(self) -> Status:
         """OPTIMAL if any route is driven; else INFEASIBLE if none can be."""
-        counts = self.counts
-        if counts[Status.OPTIMAL]:
-            return Status.OPTIMAL
-        return Status.NOT_CONVERGED if counts[Status.NOT_CONVERGED] else Status.INFEASIBLE
+        return Status.of_cases(self.counts)
 
     @property
     def message(self) -> str:

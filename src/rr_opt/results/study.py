@@ -148,10 +148,7 @@ class SolvedStudy(Result):
     @property
     def status(self) -> Status:
         """OPTIMAL if any case has an optimum; else INFEASIBLE if no case has a feasible gait."""
-        counts = self.counts
-        if counts[Status.OPTIMAL]:
-            return Status.OPTIMAL
-        return Status.NOT_CONVERGED if counts[Status.NOT_CONVERGED] else Status.INFEASIBLE
+        return Status.of_cases(self.counts)
 
     def save(
         self,

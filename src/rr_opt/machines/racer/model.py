@@ -221,9 +221,9 @@ def _data(run: Run, noise: Sequence[Noise]) -> Data:
     recording = run.recording
     values = np.column_stack([recording.data(name) for name in CHANNELS])
     if run.start == "rest":
-        values[(recording.t >= 0) & (recording.t < SETTINGS.starting)] = np.nan
-        bounces = SETTINGS.bouncing * run.gait.period
-        values[(recording.t >= 0) & (recording.t < bounces), CHANNELS.index("phi")] = np.nan
+        t, bounces = recording.t, SETTINGS.bouncing * run.gait.period
+        values[(t >= 0) & (t < SETTINGS.starting)] = np.nan
+        values[(t >= 0) & (t < bounces), CHANNELS.index("phi")] = np.nan
     sigma = np.column_stack([recording.sigma[name] for name in CHANNELS])
     sigma = sigma * [one.level for one in noise]
     correlation = np.array([one.correlation for one in noise])
