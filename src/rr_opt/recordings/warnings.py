@@ -83,7 +83,7 @@ units.frames         error    The times look like frame numbers: steps of 1. Exp
 units.milliseconds   error    The times look like milliseconds: steps of {step:.6g}. Expected
     seconds; => divide by 1000.
 units.time           error    The times do not look like seconds: steps of {step:.6g}. Expected
-    steps of a recording; => export the times in seconds.
+    seconds; => export the times in seconds.
 units.place          error    The positions range over {widest:.6g}, which is no robot's motion in
     any unit. Expected metres.
 units.millimetres    error    The positions look like millimetres or centimetres: ranges of
