@@ -7,6 +7,7 @@ in the main thread all the same.
 """
 
 import signal
+import sys
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -28,6 +29,7 @@ def watch() -> None:
     for number in _SIGNALS:
         if signal.getsignal(number) is not signal.SIG_IGN:
             signal.signal(number, _remember)
+    sys.unraisablehook = _unraisable
 
 
 def ignore() -> None:
@@ -51,6 +53,12 @@ def _remember(_number: int, _frame: FrameType | None) -> None:
     global _seen  # noqa: PLW0603 - a signal is global to the process
     _seen = True
     raise KeyboardInterrupt
+
+
+def _unraisable(what: "sys.UnraisableHookArgs") -> None:
+    """Say nothing of an interrupt that fell into a finalizer: `check` raises it again."""
+    if not (_seen and isinstance(what.exc_value, KeyboardInterrupt)):
+        sys.__unraisablehook__(what)
 
 
 @contextmanager

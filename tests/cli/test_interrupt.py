@@ -8,6 +8,8 @@ import time
 
 import pytest
 
+from rr_opt.interrupt import MESSAGE
+
 ENTRY = "from rr_opt.cli.entry import main; main()"
 PROGRAM = f"""
 import sys
@@ -26,6 +28,18 @@ class Tell:
         if name == MODULE:
             print("loading", file=sys.stderr, flush=True)
 sys.meta_path.insert(0, Tell())
+{ENTRY}
+"""
+FINALIZING = f"""
+import os, signal, sys
+class Interrupting:
+    def __del__(self):
+        os.kill(os.getpid(), signal.SIGINT)
+class Drop:
+    def find_spec(self, name, path, target=None):
+        if name == "numpy":
+            Interrupting()
+sys.meta_path.insert(0, Drop())
 {ENTRY}
 """
 WRITING = f"""
@@ -84,6 +98,15 @@ def test_interrupted_while_it_loads(tmp_path, module):
         assert code == 130, stderr
         assert "Traceback" not in stderr
         assert not stdout
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_interrupted_in_a_finalizer(tmp_path):
+    """Python cannot raise it there: it is remembered, and said once."""
+    command = [sys.executable, "-c", FINALIZING, "maximize-speed"]
+    ended = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, check=False)
+    assert ended.returncode == 130, ended.stderr
+    assert ended.stderr == f"{MESSAGE}\n"
     assert list(tmp_path.iterdir()) == []
 
 
