@@ -2,8 +2,8 @@
 
     python -m benchmarks.robustness.nuisances [--cases 60] [--seed 1]
 
-Recordings of random robots of the laboratory, with hidden physics in a quarter of them, are looked at as
-they are and with one nuisance each. Writes results/robustness/nuisances.json.
+Recordings of random robots of the laboratory, with hidden physics in a quarter of them, are looked
+at as they are and with one nuisance each. Writes results/robustness/nuisances.json.
 """
 
 from __future__ import annotations
