@@ -64,5 +64,7 @@ def _found(
             (x / ratio, y / ratio, psi, phi), 1 / ratio
         )
     best = min(left.values(), default=np.inf)
-    if given.is_wrong(best) and (meant := given.likely(left)):
+    # No small fault turns phi against its command.
+    wrong = given.is_wrong(best) or not follows(given, given.motion[3])
+    if wrong and (meant := given.likely(left)):
         yield notice("frame.wrong", meant=", or ".join(meant), left=given.slip.size, best=best)
