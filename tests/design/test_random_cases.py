@@ -11,21 +11,19 @@ from rr_opt.design.maximize_speed import maximize_speed
 from rr_opt.motion.steady_cycle import reference_cycle
 from rr_opt.outcome import Status
 
-SEED, OTHER = "7a22e5445ca33a67", "acc0d7813779831d"
+SEED = "7a22e5445ca33a67"
 
 
 @pytest.mark.parametrize(
-    ("seed", "number", "radius", "speed"),
+    ("number", "radius", "speed"),
     [
-        pytest.param(SEED, 88, 0.363249, 5.95574e-4, id="rows that leave hardly any room"),
-        pytest.param(SEED, 104, 0.171269, 0.145617, id="a circle too tight for few phases"),
-        pytest.param(SEED, 149, -0.0411412, 9.434576e-5, id="a neighbour drives the other way"),
-        pytest.param(OTHER, 5, -0.402803, 3.36884e-5, id="rows that bend more sharply than models"),
-        pytest.param(OTHER, 25, -0.286084, 3.57783e-4, id="a climb from far off, ever so dear"),
+        pytest.param(88, 0.363249, 5.95574e-4, id="rows that leave hardly any room"),
+        pytest.param(104, 0.171269, 0.145617, id="a circle too tight for few phases"),
+        pytest.param(149, -0.0411412, 9.434576e-5, id="a neighbour drives the other way"),
     ],
 )
-def test_turn(seed: str, number: int, radius: float, speed: float) -> None:
-    posed, *_ = turn(number, seed)
+def test_turn(number: int, radius: float, speed: float) -> None:
+    posed, *_ = turn(number, SEED)
     answer = rr.turn(posed, radius=radius)
     assert answer.status is Status.OPTIMAL, answer.message
     assert answer.speed is not None
