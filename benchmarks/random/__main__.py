@@ -109,8 +109,8 @@ def verdict(status: str, speed: float, known: float) -> str:
     return "not converged"
 
 
-def page(rows: list[dict]) -> tuple[list[str], dict[str, float]]:
-    """The page and its ratios."""
+def page(rows: list[dict], asked: dict[tuple[str, str], int]) -> tuple[list[str], dict[str, float]]:
+    """The page and its ratios; asked: how many cases of a kind and a seed."""
     lines = [
         "# Random problems and turns: against brute force",
         "",
@@ -121,10 +121,10 @@ def page(rows: list[dict]) -> tuple[list[str], dict[str, float]]:
         "moves 1 mm, what a capture system tells of a place, in a quarter of an hour. What is "
         "slower counts as standing: no refusal misses it.",
         "",
-        "| | seed | cases | "
+        "| | seed | commits | cases | "
         + " | ".join(VERDICTS)
         + " | brute force slower | CPU, s, median (most) |",
-        "|" + "---|" * (len(VERDICTS) + 5),
+        "|" + "---|" * (len(VERDICTS) + 6),
     ]
     ratios = {}
     for kind, seed in sorted({(row["kind"], row["seed"]) for row in rows}):
@@ -132,8 +132,11 @@ def page(rows: list[dict]) -> tuple[list[str], dict[str, float]]:
         counts = Counter(row["verdict"] for row in own)
         behind = sum(row["speed"] > row["known"] * (1 + _SHORT) + _STANDS for row in own)
         took = sorted(row["seconds"] for row in own)
+        commits = ", ".join(dict.fromkeys(row["commit"] for row in own))
+        of = asked.get((kind, seed), len(own))
+        cases = str(len(own)) if len(own) >= of else f"{len(own)} of {of}"
         lines.append(
-            f"| {kind}s | `{seed}` | {len(own)} | "
+            f"| {kind}s | `{seed}` | {commits} | {cases} | "
             + " | ".join(str(counts[name]) for name in VERDICTS)
             + f" | {behind} | {took[len(took) // 2]:.2f} ({took[-1]:.2f}) |"
         )
@@ -160,8 +163,8 @@ def main() -> None:
     parser.add_argument("--only", nargs="*", type=int, help="these numbers alone, printed")
     asked = parser.parse_args()
     head = ["git", "rev-parse", "--short=12", "HEAD"]
-    seed = asked.seed or subprocess.run(head, check=True, capture_output=True, text=True).stdout
-    seed = seed.strip()
+    commit = subprocess.run(head, check=True, capture_output=True, text=True).stdout.strip()
+    seed = asked.seed or commit
     journal = asked.folder / f"random-{seed}.jsonl"
     rows = [
         json.loads(line) | {"seed": one.stem.removeprefix("random-")}
@@ -174,14 +177,14 @@ def main() -> None:
         for number in asked.only or range(count):
             if (kind, number) in done and not asked.only:
                 continue
-            row = held(kind, number, seed)
+            row = held(kind, number, seed) | {"commit": commit[:7]}
             print(json.dumps(row), flush=True)
             if not asked.only:
                 rows.append(row | {"seed": seed})
                 with journal.open("a") as file:
                     file.write(json.dumps(row) + "\n")
     if not asked.only:
-        lines, ratios = page(rows)
+        lines, ratios = page(rows, {(kind, seed): count for kind, count in counts.items()})
         write("random", lines, ratios)
         print("\n".join(lines))
 

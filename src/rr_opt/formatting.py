@@ -75,7 +75,8 @@ def with_unit(value: float, unit: str, digits: int = 4) -> str:
 
 def words_of(name: str) -> str:
     """An effect's name as words: `coulomb_friction` as `Coulomb friction`."""
-    return name.replace("_", " ").replace("coulomb", "Coulomb")
+    words = name.replace("com_", "centre-of-mass ").replace("left_right", "left-right")
+    return words.replace("_", " ").replace("coulomb", "Coulomb")
 
 
 def counted(count: int, singular: str, plural: str = "") -> str:

@@ -24,7 +24,7 @@ _GAIN, _LENGTH, _STATIONARY = 1e-9, 1e-7, 1e-4
 """A step that gains less, relative, or that is shorter, in scales, is the last; and the slope,
 relative, of what its radius holds back from gaining more."""
 _ROUNDING = 1e-12
-"""Of a row."""
+"""Of a row, at least."""
 _FRACTIONS = np.array([1.0, 0.6, 0.3, 0.1, 0.03])
 """Of a step that are tried, all in one call."""
 _RADIUS = 0.2
@@ -32,6 +32,8 @@ _RADIUS = 0.2
 _SHRUNK = 0.1
 """What is left of it after a step that gains nothing."""
 _ITERATIONS = 100
+_CORRECTIONS = 3
+"""Of a step, at most."""
 FEASIBLE = 1e-7
 """Largest violation of a row that still counts as kept."""
 _DEARER, DEAREST = 10.0, 1e5
@@ -47,12 +49,13 @@ of the function; and the least of those, relative to the penalty."""
 class Seen(NamedTuple):
     """Of K points: the function (K,); rows (R, K), smooth along the points, those of maxima over a
     curve along the first point's maxima; worst (W, K), the same of each point for itself; names
-    of the rows."""
+    of the rows; and the rounding of rows and, relative, of the function."""
 
     function: Array
     rows: Array
     worst: Array
     names: tuple[str, ...]
+    rounding: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -113,14 +116,18 @@ def ascend(program: Program, start: Array, penalty: float = 10.0) -> Ascent:
     penalty: of a violation of 1, in values of the function, to begin with.
     """
     x, radius, converged, iterations = start, _RADIUS, False, 0
-    size = max(program.unit, 1e-300)
+    kept, least_penalty, smallest = False, penalty, max(program.unit, 1e-300)
+    size = smallest
     stencil, design = _stencil(len(x), program.step)
     here = program.look(x[None])
     value, violation = float(here.function[0]), float(program.violation(here.worst)[0])
     names, prices = here.names, Prices(np.zeros(len(here.rows)), *(np.zeros(0) for _ in range(3)))
     while not converged and iterations < _ITERATIONS:
         iterations += 1
-        function, rows, _, names = program.look(x + program.step * program.scale * stencil)
+        if violation <= FEASIBLE and not kept:
+            # Values and prices on the way here can be a thousand times those here.
+            kept, penalty, size, radius = True, least_penalty, smallest, _RADIUS
+        function, rows, _, names, _ = program.look(x + program.step * program.scale * stencil)
         models = np.vstack([function, rows]) @ design.T
         if not np.isfinite(models).all():
             break
@@ -133,15 +140,12 @@ def ascend(program: Program, start: Array, penalty: float = 10.0) -> Ascent:
         dearest = float(np.abs(prices.rows).max(initial=0.0)) / size
         penalty = max(penalty, min(2 * dearest, DEAREST))
         length, reach = float(np.abs(step).max(initial=0.0)), radius
-        tried = x + _FRACTIONS[:, None] * program.scale * step
-        tried = np.vstack([x, np.clip(tried, program.low, program.high)])
-        there = program.look(tried)
-        off = program.violation(there.worst)
-        merit = there.function - penalty * size * off
-        merit = np.where(np.isfinite(merit), merit, -np.inf)
+        tried = _tried(program, x, step, models, prices, penalty * size)
+        merit = tried.merit
         best = int(merit.argmax())
         gain = float(merit[best] - merit[0])
-        x, value, violation = tried[best], float(there.function[best]), float(off[best])
+        x, value = tried.points[best], float(tried.function[best])
+        violation = float(tried.violation[best])
         if best == 0:
             radius = _SHRUNK * min(radius, length)
         elif best == 1:
@@ -149,7 +153,7 @@ def ascend(program: Program, start: Array, penalty: float = 10.0) -> Ascent:
         else:
             radius = float(_FRACTIONS[best - 1]) * length
         # A step that its radius cuts short, or that falls short of its promise, says nothing.
-        noise = penalty * _ROUNDING
+        noise = penalty * max(_ROUNDING, here.rounding)
         least = (_GAIN + noise) * size
         small = length <= _LENGTH or abs(gain if best == 1 else promise) <= least
         converged = length < (1 - _SETTLED) * reach and small
@@ -161,6 +165,62 @@ def ascend(program: Program, start: Array, penalty: float = 10.0) -> Ascent:
             converged = -noise * size <= promise <= (_STATIONARY * reach + noise) * size
             break
     return Ascent(x, value, violation, prices, names, converged, iterations)
+
+
+class _Tried(NamedTuple):
+    """Of a point and fractions of a step from it, (K,): points (K, n), function, violation, and the
+    function less a penalty for that; rows (K, R)."""
+
+    points: Array
+    function: Array
+    violation: Array
+    merit: Array
+    rows: Array
+
+
+def _weighed(program: Program, points: Array, penalty: float) -> _Tried:
+    seen = program.look(points)
+    violation = program.violation(seen.worst)
+    merit = seen.function - penalty * violation
+    merit = np.where(np.isfinite(merit), merit, -np.inf)
+    return _Tried(points, seen.function, violation, merit, seen.rows.T)
+
+
+def _tried(
+    program: Program, x: Array, step: Array, models: Array, prices: Prices, penalty: float
+) -> _Tried:
+    """Fractions of a step, each brought nearer to the rows where the whole is off them."""
+    points = np.clip(x + _FRACTIONS[:, None] * program.scale * step, program.low, program.high)
+    tried = _weighed(program, np.vstack([x, points]), penalty)
+    for _ in range(_CORRECTIONS):
+        if tried.merit.argmax() == 1 or not tried.violation[1] > FEASIBLE:
+            break
+        bent = _weighed(program, _corrected(program, models, prices, tried), penalty)
+        better = bent.merit >= tried.merit
+        both = zip(tried, bent, strict=True)
+        tried = _Tried(*(np.where(better, two.T, one.T).T for one, two in both))
+    return tried
+
+
+def _corrected(program: Program, models: Array, prices: Prices, tried: _Tried) -> Array:
+    """Points (K, n) nearer to keeping the rows that hold: third derivatives, which the models lack,
+    carry a long step off rows that bend sharply."""
+    x, scale, equal = tried.points[0], program.scale, program.equal
+    _, slopes, bends = _parts(models, len(x))
+    held = np.concatenate([np.ones(equal, bool), prices.rows[equal:] > 0])
+    bounds = np.eye(len(x))[np.flatnonzero((prices.high > 0) | (prices.low > 0))]
+    still = np.vstack([(program.matrix * scale)[prices.linear > 0], bounds])
+    bent = tried.points.copy()
+    for point, rows in zip(bent[1:], tried.rows[1:], strict=True):
+        slope = slopes[1:] + bends[1:] @ ((point - x) / scale)
+        miss = np.concatenate([rows[:equal], np.maximum(rows[equal:], 0.0)])[held]
+        if np.isfinite(miss).all():
+            sides = np.vstack([slope[held], still])
+            back = np.linalg.lstsq(sides, np.append(-miss, np.zeros(len(still))), rcond=None)[0]
+            point += scale * back  # noqa: PLW2901
+    bent = np.clip(bent, program.low, program.high)
+    inside = np.all(bent @ program.matrix.T <= program.most + _ROUNDING, axis=1)
+    return np.where(inside[:, None], bent, tried.points)
 
 
 # Models may be so large that they overflow.

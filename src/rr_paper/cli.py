@@ -11,10 +11,10 @@ def calibrate(
     out: Annotated[Path | None, out_option("out/calibration")] = None,
     json: Annotated[bool, json_option("calibration.json")] = False,
 ) -> None:
-    """Estimate the prototype's unpublished parameters, and compare models.
+    """Estimate the prototype's unpublished parameters.
 
-    Uses the nine averages of Tables 2 and 3, for both readings of their columns, and shows which
-    unknowns they do not identify. Takes two to three minutes.
+    Uses the nine averages of Tables 2 and 3, for both readings of their columns, compares models,
+    and shows which unknowns the averages do not identify. Takes two to three minutes.
     """
     with StepDisplay() as steps:
         steps("starting")
@@ -30,9 +30,9 @@ def reproduce(
     json: Annotated[bool, json_option("reproduce.json")] = False,
     figures: Figures = True,
 ) -> None:
-    """Recompute the paper's tables and figures, and check its statements.
+    """Recompute the paper's tables and figures.
 
-    Takes about a minute. The robot is the shipped prototype.
+    Also checks its statements. Takes about a minute. The robot is the shipped prototype.
     """
     with StepDisplay() as steps:
         steps("reading")

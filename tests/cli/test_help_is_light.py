@@ -28,6 +28,9 @@ def test_help_names_every_verb_and_loads_nothing_heavy():
     assert done.returncode == 0, done.stderr
     for verb in ("maximize-speed", "sweep", "simulate", "reproduce", "inspect", "diagnose"):
         assert verb in done.stdout
+    assert [line for line in done.stdout.splitlines() if line.endswith("...")] == [
+        "Usage: rr-opt [OPTIONS] COMMAND [ARGS]..."
+    ]  # nothing is cut off
 
 
 def test_help_of_a_verb_loads_nothing_heavy():

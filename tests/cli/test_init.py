@@ -56,3 +56,9 @@ def test_there_is_nothing_wrong_with_the_recordings(run):
     done = run("inspect", "experiment", "--no-figures", "--json")
     reported = json.loads(done.stdout)
     assert [one["doubts"] for one in reported["recordings"]] == [[]] * 3
+
+
+def test_a_kind_that_does_not_exist_is_answered_with_those_that_do(run):
+    done = run("init", "nonsense")
+    assert done.exit_code == 2
+    assert "Invalid value for 'kind': 'nonsense' is not one of 'robot', 'problem'" in done.stderr

@@ -15,15 +15,15 @@ SEED = "7a22e5445ca33a67"
 
 
 @pytest.mark.parametrize(
-    ("number", "speed"),
+    ("number", "radius", "speed"),
     [
-        pytest.param(88, 5.95574e-4, id="rows that leave hardly any room"),
-        pytest.param(104, 0.145617, id="a circle too tight for few phases"),
-        pytest.param(149, 9.434576e-5, id="a climb that comes to gaits without a settled cycle"),
+        pytest.param(88, 0.363249, 5.95574e-4, id="rows that leave hardly any room"),
+        pytest.param(104, 0.171269, 0.145617, id="a circle too tight for few phases"),
+        pytest.param(149, -0.0411412, 9.434576e-5, id="a neighbour drives the other way"),
     ],
 )
-def test_turn(number: int, speed: float) -> None:
-    posed, radius, _ = turn(number, SEED)
+def test_turn(number: int, radius: float, speed: float) -> None:
+    posed, *_ = turn(number, SEED)
     answer = rr.turn(posed, radius=radius)
     assert answer.status is Status.OPTIMAL, answer.message
     assert answer.speed is not None

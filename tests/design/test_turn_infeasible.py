@@ -6,6 +6,8 @@ from dataclasses import replace
 
 import pytest
 
+from benchmarks.random.problems import draw
+from benchmarks.random.problems import turning as turning_at_random
 from benchmarks.turn.problems import REFERENCE, SHORT, round_, turning
 from rr_opt.design.maximize_speed import maximize_speed
 from rr_opt.design.turn import fastest_turn
@@ -48,3 +50,10 @@ def test_too_soon_tells_the_time_that_it_takes():
     turned = fastest_turn(SHORT, Target(heading=math.pi / 2, within=needed))
     assert turned.optimum.status is Status.OPTIMAL
     assert turned.arc.time == pytest.approx(needed, rel=0.01)
+
+
+def test_a_gait_that_stands_goes_round_no_circle():
+    """The fastest on this circle makes 0.3 um/s, within rounding of turning to either side."""
+    posed = turning_at_random(draw("acc0d7813779831d", 32_000))
+    message = refused(replace(posed, turn=round_(0.0134114)))
+    assert "below 0.001 mm/s a robot counts as standing" in message

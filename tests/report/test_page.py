@@ -4,7 +4,7 @@ import re
 from dataclasses import replace
 from html.parser import HTMLParser
 
-from rr_opt.documents.document import Figure
+from rr_opt.documents.document import Document, Figure, Section, Table
 from rr_opt.documents.rendering import page as page_of
 
 FIGURE = Figure("path", "Path", "<svg/>", "the path")
@@ -58,6 +58,19 @@ def test_provenance_is_shown(answer):
     text = page(answer)
     assert 'badge good">measured' in text
     assert 'badge warn">assumed' in text
+
+
+def test_signs_are_those_of_print():
+    shown = page_of(Document("n", "k", "t", "1 -> 2 +- 3", ()))
+    assert "1 → 2 ± 3" in shown
+
+
+def test_a_phone_names_the_number_that_leads_a_row_and_leaves_out_empty_cells():
+    table = Table(("rpm",), (("5",), ("",)))
+    shown = page_of(Document("n", "k", "t", "", (Section("s", (table,)),)))
+    assert '<td data-label="rpm" class="count"><span>5</span></td>' in shown
+    assert '<td data-label="rpm"><span></span></td>' in shown
+    assert "td:has(> span:empty) { display: none; }" in shown
 
 
 def test_no_line_breaks_within_a_number(answer):

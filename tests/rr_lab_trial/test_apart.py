@@ -1,6 +1,7 @@
 """The program that diagnoses is given the recordings, and nothing that tells what is hidden."""
 
 import json
+import subprocess
 import sys
 from pathlib import Path
 
@@ -99,3 +100,15 @@ def test_a_program_that_does_not_end_is_ended():
     assert said.timed_out
     assert said.exit_code == -9
     assert said.wall < 10
+
+
+def test_it_ends_with_the_process_that_started_it(made, tmp_path):
+    """The system closes what is written to its standard input, however that process ends."""
+    for name, content in made.files.items():
+        (tmp_path / name).write_bytes(content)
+    command = (*COMMAND, str(tmp_path), "--out", str(tmp_path / "out"))
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.PIPE) as running:
+        assert b" s  " in running.stderr.readline()
+        running.stdin.close()
+        assert running.wait(10) == 1
+    assert not (tmp_path / "out" / "diagnosis.json").exists()

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -195,7 +196,7 @@ def test_after_a_kill_it_goes_on(tmp_path):
 def test_a_row_that_parses_and_is_wrong_is_refused(tmp_path, name, change, words):
     tried(tmp_path)
     path = tmp_path / name
-    heading, first, *others = path.read_text().splitlines()
+    heading, first, *others = re.sub(r', "crc32": "\w{8}"', "", path.read_text()).splitlines()
     row = json.dumps(json.loads(first) | change)
     path.write_text("\n".join([heading, row, *others]) + "\n")
     read = {MADE: made_row, SAID: said_row}

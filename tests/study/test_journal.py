@@ -1,6 +1,7 @@
 """A journal keeps every finished row, loses a torn last line alone, and knows its study."""
 
 import json
+import re
 
 import pytest
 
@@ -38,7 +39,7 @@ def test_cut_anywhere_only_what_was_not_whole_is_lost(path, three):
             journal.append(7, {"speed": 1.0})
         lines = [json.loads(line) for line in path.read_text().splitlines()]
         assert lines[0] == STUDY
-        assert lines[-1] == {"case": 7, "speed": 1.0}
+        assert lines[-1] == {"case": 7, "speed": 1.0, "crc32": "5a034d5d"}
         assert len(lines) == max(whole, 1) + 1
 
 
@@ -97,6 +98,41 @@ def test_a_line_that_is_no_row_is_refused_with_its_number(line, words, path, thr
     assert "--restart" in str(refused.value)
     assert path.read_bytes() == before
     Journal(path, STUDY, read=read, cases=3, restart=True).__exit__(None, None, None)
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        (b'"speed": 0.3', b'"speed": 0.4'),
+        (b'"speed": 0.3', b'"speed": -0.3'),
+        (b'"case": 1', b'"case": 2'),
+        (b'"crc32": "', b'"crc32": "0'),
+        (b'"speed"', b'"more": 0, "speed"'),
+    ],
+)
+def test_a_row_that_was_changed_is_refused(old, new, path, three):
+    lines = three.splitlines(keepends=True)
+    changed = lines[2].replace(old, new)
+    assert changed != lines[2]
+    path.write_bytes(b"".join([*lines[:2], changed]))
+    with pytest.raises(InputError, match="in line 3: it was changed after it was written"):
+        Journal(path, STUDY)
+
+
+def test_rows_have_a_checksum_of_what_was_read_back(path):
+    """Of every kind of value that JSON can hold, in its digits and in its order."""
+    row = {"b": [1e22, -0.0, 5e-324, 0.1 + 0.2, 2**70], "a": {"é": None, "1": True}, "c": "\n"}
+    with Journal(path, STUDY) as journal:
+        journal.append(0, row)
+    with Journal(path, STUDY) as journal:
+        assert journal.rows == {0: row}
+
+
+def test_rows_of_earlier_versions_have_none(path, three):
+    path.write_bytes(re.sub(rb', "crc32": "\w{8}"', b"", three))
+    assert b"crc32" not in path.read_bytes()
+    with Journal(path, STUDY) as journal:
+        assert len(journal.rows) == 3
 
 
 @pytest.mark.parametrize("heading", [b"[]", b"no", b'"\xff"'])

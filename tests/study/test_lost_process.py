@@ -2,7 +2,9 @@
 
 import os
 import signal
+import tempfile
 from concurrent.futures import Future
+from pathlib import Path
 
 import pytest
 
@@ -41,6 +43,20 @@ def test_a_case_is_tried_again(tmp_path):
         assert dict(run(pool, dies_once, {0: tmp_path / "died"})) == {0: "done"}
     finally:
         pool.close()
+
+
+def folder_of_its_own(_):
+    return Path(tempfile.mkdtemp(prefix="left-"))
+
+
+def test_what_a_process_leaves_behind_goes_with_the_pool():
+    pool = LocalPool(1)
+    try:
+        left = pool.submit(folder_of_its_own, None).result()
+        assert left.is_dir()
+    finally:
+        pool.close()
+    assert not left.exists()
 
 
 class Gone(LocalPool):

@@ -23,7 +23,7 @@ def found():
     [
         ("consistent", "The nominal model explains the recordings."),
         ("parameters", "The model is right, but the value of Coulomb friction is not."),
-        ("missing_physics", "The model leaves out Coulomb friction (confidence 99%)."),
+        ("missing_physics", "The model leaves out Coulomb friction (confidence 99 %)."),
         ("unexplained", "Something is left out, and no effect of the catalogue is shown to be it."),
     ],
 )
@@ -51,7 +51,9 @@ def test_a_place_is_never_said_to_be_off_by_nothing(off, said):
 
 def test_what_remains_is_told_with_what_it_depends_on(found):
     left = replace(found, remainder=Remainder("small", 0.4, 0.03, "a force along the wheels"))
-    assert "What remains is small (3% of the misfit): a force along the wheels." in summary_of(left)
+    assert "What remains is small (3 % of the misfit): a force along the wheels." in summary_of(
+        left
+    )
     assert "What remains" not in summary_of(found)
     assert "What remains" not in summary_of(replace(left, verdict="consistent"))
 

@@ -57,9 +57,9 @@ def prove(
     ] = False,
     json: Annotated[bool, typer.Option("--json", help="Print only proof.json on stdout.")] = False,
 ) -> None:
-    """Test `diagnose` on sealed cases of the laboratory, and count how often it is right.
+    """Count how often `diagnose` is right on sealed cases.
 
-    An interrupted run resumes when the same command is repeated.
+    The laboratory draws them. An interrupted run resumes when the same command is repeated.
     """
     with StepDisplay() as steps:
         from rr_lab import prove as trial

@@ -59,7 +59,7 @@ def remainder_text(case: Case) -> str:
     claim = case.claim
     if claim is None or claim.share is None:
         return claim.remainder if claim else ""
-    return f"{claim.remainder}, {claim.share:.0%} of the mismatch"
+    return f"{claim.remainder}, {100 * claim.share:.0f} % of the mismatch"
 
 
 def page_of(case: Case) -> str:

@@ -25,14 +25,18 @@ from typing import Any
 
 from rr_lab.trial.outcome import Case, Claim, Truth, scored_part
 
-COMMAND = (
-    sys.executable,
-    "-I",
-    "-u",
-    "-c",
-    "from rr_opt.cli.entry import main; main()",
-    "diagnose",
-)
+_PROGRAM = """
+import os, threading
+def end():
+    os.read(0, 1)
+    os._exit(1)
+threading.Thread(target=end, daemon=True).start()
+from rr_opt.cli.entry import main
+main()
+"""
+"""Ends when its standard input does: with the process that started it, however that ends."""
+
+COMMAND = (sys.executable, "-I", "-u", "-c", _PROGRAM, "diagnose")
 """-I: neither the current folder nor the environment adds to what Python loads; -u: what was
 printed before a crash is not lost."""
 
@@ -121,7 +125,7 @@ def _run(task: Task, top: Path) -> tuple[int, float, float, bool]:
             [*task.command, str(recordings), "--out", str(top / SAID)],
             cwd=recordings,
             env={**kept, "TMPDIR": str(top)},
-            stdin=subprocess.DEVNULL,
+            stdin=subprocess.PIPE,
             stdout=output,
             stderr=subprocess.STDOUT,
             start_new_session=True,
@@ -142,6 +146,8 @@ def _run(task: Task, top: Path) -> tuple[int, float, float, bool]:
             raise
         finally:
             timer.cancel()
+            if process.stdin:
+                process.stdin.close()
     process.returncode = os.waitstatus_to_exitcode(status)
     cpu = usage.ru_utime + usage.ru_stime
     return process.returncode, time.perf_counter() - began, cpu, late.is_set()

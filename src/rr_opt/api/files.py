@@ -86,8 +86,8 @@ def _require_new(places: list[Path], force: bool) -> None:
         file_for_result(place)
         if place.exists() and not force:
             raise InputError(
-                f"{place}: The file exists. Expected a new name. Give another with --out, or "
-                "--force to write over it."
+                f"{place}: The file exists. Expected a new name. Choose one with --out, or "
+                "overwrite it with --force."
             )
 
 

@@ -13,7 +13,7 @@ import numpy as np
 from rr_opt.api.load import identity, load_experiment
 from rr_opt.documents.archive import file_for_result
 from rr_opt.files.experiment_file import read_plan
-from rr_opt.files.source import fingerprint
+from rr_opt.files.source import fingerprint, recording_path
 from rr_opt.model.experiment import Experiment, Run, Start
 from rr_opt.model.gait import Gait
 from rr_opt.model.machine import MachineExperiment
@@ -54,7 +54,7 @@ def inspect(
 
     Raises InputError for what cannot be read.
     """
-    path = Path(source)
+    path = recording_path(Path(source))
     if is_experiment(path):
         given = {"layout": layout, "servo_log": servo_log, "columns": columns, "gait": gait}
         wrong = [name for name, value in given.items() if value is not None]
@@ -67,7 +67,8 @@ def inspect(
         found = inspect_experiment(path, progress)
         sha256 = read_plan(path)[0].sha256
     else:
-        layout_file, log = (None if one is None else Path(one) for one in (layout, servo_log))
+        layout_file = None if layout is None else Path(layout)
+        log = None if servo_log is None else recording_path(Path(servo_log))
         known = Circumstances(
             options=ReadOptions(columns=columns_from(columns or {})),
             gait=gait, start=start, servo_log=log,

@@ -2,12 +2,13 @@
 
 A line is written, flushed and synced before the next row is taken. A run that is killed while it
 writes leaves at most a torn last line, which the next run cuts off. Any other line that is not a
-row of the batch is refused, with its number.
+row of the batch, or was changed since, is refused, with its number.
 """
 
 import fcntl
 import json
 import os
+import zlib
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from types import TracebackType
@@ -18,6 +19,8 @@ from rr_opt.outcome import InputError
 
 JOURNAL = "journal.jsonl"
 """Its name in the folder of a study."""
+SUM = "crc32"
+"""The key of a row's checksum, its last."""
 
 _CHANGES = {
     "input_sha256": "the study file or a file that it names",
@@ -71,7 +74,8 @@ class Journal(Generic[Row]):
 
     def append(self, case: int, record: Mapping[str, Any]) -> None:
         """Keep a finished row: it is on disk when this returns."""
-        self._write({"case": case, **record})
+        row = {"case": case, **record}
+        self._write({**row, SUM: _sum(row)})
         self.rows[case] = self._read(record)
 
     def __enter__(self) -> Self:
@@ -120,11 +124,14 @@ class Journal(Generic[Row]):
                 case, row = self._row(_parsed(line))
             except KeyError as error:
                 raise self._damaged(number, f"it has no {error}") from None
-            except (TypeError, ValueError) as error:
+            except (TypeError, ValueError, RecursionError) as error:
                 raise self._damaged(number, str(error)) from None
             self.rows[case] = row
 
     def _row(self, record: dict[str, Any]) -> tuple[int, Row]:
+        # Rows of earlier versions have none.
+        if SUM in record and record.pop(SUM) != (found := _sum(record)):
+            raise ValueError(f"it was changed after it was written: its {SUM} would be {found}")
         case = record.pop("case")
         if type(case) is not int or case < 0:
             raise ValueError(f"its case is {case!r}, not a number from 0 on")
@@ -142,10 +149,18 @@ class Journal(Generic[Row]):
         )
 
     def _write(self, record: Mapping[str, Any]) -> None:
-        line = json.dumps(record, allow_nan=False, ensure_ascii=False) + "\n"
-        self._file.write(line.encode())
+        self._file.write(_text(record) + b"\n")
         self._file.flush()
         os.fsync(self._file.fileno())
+
+
+def _text(record: Mapping[str, Any]) -> bytes:
+    return json.dumps(record, allow_nan=False, ensure_ascii=False).encode()
+
+
+def _sum(row: Mapping[str, Any]) -> str:
+    """Tells a row that was changed by accident, or by hand; nothing keeps it from being forged."""
+    return f"{zlib.crc32(_text(row)):08x}"
 
 
 def _parsed(line: bytes) -> dict[str, Any]:

@@ -4,6 +4,7 @@ import os
 import re
 import signal
 import socket
+import tempfile
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -66,14 +67,17 @@ class LocalPool:
             time.sleep(_HANDED_ON / 100)
         self._given = set()
         self._executor.shutdown(wait=True, kill_workers=True)
+        self._temporary.cleanup()
 
     def _started(self) -> ProcessPoolExecutor:
+        # A process that is killed leaves its temporary files.
+        self._temporary = tempfile.TemporaryDirectory(prefix="rr-opt-", ignore_cleanup_errors=True)
         return ProcessPoolExecutor(
             max_workers=self.workers,
             timeout=None,
             initializer=_begin,
             initargs=(os.getpid(),),
-            env=ONE_THREAD,
+            env={**ONE_THREAD, "TMPDIR": self._temporary.name},
         )
 
 

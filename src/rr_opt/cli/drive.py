@@ -47,9 +47,10 @@ def circle(
     offset: options.Offset = None,
     json: options.Summary = False,
 ) -> None:
-    """Compute the circle of a gait: radius, centre, speed, time for a full turn.
+    """Compute the circle that a gait drives.
 
-    Also shows how a start from rest approaches it. Left is positive, seen from above.
+    Prints radius, centre, speed, the time for a full turn, and how a start from rest approaches
+    the circle. Left is positive, seen from above.
     """
     with StepDisplay() as steps, options.naming(source):
         gait = {"amplitude": amplitude, "period": period, "offset": offset}
@@ -106,9 +107,10 @@ def route(
     ] = False,
     animate: options.Film = None,
 ) -> None:
-    """Drive a route of straights, arcs and waypoints from rest, as fast as the robot can.
+    """Drive a route from rest, as fast as the robot can.
 
-    The drive is checked by simulation. `rr-opt init route` writes a file to start from.
+    It consists of straights, arcs and waypoints. The drive is checked by simulation. `rr-opt init
+    route` writes a file to start from.
     """
     with StepDisplay() as steps:
         asked = options.read_route(route)

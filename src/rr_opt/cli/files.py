@@ -66,5 +66,5 @@ def schema(
         str, typer.Option(help="For an experiment: racer, pendulum, servo or car.")
     ] = "racer",
 ) -> None:
-    """Print the JSON Schema of an input file, which lets editors complete and check it."""
+    """Print the JSON Schema of an input file. Editors complete and check files with it."""
     typer.echo(json.dumps(rr.schema(kind, machine), indent=2))

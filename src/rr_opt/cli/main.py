@@ -61,6 +61,9 @@ class Verbs(TyperGroup):
                 return _interrupted()
             typer.echo(str(error), err=True)
             raise typer.Exit(error.exit_code) from None
+        except typer.BadParameter as error:
+            error.message = error.message.removeprefix("Value error, ")
+            raise
         except KeyboardInterrupt as error:
             if str(error):
                 typer.echo(str(error), err=True)

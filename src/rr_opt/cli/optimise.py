@@ -35,9 +35,10 @@ def shapes(
     json: Annotated[bool, options.json_option("shapes.json")] = False,
     figures: options.Figures = True,
 ) -> None:
-    """Compare the fastest sine with other waveforms: 3 and 5 harmonics, and a free gait.
+    """Compare the fastest sine with other waveforms.
 
-    All satisfy the same limits, and each is checked. The problem's own shape is ignored.
+    They have 3 harmonics, 5 harmonics, or any form. All satisfy the same limits, and each is
+    checked. The problem's own shape is ignored.
     """
     with StepDisplay() as steps:
         posed = options.read_problem(problem)
@@ -88,9 +89,9 @@ def study(
     json: Annotated[bool, options.json_option("study.json")] = False,
     figures: options.Figures = True,
 ) -> None:
-    """Solve a problem for many values of its keys: limits, robot parameters, bounds. Or drive
-    several routes.
+    """Solve a problem for many values of its keys.
 
+    Keys are limits, robot parameters and bounds. With `routes`, drives several routes instead.
     An interrupted run resumes when the same command is repeated.
     """
     given = {"workers": workers, "scheduler": scheduler, "restart": restart}
@@ -133,7 +134,7 @@ def turn_chart(
     out: Annotated[Path | None, options.out_option("out/NAME-turn-chart")] = None,
     json: Annotated[bool, options.json_option("turn-chart.json")] = False,
 ) -> None:
-    """Chart the circles of a robot: radius over offset, amplitude and period.
+    """Chart turning radius over offset, amplitude and period.
 
     Finds the tightest circle within the limits, and reports where the offset alone does not
     determine the circle. The inertia ratio is the robot's own.

@@ -52,9 +52,10 @@ def diagnose(
         bool, typer.Option("--page/--no-page", help="Draw figures and write report.html.")
     ] = True,
 ) -> None:
-    """Find out why recordings differ from the simulation: where, by which physics, how certainly.
+    """Find out why recordings differ from the simulation.
 
-    Writes diagnosis.json, robot-corrected.yaml for the other verbs, and report.html.
+    Says where, by which physics, and how certainly. Writes diagnosis.json, robot-corrected.yaml
+    for the other verbs, and report.html.
     """
     with StepDisplay() as steps:
         steps("reading")

@@ -21,7 +21,7 @@ from rr_opt.design.decisions import (
 )
 from rr_opt.design.seeds import THOROUGH, tops
 from rr_opt.design.sines import FEWEST, WAYS, climbed
-from rr_opt.design.terrain import Aim, Terrain
+from rr_opt.design.terrain import STANDS, Aim, Terrain
 from rr_opt.design.turn_target import Nearest, asked_text, reached_text
 from rr_opt.messages import listed
 from rr_opt.model.gait import SineGait
@@ -276,7 +276,8 @@ def _turn(problem: Problem, box: Decisions, found: Attempt, other: Attempt) -> l
     sentences = [
         f"The requested turn, {asked_text(turn)}, is infeasible.",
         f"The closest feasible one is {reached_text(turn, nearest)}, with amplitude "
-        f"{gait.amplitude:.4g} rad, period {gait.period:.4g} s, offset {gait.offset:.4g} rad. "
+        f"{gait.amplitude:.4g} rad, period {gait.period:.4g} s, offset {gait.offset:.4g} rad, at "
+        f"{1e3 * abs(nearest.speed):.4g} mm/s. "
         f"It is limited by {held_text}.",
     ]
     if other.excess <= FEASIBLE:
@@ -298,6 +299,8 @@ def held_by(problem: Problem, box: Decisions, nearest: Nearest) -> list[str]:
         )
         if value >= limit * (1 - _NEAR)
     ]
+    if abs(nearest.speed) < STANDS * (1 + _NEAR):
+        held.append(f"its speed: below {1e3 * STANDS:g} mm/s a robot counts as standing")
     shares = Interval(0.0, 0.0) if box.ballast.fixed else Interval(0.0, 1.0)
     for name, value, bounds in (
         ("amplitude", gait.amplitude, problem.gait.amplitude),

@@ -2,13 +2,16 @@
 
 from collections.abc import Callable
 
-from rr_opt.design.candidate import Finds
-from rr_opt.design.decisions import decisions, scanned, settings_of
+import numpy as np
+
+from rr_opt.design.candidate import Candidate, Finds
+from rr_opt.design.decisions import Setting, decisions, scanned, settings_of
 from rr_opt.design.infeasible import NODES, clash, posture_clashes
 from rr_opt.design.seeds import tops
-from rr_opt.design.sines import WAYS, solve_from_kept, solve_sine
+from rr_opt.design.sines import WAYS, climbed, solve_from_kept, solve_sine
 from rr_opt.design.terrain import Terrain
 from rr_opt.model.problem import Problem
+from rr_opt.sqp import FEASIBLE
 
 Progress = Callable[[str], None]
 
@@ -29,11 +32,24 @@ def find_sines(problem: Problem, progress: Progress) -> Finds:
         for number, start in enumerate(starts, 1):
             progress(f"start {number} of {len(starts)}")
             finds.pairs.append((setting, solve_sine(setting, way, start)))
-    if any(one.feasible for _, one in finds.pairs):
+    if finds.good and problem.turn and not way:
+        finds.pairs.extend(_turned_round(*finds.good[0]))
+    if finds.good:
         return finds
-    progress("no start keeps all limits: looking everywhere for gaits that do")
+    progress("no start led to an optimum: looking everywhere for gaits that keep all limits")
     found = clash(problem, box, settings)
     if isinstance(found, str):
-        return finds + Finds(clash=found)
+        kept = any(one.feasible for _, one in finds.pairs)
+        return finds if kept else finds + Finds(clash=found)
     setting = found.setting
     return finds + Finds([(setting, solve_from_kept(setting, way, found.gait, NODES))])
+
+
+def _turned_round(setting: Setting, best: Candidate) -> list[tuple[Setting, Candidate]]:
+    """The same circle driven the other way, where a climb leads to it: a gait that does can be next
+    to this one, V = 0 between them, too close for a scan to tell them apart."""
+    gait, way = best.gait, -best.sign
+    terrain = Terrain(setting, decisions(setting.problem), way)
+    start = np.array([gait.amplitude, gait.period, gait.offset, best.share])
+    ascent, end = climbed(terrain, start)
+    return [(setting, solve_sine(setting, way, end))] if ascent.violation <= FEASIBLE else []

@@ -32,8 +32,11 @@ it is followed."""
 _AS_BADLY = 0.9
 _WIDE = 0.05
 """Smallest amplitude by which a stencil is scaled, rad."""
-_SLOWEST = 1e-12
-"""A speed below it, m/s, counts as this where something is divided by it."""
+STANDS = 1e-6
+"""m/s: 1 mm, what a capture system tells of a place, in a quarter of an hour. What goes round a
+circle more slowly stands."""
+_ROUNDING = 1e-15
+"""Of a mean speed: of the largest along the cycle, times the root of the phases."""
 _MARGIN = 0.05
 """Of a stencil's reach in the robot's size, below which it shrinks with the singular margin."""
 
@@ -248,7 +251,7 @@ class Terrain:
             gaits, beta, size = decided[:4], decided[4], decided[5]
             with np.errstate(all="ignore"):
                 cycles = self.setting.landscape.cycles(gaits, nodes)
-                unit = max(float(np.abs(cycles.speed[0])), _SLOWEST)
+                unit = max(float(np.abs(cycles.speed[0])), STANDS)
                 values = self._values(cycles, gaits, unit)
                 function = self._function(cycles, gaits, _DENSER)
             known = dict(zip(self._named, values, strict=True))
@@ -274,7 +277,10 @@ class Terrain:
                 worst.append(share - 1)
                 rows, names = [*rows, share - 1], [*names, name]
             shape = (-1, len(points))
-            return Seen(function, np.reshape(rows, shape), np.reshape(worst, shape), tuple(names))
+            rounding = _ROUNDING * math.sqrt(nodes) * float(np.abs(cycles.v[:, 0]).max()) / unit
+            return Seen(
+                function, np.reshape(rows, shape), np.reshape(worst, shape), tuple(names), rounding
+            )
 
         program = Program(
             low=low[free],
@@ -290,11 +296,13 @@ class Terrain:
         return program, start[free]
 
     def _lifted(self, gait: Array, nodes: int) -> Array:
-        """The direction of V, rad, and the logarithm of the radius of a gait (4,)."""
+        """The direction of V, rad, and the logarithm of the radius of a gait (4,). Of a gait that
+        drives the other way it is turned round: where V passes by zero the two are neighbours."""
         cycle = self.setting.landscape.cycles(gait[:, None], nodes)
-        V, omega = cycle.mean[:2, 0], float(cycle.turn[0]) / gait[1]
-        speed = max(float(np.hypot(*V)), _SLOWEST)
-        return np.array([math.atan2(V[1], V[0]), math.log(speed / max(abs(omega), _SLOWEST))])
+        V, E, omega = cycle.mean[:2, 0], cycle.mean[2:, 0], float(cycle.turn[0]) / gait[1]
+        speed = max(float(np.hypot(*V)), STANDS)
+        V = -V if self._ahead and self.way * float(V @ E) < 0 else V
+        return np.array([math.atan2(V[1], V[0]), math.log(speed / max(abs(omega), 1e-12))])
 
     def _circle_rows(self, mean: Array, along: Array, beta: Array, unit: float) -> dict[str, Array]:
         """Rows of the circle; along: omega R, in a unit as all of them."""
@@ -302,7 +310,7 @@ class Terrain:
         rows = {
             _CIRCLE[0]: mean[0] / unit - along * cos,
             _CIRCLE[1]: mean[1] / unit - along * sin,
-            _SIDE: along,
+            _SIDE: along - STANDS / unit,
         }
         return rows | (
             {"direction": self.way * (cos * mean[2] + sin * mean[3])} if self._ahead else {}
@@ -404,7 +412,7 @@ class Terrain:
         for name, price in zip(ascent.names[len(sides) :], prices.rows[len(sides) :], strict=True):
             found[name] += (-1 if name in LEAST else 1) * float(price) / getattr(limits, name)
         slopes = self._turn.slopes(speed, turn, period) if self._turn else {}
-        slopes["direction"] = 1 / max(abs(speed), _SLOWEST)
+        slopes["direction"] = 1 / max(abs(speed), STANDS)
         slopes["command"] = 1.0
         for side, price in zip(sides, prices.rows, strict=False):
             if side.name not in (*_CIRCLE, _SIDE):

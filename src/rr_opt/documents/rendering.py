@@ -157,6 +157,7 @@ def _template() -> Template:
     environment.tests |= {
         "badge": lambda cell: isinstance(cell, doc.Badge),
         "link": lambda cell: isinstance(cell, doc.Link),
+        "count": lambda cell: doc.cell_text(cell)[:1].isdecimal(),
         "gallery": lambda block: isinstance(block, doc.Gallery),
         "tiles": lambda block: isinstance(block, doc.Facts) and block.key,
     }
@@ -164,10 +165,11 @@ def _template() -> Template:
 
 
 def _code(text: str) -> Markup:
-    """The text escaped, what stands in backticks as code, and no line break within a number."""
+    """The text escaped with real signs, what stands in backticks as code, numbers in one line."""
     from markupsafe import Markup, escape
 
-    whole = re.sub(r"(?<=\de)-(?=\d)", "\N{NON-BREAKING HYPHEN}", text.replace("->", "→"))
+    signs = text.replace("->", "→").replace("+-", "±")
+    whole = re.sub(r"(?<=\de)-(?=\d)", "\N{NON-BREAKING HYPHEN}", signs)
     return Markup(re.sub("`([^`]+)`", r"<code>\1</code>", str(escape(whole))))
 
 

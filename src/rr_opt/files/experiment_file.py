@@ -24,6 +24,7 @@ from rr_opt.files.source import (
     is_result,
     linked,
     read_document,
+    recording_path,
     unreadable,
 )
 from rr_opt.files.yaml_text import FileData
@@ -93,13 +94,14 @@ def _run(document: FileData, file: Path) -> tuple[PlannedRun | None, list[Issue]
     issues += found
     for key in ("file", "servo_log"):
         name = document.data.get(key)
-        why = unreadable(file.parent / name) if isinstance(name, str) else ""
+        why = unreadable(recording_path(file.parent / name)) if isinstance(name, str) else ""
         if why:
             issues.append(document.error((key,), f"Read {shown(name)}. {why}"))
     if model is None or gait is None or issues:
         return None, issues
-    log = None if model.servo_log is None else file.parent / model.servo_log
-    return PlannedRun(file.parent / model.file, gait, model.use, model.start, log), issues
+    run = recording_path(file.parent / model.file)
+    log = None if model.servo_log is None else recording_path(file.parent / model.servo_log)
+    return PlannedRun(run, gait, model.use, model.start, log), issues
 
 
 def _gait(document: FileData, file: Path) -> tuple[Gait | None, list[Issue]]:

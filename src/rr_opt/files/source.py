@@ -101,6 +101,16 @@ def experiment_path(path: Path) -> Path:
     return _inside(path, EXPERIMENT)
 
 
+def recording_path(path: Path) -> Path:
+    """The first file of a ROS 2 bag's folder; any other path as it is."""
+    try:
+        if (path / "metadata.yaml").is_file() and not (path / EXPERIMENT).exists():
+            return min((*path.glob("*.mcap"), *path.glob("*.db3")), default=path)
+    except (OSError, ValueError):
+        pass
+    return path
+
+
 def _inside(path: Path, name: str) -> Path:
     try:
         return path / name if path.is_dir() else path

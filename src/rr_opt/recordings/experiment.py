@@ -16,7 +16,7 @@ import numpy as np
 from rr_opt.array import Array
 from rr_opt.files.experiment_file import ExperimentPlan, PlannedRun, named_files, read_plan
 from rr_opt.files.issue import InvalidFileError, Issue, has_errors
-from rr_opt.files.source import EXPERIMENT, experiment_path
+from rr_opt.files.source import EXPERIMENT, experiment_path, recording_path
 from rr_opt.messages import shown
 from rr_opt.model.experiment import CHANNELS, Experiment, Layout, Recording, Run
 from rr_opt.model.parameters import Uncertainty
@@ -32,7 +32,7 @@ Progress = Callable[[str], object]
 
 def is_experiment(path: Path) -> bool:
     """Whether a path is an experiment's folder or file, and not one recording."""
-    return path.is_dir() or path.suffix.lower() in (".yaml", ".yml")
+    return recording_path(path).is_dir() or path.suffix.lower() in (".yaml", ".yml")
 
 
 def read_experiment(folder: str | Path) -> Experiment:

@@ -219,7 +219,7 @@ class FastestGait(Result):
                 f"{error:.1e} (tolerance {LARGEST_REPLAY_ERROR:.0e})."
             )
             worst = (
-                f"the worst is exceeded by {excess:.1e} of its value "
+                f"none is exceeded by more than {excess:.1e} of its value "
                 f"(tolerance {LARGEST_EXCESS:.0e})."
                 if excess > 0
                 else "none is exceeded."

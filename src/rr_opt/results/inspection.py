@@ -129,7 +129,7 @@ def _facts(found: Inspection) -> Iterator[doc.Fact]:
             "command",
             f"phi's clock {1e3 * fit.offset:+.2f} +- {1.96e3 * fit.sigma[0]:.2g} ms, "
             f"scale {fit.scale:.4f} +- {1.96 * fit.sigma[2]:.1g}, "
-            f"{1e3 * fit.bias:+.2f} mrad; residual {1e3 * fit.residual:.3g} mrad",
+            f"zero {1e3 * fit.bias:+.2f} mrad; residual {1e3 * fit.residual:.3g} mrad",
         )
     if found.synchrony is not None and found.synchrony.shift is not None:
         shift = found.synchrony.shift

@@ -120,7 +120,8 @@ def worst_slack(optimum: Optimum, command: Gait, reached: Mapping[str, float]) -
     places = [(name, getattr(command, name), box) for name, box in boxes.items()]
     for name, value, box in (*places, ("ballast", best.share, Interval(0.0, 1.0))):
         away = max(box.high - value if prices[name] > 0 else value - box.low, 0.0)
-        worth[f"bound on {name}"] = 0.0 if box.fixed else abs(prices[name]) * away
+        called = "J20/J10" if name == "ballast" else name
+        worth[f"bound on {called}"] = 0.0 if box.fixed else abs(prices[name]) * away
     name = max(worth, key=lambda one: worth[one])
     return name, worth[name] / best.value
 

@@ -138,7 +138,7 @@ def _c_float(value: float) -> str:
 
 MODEL = (
     "The servo is assumed to move at constant speed between set points and to reach each one when "
-    "the next is sent. What its effects in `physics`, such as a lag, then make of that counts."
+    "the next is sent. Its effects in `physics`, such as a lag, then act on that motion."
 )
 
 
@@ -161,8 +161,8 @@ def _facts(result: ExportedGait) -> Iterator[Fact]:
     yield Fact("  period", _period_text(points))
     asked, sent = points.gait.amplitude, points.played.amplitude
     if not math.isclose(asked, sent, rel_tol=_NOTHING):
-        change = f"lowered from {with_unit(asked, 'rad')} ({100 * (sent / asked - 1):+.2f} %)"
-        yield Fact("  amplitude", f"{with_unit(sent, 'rad')}, {change} to be within the limits")
+        change = f"lowered from {with_unit(asked, 'rad', 6)} ({100 * (sent / asked - 1):+.2f} %)"
+        yield Fact("  amplitude", f"{with_unit(sent, 'rad', 6)}, {change} to be within the limits")
     yield Fact("speed", f"{speed_text(cost.nominal)}, of the gait itself")
     for name, change in cost.steps.items():
         yield Fact(f"  {name}", f"{_change_text(change, cost.nominal)} {_STEPS[name]}")

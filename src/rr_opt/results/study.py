@@ -15,7 +15,7 @@ from rr_opt.design.study.row import Row
 from rr_opt.documents import document as doc
 from rr_opt.documents.texts import captions
 from rr_opt.files.study_file import Study
-from rr_opt.formatting import direction_text, number, pace_text, speed_text, with_unit
+from rr_opt.formatting import direction_text, number, speed_text, with_unit
 from rr_opt.outcome import Status
 from rr_opt.results.gait import ignored_effects
 from rr_opt.results.motion import netcdf_writer
@@ -128,7 +128,7 @@ class SolvedStudy(Result):
         speed = float(self.values("speed")[best])
         return (
             f"The fastest of {len(self.rows)} cases drives {direction_text(speed)} at "
-            f"{pace_text(speed)} ({self.inputs_text(best)})."
+            f"{1e3 * abs(speed):.1f} mm/s ({self.inputs_text(best)})."
         )
 
     @property
@@ -237,6 +237,11 @@ COSTS = ("peak_torque", "energy_per_metre", "cost_of_transport")
 
 
 _MOST_ROWS = 300
+_STARTED = {
+    "cold": "starts all over the bounds",
+    "warm": "a neighbour's optimum",
+    "warm and cold": "both",
+}
 
 
 def _facts(result: SolvedStudy) -> Iterator[doc.Fact]:
@@ -245,8 +250,8 @@ def _facts(result: SolvedStudy) -> Iterator[doc.Fact]:
     ended = ", ".join(f"{count} {status.words}" for status, count in result.counts.items() if count)
     started = Counter(row.started for row in rows)
     yield doc.Fact("cases", f"{product}{len(rows)}", ended)
-    yield doc.Fact("branches", str(len({one for one in result.branches if one})))
-    yield doc.Fact("solved from", ", ".join(f"{n} {how}" for how, n in started.items()))
+    yield doc.Fact("branches of optima", str(len({one for one in result.branches if one})))
+    yield doc.Fact("solved from", ", ".join(f"{n} {_STARTED[how]}" for how, n in started.items()))
     best = result.fastest
     optimum = rows[best].optimum if best is not None else None
     if best is None or optimum is None:
@@ -270,7 +275,7 @@ def _key_facts(result: SolvedStudy) -> tuple[doc.Fact, ...]:
         doc.Fact("have no feasible gait", str(counts[Status.INFEASIBLE])),
         doc.Fact("did not converge", str(counts[Status.NOT_CONVERGED])),
         doc.Fact("branches of optima", str(len({one for one in result.branches if one}))),
-        doc.Fact("cases checked from cold starts", str(cold)),
+        doc.Fact("cases solved from starts all over the bounds", str(cold)),
         doc.Fact("least cost of transport", cost),
     )
 

@@ -58,8 +58,8 @@ def residues(found: Sequence[Dependence], inputs: Mapping[str, str]) -> Iterator
     shown = [one for one in found if one.certain and one.curve.at.size]
     for one in shown[:2]:
         sentence = (
-            f"What is left looks like {where(one, inputs)}; that would explain {one.share:.0%} "
-            "of it."
+            f"What is left looks like {where(one, inputs)}; that would explain "
+            f"{100 * one.share:.0f} % of it."
         )
         c = one.curve
         yield Residue(one.channel, c.variable, c.unit, c.at, c.mean, c.error, one.share, sentence)

@@ -12,7 +12,7 @@ def summary_of(found: Diagnosis, worth: str = "", doubt: str = "") -> str:
     """
     names = (words_of(one.name) for one in found.findings)
     listed = " and ".join(names)
-    sure = ", ".join(f"{one.confidence:.0%}" for one in found.findings)
+    sure = ", ".join(f"{100 * one.confidence:.0f} %" for one in found.findings)
     opening = {
         "consistent": "The nominal model explains the recordings.",
         "parameters": f"The model is right, but the value of {listed} is not.",
@@ -28,7 +28,7 @@ def summary_of(found: Diagnosis, worth: str = "", doubt: str = "") -> str:
     remainder, remains = found.remainder, ""
     if found.verdict != "consistent" and remainder.size != "none":
         depends = f": {remainder.depends_on}" if remainder.depends_on else ""
-        share = f"{remainder.share:.0%} of the misfit"
+        share = f"{100 * remainder.share:.0f} % of the misfit"
         remains = f"What remains is {remainder.size} ({share}){depends}."
     doubtful = found.verdict != "consistent" and (remains or found.indistinguishable)
     plan = found.next_experiment.sentence if found.next_experiment and doubtful else ""

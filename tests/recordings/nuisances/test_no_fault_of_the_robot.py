@@ -1,15 +1,13 @@
 """No effect of the robot's physics passes for a nuisance, however strong."""
 
 from dataclasses import replace
-from types import SimpleNamespace
 
-import numpy as np
 import pytest
 
 from rr_opt.effects import CATALOGUE
 from rr_opt.machines.racer.racer import RollerRacer
 from rr_opt.model.gait import SineGait
-from rr_opt.recordings.nuisances import frame, nuisances
+from rr_opt.recordings.nuisances import nuisances
 from rr_opt.recordings.nuisances.evidence import Evidence
 from tests.sysid.made_up import experiment, predicted, recorded
 
@@ -57,18 +55,3 @@ def test_none_is_told(effect, values):
         assert {one.code for one in found} <= OF_THE_SERVO, found
         found = nuisances(Evidence(run.recording))
         assert {one.code for one in found} <= OF_THE_SERVO, found
-
-
-@pytest.mark.parametrize(("slip", "wrong"), [(1.44, 0), (10.0, 1)])
-def test_another_frame_has_to_be_far_likelier(monkeypatch, slip, wrong):
-    monkeypatch.setattr(frame, "follows", lambda *_: True)
-    still = np.zeros(5)
-    given = SimpleNamespace(
-        motion=(still, still, still, still),
-        robot=None,
-        sideways=1.0,
-        slip=SimpleNamespace(size=slip),
-        explains=lambda *_: 1.1,
-        likely=lambda left: list(left)[:1],
-    )
-    assert len(list(frame.look(given))) == wrong

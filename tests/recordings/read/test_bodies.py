@@ -209,6 +209,18 @@ def test_bags(tmp_path, kind):
     np.testing.assert_allclose(log.present_angle, motion(N)[4])
 
 
+def test_a_bag_is_its_folder(tmp_path):
+    path = bag(tmp_path, "mcap")
+    done = called("inspect", str(path.parent), "--servo-log", str(path.parent))
+    assert done.exit_code == 0, done.output
+    assert "format      ROS bag" in done.stdout
+    entry = f"{{file: {path.parent.name}, servo_log: {path.parent.name}, {GAIT}}}"
+    text = f"{ROBOT}noise: {{position: 1 mm, angle: 3 mrad}}\nrecordings:\n- {entry}\n"
+    (tmp_path / "experiment.yaml").write_text(text)
+    experiment, issues = experiment_of(tmp_path)
+    assert experiment is not None, issues
+
+
 def test_bodies_that_are_stamped_apart_are_put_on_one_clock(tmp_path):
     path = bag(tmp_path, "mcap", late=0.004)
     read = read_file(path)

@@ -12,7 +12,7 @@ hold whatever forces act. Both are linear in the noise, so what is left of them 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TypeVar
 
@@ -145,6 +145,23 @@ class Evidence:
         return Slip(side1 + c1 * dpsi, side2 + c2 * dpsi2, (first, second), along)
 
     @cached_property
+    def forgiven(self) -> Slip:
+        """What is left of the recording as it is if small faults are taken out of it that any
+        laboratory has: a point tracked beside the joint, zeros of psi and phi, and lengths."""
+        x, y, psi, phi = self.motion
+        S = self.stride
+        dx, dy, dpsi, dphi = (one[S:] - one[:-S] for one in (x, y, psi, phi))
+        h, turn = ((one[S:] + one[:-S]) / 2 for one in (psi, phi))
+        along2 = np.cos(h + turn) * dx + np.sin(h + turn) * dy
+        beside = dpsi * np.cos(turn), dpsi * np.sin(turn)
+        slip = self.slip
+        return replace(
+            slip,
+            first=_rest(slip.first, dpsi, slip.along),
+            second=_rest(slip.second, dpsi + dphi, along2, *beside),
+        )
+
+    @cached_property
     def sideways(self) -> float:
         """How far a turn of platform 1 takes the joint sideways, m per rad: c1, if all is right."""
         x, y, psi, _ = self.motion
@@ -172,6 +189,13 @@ class Evidence:
         sure = self._likelier(now, then) > _SURE
         return then if sure and (rolls or now > FAR * then) else np.inf
 
+    def is_wrong(self, best: float) -> bool:
+        """Whether wheels that roll contradict the recording, against a motion that leaves such a
+        slip: by far, or whatever small faults are forgiven."""
+        left = self.forgiven.size
+        rolls = best < ROLLING < left and self._likelier(left, best) > _SURE
+        return rolls or self.slip.size > FAR * best
+
     def likely(self, left: Mapping[Name, float]) -> list[Name]:
         """Those that explain a recording about as well as the best, by the slip they leave."""
         best = min(left.values(), default=np.inf)
@@ -189,6 +213,13 @@ def _lever(side: Array, turned: Array) -> float:
     known = np.isfinite(side) & np.isfinite(turned)
     swings = float(turned[known] @ turned[known])
     return -float(side[known] @ turned[known]) / swings if swings > 0 else 0.0
+
+
+def _rest(row: Array, *causes: Array) -> Array:
+    """What is left of a row (n,) beyond the multiples of its causes that fit it best."""
+    A = np.column_stack(causes)
+    known = np.isfinite(row) & np.isfinite(A).all(axis=1)
+    return row - A @ np.linalg.lstsq(A[known], row[known], rcond=None)[0]
 
 
 ROLLING, CLEAN, FAR = 1.1, 1.3, 3.0

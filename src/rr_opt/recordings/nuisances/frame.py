@@ -7,7 +7,7 @@ import numpy as np
 
 from rr_opt.array import Array
 from rr_opt.recordings.nuisances.command import follows
-from rr_opt.recordings.nuisances.evidence import FAR, Evidence, Motion
+from rr_opt.recordings.nuisances.evidence import Evidence, Motion
 from rr_opt.recordings.warnings import Notice, notice
 
 _UNDONE: Mapping[str, Callable[[Array, Array, Array, Array], Motion]] = {
@@ -64,7 +64,7 @@ def _found(
             (x / ratio, y / ratio, psi, phi), 1 / ratio
         )
     best = min(left.values(), default=np.inf)
-    # A point that is tracked beside the joint makes wheels seem to slip a little, and another frame
-    # may then look likelier by chance. What is really wrong here is off by far more.
-    if given.slip.size > FAR * best and (meant := given.likely(left)):
+    # No small fault turns phi against its command.
+    wrong = given.is_wrong(best) or not follows(given, given.motion[3])
+    if wrong and (meant := given.likely(left)):
         yield notice("frame.wrong", meant=", or ".join(meant), left=given.slip.size, best=best)

@@ -6,7 +6,7 @@ import numpy as np
 
 from rr_opt.array import Array
 from rr_opt.recordings.gaps import bridged
-from rr_opt.recordings.nuisances.evidence import CLEAN, Evidence
+from rr_opt.recordings.nuisances.evidence import Evidence
 from rr_opt.recordings.warnings import Notice, notice
 
 _WINDOW = 0.5
@@ -29,16 +29,23 @@ def look(given: Evidence) -> Iterator[Notice]:
         return
     # A push may come while nothing is seen for a moment.
     slip = given.slip_of([bridged(given.t, one, _UNSEEN) for one in given.motion])
-    across = [_moved(row / given.stride, width) for row in (slip.first, slip.second)]
-    far = np.hypot(*across)
-    pushes, code = _events(far, _FAR[0], width), "push.robot"
-    if not pushes and given.gait is not None and given.slip.size < CLEAN:
-        along = np.abs(_moved(_surge(given, slip.along) / given.stride, width))
-        far, pushes, code = along, _events(along, _FAR[1], width), "push.surge"
-    for at in pushes[:_MOST]:
-        row = min(at + (width + given.stride) // 2, len(given.t) - 1)
-        x, y = (float(one[np.isfinite(one)][_nearest(one, row)]) for one in given.motion[:2])
-        yield notice(code, t=given.t[row], x=x, y=y, far=1e3 * far[at])
+    across = (slip.first, slip.second)
+    looks = [("push.robot", _FAR[0], across)]
+    if given.gait is not None:
+        looks += [
+            # Wheels that slide do it in every period, and hide a push in what is usual.
+            ("push.robot", _FAR[0], tuple(_unusual(given, one) for one in across)),
+            ("push.surge", _FAR[1], (_unusual(given, slip.along),)),
+        ]
+    for code, least, rows in looks:
+        far = np.linalg.norm([_moved(one / given.stride, width) for one in rows], axis=0)
+        pushes = _events(far, least, width)
+        for at in pushes[:_MOST]:
+            row = min(at + (width + given.stride) // 2, len(given.t) - 1)
+            x, y = (float(one[np.isfinite(one)][_nearest(one, row)]) for one in given.motion[:2])
+            yield notice(code, t=given.t[row], x=x, y=y, far=1e3 * far[at])
+        if pushes:
+            return
 
 
 def _nearest(y: Array, row: int) -> int:
@@ -52,18 +59,18 @@ def _moved(each: Array, width: int) -> Array:
     return sums - np.median(sums)
 
 
-def _surge(given: Evidence, along: Array) -> Array:
-    """What axle 1 rolls farther than at the same phase of the periods before and after, m."""
+def _unusual(given: Evidence, moved: Array) -> Array:
+    """By how much it moves farther than at the same phase of the periods before and after, m."""
     period = round(given.gait.period / given.step) if given.gait else 0
-    if not 0 < 2 * period < len(along):
-        return np.zeros_like(along)
-    padded = np.concatenate([np.full(2 * period, np.nan), along, np.full(2 * period, np.nan)])
-    at = 2 * period + np.arange(len(along))
+    if not 0 < 2 * period < len(moved):
+        return np.zeros_like(moved)
+    padded = np.concatenate([np.full(2 * period, np.nan), moved, np.full(2 * period, np.nan)])
+    at = 2 * period + np.arange(len(moved))
     near = np.stack([padded[at + k * period] for k in (-2, -1, 1, 2)])
     order = np.sort(near, axis=0)  # NaN last
     count = np.isfinite(near).sum(axis=0)
-    usual = np.where(count == 4, (order[1] + order[2]) / 2, np.where(count == 3, order[1], along))
-    return along - usual
+    usual = np.where(count == 4, (order[1] + order[2]) / 2, np.where(count == 3, order[1], moved))
+    return moved - usual
 
 
 def _events(far: Array, least: float, width: int) -> list[int]:

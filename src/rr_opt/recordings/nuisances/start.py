@@ -7,6 +7,7 @@ what the jump of the joint's rate gives to a robot whose joint is not straight, 
 """
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.integrate import cumulative_trapezoid
@@ -59,12 +60,29 @@ def look(given: Evidence) -> Iterator[Notice]:
         # Not the joint itself is seen, or the wheels slide: how far axle 1 rolls does not show.
         return
     if given.robot is not None:
-        yield from _against_model(given, given.robot, given.gait)
+        found = initial(given, given.robot, given.gait)
+        if found is not None and found.drives(found.speed):
+            yield notice("start.running", speed=1e3 * found.speed)
     else:
         yield from _against_later(given, given.gait.period)
 
 
-def _against_model(given: Evidence, robot: Robot, gait: Gait) -> Iterator[Notice]:
+@dataclass(frozen=True)
+class Initial:
+    """The speed of axle 1 at t = 0, m/s, and those of a start from rest with their doubt, 1 sigma:
+    nil, and what the jump of the joint gives."""
+
+    speed: float
+    allowed: tuple[tuple[float, float], ...]
+
+    def drives(self, speed: float) -> bool:
+        """Whether such a speed is beyond all that rest allows."""
+        beyond = [(speed - one) / doubt for one, doubt in self.allowed]
+        return min(beyond) > _SURE_SPEED or max(beyond) < -_SURE_SPEED
+
+
+def initial(given: Evidence, robot: Robot, gait: Gait) -> Initial | None:
+    """The initial speed; None where the data are too few or the model is not of that robot."""
     n = int(np.searchsorted(given.t, _BEGINNING * gait.period))
     t = given.t[:n]
     x, y, psi = (bridged(given.t, one, _UNSEEN)[:n] for one in given.motion[:3])
@@ -73,7 +91,7 @@ def _against_model(given: Evidence, robot: Robot, gait: Gait) -> Iterator[Notice
     rest, driving = (fixed_steps(robot, gait, v0, steps=_STEPS)[0] for v0 in (0.0, _SPEED))
     sizes = (*rolled, *rest, *driving)
     if n < _FEWEST or not np.isfinite(sizes).all() or np.abs(sizes).max() > _FASTEST:
-        return
+        return None
     grid = np.linspace(0.0, gait.period, len(rest))
     speed = np.interp(t, grid, rest)
     way = np.interp(t, grid, cumulative_trapezoid(rest, grid, initial=0))
@@ -86,14 +104,13 @@ def _against_model(given: Evidence, robot: Robot, gait: Gait) -> Iterator[Notice
     found = np.linalg.lstsq(A, b, rcond=None)[0]
     covariance = np.linalg.pinv(A.T @ A)
     if abs(found[1]) > _OTHER * _ACCURACY:
-        return  # it is not that robot
+        return None  # it is not that robot
     # More of the motion from rest is more of its jump too.
-    beyond = []
+    allowed = []
     for jump in (0.0, _jump(robot, gait)):
         of = np.array([1.0, -jump, 0.0, 0.0, 0.0])
-        beyond.append((of @ found - jump) / np.sqrt(of @ covariance @ of))
-    if min(beyond) > _SURE_SPEED or max(beyond) < -_SURE_SPEED:
-        yield notice("start.running", speed=1e3 * found[0])
+        allowed.append((jump * (1 + found[1]), float(np.sqrt(of @ covariance @ of))))
+    return Initial(float(found[0]), tuple(allowed))
 
 
 def _jump(robot: Robot, gait: Gait) -> float:

@@ -1,6 +1,6 @@
 """ROS bags: poses of two bodies from ROS 1 (.bag) and ROS 2 (.mcap, .db3), and joint states.
 
-Of a ROS 2 bag one of its files is named, beside which `metadata.yaml` stands. Poses are
+Of a ROS 2 bag its folder is named, or a file in it, beside `metadata.yaml`. Poses are
 `PoseStamped` (a body is a topic), `TransformStamped` and `TFMessage` (a body is a child frame), by
 the stamps in their headers. Bodies that were not stamped together are put on the first one's times
 by a straight line and the shortest turn between the two poses about each; what has no pose within

@@ -66,7 +66,8 @@ def bands(one: ExplainedExperiment) -> tuple[Figure, str]:
     style.legend_below(made, axes[0])
     return made, (
         "Bands contain 95 % of each channel's residuals within a second and are dark where they "
-        "overlap. Where blue just fills the space between the dashed lines, only noise is left."
+        "overlap. Where blue just fills the space between the dashed lines, only noise is left. An "
+        f"axis that exceeds {_WIDE:g} σ is logarithmic beyond {_LINEAR:g} σ."
     )
 
 

@@ -146,7 +146,7 @@ def noise(ax: Axes, found: Mapping[str, NoiseEstimate], stated: Mapping[str, flo
                     color=style.FORWARD, capsize=3,
                     label="" if row else "highest frequencies")  # fmt: skip
         ax.plot(one.slower / base, row + 0.22, "D", ms=5, color=style.BACKWARD,
-                label="" if row else "half of these")  # fmt: skip
+                label="" if row else "half these frequencies")  # fmt: skip
     ax.axvline(1.0, color=style.INK, lw=1)
     style.lanes(ax, names)
     low, high = ax.get_xlim()

@@ -1,9 +1,11 @@
 """The path of P, with the robot drawn at a few instants, and as a film; a driven route."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -17,7 +19,9 @@ from rr_opt.model.robot import Robot
 from rr_opt.motion.steady_cycle import Cycle, SteadyCycle, Trajectory
 from rr_opt.results.figures import style
 from rr_opt.results.motion import SimulatedMotion
-from rr_opt.results.route import DrivenRoute
+
+if TYPE_CHECKING:
+    from rr_opt.results.route import DrivenRoute
 
 
 def robot_length(robot: Robot) -> float:

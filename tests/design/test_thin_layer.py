@@ -1,0 +1,37 @@
+"""Circles that a robot hardly turns on: the gaits that do are a thin, bent layer of the box, and a
+climb comes to it from gaits a hundred times as fast and goes along it in a few steps."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from benchmarks.random.problems import draw, turning
+from benchmarks.turn.problems import round_
+from rr_opt.design.decisions import decisions, settings_of
+from rr_opt.design.sines import WAYS, climbed
+from rr_opt.design.terrain import Terrain
+from rr_opt.sqp import FEASIBLE
+
+SEED = "acc0d7813779831d"
+
+
+@pytest.mark.parametrize(
+    ("number", "radius", "start", "speed"),
+    [
+        (15_000, -0.402803, (1.137, 0.805, -0.759), 3.3688e-5),
+        (35_000, -0.286084, (0.901, 0.877, 0.734), 3.5778e-4),
+        (45_000, 0.120670, (0.797, 0.706, 0.828), 2.5062e-4),
+        (64_000, 0.239919, (0.305, 0.949, 0.000), 1.2175e-4),
+    ],
+)
+def test_few_steps(number: int, radius: float, start: tuple[float, ...], speed: float) -> None:
+    posed = replace(turning(draw(SEED, number)), turn=round_(radius))
+    box = decisions(posed)
+    (setting,) = settings_of(posed, box)
+    terrain = Terrain(setting, box, WAYS[posed.direction])
+    ascent, _ = climbed(terrain, np.array([*start, 0.0]))
+    assert ascent.converged
+    assert ascent.violation <= FEASIBLE
+    assert ascent.value == pytest.approx(speed, rel=1e-3)
+    assert ascent.iterations < 40
