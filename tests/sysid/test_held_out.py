@@ -1,4 +1,4 @@
-"""Held-out recordings are asked only where the answer leaves more in them than machines differ by."""
+"""Held-out recordings are asked only where the answer leaves more than machines differ by."""
 
 from types import SimpleNamespace
 from typing import Any
