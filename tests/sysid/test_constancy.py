@@ -32,6 +32,7 @@ class LinearFit:
         }
         self.problem = SimpleNamespace(
             names=NAMES,
+            box=(np.full(VALUES, -np.inf), np.full(VALUES, np.inf)),
             prior=self.prior,
             centre=np.zeros(VALUES),
             scale=np.ones(VALUES),
@@ -91,6 +92,34 @@ def test_machines_may_differ_from_models():
         constancy_of(fit, explained=30.0**2, form=0.05).statistic
         < constancy_of(fit, form=0.05).statistic
     )
+
+
+def test_a_run_that_differs_more_from_its_model_spoils_no_other():
+    """The others' values are as uncertain as the worst of their models makes them."""
+    ratios = []
+    explained = {0: 20.0**2}
+    for seed in range(200):
+        rng = np.random.default_rng(seed)
+        J = [np.repeat(rng.normal(size=(10, VALUES)), 6, axis=0) * 30 for _ in range(RUNS)]
+        J[0] *= 5
+        J[1] *= 5
+        y = [one @ np.ones(VALUES) + rng.normal(size=SAMPLES) for one in J]
+        y[0] += 0.05 * 20.0 * np.repeat(rng.normal(size=10), 6)
+        found = constancy(LinearFit(J, y), 0.0, explained, {"none": 0.05})
+        ratios.append(found.statistic / found.degrees)
+    assert np.mean(ratios) == pytest.approx(1.0, rel=0.1)
+
+
+def test_a_value_at_a_bound_is_known():
+    """Runs pull it beyond, each as far as its noise; without it they agree."""
+    rng = np.random.default_rng(3)
+    J = [rng.normal(size=(SAMPLES, VALUES)) * 30 for _ in range(RUNS)]
+    values = [np.append(1 + 0.1 * rng.normal(), np.ones(VALUES - 1)) for _ in J]
+    y = [one @ v + rng.normal(size=SAMPLES) for one, v in zip(J, values, strict=True)]
+    fit = LinearFit(J, y)
+    assert constancy_of(fit).probability < 0.01
+    fit.problem.box[0][0] = fit.u[0]
+    assert constancy_of(fit).degrees == RUNS * (VALUES - 1)
 
 
 def test_what_machines_differ_by_from_any_model_is_slow():

@@ -24,13 +24,19 @@ def found():
         ("consistent", "The nominal model explains the recordings."),
         ("parameters", "The model is right, but the value of Coulomb friction is not."),
         ("missing_physics", "The model leaves out Coulomb friction (confidence 99 %)."),
-        ("unexplained", "Something is left out, and no effect of the catalogue accounts for it."),
+        ("unexplained", "Something is left out, and no effect of the catalogue is shown to be it."),
     ],
 )
 def test_it_opens_with_the_verdict(found, verdict, said):
     text = summary_of(replace(found, verdict=verdict))
     assert text.startswith(f"{said} On recordings that were not fitted, the misfit fell from")
     assert "from 8.10 to 1.02 sigma, where 1 is the noise." in text
+
+
+def test_why_nothing_is_named_is_said(found):
+    why = "What predicts best is slip, but recordings disagree on the values."
+    assert why in summary_of(replace(found, verdict="unexplained"), doubt=why)
+    assert why not in summary_of(found, doubt=why)
 
 
 @pytest.mark.parametrize(("off", "said"), [(0.05, "50.0 mm"), (0.0, "less than 0.1 mm")])

@@ -26,6 +26,11 @@ _SHARE = 0.1
 """A torque that is left out is usually such a share of the motor's."""
 
 
+FRICTION_FORM_ERROR = 0.15
+"""Of laws of friction. The best of six for geared servos leaves half of the error of viscous and
+Coulomb friction (Duclusaud et al., ICRA 2025), several times what any one of its terms is off."""
+
+
 def sign(w: Any) -> Any:
     """Of a speed, smooth."""
     return ca.tanh(w / STICKING)
@@ -52,7 +57,7 @@ def _torque(name: str = "torque", low: float = 0.0) -> Constant:
 
 def _joint(name: str, words: str, sentence: str, constant: Constant, law: Any, **more: Any):
     return MachineEffect(name, "bearing", "friction", "torque", words, sentence, (constant,), law,
-                         **more)  # fmt: skip
+                         form_error=FRICTION_FORM_ERROR, **more)  # fmt: skip
 
 
 COULOMB = _joint(

@@ -1,12 +1,13 @@
 """The diagnosis of a machine other than the Roller Racer."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from rr_opt.documents import document as doc
+from rr_opt.documents.rendering import terminal
 from rr_opt.documents.texts import captions
 from rr_opt.files.record import yaml_text
 from rr_opt.formatting import with_unit
@@ -97,6 +98,12 @@ class ExplainedMachine(Explained[MachineExperiment]):
             ),
             footer=(*doc.versions(self.sha256), "all numbers are in `diagnosis.json`"),
         )
+
+    def summary(self) -> str:
+        """The verdict in a paragraph, and the tables."""
+        whole = self.document()
+        lead = doc.Section("", (self.found.summary,))
+        return terminal(replace(whole, lead="", sections=(lead, *whole.sections)))
 
     def _open(self) -> Iterator[str]:
         for group in self.found.indistinguishable:

@@ -134,14 +134,17 @@ def fitted(
 
 
 def refitted(candidate: Candidate, runs: Iterable[int]) -> Candidate:
-    """The candidate fitted to other runs."""
+    """The candidate fitted to other runs; the states of those that are new are fitted first."""
     fit = candidate.fit
     problem, states = estimation.initial(
         fit.problem.model, fit.effects, fit.problem.quantities, fit.values, runs
     )
-    states = {one: fit.states.get(one, state) for one, state in states.items()}
     problem = replace(problem, q=fit.problem.q)
-    return Candidate(candidate.choices, estimation.fitted(problem, fit.values, states))
+    new = tuple(one for one in problem.segments if one not in fit.states)
+    held = replace(problem, segments=new, quantities=(), values=dict(fit.values))
+    settled = estimation.solve(held, fit.values, {one: states[one] for one in new})
+    begun = {**fit.states, **settled.states}
+    return Candidate(candidate.choices, estimation.fitted(problem, fit.values, begun))
 
 
 def polished(candidate: Candidate) -> Candidate:

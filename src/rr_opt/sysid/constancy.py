@@ -5,13 +5,14 @@ each with values of its own, and none may leave more than noise. So each run r i
 others. With g, B the gradient and curvature of its loss, A and G those of the rest, the prior
 among them, its score where the others have their optimum is
 
-    s = g - B A^-1 G,    Var s = phi (B + B (A^-1 + F) B).
+    s = g - B A^-1 G,    Var s = phi B + B (A^-1 C A^-1 + F) B.
 
 No machine is its model, though. F is the variance by which machines differ from the model of an
 effect in its values; and in the motion they differ by that share, e, of what the effect explains
 of the run, m (RMS in sigma), or, without an effect, by f, the part of what is left by which
 machines of the kind differ from any model, for about a correlation time:
-phi = 1 + ((e m)^2 + f^2) n/K with the samples n and correlation times K of the run.
+phi = 1 + ((e m)^2 + f^2) n/K with the samples n and correlation times K of the run. C is A with
+each of the other runs weighed by its own phi. Values at a bound are taken to be known.
 
 T, the sum of s' Var^-1 s over all runs, is k on average, the number of values that each run shows,
 added up. If the values are not constant it is larger by an unknown factor, which is given a
@@ -69,9 +70,12 @@ def constancy(
     problem = fit.problem
     if not problem.names:
         return Constancy(0.0, 0)
+    low, high = problem.box
+    free = (fit.u > low) & (fit.u < high)
     values = fit.u + problem.centre / problem.scale
-    form = [form_errors.get(name.split(".")[0], 0.0) for name in problem.names]
+    form = np.array([form_errors.get(name.split(".")[0], 0.0) for name in problem.names])
     H, g, _ = summed(problem, fit.evidences, fit.u)
+    H, g = H[free][:, free], g[free]
     # In units in which all that is known of the values is the unit matrix.
     units = np.sqrt(np.diag(H))
     L = root(H / units / units[:, None])
@@ -79,18 +83,26 @@ def constancy(
     def within(x: np.ndarray) -> np.ndarray:
         return solve_triangular(L, (x.T / units).T, lower=True)
 
-    spread = L.T * units @ np.diag(np.array(form) * values)
+    spread = L.T * units @ np.diag((form * values)[free])
+    share = max(form_errors.values(), default=0.0)
+    B, phi = {}, {}
+    for run, one in fit.evidences.items():
+        B[run] = within(within(one.H[free][:, free]).T)
+        per_time = problem.samples(run) / problem.correlation_times(run)
+        off = share**2 * explained.get(run, 0.0) + min(left, problem.model.form_error) ** 2
+        phi[run] = 1 + off * per_time
+    unit = np.eye(len(H))
+    every = unit + sum(((phi[run] - 1) * B[run] for run in B), np.zeros_like(H))
     statistic, degrees = 0.0, 0
     for run, one in fit.evidences.items():
-        B = within(within(one.H).T)
-        others = np.linalg.pinv(np.eye(len(B)) - B, hermitian=True)
-        score = within(one.g) - B @ others @ within(g - one.g)
-        variance, ways = np.linalg.eigh(B + B @ (others + spread @ spread.T) @ B)
-        shown = variance > SETTINGS.shown
-        total = float(np.sum((ways.T @ score)[shown] ** 2 / variance[shown]))
-        per_time = problem.samples(run) / problem.correlation_times(run)
-        share = max(form_errors.values(), default=0.0)
-        off = share**2 * explained.get(run, 0.0) + min(left, problem.model.form_error) ** 2
-        statistic += total / (1 + off * per_time)
-        degrees += int(shown.sum())
+        A = np.linalg.pinv(unit - B[run], hermitian=True)
+        C = every - phi[run] * B[run]
+        F = spread @ spread.T
+        score = within(one.g[free]) - B[run] @ A @ within(g - one.g[free])
+        known, ways = np.linalg.eigh(B[run] + B[run] @ (A + F) @ B[run])
+        ways = ways[:, known > SETTINGS.shown]
+        variance = phi[run] * B[run] + B[run] @ (A @ C @ A + F) @ B[run]
+        seen = ways.T @ score
+        statistic += float(seen @ np.linalg.solve(ways.T @ variance @ ways, seen))
+        degrees += ways.shape[1]
     return Constancy(statistic, degrees)

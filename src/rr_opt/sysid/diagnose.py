@@ -67,7 +67,8 @@ def diagnose(model: Machine, progress: Callable[[str], None] = lambda _: None) -
         rival = rival_of(result)
         plan = model.next_experiment(result.best.fit, rival and (rival[0], rival[1].fit))
     found = replace(_answer(result), next_experiment=plan, seconds=dict(watch.seconds))
-    return replace(found, summary=summary_of(found, model.worth(found.nominal, found.final)))
+    worth = model.worth(found.nominal, found.final)
+    return replace(found, summary=summary_of(found, worth, result.doubt))
 
 
 def _answer(result: Result) -> Diagnosis:

@@ -232,12 +232,11 @@ class Selection:
         )
 
     def _backward(self, needed: Callable[[Candidate, Candidate], bool]) -> None:
-        """Drop effects, or parts of them, that are not needed."""
+        """Drop effects, or parts of them, that are not needed: two may be that are not singly."""
+        whole = self.best
         while self.best.choices:
-            smaller = [one for one in self._fewer(self.best) if not needed(self.best, one)]
-            smaller += [
-                one for one in self._simpler(self.best) if not self.best.predicts_better(one)
-            ]
+            smaller = [one for one in self._fewer(self.best) if not needed(whole, one)]
+            smaller += [one for one in self._simpler(self.best) if not whole.predicts_better(one)]
             best = _best(smaller)
             if best is None:
                 return

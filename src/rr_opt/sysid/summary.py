@@ -4,10 +4,11 @@ from rr_opt.formatting import words_of
 from rr_opt.sysid.diagnosis import Diagnosis
 
 
-def summary_of(found: Diagnosis, worth: str = "") -> str:
+def summary_of(found: Diagnosis, worth: str = "", doubt: str = "") -> str:
     """What was found, how sure, what it is worth, what remains, what to record next.
 
     worth  what it is worth in the machine's own terms: `the place was 8 mm off and is 1 mm off; `
+    doubt  why nothing is named, where something is left out
     """
     names = (words_of(one.name) for one in found.findings)
     listed = " and ".join(names)
@@ -16,7 +17,7 @@ def summary_of(found: Diagnosis, worth: str = "") -> str:
         "consistent": "The nominal model explains the recordings.",
         "parameters": f"The model is right, but the value of {listed} is not.",
         "missing_physics": f"The model leaves out {listed} (confidence {sure}).",
-        "unexplained": "Something is left out, and no effect of the catalogue accounts for it.",
+        "unexplained": "Something is left out, and no effect of the catalogue is shown to be it.",
     }[found.verdict]
     held = any(one.held_out for one in found.final)
     which = "recordings that were not fitted" if held else "the recordings, which were all fitted"
@@ -31,4 +32,5 @@ def summary_of(found: Diagnosis, worth: str = "") -> str:
         remains = f"What remains is {remainder.size} ({share}){depends}."
     doubtful = found.verdict != "consistent" and (remains or found.indistinguishable)
     plan = found.next_experiment.sentence if found.next_experiment and doubtful else ""
-    return " ".join(part for part in (opening, misfit, remains, plan) if part)
+    why = doubt if found.verdict == "unexplained" else ""
+    return " ".join(part for part in (opening, why, misfit, remains, plan) if part)

@@ -13,6 +13,7 @@ from functools import cached_property
 import numpy as np
 from scipy.special import expit
 
+from rr_opt.formatting import words_of
 from rr_opt.sysid.candidates import Candidate, weights
 from rr_opt.sysid.constancy import Constancy, constancy
 from rr_opt.sysid.diagnosis import Finding, Remainder, Tried, Verdict
@@ -65,12 +66,34 @@ class Result:
         """How likely the answer's effects are no imitation of something else: recordings agree on
         their values, those that were not fitted are predicted better with them, and what is left of
         the misfit is no more than machines differ from models of such effects."""
+        return self.constancy.probability * self._alike * self._predicts
+
+    @property
+    def _alike(self) -> float:
+        """How likely what is left is what machines differ by from models of such effects."""
         first = self.selection.base.excess**2
         left = self.best.excess**2 - SETTINGS.none**2 - self.selection.model.form_error**2
         share = math.sqrt(max(left, 0.0) / max(first, 1e-12))
         form = max(self._form_errors.values(), default=math.inf)
-        imitates = 1 / (1 + (share / form / SETTINGS.form_errors) ** 4)
-        return self.constancy.probability * imitates * self._predicts
+        return 1 / (1 + (share / form / SETTINGS.form_errors) ** 4)
+
+    @property
+    def doubt(self) -> str:
+        """What predicts best, and why it is not named; "" if nothing predicts better than the
+        nominal model."""
+        best = self.best if self.best.choices else max(self._ended, key=lambda one: one.elpd)
+        if not best.predicts_better(self.selection.base):
+            return ""
+        reasons = {
+            "recordings disagree on the values": self.constancy.probability,
+            "more is left than machines differ from such models": self._alike,
+            "the recordings that were not fitted do not bear it out": self._predicts,
+        }
+        few = [why for why, likely in reasons.items() if likely <= SETTINGS.named]
+        if not self.best.choices:
+            few = ["most of the misfit is left"]
+        names = " and ".join(words_of(name) for name in best.effects)
+        return f"What predicts best is {names}, but {' and '.join(few) or 'none is sure'}."
 
     @property
     def _predicts(self) -> float:
@@ -91,7 +114,7 @@ class Result:
         """How well recordings agree on the answer's values."""
         explained = {run: max(one.rms**2 - 1, 0.0) for run, one in enumerate(self.refitted.misfits)}
         # Effects have form errors of their own.
-        left = 0.0 if self.best.choices else self.best.excess
+        left = 0.0 if self.best.choices else self.everywhere.excess
         return constancy(self.everywhere.fit, left, explained, self._form_errors)
 
     @property
