@@ -98,7 +98,10 @@ class Result:
     @property
     def _predicts(self) -> float:
         """How likely recordings that were not fitted are with the answer, and not with the nominal
-        model."""
+        model; that is not asked where they leave no more than machines differ from such models."""
+        form = max(self._form_errors.values(), default=0.0)
+        if self.final.excess <= form * self.selection.base.excess:
+            return 1.0
         runs = self.selection.model.runs
         own, other = self.everywhere.predictive, self.plain.predictive
         gains = [own[k] - other[k] for k, run in enumerate(runs) if run.held_out]

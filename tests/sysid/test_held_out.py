@@ -1,0 +1,34 @@
+"""Held-out recordings are asked only where the answer leaves more than machines differ by."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from rr_opt.sysid.verdict import Result
+
+FORM, FIRST = 0.02, 100.0
+
+
+def predicts(left: float, gain: float) -> float:
+    """With what the answer leaves in a held-out run, and by how many nats it predicts that."""
+    runs = [SimpleNamespace(held_out=False), SimpleNamespace(held_out=True)]
+    made: Any = SimpleNamespace(
+        selection=SimpleNamespace(
+            base=SimpleNamespace(excess=FIRST), model=SimpleNamespace(runs=runs)
+        ),
+        best=SimpleNamespace(choices=("a",)),
+        final=SimpleNamespace(excess=left),
+        everywhere=SimpleNamespace(predictive=[50.0, gain]),
+        plain=SimpleNamespace(predictive=[0.0, 0.0]),
+        _form_errors={"a": FORM},
+    )
+    return Result._predicts.fget(made)  # pyright: ignore
+
+
+@pytest.mark.parametrize(
+    ("left", "gain", "likely"),
+    [(1.9, -20.0, 1.0), (2.1, -20.0, 0.0), (2.1, 20.0, 1.0), (50.0, 0.0, 0.5)],
+)
+def test_what_the_held_out_recordings_say(left, gain, likely):
+    assert predicts(left, gain) == pytest.approx(likely, abs=1e-6)
