@@ -1,6 +1,7 @@
 """Grip is a limit: no axle needs more, and its price is the speed that more of it would gain."""
 
 import math
+import re
 from dataclasses import replace
 
 import pytest
@@ -39,4 +40,8 @@ def test_it_is_reported_and_warned_of():
     assert held.limits["grip"].active
     assert held.status == "optimal", held.message
     assert not held.warnings
+    assert re.search(r"limited by[^.]* grip of", " ".join(held.summary().split()))
+    assert re.search(
+        r"side force over load +0.3 +0.3 +active +\+[\d.]+ mm/s per 0.01", held.summary()
+    )
     assert abs(held.speed) < abs(found.speed)

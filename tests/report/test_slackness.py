@@ -17,13 +17,13 @@ def test_an_optimum_passes(answer):
     assert answer.status is Status.OPTIMAL
 
 
-@pytest.mark.parametrize("name", ["torque", "angle"])
-def test_a_limit_short_of_which_the_gait_stays_has_no_price(answer, name):
+@pytest.mark.parametrize(("name", "words"), [("torque", "servo torque"), ("angle", "joint angle")])
+def test_a_limit_short_of_which_the_gait_stays_has_no_price(answer, name, words):
     limit, reached = getattr(answer.problem.limits, name), answer.replay.reached[name]
     assert limit > 1.01 * reached
     priced = with_prices(answer, **{name: 1e-3 * abs(answer.speed) / (limit - reached)})
     assert priced.status is Status.NOT_CONVERGED
-    assert f"limit {name}" in priced.message
+    assert f"limit on the {words}" in priced.message
 
 
 def test_a_price_of_the_wrong_sign_is_no_price(answer):

@@ -46,12 +46,14 @@ class Column:
 
     column  its name there
     factor  SI per number
+    unit    what the factor was given as, such as deg; empty: as a number
     bits    numbers are signed counts of this many bits; None: as written
     """
 
     column: str
     factor: float = 1.0
     bits: int | None = None
+    unit: str = ""
 
 
 @dataclass(frozen=True)

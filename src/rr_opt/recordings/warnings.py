@@ -100,20 +100,20 @@ units.phi            error    phi moves {times:.3g} times as far as the gait. Ex
     is one of them in degrees, or did the servo not follow?
 bodies.apart         note     Not stamped together with the first body, and put on its times:
     {names}.
-layout.calibrated    warning  The layout was learnt from the recordings: {one} are on platform 1,
-    {two} on platform 2; P is known to {joint:.2g} mm. The wheels roll about axles {c1:.1f} and
+layout.calibrated    warning  The layout was learnt from the recordings: platform 1 carries {one},
+    platform 2 {two}; P is known to {joint:.2g} mm. The wheels roll about axles {c1:.1f} and
     {c2:.1f} mm from P, and along axes that are known to {angle:.2g} mrad: these are the zeros of
     psi and phi, so that an axle that toes in does not show.
-layout.rolling       warning  The layout was learnt from the recording: {one} are on one platform,
-    {two} on the other; P is known to {joint:.2g} mm. The wheels roll about axles {c1:.1f} and
+layout.rolling       warning  The layout was learnt from the recording: one platform carries {one},
+    the other {two}; P is known to {joint:.2g} mm. The wheels roll about axles {c1:.1f} and
     {c2:.1f} mm from P, and along axes that are known to {angle:.2g} mrad. Which platform is the
     first cannot be known: that of the first marker was taken.
-layout.estimated     warning  The layout was learnt from the recording: {one} are on one platform,
-    {two} on the other; P is known to {joint:.2g} mm. The robot drives too little to show which
+layout.estimated     warning  The layout was learnt from the recording: one platform carries {one},
+    the other {two}; P is known to {joint:.2g} mm. The robot drives too little to show which
     platform is the first, or the zeros of psi and phi: the first marker is taken to be on
     platform 1, and the axes to run through P and the mean of a platform's markers.
 layout.absent        warning  The file has no {names}, which the layout names.
-layout.unused        note     Markers on neither platform, not used: {names}.
+layout.unused        note     On neither platform, and not used: {names}.
 layout.moved         warning  Marker {name} is {off:.1f} mm from where the layout has it, and
     {count} in all were moved: their positions were taken from the recording, the axes and the joint
     from the layout. If the layout is off as a whole, psi, phi and P are off with it.

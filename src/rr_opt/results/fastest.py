@@ -232,7 +232,7 @@ class FastestGait(Result):
                 name, share = worst_slack(self.optimum, self.optimum.best.gait, self.replay.reached)
                 most = LARGEST_SLACK[self.problem.gait.shape == "sine"]
                 slackness = (
-                    f"Complementary slackness: the price of the {name} times its distance is "
+                    f"Complementary slackness: the price of the {name} times its slack is "
                     f"{share:.1e} of the {self._aim} (tolerance {most:.0e})."
                 )
                 checks.append(Check(share <= most, slackness))

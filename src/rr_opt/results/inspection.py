@@ -16,6 +16,7 @@ from rr_opt.model.experiment import Flag, Recording
 from rr_opt.recordings.clock_fit import ClockFit
 from rr_opt.recordings.inspection import Inspection
 from rr_opt.recordings.markers.pose import MarkerFit
+from rr_opt.recordings.readers.marker_rows import carriers
 from rr_opt.recordings.servo_clock import Synchrony
 from rr_opt.recordings.time_axis import time_step
 from rr_opt.recordings.warnings import size_text
@@ -119,9 +120,9 @@ def _facts(found: Inspection) -> Iterator[doc.Fact]:
     if found.markers is not None:
         fit = found.markers
         yield doc.Fact(
-            "markers",
-            f"{len(fit.bodies.labels)} on two rigid platforms, with {1e3 * fit.noise:.3g} mm of "
-            "noise per coordinate",
+            "markers" if fit.bodies.lever is None else "bodies",
+            f"{len(carriers(fit.bodies.labels))} on two rigid platforms, with "
+            f"{1e3 * fit.noise:.3g} mm of noise per coordinate",
         )
     if found.command is not None:
         fit = found.command

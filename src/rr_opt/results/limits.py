@@ -20,8 +20,13 @@ LIMIT_NAMES = ("angle", "rate", "torque", "singularity", "grip")
 """Of every problem; those on the economy of a gait are shown where they are set."""
 
 _WORDS = {
+    "angle": "the joint angle",
+    "rate": "the joint rate",
+    "torque": "the servo torque",
     "singularity": "the singularity margin",
-    "cost_of_transport": "the limit on the cost of transport",
+    "grip": "the grip of the wheels",
+    "power": "the power of the servo",
+    "cost_of_transport": "the cost of transport",
     "speed": "the least speed",
 }
 
@@ -112,7 +117,8 @@ def worst_slack(optimum: Optimum, command: Gait, reached: Mapping[str, float]) -
         limit, price = getattr(problem.limits, name), best.prices[name]
         if math.isfinite(limit):
             slack, price = (value - limit, -price) if name in LEAST else (limit - value, price)
-            worth[f"limit {name}"] = max(price * max(slack, 0.0), -price * abs(limit))
+            called = f"limit on {_WORDS[name]}"
+            worth[called] = max(price * max(slack, 0.0), -price * abs(limit))
     gait, prices = problem.gait, best.bound_prices
     boxes = {"period": gait.period, "offset": gait.offset}
     if problem.gait.shape == "sine" and not problem.command:
@@ -169,10 +175,10 @@ def _share_per_ratio(problem: Problem, choice: RatioChoice) -> float:
 
 
 def limited_by(limits: Iterable[LimitRow], bounds: Iterable[BoundRow]) -> str:
-    """`It is limited by the rate limit and the lower bound of the period.`"""
-    active = [_WORDS.get(row.name, f"the {row.name} limit") for row in limits if row.active]
+    """`It is limited by the joint rate and the lower bound on the period.`"""
+    active = [_WORDS[row.name] for row in limits if row.active]
     active += [
-        f"the {'lower' if row.active == 'low' else 'upper'} bound of the "
+        f"the {'lower' if row.active == 'low' else 'upper'} bound on the "
         f"{QUANTITIES[row.name].words}"
         for row in bounds
         if row.active in ("low", "high")

@@ -291,5 +291,5 @@ def _legs(result: DrivenRoute) -> doc.Table:
         *("piece", "way", "length, m", "amplitude, rad", "period, s", "offset, rad"),
         "steady speed, mm/s",
     )
-    note = "Steady gaits that the drive begins from; the drive changes them together."
+    note = "The steady gaits that the plan starts from; it then changes all of them together."
     return doc.table(head, rows, note)

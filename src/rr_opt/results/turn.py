@@ -166,9 +166,9 @@ def _facts(turn: FastestTurn, arc: Arc) -> Iterator[doc.Fact]:
     yield doc.Fact("length", f"{with_unit(arc.length, 'm')} along the mean circle")
     yield doc.Fact("yaw rate", f"{number(math.degrees(arc.yaw_rate))} deg/s")
     asked = {
-        "curvature": (arc.curvature, "a radius 1 % wider"),
-        "yaw_rate": (arc.yaw_rate, "a yaw rate 1 % lower"),
-        "heading": (arc.heading / arc.periods, "a heading per period 1 % less"),
+        "curvature": (arc.curvature, "a 1 % larger radius"),
+        "yaw_rate": (arc.yaw_rate, "a 1 % lower yaw rate"),
+        "heading": (arc.heading / arc.periods, "1 % less heading per period"),
     }
     for name, price in turn.turn_prices.items():
         value, words = asked[name]

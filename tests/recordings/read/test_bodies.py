@@ -200,6 +200,13 @@ def test_texts(write, name):
     check(inspected(write(TEXTS[name]()), Circumstances()))
 
 
+def test_a_body_is_named_once(write):
+    found = called("inspect", str(write(qualisys(), "theirs.tsv")))
+    told = " ".join(found.output.split())
+    assert "bodies 2 on two rigid platforms" in told
+    assert "one platform carries rear, the other front;" in told
+
+
 @pytest.mark.parametrize("kind", ["bag", "mcap", "db3"])
 def test_bags(tmp_path, kind):
     path = bag(tmp_path, kind)
@@ -209,8 +216,9 @@ def test_bags(tmp_path, kind):
     np.testing.assert_allclose(log.present_angle, motion(N)[4])
 
 
-def test_a_bag_is_its_folder(tmp_path):
-    path = bag(tmp_path, "mcap")
+@pytest.mark.parametrize("kind", ["mcap", "db3"])
+def test_a_bag_is_its_folder(tmp_path, kind):
+    path = bag(tmp_path, kind)
     done = called("inspect", str(path.parent), "--servo-log", str(path.parent))
     assert done.exit_code == 0, done.output
     assert "format      ROS bag" in done.stdout
@@ -290,7 +298,7 @@ def test_an_experiment_learns_from_its_recordings_where_the_bodies_are(write, tm
             np.testing.assert_allclose(run.recording.values[channel], true, atol=2e-3)
     learnt = [issue.message for issue in issues if "was learnt" in issue.message]
     assert len(learnt) == 1
-    assert "rear" in learnt[0].partition("on platform 1")[0]
+    assert "platform 1 carries rear," in learnt[0]
     assert experiment.uncertainty["psi_zero"].sigma > 0.05
     stated = text.replace("noise:", "uncertainty: {psi_zero: 2 mrad}\nnoise:")
     write(stated, "experiment.yaml")

@@ -90,6 +90,22 @@ def test_what_is_missing_is_guessed(write):
         read_file(write("time,x_m,y_m,theta,yaw\n0,1,2,3,4\n1,1,2,3,4\n"))
 
 
+def test_advice_repeats_the_columns_that_were_named(write):
+    text = "clock,x_mm,y_mm,yaw,servo\n0,1000,2,90,0.1\n10,1001,2,91,0.2\n"
+    given = {"t": Column("clock", 1e-3, unit="ms"), "phi": Column("servo")}
+    with pytest.raises(InvalidFileError) as caught:
+        read_file(write(text), ReadOptions(columns=given))
+    told = str(caught.value)
+    assert '--columns "t=clock [ms],x=x_mm [mm],y=y_mm [mm],psi=yaw,phi=servo"' in told
+    assert "{t: {column: clock, factor: 1 ms}, x: {column: x_mm, factor: 1 mm}," in told
+    counts = given | {"phi": Column("servo", 1.5e-3, 16)}
+    with pytest.raises(InvalidFileError) as caught:
+        read_file(write(text), ReadOptions(columns=counts))
+    told = str(caught.value)
+    assert "phi: {column: servo, factor: 0.0015, bits: 16}}`" in told
+    assert "--columns" not in told  # an option says no counts
+
+
 def test_a_guess_keeps_the_unit_that_the_name_ends_with(write):
     file = write("time_ms,x_mm,y_mm,yaw_deg,phi_rad\n0,1000,2,90,0.1\n10,1001,2,91,0.2\n")
     with pytest.raises(InvalidFileError) as caught:

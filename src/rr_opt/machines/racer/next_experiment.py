@@ -71,8 +71,8 @@ def next_experiment(
     words = " of ".join(reversed(words_of(quantity).split(".")))
     sentence = (
         f"Record {plans[k].seconds:.0f} s of amplitude {gait.amplitude:.2f} rad, period "
-        f"{gait.period:.2f} s, offset {gait.offset:.2f} rad, from {plans[k].start}: it makes the "
-        f"interval of {words}, the value known worst, {factor:.1f} times narrower."
+        f"{gait.period:.2f} s, offset {gait.offset:.2f} rad, from {plans[k].start}: it would make "
+        f"the interval of {words}, the least certain value, {factor:.1f} times narrower."
     )
     return _answer(plans[k], (_names(best), quantity), apart, sentence)
 

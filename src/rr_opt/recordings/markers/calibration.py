@@ -22,7 +22,7 @@ from rr_opt.outcome import InputError
 from rr_opt.recordings.markers.axles import Axle, axle_of
 from rr_opt.recordings.markers.layout import Complex, bodies_of, places_of, seen_from_above
 from rr_opt.recordings.markers.rigid import fit
-from rr_opt.recordings.readers.marker_rows import MarkerData
+from rr_opt.recordings.readers.marker_rows import MarkerData, carriers
 from rr_opt.recordings.warnings import Notice, notice
 
 _FRAMES = 2000
@@ -55,7 +55,8 @@ class Calibration:
     @property
     def notice(self) -> Notice:
         """What was learnt, and how well it is known."""
-        one, two = (", ".join(names) for names in (self.layout.platform1, self.layout.platform2))
+        both = self.layout.platform1, self.layout.platform2
+        one, two = (", ".join(carriers([*places])) for places in both)
         known = {"one": one, "two": two, "joint": 1e3 * self.joint}
         if self.axles is None:
             return notice("layout.estimated", **known)
@@ -222,8 +223,8 @@ def rigid_groups(labels: Sequence[str], seen: Array) -> tuple[list[int], list[in
 
 def _refuse(labels: Sequence[str], what: str) -> NoReturn:
     raise InputError(
-        f"The markers {', '.join(labels)} show {what}. Expected two rigid platforms with at least "
-        "two markers each, and a servo that moves. Give the layout with --layout."
+        f"The markers {', '.join(carriers(labels))} show {what}. Expected two rigid platforms with "
+        "at least two markers each, and a servo that moves. Give the layout with --layout."
     )
 
 

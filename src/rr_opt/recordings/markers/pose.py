@@ -30,7 +30,7 @@ from rr_opt.recordings.markers.swaps import (
     swapped_throughout,
     without_ghosts,
 )
-from rr_opt.recordings.readers.marker_rows import MarkerData
+from rr_opt.recordings.readers.marker_rows import MarkerData, carriers
 from rr_opt.recordings.warnings import Notice, counted, notice, when
 
 _FEWEST = 3
@@ -229,10 +229,10 @@ def _of_layout(
     used = set(made.bodies.labels)
     absent = [name for name in [*layout.platform1, *layout.platform2] if name not in used]
     if absent:
-        yield notice("layout.absent", names=", ".join(absent))
+        yield notice("layout.absent", names=", ".join(carriers(absent)))
     extra = [name for name in data.labels if name not in used]
     if extra:
-        yield notice("layout.unused", names=", ".join(extra))
+        yield notice("layout.unused", names=", ".join(carriers(extra)))
     off = np.hypot(*made.shift.T)
     if learnt is None and off.max() > _MATTERS * np.nan_to_num(made.noise):
         worst, count = int(off.argmax()), int((off > 0).sum())

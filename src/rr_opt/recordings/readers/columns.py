@@ -50,7 +50,7 @@ def read_columns(
         expected = f"`{','.join(needed)}`"
         refuse(text.file, f"The file has no rows. Expected {expected}. Export it once more.")
     header, units = _renamed(header, columns, known)
-    _check(header, needed, known, text.file)
+    _check(header, needed, known, columns, text.file)
     table = read_table(text, header.at + 1, len(text.lines), header.separator, header.names)
     doubts = list(table.doubts)
     others = [one for one in header.names if one not in known]
@@ -129,7 +129,13 @@ def _converted(values: Array, column: Column) -> tuple[Array, list[Notice]]:
     return values * column.factor, notices
 
 
-def _check(header: Header, needed: Sequence[str], known: Sequence[str], file: str) -> None:
+def _check(
+    header: Header,
+    needed: Sequence[str],
+    known: Sequence[str],
+    columns: Mapping[str, Column],
+    file: str,
+) -> None:
     line = header.at + 1
     if header.names and all(_is_number(name) for name in header.names):
         refuse(
@@ -148,17 +154,18 @@ def _check(header: Header, needed: Sequence[str], known: Sequence[str], file: st
         meant_by = guesses(others, missing)
         advice = "Add what is missing."
         if meant_by:
-            entries, options = [], []
-            for name, column in meant_by.items():
-                unit = _unit_in(column, name)
-                entries.append(
-                    f"{name}: " + (f"{{column: {column}, factor: 1 {unit}}}" if unit else column)
-                )
-                options.append(f"{name}={column}" + (f" [{unit}]" if unit else ""))
-            advice = (
-                f"Rename them, or write `columns: {{{', '.join(entries)}}}` in the experiment "
-                f'file, or --columns "{",".join(options)}" for one recording.'
-            )
+            given = {name: one for name, one in columns.items() if name in header.names}
+            meant = given | {
+                name: Column(column, unit=_unit_in(column, name))
+                for name, column in meant_by.items()
+            }
+            named = [(name, meant[name]) for name in known if name in meant]
+            entries = ", ".join(f"{name}: {_entry(one)}" for name, one in named)
+            advice = f"Rename them, or write `columns: {{{entries}}}` in the experiment file"
+            if all(one.unit or (one.factor == 1 and not one.bits) for _, one in named):
+                options = ",".join(f"{name}={_option(one)}" for name, one in named)
+                advice += f', or --columns "{options}" for one recording'
+            advice += "."
         # A letter alone is like no other: the columns that there are say more.
         wrong.append(
             f"Read the columns {shown(', '.join(header.names))}. Expected also "
@@ -166,6 +173,19 @@ def _check(header: Header, needed: Sequence[str], known: Sequence[str], file: st
         )
     if wrong:
         refuse(file, " ".join(wrong), line)
+
+
+def _entry(column: Column) -> str:
+    """A column as an experiment file has it."""
+    factor = f"1 {column.unit}" if column.unit else f"{column.factor:.9g}"
+    parts = [f"column: {column.column}"]
+    parts += [f"factor: {factor}"] if factor != "1" else []
+    parts += [f"bits: {column.bits}"] if column.bits else []
+    return f"{{{', '.join(parts)}}}" if len(parts) > 1 else column.column
+
+
+def _option(column: Column) -> str:
+    return column.column + (f" [{column.unit}]" if column.unit else "")
 
 
 def _unit_in(name: str, channel: str) -> str:
@@ -195,8 +215,9 @@ def columns_from(given: Mapping[str, str]) -> dict[str, Column]:
         if channel not in _CHANNELS:
             raise InputError(unknown_word(channel, _CHANNELS, "channel"))
         split = _WITH_UNIT.fullmatch(name.strip())
-        factor = to_si(f"1 {split[2]}", UNITS.get(channel, "")) if split else 1.0
-        found[channel] = Column(split[1] if split else name.strip(), factor)
+        column, unit = (split[1], split[2]) if split else (name.strip(), "")
+        factor = to_si(f"1 {unit}", UNITS.get(channel, "")) if unit else 1.0
+        found[channel] = Column(column, factor, unit=unit)
     return found
 
 

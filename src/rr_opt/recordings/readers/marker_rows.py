@@ -151,8 +151,8 @@ def marker_data(
     positions[np.isnan(positions).any(axis=2)] = np.nan
     seen = [bool(one.any()) for one in np.isfinite(positions[:, :, 0]).T]
     if not all(seen):
-        names = ", ".join(one for one, known in zip(clean, seen, strict=True) if not known)
-        doubts.append(notice("marker.never", names=names))
+        never = [one for one, known in zip(clean, seen, strict=True) if not known]
+        doubts.append(notice("marker.never", names=", ".join(carriers(never))))
     doubts += order.doubts
     if len(times) > 1:
         measured = rate_of(times, file)
@@ -176,6 +176,12 @@ def marker_data(
         source=MappingProxyType({**source, **found}),
         doubts=tuple(doubts),
     )
+
+
+def carriers(labels: Sequence[str]) -> list[str]:
+    """The names of markers, and those of rigid bodies without `NAME x` and the like."""
+    points = {f"{one} {axis}" for one in labels for axis in "xyz"}
+    return [one for one in labels if one not in points]
 
 
 def clean_labels(written: Sequence[str]) -> tuple[tuple[str, ...], str, list[Notice]]:
