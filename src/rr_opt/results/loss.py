@@ -178,12 +178,21 @@ _NONE = 5e-4
 
 
 def share_lost(one: Loss) -> str:
-    """`12 %`; `less than 0.05 %`; `more than all` where the robot goes the other way."""
+    """`12 %`; `less than 0.05 %`; `more than all` where the robot goes the other way; none where
+    its own best gait, which keeps the limits, is slower."""
     if one.share > 1:
         return "more than all"
+    if one.share < -_NONE:
+        return "none"
     if one.share < _NONE:
         return f"less than {100 * _NONE:g} %"
     return f"{number(100 * one.share, 2)} %"
+
+
+def _why(one: Loss) -> str:
+    if one.share > 1:
+        return ", as it drives the robot the other way"
+    return ", as it takes the corrected robot beyond its limits" if one.share < -_NONE else ""
 
 
 def pace(speed: float) -> str:
@@ -201,8 +210,7 @@ def loss_sentences(one: Loss | LossUnknown | None) -> str:
         f"The best gait of the nominal robot ({gait_words(one.believed)}) promises "
         f"{pace(one.promised)}; the corrected robot reaches {pace(one.reached)} with it. Its own "
         f"best gait ({gait_words(one.best)}) reaches {pace(one.speed)}. "
-        f"Speed lost through the wrong model: {share_lost(one)}"
-        f"{', as it drives the robot the other way' if one.share > 1 else ''}."
+        f"Speed lost through the wrong model: {share_lost(one)}{_why(one)}."
     )
     if one.unseen:
         text += " These gaits demand more than any recorded one: this is a prediction."
@@ -215,7 +223,7 @@ def loss_line(one: Loss | LossUnknown) -> str:
         return one.sentence
     return (
         f"{share_lost(one)}: the nominal model's best gait promises {pace(one.promised)} and "
-        f"reaches {pace(one.reached)}; the corrected model's reaches {pace(one.speed)}"
+        f"reaches {pace(one.reached)}{_why(one)}; the corrected model's reaches {pace(one.speed)}"
     )
 
 

@@ -112,6 +112,8 @@ def test_a_gait_that_drives_the_robot_the_other_way_loses_more_than_all():
     less = replace(turned, reached=0.2)
     assert share_lost(less) == "20 %"
     assert "Speed lost through the wrong model: 20 %." in loss_sentences(less)
+    faster = replace(turned, reached=0.26)
+    assert "none, as it takes the corrected robot beyond its limits." in loss_sentences(faster)
 
 
 def test_a_gait_that_a_sweep_beats_is_no_best_gait(missing, monkeypatch):
