@@ -93,7 +93,8 @@ class Result:
         if not self.best.choices:
             few = ["most of the misfit is left"]
         names = " and ".join(words_of(name) for name in best.effects)
-        return f"What predicts best is {names}, but {' and '.join(few) or 'none is sure'}."
+        why = " and ".join(few) or "others do about as well"
+        return f"What predicts best is {names}, but {why}."
 
     @property
     def _predicts(self) -> float:

@@ -1,0 +1,51 @@
+"""Where nothing is named, what predicts best is, with the reason why it is not named."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from rr_opt.sysid.verdict import Result
+
+
+def candidate(*effects: str, elpd: float = 0.0, better: bool = True) -> Any:
+    return SimpleNamespace(
+        choices=effects, effects=effects, elpd=elpd, predicts_better=lambda _: better
+    )
+
+
+def doubt(best: Any, *others: Any, constant=0.9, alike=0.9, predicts=0.9) -> str:
+    made: Any = SimpleNamespace(
+        best=best,
+        _ended=[best, *others],
+        selection=SimpleNamespace(base=candidate()),
+        constancy=SimpleNamespace(probability=constant),
+        _alike=alike,
+        _predicts=predicts,
+    )
+    return Result.doubt.fget(made)  # pyright: ignore
+
+
+@pytest.mark.parametrize(
+    ("factors", "reason"),
+    [
+        ({"constant": 0.1}, "but recordings disagree on the values."),
+        ({"alike": 0.1}, "but more is left than machines differ from such models."),
+        ({"predicts": 0.1}, "but the recordings that were not fitted do not bear it out."),
+        ({"constant": 0.1, "alike": 0.1}, "disagree on the values and more is left than"),
+        ({}, "but others do about as well."),
+    ],
+)
+def test_the_reason(factors, reason):
+    said = doubt(candidate("lateral_slip", "coulomb_friction"), **factors)
+    assert said.startswith("What predicts best is lateral slip and Coulomb friction, but")
+    assert reason in said
+
+
+def test_what_was_not_needed_is_said_to_leave_most():
+    said = doubt(candidate(), candidate("servo_lag", elpd=9.0))
+    assert said == "What predicts best is servo lag, but most of the misfit is left."
+
+
+def test_nothing_is_said_where_nothing_predicts_better():
+    assert doubt(candidate(better=False)) == ""
