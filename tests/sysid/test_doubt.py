@@ -20,7 +20,7 @@ def doubt(best: Any, *others: Any, constant=0.9, alike=0.9, predicts=0.9) -> str
         _ended=[best, *others],
         selection=SimpleNamespace(base=candidate()),
         constancy=SimpleNamespace(probability=constant),
-        _alike=alike,
+        _as_machines_differ=alike,
         _predicts=predicts,
     )
     return Result.doubt.fget(made)  # pyright: ignore

@@ -21,7 +21,7 @@ def predicts(left: float, gain: float) -> float:
         final=SimpleNamespace(excess=left),
         everywhere=SimpleNamespace(predictive=[50.0, gain]),
         plain=SimpleNamespace(predictive=[0.0, 0.0]),
-        _form_errors={"a": FORM},
+        _form_error=FORM,
     )
     return Result._predicts.fget(made)  # pyright: ignore
 

@@ -33,6 +33,18 @@ def test_it_opens_with_the_verdict(found, verdict, said):
     assert "from 8.10 to 1.02 sigma, where 1 is the noise." in text
 
 
+@pytest.mark.parametrize(
+    ("after", "said"),
+    [
+        (1.02, "the misfit fell from 8.10 to 1.02 sigma"),
+        (8.2, "the misfit rose from 8.10 to 8.20 sigma"),
+        (8.101, "the misfit stayed at 8.10 sigma"),
+    ],
+)
+def test_a_misfit_that_rises_is_not_said_to_fall(found, after, said):
+    assert said in summary_of(replace(found, after=after))
+
+
 def test_why_nothing_is_named_is_said(found):
     why = "What predicts best is slip, but recordings disagree on the values."
     assert why in summary_of(replace(found, verdict="unexplained"), doubt=why)

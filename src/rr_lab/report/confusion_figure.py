@@ -7,6 +7,7 @@ from matplotlib.patches import Rectangle
 
 from rr_lab.report.proof import Proof
 from rr_lab.trial.counts import Confusion, confusion
+from rr_opt.formatting import words_of
 from rr_opt.results.figures import style
 
 _CELL = 0.42
@@ -39,11 +40,11 @@ def matrix(ax: Axes, counted: Confusion) -> None:
     ax.grid(visible=False)
     ax.tick_params(length=0)
     ax.spines[:].set_visible(False)
-    ax.set_xticks([x + 0.5 for x in range(len(counted.columns))], map(_words, counted.columns))
+    ax.set_xticks([x + 0.5 for x in range(len(counted.columns))], map(words_of, counted.columns))
     ax.tick_params(axis="x", labelrotation=55)
     for label in ax.get_xticklabels():
         label.set(ha="right", rotation_mode="anchor")
-    ax.set_yticks([y + 0.5 for y in range(len(counted.rows))], map(_words, counted.rows))
+    ax.set_yticks([y + 0.5 for y in range(len(counted.rows))], map(words_of, counted.rows))
     ax.set_xlabel("diagnosis")
     ax.set_ylabel("hidden")
 
@@ -61,7 +62,3 @@ def _cell(ax: Axes, x: int, y: int, count: int, total: int, *, right: bool) -> N
         ax.text(x + 0.5, y + 0.52, str(count), ha="center", va="center", color=ink, weight="bold")
     elif right:
         ax.text(x + 0.5, y + 0.5, "0", ha="center", va="center", color=style.GREY)
-
-
-def _words(name: str) -> str:
-    return name.replace("_", " ")

@@ -12,7 +12,7 @@ from rr_opt.documents.rendering import terminal
 from rr_opt.documents.texts import captions
 from rr_opt.effects import CATALOGUE
 from rr_opt.files.record import robot_yaml
-from rr_opt.formatting import counted
+from rr_opt.formatting import counted, words_of
 from rr_opt.model.experiment import Experiment
 from rr_opt.model.robot import Robot
 from rr_opt.results import diagnosis_tables as tables
@@ -276,7 +276,7 @@ def _summary_facts(one: ExplainedExperiment) -> Iterator[Fact]:
         text = f"{word}, {tables.stage_text(stage, found)}"
         yield Fact(f"channel {tables.stage_name(stage)}", text)
     for group in found.indistinguishable:
-        yield Fact("indistinguishable", " or ".join(name.replace("_", " ") for name in group))
+        yield Fact("indistinguishable", " or ".join(map(words_of, group)))
     if found.verdict != "consistent":
         yield Fact("remainder", tables.remainder_text(found.remainder))
     for each in found.residue:

@@ -14,7 +14,7 @@ from typing import Any
 from rr_opt.effects import CATALOGUE, OF_ROBOTS
 from rr_opt.effects.effect import Port
 from rr_opt.files.problem_file import read_problem
-from rr_opt.formatting import direction_text, number, with_unit
+from rr_opt.formatting import direction_text, number, with_unit, words_of
 from rr_opt.messages import listed
 from rr_opt.model.experiment import Experiment
 from rr_opt.model.gait import Gait
@@ -137,7 +137,7 @@ def loss_of(experiment: Experiment, corrected: Robot) -> Loss | LossUnknown:
     harmless = (Port.ACTUATION, Port.MEASUREMENT)
     gone = [n for n in ignored_in_steady_cycle(corrected) if CATALOGUE[n].port not in harmless]
     if gone:
-        names = listed([name.replace("_", " ") for name in gone])
+        names = listed(map(words_of, gone))
         have = "has" if len(gone) == 1 else "have"
         return unknown(f"{names} {have} no place in a steady motion.")
     try:

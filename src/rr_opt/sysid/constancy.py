@@ -84,6 +84,7 @@ def constancy(
         return solve_triangular(L, (x.T / units).T, lower=True)
 
     spread = L.T * units @ np.diag((form * values)[free])
+    F = spread @ spread.T
     share = max(form_errors.values(), default=0.0)
     B, phi = {}, {}
     for run, one in fit.evidences.items():
@@ -97,7 +98,6 @@ def constancy(
     for run, one in fit.evidences.items():
         A = np.linalg.pinv(unit - B[run], hermitian=True)
         C = every - phi[run] * B[run]
-        F = spread @ spread.T
         score = within(one.g[free]) - B[run] @ A @ within(g - one.g[free])
         known, ways = np.linalg.eigh(B[run] + B[run] @ (A + F) @ B[run])
         ways = ways[:, known > SETTINGS.shown]

@@ -21,10 +21,10 @@ def summary_of(found: Diagnosis, worth: str = "", doubt: str = "") -> str:
     }[found.verdict]
     held = any(one.held_out for one in found.final)
     which = "recordings that were not fitted" if held else "the recordings, which were all fitted"
-    misfit = (
-        f"On {which}, {worth}the misfit fell from {found.before:.2f} to {found.after:.2f} sigma, "
-        "where 1 is the noise."
-    )
+    before, after = (f"{one:.2f}" for one in (found.before, found.after))
+    moved = "rose" if found.after > found.before else "fell"
+    change = f"stayed at {after}" if before == after else f"{moved} from {before} to {after}"
+    misfit = f"On {which}, {worth}the misfit {change} sigma, where 1 is the noise."
     remainder, remains = found.remainder, ""
     if found.verdict != "consistent" and remainder.size != "none":
         depends = f": {remainder.depends_on}" if remainder.depends_on else ""

@@ -14,6 +14,7 @@ import numpy as np
 from scipy.special import expit
 
 from rr_opt.formatting import words_of
+from rr_opt.messages import listed
 from rr_opt.sysid.candidates import Candidate, weights
 from rr_opt.sysid.constancy import Constancy, constancy
 from rr_opt.sysid.diagnosis import Finding, Remainder, Tried, Verdict
@@ -66,16 +67,15 @@ class Result:
         """How likely the answer's effects are no imitation of something else: recordings agree on
         their values, those that were not fitted are predicted better with them, and what is left of
         the misfit is no more than machines differ from models of such effects."""
-        return self.constancy.probability * self._alike * self._predicts
+        return self.constancy.probability * self._as_machines_differ * self._predicts
 
     @property
-    def _alike(self) -> float:
+    def _as_machines_differ(self) -> float:
         """How likely what is left is what machines differ by from models of such effects."""
         first = self.selection.base.excess**2
         left = self.best.excess**2 - SETTINGS.none**2 - self.selection.model.form_error**2
         share = math.sqrt(max(left, 0.0) / max(first, 1e-12))
-        form = max(self._form_errors.values(), default=math.inf)
-        return 1 / (1 + (share / form / SETTINGS.form_errors) ** 4)
+        return 1 / (1 + (share / self._form_error / SETTINGS.form_errors) ** 4)
 
     @property
     def doubt(self) -> str:
@@ -86,22 +86,20 @@ class Result:
             return ""
         reasons = {
             "recordings disagree on the values": self.constancy.probability,
-            "more is left than machines differ from such models": self._alike,
+            "more is left than machines differ from such models": self._as_machines_differ,
             "the recordings that were not fitted do not bear it out": self._predicts,
         }
-        few = [why for why, likely in reasons.items() if likely <= SETTINGS.named]
+        against = [reason for reason, likely in reasons.items() if likely <= SETTINGS.named]
         if not self.best.choices:
-            few = ["most of the misfit is left"]
-        names = " and ".join(words_of(name) for name in best.effects)
-        why = " and ".join(few) or "others do about as well"
-        return f"What predicts best is {names}, but {why}."
+            against = ["most of the misfit is left"]
+        names = listed(words_of(name) for name in best.effects)
+        return f"What predicts best is {names}, but {listed(against) or 'others do about as well'}."
 
     @property
     def _predicts(self) -> float:
         """How likely recordings that were not fitted are with the answer, and not with the nominal
         model; that is not asked where they leave no more than machines differ from such models."""
-        form = max(self._form_errors.values(), default=0.0)
-        if self.final.excess <= form * self.selection.base.excess:
+        if self.final.excess <= self._form_error * self.selection.base.excess:
             return 1.0
         runs = self.selection.model.runs
         own, other = self.everywhere.predictive, self.plain.predictive
@@ -112,6 +110,11 @@ class Result:
     def _form_errors(self) -> Mapping[str, float]:
         catalogue = self.selection.model.catalogue
         return {name: catalogue[name].form_error for name in self.best.effects}
+
+    @property
+    def _form_error(self) -> float:
+        """The largest; without an effect, any."""
+        return max(self._form_errors.values(), default=math.inf)
 
     @cached_property
     def constancy(self) -> Constancy:
