@@ -6,7 +6,7 @@ Nothing is put right: the experimenter has to say. A fault of the robot is no re
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -212,21 +212,10 @@ def _in_files(folder: Path) -> list[Issue]:
     return issues
 
 
-@dataclass(frozen=True)
-class Checked:
-    """Why recordings cannot be diagnosed, in sentences.
-
-    left_out  by name, of each uninformative recording
-    wrong     what cannot be as the experiment says: units, signs, clocks, the gait; or that no
-              recording is left to fit
-    """
-
-    left_out: dict[str, str]
-    wrong: tuple[str, ...]
-
-
-def checked(experiment: Experiment) -> Checked:
-    """The warnings of the recordings, and whether they go together."""
+def checked(experiment: Experiment) -> tuple[dict[str, str], list[str]]:
+    """Why recordings cannot be diagnosed, in sentences: by name, each uninformative recording; and
+    what cannot be as the experiment says, units, signs, clocks, the gait, or that no recording is
+    left to fit."""
     left_out = dict(_left_out(experiment))
     wrong = [
         f"{run.name}: {one}"
@@ -247,7 +236,7 @@ def checked(experiment: Experiment) -> Checked:
             "No recording to fit is left, so nothing can be learnt of this robot. Record some "
             "periods in which it drives."
         )
-    return Checked(left_out, tuple(wrong))
+    return left_out, wrong
 
 
 def notices_of(run: Run) -> list[Notice]:
@@ -266,11 +255,11 @@ def usable(experiment: Experiment) -> tuple[Experiment, tuple[str, ...]]:
     Raises InputError for recordings that are not as the experiment says, and where no recording is
     left to fit.
     """
-    found = checked(experiment)
-    if found.wrong:
-        raise InputError("\n".join((*found.left_out.values(), *found.wrong)))
-    runs = tuple(run for run in experiment.runs if run.name not in found.left_out)
-    return replace(experiment, runs=runs), tuple(found.left_out.values())
+    left_out, wrong = checked(experiment)
+    if wrong:
+        raise InputError("\n".join((*left_out.values(), *wrong)))
+    runs = tuple(run for run in experiment.runs if run.name not in left_out)
+    return replace(experiment, runs=runs), tuple(left_out.values())
 
 
 def _left_out(experiment: Experiment) -> Iterator[tuple[str, str]]:

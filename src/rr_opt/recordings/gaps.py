@@ -13,9 +13,10 @@ from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter1d
 
 from rr_opt.array import Array
+from rr_opt.formatting import counted
 from rr_opt.model.experiment import CHANNELS, Flag, Recording
 from rr_opt.recordings.time_axis import LACKING, time_step
-from rr_opt.recordings.warnings import Notice, counted, notice
+from rr_opt.recordings.warnings import Notice, notice
 
 SHORT = 0.1
 """A gap of a drawing that is bridged, s."""

@@ -17,7 +17,7 @@ from scipy.special import ndtri
 
 from rr_opt.array import Array
 from rr_opt.recordings.noise import NoiseEstimate, noise_of, spread_at
-from rr_opt.recordings.smoothing import Smooth, bounded, smoothed, strength
+from rr_opt.recordings.smoothing import bounded, smoothed, strength
 from rr_opt.recordings.time_axis import in_steps
 
 _CHANCE, _COLOURED = 1e-4, 1.2
@@ -114,22 +114,20 @@ class Outliers:
     outlier  (n,)
     noise    of the others
     sigma    standard deviation that a sample was allowed, the usual one
-    ratio    the strength of the motion (`strength`)
     """
 
     outlier: NDArray[np.bool_]
     noise: NoiseEstimate
     sigma: float
-    ratio: float
 
 
 def outliers(t: Array, y: Array, sigma: Array) -> Outliers:
     """The outliers of y (n,) at t (n,), s; NaN is no sample. sigma: (n,), as stated."""
     suspect = np.zeros(len(y), bool)
     known = np.isfinite(y)
-    noise, ratio = noise_of(y), 1.0
+    noise = noise_of(y)
     if known.sum() < 4 or not np.nanmax(np.abs(y)) < 1e12:
-        return Outliers(suspect, noise, float(np.median(sigma)), ratio)
+        return Outliers(suspect, noise, float(np.median(sigma)))
     scale, sigma = 1.0, bounded(y, sigma)
     usual = float(np.median(sigma))
     for _ in range(3):
@@ -141,7 +139,7 @@ def outliers(t: Array, y: Array, sigma: Array) -> Outliers:
         before, suspect = suspect, _suspects(t, y, scale * sigma, ratio)
         if (suspect == before).all():
             break
-    return Outliers(_foretold(t, y, suspect, scale * sigma), noise, scale * usual, ratio)
+    return Outliers(_foretold(t, y, suspect, scale * sigma), noise, scale * usual)
 
 
 def _suspects(t: Array, y: Array, sigma: Array, ratio: float) -> NDArray[np.bool_]:
@@ -166,10 +164,10 @@ def _suspects(t: Array, y: Array, sigma: Array, ratio: float) -> NDArray[np.bool
 
 def _outliers_off(t: Array, y: Array, out: NDArray[np.bool_], sigma: Array, ratio: float) -> Array:
     """How far each sample is off the curve through the others, in standard deviations."""
-    curve: Smooth = smoothed(t, np.where(out, np.nan, y), sigma, ratio)
+    curve = smoothed(t, np.where(out, np.nan, y), sigma, ratio)
     # A sample pulls the curve: what it is off the curve through the others is larger by its part.
     rest = np.maximum(1 - curve.leverage, 1e-6)
-    scale = np.where(out, np.hypot(sigma, curve.value_sigma), sigma * np.sqrt(rest))
+    scale = np.where(out, np.hypot(sigma, curve.sigma), sigma * np.sqrt(rest))
     return np.nan_to_num(np.abs(y - curve.value) / scale, nan=0.0)
 
 

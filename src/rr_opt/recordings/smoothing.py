@@ -1,4 +1,4 @@
-"""A recorded channel smoothed: signal and derivatives at every sample, each with its sigma.
+"""A recorded channel smoothed: signal, its sigma, and derivative at every sample.
 
 The signal is taken for one whose third derivative is white noise, seen with the sensor's white
 noise. Smoothing with this prior is the quintic smoothing spline, the strength of the first noise is
@@ -12,6 +12,7 @@ cyclic reduction: every other block is eliminated, all at once, until one is lef
 come back in the opposite order. Both are exact for any times and gaps, without a loop over samples.
 """
 
+from contextlib import suppress
 from dataclasses import dataclass
 from math import factorial
 
@@ -21,7 +22,6 @@ from scipy.linalg import get_lapack_funcs, solveh_banded
 from scipy.optimize import minimize_scalar
 
 from rr_opt.array import Array
-from rr_opt.recordings.noise import noise_of
 from rr_opt.recordings.time_axis import in_steps, time_step
 
 ORDER = 3
@@ -121,15 +121,9 @@ def mean(P: Precision, pull: Array) -> Array:
     return solveh_banded(band, right, overwrite_ab=True, check_finite=False).reshape(n, ORDER)
 
 
-def covariance(P: Precision) -> Array:
-    """The states' covariances (n, 3, 3)."""
-    return _covariance(P.diagonal, P.above)[0]
-
-
-def _covariance(D: Array, B: Array) -> tuple[Array, Array]:
-    """Diagonal blocks of the inverse, and those above them."""
-    n = len(D)
-    if n == 1:
+def covariance(D: Array, B: Array) -> tuple[Array, Array]:
+    """Of a precision with these blocks: the states' covariances (n, 3, 3), and the blocks above."""
+    if len(D) == 1:
         return np.asarray(np.linalg.inv(D), float), B
     odd, even = D[1::2], D[::2]
     inverse = np.linalg.inv(odd)
@@ -142,7 +136,7 @@ def _covariance(D: Array, B: Array) -> tuple[Array, Array]:
     reduced[: len(odd)] -= np.swapaxes(before, 1, 2) @ G
     reduced[1 : 1 + len(after)] -= np.swapaxes(after, 1, 2) @ K
     coupling = -np.swapaxes(before[: len(after)], 1, 2) @ K
-    S, C = _covariance(reduced, coupling)
+    S, C = covariance(reduced, coupling)
     m, r = len(odd), len(after)
     cross_before = -(G @ S[:m])
     cross_before[:r] -= K @ np.swapaxes(C[:r], 1, 2)
@@ -219,17 +213,16 @@ def bounded(y: Array, sigma: Array | float) -> Array:
 
 @dataclass(frozen=True)
 class Smooth:
-    """The posterior at every time (n,): units of the signal, per s, per s^2.
+    """The posterior at every time (n,), in units of the signal.
 
+    first     derivative, per s
+    sigma     standard deviation of the value
     leverage  how much a sample moves its own smoothed value; 0 where there was no sample
     """
 
     value: Array
     first: Array
-    second: Array
-    value_sigma: Array
-    first_sigma: Array
-    second_sigma: Array
+    sigma: Array
     leverage: Array
 
 
@@ -243,7 +236,7 @@ def smoothed(t: Array, y: Array, sigma: Array | float, ratio: float) -> Smooth:
     known = np.isfinite(y)
     if known.sum() < _SMOOTH_FEWEST:
         none = np.full(n, np.nan)
-        return Smooth(none, none, none, none, none, none, np.zeros(n))
+        return Smooth(none, none, none, np.zeros(n))
     tau, u = time_step(t), in_steps(t)
     sigma = bounded(y, sigma)
     usual = float(np.median(sigma[known]))
@@ -260,27 +253,25 @@ def smoothed(t: Array, y: Array, sigma: Array | float, ratio: float) -> Smooth:
     pull = np.add.reduceat((weight * left)[:, None] * H, first)
     means, covariances = _solved(np.diff(u[first]), ratio, seen, pull)
     state = np.einsum("nij,nj->ni", A, means[node]) * usual
-    spread = A @ covariances[node] @ np.swapaxes(A, 1, 2)
-    sigmas = usual * np.sqrt(np.maximum(spread[:, range(3), range(3)], 0.0))
+    spread = (A @ covariances[node] @ np.swapaxes(A, 1, 2))[:, 0, 0]
     return Smooth(
         state[:, 0] + trend(u),
         (state[:, 1] + trend.deriv(1)(u)) / tau,
-        (state[:, 2] + trend.deriv(2)(u)) / tau**2,
-        sigmas[:, 0], sigmas[:, 1] / tau, sigmas[:, 2] / tau**2,
-        weight * spread[:, 0, 0],
-    )  # fmt: skip
+        usual * np.sqrt(np.maximum(spread, 0.0)),
+        weight * spread,
+    )
 
 
 def _solved(step: Array, ratio: float, seen: Array, pull: Array) -> tuple[Array, Array]:
     """Means (n, 3) and covariances (n, 3, 3), with as vague a prior as rounding allows."""
     for vague in _VAGUE[:-1]:
-        try:
-            P = precision(step, ratio, seen, vague)
-            return mean(P, pull), covariance(P)
-        except np.linalg.LinAlgError:
-            continue
-    P = precision(step, ratio, seen, _VAGUE[-1])
-    return mean(P, pull), covariance(P)
+        with suppress(np.linalg.LinAlgError):
+            return _posterior(precision(step, ratio, seen, vague), pull)
+    return _posterior(precision(step, ratio, seen, _VAGUE[-1]), pull)
+
+
+def _posterior(P: Precision, pull: Array) -> tuple[Array, Array]:
+    return mean(P, pull), covariance(P.diagonal, P.above)[0]
 
 
 def _nodes(u: Array) -> NDArray[np.int_]:
@@ -293,13 +284,10 @@ def _nodes(u: Array) -> NDArray[np.int_]:
     return np.cumsum(begins) - 1
 
 
-def derivatives(t: Array, y: Array, sigma: Array | float | None = None) -> Smooth:
-    """The signal behind y (n,) and its first two derivatives at t (n,), s.
+def derivatives(t: Array, y: Array, sigma: Array | float) -> Smooth:
+    """The signal behind y (n,) and its derivative at t (n,), s.
 
-    y: NaN where there is no sample. sigma: standard deviation of the samples, (n,) or one; None
-    has it estimated.
+    y: NaN where there is no sample. sigma: standard deviation of the samples, (n,) or one.
     """
-    if sigma is None:
-        sigma = noise_of(y).sigma
     sigma = bounded(y, sigma)
     return smoothed(t, y, sigma, strength(y, float(np.median(sigma))))

@@ -279,11 +279,6 @@ def size_text(channel: str, size: float) -> str:
     return f"{float(f'{factor * size:.3g}'):g} {unit}".strip()
 
 
-def counted(count: int, what: str) -> str:
-    """`1 frame`, `312 frames`."""
-    return f"{count} {what}" + ("" if count == 1 else "s")
-
-
 def when(t: NDArray[np.float64], rows: Sequence[int] | NDArray[np.int_]) -> str:
     """`at t = 3.21 s`, or `between t = 3.21 s and 4.5 s`, of rows in order."""
     first, last = float(t[rows[0]]), float(t[rows[-1]])

@@ -110,10 +110,6 @@ def test_errors_have_the_sigmas_that_are_told():
         assert len(scaled) > 2900
         assert abs(scaled.std() - 1) < 0.05
         assert abs(scaled.mean()) < 0.08
-    both = (errors[:, 0] * errors[:, 1] / SIGMA**2)[np.isfinite(errors).all(axis=1)]
-    told = fitted.covary[np.isfinite(errors).all(axis=1)]
-    assert np.corrcoef(told, both)[0, 1] > 0.1
-    assert abs(both.mean() - told.mean()) < 4 * both.std() / np.sqrt(len(both))
 
 
 def test_the_residuals_tell_the_noise():

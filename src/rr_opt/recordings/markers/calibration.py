@@ -42,14 +42,12 @@ class Calibration:
              from P to the mean of its markers, platform 2's from the mean of its markers to P
     joint    standard deviation of P in the platforms' axes, m
     axles    of platform 1 and 2; None where the wheels do not show them
-    unused   markers that stay on neither platform
     ordered  which platform is the first is known
     """
 
     layout: Layout
     joint: float
     axles: tuple[Axle, Axle] | None
-    unused: tuple[str, ...] = ()
     ordered: bool = False
 
     @property
@@ -85,13 +83,13 @@ def calibration(
     places = [places_of(one)[:, [one.labels.index(name) for name in labels]] for one in recordings]
     up = _upright(np.concatenate(places), recordings[0].up)
     seen = [seen_from_above(one, up)[0] for one in places]
-    layout, joint, unused = _shaped(labels, np.concatenate(seen), up)
+    layout, joint = _shaped(labels, np.concatenate(seen), up)
     bodies = bodies_of(layout, labels, recordings[0].lever)
     fits = [fit(bodies, one[:, bodies.columns]) for one in seen]
     times, joints = [one.t for one in recordings], [one.joint for one in fits]
     first, second = (axle_of(times, joints, [one.heading[:, k] for one in fits]) for k in (0, 1))
     if first is None or second is None:
-        return Calibration(layout, joint, None, unused)
+        return Calibration(layout, joint, None)
     one = _turned(layout.platform1, first.direction)
     two = _turned(layout.platform2, second.direction)
     phis = [one.heading[:, 1] - one.heading[:, 0] for one in fits]
@@ -100,7 +98,7 @@ def calibration(
         one, two, first, second = two, one, second, first
     # Platform 2's axis points from its axle to P.
     layout = Layout(one, _turned(two, np.pi), up)
-    return Calibration(layout, joint, (first, second), unused, ordered=bool(order))
+    return Calibration(layout, joint, (first, second), ordered=bool(order))
 
 
 _FLAT = 0.2
@@ -168,10 +166,10 @@ def _correlation(phi: Array, command: Array) -> float:
     return float(np.nan_to_num(both))
 
 
-def _shaped(labels: Sequence[str], seen: Array, up: str) -> tuple[Layout, float, tuple[str, ...]]:
-    """Layout, P's standard deviation and unused markers; seen: (n, k, 2) from above, m."""
+def _shaped(labels: Sequence[str], seen: Array, up: str) -> tuple[Layout, float]:
+    """Layout and P's standard deviation; seen: (n, k, 2) from above, m."""
     sample = seen[:: max(1, len(seen) // _FRAMES)]
-    first, second, unused = rigid_groups(labels, sample)
+    first, second = rigid_groups(labels, sample)
     groups = [first, second] if min(first) < min(second) else [second, first]
     shapes, poses = zip(*(_shape(sample[:, group]) for group in groups), strict=True)
     places, sigma = _joint(poses)
@@ -180,7 +178,7 @@ def _shaped(labels: Sequence[str], seen: Array, up: str) -> tuple[Layout, float,
         off = shape - joint
         own = {labels[i]: (float(z.real), float(z.imag)) for i, z in zip(group, off, strict=True)}
         layouts.append(_turned(own, float(np.angle(sign * off.mean()))))
-    return Layout(*layouts, up=up), sigma, tuple(labels[i] for i in unused)
+    return Layout(*layouts, up=up), sigma
 
 
 _APART = 3.0
@@ -188,8 +186,8 @@ _APART = 3.0
 all change by the markers' noise, and a marker may have twice that of another."""
 
 
-def rigid_groups(labels: Sequence[str], seen: Array) -> tuple[list[int], list[int], list[int]]:
-    """Two sets of markers with fixed distances, the larger first, and those in neither.
+def rigid_groups(labels: Sequence[str], seen: Array) -> tuple[list[int], list[int]]:
+    """Two sets of markers with fixed distances, the larger first.
 
     seen: (n, k, 2), m. Raises InputError if there are no two such sets.
     """
@@ -218,7 +216,7 @@ def rigid_groups(labels: Sequence[str], seen: Array) -> tuple[list[int], list[in
         _refuse(labels, "only one set of markers with fixed distances")
     if len(sets) > 2 and len(sets[2]) >= 2:
         _refuse(labels, "more than two sets of markers with fixed distances")
-    return sets[0], sets[1], [i for one in sets[2:] for i in one]
+    return sets[0], sets[1]
 
 
 def _refuse(labels: Sequence[str], what: str) -> NoReturn:

@@ -54,14 +54,8 @@ class Bodies:
 def bodies_of(layout: Layout, labels: Sequence[str], lever: float | None = None) -> Bodies:
     """The layout's markers that a file has; lever: as of MarkerData.
 
-    Raises InputError if neither platform has two of them, or if one name is on both platforms.
+    Raises InputError if neither platform has two of them.
     """
-    both = set(layout.platform1) & set(layout.platform2)
-    if both:
-        raise InputError(
-            f"The layout has {', '.join(sorted(both))} on both platforms. Expected every marker on "
-            "one. Delete it from the other."
-        )
     rows = [
         (name, where, tuple(float(size) for size in place))
         for where, places in enumerate((layout.platform1, layout.platform2))
@@ -104,14 +98,8 @@ _AXES = {
 def seen_from_above(positions: Array, up: str) -> tuple[Array, Array]:
     """x and y (n, k, 2) and height (n, k) of positions (n, k, 3), m.
 
-    A height that is not known does not make a marker missing. Raises InputError for an unknown
-    `up`.
+    A height that is not known does not make a marker missing.
     """
-    if up not in _AXES:
-        raise InputError(
-            f"The layout's `up` is {up!r}. Expected one of: {', '.join(_AXES)}. Name the axis of "
-            "the capture's frame that points up from the floor."
-        )
     first, second, height, sign = _AXES[up]
     return positions[..., [first, second]], sign * positions[..., height]
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rr_opt.array import Array
+from rr_opt.formatting import counted
 from rr_opt.messages import listed
 from rr_opt.model.experiment import CHANNELS, Flag, Layout, Recording
 from rr_opt.recordings.cleaning import unwrapped
@@ -31,7 +32,7 @@ from rr_opt.recordings.markers.swaps import (
     without_ghosts,
 )
 from rr_opt.recordings.readers.marker_rows import MarkerData, carriers
-from rr_opt.recordings.warnings import Notice, counted, notice, when
+from rr_opt.recordings.warnings import Notice, notice, when
 
 _FEWEST = 3
 """Markers of a platform that show its tilt."""
@@ -75,7 +76,7 @@ def robot_of(
     while True:
         new, shift = refined(bodies, seen)
         found = marker_noise(fit(new, seen[:: max(1, len(seen) // _SAMPLE)]))
-        sigma = max(_or(found, 0.0), noise_sigma or 0.0, LEAST_NOISE)
+        sigma = max(np.nan_to_num(found), noise_sigma or 0.0, LEAST_NOISE)
         if bodies.lever is not None:  # points of a pose are those of one body
             return new, shift, seen, swaps, without_ghosts(new, seen, sigma, most=0)
         seen, more = put_right(new, seen, sigma)
@@ -83,10 +84,6 @@ def robot_of(
         swaps += more
         if not again:
             return new, shift, seen, swaps, without_ghosts(new, seen, sigma)
-
-
-def _or(value: float, other: float) -> float:
-    return value if np.isfinite(value) else other
 
 
 @dataclass(frozen=True)
@@ -146,7 +143,11 @@ def fit_markers(
         tilt(bodies, height), tuple(swaps), ghosts, (),
     )  # fmt: skip
     doubts = _notices(data, layout, made, learnt, always, noise_sigma)
-    return replace(made, doubts=doubts, recording=_with_doubts(made.recording, data, doubts))
+    source = {**data.source, "motion": "a rigid fit of both platforms to the markers, by frame"}
+    recording = replace(
+        made.recording, source=MappingProxyType(source), doubts=(*data.doubts, *doubts)
+    )
+    return replace(made, doubts=doubts, recording=recording)
 
 
 def _renamed(bodies: Bodies, order: Order) -> Bodies:
@@ -188,11 +189,6 @@ def _recording(
         usual = float(np.median(spread[known])) if known.any() else sigma
         sigmas[channel], flags[channel] = np.where(known, spread, usual), flag
     return Recording(data.name, data.t, values, sigmas, flags)
-
-
-def _with_doubts(recording: Recording, data: MarkerData, doubts: tuple[Notice, ...]) -> Recording:
-    source = {**data.source, "motion": "a rigid fit of both platforms to the markers, by frame"}
-    return replace(recording, source=MappingProxyType(source), doubts=(*data.doubts, *doubts))
 
 
 _MATTERS = 0.5

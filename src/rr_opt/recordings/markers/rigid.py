@@ -43,7 +43,6 @@ class RigidFit:
     heading   (n, 2), of platform 1's and platform 2's forward axis, within a turn, rad
     spread    (n, 4), standard deviations of x, y (m per m of a marker's noise), psi and phi (rad
               per m), for markers whose two coordinates have noise of 1 m
-    covary    (n,), covariance of x and y in the same measure
     residual  (n, k), seen less fitted, x + iy, m; NaN where a marker was not used
     squares   (n,), sum of the squared residuals, m^2
     freedom   (n,), how many more coordinates than unknowns; squares/freedom estimates the noise's
@@ -53,7 +52,6 @@ class RigidFit:
     joint: Array
     heading: Array
     spread: Array
-    covary: Array
     residual: Complex
     squares: Array
     freedom: NDArray[np.int_]
@@ -130,7 +128,6 @@ def _fit(bodies: Bodies, z: Complex) -> RigidFit:
         np.stack([joint.real, joint.imag], 1),
         angles,
         np.sqrt(np.stack([Cxx, Cyy, psi, phi], 1)),
-        Cxy,
         residual,
         squares,
         np.maximum(freedom, 0),

@@ -163,7 +163,8 @@ def _check(
             entries = ", ".join(f"{name}: {_entry(one)}" for name, one in named)
             advice = f"Rename them, or write `columns: {{{entries}}}` in the experiment file"
             if all(one.unit or (one.factor == 1 and not one.bits) for _, one in named):
-                options = ",".join(f"{name}={_option(one)}" for name, one in named)
+                units = {name: f" [{one.unit}]" if one.unit else "" for name, one in named}
+                options = ",".join(f"{name}={one.column}{units[name]}" for name, one in named)
                 advice += f', or --columns "{options}" for one recording'
             advice += "."
         # A letter alone is like no other: the columns that there are say more.
@@ -182,10 +183,6 @@ def _entry(column: Column) -> str:
     parts += [f"factor: {factor}"] if factor != "1" else []
     parts += [f"bits: {column.bits}"] if column.bits else []
     return f"{{{', '.join(parts)}}}" if len(parts) > 1 else column.column
-
-
-def _option(column: Column) -> str:
-    return column.column + (f" [{column.unit}]" if column.unit else "")
 
 
 def _unit_in(name: str, channel: str) -> str:
