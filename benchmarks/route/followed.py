@@ -17,10 +17,10 @@ from numpy.typing import NDArray
 
 import rr_opt as rr
 from benchmarks.results import FOLDER, machine
+from benchmarks.route.guided import guided
 from benchmarks.route.problems import ROBOTS, ROUTES, START
 from rr_lab.case import stream
 from rr_lab.effects import rig_with
-from rr_lab.planar.guided import guided
 from rr_lab.run import Conditions
 from rr_opt.array import Array
 from rr_opt.documents.archive import write_text

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import rr_opt as rr
+from benchmarks.route.guided import guided
 from rr_lab.effects import rig_with
 from rr_lab.planar.drive import drive
-from rr_lab.planar.guided import guided
 from rr_lab.run import Conditions
 
 
