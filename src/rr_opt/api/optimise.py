@@ -14,7 +14,7 @@ import numpy as np
 
 from rr_opt.api.load import PathLike, identity, problem_of, read_arguments
 from rr_opt.batch.journal import JOURNAL, Journal
-from rr_opt.batch.run import Pool, pool_of, run
+from rr_opt.batch.run import pool_of, run
 from rr_opt.design import maximize_speed as design
 from rr_opt.design.decisions import decisions
 from rr_opt.design.infeasible import posture_clashes
@@ -50,6 +50,7 @@ from rr_opt.verify.turn_chart import radius_claim, sign_claim, tightest, turn_ma
 from rr_opt.version import __version__
 
 if TYPE_CHECKING:
+    from rr_opt.batch.pools import Pool
     from rr_opt.machines.racer.driven import DrivenOptimum
 
 

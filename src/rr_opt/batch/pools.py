@@ -210,3 +210,8 @@ def _client() -> Any:
             "Run `pip install 'rr-opt[cluster]'`, or leave out --scheduler."
         ) from None
     return Client
+
+
+Pool = LocalPool | ClusterPool
+"""Processes that work at the same time. A future whose process died raises BrokenExecutor, and then
+every other future of the pool may too; `restart` makes the pool usable again."""

@@ -4,40 +4,16 @@ If a process dies, nothing says which case it died over. So every case that was 
 again, each alone in the pool: the one over which a process dies once more is reported as lost.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Future, wait
-from typing import Any, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from rr_opt.outcome import RollerRacerError
 
-
-class Pool(Protocol):
-    """Processes that work at the same time.
-
-    A future whose process died raises BrokenExecutor, and then every other future of the pool may
-    too; `restart` makes the pool usable again.
-    """
-
-    @property
-    def ahead(self) -> int:
-        """How many cases to hand out at a time, so that no process waits."""
-        ...
-
-    def submit(self, function: Callable[[Any], Any], argument: Any) -> Future[Any]:
-        """Have function(argument) computed."""
-        ...
-
-    def is_lost(self, error: BaseException) -> bool:
-        """Whether an error means that the pool tried a case again and again and gave it up."""
-        ...
-
-    def restart(self) -> None:
-        """Start new processes in place of those that died."""
-        ...
-
-    def close(self) -> None:
-        """End the work, finished or not."""
-        ...
+if TYPE_CHECKING:
+    from rr_opt.batch.pools import Pool
 
 
 def pool_of(workers: int | None, scheduler: str | None) -> Pool:

@@ -7,10 +7,10 @@ where an interval ends, often right where the optimum is, so it is formed from t
 not fitted itself.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import combinations
-from typing import Protocol
 
 import numpy as np
 
@@ -22,12 +22,8 @@ _NEXT_TO = 0.06
 _SAMPLES = 256
 
 
-class Terrain(Protocol):
-    """What is climbed."""
-
-    def __call__(self, points: Array, /) -> Array:
-        """points (K, 4) -> speed and R rows, (1 + R, K)."""
-        ...
+Terrain = Callable[[Array], Array]
+"""What is climbed: points (K, 4) -> speed and R rows, (1 + R, K)."""
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 import casadi as ca
 
-from rr_opt.design.shapes.shape import Shape
+from rr_opt.design.shapes import Shape
 from rr_opt.design.transcription import COMMON, DYNAMIC, GRIPS, MEANS, PeriodTerms, named
 from rr_opt.mechanics.compile_cache import externals
 from rr_opt.mechanics.runge_kutta import Tableau

@@ -31,7 +31,7 @@ from functools import cached_property, lru_cache
 import casadi as ca
 
 from rr_opt.design.interval import Functions, IntervalTerms, interval_of
-from rr_opt.design.shapes.shape import Shape
+from rr_opt.design.shapes import Shape
 from rr_opt.design.transcription import Layout
 from rr_opt.mechanics.runge_kutta import BUTCHER6, Tableau
 from rr_opt.model.ballast import By

@@ -24,7 +24,7 @@ import casadi as ca
 import numpy as np
 
 from rr_opt.array import Array
-from rr_opt.design.shapes.shape import Shape
+from rr_opt.design.shapes import Shape
 from rr_opt.model.problem import Interval
 
 LADDER = (16, 20, 24, 30, 36, 48, 72, 96, 144, 192, 288, 384, 768)

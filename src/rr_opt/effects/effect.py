@@ -4,7 +4,6 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import Protocol
 
 import casadi as ca
 
@@ -81,19 +80,6 @@ ActuateAll = Callable[
 ]
 
 
-class Actuate(Protocol):
-    """How a servo with the effect follows its command."""
-
-    def __call__(
-        self, command: Drive, values: Mapping[str, float], joint: FreeJoint | None = None, /
-    ) -> Drive:
-        """The angle that the servo makes of the commanded one.
-
-        joint: how the joint moves while the servo exerts no torque; None if that is not known.
-        """
-        ...
-
-
 @dataclass(frozen=True)
 class Effect:
     """An effect of physics beyond the paper's model.
@@ -105,7 +91,8 @@ class Effect:
     One of these, which makes the effect what it is; `symbols` and `values` map each parameter's
     name to its symbol or its value, SI:
     enter       (mechanism, symbols) -> the mechanism with it: ports constraint, mass and force
-    actuate     (command, values, joint) -> what the servo makes of its command: port actuation
+    actuate     (command, values, joint) -> what the servo makes of its command: port actuation.
+                joint: how it moves while the servo exerts no torque; None if that is not known
     actuate_all  the same of several commands with their values, where that is faster
     frees_joint  the servo lets go of the joint at times, which then moves as the mechanism does
     linear      (values) -> the same as a linear servo, where it is one: gaits are then optimised
@@ -131,7 +118,7 @@ class Effect:
     parameters: tuple[Parameter, ...]
     sentence: str
     enter: Callable[[Mechanism, Mapping[str, ca.SX]], Mechanism] | None = None
-    actuate: Actuate | None = None
+    actuate: Callable[..., Drive] | None = None
     actuate_all: ActuateAll | None = None
     frees_joint: bool = False
     linear: Callable[[Mapping[str, float]], LinearServo] | None = None

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from functools import cached_property
-from typing import Protocol, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,66 +11,6 @@ from numpy.typing import ArrayLike, NDArray
 from rr_opt.array import Array
 from rr_opt.model.fields import SI, Numbers, Series, data, declared
 from rr_opt.units import Quantity
-
-
-class Gait(Protocol):
-    """A periodic phi(t), whatever its shape."""
-
-    @property
-    def shape(self) -> str:
-        """`sine`, `fourier` or `free`."""
-        ...
-
-    @property
-    def period(self) -> float:
-        """T, s."""
-        ...
-
-    @property
-    def offset(self) -> float:
-        """phi0, the mean of phi over a period, rad."""
-        ...
-
-    @property
-    def amplitude(self) -> float:
-        """Largest |phi - phi0|, rad."""
-        ...
-
-    @property
-    def pieces(self) -> int:
-        """Into how many equal parts of the period the jumps of the acceleration cut it; 1 where
-        phi is smooth."""
-        ...
-
-    @property
-    def peak_angle(self) -> float:
-        """Largest |phi| over a period, rad."""
-        ...
-
-    @property
-    def peak_rate(self) -> float:
-        """Largest |dphi/dt| over a period, rad/s."""
-        ...
-
-    def resized(self, amplitude: float, period: float, offset: float) -> Self:
-        """The same shape with another amplitude (rad), period (s) and offset (rad).
-
-        Raises ZeroDivisionError for a shape that does not move, unless it is a sine.
-        """
-        ...
-
-    def angle(self, t: ArrayLike) -> Array:
-        """phi, rad, in the shape of t (s)."""
-        ...
-
-    def rate(self, t: ArrayLike) -> Array:
-        """dphi/dt, rad/s, in the shape of t (s)."""
-        ...
-
-    def acceleration(self, t: ArrayLike) -> Array:
-        """d2phi/dt2, rad/s2, in the shape of t (s); at a jump, the value after it."""
-        ...
-
 
 AMPLITUDE = Quantity("rad", "30 deg", at_least=0)
 PERIOD = Quantity("s", "1.2 s", at_least=0.01)
@@ -314,3 +253,10 @@ class FreeGait:
         # A time that rounding puts just before a node belongs to the interval that begins there.
         at = np.floor(t / self.step + 1e-9).astype(int)
         return at % self.pieces, t - at * self.step
+
+
+Gait = SineGait | FourierGait | FreeGait
+"""A periodic phi(t), whatever its shape: `shape`, `period` (T, s), `offset` (phi0, the mean of phi,
+rad), `amplitude` (largest |phi - phi0|, rad), `peak_angle` and `peak_rate` (of |phi| and
+|dphi/dt|); `pieces`, into how many equal parts of the period the jumps of the acceleration cut it,
+1 where phi is smooth; `angle`, `rate` and `acceleration` at times t (s); and `resized`."""

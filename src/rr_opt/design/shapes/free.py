@@ -18,7 +18,6 @@ from rr_opt.array import Array
 from rr_opt.design.decisions import decisions
 from rr_opt.design.shapes.shape import (
     PATH,
-    ZERO,
     Bounds,
     Symbols,
     Values,
@@ -75,7 +74,7 @@ class FreeShape:
         """The first harmonic is at least the least amplitude."""
         box, gait, bounds = decisions(problem), problem.gait, path_bounds(problem)
         rows = {name: bounds[name.rstrip("01")] for name in self.path}
-        rows |= {"centred": ZERO, "first": Interval(gait.amplitude.low, math.inf)}
+        rows |= {"centred": Interval(0.0, 0.0), "first": Interval(gait.amplitude.low, math.inf)}
         return Bounds({"offset": box.offset if box.offset.fixed else gait.offset}, rows)
 
     def start(self, gait: Gait, phases: Array) -> dict[str, Any]:
