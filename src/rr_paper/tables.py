@@ -4,7 +4,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rr_opt.array import Array
 from rr_opt.model.gait import SineGait
@@ -13,6 +12,7 @@ from rr_opt.model.robot import Robot
 from rr_opt.motion.circle import transient
 from rr_opt.motion.rollout import Trajectory, rollout
 from rr_opt.motion.steady_cycle import steady_cycle
+from rr_opt.recordings.gaps import runs
 from rr_opt.verify.speeds import speeds
 from rr_paper.consistency import predicted
 from rr_paper.prototype import ABOUT_P
@@ -90,16 +90,9 @@ def recompute(robot: Robot) -> Tables:
         )
         for table, of in ((TABLE_2, second), (TABLE_3, third))
     ]
-    return Tables(rows[0], rows[1], at, second, _ranges(np.abs(miss).max(axis=0) <= 1))
-
-
-def _ranges(inside: NDArray[np.bool_]) -> tuple[tuple[float, float], ...]:
-    """The ends of each run of amplitudes that are inside."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], inside.astype(int), [0]])))
-    return tuple(
-        (float(AMPLITUDES[first]), float(AMPLITUDES[end - 1]))
-        for first, end in edges.reshape(-1, 2)
-    )
+    allowed = runs(np.abs(miss).max(axis=0) <= 1)
+    ends = tuple((float(AMPLITUDES[a]), float(AMPLITUDES[b - 1])) for a, b in allowed)
+    return Tables(rows[0], rows[1], at, second, ends)
 
 
 @dataclass(frozen=True)

@@ -71,9 +71,9 @@ _SETTLED = 20
 """Periods after which what the servo makes repeats."""
 
 
-def servo_drive(robot: Robot, gait: Gait, *, rest: bool = False) -> Drive:
+def servo_drive(robot: Robot, gait: Gait) -> Drive:
     """phi(t) as the servo makes it of a gait, each effect in its turn."""
-    drive, joint = commanded(gait, rest), free_joint(robot)
+    drive, joint = commanded(gait, False), free_joint(robot)
     for use in robot.physics:
         actuate = CATALOGUE[use.name].actuate
         drive = actuate(drive, use.values, joint) if actuate else drive

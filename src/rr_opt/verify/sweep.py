@@ -202,7 +202,6 @@ def check_optimum(
     gait: Gait,
     ratio: float | None,
     speed: float,
-    counts: Mapping[str, int] | int | None = None,
     everywhere: SweepResult | None = None,
     cost: float = math.nan,
 ) -> SweepCheck:
@@ -212,13 +211,13 @@ def check_optimum(
     short of.
 
     gait, ratio (J20/J10 in the problem's definition; read only if the problem has one) and
-    signed speed (m/s) as claimed, and cost of transport where it is the objective; counts as for
-    `sweep`, or what it found where that is known.
+    signed speed (m/s) as claimed, and cost of transport where it is the objective; everywhere: what
+    `sweep` found, where that is known.
     """
     effort = _EFFORT[model_of(problem.robot).viscous]
     if problem.inertia_ratio is None:
         ratio = None
-    everywhere = everywhere or sweep(problem, counts)
+    everywhere = everywhere or sweep(problem)
     finalists, points = [everywhere.refined], everywhere.points
     gained, own_cost = math.nan, math.nan
     if isinstance(gait, SineGait):
@@ -232,8 +231,9 @@ def check_optimum(
             own_cost = cost_of_transport(problem, np.array(claimed))
         gained = end.merit / problem.merit(here, own_cost) - 1 if end else 0.0
     else:
-        here = speed_of(robot_with(problem, ratio), gait).speed
-    best = _fastest(finalists)
+        here = speed_of(robot_with(problem, ratio), gait)
+    there = [one for one in finalists if one is not None]
+    best = max(there, key=lambda one: one.merit, default=None)
     return SweepCheck(
         points=points,
         best=best,
@@ -281,8 +281,3 @@ def _merit(problem: Problem, found: Evaluated) -> Array:
     off = off + ~found.keeps["direction"] + ~found.keeps["economy"]
     merit = found.value * (1 - _OFF * np.clip(off, 0.0, _MOST_OFF))
     return np.where(np.isfinite(merit) & found.keeps["rate"], merit, -np.inf)
-
-
-def _fastest(gaits: Sequence[Found | None]) -> Found | None:
-    there = [one for one in gaits if one is not None]
-    return max(there, key=lambda one: one.merit, default=None)
