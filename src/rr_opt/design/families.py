@@ -167,10 +167,9 @@ def _next(problem: Problem, before: Finds, progress: Progress) -> Finds:
     first = problem.gait.harmonics <= _ON_THE_WAY["fourier"][0]
     if problem.gait.shape == "fourier" or len(starts) < _HANDED_ON:
         for setting in settings[:1] if starts else settings:
-            for seed in scan_shapes(
-                setting, SIGNS[problem.direction], _SCANNED if first else _SCANNED_LATER
-            ):
-                starts.append((setting, seed.sign, seed.gait, seed.share))
+            most = _SCANNED if first else _SCANNED_LATER
+            seeds = scan_shapes(setting, SIGNS[problem.direction], most)
+            starts += [(setting, *seed) for seed in seeds]
     name = "free gait" if problem.gait.shape == "free" else f"{problem.gait.harmonics} harmonics"
     finds = Finds()
     for number, start in enumerate(starts, 1):

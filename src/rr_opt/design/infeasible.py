@@ -102,15 +102,9 @@ def clash(problem: Problem, box: Decisions, settings: list[Setting]) -> str | At
 
 def nearest_turn(problem: Problem, box: Decisions) -> Nearest:
     """What the gait does that comes nearest to the turn within all other limits."""
-    return _nearest(attempt(_terrains(problem, box)))
-
-
-def _terrains(problem: Problem, box: Decisions) -> list[Terrain]:
-    way = WAYS[problem.direction]
-    return [
-        Terrain(one, scanned(one, box), way, ("torque", "economy", "direction"), "turn")
-        for one in settings_of(problem, box)
-    ]
+    way, rows = WAYS[problem.direction], ("torque", "economy", "direction")
+    settings = settings_of(problem, box)
+    return _nearest(attempt([Terrain(o, scanned(o, box), way, rows, "turn") for o in settings]))
 
 
 def _evidence(found: Attempt, box: Decisions) -> str:
@@ -271,8 +265,7 @@ def _turn(problem: Problem, box: Decisions, found: Attempt, other: Attempt) -> l
     """Why no gait turns as asked; other: the nearest that drives the other way."""
     turn, nearest = problem.turn or Turn(), _nearest(found)
     gait, held = nearest.gait, held_by(problem, box, nearest)
-    listed = " and ".join([", ".join(held[:-1]), held[-1]] if len(held) > 1 else held)
-    held_text = listed or "no limit: the robot itself turns no closer to it"
+    held_text = listed(held) or "no limit: the robot itself turns no closer to it"
     sentences = [
         f"The requested turn, {asked_text(turn)}, is infeasible.",
         f"The closest feasible one is {reached_text(turn, nearest)}, with amplitude "

@@ -16,15 +16,6 @@ _SHAPES_APART = 0.25
 
 
 @dataclass(frozen=True)
-class ShapeSeed:
-    """A start: its direction (+1 forward, -1 backward), gait and share of the ballast."""
-
-    sign: int
-    gait: FourierGait
-    share: float
-
-
-@dataclass(frozen=True)
 class _Shapes:
     """K shapes at random, as large as the limits on angle and rate allow or smaller.
 
@@ -54,9 +45,12 @@ class _Shapes:
         return self.offset + swing, omega * rate, omega**2 * bend
 
 
-def scan_shapes(setting: Setting, signs: tuple[int, ...], most: int) -> list[ShapeSeed]:
-    """The best few shapes of many that keep the limits but perhaps for the torque's, best first;
-    where none has the least amplitude, those that come nearest."""
+def scan_shapes(
+    setting: Setting, signs: tuple[int, ...], most: int
+) -> list[tuple[int, FourierGait, float]]:
+    """Direction (+1 forward, -1 backward), gait and share of the ballast of the best few shapes of
+    many that keep the limits but perhaps for the torque's, best first; where none has the least
+    amplitude, of those that come nearest."""
     gait = setting.problem.gait
     harmonics = _SCANNED if gait.shape == "free" else min(gait.harmonics, _SCANNED)
     if decisions(setting.problem).empty or harmonics < 2:
@@ -73,7 +67,7 @@ def scan_shapes(setting: Setting, signs: tuple[int, ...], most: int) -> list[Sha
         merit = np.where(known, shapes.sines[0], -np.inf)
     vectors = np.vstack([shapes.sines, shapes.cosines])
     return [
-        ShapeSeed(int(np.sign(cycles.speed[k])), shapes.gait(k), float(shapes.share[k]))
+        (int(np.sign(cycles.speed[k])), shapes.gait(k), float(shapes.share[k]))
         for k in _best(merit, vectors / np.linalg.norm(vectors, axis=0), most)
     ]
 

@@ -3,10 +3,12 @@
 import itertools
 import math
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from rr_opt.files.fields import validate
 from rr_opt.files.issue import InvalidFileError, Issue, has_errors, required
@@ -15,7 +17,7 @@ from rr_opt.files.problem_model import StudyModel
 from rr_opt.files.route_study_file import is_of_routes
 from rr_opt.files.source import fingerprint
 from rr_opt.files.study_axes import Axis, Line, axes_of
-from rr_opt.files.study_keys import Setting, with_values
+from rr_opt.files.study_keys import with_values
 from rr_opt.files.yaml_text import FileData, KeyPath
 from rr_opt.messages import shown
 from rr_opt.model.problem import Problem
@@ -111,11 +113,7 @@ class Study:
 
     def steps(self, case: int) -> tuple[int, ...]:
         """Which step of each axis a case is."""
-        left = []
-        for length in reversed(self.shape):
-            case, step = divmod(case, length)
-            left.append(step)
-        return tuple(reversed(left))
+        return tuple(map(int, np.unravel_index(case, self.shape)))
 
     def inputs(self, case: int) -> dict[str, Any]:
         """The varied keys of a case: SI where they are numbers, as written elsewhere."""
@@ -164,7 +162,12 @@ def study_from(document: FileData, file: Path) -> tuple[Study | None, list[Issue
     paths = [file, *base.paths]
     found_in = CaseIssues(document, axes)
     for steps in itertools.product(*(range(len(axis)) for axis in axes)):
-        sources, misplaced = with_values(base, _settings(axes, steps), file)
+        settings = [
+            (line.key.path, line.values[step])
+            for axis, step in zip(axes, steps, strict=True)
+            for line in axis.lines
+        ]
+        sources, misplaced = with_values(base, settings, file)
         paths += [path for path in sources.paths if path not in paths]
         problem, of_case = problem_from(sources)
         found_in.add(steps, [*misplaced, *of_case])
@@ -174,11 +177,3 @@ def study_from(document: FileData, file: Path) -> tuple[Study | None, list[Issue
     if has_errors(issues):
         return None, issues
     return Study(file.stem, tuple(axes), tuple(problems), fingerprint(paths)), issues
-
-
-def _settings(axes: list[Axis], steps: Iterable[int]) -> list[Setting]:
-    return [
-        (line.key.path, line.values[step])
-        for axis, step in zip(axes, steps, strict=True)
-        for line in axis.lines
-    ]

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from rr_opt.design.candidate import Candidate, distinct
 from rr_opt.design.decisions import Setting, decisions, robot_of, settings_of
-from rr_opt.design.families import refine, solve_from
+from rr_opt.design.families import SIGNS, refine, solve_from
 from rr_opt.design.maximize_speed import maximize_speed
 from rr_opt.design.study.measure import measured
 from rr_opt.design.study.plan import Foothold, Plan, expected_speed, footholds
@@ -87,8 +87,8 @@ def _only_setting(problem: Problem) -> Setting | None:
 
 def _continued(setting: Setting, foothold: Foothold) -> Candidate | None:
     """The optimum that a neighbour's leads to, if it leads to one."""
-    wanted = {"forward": (1,), "backward": (-1,), "either": (1, -1)}[setting.problem.direction]
-    if foothold.sign not in wanted or foothold.gait.shape != setting.problem.gait.shape:
+    wanted, shape = SIGNS[setting.problem.direction], setting.problem.gait.shape
+    if foothold.sign not in wanted or foothold.gait.shape != shape:
         return None
     try:
         found = solve_from(setting, foothold.sign, foothold.gait, foothold.share)

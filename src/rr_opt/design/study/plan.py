@@ -22,6 +22,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from rr_opt.design.study.row import Optimum, Row, gait_from
 from rr_opt.model.gait import Gait, SineGait
@@ -152,35 +154,20 @@ def _range(problem: Problem, name: str) -> Interval:
 
 def branches(rows: Sequence[Row], adjacent: Iterable[tuple[int, int]]) -> list[int | None]:
     """The number of each row's branch, from 1 in the order of the rows; None without optimum."""
-    parent = list(range(len(rows)))
-
-    def root(case: int) -> int:
-        while parent[case] != case:
-            parent[case] = parent[parent[case]]
-            case = parent[case]
-        return case
-
-    for case, row in enumerate(rows):
-        for other in row.continued:
-            parent[root(case)] = root(other)
+    linked = [(case, other) for case, row in enumerate(rows) for other in row.continued]
     for one, other in adjacent:
-        if _untried(rows, one, other) and _alike(rows[one], rows[other]):
-            parent[root(one)] = root(other)
+        a, b = rows[one], rows[other]
+        if a.optimum and b.optimum and other not in a.tried and one not in b.tried:
+            linked += [(one, other)] if alike(a.optimum, b.optimum) else []
+    ends = np.array(linked, dtype=int).reshape(-1, 2).T
+    links = coo_array((np.ones(len(linked)), tuple(ends)), shape=(len(rows), len(rows)))
     numbers: dict[int, int] = {}
     return [
-        None if row.optimum is None else numbers.setdefault(root(case), len(numbers) + 1)
-        for case, row in enumerate(rows)
+        None if row.optimum is None else numbers.setdefault(member, len(numbers) + 1)
+        for row, member in zip(
+            rows, connected_components(links, directed=False)[1].tolist(), strict=True
+        )
     ]
-
-
-def _untried(rows: Sequence[Row], one: int, other: int) -> bool:
-    return other not in rows[one].tried and one not in rows[other].tried
-
-
-def _alike(one: Row, other: Row) -> bool:
-    return (
-        one.optimum is not None and other.optimum is not None and alike(one.optimum, other.optimum)
-    )
 
 
 _STRIDE = 3
@@ -210,7 +197,10 @@ def plan(axes: Sequence[Numbers], shape: Sequence[int]) -> Plan:
     donors: dict[int, tuple[tuple[int, float], ...]] = {}
     for case, steps in enumerate(itertools.product(*map(range, shape))):
         corners = [
-            (_case([step for step, _ in corner], shape), math.prod(w for _, w in corner))
+            (
+                int(np.ravel_multi_index([step for step, _ in corner], shape)),
+                math.prod(w for _, w in corner),
+            )
             for corner in itertools.product(
                 *(about[step] for about, step in zip(around, steps, strict=True))
             )
@@ -246,13 +236,6 @@ def _part(low: float, value: float, high: float) -> float:
     return (value - low) / width if 0 < width < math.inf else 0.5
 
 
-def _case(steps: Sequence[int], shape: Sequence[int]) -> int:
-    case = 0
-    for step, length in zip(steps, shape, strict=True):
-        case = case * length + step
-    return case
-
-
 def _adjacent(axes: Sequence[Numbers], shape: Sequence[int]) -> Iterator[tuple[int, int]]:
     after: list[dict[int, int]] = []
     for numbers, count in zip(axes, shape, strict=True):
@@ -262,4 +245,4 @@ def _adjacent(axes: Sequence[Numbers], shape: Sequence[int]) -> Iterator[tuple[i
         for axis, step in enumerate(steps):
             if step in after[axis]:
                 beyond = [*steps[:axis], after[axis][step], *steps[axis + 1 :]]
-                yield case, _case(beyond, shape)
+                yield case, int(np.ravel_multi_index(beyond, shape))
