@@ -47,9 +47,9 @@ def lint(path: str | Path) -> list[Issue]:
 
     read, issues = experiment_of(experiment)
     if read is not None:
-        usable, place = checked(read), str(experiment)
-        issues += [Issue("error", "", text, file=place) for text in usable.wrong]
-        issues += [Issue("warning", "", text, file=place) for text in usable.left_out.values()]
+        (left_out, wrong), place = checked(read), str(experiment)
+        issues += [Issue("error", "", text, file=place) for text in wrong]
+        issues += [Issue("warning", "", text, file=place) for text in left_out.values()]
     return issues
 
 

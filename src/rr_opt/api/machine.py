@@ -1,6 +1,8 @@
 """Experiments with a machine other than the Roller Racer."""
 
+import math
 from pathlib import Path
+from typing import Any
 
 from rr_opt.files.issue import InvalidFileError, Issue, has_errors
 from rr_opt.files.machine_file import machine_plan, read_machine_plan
@@ -13,6 +15,7 @@ from rr_opt.recordings.machine_run import machine_experiment
 from rr_opt.results.machine_diagnosis import ExplainedMachine
 from rr_opt.results.machine_inspection import InspectedMachine
 from rr_opt.results.result import Progress, quiet
+from rr_opt.sysid.diagnosis import Diagnosis
 
 
 def machine_of(path: str | Path) -> Machine | None:
@@ -60,11 +63,21 @@ def inspect_machine(path: str | Path, machine: Machine) -> InspectedMachine:
 def diagnose_machine(experiment: MachineExperiment, progress: Progress = quiet) -> ExplainedMachine:
     """What a machine's model leaves out. Raises NotConvergedError if a simulation diverged."""
     from rr_opt.machines.ode import OdeModel
-    from rr_opt.sysid.diagnose import diagnose as identify
 
     model = OdeModel(experiment)
-    found = identify(model, progress)
-    if not (found.before < float("inf") and found.after < float("inf")):
-        raise NotConvergedError("The fits did not converge: a simulation diverged. Expected motion "
-                                "near that of the nominal machine. Check its values.")  # fmt: skip
+    found = identified(model, "machine", progress)
     return ExplainedMachine(experiment.name, experiment.sha256, experiment, found, model.horizon)
+
+
+def identified(model: Any, kind: str, progress: Progress) -> Diagnosis:
+    """The diagnosis of a robot or another machine. Raises NotConvergedError likewise."""
+    from rr_opt.sysid.diagnose import diagnose
+
+    found = diagnose(model, progress)
+    if not (found.before < math.inf and found.after < math.inf):
+        raise NotConvergedError(
+            "The fits did not converge: a simulation diverged. Expected motion near that of the "
+            f"nominal {kind}. Look at the recordings with `rr-opt inspect`, and check the {kind}'s "
+            "values."
+        )
+    return found

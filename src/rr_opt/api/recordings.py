@@ -17,7 +17,7 @@ from rr_opt.files.source import fingerprint, recording_path
 from rr_opt.model.experiment import Experiment, Run, Start
 from rr_opt.model.gait import Gait
 from rr_opt.model.machine import MachineExperiment
-from rr_opt.outcome import InputError, NotConvergedError
+from rr_opt.outcome import InputError
 from rr_opt.recordings.clock_fit import at_commanded_rate
 from rr_opt.recordings.experiment import inspect_experiment, is_experiment, usable
 from rr_opt.recordings.inspection import Circumstances, inspect_file
@@ -124,17 +124,11 @@ def diagnose(
     trial, left_out = usable(_cleaned(experiment))
     trial = at_commanded_rate(trial)
     # Here and not above: a wrong input is reported before a second of imports.
+    from rr_opt.api.machine import identified
     from rr_opt.machines.racer.racer import RollerRacer
     from rr_opt.results.diagnosis import ExplainedExperiment
-    from rr_opt.sysid.diagnose import diagnose as identify
 
-    found = identify(RollerRacer(trial), progress)
-    if not (found.before < float("inf") and found.after < float("inf")):
-        raise NotConvergedError(
-            "The fits did not converge: a simulation diverged. Expected motion "
-            "near that of the nominal robot. Look at the recordings with `rr-opt inspect`, and "
-            "check the robot's values."
-        )
+    found = identified(RollerRacer(trial), "robot", progress)
     return ExplainedExperiment(name, sha256, trial, found, left_out)
 
 

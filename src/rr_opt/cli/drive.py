@@ -33,7 +33,8 @@ def simulate(
         with options.naming(source):
             gait = {"amplitude": amplitude, "period": period, "offset": offset}
             driven = options.read_gait(source, **gait, seconds=seconds, rate=rate)
-        folder = options.motion_folder(out, source, kind, animate)
+        name = f"{options.result_name(source)}-motion"
+        folder = options.motion_folder(out, name, animate, kind)
         with options.naming(source):
             motion = rr.simulate(driven, None, seconds, start=start, rate=rate, progress=steps)
     show(motion, steps, folder, json=json, format=kind, film=animate)
@@ -113,7 +114,7 @@ def route(
     route` writes a file to start from.
     """
     with StepDisplay() as steps:
-        asked = options.read_route(route)
-        folder = options.route_folder(out, asked.name, animate)
+        asked = options.read(rr.load_route, route)
+        folder = options.motion_folder(out, asked.name, animate)
         driven = rr.route(asked, feedback=feedback, progress=steps)
     show(driven, steps, folder, json=json, figures=figures, film=animate)

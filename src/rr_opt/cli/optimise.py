@@ -97,7 +97,7 @@ def study(
     given = {"workers": workers, "scheduler": scheduler, "restart": restart}
     with StepDisplay() as steps:
         if options.names_routes(study):
-            routes = options.read_routes(study)
+            routes = options.read(rr.load_routes, study)
             folder = options.results_folder(out, routes.name)
             solved = rr.routes(routes, folder=folder, **given, progress=steps)
             more = {}

@@ -16,10 +16,8 @@ from rr_opt.outcome import InputError, Status
 
 if TYPE_CHECKING:
     from rr_opt.api.load import RobotWithGait
-    from rr_opt.files.route_study_file import RouteStudy
     from rr_opt.model.gait import Gait
     from rr_opt.model.problem import Problem
-    from rr_opt.model.route import Route
     from rr_opt.results.result import Result
 
 Read = TypeVar("Read")
@@ -101,27 +99,20 @@ def results_folder(out: Path | None, name: str) -> Path:
     return folder_for_results(out or Path("out") / name)
 
 
-def motion_folder(out: Path | None, source: Path | None, format: Any, film: Any) -> Path:
+def motion_folder(out: Path | None, name: str, film: Any, format: Any = "csv") -> Path:
     """The folder of a motion. Raises InputError also for files that cannot be made here."""
     from rr_opt.results.motion import check_files
 
     check_files(format, film)
-    return results_folder(out, f"{result_name(source)}-motion")
-
-
-def route_folder(out: Path | None, name: str, film: Any) -> Path:
-    """The folder of a route. Raises InputError also for a film that cannot be made here."""
-    from rr_opt.results.motion import check_files
-
-    check_files("csv", film)
     return results_folder(out, name)
 
 
 def study_folder(out: Path | None, name: str, *, netcdf: bool) -> Path:
     """The folder of a study. Raises InputError also for a netCDF file that cannot be made here."""
-    from rr_opt.results.study import check_files
+    from rr_opt.documents.archive import netcdf_writer
 
-    check_files(netcdf=netcdf)
+    if netcdf:
+        netcdf_writer()
     return results_folder(out, name)
 
 
@@ -201,14 +192,7 @@ def read_problem(path: Path | None) -> Problem:
 
     if path is None:
         return shipped()
-    return _warned(lambda: load(path))
-
-
-def read_route(path: Path) -> Route:
-    """The route of a file; what looks wrong goes to stderr."""
-    from rr_opt.api.drive import load_route
-
-    return _warned(lambda: load_route(path))
+    return read(load, path)
 
 
 def names_routes(path: Path) -> bool:
@@ -219,19 +203,13 @@ def names_routes(path: Path) -> bool:
     return is_of_routes(read_document(path))
 
 
-def read_routes(path: Path) -> RouteStudy:
-    """The routes of a study file; what looks wrong goes to stderr."""
-    from rr_opt.api.drive import load_routes
-
-    return _warned(lambda: load_routes(path))
-
-
-def _warned(read: Callable[[], Read]) -> Read:
+def read(load: Callable[[Path], Read], path: Path) -> Read:
+    """What a function of the library loads from a file; what looks wrong goes to stderr."""
     from rr_opt.api.load import InputWarning
 
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", InputWarning)
-        found = read()
+        found = load(path)
     if not silent():
         for warning in caught:
             typer.echo(str(warning.message), err=True)

@@ -243,6 +243,18 @@ def ballast_interval(robot: Robot, choice: RatioChoice | None) -> Interval:
     return Interval(max(low, 1e-6 * scale), high)
 
 
+def share_per_ratio(robot: Robot, choice: RatioChoice) -> float:
+    """How far the ballast's share of its range moves per unit of J20/J10, at the upper bound."""
+
+    def amount(ratio: float) -> float:
+        return ballast_interval(robot, replace(choice, bounds=Interval(ratio, ratio))).high
+
+    span, high = ballast_interval(robot, choice), choice.bounds.high
+    if span.fixed:
+        return 0.0
+    return (amount(high) - amount(high * (1 - 1e-6))) / (high * 1e-6) / (span.high - span.low)
+
+
 def share_of(problem: Problem, box: Decisions, ratio: float | None) -> float:
     """Where in the ballast's range J20/J10 is this."""
     choice, span = problem.inertia_ratio, box.ballast.high - box.ballast.low
@@ -292,8 +304,13 @@ def scanned(setting: Setting, box: Decisions) -> Decisions:
 
 def robot_of(setting: Setting, share: float) -> Robot:
     """The problem's robot with the ballast at this share of its range."""
-    robot, choice, ballast = setting.problem.robot, setting.problem.inertia_ratio, setting.ballast
-    amount = ballast.low + share * (ballast.high - ballast.low)
+    return with_ballast(setting.problem, setting.ballast, share)
+
+
+def with_ballast(problem: Problem, span: Interval, share: float) -> Robot:
+    """The problem's robot with the ballast at this share of a range."""
+    robot, choice = problem.robot, problem.inertia_ratio
+    amount = span.low + share * (span.high - span.low)
     if choice and choice.by == "loads":
         return replace(robot, platform2=with_load_count(robot.platform2, choice.loads, amount))
     return replace(robot, platform2=replace(robot.platform2, I=amount))

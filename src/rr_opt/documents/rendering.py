@@ -151,8 +151,10 @@ def _template() -> Template:
     environment.filters |= {
         "code": _code,
         "cell_text": doc.cell_text,
-        "data_uri": _data_uri,
-        "kind": _kind,
+        "data_uri": lambda svg: (
+            f"data:image/svg+xml;base64,{base64.b64encode(svg.encode()).decode()}"
+        ),
+        "kind": lambda block: _KINDS.get(type(block), "text"),
     }
     environment.tests |= {
         "badge": lambda cell: isinstance(cell, doc.Badge),
@@ -171,11 +173,3 @@ def _code(text: str) -> Markup:
     signs = text.replace("->", "→").replace("+-", "±")
     whole = re.sub(r"(?<=\de)-(?=\d)", "\N{NON-BREAKING HYPHEN}", signs)
     return Markup(re.sub("`([^`]+)`", r"<code>\1</code>", str(escape(whole))))
-
-
-def _data_uri(svg: str) -> str:
-    return f"data:image/svg+xml;base64,{base64.b64encode(svg.encode()).decode()}"
-
-
-def _kind(block: doc.Block) -> str:
-    return _KINDS.get(type(block), "text")

@@ -34,7 +34,12 @@ def prose(package: str, name: str, **context: Any) -> dict[str, Prose]:
         undefined=StrictUndefined,
         autoescape=False,
     )
-    environment.filters |= {"n": number, "f": _decimals, "e": _power, "span": _span}
+    environment.filters |= {
+        "n": number,
+        "f": lambda value, digits: f"{value:.{digits}f}",
+        "e": lambda value: f"{value:.0e}",
+        "span": _span,
+    }
     environment.globals["zip"] = zip
     text = environment.get_template(name).render(**context)
     sections = {}
@@ -43,14 +48,6 @@ def prose(package: str, name: str, **context: Any) -> dict[str, Prose]:
         key, _, title = head.partition(": ")
         sections[key] = Prose(title, tuple(paragraphs))
     return sections
-
-
-def _decimals(value: float, digits: int) -> str:
-    return f"{value:.{digits}f}"
-
-
-def _power(value: float) -> str:
-    return f"{value:.0e}"
 
 
 def _span(low: float, high: float, digits: int = 3) -> str:

@@ -53,6 +53,11 @@ def robot_record(robot: Robot) -> dict[str, Any]:
     }
 
 
+def rounded(value: float) -> float:
+    """A fitted value as it is written: to more digits than any recording determines."""
+    return float(f"{value:.7g}")
+
+
 def robot_yaml(robot: Robot, title: str) -> str:
     """The robot as the text of a robot file; title: a comment on its first lines."""
     record = {key: value for key, value in robot_record(robot).items() if value not in ([], {})}

@@ -124,12 +124,15 @@ LONG = 250_000_000
 """Largest recording, bytes: over an hour of a dozen markers at 200 Hz as text."""
 
 
+_AT_ONCE = getattr(os, "O_NONBLOCK", 0)
+
+
 def read_content(path: Path, most: int = SHORT) -> bytes:
     """The bytes of a regular file. Raises InvalidFileError if it is none, or larger than `most`."""
     file = str(path)
     try:
         # Opened without waiting: a pipe without a writer would be waited for without end.
-        with open(file, "rb", opener=_opened) as opened:
+        with open(file, "rb", opener=lambda name, flags: os.open(name, flags | _AT_ONCE)) as opened:
             why = _not_regular(os.fstat(opened.fileno()).st_mode)
             content = b"" if why else opened.read(most + 1)
     except (OSError, ValueError) as error:
@@ -164,10 +167,6 @@ def _why(error: OSError | ValueError) -> str:
 
 def _not_regular(mode: int) -> str:
     return "" if stat.S_ISREG(mode) else f"This is {kind_of(mode)}. Expected a file."
-
-
-def _opened(file: str, flags: int) -> int:
-    return os.open(file, flags | getattr(os, "O_NONBLOCK", 0))
 
 
 def kind_of(mode: int) -> str:

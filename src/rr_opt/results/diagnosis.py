@@ -165,11 +165,9 @@ class ExplainedExperiment(Explained[Experiment]):
         )
 
     def _record(self) -> dict[str, Any]:
-        """The content of `diagnosis.json`."""
         return super()._record() | {"loss": loss_record(self.loss), "left_out": self.left_out}
 
     def _tables(self) -> dict[str, str]:
-        """The corrected robot as a robot file."""
         title = (
             f"{tables.headline(self.found)}.\nFrom {self.name} by rr-opt {__version__} diagnose."
         )

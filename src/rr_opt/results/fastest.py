@@ -4,19 +4,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from rr_opt.design.candidate import Candidate
-from rr_opt.design.decisions import ballast_interval
+from rr_opt.design.decisions import ballast_interval, with_ballast
 from rr_opt.design.maximize_speed import Optimum
 from rr_opt.documents import document as doc
 from rr_opt.documents.texts import captions
 from rr_opt.files.record import plain, robot_record
 from rr_opt.formatting import counted, direction_text, number, pace_text, with_unit
 from rr_opt.messages import listed
-from rr_opt.model.ballast import inertia_ratio, load_count, with_load_count
+from rr_opt.model.ballast import inertia_ratio, load_count
 from rr_opt.model.gait import Gait
 from rr_opt.model.problem import LARGEST_EXCESS, NEEDS_GRIP, Problem
 from rr_opt.model.robot import Robot
@@ -35,7 +35,7 @@ from rr_opt.results.limits import (
     limits_table,
     worst_slack,
 )
-from rr_opt.results.motion import trajectory_csv
+from rr_opt.results.motion import beyond_servo, trajectory_csv
 from rr_opt.results.result import Check, Result, picked
 from rr_opt.results.robust import Robust
 from rr_opt.verify.replay import Replay
@@ -196,16 +196,10 @@ class FastestGait(Result):
 
     def ratio_of(self, candidate: Candidate) -> float:
         """J20/J10 of one of the optima, in the problem's definition."""
-        robot, choice = self.problem.robot, self.problem.inertia_ratio
-        span = ballast_interval(robot, choice)
-        amount = span.low + candidate.share * (span.high - span.low)
-        platform = robot.platform2
-        changed = (
-            with_load_count(platform, choice.loads, amount)
-            if choice and choice.by == "loads"
-            else replace(platform, I=amount)
-        )
-        return inertia_ratio(replace(robot, platform2=changed), choice.about if choice else "joint")
+        choice = self.problem.inertia_ratio
+        span = ballast_interval(self.problem.robot, choice)
+        robot = with_ballast(self.problem, span, candidate.share)
+        return inertia_ratio(robot, choice.about if choice else "joint")
 
     @property
     def checks(self) -> list[Check]:
@@ -345,16 +339,8 @@ class FastestGait(Result):
 
     def _beyond_servo(self, gait: Gait) -> list[str]:
         """Which limits of the robot file's servo the gait exceeds."""
-        servo, needed = self.problem.robot.servo, self.replay.reached if self.replay else {}
-        return [
-            name
-            for name, value, able in (
-                ("angle", gait.peak_angle, servo.angle_limit),
-                ("rate", gait.peak_rate, servo.rate_limit),
-                ("torque", needed.get("torque", 0.0), servo.torque_limit),
-            )
-            if value > able * (1 + LARGEST_EXCESS)
-        ]
+        torque = self.replay.reached["torque"] if self.replay else 0.0
+        return [name for name, *_ in beyond_servo(self.problem.robot.servo, gait, torque)]
 
     @property
     def warnings(self) -> tuple[str, ...]:

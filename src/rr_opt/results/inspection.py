@@ -70,7 +70,6 @@ class InspectedRecordings(Result):
         return tuple(figures)
 
     def _record(self) -> dict[str, Any]:
-        """The content of inspection.json."""
         return {"name": self.name, "recordings": [_recording(one) for one in self.recordings]}
 
     def document(self, figures: Sequence[doc.Figure] = ()) -> doc.Document:

@@ -5,13 +5,13 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from rr_opt.design.decisions import ballast_interval
+from rr_opt.design.decisions import share_per_ratio
 from rr_opt.design.maximize_speed import Optimum
 from rr_opt.documents import document as doc
 from rr_opt.formatting import QUANTITIES, number, price_text, with_unit
 from rr_opt.messages import listed
 from rr_opt.model.gait import Gait
-from rr_opt.model.problem import LEAST, Interval, Problem, RatioChoice
+from rr_opt.model.problem import LEAST, Interval
 
 ACTIVE = 1e-4
 """A limit is active when the gait comes this near to it, relative to the limit."""
@@ -99,7 +99,8 @@ def bound_rows(optimum: Optimum, commanded: Gait, ratio: float) -> dict[str, Bou
         rows["amplitude"] = _swing(rows["amplitude"], prices["amplitude"], best.speed)
     if choice:
         whole = choice.by == "loads" and choice.loads.whole
-        price = None if whole else prices["ballast"] * _share_per_ratio(optimum.problem, choice)
+        per_ratio = share_per_ratio(optimum.problem.robot, choice)
+        price = None if whole else prices["ballast"] * per_ratio
         rows["inertia_ratio"] = _bound("inertia_ratio", ratio, choice.bounds, price)
     return rows
 
@@ -158,20 +159,6 @@ def _swing(row: BoundRow, price: float, speed: float) -> BoundRow:
     edge = row.high if price > 0 else row.low
     active = side if _matters(price, edge, speed) else None
     return replace(row, active=active, shadow_price=price)
-
-
-def _share_per_ratio(problem: Problem, choice: RatioChoice) -> float:
-    """How far the ballast's share of its range moves per unit of J20/J10, at the upper bound."""
-    robot, high = problem.robot, choice.bounds.high
-
-    def amount(ratio: float) -> float:
-        fixed = RatioChoice(Interval(ratio, ratio), choice.about, choice.by, choice.loads)
-        return ballast_interval(robot, fixed).high
-
-    span = ballast_interval(robot, choice)
-    if span.fixed:
-        return 0.0
-    return (amount(high) - amount(high * (1 - 1e-6))) / (high * 1e-6) / (span.high - span.low)
 
 
 def limited_by(limits: Iterable[LimitRow], bounds: Iterable[BoundRow]) -> str:

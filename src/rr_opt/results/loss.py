@@ -14,6 +14,7 @@ from typing import Any
 from rr_opt.effects import CATALOGUE, OF_ROBOTS
 from rr_opt.effects.effect import Port
 from rr_opt.files.problem_file import read_problem
+from rr_opt.files.record import rounded
 from rr_opt.formatting import direction_text, number, with_unit, words_of
 from rr_opt.messages import listed
 from rr_opt.model.experiment import Experiment
@@ -29,14 +30,11 @@ from rr_opt.results.result import picked
 from rr_opt.sysid.diagnosis import Diagnosis
 from rr_opt.verify.sweep import check_optimum
 
-_DIGITS = 7
-"""Of a fitted value that are written: more than any recording determines."""
-
 
 def corrected_robot(experiment: Experiment, found: Diagnosis) -> Robot:
     """The nominal robot with the re-estimated values, the accepted effects, and where from."""
     robot = experiment.robot
-    fitted = {name: _rounded(value) for name, value in found.values.items()}
+    fitted = {name: rounded(value) for name, value in found.values.items()}
     return replace(
         with_parameters(robot, {name: v for name, v in fitted.items() if name in PARAMETERS}),
         servo=_servo(robot.servo, fitted),
@@ -87,10 +85,6 @@ def _key(name: str) -> str | None:
     if name in PARAMETERS:
         return ".".join(PARAMETERS[name].key)
     return f"physics.{name}" if "." in name else None
-
-
-def _rounded(value: float) -> float:
-    return float(f"{value:.{_DIGITS}g}")
 
 
 @dataclass(frozen=True)

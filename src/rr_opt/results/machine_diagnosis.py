@@ -9,7 +9,7 @@ import numpy as np
 from rr_opt.documents import document as doc
 from rr_opt.documents.rendering import terminal
 from rr_opt.documents.texts import captions
-from rr_opt.files.record import yaml_text
+from rr_opt.files.record import rounded, yaml_text
 from rr_opt.formatting import with_unit
 from rr_opt.model.machine import MachineExperiment, MachineRun
 from rr_opt.results import diagnosis_tables as tables
@@ -144,18 +144,14 @@ class ExplainedMachine(Explained[MachineExperiment]):
         """The machine's corrected values, as the keys of an experiment file, and its effects."""
         machine, values = self.experiment.machine, self.found.values
         nominal = self.experiment.nominal
-        own = {p.name: _rounded(values.get(p.name, nominal[p.name])) for p in machine.parameters}
+        own = {p.name: rounded(values.get(p.name, nominal[p.name])) for p in machine.parameters}
         effects: dict[str, dict[str, float]] = {}
         for name, value in values.items():
             effect, dot, constant = name.partition(".")
             if dot:
-                effects.setdefault(effect, {})[constant] = _rounded(value)
+                effects.setdefault(effect, {})[constant] = rounded(value)
         content = {"machine": machine.name, "parameters": own, "physics": effects}
         return {CORRECTED: yaml_text(content, f"{self.headline}.")}
-
-
-def _rounded(value: float) -> float:
-    return float(f"{value:.7g}")
 
 
 def _error(misfits: list[Misfit], k: int) -> float:

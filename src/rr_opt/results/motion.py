@@ -19,7 +19,7 @@ from rr_opt.documents.texts import captions
 from rr_opt.formatting import QUANTITIES, number, side_text, speed_text, with_unit
 from rr_opt.model.gait import Gait
 from rr_opt.model.problem import LARGEST_EXCESS
-from rr_opt.model.robot import Robot
+from rr_opt.model.robot import Robot, Servo
 from rr_opt.motion.circle import Circle, Transient
 from rr_opt.motion.rollout import Measured, Trajectory
 from rr_opt.motion.servo import servo_made
@@ -60,6 +60,17 @@ class GaitResult(Result):
         return ()
 
 
+def beyond_servo(servo: Servo, gait: Gait, torque: float) -> list[tuple[str, float, float]]:
+    """Name, value and limit, SI, of what a gait of the joint needs and the servo cannot do."""
+    needed = {"angle": gait.peak_angle, "rate": gait.peak_rate, "torque": torque}
+    able = {name: getattr(servo, f"{name}_limit") for name in needed}
+    return [
+        (name, value, able[name])
+        for name, value in needed.items()
+        if value > able[name] * (1 + LARGEST_EXCESS)
+    ]
+
+
 @dataclass(frozen=True, repr=False)
 class SimulatedMotion(GaitResult):
     """A simulated motion.
@@ -79,17 +90,11 @@ class SimulatedMotion(GaitResult):
     @property
     def beyond_servo(self) -> tuple[str, ...]:
         """A sentence on each limit of the servo that the motion exceeds; it is simulated anyway."""
-        servo = self.robot.servo
-        reached = {
-            "angle": (self.joint.peak_angle, servo.angle_limit),
-            "rate": (self.joint.peak_rate, servo.rate_limit),
-            "torque": (self.measured.peak_torque, servo.torque_limit),
-        }
+        beyond = beyond_servo(self.robot.servo, self.joint, self.measured.peak_torque)
         return tuple(
             f"The gait needs {QUANTITIES[name].both(value)}, but the servo's {name} limit is "
             f"{QUANTITIES[name].both(limit)}. The simulation ignores this limit."
-            for name, (value, limit) in reached.items()
-            if value > limit * (1 + LARGEST_EXCESS)
+            for name, value, limit in beyond
         )
 
     def record(self, files: Sequence[Path] = ()) -> dict[str, Any]:
@@ -132,7 +137,6 @@ class SimulatedMotion(GaitResult):
         return facts_alone(_facts(self))
 
     def _record(self) -> dict[str, Any]:
-        """Distance, turn, speed and torque, SI."""
         driven, measured = self.trajectory, self.measured
         return {
             **picked(self, "gait start"),

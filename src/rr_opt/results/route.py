@@ -138,7 +138,6 @@ class DrivenRoute(Result):
         return tuple(ignored_effects(self.robot))
 
     def _record(self) -> dict[str, Any]:
-        """The content of route.json, SI."""
         plan, replay, command = self.plan, self.replay, self.command
         return {
             **picked(self, "status message seconds"),

@@ -57,7 +57,6 @@ class DrivenRoutes(Result):
         )
 
     def _record(self) -> dict[str, Any]:
-        """The content of study.json, SI."""
         return {
             "status": "studied",
             "message": self.message,

@@ -86,7 +86,6 @@ class FastestShapes(Result):
         return text
 
     def _record(self) -> dict[str, Any]:
-        """The content of shapes.json: each row of shapes.csv with the whole result."""
         return {
             "status": self.status.value,
             "message": self.message,

@@ -13,12 +13,12 @@ from rr_opt.array import Array
 from rr_opt.design.study.plan import branches, plan
 from rr_opt.design.study.row import Row
 from rr_opt.documents import document as doc
+from rr_opt.documents.archive import netcdf_writer
 from rr_opt.documents.texts import captions
 from rr_opt.files.study_file import Study
 from rr_opt.formatting import direction_text, number, speed_text, with_unit
 from rr_opt.outcome import Status
 from rr_opt.results.gait import ignored_effects
-from rr_opt.results.motion import netcdf_writer
 from rr_opt.results.result import Progress, Result, quiet
 from rr_opt.results.study_table import (
     StudyColumn,
@@ -159,7 +159,8 @@ class SolvedStudy(Result):
         netcdf: bool = False,
     ) -> list[Path]:
         """Write study.csv, study.json and, if asked for, study.nc, with figures and page."""
-        check_files(netcdf=netcdf)
+        if netcdf:
+            netcdf_writer()  # which may not be there
         written = super().save(path, figures=figures, progress=progress)
         if netcdf:
             written.append(write_netcdf(Path(path) / "study.nc", self.study, self._columns))
@@ -319,9 +320,3 @@ def _cases_table(result: SolvedStudy, cases: Iterable[int]) -> doc.Table:
             ]
         )
     return doc.table(head, rows)
-
-
-def check_files(*, netcdf: bool) -> None:
-    """Raise InputError, before anything is computed, for a file that cannot be made here."""
-    if netcdf:
-        netcdf_writer()

@@ -80,7 +80,6 @@ class TurnChart(Result):
         return (*ignored_effects(self.problem.robot), *one_sided)
 
     def _record(self) -> dict[str, Any]:
-        """The content of turn-chart.json."""
         sign, radius = self.sign, self.radius
         return {
             "status": "charted" if self.tight else self.status.value,

@@ -2,12 +2,12 @@
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from rr_opt.design.candidate import Candidate
-from rr_opt.design.decisions import ballast_interval
+from rr_opt.design.decisions import share_per_ratio
 from rr_opt.design.study.row import Optimum, Row, gait_record
-from rr_opt.model.problem import LARGEST_EXCESS, LEAST, Interval, Problem, RatioChoice
+from rr_opt.model.problem import LARGEST_EXCESS, LEAST, Interval, Problem
 from rr_opt.model.robot import Robot
 from rr_opt.motion.energy import energy
 from rr_opt.motion.steady_cycle import SteadyCycle, grip_needed, peak_torque, steady_cycle
@@ -103,7 +103,7 @@ def _bounds(
     if choice is None or choice.bounds.fixed:
         return
     whole = choice.by == "loads" and choice.loads.whole
-    price = None if whole else best.bound_prices["ballast"] * _share_per_ratio(problem, choice)
+    price = None if whole else best.bound_prices["ballast"] * share_per_ratio(problem.robot, choice)
     side = _side(problem, best, ratio, choice.bounds, price)
     if side:
         yield "inertia_ratio", side, price
@@ -121,18 +121,6 @@ def _side(
         return at_end if _matters(best, price, size) else None
     near = _ON * min(box.high - box.low, size)
     return "least" if value - box.low <= near else "largest" if box.high - value <= near else None
-
-
-def _share_per_ratio(problem: Problem, choice: RatioChoice) -> float:
-    """How far the ballast's share of its range moves per unit of J20/J10, at the upper bound."""
-
-    def amount(ratio: float) -> float:
-        fixed = replace(choice, bounds=Interval(ratio, ratio))
-        return ballast_interval(problem.robot, fixed).high
-
-    span, high = ballast_interval(problem.robot, choice), choice.bounds.high
-    step = 1e-6 * high
-    return (amount(high) - amount(high - step)) / step / (span.high - span.low)
 
 
 _CLAIM = 1e-6

@@ -157,7 +157,6 @@ def _residue(one: ExplainedExperiment) -> tuple[Figure, str] | None:
     return made, " ".join(each.sentence for each in some)
 
 
-_Z = 1.96
 _NAMES = {
     "phase": "phase of the cycle",
     "rate": "commanded rate",

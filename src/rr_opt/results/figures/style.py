@@ -123,10 +123,10 @@ def signed(top: float) -> TwoSlopeNorm:
     return TwoSlopeNorm(0.0, -top, top)
 
 
-def speed_bar(ax: Axes, mapped: Any, words: str = "+ forward, − backward") -> Axes:
+def speed_bar(ax: Axes, mapped: Any) -> Axes:
     """The colour bar of signed speeds, mm/s; its axes."""
     bar = ax.figure.colorbar(mapped, ax=ax, pad=0.02, aspect=26, ticks=MaxNLocator(7))
-    bar.set_label(f"mean speed, mm/s  ({words})")
+    bar.set_label("mean speed, mm/s  (+ forward, − backward)")
     bar.outline.set_visible(False)  # type: ignore[operator]
     return bar.ax
 
