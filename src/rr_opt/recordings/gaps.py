@@ -1,14 +1,17 @@
 """Where a recording has no data, stands still or jumps.
 
-A jump is where the level before and the level after do not meet: a parabola through the seven
-samples before and one through the seven after are compared half way between the two. At a kink they
-meet, at a jump they do not.
+A jump is where the level before and the level after do not meet: a parabola through a few samples
+before and one through a few after are compared half way between the two. At a kink they meet, at a
+jump they do not.
 """
+
+from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter1d
 
@@ -139,7 +142,8 @@ def _long(member: NDArray[np.bool_], fewest: int) -> NDArray[np.bool_]:
     return kept
 
 
-_SIDE = 7
+_SIDES = (7, 5, 3)
+"""Samples to either side: few where there is little noise."""
 _SURE = 8.0
 """Standard deviations; a kink between two samples can make a few."""
 _KINK = 1.0
@@ -155,26 +159,52 @@ class Jump:
     size: float
 
 
+@dataclass(frozen=True)
+class _Steps:
+    """What parabolas through some samples to either side make of the place half way.
+
+    size   of the jump there (m,), and the change of slope, bend (m,), per step of time
+    noise  standard deviation of the size, in that of a sample
+    """
+
+    size: Array
+    bend: Array
+    noise: float
+
+    @property
+    def usual(self) -> float:
+        """Standard deviation of the bulk of the sizes."""
+        known = self.size[np.isfinite(self.size)]
+        return float(np.median(np.abs(known))) / 0.6745 if known.size else 0.0
+
+    @classmethod
+    def of(cls, y: Array, side: int) -> _Steps:
+        since = -(np.arange(side) + 0.5)
+        level, slope, _ = np.linalg.pinv(np.vander(since, 3, increasing=True))
+        before, after = (
+            sliding_window_view(y, side)[k : len(y) - 2 * side + 1 + k] for k in (0, side)
+        )
+        # The sides are mirrored, so their slopes have opposite signs.
+        size = after @ level - before @ level[::-1]
+        bend = after @ slope + before @ slope[::-1]
+        return cls(size, bend, float(np.sqrt(2 * (level**2).sum())))
+
+
 def jumps(y: Array, sigma: float) -> tuple[Jump, ...]:
     """The jumps of y (n,), samples at equal steps, NaN where there is none.
 
     sigma: standard deviation of its noise. A jump next to a missing sample is not seen.
     """
-    n = len(y)
-    if n < 2 * _SIDE or not sigma > 0:
+    if len(y) < 2 * _SIDES[0] or not sigma > 0:
         return ()
-    since = -(np.arange(_SIDE) + 0.5)
-    V = np.vander(since, 3, increasing=True)
-    level, slope, _ = np.linalg.pinv(V)
-    count = n - 2 * _SIDE + 1
-    size, bend = np.zeros(count), np.zeros(count)
-    for i in range(_SIDE):
-        before, after = _SIDE - 1 - i, _SIDE + i
-        size += level[i] * (y[after : after + count] - y[before : before + count])
-        # The sides are mirrored, so their slopes have opposite signs.
-        bend += slope[i] * (y[after : after + count] + y[before : before + count])
+    # Beside next to no noise, parabolas miss what the motion bends more: the shorter the less.
+    steps = [_Steps.of(y, side) for side in _SIDES]
+    scales = [max(sigma * one.noise, one.usual) for one in steps]
+    k = int(np.argmin(scales))
     # A kink that is not half way leaves the levels apart by a part of its change of slope.
-    beyond = np.maximum(np.abs(size) - _KINK * np.abs(bend), 0.0)
-    off = np.nan_to_num(beyond / (sigma * np.sqrt(2 * (level**2).sum())))
+    beyond = np.maximum(np.abs(steps[k].size) - _KINK * np.abs(steps[k].bend), 0.0)
+    off = np.nan_to_num(beyond / scales[k])
     peak = (off > _SURE) & (off >= maximum_filter1d(off, _APART))
-    return tuple(Jump(int(i) + _SIDE - 1, float(size[i])) for i in np.flatnonzero(peak))
+    return tuple(
+        Jump(int(i) + _SIDES[k] - 1, float(steps[k].size[i])) for i in np.flatnonzero(peak)
+    )

@@ -150,7 +150,7 @@ def covariance(D: Array, B: Array) -> tuple[Array, Array]:
     return whole, above
 
 
-RATIOS = (1e-7, 1e2)
+RATIOS = (1e-7, 1e5)
 """Bounds of q over the variance of a sample, in steps of time. Below the first, arithmetic suffers;
 a spline of that strength still takes up 1 Hz at 100 samples a second."""
 
@@ -159,15 +159,15 @@ _FEWEST, _WARM = 90, 300
 bound; of a short recording a quarter is left out."""
 _MOST = 20_000
 _OUTLYING = 9.0
-"""An innovation counts at most as one of three standard deviations."""
+"""Three standard deviations, squared."""
 
 
 def strength(y: Array, sigma: float) -> float:
     """q over sigma^2, in steps of time, by maximum likelihood.
 
     y: (n,), equal steps, NaN where there is nothing; sigma: its noise's standard deviation. What
-    is missing is bridged by a line. Innovations beyond three standard deviations are cut to that,
-    so that what outliers are left do not count as bends.
+    is missing is bridged by a line. Beyond three standard deviations innovations have the tails of
+    a Cauchy distribution, so that what outliers are left do not count as bends.
     """
     known = np.isfinite(y)
     if known.sum() < _FEWEST or not sigma > 0:
@@ -180,8 +180,9 @@ def strength(y: Array, sigma: float) -> float:
 
     def cost(log_ratio: float) -> float:
         off, variance = innovations(z, float(np.exp(log_ratio)))
-        scaled = np.minimum(off[use] ** 2 / variance, _OUTLYING)
-        return float(np.log(variance) + scaled.mean())
+        scaled = off[use] ** 2 / variance
+        tail = _OUTLYING + 2 * np.log(np.maximum(scaled, _OUTLYING) / _OUTLYING)
+        return float(np.log(variance) + np.minimum(scaled, tail).mean())
 
     low, high = np.log(RATIOS)
     grid = np.linspace(low, high, 16)

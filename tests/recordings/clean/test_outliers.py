@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from rr_opt.model.gait import SineGait
-from rr_opt.recordings.outliers import misses, outliers
+from rr_opt.recordings.gaps import jumps
+from rr_opt.recordings.outliers import misses, outliers, usual_noise
 from tests.recordings.clean.world import motion
 
 NOISE = {"x": 1e-3, "y": 1e-3, "psi": 3e-3, "phi": 3e-3}
@@ -33,6 +34,22 @@ def test_good_samples_are_flagged_less_than_once_in_ten_thousand():
                 total += (~spoilt).sum()
     assert total > 70_000
     assert false <= MOST_FALSE * total
+
+
+@pytest.mark.parametrize("sigma", [1e-6, 1e-5, 1e-4])
+def test_next_to_no_noise_is_no_reason_to_suspect_the_motion(sigma):
+    # Rounded at the sixth digit, as many exports are.
+    rng = np.random.default_rng(3)
+    for gait in GAITS:
+        moved = motion(30.0, gait)
+        for channel in NOISE:
+            y = np.round(getattr(moved, channel) + rng.normal(0, sigma, len(moved.t)), 6)
+            assert not outliers(moved.t, y, usual_noise(y)).outlier.any()
+            assert jumps(y, sigma) == ()
+            y[1500:] += 6e-3
+            (jump,) = jumps(y, sigma)
+            assert jump.row == 1499
+            assert jump.size == pytest.approx(6e-3, rel=0.2)
 
 
 @pytest.mark.parametrize("channel", NOISE)
