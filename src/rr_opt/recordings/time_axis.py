@@ -31,6 +31,8 @@ def in_steps(t: Array) -> Array:
 
 _LATEST = 1e12
 """Larger times belong to no clock, in any unit, s."""
+_TOGETHER = 1e-9
+"""Times that no clock tells apart, s."""
 _RESTARTS = 5
 """A file whose time falls back less often, and by more rows than this at once, was joined."""
 
@@ -53,8 +55,8 @@ class Order:
 def in_order(t: Array, values: Array, lines: Sequence[int] | NDArray[np.int64]) -> Order:
     """The order of rows with the times t (n,) and values (n, ...), which stand at some lines.
 
-    A row without a time, or with one that no clock shows, has no place. Of rows with one time the
-    first is kept.
+    A row without a time, or with one that no clock shows, has no place. Of rows whose times no
+    clock tells apart the first is kept.
     """
     doubts: list[Notice] = []
     lines = np.asarray(lines)
@@ -74,7 +76,7 @@ def in_order(t: Array, values: Array, lines: Sequence[int] | NDArray[np.int64]) 
             )
         order = np.argsort(t[rows], kind="stable")
         rows, moved = rows[order], moved[order]
-    again = np.diff(t[rows], prepend=np.nan) == 0
+    again = np.diff(t[rows], prepend=-np.inf) < _TOGETHER
     unsure = np.zeros(len(rows), bool)
     if again.any():
         doubts.append(notice("time.twice", rows=_rows(lines[rows[again]])))

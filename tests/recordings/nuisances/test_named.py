@@ -1,11 +1,13 @@
 """Each nuisance is told by its name, with its time, place and size; a right recording has none."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from rr_opt.model.gait import SineGait
+from rr_opt.recordings.nuisances import late
 from rr_opt.recordings.nuisances.evidence import FAR, ROLLING, Evidence
 from tests.recordings.nuisances.spoilt import GAIT, NOISE, ROBOT, recording, told
 
@@ -100,6 +102,15 @@ def test_two_wrongs():
         FRAMES["phi is off by 180 deg"](v)
 
     assert "y is mirrored and phi is off by 180 deg" in told(recording(change=change))[1]
+
+
+def test_the_search_for_delays_costs_no_more_at_a_higher_rate(monkeypatch):
+    quick = recording()
+    quick = replace(quick, t=quick.t / 10_000)
+    tries, size = [], Evidence.slip_of
+    monkeypatch.setattr(Evidence, "slip_of", lambda *given: tries.append(1) or size(*given))
+    late._best(Evidence(quick, ROBOT, GAIT, "running"), (3,))
+    assert len(tries) < 300
 
 
 def test_without_a_robot_its_lengths_are_fitted():

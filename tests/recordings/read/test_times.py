@@ -75,6 +75,14 @@ def test_an_uneven_rate_is_told(write):
     assert any("constant rate" in doubt for doubt in read_file(write(csv(times))).doubts)
 
 
+@pytest.mark.parametrize("apart", [0.0, 1e-320, 1e-10])
+def test_times_that_no_clock_tells_apart_are_one(apart):
+    times = np.array([0.0, apart, 0.01, 0.02, 0.02 + apart])
+    order = in_order(times, np.zeros((5, 1)), range(2, 7))
+    assert order.rows.tolist() == [0, 2, 3]
+    assert [one.code for one in order.doubts] == ["time.twice"]
+
+
 @pytest.mark.parametrize("times", list(itertools.permutations(range(5))))
 def test_the_fewest_rows_are_called_out_of_order(times):
     """Against every way to leave rows out."""

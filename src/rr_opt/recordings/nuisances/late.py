@@ -42,16 +42,16 @@ def _best(given: Evidence, columns: tuple[int, ...]) -> tuple[float, float]:
         return given.slip_of(_earlier(given, columns, steps * given.step)).size
 
     # By whole steps: in between, the noise is smoothed, which looks like a better fit.
-    coarse = np.unique(np.round(np.linspace(-most, most, _TRIES)))
-    best = float(coarse[int(np.argmin([left(one) for one in coarse]))])
-    apart = max(1.0, float(np.ceil(2 * most / _TRIES)))
-    fine = best + np.arange(-apart, apart + 1)
-    sizes = np.array([left(one) for one in fine])
-    at = int(np.clip(np.argmin(sizes), 1, len(fine) - 2))
+    best, apart, grid, sizes = 0.0, max(most, 1.0), np.array([-np.inf, 0.0]), np.zeros(0)
+    while np.diff(grid).max() > 1:
+        grid = np.unique(np.round(best + np.linspace(-apart, apart, _TRIES)))
+        sizes = np.array([left(one) for one in grid])
+        best, apart = float(grid[int(np.argmin(sizes))]), max(1.0, np.ceil(2 * apart / _TRIES))
+    at = int(np.clip(np.argmin(sizes), 1, len(grid) - 2))
     low, middle, high = sizes[at - 1 : at + 2] ** 2
     bend = low - 2 * middle + high
-    late = given.step * (fine[at] + (0.5 * (low - high) / bend if bend > 0 else 0.0))
-    return given.explains(_earlier(given, columns, given.step * fine[at])), float(late)
+    late = given.step * (grid[at] + (0.5 * (low - high) / bend if bend > 0 else 0.0))
+    return given.explains(_earlier(given, columns, given.step * grid[at])), float(late)
 
 
 def _earlier(given: Evidence, columns: tuple[int, ...], late: float) -> Motion:
