@@ -152,7 +152,7 @@ def judged(verb: Verb, end: Ended, given: Input, lint: int | None) -> list[str]:
     told = [one for one in lines if "warning: " not in one]
     if not told:
         wrong.append("no message")
-    elif not any(file in "\n".join(told) for file in (*given.files, ".:")):
+    elif not any(file in "\n".join(told) for file in (*given.files, ".:", "/etc/passwd:")):
         wrong.append("no file named")
     elif not _ADVICE.search("\n".join(told)):
         wrong.append("no advice")

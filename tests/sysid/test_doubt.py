@@ -14,11 +14,11 @@ def candidate(*effects: str, elpd: float = 0.0, better: bool = True) -> Any:
     )
 
 
-def doubt(best: Any, *others: Any, constant=0.9, alike=0.9, predicts=0.9) -> str:
+def doubt(best: Any, *others: Any, constant=0.9, alike=0.9, predicts=0.9, none=False) -> str:
     made: Any = SimpleNamespace(
         best=best,
         _ended=[best, *others],
-        selection=SimpleNamespace(base=candidate()),
+        selection=SimpleNamespace(base=candidate(), complete=lambda _: none),
         constancy=SimpleNamespace(probability=constant),
         _as_machines_differ=alike,
         _predicts=predicts,
@@ -49,3 +49,8 @@ def test_what_was_not_needed_is_said_to_leave_most():
 
 def test_nothing_is_said_where_nothing_predicts_better():
     assert doubt(candidate(better=False)) == ""
+
+
+def test_what_only_recordings_show_that_were_not_fitted_is_to_be_fitted():
+    said = doubt(candidate(better=False), none=True)
+    assert said == "The recordings that were fitted show none of it: fit those that do."

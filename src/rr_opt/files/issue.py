@@ -52,7 +52,7 @@ def has_errors(issues: Iterable[Issue]) -> bool:
     return any(issue.level == "error" for issue in issues)
 
 
-MOST_LISTED = 20
+MOST_LISTED, MOST_COUNTED = 20, 10_000
 """A file that is wrong in every row is described by its first ones."""
 
 
@@ -65,8 +65,7 @@ def refuse_all(file: str, found: Sequence[tuple[int, str]], count: int) -> NoRet
     """Raise InvalidFileError with line and message of each of the first of `count` mistakes."""
     issues = [Issue("error", "", message, line, file) for line, message in found]
     if count > MOST_LISTED:
-        more = (
-            f"There are {count - MOST_LISTED} more mistakes of this kind. Correct the first ones."
-        )
+        others = f"{count - MOST_LISTED} more" if count < MOST_COUNTED else "thousands of other"
+        more = f"There are {others} mistakes of this kind. Correct the first ones."
         issues.append(Issue("error", "", more, None, file))
     raise InvalidFileError(issues)

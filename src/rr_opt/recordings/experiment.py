@@ -257,7 +257,9 @@ def usable(experiment: Experiment) -> tuple[Experiment, tuple[str, ...]]:
     """
     left_out, wrong = checked(experiment)
     if wrong:
-        raise InputError("\n".join((*left_out.values(), *wrong)))
+        place = f"{experiment.name}/{EXPERIMENT}" if experiment.sha256 else experiment.name
+        lines = (*left_out.values(), *wrong)
+        raise InputError("\n".join(f"{place}: {line}" for line in lines))
     runs = tuple(run for run in experiment.runs if run.name not in left_out)
     return replace(experiment, runs=runs), tuple(left_out.values())
 

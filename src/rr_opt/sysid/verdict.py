@@ -79,8 +79,10 @@ class Result:
 
     @property
     def doubt(self) -> str:
-        """What predicts best, and why it is not named; "" if nothing predicts better than the
-        nominal model."""
+        """What predicts best, and why it is not named, or where it shows; "" if nothing predicts
+        better than the nominal model."""
+        if not self.best.choices and self.selection.complete(self.best):
+            return "The recordings that were fitted show none of it: fit those that do."
         best = self.best if self.best.choices else max(self._ended, key=lambda one: one.elpd)
         if not best.predicts_better(self.selection.base):
             return ""

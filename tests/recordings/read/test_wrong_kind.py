@@ -10,12 +10,12 @@ from rr_opt.recordings.readers.text import Text, read_table
 ROWS = 100_000
 
 
-def test_mistakes_are_counted_and_not_kept():
+def test_mistakes_are_counted_as_far_as_that_says_something_and_not_kept():
     text = Text("run.json", "utf-8", [f"- timestamp: {k}" for k in range(ROWS)], True)
     tracemalloc.start()
     with pytest.raises(InputError) as caught:
         read_table(text, 0, ROWS, ",", ["t"])
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
-    assert f"There are {ROWS - 20} more mistakes" in str(caught.value)
+    assert "There are thousands of other mistakes" in str(caught.value)
     assert peak < 100 * ROWS

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rr_opt.array import Array
-from rr_opt.files.issue import MOST_LISTED, refuse, refuse_all
+from rr_opt.files.issue import MOST_COUNTED, MOST_LISTED, refuse, refuse_all
 from rr_opt.messages import shown
 from rr_opt.model.experiment import Column, CountScale, Noise
 from rr_opt.recordings.warnings import Notice, notice
@@ -208,8 +208,10 @@ def read_table(
             values[row], others = _one_by_one(cells, names)
             messages += others
         mistakes += len(messages)
-        # A file of another kind may have millions.
         wrong += [(at + 1, message) for message in messages[: MOST_LISTED - len(wrong)]]
+        # A file of another kind may have millions.
+        if mistakes >= MOST_COUNTED:
+            break
     if mistakes:
         refuse_all(text.file, wrong, mistakes)
     if short:
