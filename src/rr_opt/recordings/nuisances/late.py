@@ -11,9 +11,8 @@ from rr_opt.recordings.warnings import Notice, notice
 _PARTS = {"x and y": (0, 1), "psi": (2,), "phi": (3,)}
 _FARTHEST, _TRIES = 0.25, 41
 """How late a channel may be, in periods or s, and how many delays begin the search."""
-_SHORTEST, _UNSURE = 0.01, 0.02
-"""Delays that matter, s; the second where something else may explain a part of them: c1 and c2
-that are not known, or wheels that creep sideways, which shows at both axles alike."""
+_SHORTEST = 0.02
+"""Delays that are told, s: wrong lengths, or wheels that creep sideways, look like shorter ones."""
 
 
 def look(given: Evidence) -> Iterator[Notice]:
@@ -22,12 +21,10 @@ def look(given: Evidence) -> Iterator[Notice]:
         return
     found = {name: _best(given, columns) for name, columns in _PARTS.items()}
     likely = given.likely({name: left for name, (left, _) in found.items()})
-    # Only the second axle's constraint knows phi.
-    sure = "phi" in likely and given.robot is not None
     late = [
         f"{name} by {1e3 * found[name][1]:+.3g} ms"
         for name in likely
-        if abs(found[name][1]) > (_SHORTEST if sure else _UNSURE)
+        if abs(found[name][1]) > _SHORTEST
     ]
     if late:
         code = "late.phi" if "phi" in likely else "late.place"
