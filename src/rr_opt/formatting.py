@@ -109,10 +109,10 @@ def side_text(value: float) -> str:
 
 
 def price_text(name: str, price: float, objective: str = "speed") -> str:
-    """A shadow price, per SI unit, as `+8.57 mm/s per rpm`, or of the cost of transport, which it
-    lowers, as `-0.0012 per rpm`."""
+    """A shadow price, per SI unit, as `+8.57 mm/s per rpm`, or of the cost of transport or a time,
+    which it lowers, as `-0.0012 per rpm`."""
     unit, factor = QUANTITIES[name].common
-    gained, kind = (1e3, " mm/s") if objective == "speed" else (-1.0, "")
+    gained, kind = {"speed": (1e3, " mm/s"), "time": (-1.0, " s")}.get(objective, (-1.0, ""))
     per = gained * price / factor
     if not unit:
         per, unit = per / 100, "0.01"

@@ -80,16 +80,37 @@ def test_files(turned, tmp_path):
     assert np.abs(np.diff(points["phi_rad"])).max() <= PROBLEM.limits.rate / 125 * 1.001
 
 
-def test_the_grip_needed_is_checked(turned):
+def test_the_grip_needed_is_told(turned):
     needed = turned.replay.reached["grip"]
     gaits = (steady_cycle(turned.robot, gait) for gait in turned.plan.gaits)
     steady = max(max(grip_needed(one, turned.robot)) for one in gaits)
     assert needed == pytest.approx(steady, rel=0.25)
-    limits = replace(turned.plan.problem.limits, grip=0.9 * needed)
-    problem = replace(turned.plan.problem, limits=limits)
-    found = rr.route(replace(turned.plan.route, problem=problem))
-    assert found.status is rr.Status.NOT_CONVERGED
-    assert "grip is exceeded by" in found.message
+    assert turned.limits["grip"].value == needed
+    assert not turned.limits["grip"].active
+
+
+@pytest.mark.parametrize(("name", "limit"), [("grip", 0.4), ("torque", 0.2)])
+def test_a_limit_that_binds(name, limit):
+    """The drive comes to its limit, keeps it by CVODES, and its price is the time that a drive
+    takes less for a limit that is a little higher."""
+
+    def driven(by: float):
+        limits = replace(PROBLEM.limits, **{name: limit * (1 + by)})
+        return rr.route(rr.Route(replace(PROBLEM, limits=limits), (rr.Straight(1),)))
+
+    found = driven(0.0)
+    row = found.limits[name]
+    assert found.status is rr.Status.OPTIMAL, found.message
+    assert row.active
+    assert 0.998 * limit <= row.value <= limit
+    assert row.piece == 1
+    assert found.record()["solver"]["stationarity"] < 1e-3
+    less, more = driven(-0.002).seconds, driven(0.002).seconds
+    assert less
+    assert more
+    assert row.shadow_price == pytest.approx((less - more) / (0.004 * limit), rel=0.01)
+    written = {one["name"]: one for one in found.record()["limits"]}
+    assert written[name]["shadow_price"] == row.shadow_price
 
 
 def test_a_film(turned, tmp_path):

@@ -7,11 +7,12 @@ import pytest
 
 import rr_opt as rr
 from rr_opt.model.command import Command
-from rr_opt.model.problem import Problem
+from rr_opt.model.problem import Limits, Problem
 from rr_opt.model.route import Pose, Tolerance
 from rr_opt.routing.path import Leg
 from rr_opt.routing.program import DriveProgram, DriveStage
-from rr_opt.routing.replay import simulate
+from rr_opt.routing.replay import peaks, simulate
+from rr_opt.routing.rollout import LOADS
 
 DRY = rr.EffectUse("coulomb_friction", {"force1": 0.005, "force2": 0.005})
 
@@ -20,7 +21,8 @@ def program(robot: rr.Robot) -> DriveProgram:
     leg = Leg(0, Pose(0.1, 0.2, 0.3), 1.0, 0.5)
     sizes = [(2.3, 0.2, 0.05, 15.0), (7.1, 0.15, 0.3, 20.0), (3.4, 0.0, -0.1, 18.0)]
     stages = [DriveStage(*size, leg, ends=True) for size in sizes]
-    return DriveProgram(Problem(robot), stages, Tolerance(), leg.start, math.pi, True)
+    problem = Problem(robot, Limits(grip=0.4))
+    return DriveProgram(problem, stages, Tolerance(), leg.start, math.pi, True)
 
 
 @pytest.mark.parametrize("effects", [(), (DRY,)], ids=["viscous", "dry"])
@@ -29,6 +31,8 @@ def test_derivatives(effects):
 
     one = program(replace(rr.prototype(), physics=effects))
     seen = one.look(one.x0)
+    # Where dry friction turns about, loads all but jump, and a peak has no one place.
+    smooth = np.array([not effects or name not in LOADS for name, _ in seen.names])
     for k in range(len(one.x0)):
         h = np.zeros(len(one.x0))
         h[k] = 1e-6
@@ -38,8 +42,6 @@ def test_derivatives(effects):
         assert seen.samples.slopes[:4, -1, k] == pytest.approx(change, rel=1e-4, abs=1e-6)
         assert seen.rising[k] == pytest.approx((there.seconds - back.seconds) / scale, abs=1e-6)
         change = (there.values - back.values) / scale
-        # Where the torque peaks may change places.
-        smooth = np.array([name != "torque" for name, _ in seen.names])
         assert seen.slopes[smooth, k] == pytest.approx(change[smooth], rel=1e-3, abs=1e-3)
 
 
@@ -50,6 +52,21 @@ def test_the_end_is_that_of_cvodes():
     end = [part[-1] for part in (driven.v, driven.psi, driven.x, driven.y)]
     assert seen.samples.path[:4, -1] == pytest.approx(end, abs=1e-6)
     assert driven.t[-1] == pytest.approx(seen.command.seconds)
+
+
+def test_peaks_are_those_of_cvodes():
+    """Of the torque and of each axle's grip, between the samples of both and on either side of
+    knots."""
+    one = program(rr.prototype())
+    seen = one.look(one.x0)
+    driven = simulate(one.problem, seen.command, Pose(0.1, 0.2, 0.3), math.pi)
+    reached = {k: value for k, (value, _) in peaks(one.problem, seen.command, driven).items()}
+    found = seen.samples.peaks.max(axis=(1, 2, 3))
+    assert found[0] == pytest.approx(reached["torque"], rel=2e-5)
+    assert max(found[1:]) == pytest.approx(reached["grip"], rel=2e-5)
+    fine = np.linspace(0, seen.command.seconds, 100_001)
+    phi, rate, _ = np.abs(seen.command.at(fine)).max(axis=1)
+    assert [reached["angle"], reached["rate"]] == pytest.approx([phi, rate], rel=2e-5)
 
 
 def test_a_command_has_no_jump_of_angle_or_rate():

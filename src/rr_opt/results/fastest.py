@@ -18,7 +18,7 @@ from rr_opt.formatting import counted, direction_text, number, pace_text, with_u
 from rr_opt.messages import listed
 from rr_opt.model.ballast import inertia_ratio, load_count
 from rr_opt.model.gait import Gait
-from rr_opt.model.problem import LARGEST_EXCESS, NEEDS_GRIP, Problem
+from rr_opt.model.problem import LARGEST_EXCESS, Problem
 from rr_opt.model.robot import Robot
 from rr_opt.motion.energy import Energy, energy
 from rr_opt.motion.steady_cycle import Cycle
@@ -33,6 +33,7 @@ from rr_opt.results.limits import (
     limit_row,
     limited_by,
     limits_table,
+    slippery,
     worst_slack,
 )
 from rr_opt.results.motion import beyond_servo, trajectory_csv
@@ -297,7 +298,7 @@ class FastestGait(Result):
         best = self.optimum.best
         if best is None:
             return []
-        texts = list(self._slippery)
+        texts = list(slippery(self.limits["grip"].value))
         if self.problem.robust:
             robust = self.robust
             texts.append(robust.sentence(best.speed) if robust else "No robust gait was found.")
@@ -327,16 +328,6 @@ class FastestGait(Result):
             )
         return texts
 
-    @property
-    def _slippery(self) -> tuple[str, ...]:
-        grip = self.limits["grip"].value
-        if not grip > NEEDS_GRIP:
-            return ()
-        return (
-            f"The wheels need a coefficient of friction of {grip:.2g} not to slip sideways, which "
-            f"few floors have (above {NEEDS_GRIP:g}). `limits.grip` limits it.",
-        )
-
     def _beyond_servo(self, gait: Gait) -> list[str]:
         """Which limits of the robot file's servo the gait exceeds."""
         torque = self.replay.reached["torque"] if self.replay else 0.0
@@ -347,7 +338,7 @@ class FastestGait(Result):
         """What the robot does with effects that the optimiser does not know, and grip that wheels
         may not have."""
         climbed = (_climbed(self.climbed, self.optimum),) if self.climbed else ()
-        return (*climbed, *self._slippery)
+        return (*climbed, *slippery(self.limits["grip"].value))
 
     def _record(self) -> dict[str, Any]:
         """The content of result.json; the same keys whatever the outcome."""

@@ -11,7 +11,7 @@ from rr_opt.documents import document as doc
 from rr_opt.formatting import QUANTITIES, number, price_text, with_unit
 from rr_opt.messages import listed
 from rr_opt.model.gait import Gait
-from rr_opt.model.problem import LEAST, Interval
+from rr_opt.model.problem import LEAST, NEEDS_GRIP, Interval
 
 ACTIVE = 1e-4
 """A limit is active when the gait comes this near to it, relative to the limit."""
@@ -105,6 +105,16 @@ def bound_rows(optimum: Optimum, commanded: Gait, ratio: float) -> dict[str, Bou
     return rows
 
 
+def slippery(grip: float) -> tuple[str, ...]:
+    """A warning of side forces over loads that wheels rarely bear."""
+    if not grip > NEEDS_GRIP:
+        return ()
+    return (
+        f"The wheels need a coefficient of friction of {grip:.2g} not to slip sideways, which "
+        f"few floors have (above {NEEDS_GRIP:g}). `limits.grip` limits it.",
+    )
+
+
 def worst_slack(optimum: Optimum, command: Gait, reached: Mapping[str, float]) -> tuple[str, float]:
     """Complementary slackness: at an optimum what has a price is at its limit, and no price has the
     wrong sign. The limit or bound that fails it most, and how: its price times its distance, or
@@ -175,17 +185,24 @@ def limited_by(limits: Iterable[LimitRow], bounds: Iterable[BoundRow]) -> str:
     return f"It is limited by {listed(active)}."
 
 
-def limits_table(rows: Iterable[LimitRow], *, reached: bool, objective: str = "speed") -> doc.Table:
-    """Each limit: what is reached, what is allowed, and its shadow price."""
+def limits_table(
+    rows: Iterable[LimitRow],
+    *,
+    reached: bool,
+    objective: str = "speed",
+    where: Mapping[str, str] | None = None,
+) -> doc.Table:
+    """Each limit: what is reached, where if it is known, what is allowed, and its shadow price."""
     kinds = [(QUANTITIES[row.name], row) for row in rows]
     if not reached:
         return doc.table(["Limit", "Allowed"], [[k.words, k.both(row.limit)] for k, row in kinds])
     return doc.table(
-        ["Limit", "Reached", "Allowed", "State", "Shadow price"],
+        ["Limit", "Reached", *(["Where"] if where else []), "Allowed", "State", "Shadow price"],
         [
             [
                 kind.words,
                 kind.both(row.value),
+                *([where[row.name]] if where else []),
                 kind.both(row.limit),
                 doc.Badge("active", "good") if row.active else doc.Badge("not active"),
                 price_text(row.name, row.shadow_price, objective) if row.active else None,

@@ -4,6 +4,7 @@ import math
 import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +21,7 @@ from rr_opt.model.robot import Robot
 from rr_opt.motion.setpoints import CENTRE, COUNT
 from rr_opt.outcome import Status
 from rr_opt.results.gait import ignored_effects
+from rr_opt.results.limits import ACTIVE, LIMIT_NAMES, LimitRow, limits_table, slippery
 from rr_opt.results.motion import Film, check_files, trajectory_csv
 from rr_opt.results.result import Check, Progress, Result, picked, quiet
 from rr_opt.routing import feedback as feedback_constants
@@ -32,6 +34,15 @@ _RATE = 125.0
 """Set points a second."""
 _WIDTH = 100
 """Of lines of C."""
+
+
+@dataclass(frozen=True)
+class RouteLimit(LimitRow):
+    """A limit, and how near a drive comes to it, on which piece (from 1) and when, s. Its price is
+    the time saved, s, per SI unit by which it is raised."""
+
+    piece: int = 0
+    time: float = math.nan
 
 
 @dataclass(frozen=True, repr=False)
@@ -132,10 +143,29 @@ class DrivenRoute(Result):
             checks.append(Check(replay.speed <= asked.speed, speed))
         return checks
 
+    @cached_property
+    def limits(self) -> dict[str, RouteLimit]:
+        """By name (angle, rate, torque, singularity, grip): the peak of the drive, where, and the
+        shadow price."""
+        drive, replay, rows = self.plan.drive, self.replay, dict[str, RouteLimit]()
+        if drive is None or replay is None:
+            return rows
+        for name in LIMIT_NAMES:
+            limit = getattr(self.plan.problem.limits, name)
+            price, when = drive.prices[name], replay.when[name]
+            active = math.isfinite(limit) and abs(price * limit) > ACTIVE * drive.command.seconds
+            segment = int(np.searchsorted(drive.command.times[1:-1], when))
+            rows[name] = RouteLimit(
+                name, limit, replay.reached[name], active, price if active else 0.0,
+                drive.pieces[segment] + 1, when,
+            )  # fmt: skip
+        return rows
+
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Which effects of the robot the drive ignores."""
-        return tuple(ignored_effects(self.robot))
+        """Which effects of the robot the drive ignores, and grip that wheels rarely have."""
+        grip = self.replay.reached["grip"] if self.replay else 0.0
+        return (*ignored_effects(self.robot), *slippery(grip))
 
     def _record(self) -> dict[str, Any]:
         plan, replay, command = self.plan, self.replay, self.command
@@ -156,9 +186,14 @@ class DrivenRoute(Result):
                 "offset": command.knots[1].tolist(),
                 "omega": command.knots[2].tolist(),
             },
+            "limits": [plain(row) for row in self.limits.values()],
             "check": replay and picked(replay, "position heading speed path reached excess"),
             "solver": plan.drive
-            and {"steps": plan.drive.iterations, "converged": plan.drive.success},
+            and {
+                "steps": plan.drive.iterations,
+                "converged": plan.drive.success,
+                "stationarity": plan.drive.stationarity,
+            },
             "tolerance": plain(plan.route.tolerance),
             "robot": plain(self.robot),
         }
@@ -168,6 +203,12 @@ class DrivenRoute(Result):
         sections = [doc.Section("", (doc.Facts(tuple(_facts(self))),))]
         if self.plan.legs:
             sections.append(doc.Section("Path", (_legs(self),)))
+        if self.limits:
+            where = {
+                name: f"piece {row.piece}, {row.time:.2f} s" for name, row in self.limits.items()
+            }
+            rows = limits_table(self.limits.values(), reached=True, objective="time", where=where)
+            sections.append(doc.Section("Limits", (rows,)))
         if self.checks:
             checks = doc.checks((check.passed, check.sentence) for check in self.checks)
             sections.append(doc.Section("Checks", (checks,)))
@@ -259,7 +300,6 @@ def _facts(result: DrivenRoute) -> Iterator[doc.Fact]:
         yield doc.Fact("feedback", f"{count} periods", "corrected at the end of each")
     yield doc.Fact("end", f"{1e3 * replay.position:.1f} mm from its place")
     yield doc.Fact("", f"{math.degrees(replay.heading):.2f} deg from its heading")
-    yield doc.Fact("grip", number(replay.reached["grip"], 3), "largest side force over load")
     yield doc.Fact("way", f"within {1e3 * replay.path:.1f} mm of the path")
     if plan.route.end == "rest":
         yield doc.Fact("speed at the end", f"{1e3 * replay.speed:.2f} mm/s")

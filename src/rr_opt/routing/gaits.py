@@ -12,11 +12,11 @@ from rr_opt.model.gait import SineGait
 from rr_opt.model.problem import Problem
 from rr_opt.motion.dynamics import dynamics_of
 from rr_opt.verify.grid import reach
-from rr_opt.verify.speeds import speeds
+from rr_opt.verify.speeds import motions, speeds
 
 Way = Literal["forward", "backward"]
 
-_PERIODS, _RATES, _OFFSETS = 8, 8, 81
+_PERIODS, _RATES, _OFFSETS, _PHASES = 8, 8, 81, 64
 _ROUNDING = 1e-9
 _TRIES, _NEAR = 20, 0.05
 
@@ -89,6 +89,10 @@ def chart(problem: Problem, way: Way) -> Chart:
         sign = 1 if way == "forward" else -1
         kept = seen.converged & (sign * seen.speed > 0)
         kept &= seen.peak_torque <= limits.torque * (1 + _ROUNDING)
+        if math.isfinite(limits.grip):
+            own = np.broadcast_arrays(amplitude, period, offset, np.nan)
+            needed = motions(problem, np.stack([part[kept] for part in own]), _PHASES, grip=True)
+            kept[kept] = np.abs(needed.grips).max(axis=(0, 1)) <= limits.grip
         with np.errstate(divide="ignore", invalid="ignore"):
             curvature = seen.turn / (period * np.abs(seen.speed))
         gaits = np.broadcast_arrays(amplitude, offset, period)
@@ -143,7 +147,7 @@ def binding_limits(problem: Problem, way: Way, curvature: float) -> list[str]:
     limits, box = problem.limits, problem.gait
     wider = {
         name: replace(problem, limits=replace(limits, **{name: getattr(limits, name) * _RELAXED}))
-        for name in ("angle", "rate", "torque")
+        for name in ("angle", "rate", "torque", "grip")
     }
     wider["singularity"] = replace(
         problem, limits=replace(limits, singularity=limits.singularity / _RELAXED)

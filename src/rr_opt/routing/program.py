@@ -5,7 +5,7 @@ of the stage before, over one cycle, and then goes on with them: its unknowns ar
 cycles, and the three. The first begins from the joint at rest; the last holds it straight and lets
 the robot coast. Minimised is the time of the drive. Bounded are
 
-    angle, rate, torque      of the servo, in blends and between
+    angle, rate, torque      of the servo, and the grip of the wheels, at their peaks
     the way                  P's distance from the path, and from the end of each leg when it is due
     the end                  place, heading, speed
 
@@ -15,19 +15,19 @@ quadratic, programming.
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import casadi as ca
 import numpy as np
-from scipy.optimize import linprog, minimize
+from scipy.optimize import linprog, minimize, nnls
 
 from rr_opt.array import Array
 from rr_opt.model.command import Command, blended
 from rr_opt.model.problem import Problem
 from rr_opt.model.route import Pose, Tolerance
 from rr_opt.routing.path import Leg, signed_distance
-from rr_opt.routing.rollout import Samples, rollout, steps_for
+from rr_opt.routing.rollout import LOADS, Samples, rollout, steps_for
 from rr_opt.verify.grid import reach
 
 _UNKNOWNS = 4
@@ -38,8 +38,6 @@ _LOOKS, _CLOSE = 12, 1e-4
 """Parts of a blend in each of which the largest rate is bounded."""
 _INSIDE = 0.97
 """The program keeps to this share of each tolerance: steps are finite."""
-_PEAKS = 3
-"""Largest torques of a segment that are bounded."""
 _TIGHT = 0.999
 """The program keeps to this share of each limit: its bounds are good to `BROKEN`."""
 BROKEN = 1e-3
@@ -49,9 +47,13 @@ _TURNS, _TURN = 6, 0.5
 _TIGHTENED, _DENSE = 3, 0.99
 """Solutions with the way bounded more tightly, until P stays so near the path at all samples."""
 _LINEAR, _QUADRATIC = 40, 80
+_ACTIVE = 1e-4
+"""Of bounds that take part in the prices, what is left at most, relative."""
+_NUDGE = 1e-6
+"""A change of the limit on singularity, relative."""
 _LOST = 1e3
 """What counts as the excess where there is no motion."""
-_PENALTY, _RADIUS, _SMALLEST, _SETTLED = 10.0, 0.5, 1e-5, 1e-5
+_PENALTY, _RADIUS, _SMALLEST, _SETTLED = 10.0, 0.5, 1e-5, 1e-8
 """Most steps of either kind; penalty over the time of the guess; trust region of the scaled
 unknowns, at first and at last; gain of time, s, of the last step."""
 _PLACES, _BETWEEN = 100, 0.93
@@ -85,6 +87,11 @@ class SolvedDrive:
     """An answer of the solver.
 
     violation   largest share by which a bound is broken; where says which
+    pieces      of the route, of every segment of the command
+    prices      time saved per unit of each limit by which it is raised, s: rate, angle, torque,
+                grip, singularity
+    stationarity  what is left of the derivatives of the time, relative, when those of active bounds
+                are taken off times their prices: 0 at an optimum
     """
 
     command: Command
@@ -94,6 +101,9 @@ class SolvedDrive:
     piece: int
     iterations: int
     success: bool
+    pieces: tuple[int, ...]
+    prices: dict[str, float]
+    stationarity: float
 
 
 @dataclass(frozen=True)
@@ -171,6 +181,8 @@ class DriveProgram:
         self.start = (pose.x, pose.y, pose.heading + turned)
         self.turned, self.rest = turned, rest
         self.width = tolerance.path * _BETWEEN
+        limits = problem.limits
+        self.loads = [k for k, name in enumerate(LOADS) if math.isfinite(getattr(limits, name))]
         guess = np.array([[s.cycles, s.amplitude, s.offset, s.omega] for s in stages])
         self.scale = np.tile([4.0, 0.2, 0.2, 0.0], len(stages))
         self.scale[3::4] = guess[:, 3]
@@ -213,7 +225,9 @@ class DriveProgram:
         z = x * self.scale
         command = self.command(z)
         slopes = self.slopes(command)
-        samples = rollout(self.problem.robot, command, slopes, self.steps, self.start)
+        samples = rollout(
+            self.problem.robot, command, slopes, self.steps, self.start, loads=self.loads
+        )
         rows = _Rows()
         limits, tolerance = self.problem.limits, self.tolerance
         pieces = [stage.leg.piece for stage in self.stages]
@@ -233,12 +247,11 @@ class DriveProgram:
             of = np.repeat(pieces, _LOOKS).tolist()
             rows.within("rate", of, rates.T.ravel(), gradient, rate)
         of_segment = np.split(np.arange(len(samples.t)), np.cumsum(self.steps)[:-1])
-        if math.isfinite(limits.torque):
-            for mine, piece in zip(of_segment, np.repeat(pieces, 2), strict=True):
-                # Where the torque peaks: as many places in every call.
-                peaks = mine[np.argsort(np.abs(samples.path[4, mine]))[-_PEAKS:]]
-                seen = samples.path[4, peaks], samples.slopes[4, peaks]
-                rows.within("torque", [int(piece)] * _PEAKS, *seen, limits.torque * _TIGHT)
+        for k, peaks, by in zip(self.loads, samples.peaks, samples.peak_slopes, strict=True):
+            of = np.repeat(pieces, peaks.size // len(pieces)).tolist()
+            name = LOADS[k]
+            limit = getattr(limits, name) * _TIGHT
+            rows.at_most(name, of, peaks.ravel(), by.reshape(peaks.size, -1), limit)
         every = max(1, len(samples.t) // _PLACES)
         for k, stage in enumerate(self.stages):
             mine = np.concatenate(of_segment[2 * k : 2 * k + 2])
@@ -305,7 +318,7 @@ class DriveProgram:
                 seen[key] = self.look(x)
             return seen[key]
 
-        best, success = look(x), False
+        best, found_at, success = look(x), x, False
         for _ in range(_TIGHTENED):
             found = minimize(
                 lambda x: (look(x).seconds, look(x).rising * self.scale),
@@ -326,18 +339,48 @@ class DriveProgram:
                 x = self._feasible(x, low, high, step)
             here = look(x)
             if here.rank() < best.rank():
-                best, success = here, bool(found.success)
+                best, found_at, success = here, x, bool(found.success)
             # Between the places that are bounded P may swing out.
             off = self._farthest(best.samples)
             if best.violation > BROKEN or off <= _DENSE * self.tolerance.path:
                 break
             self.width *= _DENSE**2 * self.tolerance.path / off
             seen.clear()
-            best = look(x)
+            best, found_at = look(x), x
         worst = int(np.argmin(best.values))
+        pieces = tuple(piece for stage in self.stages for piece in [stage.leg.piece] * 2)
         return SolvedDrive(
-            best.command, best.samples, best.violation, *best.names[worst], steps, success
+            best.command,
+            best.samples,
+            best.violation,
+            *best.names[worst],
+            steps,
+            success,
+            pieces,
+            *self._prices(found_at, best),
         )
+
+    def _prices(self, x: Array, look: Look) -> tuple[dict[str, float], float]:
+        """The prices of limits at an answer, by non-negative least squares over active bounds, and
+        its stationarity."""
+        low, high = np.array(self.bounds).T
+        active, unit = look.values < _ACTIVE, np.eye(len(x))
+        sides = unit[:, x - low < _ACTIVE], -unit[:, high - x < _ACTIVE]
+        gradient = look.rising * self.scale
+        normals = np.hstack([(look.slopes[active] * self.scale).T, *sides])
+        found, left = nnls(normals, gradient)
+        total = dict.fromkeys(("angle", "rate", *LOADS), 0.0)
+        for (name, _), one in zip(np.array(look.names, object)[active], found, strict=False):
+            if name in total:
+                total[name] += float(one)
+        limits, room = self.problem.limits, reach(self.problem)
+        prices = {name: one / getattr(limits, name) for name, one in total.items()}
+        # The room of the angle ends at one limit or the other.
+        prices["angle"] = total["angle"] / room if room == limits.angle else 0.0
+        S = limits.singularity
+        less = replace(self.problem, limits=replace(limits, singularity=S * (1 - _NUDGE)))
+        prices["singularity"] = -total["angle"] / room * (reach(less) - room) / (S * _NUDGE)
+        return prices, left / float(np.linalg.norm(gradient))
 
     def _farthest(self, samples: Samples) -> float:
         """The largest distance of P from the leg that it is on, at all samples, m."""

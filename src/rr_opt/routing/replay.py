@@ -18,6 +18,8 @@ from rr_opt.routing.path import Leg
 _CVODES = {"reltol": 1e-10, "abstol": 1e-12, "max_num_steps": 1_000_000}
 _RATE = 200.0
 """Samples a second."""
+_SAME = 1e-9
+"""s: times that differ by no more are one."""
 _APART = 2e-3
 """m: points of the path from which distances are measured."""
 
@@ -32,6 +34,7 @@ class RouteReplay:
     path       largest distance of P from the path, m
     reached    extreme of each limited quantity: rate (rad/s), angle (rad), torque (N m),
                singularity (least S1, m), grip (largest side force of an axle over the load on it)
+    when       it is reached, s
     excess     by how much the worst limit is exceeded, relative to it; negative if all are kept
     """
 
@@ -41,6 +44,7 @@ class RouteReplay:
     speed: float
     path: float
     reached: dict[str, float]
+    when: dict[str, float]
     excess: float
 
 
@@ -54,18 +58,10 @@ def replay(
 ) -> RouteReplay:
     """Simulate a command; turned: heading of platform 1 at the start against that of the path, rad;
     heading: the one it is to have at the end, rad."""
-    robot = problem.robot
     driven = simulate(problem, command, start, turned)
     end = legs[-1].end
-    fine = command.at(np.linspace(0, command.seconds, max(len(driven.t), 10) * 10))
-    S1 = robot.platform1.c * np.cos(fine[0]) + robot.platform2.c
-    reached = {
-        "rate": float(np.abs(fine[1]).max()),
-        "angle": float(np.abs(fine[0]).max()),
-        "torque": float(np.abs(driven.torque).max()),
-        "singularity": float(S1.min()),
-        "grip": max(grip_needed(problem, command, driven)),
-    }
+    found = peaks(problem, command, driven)
+    reached = {name: value for name, (value, _) in found.items()}
     return RouteReplay(
         driven,
         math.hypot(driven.x[-1] - end.x, driven.y[-1] - end.y),
@@ -73,17 +69,38 @@ def replay(
         abs(float(driven.v[-1])),
         float(distances(legs, driven.x, driven.y).max()),
         reached,
+        {name: when for name, (_, when) in found.items()},
         problem.limits.worst(reached)[1],
     )
 
 
-def grip_needed(problem: Problem, command: Command, driven: Trajectory) -> tuple[float, float]:
-    """Of axles 1 and 2 the largest side force over the load on them, at all samples."""
-    dynamics = dynamics_of(problem.robot)
-    p = np.tile(dynamics.values(problem.robot)[:, None], len(driven.t))
-    sides = dynamics.grip(driven.v[None], *command.at(driven.t)[:, None], p)
-    one, two = (float(np.abs(np.asarray(side)).max()) for side in sides)
-    return one, two
+def peaks(problem: Problem, command: Command, driven: Trajectory) -> dict[str, tuple[float, float]]:
+    """The extreme of each limited quantity and when it is reached, s: between samples at the vertex
+    of a parabola, and on either side of a knot, where the acceleration jumps."""
+    robot, dynamics = problem.robot, dynamics_of(problem.robot)
+    p = dynamics.values(robot)
+    found: dict[str, tuple[float, float]] = {}
+    for u, begin in zip(command.segments.T, command.times, strict=False):
+        first, last = np.searchsorted(driven.t, [begin - _SAME, begin + u[7] + _SAME])
+        t = driven.t[first:last]
+        path = np.array(blended((t - begin) / u[7], u, np.sin, np.cos))
+        inputs = [driven.v[None, first:last], *path[:, None], np.tile(p[:, None], len(t))]
+        loads = dynamics.motion(*inputs)[3], *dynamics.grip(*inputs)
+        torque, *grips = (np.abs(np.asarray(load)).ravel() for load in loads)
+        S1 = robot.platform1.c * np.cos(path[0]) + robot.platform2.c
+        sizes = [("angle", np.abs(path[0])), ("rate", np.abs(path[1])), ("singularity", -S1)]
+        for name, size in (*sizes, ("torque", torque), *(("grip", grip) for grip in grips)):
+            k = int(size.argmax())
+            value, when = float(size[k]), float(t[k])
+            if 0 < k < len(t) - 1:
+                left, right = size[k - 1] - size[k], size[k + 1] - size[k]
+                moved = 0.5 * (left - right) / min(left + right, -1e-300)
+                value -= 0.25 * (left - right) * moved
+                when += moved * (t[k + 1] - t[k])
+            if value > found.get(name, (-math.inf, 0.0))[0]:
+                found[name] = float(value), float(when)
+    least, when = found["singularity"]
+    return {**found, "singularity": (-least, when)}
 
 
 def distances(legs: tuple[Leg, ...], x: Array, y: Array) -> Array:
