@@ -109,6 +109,10 @@ def test_a_limit_that_binds(name, limit):
     assert less
     assert more
     assert row.shadow_price == pytest.approx((less - more) / (0.004 * limit), rel=0.01)
+    assert not found.warnings
+    assert found.plan.drive
+    stopped = replace(found.plan, drive=replace(found.plan.drive, stationarity=0.1))
+    assert "shadow prices" in replace(found, plan=stopped).warnings[0]
     written = {one["name"]: one for one in found.record()["limits"]}
     assert written[name]["shadow_price"] == row.shadow_price
 

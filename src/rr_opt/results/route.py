@@ -32,6 +32,8 @@ from rr_opt.version import __version__
 
 _RATE = 125.0
 """Set points a second."""
+_OPTIMAL = 1e-2
+"""The stationarity up to which prices are good to some per cent."""
 _WIDTH = 100
 """Of lines of C."""
 
@@ -163,9 +165,12 @@ class DrivenRoute(Result):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Which effects of the robot the drive ignores, and grip that wheels rarely have."""
-        grip = self.replay.reached["grip"] if self.replay else 0.0
-        return (*ignored_effects(self.robot), *slippery(grip))
+        """Which effects of the robot the drive ignores, grip that wheels rarely have, and shadow
+        prices that are not to be relied on."""
+        drive, grip = self.plan.drive, self.replay.reached["grip"] if self.replay else 0.0
+        short = drive is not None and drive.stationarity > _OPTIMAL
+        prices = "The solver stopped short of an optimum: shadow prices are not to be relied on."
+        return (*ignored_effects(self.robot), *slippery(grip), *([prices] if short else []))
 
     def _record(self) -> dict[str, Any]:
         plan, replay, command = self.plan, self.replay, self.command
