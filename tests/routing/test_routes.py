@@ -27,7 +27,8 @@ def test_rows_are_those_of_the_routes(file, tmp_path, monkeypatch):
     ahead, tight = driven.rows
     alone = rr.route(tmp_path / "ahead.yaml").record()
     assert ahead.keys() == alone.keys() | {"cpu_seconds"}
-    assert ahead["seconds"] == pytest.approx(alone["seconds"])
+    # With more threads sums are rounded otherwise, and the solver ends elsewhere in its tolerance.
+    assert ahead["seconds"] == pytest.approx(alone["seconds"], rel=1e-4)
     assert tight["status"] == "infeasible"
     assert "piece 1" in driven.warnings[0]
 
