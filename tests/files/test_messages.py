@@ -40,11 +40,13 @@ MESSAGES = {
         "Read 1. Expected true or false. Write it, or delete the key."
     ),
     "gait:": "Read nothing. Expected keys with values under it. Write it, or delete the key.",
-    "gait: {period: -1}": ("Read -1. Expected a number in s above 0. Write for example `1.2 s`."),
-    "gait: {period: -2 min}": (
-        "Read '-2 min', -120 s. Expected a number in s above 0. Write for example `1.2 s`."
+    "gait: {period: -1}": (
+        "Read -1. Expected a number in s at least 0.01. Write for example `1.2 s`."
     ),
-    "gait: {period: .inf}": "Read .inf. Expected a number in s above 0.",
+    "gait: {period: -2 min}": (
+        "Read '-2 min', -120 s. Expected a number in s at least 0.01. Write for example `1.2 s`."
+    ),
+    "gait: {period: .inf}": "Read .inf. Expected a number in s at least 0.01.",
     "gait: {offset: .inf}": "Read .inf. Expected a number in rad that is finite.",
     "gait: {offset: 1e308}": "Read 1e+308, more than any quantity. Expected a number in rad",
     "gait: {period: 3 m}": (

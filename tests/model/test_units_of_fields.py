@@ -60,6 +60,7 @@ def test_a_limit_that_is_left_out_is_the_servos():
         (lambda: Limits(rate="30 Hz"), "Limits.rate: Read '30 Hz', a frequency. Expected"),
         (lambda: SineGait("0.5", "-1 s"), "SineGait.period: Read '-1 s', -1 s. Expected a number"),
         (lambda: SineGait("0.5", "1 us"), "Expected a number in s at least 0.01."),
+        (lambda: GaitBounds(period=("1 us", "1 s")), "Expected a number in s at least 0.01."),
         (lambda: GaitBounds(period=(3, 1)), "GaitBounds.period: Read (3, 1), whose low end is"),
         (lambda: GaitBounds(period=(1, 2, 3)), "a list of 3. Expected one number, which fixes it"),
         (lambda: Platform("5 ()", 1, 1, 1, 1, 1), "Platform.m: Read '5 ()'. Its unit cannot be"),

@@ -9,7 +9,7 @@ from typing import Literal
 
 from rr_opt.model.ballast import About, By, Loads, inertia_ratio
 from rr_opt.model.fields import SI, Bounds, Count, Interval, OptionalSI, Range, data, declared
-from rr_opt.model.gait import AMPLITUDE, OFFSET
+from rr_opt.model.gait import AMPLITUDE, OFFSET, PERIOD
 from rr_opt.model.robot import ANGLE_LIMIT, RATE_LIMIT, TORQUE_LIMIT, Robot
 from rr_opt.model.servo_command import CommandBounds
 from rr_opt.units import Quantity
@@ -32,9 +32,7 @@ class GaitBounds:
     """
 
     amplitude: Bounds = declared(Range(AMPLITUDE), "Amplitude, rad.", default=Interval(0.05, 2.6))
-    period: Bounds = declared(
-        Range(Quantity("s", "1.2 s", above=0)), "Period, s.", default=Interval(0.3, 3.0)
-    )
+    period: Bounds = declared(Range(PERIOD), "Period, s.", default=Interval(0.3, 3.0))
     offset: Bounds = declared(
         Range(OFFSET),
         "Offset, rad: phi swings about it, and if it is not 0 the robot turns.",
