@@ -132,11 +132,17 @@ def test_the_page_leads_the_files_and_the_figures_end_them(tmp_path):
     assert [path.name for path in written] == ["report.html", "record.json", "drawn.svg"]
 
 
-@pytest.mark.parametrize("sign", ["=", "+", "-", "@", "\t", "\r", "＝"])
+@pytest.mark.parametrize("sign", ["=", "+", "-", "@", "\t", "\n", "＝"])
 def test_a_text_is_no_formula_in_a_spreadsheet(sign):
     text = csv_text(["a", "b"], [(f'{sign}HYPERLINK("x")', -1.5), ("a=b", -1)])
     rows = list(csv.reader(io.StringIO(text, newline="")))
     assert rows == [["a", "b"], [f'\'{sign}HYPERLINK("x")', "-1.5"], ["a=b", "-1"]]
+
+
+@pytest.mark.parametrize("end", ["\n", "\r", "\r\n"])
+def test_a_line_that_ends_in_a_text_ends_no_row(end):
+    text = csv_text(["a", "b"], [(f"name{end}=1+1", 1)])
+    assert text == 'a,b\n"name\n=1+1",1\n'
 
 
 def test_csv_leaves_empty_what_is_not_there():

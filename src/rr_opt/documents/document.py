@@ -86,8 +86,9 @@ def cell_text(cell: Cell) -> str:
 
 def csv_text(names: Sequence[str], rows: Iterable[Sequence[Any]], digits: int = 9) -> str:
     """Rows as CSV under a header row: numbers to `digits` digits, empty for None and NaN."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
+    # Every end of a line becomes "\n"; the writer's own, "\r\n", has a cell with either quoted.
+    text = io.StringIO(newline=None)
+    writer = csv.writer(text)
     writer.writerow(names)
     writer.writerows([_plain(cell, digits) for cell in row] for row in rows)
     return text.getvalue()
