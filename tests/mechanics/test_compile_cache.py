@@ -173,6 +173,14 @@ def test_without_a_cache_folder_code_is_compiled_for_the_process(tmp_path, cache
     assert answer(make=True) == 42
 
 
+def test_a_user_without_a_home_has_no_cache_folder(cache, monkeypatch):
+    monkeypatch.delenv("XDG_CACHE_HOME")
+    monkeypatch.delenv("HOME")
+    monkeypatch.setattr(os.path, "expanduser", lambda path: path)  # no entry in /etc/passwd
+    assert answer(make=False) is None
+    assert answer(make=True) == 42
+
+
 def test_the_folder_of_a_process_is_private_and_removed(tmp_path):
     code = (
         "from rr_opt.mechanics.compile_cache import _process_folder\n"

@@ -83,8 +83,8 @@ def _processor() -> str:
 
 def _user_folder() -> Path | None:
     """The user's cache folder; None where another user could write."""
-    base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
     try:
+        base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
         # Resolved once: a link that changes after the check leads nowhere else.
         folder = Path(base).resolve() / "rr-opt"
         for missing in [one for one in (*folder.parents[::-1], folder) if not one.exists()]:
