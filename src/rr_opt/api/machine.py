@@ -1,8 +1,10 @@
 """Experiments with a machine other than the Roller Racer."""
 
+from __future__ import annotations
+
 import math
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 from rr_opt.files.issue import InvalidFileError, Issue, has_errors
 from rr_opt.files.machine_file import machine_plan, read_machine_plan
@@ -16,6 +18,9 @@ from rr_opt.results.machine_diagnosis import ExplainedMachine
 from rr_opt.results.machine_inspection import InspectedMachine
 from rr_opt.results.result import Progress, quiet
 from rr_opt.sysid.diagnosis import Diagnosis
+
+if TYPE_CHECKING:
+    from rr_opt.sysid import machine as sysid
 
 
 def machine_of(path: str | Path) -> Machine | None:
@@ -69,7 +74,7 @@ def diagnose_machine(experiment: MachineExperiment, progress: Progress = quiet) 
     return ExplainedMachine(experiment.name, experiment.sha256, experiment, found, model.horizon)
 
 
-def identified(model: Any, kind: str, progress: Progress) -> Diagnosis:
+def identified(model: sysid.Machine, kind: str, progress: Progress) -> Diagnosis:
     """The diagnosis of a robot or another machine. Raises NotConvergedError likewise."""
     from rr_opt.sysid.diagnose import diagnose
 

@@ -152,7 +152,8 @@ def covariance(D: Array, B: Array) -> tuple[Array, Array]:
 
 RATIOS = (1e-7, 1e5)
 """Bounds of q over the variance of a sample, in steps of time. Below the first, arithmetic suffers;
-a spline of that strength still takes up 1 Hz at 100 samples a second."""
+a spline of that strength still takes up 1 Hz at 100 samples a second. At the second the noise is
+next to none beside the motion."""
 
 _FEWEST, _WARM = 90, 300
 """Samples needed, and those after which the filter's start from rest is forgotten at the first

@@ -39,10 +39,12 @@ def _best(given: Evidence, columns: tuple[int, ...]) -> tuple[float, float]:
         return given.slip_of(_earlier(given, columns, steps * given.step)).size
 
     # By whole steps: in between, the noise is smoothed, which looks like a better fit.
-    best, apart, grid, sizes = 0.0, max(most, 1.0), np.array([-np.inf, 0.0]), np.zeros(0)
-    while np.diff(grid).max() > 1:
+    best, apart = 0.0, max(most, 1.0)
+    while True:
         grid = np.unique(np.round(best + np.linspace(-apart, apart, _TRIES)))
         sizes = np.array([left(one) for one in grid])
+        if np.diff(grid).max() <= 1:
+            break
         best, apart = float(grid[int(np.argmin(sizes))]), max(1.0, np.ceil(2 * apart / _TRIES))
     at = int(np.clip(np.argmin(sizes), 1, len(grid) - 2))
     low, middle, high = sizes[at - 1 : at + 2] ** 2
