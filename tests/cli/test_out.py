@@ -32,6 +32,15 @@ def test_a_run_that_fails_leaves_no_folder(run, tmp_path, arguments):
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.parametrize("target", ["nothing", "out"])
+def test_a_link_to_nothing_is_refused_before_anything_is_solved(run, tmp_path, target):
+    (tmp_path / "out").symlink_to(target)
+    done = run("maximize-speed", "--out", "out")
+    assert done.exit_code == 2
+    assert "out is not a folder. Give another place with --out." in done.stderr
+    assert not done.stdout
+
+
 @pytest.mark.parametrize("verb", ["maximize-speed", "sweep", "simulate"])
 def test_a_file_is_no_folder(run, tmp_path, verb):
     (tmp_path / "file").write_text("")

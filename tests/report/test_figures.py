@@ -51,6 +51,11 @@ def test_path_ends_with_the_robot_and_keeps_poses_apart(answer):
     assert len(ax.patches) >= 9
 
 
+def test_a_long_way_has_few_robots_on_it(answer):
+    motion = along_travel(repeated(answer.replay.steady, 1000))
+    assert 15 <= len(instants(motion, 0.2)) <= 25
+
+
 def test_cycle_shows_the_limit_that_is_near(answer):
     rows = list(Figure().subplots(4, 1))
     cycle(rows, answer.replay.steady, answer.optimum.problem.limits)

@@ -36,7 +36,10 @@ def file_for_result(file: Path) -> Path:
 
 def _writable(asked: Path, folder: Path) -> Path:
     """`asked`, if files can be written to `folder`, or it can be made where it would be."""
-    existing = next(place for place in (folder, *folder.absolute().parents) if place.exists())
+    # A link to nothing is there as well, and no folder can be made in its place.
+    existing = next(
+        place for place in (folder, *folder.absolute().parents) if os.path.lexists(place)
+    )
     if not existing.is_dir():
         raise InputError(
             f"{asked} cannot be made: {existing} is not a folder. Give another place with --out."

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rr_opt.model.experiment import Experiment, Run
+from rr_opt.model.experiment import CHANNELS, Experiment, Run
 from rr_opt.outcome import InputError
-from rr_opt.recordings.experiment import usable
+from rr_opt.recordings.experiment import _rows, _same, usable
 from rr_opt.recordings.inspection import Circumstances, inspect
 from tests.recordings.nuisances.spoilt import GAIT, NOISE, ROBOT, recording
 
@@ -37,6 +37,33 @@ def test_a_copy_is_no_evidence():
         kept, left_out = usable(experiment((copy, "holdout"), (one, "fit"), (other, "holdout")))
         assert [run.name for run in kept.runs] == ["one.csv", "three.csv"]
         assert "two.csv: Read the same motion as one.csv" in left_out[0]
+
+
+def placed(one, shift, angle):
+    """The same recording in another frame."""
+    way = (one.values["x"] + 1j * one.values["y"]) * np.exp(1j * angle) + shift
+    psi = one.values["psi"] + angle
+    return replace(
+        one, name="two.csv", values={**one.values, "x": way.real, "y": way.imag, "psi": psi}
+    )
+
+
+def test_a_copy_in_another_frame_is_no_evidence():
+    one, other = recording("one.csv"), recording("three.csv", seed=1)
+    cut_and_turned = placed(cut(one, slice(500, 1500)), 0.3j, 2.0)
+    for copy in (placed(one, 1.0, 0.0), placed(one, 0.0, 0.5), cut_and_turned):
+        kept, left_out = usable(experiment((copy, "holdout"), (one, "fit"), (other, "holdout")))
+        assert [run.name for run in kept.runs] == ["one.csv", "three.csv"]
+        assert "two.csv: Read the same motion as one.csv" in left_out[0]
+
+
+def test_steady_runs_with_little_noise_are_no_copies():
+    one, two = (
+        replace(recording(f"{n}.csv", seed=n), sigma=dict.fromkeys(CHANNELS, np.full(2001, 0.1)))
+        for n in range(2)
+    )
+    turned = replace(placed(two, 0.3, 1.0), name="two.csv")
+    assert not _same(_rows(one), _rows(turned))
 
 
 def test_where_nothing_is_left_to_fit_it_says_why():

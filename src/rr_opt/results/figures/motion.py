@@ -80,6 +80,8 @@ def cycles_to_show(robot: Robot, cycle: Cycle) -> int:
 
 _POINTS = 6000
 """Of a path that is drawn."""
+_POSES = 20
+"""Of the robot, along the diagonal of what is drawn."""
 
 
 def path(ax: Axes, robot: Robot, motion: Trajectory, speed: float, period: float) -> Axes:
@@ -103,12 +105,17 @@ def path(ax: Axes, robot: Robot, motion: Trajectory, speed: float, period: float
 
 
 def instants(motion: Trajectory, length: float) -> list[int]:
-    """Indices of poses at least 1.3 robot lengths apart, the last among them."""
+    """Indices of poses at least 1.3 robot lengths apart, the last among them.
+
+    On a long way they are farther apart: more than some ten hide the path, and take seconds to draw.
+    """
     last = len(motion.x) - 1
+    size = math.hypot(np.ptp(motion.x), np.ptp(motion.y))
+    apart = max(1.3 * length, size / _POSES)
     chosen = [last]
     for i in range(last - 1, -1, -1):
         near = [math.hypot(motion.x[i] - motion.x[j], motion.y[i] - motion.y[j]) for j in chosen]
-        if min(near) >= 1.3 * length:
+        if min(near) >= apart:
             chosen.append(i)
     return chosen[::-1]
 
