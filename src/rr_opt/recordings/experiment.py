@@ -298,9 +298,7 @@ def _rows(recording: Recording) -> tuple[set[bytes], set[bytes]]:
         return rows, set()
     step = np.diff(y("x") + 1j * y("y")) * np.exp(-1j * y("psi")[:-1])
     seen = (step.real, step.imag, np.diff(y("psi")), y("phi")[:-1])
-    return rows, _cells(
-        [(one, sigma[name][:-1]) for one, name in zip(seen, CHANNELS, strict=True)]
-    )
+    return rows, _cells([(one, sigma[name][:-1]) for one, name in zip(seen, CHANNELS, strict=True)])
 
 
 def _cells(columns: Sequence[tuple[Array, Array]]) -> set[bytes]:

@@ -107,7 +107,7 @@ def path(ax: Axes, robot: Robot, motion: Trajectory, speed: float, period: float
 def instants(motion: Trajectory, length: float) -> list[int]:
     """Indices of poses at least 1.3 robot lengths apart, the last among them.
 
-    On a long way they are farther apart: more than some ten hide the path, and take seconds to draw.
+    On a long way they are farther apart: many hide the path, and take seconds to draw.
     """
     last = len(motion.x) - 1
     size = math.hypot(np.ptp(motion.x), np.ptp(motion.y))
