@@ -43,6 +43,15 @@ def test_what_is_wrong_is_listed_at_once(tmp_path):
     assert all("engine" in one for one in issues)
 
 
+def test_a_copy_is_no_evidence(tmp_path):
+    folder = write(tmp_path, dry=0.0, runs=2, seconds=2.0)
+    head, *rows = (folder / "run0.csv").read_text().splitlines()
+    (folder / "run1.csv").write_text("\n".join([head, *rows[100:300]]))
+    issues = [str(one) for one in rr.lint(folder) if one.level == "error"]
+    assert len(issues) == 1
+    assert "Read the same motion as run0.csv. Expected another run" in issues[0]
+
+
 def test_a_machine_that_there_is_not(tmp_path):
     file = write(tmp_path, dry=0.0, runs=2, seconds=2.0) / "experiment.yaml"
     file.write_text(file.read_text().replace("machine: pendulum", "machine: pendulu"))

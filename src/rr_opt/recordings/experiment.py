@@ -18,12 +18,12 @@ from rr_opt.files.experiment_file import ExperimentPlan, PlannedRun, named_files
 from rr_opt.files.issue import InvalidFileError, Issue, has_errors
 from rr_opt.files.source import EXPERIMENT, experiment_path, recording_path
 from rr_opt.messages import shown
-from rr_opt.model.experiment import CHANNELS, Experiment, Layout, Recording, Run
+from rr_opt.model.experiment import Experiment, Layout, Run
 from rr_opt.model.parameters import Uncertainty
 from rr_opt.outcome import InputError
+from rr_opt.recordings.copies import Rows, copied, rows_of
 from rr_opt.recordings.inspection import Circumstances, Inspection, in_file, read_both
 from rr_opt.recordings.markers.calibration import Calibration, calibration
-from rr_opt.recordings.noise import spread_at
 from rr_opt.recordings.readers import MarkerData, ReadOptions, read_file
 from rr_opt.recordings.readers.netcdf import commanded_gait
 from rr_opt.recordings.warnings import Notice, notice
@@ -267,48 +267,13 @@ def usable(experiment: Experiment) -> tuple[Experiment, tuple[str, ...]]:
 
 def _left_out(experiment: Experiment) -> Iterator[tuple[str, str]]:
     """Names, and why they are left out. What is to be fitted goes before what is held out."""
-    seen: list[tuple[str, Sequence[set[bytes]]]] = []
+    seen: list[tuple[str, Rows]] = []
     for run in sorted(experiment.runs, key=lambda one: one.use != "fit"):
-        rows = _rows(run.recording)
+        rows = rows_of(run.recording)
         why = next((one for one in notices_of(run) if one.kind == "useless"), None)
-        copied = next((name for name, others in seen if _same(rows, others)), None)
-        if why is None and copied is not None:
-            why = notice("useless.copy", other=copied)
+        original = copied(rows, seen)
+        if why is None and original is not None:
+            why = notice("useless.copy", other=original)
         if why is not None:
             yield run.name, f"{run.name}: {why} It is left out."
         seen.append((run.name, rows))
-
-
-_ALIKE = 0.2
-"""Rows are the same whose values are equal to this part of their noise."""
-_SHARE = 0.5
-"""Of its rows that another recording has too: independent noise makes next to none."""
-
-
-def _rows(recording: Recording) -> tuple[set[bytes], set[bytes]]:
-    """What a copy shares with its original: the rows; and, however it was moved or turned, phi with
-    the step to the next row, seen from the robot.
-
-    There are no steps where a cell is wider than the noise: whatever drives steadily shares them.
-    """
-    y, sigma = recording.data, recording.sigma
-    rows = _cells([(y(name), sigma[name]) for name in CHANNELS])
-    place = ("x", "y", "psi")
-    if any(spread_at(y(one), 1) < _ALIKE * np.nanmedian(sigma[one]) for one in place):
-        return rows, set()
-    step = np.diff(y("x") + 1j * y("y")) * np.exp(-1j * y("psi")[:-1])
-    seen = (step.real, step.imag, np.diff(y("psi")), y("phi")[:-1])
-    return rows, _cells([(one, sigma[name][:-1]) for one, name in zip(seen, CHANNELS, strict=True)])
-
-
-def _cells(columns: Sequence[tuple[Array, Array]]) -> set[bytes]:
-    """Each row of values and their noise, to the cell of width _ALIKE that it is in."""
-    table = np.round(np.column_stack([y / (_ALIKE * sigma) for y, sigma in columns]))
-    known = np.isfinite(table).all(axis=1)
-    return {row.tobytes() for row in table[known] + 0.0}
-
-
-def _same(one: Sequence[set[bytes]], two: Sequence[set[bytes]]) -> bool:
-    return any(
-        len(a & b) > _SHARE * max(min(len(a), len(b)), 1) for a, b in zip(one, two, strict=True)
-    )

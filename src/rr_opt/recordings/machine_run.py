@@ -16,6 +16,7 @@ from rr_opt.model.experiment import Column
 from rr_opt.model.machine import Channel, MachineExperiment, MachineRun
 from rr_opt.outcome import InputError
 from rr_opt.recordings.cleaning import LARGEST
+from rr_opt.recordings.copies import Rows, copied, machine_rows_of
 from rr_opt.recordings.readers.text import decode, find_header, read_table
 
 _WILD = 8.0
@@ -40,14 +41,23 @@ _UPDATES = 50
 def machine_experiment(plan: MachinePlan) -> tuple[MachineExperiment, list[Issue]]:
     """The experiment with its runs, and all issues of the recordings; nothing is raised."""
     runs, issues = [], []
+    seen: list[tuple[str, Rows]] = []
     for k, one in enumerate(plan.recordings):
         try:
             run = _run(plan, one)
+            rows = machine_rows_of(run)
+            original = copied(rows, seen)
+            if original is not None:
+                raise InputError(
+                    f"Read the same motion as {original}. Expected another run: a copy is no "
+                    "evidence. Take one of the two away."
+                )
         except InputError as error:
             where = ("recordings", k, "file")
             issues.append(plan.document.error(where, str(error)))
             continue
         runs.append(run)
+        seen.append((run.name, rows))
         issues += [Issue("warning", "", text, None, str(one.file)) for text in run.doubts]
     return replace(plan.experiment, runs=tuple(runs)), issues
 

@@ -7,7 +7,8 @@ import pytest
 
 from rr_opt.model.experiment import CHANNELS, Experiment, Run
 from rr_opt.outcome import InputError
-from rr_opt.recordings.experiment import _rows, _same, usable
+from rr_opt.recordings.copies import copied, rows_of
+from rr_opt.recordings.experiment import usable
 from rr_opt.recordings.inspection import Circumstances, inspect
 from tests.recordings.nuisances.spoilt import GAIT, NOISE, ROBOT, recording
 
@@ -63,7 +64,7 @@ def test_steady_runs_with_little_noise_are_no_copies():
         for n in range(2)
     )
     turned = replace(placed(two, 0.3, 1.0), name="two.csv")
-    assert not _same(_rows(one), _rows(turned))
+    assert not copied(rows_of(turned), [("one.csv", rows_of(one))])
 
 
 def test_where_nothing_is_left_to_fit_it_says_why():
