@@ -98,6 +98,34 @@ Frame#\tTime\tr_acromion\t\t\tr_humerus_epicondyle\t\t\tr_radius_styloid\t\t\t\t
 """
 """opensim-org/opensim-models, arm26_elbow_flex.trc."""
 
+QUALISYS = """\
+NO_OF_FRAMES\t2000
+NO_OF_CAMERAS\t10
+NO_OF_MARKERS\t2
+FREQUENCY\t100
+NO_OF_ANALOG\t0
+ANALOG_FREQUENCY\t0
+DESCRIPTION\t--
+TIME_STAMP\t2026-01-19, 10:19:43.755\t2063631.96175450
+DATA_INCLUDED\t3D
+MARKER_NAMES\tNew 0000\tNew 0002
+TRAJECTORY_TYPES\tMeasured\tMeasured
+Frame\tTime\tNew 0000 X\tNew 0000 Y\tNew 0000 Z\tNew 0002 X\tNew 0002 Y\tNew 0002 Z\t
+1\t0.00000\t819.834\t277.770\t22.421\t694.169\t-183.362\t97.003
+2\t0.01000\t819.835\t277.770\t22.420\t694.163\t-183.351\t96.985
+3\t0.02000\t819.851\t277.778\t22.400\t694.176\t-183.368\t96.978
+"""
+"""reiv27/biomechanics, data/Measurement1.tsv: two of 15 markers."""
+
+
+def test_qualisys_markers(write):
+    data = read_file(write(QUALISYS))
+    assert isinstance(data, MarkerData)
+    assert data.labels == ("New 0000", "New 0002")
+    assert data.rate == 100
+    np.testing.assert_allclose(data.t, [0.0, 0.01, 0.02])
+    np.testing.assert_allclose(data.positions[2, 1], [0.694176, -0.183368, 0.096978])
+
 
 def test_motive_markers(write):
     data = read_file(write(MOTIVE_MARKERS))
