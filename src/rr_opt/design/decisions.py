@@ -1,17 +1,14 @@
 """The free decisions of a gait problem on a unit box, and the robots that they make.
 
-The turn that a problem asks for, as rows that a search can penalise.
-
-The curvature grows without bound where the mean velocity V passes by zero, and |V| has nearly a
-kink there. With the yaw rate omega and a length L the share
+The turn that a problem asks for is a row that a search can penalise. The curvature grows without
+bound where the mean velocity V passes by zero, and |V| has nearly a kink there. With the yaw rate
+omega and a length L the share
 
     s = omega L / sqrt((omega L)^2 + V^2)
 
 says the same and is smooth in V and omega. L is the radius that is asked for, so that s changes
 fastest where it matters; but at most some lengths of the robot, or it would be a step where left
 turns into right.
-
-The free decisions of a gait problem on a unit box, and what limits do to their bounds.
 
 For a sine, three of the limits bound the amplitude alone once period and offset are chosen:
 

@@ -1,10 +1,9 @@
 """What one interval of multiple shooting contributes: values and derivatives.
 
-An interval's functions as machine code, where a C compiler is at hand and it pays.
-
-CasADi's virtual machine takes some 4 ns an operation, and an interval with its derivatives has some
-30 000. Compiled they take a fifth of that, even unoptimised, as here: a compiler that optimises
-takes ten seconds over them instead of one, for code that is less than twice as fast.
+They are compiled where a C compiler is at hand and it pays. CasADi's virtual machine takes some 4
+ns an operation, and an interval with its derivatives has some 30 000. Compiled they take a fifth of
+that, even unoptimised, as here: a compiler that optimises takes ten seconds over them instead of
+one, for code that is less than twice as fast.
 """
 
 from __future__ import annotations

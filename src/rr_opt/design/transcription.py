@@ -1,13 +1,9 @@
 """The program of multiple shooting: its mesh, its unknowns and rows, names in, names out.
 
-The mesh of a program: its nodes, and where between them limits are held.
-
 A limit that holds at every node can be broken between two, and where a shape has many
 coefficients the solver sees to it that its peaks lie there. So phases at which an answer breaks a
 limit are added to those at which it is held, and it is solved again, until its peaks have nowhere
 to go.
-
-The order of unknowns and rows in the program: names in, names out.
 
 Unknowns are the decisions, the means over the period, and then, node by node for each name, the
 local ones. Rows are the continuity of each state, the means, the rows of the period and, node by

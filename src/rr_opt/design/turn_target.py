@@ -1,7 +1,5 @@
 """What turn a user asks for, what it asks of a gait, and both in words.
 
-What turn a user asks for, and what it asks of a gait.
-
 Left is positive, counter-clockwise seen from above, whichever way the robot drives. A heading
 change and the circle it is made on have one sign, so of the two the heading says it.
 """

@@ -3,10 +3,9 @@
 Its matrices are evaluated for all steps at once over NumPy arrays, which needs no compiler, and
 then multiplied up along the run.
 
-J'J of predicted runs against what was recorded: all that a least-squares step needs of them.
-
-J has the derivatives of what is seen, in sigmas, at every sample and channel with data: by the
-start, by what is asked for, any further columns, and last what the prediction is off.
+A least-squares step needs J'J of the runs against what was recorded. J has the derivatives of what
+is seen, in sigmas, at every sample and channel with data: by the start, by what is asked for, any
+further columns, and last what the prediction is off.
 """
 
 from __future__ import annotations

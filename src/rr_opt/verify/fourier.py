@@ -4,10 +4,9 @@ Samples x (n, K): n equal steps (n even) along the first axis, over one `span` (
 functions. A span is what a function repeats after. Over half a period of a straight gait some
 functions repeat and some change sign; the latter are `flipping` and repeat after two spans.
 
-The repeating solution of dv/dt = a v + b, with a and b sampled over a span.
-
-With dA/dt = a less its mean, A periodic, exp(-A) is the integrating factor. Two ways on: one
-exact for every harmonic, one that stays accurate however much A varies.
+The repeating solution of dv/dt = a v + b takes an integrating factor, exp(-A), where dA/dt is a
+less its mean and A is periodic. Two ways on: one exact for every harmonic, one that stays accurate
+however much A varies.
 """
 
 from collections.abc import Callable

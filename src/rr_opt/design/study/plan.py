@@ -1,12 +1,9 @@
 """In which order the cases of a study are solved, and from which neighbours' optima.
 
-Which cases' optima are one branch: one family of gaits that changes as the inputs do.
-
-Two neighbouring optima are of one branch if solving the one case from the other's optimum leads
-to its own, or, where this was not tried, if they look alike: the same direction, held by the same
-limits and bounds, their gaits near each other. A branch is all that is linked in this way.
-
-In which order the cases of a study are solved, and from whose optima.
+A branch is a family of gaits that changes as the inputs do. Two neighbouring optima are of one
+branch if solving the one case from the other's optimum leads to its own, or, where this was not
+tried, if they look alike: the same direction, held by the same limits and bounds, their gaits near
+each other. A branch is all that is linked in this way.
 
 Along each ordered axis the two ends and about every third step between them are anchors. Cases
 that are anchors along all axes are solved from cold starts, which look at every gait. Each other
