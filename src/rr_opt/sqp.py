@@ -127,7 +127,8 @@ def ascend(program: Program, start: Array, penalty: float = 10.0) -> Ascent:
         if violation <= FEASIBLE and not kept:
             # Values and prices on the way here can be a thousand times those here.
             kept, penalty, size, radius = True, least_penalty, smallest, _RADIUS
-        function, rows, _, names, _ = program.look(x + program.step * program.scale * stencil)
+        around = x + program.step * program.scale * stencil
+        function, rows, _, names, rounding = program.look(around)
         models = np.vstack([function, rows]) @ design.T
         if not np.isfinite(models).all():
             break
@@ -153,7 +154,7 @@ def ascend(program: Program, start: Array, penalty: float = 10.0) -> Ascent:
         else:
             radius = float(_FRACTIONS[best - 1]) * length
         # A step that its radius cuts short, or that falls short of its promise, says nothing.
-        noise = penalty * max(_ROUNDING, here.rounding)
+        noise = penalty * max(_ROUNDING, rounding)
         least = (_GAIN + noise) * size
         small = length <= _LENGTH or abs(gain if best == 1 else promise) <= least
         converged = length < (1 - _SETTLED) * reach and small
