@@ -299,11 +299,13 @@ class Terrain:
 
     def _lifted(self, gait: Array, nodes: int) -> Array:
         """The direction of V, rad, and the logarithm of the radius of a gait (4,). Of a gait that
-        drives the other way it is turned round: where V passes by zero the two are neighbours."""
+        drives the other way rather than sideways it is turned round: where V passes by zero the
+        two are neighbours."""
         cycle = self.setting.landscape.cycles(gait[:, None], nodes)
         V, E, omega = cycle.mean[:2, 0], cycle.mean[2:, 0], float(cycle.turn[0]) / gait[1]
         speed = max(float(np.hypot(*V)), STANDS)
-        V = -V if self._ahead and self.way * float(V @ E) < 0 else V
+        back = self._ahead and -self.way * float(V @ E) > abs(V[0] * E[1] - V[1] * E[0])
+        V = -V if back else V
         return np.array([math.atan2(V[1], V[0]), math.log(speed / max(abs(omega), 1e-12))])
 
     def _circle_rows(self, mean: Array, along: Array, beta: Array, unit: float) -> dict[str, Array]:
