@@ -51,3 +51,9 @@ def _tightest() -> Terrain:
 def test_a_start_that_is_hardly_on_the_wrong_side_is_not_turned_round():
     ascent, _ = climbed(_tightest(), TIGHTEST.round(8), 192)
     assert ascent.violation <= FEASIBLE
+
+
+def test_a_step_along_a_bent_layer_is_shortened_along_it():
+    ascent, _ = climbed(_tightest(), TIGHTEST, 768)
+    assert ascent.violation <= FEASIBLE
+    assert ascent.value > 1.004e-6
