@@ -147,8 +147,9 @@ def page(rows: list[dict], asked: dict[tuple[str, str], int]) -> tuple[list[str]
     lines += ["", *(f"`{name}`: {what}." for name, what in VERDICTS.items()), ""]
     for row in bad:
         lines.append(
-            f"- {row['kind']} {row['number']}: {row['verdict']}; answer {row['speed']:.6g} m/s, "
-            f"brute force {row['known']:.6g} m/s. {row['message'][:160]}"
+            f"- {row['kind']} {row['number']} of `{row['seed']}`: {row['verdict']}; "
+            f"answer {row['speed']:.6g} m/s, brute force {row['known']:.6g} m/s. "
+            f"{row['message'][:160]}"
         )
     return lines, ratios
 

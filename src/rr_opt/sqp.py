@@ -127,7 +127,9 @@ def ascend(program: Program, start: Array, penalty: float = 10.0) -> Ascent:
         if violation <= FEASIBLE and not kept:
             # Values and prices on the way here can be a thousand times those here.
             kept, penalty, size, radius = True, least_penalty, smallest, _RADIUS
-        function, rows, _, names, _ = program.look(x + program.step * program.scale * stencil)
+        around = x + program.step * program.scale * stencil
+        function, rows, _, names, rounding = program.look(around)
+        rounding = max(_ROUNDING, rounding)
         models = np.vstack([function, rows]) @ design.T
         if not np.isfinite(models).all():
             break
@@ -140,7 +142,7 @@ def ascend(program: Program, start: Array, penalty: float = 10.0) -> Ascent:
         dearest = float(np.abs(prices.rows).max(initial=0.0)) / size
         penalty = max(penalty, min(2 * dearest, DEAREST))
         length, reach = float(np.abs(step).max(initial=0.0)), radius
-        tried = _tried(program, x, step, models, prices, penalty * size)
+        tried = _tried(program, x, step, models, prices, penalty * size, rounding)
         merit = tried.merit
         best = int(merit.argmax())
         gain = float(merit[best] - merit[0])
@@ -153,7 +155,7 @@ def ascend(program: Program, start: Array, penalty: float = 10.0) -> Ascent:
         else:
             radius = float(_FRACTIONS[best - 1]) * length
         # A step that its radius cuts short, or that falls short of its promise, says nothing.
-        noise = penalty * max(_ROUNDING, here.rounding)
+        noise = penalty * rounding
         least = (_GAIN + noise) * size
         small = length <= _LENGTH or abs(gain if best == 1 else promise) <= least
         converged = length < (1 - _SETTLED) * reach and small
@@ -187,13 +189,20 @@ def _weighed(program: Program, points: Array, penalty: float) -> _Tried:
 
 
 def _tried(
-    program: Program, x: Array, step: Array, models: Array, prices: Prices, penalty: float
+    program: Program,
+    x: Array,
+    step: Array,
+    models: Array,
+    prices: Prices,
+    penalty: float,
+    rounding: float,
 ) -> _Tried:
-    """Fractions of a step, each brought nearer to the rows where the whole is off them."""
+    """Fractions of a step, each brought nearer to the rows where any is off them: where rows bend,
+    the straight way to a step that keeps them does not."""
     points = np.clip(x + _FRACTIONS[:, None] * program.scale * step, program.low, program.high)
     tried = _weighed(program, np.vstack([x, points]), penalty)
     for _ in range(_CORRECTIONS):
-        if tried.merit.argmax() == 1 or not tried.violation[1] > FEASIBLE:
+        if tried.merit.argmax() == 1 or not (tried.violation[1:] > rounding).any():
             break
         bent = _weighed(program, _corrected(program, models, prices, tried), penalty)
         better = bent.merit >= tried.merit

@@ -35,3 +35,25 @@ def test_few_steps(number: int, radius: float, start: tuple[float, ...], speed: 
     assert ascent.violation <= FEASIBLE
     assert ascent.value == pytest.approx(speed, rel=1e-3)
     assert ascent.iterations < 40
+
+
+# Amplitude, rad, period, s, offset, rad, and share of the ballast: on the tightest circle, at the
+# speed below which a robot stands, with V at right angles to the heading.
+TIGHTEST = np.array([0.26699561807, 1.31561913103, -0.07621937633, 0.46814106236])
+
+
+def _tightest() -> Terrain:
+    posed = replace(turning(draw(SEED, 50_001)), turn=round_(-0.038259))
+    box = decisions(posed)
+    return Terrain(settings_of(posed, box)[0], box, WAYS[posed.direction])
+
+
+def test_a_start_that_is_hardly_on_the_wrong_side_is_not_turned_round():
+    ascent, _ = climbed(_tightest(), TIGHTEST.round(8), 192)
+    assert ascent.violation <= FEASIBLE
+
+
+def test_a_step_along_a_bent_layer_is_shortened_along_it():
+    ascent, _ = climbed(_tightest(), TIGHTEST, 768)
+    assert ascent.violation <= FEASIBLE
+    assert ascent.value > 1.004e-6

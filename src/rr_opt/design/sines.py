@@ -23,9 +23,8 @@ WAYS = {"forward": 1, "backward": -1, "either": 0}
 FEWEST, _MOST = 96, 3072
 """Phases of a cycle."""
 _ORDER = 4
-_ERROR, _LEAST = {True: 1e-9, False: 1e-7}, 1e-4
-"""Wanted of speed and peak torque, relative; where friction is viscous (True) or not. What is less
-than _LEAST, m/s or N m, is wanted as exactly as that: of an even smaller part is rounding."""
+_ERROR = {True: 1e-9, False: 1e-7}
+"""Wanted of speed and peak torque, relative; where friction is viscous (True) or not."""
 _SENTENCES = {
     (True, True): "A local optimum within the solver's tolerance.",
     (True, False): "The solver stopped short of an optimum.",
@@ -65,8 +64,8 @@ def refine_sine(setting: Setting, candidate: Candidate) -> Candidate:
     while True:
         gait = candidate.gait
         end = np.array([gait.amplitude, gait.period, gait.offset, candidate.share])
-        seen, finer = (terrain.measured(end, n) for n in (nodes, 2 * nodes))
-        error = max(abs(a - b) / max(abs(b), _LEAST) for a, b in zip(seen, finer, strict=True))
+        (seen, _), (finer, sizes) = (terrain.measured(end, n) for n in (nodes, 2 * nodes))
+        error = float((np.abs(seen - finer) / sizes).max())
         if not error > wanted or nodes >= _MOST:
             return _settled(setting, replace(candidate, iterations=iterations))
         nodes = min(nodes * 2 ** max(1, math.ceil(math.log2(error / wanted) / _ORDER)), _MOST)

@@ -19,7 +19,7 @@ from rr_opt.design.climb import Merit
 from rr_opt.design.decisions import Decisions, Setting, TurnRows, reach_before_singularity
 from rr_opt.design.landscape import Cycles, dense
 from rr_opt.design.transcription import ROWS
-from rr_opt.model.problem import LEAST, Interval
+from rr_opt.model.problem import CANCELLED, LEAST, Interval
 from rr_opt.sqp import Ascent, Program, Seen
 
 _UNSETTLED = 10.0
@@ -30,6 +30,8 @@ _DENSER, _WITHIN = 4, 12
 """Factor of oversampling, by Fourier series, that shows a peak; phases to either side within which
 it is followed."""
 _AS_BADLY = 0.9
+_LEAST_TORQUE = 1e-4
+"""N m; errors of a smaller one are relative to this."""
 _WIDE = 0.05
 """Smallest amplitude by which a stencil is scaled, rad."""
 STANDS = 1e-6
@@ -297,11 +299,13 @@ class Terrain:
 
     def _lifted(self, gait: Array, nodes: int) -> Array:
         """The direction of V, rad, and the logarithm of the radius of a gait (4,). Of a gait that
-        drives the other way it is turned round: where V passes by zero the two are neighbours."""
+        drives the other way rather than sideways it is turned round: where V passes by zero the
+        two are neighbours."""
         cycle = self.setting.landscape.cycles(gait[:, None], nodes)
         V, E, omega = cycle.mean[:2, 0], cycle.mean[2:, 0], float(cycle.turn[0]) / gait[1]
         speed = max(float(np.hypot(*V)), STANDS)
-        V = -V if self._ahead and self.way * float(V @ E) < 0 else V
+        back = self._ahead and -self.way * float(V @ E) > abs(V[0] * E[1] - V[1] * E[0])
+        V = -V if back else V
         return np.array([math.atan2(V[1], V[0]), math.log(speed / max(abs(omega), 1e-12))])
 
     def _circle_rows(self, mean: Array, along: Array, beta: Array, unit: float) -> dict[str, Array]:
@@ -375,14 +379,19 @@ class Terrain:
             shares[name] = max(float(share.max()), shares.get(name, 0.0))
         return [name for name, share in shares.items() if share > 1 + _AS_BADLY * excess]
 
-    def measured(self, gait: Array, nodes: int) -> tuple[float, ...]:
+    def measured(self, gait: Array, nodes: int) -> Array:
         """Mean speed, m/s, peak torque, N m, and, if it counts, the cost of transport of a gait
-        (4,)."""
+        (4,); and what errors of these are relative to."""
         with np.errstate(all="ignore"):
             cycle = self.setting.landscape.cycles(gait[:, None], nodes)
         torque = np.abs(dense(cycle.torque, _DENSER))
-        cost = (self.cost(gait, nodes),) if self.setting.problem.economy else ()
-        return float(cycle.speed[0]), float(_heights(torque, torque.argmax(axis=0))[0]), *cost
+        speed, peak = float(cycle.speed[0]), float(_heights(torque, torque.argmax(axis=0))[0])
+        scale = max(abs(speed), CANCELLED * float(np.abs(cycle.v).max()))
+        seen = [(speed, scale), (peak, max(peak, _LEAST_TORQUE))]
+        if self.setting.problem.economy:
+            cost = self.cost(gait, nodes)
+            seen.append((cost, cost * scale / abs(speed)))
+        return np.array(seen).T
 
     def cost(self, gait: Array, nodes: int) -> float:
         """Cost of transport of a gait (4,)."""

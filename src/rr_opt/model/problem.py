@@ -68,6 +68,12 @@ class RatioChoice:
 LARGEST_EXCESS = 1e-4
 """By so much, relative to it, a gait may go over a limit and still counts as keeping it."""
 
+CANCELLED = 1e-3
+"""Share of the largest speed along a cycle below which the way to and fro nearly cancels. An error
+of the mean speed is then relative to that share. CVODES keeps 1e-12 of the largest speed in each of
+up to a thousand steps: a mean is known to 1e-9 of it, so 1e-6 of the mean can be asked for down to
+here."""
+
 
 LEAST = ("singularity", "speed")
 """Limits below which something must not fall; of the others, above which it must not rise."""

@@ -29,6 +29,7 @@ from numpy.typing import ArrayLike
 
 from rr_opt.array import Array
 from rr_opt.model.gait import Gait
+from rr_opt.model.problem import CANCELLED
 from rr_opt.model.robot import Robot
 from rr_opt.motion.dynamics import dynamics_of
 from rr_opt.motion.integrators import TIGHTEST, cvodes, fixed_steps, whole_steps
@@ -130,9 +131,6 @@ def require_regular(robot: Robot, gait: Gait) -> None:
 
 _NEWTON_STEPS = 80
 _FIRST_STEP, _RUNAWAY = 0.1, 1e4  # m/s
-_CANCELLED = 1e-3
-"""Share of the largest speed that is left on average, below which the way to and fro nearly cancels
-and an error of either counts a thousandfold."""
 _FLAT = 1e-12
 """A slope of v(T) - v(0) over v(0) that is no smaller in size leaves Newton's step undefined."""
 
@@ -185,7 +183,7 @@ def reference_cycle(robot: Robot, gait: Gait, *, samples: int = 2048) -> SteadyC
     """The steady cycle by CVODES at tight tolerance. Raises as steady_cycle."""
     times = np.linspace(0.0, gait.period, whole_steps(gait, samples) + 1)
     steady = _close(robot, gait, lambda v0: cvodes(robot, gait, v0, times))
-    if abs(steady.speed) >= _CANCELLED * np.abs(steady.v).max():
+    if abs(steady.speed) >= CANCELLED * np.abs(steady.v).max():
         return steady
     return _close(robot, gait, lambda v0: cvodes(robot, gait, v0, times, TIGHTEST))
 

@@ -40,7 +40,7 @@ from rr_opt.results.motion import beyond_servo, trajectory_csv
 from rr_opt.results.result import Check, Result, picked
 from rr_opt.results.robust import Robust
 from rr_opt.verify.replay import Replay
-from rr_opt.verify.sweep import TOLERATED, SweepCheck
+from rr_opt.verify.sweep import SweepCheck
 
 if TYPE_CHECKING:
     # Heavy, and needed by few results.
@@ -209,9 +209,10 @@ class FastestGait(Result):
         checks = []
         if self.replay:
             error, excess = self.replay.error, self.replay.excess
+            allowed = LARGEST_REPLAY_ERROR * self.replay.allowance
             speed = (
                 f"Replay by CVODES: {1e3 * self.replay.speed:+.3f} mm/s, relative error "
-                f"{error:.1e} (tolerance {LARGEST_REPLAY_ERROR:.0e})."
+                f"{error:.1e} (tolerance {allowed:.0e})."
             )
             worst = (
                 f"none is exceeded by more than {excess:.1e} of its value "
@@ -220,7 +221,7 @@ class FastestGait(Result):
                 else "none is exceeded."
             )
             checks += [
-                Check(error <= LARGEST_REPLAY_ERROR, speed),
+                Check(error <= allowed, speed),
                 Check(excess <= LARGEST_EXCESS, f"Limits over the whole cycle: {worst}"),
             ]
             if self.optimum.best:
@@ -242,11 +243,12 @@ class FastestGait(Result):
             better = _sweep_sentence(self.sweep, self.problem.gait.shape, self.cost)
             checks.append(Check(self.sweep.better is None, better))
             if not math.isnan(self.sweep.error):
+                error, allowed = self.sweep.error, self.sweep.largest_error
                 own = (
                     f"The sweep's own model of the optimum: {1e3 * self.sweep.speed:+.3f} mm/s, "
-                    f"relative error {self.sweep.error:.1e} (tolerance {TOLERATED:.0e})."
+                    f"relative error {error:.1e} (tolerance {allowed:.0e})."
                 )
-                checks.append(Check(self.sweep.error <= TOLERATED, own))
+                checks.append(Check(error <= allowed, own))
             if self.cost:
                 error = abs(self.sweep.cost / self.cost - 1)
                 own = (

@@ -12,7 +12,7 @@ import numpy as np
 
 from rr_opt.array import Array
 from rr_opt.model.gait import Gait
-from rr_opt.model.problem import Limits
+from rr_opt.model.problem import CANCELLED, Limits
 from rr_opt.model.robot import Robot
 from rr_opt.motion.circle import Transient, circle_of, transient
 from rr_opt.motion.energy import energy
@@ -35,6 +35,8 @@ class Replay:
 
     speed      m/s, signed
     error      |speed - claimed| / |claimed|
+    allowance  what a tolerance of it is multiplied by: CANCELLED of the largest speed along the
+               cycle over |claimed|, at least 1
     reached    extreme of each limited quantity over the cycle: rate (rad/s), angle (rad),
                torque (N m), singularity (least S1, m), grip (largest of both axles), and, where
                one of them is limited, power (W), cost_of_transport and speed (m/s)
@@ -44,6 +46,7 @@ class Replay:
 
     speed: float
     error: float
+    allowance: float
     reached: dict[str, float]
     excess: float
     steady: SteadyCycle
@@ -73,7 +76,8 @@ def replay(robot: Robot, gait: Gait, limits: Limits, claimed: float) -> Replay:
         reached["speed"] = abs(steady.speed)
     _, excess = limits.worst(reached)
     error = abs(steady.speed - claimed) / abs(claimed)
-    return Replay(steady.speed, error, reached, excess, steady, grip)
+    allowance = max(1.0, CANCELLED * float(np.abs(steady.v).max()) / abs(claimed))
+    return Replay(steady.speed, error, allowance, reached, excess, steady, grip)
 
 
 PERIODS = 50

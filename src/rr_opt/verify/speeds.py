@@ -269,9 +269,9 @@ _SAMPLES, _MOST = 256, 8192
 _SETTLED = 1e-6
 
 
-def speed_of(robot: Robot, gait: Gait) -> float:
-    """The steady speed of a gait, signed, m/s, from more and more samples until more change
-    nothing.
+def speed_of(robot: Robot, gait: Gait) -> tuple[float, float]:
+    """The steady speed of a gait, signed, from more and more samples until more change nothing, and
+    what an error of it is relative to, m/s.
 
     The acceleration of a free gait jumps; a sample at a jump has the mean of both sides, with
     which the error falls with the square of the number of samples. What twice the samples will
@@ -280,14 +280,13 @@ def speed_of(robot: Robot, gait: Gait) -> float:
     smooth = gait.pieces == 1
     before, samples = math.nan, _SAMPLES if smooth else 4 * gait.pieces
     while True:
-        speed = _sampled_speed(robot, gait, samples)
-        error = abs(speed - before) / abs(speed) if speed else math.inf
-        if error <= _SETTLED or 2 * samples > _MOST:
-            return speed + (0.0 if smooth else (speed - before) / 3)
+        speed, scale = _sampled_speed(robot, gait, samples)
+        if abs(speed - before) <= _SETTLED * scale or 2 * samples > _MOST:
+            return speed + (0.0 if smooth else (speed - before) / 3), scale
         before, samples = speed, 2 * samples
 
 
-def _sampled_speed(robot: Robot, gait: Gait, samples: int) -> float:
+def _sampled_speed(robot: Robot, gait: Gait, samples: int) -> tuple[float, float]:
     t = np.arange(samples) / samples * gait.period
     bend = gait.acceleration(t)
     if gait.pieces > 1:
@@ -297,4 +296,6 @@ def _sampled_speed(robot: Robot, gait: Gait, samples: int) -> float:
     phi, rate, bend = (part[:, None] for part in angle)
     p = dynamics_of(robot).values(robot)[:, None]
     found = model_of(robot).along((phi, rate, bend), np.array([[gait.period]]), p, False)
-    return float(found.speed[0, 0]) if np.isfinite(found.error[0, 0]) else math.nan
+    if not np.isfinite(found.error[0, 0]):
+        return math.nan, math.nan
+    return float(found.speed[0, 0]), float(found.scale[0, 0])

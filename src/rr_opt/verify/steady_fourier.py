@@ -20,6 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rr_opt.array import Array
 from rr_opt.mechanics.code_generation import over_arrays
+from rr_opt.model.problem import CANCELLED
 from rr_opt.motion.dynamics import Dynamics
 from rr_opt.verify.compiled_cycles import CompiledCycles, Steady, compiled
 from rr_opt.verify.fourier import derivative, integral, peak, refined, solve, solve_stiff, tail
@@ -57,8 +58,8 @@ _COARSE = 64
 """Samples at which Newton's method starts; each doubling goes on from the last."""
 
 _STEPS, _COARSE_STEPS = 25, 8
-_SMALL, _TINY = 1e-3, 1e-12
-"""A speed below this share of the largest |v|, or below this in m/s, counts as this."""
+_TINY = 1e-12
+"""A speed below this, m/s, counts as this."""
 
 _DAMPED = -1e-9
 """Logarithm by which a disturbance of v shrinks over a span, at least; else v never settles."""
@@ -179,7 +180,7 @@ class SteadyFourier:
                 )
             speed, turn = _mean_speed(v, w, side, span, straight)
             top = np.abs(v).max(axis=0)
-            scale = np.maximum(np.abs(speed), _SMALL * top) + _TINY
+            scale = np.maximum(np.abs(speed), CANCELLED * top) + _TINY
             error = (tail(v, False) + tail(side, straight) + rounding * top) / scale
             error = np.where(np.isfinite(error) & np.isfinite(speed), error, np.inf)
             results = (speed, turn, peak(torque, straight), error, scale)

@@ -111,6 +111,8 @@ class SweepCheck:
     tolerated      of either
     speed          of the claimed gait, by the sweep's model, signed, m/s
     error          |speed - claimed|/|claimed|; NaN where the model cannot follow the gait's shape
+    largest_error  tolerated of that; both tolerances grow where a mean speed is what is left of the
+                   way to and fro
     cost           of transport of the claimed gait, by the sweep's model; NaN if it does not count
     """
 
@@ -121,6 +123,7 @@ class SweepCheck:
     tolerated: float
     speed: float
     error: float
+    largest_error: float = TOLERATED
     cost: float = math.nan
 
     @property
@@ -131,7 +134,7 @@ class SweepCheck:
     @property
     def passed(self) -> bool:
         """Nothing better was found, and the claimed gait has the claimed speed."""
-        return self.better is None and not self.error > TOLERATED
+        return self.better is None and not self.error > self.largest_error
 
 
 def sweep(
@@ -220,6 +223,8 @@ def check_optimum(
     everywhere = everywhere or sweep(problem)
     finalists, points = [everywhere.refined], everywhere.points
     gained, own_cost = math.nan, math.nan
+    here, scale = speed_of(robot_with(problem, ratio), gait)
+    allowance = max(1.0, scale / abs(speed))
     if isinstance(gait, SineGait):
         own = speeds(problem, gait.amplitude, gait.period, gait.offset, ratio, effort.fine)
         here = float(own.speed)
@@ -230,8 +235,6 @@ def check_optimum(
         if problem.economy:
             own_cost = cost_of_transport(problem, np.array(claimed))
         gained = end.merit / problem.merit(here, own_cost) - 1 if end else 0.0
-    else:
-        here = speed_of(robot_with(problem, ratio), gait)
     there = [one for one in finalists if one is not None]
     best = max(there, key=lambda one: one.merit, default=None)
     return SweepCheck(
@@ -239,9 +242,10 @@ def check_optimum(
         best=best,
         gap=1 - best.merit / problem.merit(speed, cost) if best else math.inf,
         gained=gained,
-        tolerated=effort.gained,
+        tolerated=effort.gained * allowance,
         speed=here,
         error=abs(here - speed) / abs(speed),
+        largest_error=TOLERATED * allowance,
         cost=own_cost,
     )
 
