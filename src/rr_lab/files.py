@@ -3,6 +3,7 @@
 import hashlib
 import json
 import secrets
+import zlib
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import PurePath
@@ -43,8 +44,17 @@ class Delivery:
         return f"{PurePath(plan.name).stem}-servo.csv"
 
 
-WRITTEN = "# Written by `rr-opt record`, which may write over it."
-"""The first line of the file."""
+_WRITTEN = "# Written by `rr-opt record`, which may write over it while it is unchanged: crc32 "
+
+
+def is_own(content: bytes) -> bool:
+    """Whether it is an experiment.yaml of `record` that nobody has changed."""
+    first, _, rest = content.partition(b"\n")
+    return first == _first_line(rest)
+
+
+def _first_line(rest: bytes) -> bytes:
+    return f"{_WRITTEN}{zlib.crc32(rest):08x}".encode()
 
 
 def experiment_text(case: Case, delivery: Delivery) -> str:
@@ -56,12 +66,13 @@ def experiment_text(case: Case, delivery: Delivery) -> str:
     if delivery.form != "csv":
         first, second = places(case.nominal)
         sections["markers"] = {"platform1": first, "platform2": second}
-    lines = [WRITTEN, "robot:"]
+    lines = ["robot:"]
     lines += [f"  {key}: {json.dumps(value)}" for key, value in _robot(case.nominal).items()]
     lines += [f"{key}: {json.dumps(value)}" for key, value in sections.items()]
     lines.append("recordings:")
     lines += [f"  - {json.dumps(_recording(plan, delivery))}" for plan in case.plans]
-    return "\n".join(lines) + "\n"
+    text = "\n".join(lines) + "\n"
+    return f"{_first_line(text.encode()).decode()}\n{text}"
 
 
 def _robot(robot: Robot) -> dict[str, Any]:
@@ -79,7 +90,7 @@ def _robot(robot: Robot) -> dict[str, Any]:
 
 
 def _platform(part: Platform) -> dict[str, float]:
-    return {name: getattr(part, name) for name in PLATFORM_SYMBOLS}
+    return {name: float(f"{getattr(part, name):.12g}") for name in PLATFORM_SYMBOLS}
 
 
 def _uncertainty(known: Mapping[str, Uncertainty]) -> dict[str, float | str]:

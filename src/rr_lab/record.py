@@ -8,13 +8,13 @@ from typing import Any
 from rr_lab.case import Case, Plan, stream
 from rr_lab.effects import effect_named
 from rr_lab.effects.hidden_effect import Parameter
-from rr_lab.files import WRITTEN, Delivery, Form, folder_of, seal_of, sealed_text
+from rr_lab.files import Delivery, Form, folder_of, is_own, seal_of, sealed_text
 from rr_lab.formats import drawn_clock
 from rr_lab.random_case import Request
 from rr_opt.api.load import load_robot, prototype, read_arguments
 from rr_opt.documents.archive import file_for_result, folder_for_results, write_bytes, write_text
 from rr_opt.files.source import EXPERIMENT
-from rr_opt.formatting import QUANTITIES
+from rr_opt.formatting import QUANTITIES, counted
 from rr_opt.model.experiment import Noise
 from rr_opt.model.gait import SineGait
 from rr_opt.model.robot import EffectUse, Robot
@@ -153,7 +153,8 @@ class Recorded(Result):
 
     def summary(self) -> str:
         """For a person."""
-        text = f"{self.folder}: {len(self.case.plans)} recordings, {len(self.files)} files\n"
+        recordings = counted(len(self.case.plans), "recording")
+        text = f"{self.folder}: {recordings}, {counted(len(self.files), 'file')}\n"
         if self.seal is None:
             return text
         return f"{text}sealed answer  {self.seal}\nSHA-256        {self.digest}\n"
@@ -220,10 +221,10 @@ def _require_apart(folder: Path, seal: Path | None) -> None:
 
 
 def _require_own(folder: Path) -> None:
-    """Raise InputError if an experiment is there that `record` did not write."""
+    """Raise InputError if an experiment is there that `record` did not write, or not so."""
     file = folder / EXPERIMENT
-    if file.is_file() and not file.read_bytes().startswith(WRITTEN.encode()):
+    if file.is_file() and not is_own(file.read_bytes()):
         raise InputError(
-            f"{file} was not written by `rr-opt record`, which would write over it. Give another "
-            "place with --out."
+            f"{file} was not written by `rr-opt record`, or changed since, and would be written "
+            "over. Give another place with --out, or delete it."
         )

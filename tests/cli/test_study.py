@@ -78,6 +78,13 @@ def test_a_file_that_changed_is_refused_until_restart(study, quick, tmp_path):
     assert float(table(tmp_path)[0]["period [s]"]) == pytest.approx(1.1)
 
 
+def test_a_fastest_case_beyond_the_servo_is_told(study, quick):
+    done = study(TWO.replace("25 rpm", "90 rpm"), "--no-figures")
+    assert done.exit_code == 0
+    assert "the fastest case exceeds its rate limit" in done.stderr
+    assert "exceeds" not in study(TWO, "--no-figures", "--restart").stderr
+
+
 def test_json_stands_alone_and_is_the_file(study, quick, tmp_path):
     done = study(TWO, "--json", "--no-figures")
     reported = json.loads(done.stdout)

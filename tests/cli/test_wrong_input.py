@@ -33,6 +33,13 @@ def test_wrong_input_exits_2(run, tmp_path, arguments):
         assert not done.stdout
 
 
+def test_a_recording_in_the_place_of_a_file_with_keys_is_told(run, tmp_path):
+    (tmp_path / "run.csv").write_text("t,x,y,psi,phi\n0,0,0,0,0\n")
+    done = run("lint", "run.csv")
+    assert done.exit_code == 2
+    assert "`rr-opt inspect` reads recordings." in done.output
+
+
 def test_the_message_names_the_key_and_the_one_meant(run, tmp_path):
     (tmp_path / "wrong.yaml").write_text("gait: {amplitud: 0.5}\n")
     done = run("maximize-speed", "wrong.yaml")

@@ -22,6 +22,9 @@ def test_driving_on_is_repeating(robot, offset):
     again = repeated(steady_cycle(robot, gait, steps=64 * 4), 3)
     for name in ("t", "x", "y", "psi", "phi", "v", "torque"):
         assert np.allclose(getattr(driven, name), getattr(again, name)[::4], atol=1e-8), name
+    fewer = repeated(steady_cycle(robot, gait, steps=64 * 4), 3, every=4)
+    for name in ("t", "x", "y", "psi", "phi", "v", "torque"):
+        assert np.allclose(getattr(fewer, name), getattr(again, name)[::4], atol=1e-12), name
 
 
 def test_rest_settles_to_the_steady_state(robot):

@@ -75,6 +75,9 @@ def test_files(turned, tmp_path):
     record = json.loads((tmp_path / "route.json").read_text())
     assert record["status"] == "optimal"
     assert record["seconds"] == pytest.approx(turned.seconds)
+    failed = replace(turned, plan=replace(turned.plan, status=rr.Status.NOT_CONVERGED))
+    assert "setpoints.csv" not in {file.name for file in failed.save(tmp_path / "failed")}
+    assert not any(one.shadow_price for one in failed.limits.values())
     points = np.genfromtxt(tmp_path / "setpoints.csv", delimiter=",", names=True)
     assert points["phi_rad"] == pytest.approx(turned.command.angle(points["t_s"]), abs=1e-6)
     assert np.abs(np.diff(points["phi_rad"])).max() <= PROBLEM.limits.rate / 125 * 1.001

@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any, NoReturn
 
 import yaml
@@ -19,6 +20,9 @@ from rr_opt.messages import shown
 
 KeyPath = tuple[str | int, ...]
 """The keys and list indices that lead to a value."""
+
+_TABLES = {".csv", ".tsv", ".trc", ".c3d", ".txt"}
+"""Suffixes of recordings."""
 
 _WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_-]{0,59}")
 
@@ -152,7 +156,9 @@ class _Reading:
                 "text" if isinstance(data, str) else "list" if isinstance(data, list) else "value"
             )
             read = "The file is empty" if data in (None, {}) else f"Read a {kind} without keys"
-            self._stop(f"{read}. Expected keys with values, such as `h: 0.020`.", line)
+            table = Path(self.file).suffix.lower() in _TABLES
+            hint = " `rr-opt inspect` reads recordings." if table else ""
+            self._stop(f"{read}. Expected keys with values, such as `h: 0.020`.{hint}", line)
         if self.issues:
             raise InvalidFileError(self.issues)
         return FileData(self.file, data, self.lines)

@@ -51,20 +51,24 @@ def rollout(robot: Robot, gait: Gait, seconds: float, start: Start, rate: float)
     return Trajectory(t, x, y, psi, gait.angle(t), v, torque_after(robot, gait, t, v))
 
 
-def repeated(steady: SteadyCycle, cycles: int) -> Trajectory:
-    """The steady cycle driven `cycles` times: each period is the last, moved rigidly."""
-    n = len(steady.t) - 1
+def repeated(steady: SteadyCycle, cycles: int, every: int = 1) -> Trajectory:
+    """The steady cycle driven `cycles` times: each period is the last, moved rigidly.
+
+    every: of so many samples of a period one is kept; the first and the last always are.
+    """
+    kept = np.arange(0, len(steady.t) - 1, every)
     P, psi = steady.x + 1j * steady.y, steady.psi
     step, turn = P[-1] - P[0], psi[-1] - psi[0]
     headings = turn * np.arange(cycles + 1)
     turned = np.exp(1j * headings)
     starts = P[0] + np.append(0.0, np.cumsum(turned[:-1] * step))
-    path = starts[:-1, None] + turned[:-1, None] * (P[:n] - P[0])
+    path = starts[:-1, None] + turned[:-1, None] * (P[kept] - P[0])
     path = np.append(path.ravel(), starts[-1])
-    heading = np.append((headings[:-1, None] + psi[:n]).ravel(), psi[0] + headings[-1])
-    t = np.arange(cycles * n + 1) * (steady.t[-1] / n)
+    heading = np.append((headings[:-1, None] + psi[kept]).ravel(), psi[0] + headings[-1])
+    begins = np.arange(cycles)[:, None] * steady.t[-1]
+    t = np.append((begins + steady.t[kept]).ravel(), cycles * steady.t[-1])
     phi, v, torque = (
-        np.append(np.tile(part[:n], cycles), part[0])
+        np.append(np.tile(part[kept], cycles), part[0])
         for part in (steady.phi, steady.v, steady.torque)
     )
     return Trajectory(t, np.real(path), np.imag(path), heading, phi, v, torque)

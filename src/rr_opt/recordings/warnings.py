@@ -139,7 +139,7 @@ steps.channel        warning  {channel} comes in steps of {step}, larger than it
 noise.few            warning  {channel} has too few consecutive samples to estimate its noise.
 noise.zero           warning  {channel} has no noise at all: is it computed, or constant?
 noise.large          warning  The noise of {channel} is {noise}, and {stated} {whose}. Every
-    difference larger than the stated noise counts as a mismatch. => {remedy}
+    difference beyond that counts as a mismatch. => {remedy}
 noise.small          warning  The noise of {channel} at the highest frequencies is {noise}, less
     than the {stated} that {whose}. {why} Smaller effects will not be found. => {remedy}
 colour.filtered      warning  The noise of {channel} is not white: at half the frequency it is
@@ -261,7 +261,7 @@ class Notice(str):
 def notice(code: str, **values: Any) -> Notice:
     """The notice with this code, its sentences filled with values."""
     entry = TABLE[code]
-    return Notice(f"{entry.sentence} {entry.remedy}".strip().format(**values), code)
+    return Notice(f"{entry.sentence} {entry.remedy}".format(**values).strip(), code)
 
 
 _UNITS = {

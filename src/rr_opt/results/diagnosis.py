@@ -264,7 +264,10 @@ def _summary_facts(one: ExplainedExperiment) -> Iterator[Fact]:
     if found.channel != "none":
         yield Fact("  shows in", found.channel.replace("_", " "))
     if one.where:
-        yield Fact("  where", one.where)
+        lit = next((each for each in found.stages if each.guilty), None)
+        other = lit is not None and lit.channel != found.channel
+        place = f"{tables.stage_name(lit)}: " if lit and other else ""
+        yield Fact("  where", f"{place}{one.where}")
     for finding in found.findings:
         yield from _finding(finding, found.verdict)
     proof = counted(len(one.proof), "held out recording") if one.marked else one.proven_on

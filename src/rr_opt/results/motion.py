@@ -1,7 +1,7 @@
 """What driving a gait gives: a simulated motion and its files, and the circle of the gait."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
 from functools import cached_property
 from pathlib import Path
@@ -62,7 +62,13 @@ class GaitResult(Result):
 
 def beyond_servo(servo: Servo, gait: Gait, torque: float) -> list[tuple[str, float, float]]:
     """Name, value and limit, SI, of what a gait of the joint needs and the servo cannot do."""
-    needed = {"angle": gait.peak_angle, "rate": gait.peak_rate, "torque": torque}
+    return beyond_limits(
+        servo, {"angle": gait.peak_angle, "rate": gait.peak_rate, "torque": torque}
+    )
+
+
+def beyond_limits(servo: Servo, needed: Mapping[str, float]) -> list[tuple[str, float, float]]:
+    """The same of peaks of angle (rad), rate (rad/s) and torque (N m) by name."""
     able = {name: getattr(servo, f"{name}_limit") for name in needed}
     return [
         (name, value, able[name])

@@ -151,11 +151,12 @@ class DrivenRoute(Result):
         """By name (angle, rate, torque, singularity, grip): the peak of the drive, where, and the
         shadow price."""
         drive, replay, rows = self.plan.drive, self.replay, dict[str, RouteLimit]()
+        good = self.status is Status.OPTIMAL  # what was not found has no price
         if drive is None or replay is None:
             return rows
         for name in LIMIT_NAMES:
             limit = getattr(self.plan.problem.limits, name)
-            price, when = drive.prices[name], replay.when[name]
+            price, when = drive.prices[name] if good else 0.0, replay.when[name]
             active = math.isfinite(limit) and abs(price * limit) > ACTIVE * drive.command.seconds
             segment = int(np.searchsorted(drive.command.times[1:-1], when))
             rows[name] = RouteLimit(
@@ -252,7 +253,7 @@ class DrivenRoute(Result):
         return written
 
     def _tables(self) -> Mapping[str, str]:
-        """trajectory.csv, and set points of the whole drive."""
+        """trajectory.csv, and set points of a drive that passes every check."""
         command = self.command
         if self.replay is None or command is None:
             return {}
@@ -263,7 +264,10 @@ class DrivenRoute(Result):
         points = doc.csv_text(
             ("t [s]", "phi [rad]", "phi [deg]", "count"), zip(*columns, strict=True)
         )
-        tables = {"trajectory.csv": trajectory_csv(self.replay.trajectory), "setpoints.csv": points}
+        tables = {"trajectory.csv": trajectory_csv(self.replay.trajectory)}
+        if self.status is not Status.OPTIMAL:
+            return tables
+        tables["setpoints.csv"] = points
         if self.feedback:
             tables["feedback.json"] = strict_json(plain(self.feedback))
             tables["feedback.c"] = c_text(self.feedback)

@@ -17,8 +17,11 @@ from rr_opt.documents.archive import netcdf_writer
 from rr_opt.documents.texts import captions
 from rr_opt.files.study_file import Study
 from rr_opt.formatting import direction_text, number, speed_text, with_unit
+from rr_opt.messages import listed
 from rr_opt.outcome import Status
 from rr_opt.results.gait import ignored_effects
+from rr_opt.results.limits import slippery
+from rr_opt.results.motion import beyond_limits
 from rr_opt.results.result import Progress, Result, quiet
 from rr_opt.results.study_table import (
     StudyColumn,
@@ -133,17 +136,35 @@ class SolvedStudy(Result):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Which effects of the robot the study ignores, and how many cases have no optimum."""
+        """Which effects of the robot the study ignores, what the fastest case asks of servo and
+        floor, and how many cases have no optimum."""
         words = {
             Status.INFEASIBLE: "no gait that respects all limits",
             Status.NOT_CONVERGED: "no optimum that the solver could confirm",
         }
         counts = self.counts
-        return ignored_effects(self.study.problems[0].robot) + tuple(
+        without = (
             f"{counts[status]} of {len(self.rows)} cases: {text}. Their rows give the reasons."
             for status, text in words.items()
             if counts[status]
         )
+        robot = self.study.problems[0].robot
+        return (*ignored_effects(robot), *self._asks_much(), *without)
+
+    def _asks_much(self) -> Iterator[str]:
+        """The servo's limits that the fastest case exceeds, and grip that floors rarely have."""
+        if self.fastest is None:
+            return
+        best = self.rows[self.fastest].optimum
+        assert best is not None
+        servo = self.study.problems[self.fastest].robot.servo
+        needed = {"angle": best.peak_angle, "rate": best.peak_rate, "torque": best.peak_torque}
+        if beyond := beyond_limits(servo, needed):
+            yield (
+                "The problem allows more than the robot's servo: the fastest case exceeds its "
+                f"{listed([name for name, _, _ in beyond])} limit."
+            )
+        yield from slippery(best.peak_grip)
 
     @property
     def status(self) -> Status:

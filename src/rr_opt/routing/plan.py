@@ -124,7 +124,7 @@ def plan_route(
     if best.violation > _NEAR:
         message = (
             f"No drive was found. Piece {best.piece + 1} comes nearest to failing: its bound on "
-            f"the {best.where} is exceeded by {best.violation:.2g} of it. Lengthen the piece, "
+            f"the {best.where} is exceeded by {100 * best.violation:.2g} %. Lengthen the piece, "
             "widen its radius, or widen the tolerance."
         )
         return replace(plan, status=Status.NOT_CONVERGED, message=message)

@@ -113,7 +113,7 @@ def instants(motion: Trajectory, length: float) -> list[int]:
     size = math.hypot(np.ptp(motion.x), np.ptp(motion.y))
     apart = max(1.3 * length, size / _POSES)
     chosen = [last]
-    for i in range(last - 1, -1, -1):
+    for i in range(last - 1, -1, -max(1, last // _POINTS)):
         near = [math.hypot(motion.x[i] - motion.x[j], motion.y[i] - motion.y[j]) for j in chosen]
         if min(near) >= apart:
             chosen.append(i)

@@ -30,8 +30,9 @@ def arc(ax: Axes, turn: FastestTurn) -> Axes:
     if way is None or replay is None or radius is None:
         return ax
     steady = replay.steady
-    motion = repeated(steady, max(1, math.ceil(way.periods - 1e-9)))
-    centre = _centre(motion, len(steady.t) - 1)
+    cycles, period = max(1, math.ceil(way.periods - 1e-9)), len(steady.t) - 1
+    motion = repeated(steady, cycles, every=math.ceil(cycles * period / _SAMPLES))
+    centre = _centre(repeated(steady, 1), period)
     start = np.angle(complex(motion.x[0], motion.y[0]) - centre)
     round_ = centre + radius * np.exp(1j * np.linspace(0, 2 * math.pi, 361))
     along = centre + radius * np.exp(1j * (start + np.linspace(0, way.heading, 181)))
@@ -54,6 +55,8 @@ def _centre(motion: Trajectory, period: int) -> complex:
     return complex((last - turned * first) / (1 - turned))
 
 
+_SAMPLES = 200_000
+"""Of a turn that is drawn."""
 _WIDEST = 20.0
 """m; wider circles are left out of the picture."""
 
