@@ -72,7 +72,7 @@ CANCELLED = 1e-3
 """Share of the largest speed along a cycle below which the way to and fro nearly cancels. An error
 of the mean speed is then relative to that share. CVODES keeps 1e-12 of the largest speed in each of
 up to a thousand steps: a mean is known to 1e-9 of it, so 1e-6 of the mean can be asked for down to
-here."""
+here. The sweep's C code has the same number."""
 
 
 LEAST = ("singularity", "speed")

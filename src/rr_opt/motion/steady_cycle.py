@@ -90,7 +90,7 @@ def grip_needed(steady: SteadyCycle, robot: Robot) -> tuple[float, float]:
     just_before = t - _JUST_BEFORE * gait.period / gait.pieces
     after = grip_after(robot, gait, t, v)
     before = _along(dynamics_of(robot).grip, robot, gait, t, v, gait.acceleration(just_before))
-    one, two = (peak_of(gait.pieces, *sides) for sides in zip(after, before, strict=True))
+    one, two = (_peak(gait.pieces, *sides) for sides in zip(after, before, strict=True))
     return one, two
 
 
@@ -231,10 +231,10 @@ BETWEEN = 16
 
 def peak_torque(steady: SteadyCycle) -> float:
     """Largest |torque|, N m, by a spline on each piece between jumps."""
-    return peak_of(steady.gait.pieces, steady.torque, steady.torque_before)
+    return _peak(steady.gait.pieces, steady.torque, steady.torque_before)
 
 
-def peak_of(pieces: int, after: Array, before: Array) -> float:
+def _peak(pieces: int, after: Array, before: Array) -> float:
     """Largest size of what has these values after and before the jumps between pieces."""
     from scipy.interpolate import CubicSpline  # half a second, after the first lines are printed
 

@@ -265,8 +265,7 @@ def _summary_facts(one: ExplainedExperiment) -> Iterator[Fact]:
         yield Fact("  shows in", found.channel.replace("_", " "))
     if one.where:
         lit = next((each for each in found.stages if each.guilty), None)
-        other = lit is not None and lit.channel != found.channel
-        place = f"{tables.stage_name(lit)}: " if lit and other else ""
+        place = f"{tables.stage_name(lit)}: " if lit and lit.channel != found.channel else ""
         yield Fact("  where", f"{place}{one.where}")
     for finding in found.findings:
         yield from _finding(finding, found.verdict)

@@ -333,7 +333,8 @@ class FastestGait(Result):
     def _beyond_servo(self, gait: Gait) -> list[str]:
         """Which limits of the robot file's servo the gait exceeds."""
         torque = self.replay.reached["torque"] if self.replay else 0.0
-        return [name for name, *_ in beyond_servo(self.problem.robot.servo, gait, torque)]
+        beyond = beyond_servo(self.problem.robot.servo, gait.peak_angle, gait.peak_rate, torque)
+        return [name for name, *_ in beyond]
 
     @property
     def warnings(self) -> tuple[str, ...]:

@@ -1,7 +1,7 @@
 """What driving a gait gives: a simulated motion and its files, and the circle of the gait."""
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields
 from functools import cached_property
 from pathlib import Path
@@ -60,15 +60,11 @@ class GaitResult(Result):
         return ()
 
 
-def beyond_servo(servo: Servo, gait: Gait, torque: float) -> list[tuple[str, float, float]]:
-    """Name, value and limit, SI, of what a gait of the joint needs and the servo cannot do."""
-    return beyond_limits(
-        servo, {"angle": gait.peak_angle, "rate": gait.peak_rate, "torque": torque}
-    )
-
-
-def beyond_limits(servo: Servo, needed: Mapping[str, float]) -> list[tuple[str, float, float]]:
-    """The same of peaks of angle (rad), rate (rad/s) and torque (N m) by name."""
+def beyond_servo(
+    servo: Servo, angle: float, rate: float, torque: float
+) -> list[tuple[str, float, float]]:
+    """Name, value and limit, SI, of the peaks of a motion that the servo cannot do."""
+    needed = {"angle": angle, "rate": rate, "torque": torque}
     able = {name: getattr(servo, f"{name}_limit") for name in needed}
     return [
         (name, value, able[name])
@@ -96,7 +92,8 @@ class SimulatedMotion(GaitResult):
     @property
     def beyond_servo(self) -> tuple[str, ...]:
         """A sentence on each limit of the servo that the motion exceeds; it is simulated anyway."""
-        beyond = beyond_servo(self.robot.servo, self.joint, self.measured.peak_torque)
+        joint, torque = self.joint, self.measured.peak_torque
+        beyond = beyond_servo(self.robot.servo, joint.peak_angle, joint.peak_rate, torque)
         return tuple(
             f"The gait needs {QUANTITIES[name].both(value)}, but the servo's {name} limit is "
             f"{QUANTITIES[name].both(limit)}. The simulation ignores this limit."

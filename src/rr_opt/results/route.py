@@ -257,17 +257,16 @@ class DrivenRoute(Result):
         command = self.command
         if self.replay is None or command is None:
             return {}
+        tables = {"trajectory.csv": trajectory_csv(self.replay.trajectory)}
+        if self.status is not Status.OPTIMAL:
+            return tables
         t = np.arange(math.ceil(command.seconds * _RATE) + 1) / _RATE
         phi = command.angle(np.minimum(t, command.seconds))
         counts = np.round(CENTRE + phi / COUNT).astype(int)
         columns = (t.tolist(), phi.tolist(), np.degrees(phi).tolist(), counts.tolist())
-        points = doc.csv_text(
+        tables["setpoints.csv"] = doc.csv_text(
             ("t [s]", "phi [rad]", "phi [deg]", "count"), zip(*columns, strict=True)
         )
-        tables = {"trajectory.csv": trajectory_csv(self.replay.trajectory)}
-        if self.status is not Status.OPTIMAL:
-            return tables
-        tables["setpoints.csv"] = points
         if self.feedback:
             tables["feedback.json"] = strict_json(plain(self.feedback))
             tables["feedback.c"] = c_text(self.feedback)

@@ -21,7 +21,7 @@ from rr_opt.messages import listed
 from rr_opt.outcome import Status
 from rr_opt.results.gait import ignored_effects
 from rr_opt.results.limits import slippery
-from rr_opt.results.motion import beyond_limits
+from rr_opt.results.motion import beyond_servo
 from rr_opt.results.result import Progress, Result, quiet
 from rr_opt.results.study_table import (
     StudyColumn,
@@ -158,11 +158,10 @@ class SolvedStudy(Result):
         best = self.rows[self.fastest].optimum
         assert best is not None
         servo = self.study.problems[self.fastest].robot.servo
-        needed = {"angle": best.peak_angle, "rate": best.peak_rate, "torque": best.peak_torque}
-        if beyond := beyond_limits(servo, needed):
+        if beyond := beyond_servo(servo, best.peak_angle, best.peak_rate, best.peak_torque):
             yield (
                 "The problem allows more than the robot's servo: the fastest case exceeds its "
-                f"{listed([name for name, _, _ in beyond])} limit."
+                f"{listed(name for name, *_ in beyond)} limit."
             )
         yield from slippery(best.peak_grip)
 

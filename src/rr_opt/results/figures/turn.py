@@ -8,7 +8,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from rr_opt.formatting import with_unit
-from rr_opt.motion.rollout import Trajectory, repeated
+from rr_opt.motion.rollout import repeated
+from rr_opt.motion.steady_cycle import SteadyCycle
 from rr_opt.results.figures import fastest, style
 from rr_opt.results.figures.motion import path
 from rr_opt.results.turn import FastestTurn
@@ -30,9 +31,9 @@ def arc(ax: Axes, turn: FastestTurn) -> Axes:
     if way is None or replay is None or radius is None:
         return ax
     steady = replay.steady
-    cycles, period = max(1, math.ceil(way.periods - 1e-9)), len(steady.t) - 1
-    motion = repeated(steady, cycles, every=math.ceil(cycles * period / _SAMPLES))
-    centre = _centre(repeated(steady, 1), period)
+    cycles = max(1, math.ceil(way.periods - 1e-9))
+    motion = repeated(steady, cycles, every=math.ceil(cycles * len(steady.t) / _SAMPLES))
+    centre = _centre(steady)
     start = np.angle(complex(motion.x[0], motion.y[0]) - centre)
     round_ = centre + radius * np.exp(1j * np.linspace(0, 2 * math.pi, 361))
     along = centre + radius * np.exp(1j * (start + np.linspace(0, way.heading, 181)))
@@ -48,10 +49,10 @@ def arc(ax: Axes, turn: FastestTurn) -> Axes:
     return ax
 
 
-def _centre(motion: Trajectory, period: int) -> complex:
-    """The point about which one period, of that many steps, rotates the robot."""
-    first, last = (complex(motion.x[i], motion.y[i]) for i in (0, period))
-    turned = np.exp(1j * (motion.psi[period] - motion.psi[0]))
+def _centre(steady: SteadyCycle) -> complex:
+    """The point about which a period rotates the robot."""
+    first, last = (complex(steady.x[i], steady.y[i]) for i in (0, -1))
+    turned = np.exp(1j * (steady.psi[-1] - steady.psi[0]))
     return complex((last - turned * first) / (1 - turned))
 
 
