@@ -73,7 +73,7 @@ def repeated(steady: SteadyCycle, cycles: int, every: int = 1) -> Trajectory:
     return Trajectory(t, np.real(path), np.imag(path), heading, phi, v, torque)
 
 
-_STEPS, _LEAST, _ALL = 2048, 256, 500_000
+_STEPS, _LEAST, _ALL = 2048, 256, 250_000
 """Times in a period, in one of very many, and in all periods together. Between two of 256 times the
 peak of a sine is missed by at most 1e-4."""
 _SNAP = 1e-9
