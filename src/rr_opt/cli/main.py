@@ -19,9 +19,10 @@ from rr_opt.outcome import EXIT_INTERRUPTED, EXIT_WRONG_INPUT, RollerRacerError
 from rr_opt.version import __version__
 
 VERBS = {
-    **dict.fromkeys(("maximize-speed", "shapes", "sweep", "turn", "turn-chart"), "optimise"),
+    **dict.fromkeys(("maximize-speed", "shapes", "sweep"), "optimise"),
+    **dict.fromkeys(("turn", "turn-chart"), "turn"),
     **dict.fromkeys(("route", "circle", "simulate", "export"), "drive"),
-    "study": "optimise",
+    "study": "study",
     **dict.fromkeys(("inspect", "diagnose"), "recordings"),
     **dict.fromkeys(("init", "lint", "schema"), "files"),
 }

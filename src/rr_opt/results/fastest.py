@@ -38,13 +38,13 @@ from rr_opt.results.limits import (
 )
 from rr_opt.results.motion import beyond_servo, trajectory_csv
 from rr_opt.results.result import Check, Result, picked
-from rr_opt.results.robust import Robust
 from rr_opt.verify.replay import Replay
 from rr_opt.verify.sweep import SweepCheck
 
 if TYPE_CHECKING:
     # Heavy, and needed by few results.
     from rr_opt.machines.racer.driven import DrivenOptimum
+    from rr_opt.results.robust import Robust
 
 LARGEST_REPLAY_ERROR = 1e-6
 """Of the replayed speed, relative: the optimiser's mesh is refined until it is well below this."""
