@@ -11,8 +11,8 @@ SEED ?= 5
 
 VENV := .venv
 BIN := $(VENV)/bin
-PIP := PIP_DISABLE_PIP_VERSION_CHECK=1 PYTHONWARNINGS=ignore $(BIN)/python -m pip --no-input
-INSTALL := $(PIP) install -qq
+PIP = PIP_DISABLE_PIP_VERSION_CHECK=1 PYTHONWARNINGS=ignore $(BIN)/python -m pip --no-input
+INSTALL = $(PIP) install -qq
 
 # The sections of requirements.lock: a heading `# [NAME]`, then pins up to an empty line.
 section = sed -n '/^\# \[$(1)\]/,/^$$/p' requirements.lock
