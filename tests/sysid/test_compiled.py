@@ -8,6 +8,7 @@ import pytest
 
 from rr_opt.motion.dynamics import values_of
 from rr_opt.motion.floor_motion import floor_motion
+from rr_opt.sysid import compiled
 from rr_opt.sysid import shooting as shoot
 from rr_opt.sysid.compiled import found
 from rr_opt.sysid.sensitivities import DriveSlopes, Recorded, Sought, grams
@@ -53,8 +54,10 @@ def shorter(drive, samples):
 
 
 @needs_compiler
+@pytest.mark.parametrize("worth", [0, 10**9], ids=["in threads", "one after the other"])
 @pytest.mark.parametrize("name", CASES)
-def test_the_same_numbers(name, monkeypatch, own_cache):
+def test_the_same_numbers(name, worth, monkeypatch, own_cache):
+    monkeypatch.setattr(compiled, "_WORTH", worth)
     system, drive, start, p, _ = CASES[name]
     p = values_of(BENCHMARK, floor_motion().parameters) if p is None else np.array(p)
     # More runs than there are lanes, of different lengths.

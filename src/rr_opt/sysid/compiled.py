@@ -5,10 +5,13 @@ processor's vector registers; the loops over the steps are those of diagnose_lan
 compiled is kept in the user's cache folder, by the hash of its source.
 """
 
+from __future__ import annotations
+
 import ctypes
 import itertools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import casadi as ca
 import numpy as np
@@ -17,6 +20,7 @@ from numpy.typing import NDArray
 from rr_opt.array import Array
 from rr_opt.mechanics.code_generation import in_stages, source_file
 from rr_opt.mechanics.compile_cache import library
+from rr_opt.threads import in_threads
 
 Indices = NDArray[np.int64]
 
@@ -24,6 +28,9 @@ _FLAGS = (
     *("-O2", "-march=native", "-fno-math-errno", "-fno-trapping-math"),
     *("-ffp-contract=fast", "-fPIC", "-shared"),
 )
+
+_WORTH = 1000
+"""Steps; what has fewer is done before a thread has begun."""
 
 
 class _Run(ctypes.Structure):
@@ -74,7 +81,8 @@ class Compiled:
         made.rr_predict.restype = None
         made.rr_grams.argtypes = [whole, array, *[whole] * 5, *[array] * 3]
         made.rr_grams.restype = ctypes.c_int
-        self._library = made
+        made.rr_lanes.restype = whole
+        self._library, self._lanes = made, made.rr_lanes()
         self._size, self._channels = size, channels
 
     def predict(
@@ -94,9 +102,11 @@ class Compiled:
                 _Held(steps=len(inputs), inputs=inputs, at=at.T, p=p, states=states, seen=seen)
             )
             made.append((states.T, seen))
-        for each, some in _alike(range(len(runs)), lambda k: runs[k][3]):
-            few = _array([held[k] for k in some])
-            self._library.rr_predict(len(some), few, each)
+
+        def work(few: _Few) -> None:
+            self._library.rr_predict(len(few.held), _array(few.held), few.each)
+
+        self._at_once(work, held, [each for *_, each, _ in runs])
         return made
 
     def grams(self, runs: Sequence[Rows]) -> list[tuple[Array, Array]]:
@@ -144,15 +154,35 @@ class Compiled:
                     **moved,
                 )
             )
-        for each, some in _alike(range(len(runs)), lambda k: runs[k].each):
+
+        def work(few: _Few) -> None:
             done = self._library.rr_grams(
-                *(len(some), _array([held[k] for k in some]), each),
+                *(len(few.held), _array(few.held), few.each),
                 *(nq, len(row), len(moving), extras),
                 *(one.ctypes for one in (first_of, column, moving)),
             )
             if not done:
                 raise MemoryError
+
+        self._at_once(work, held, [run.each for run in runs])
         return out
+
+    def _at_once(
+        self, work: Callable[[_Few], None], held: Sequence[_Held], each: Sequence[int]
+    ) -> None:
+        """As many runs at a time as there are lanes, with as many steps between two samples and
+        about as long; in threads where these are worth it."""
+        ordered = sorted(zip(each, held, strict=True), key=lambda one: (one[0], one[1].run.steps))
+        groups = []
+        for count, alike in itertools.groupby(ordered, lambda one: one[0]):
+            runs = [run for _, run in alike]
+            lanes = range(0, len(runs), self._lanes)
+            groups += [_Few(count, runs[k : k + self._lanes]) for k in lanes]
+        if max((one.run.steps for one in held), default=0) < _WORTH:
+            for few in groups:
+                work(few)
+        else:
+            in_threads(work, groups)
 
 
 def _moving(runs: Sequence[Rows]) -> Indices:
@@ -182,14 +212,15 @@ class _Held:
         self.run = _Run(steps=steps, **{name: one.ctypes.data for name, one in self.arrays.items()})
 
 
+class _Few(NamedTuple):
+    """Runs that go side by side, and their steps between two samples."""
+
+    each: int
+    held: Sequence[_Held]
+
+
 def _array(held: Sequence[_Held]) -> ctypes.Array:
     return (_Run * len(held))(*(one.run for one in held))
-
-
-def _alike(keys: Sequence[int], each: Callable[[int], int]) -> list[tuple[int, list[int]]]:
-    """The runs with as many steps between two samples, which go side by side."""
-    ordered = sorted(keys, key=each)
-    return [(count, list(some)) for count, some in itertools.groupby(ordered, each)]
 
 
 def found(source: str, size: int, channels: int, *, make: bool) -> Compiled | None:

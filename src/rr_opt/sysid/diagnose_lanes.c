@@ -99,6 +99,9 @@ static void drive_at(const Group* group, long long k, long long each, V* x) {
   }
 }
 
+/* Runs that go side by side. */
+long long rr_lanes(void) { return L; }
+
 void rr_predict(long long count, const Run* runs, long long each) {
   long long from, k, sample;
   FORGETS;

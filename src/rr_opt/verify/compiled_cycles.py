@@ -9,9 +9,6 @@ from __future__ import annotations
 
 import ctypes
 import math
-import os
-from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -23,27 +20,8 @@ from rr_opt.array import Array
 from rr_opt.mechanics.code_generation import Stages, in_stages, source_file
 from rr_opt.mechanics.compile_cache import library
 from rr_opt.motion.dynamics import Dynamics
+from rr_opt.threads import in_threads
 from rr_opt.verify.fourier import matrices
-
-
-def in_pieces(work: Callable[[slice], Array], count: int, piece: int) -> Array:
-    """work(points) -> (rows, points) of all `count` >= 1 points, side by side.
-
-    The work has to let other threads run, as what ctypes calls does.
-    """
-    parts = [slice(k, min(k + piece, count)) for k in range(0, count, piece)]
-    workers = min(_processors(), len(parts))
-    if workers < 2:
-        return np.concatenate([work(part) for part in parts], axis=1)
-    with ThreadPoolExecutor(workers) as pool:
-        return np.concatenate(list(pool.map(work, parts)), axis=1)
-
-
-def _processors() -> int:
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
-
 
 _Where = NDArray[np.int_] | tuple[NDArray[np.int_], NDArray[np.int_]]
 
@@ -196,7 +174,9 @@ class CompiledCycles:
                 raise MemoryError
             return out
 
-        speed, turn, torque, error = in_pieces(work, len(columns[0]), self._piece)
+        count = len(columns[0])
+        parts = [slice(k, min(k + self._piece, count)) for k in range(0, count, self._piece)]
+        speed, turn, torque, error = np.concatenate(in_threads(work, parts), axis=1)
         return Steady(speed, turn, torque, error, np.abs(speed))
 
 
