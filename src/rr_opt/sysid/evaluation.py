@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import chi2
+from scipy.special import chdtrc
 
 from rr_opt.sysid.candidates import Candidate
 from rr_opt.sysid.diagnosis import Misfit, Mismatch
@@ -44,7 +44,7 @@ def mismatch(base: Candidate) -> Mismatch:
     fit = base.fit
     misfit = fit.samples + sum(e.excess for e in fit.evidences.values())
     degrees = max(fit.samples - len(fit.problem.names), 1)
-    return Mismatch(base.excess, float(chi2.sf(misfit, degrees)))
+    return Mismatch(base.excess, float(chdtrc(degrees, misfit)))
 
 
 def evaluation(fit: Fit, values: Mapping[str, float]) -> Evaluation:

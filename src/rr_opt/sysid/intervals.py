@@ -13,7 +13,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
-from scipy.stats import norm
+from scipy.special import ndtri
 
 from rr_opt.array import Array
 from rr_opt.sysid.diagnosis import Estimate
@@ -21,7 +21,7 @@ from rr_opt.sysid.estimation import Fit, fitted
 from rr_opt.sysid.model import Quantity
 from rr_opt.sysid.settings import SETTINGS
 
-_Z = float(norm.isf(0.025))
+_Z = -float(ndtri(0.025))
 
 
 def covariance(fit: Fit) -> Array:
@@ -73,7 +73,7 @@ def surprises(fit: Fit) -> Array:
 def limit(fit: Fit) -> float:
     """Beyond which a surprise is one, all of them looked at together."""
     known = sum(q.known for q in fit.problem.quantities)
-    return float(norm.isf(SETTINGS.false_alarm / (2 * max(known, 1))))
+    return -float(ndtri(SETTINGS.false_alarm / (2 * max(known, 1))))
 
 
 def wrong(fit: Fit) -> list[Quantity]:

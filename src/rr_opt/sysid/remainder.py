@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import chi2
+from scipy.special import chdtrc, chdtri
 
 from rr_opt.array import Array
 from rr_opt.sysid.diagnosis import Curve
@@ -53,7 +53,7 @@ class Dependence:
     @property
     def surplus(self) -> float:
         """Gain beyond what noise hardly ever gains; 0 if there is none."""
-        return max(self.gain - float(chi2.isf(SETTINGS.certain, self.degrees)), 0.0)
+        return max(self.gain - float(chdtri(self.degrees, SETTINGS.certain)), 0.0)
 
     @property
     def certain(self) -> bool:
@@ -63,7 +63,7 @@ class Dependence:
     @property
     def p_value(self) -> float:
         """Chance of so large a gain where nothing is missing."""
-        return float(chi2.sf(max(self.gain, 0.0), self.degrees))
+        return float(chdtrc(self.degrees, max(self.gain, 0.0)))
 
 
 def dependences(
