@@ -36,7 +36,7 @@ class LinearFit:
             prior=self.prior,
             centre=np.zeros(VALUES),
             scale=np.ones(VALUES),
-            samples=lambda _: float(SAMPLES),
+            samples=dict.fromkeys(range(RUNS), float(SAMPLES)),
             correlation_times=lambda _: 10.0,
             model=SimpleNamespace(form_error=FORM),
         )

@@ -89,7 +89,7 @@ def constancy(
     B, phi = {}, {}
     for run, one in fit.evidences.items():
         B[run] = within(within(one.H[free][:, free]).T)
-        per_time = problem.samples(run) / problem.correlation_times(run)
+        per_time = problem.samples[run] / problem.correlation_times(run)
         off = share**2 * explained.get(run, 0.0) + min(left, problem.model.form_error) ** 2
         phi[run] = 1 + off * per_time
     unit = np.eye(len(H))

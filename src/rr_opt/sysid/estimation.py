@@ -206,21 +206,29 @@ class Problem:
         data = self.model.runs[run]
         return len(self.model.channels) * max(data.duration / self.model.correlation_time, 1.0)
 
-    def samples(self, run: int) -> float:
-        """Independent ones with data, of the run's segments."""
-        data = self.model.runs[run]
-        return sum(data.worth(slice(s.first, s.until)) for s in self.by_run[run])
+    @cached_property
+    def samples(self) -> Mapping[int, float]:
+        """Independent ones with data, of each run's segments."""
+        worth = {run: self.model.runs[run].worth for run in self.by_run}
+        return {
+            run: sum(worth[run](slice(s.first, s.until)) for s in parts)
+            for run, parts in self.by_run.items()
+        }
 
-    def degrees(self, run: int) -> float:
-        """Of freedom: a run's samples less what its initial states take."""
-        states = self.model.state_scale(self.effects).size * len(self.by_run[run])
-        return max(self.samples(run) - states, 1.0)
+    @cached_property
+    def degrees(self) -> Mapping[int, float]:
+        """Of freedom: each run's samples less what its initial states take."""
+        states = self.model.state_scale(self.effects).size
+        return {
+            run: max(self.samples[run] - states * len(parts), 1.0)
+            for run, parts in self.by_run.items()
+        }
 
     def loss(self, run: int, misfit: float) -> float:
         """Of a run with misfit E."""
         if not self.robust or not np.isfinite(misfit):
             return misfit
-        n = self.degrees(run)
+        n = self.degrees[run]
         return n + robust(misfit - n, self.correlation_times(run))
 
     def process_noise(self, run: int, q: float) -> Array:
@@ -298,7 +306,7 @@ class Linear:
                 H[np.ix_(both, both)] += by.T @ by
                 g[both] += by.T @ gap
                 value += float(gap @ gap)
-        n = problem.degrees(run)
+        n = problem.degrees[run]
         if not (np.isfinite(H).all() and np.isfinite(value)):
             return Evidence.diverged(n, own, nq)
         # In the states' own scales, as their units differ.
@@ -438,17 +446,19 @@ def solve(
     steps: int = SETTINGS.steps,
     tolerance: float = SETTINGS.tolerance,
     enough: float = math.inf,
+    known: Linear | None = None,
 ) -> Fit:
     """The best values and states, by Gauss-Newton steps within the quantities' bounds and a
     trust region.
 
     enough  deviance that is of interest; a fit that would not come there at its pace is given up
+    known   the linearisation there, of the same problem with other process noise
     """
     low, high = problem.box
     u = np.clip(problem.scaled(values), low, high)
-    here = _Point.of(problem, u, states)
+    here = _Point.of(problem, u, states, known and known.made)
     radius, converged = SETTINGS.stride, False
-    linear = here.linear()
+    linear = replace(known, problem=problem) if known else here.linear()
     evidences = linear.evidences(problem.q)
     for step in range(steps):
         H, g, _ = summed(problem, evidences, here.u)
@@ -508,11 +518,17 @@ class _Point:
     cost: float
 
     @classmethod
-    def of(cls, problem: Problem, u: Array, states: States) -> _Point:
-        requests = problem.requests(problem.valued(u), states)
-        made = dict(
-            zip(problem.segments, problem.model.simulate(requests, problem.effects), strict=True)
-        )
+    def of(
+        cls,
+        problem: Problem,
+        u: Array,
+        states: States,
+        made: Mapping[Segment, Simulation] | None = None,
+    ) -> _Point:
+        if made is None:
+            requests = problem.requests(problem.valued(u), states)
+            every = problem.model.simulate(requests, problem.effects)
+            made = dict(zip(problem.segments, every, strict=True))
         cost = problem.cost(problem.misfits(made, states), u)
         return cls(problem, u, states, made, cost if np.isfinite(cost) else np.inf)
 
@@ -590,12 +606,13 @@ def fitted(
         q = most_likely(fit)
         if q == fit.problem.q and fit.converged:
             break
-        fit = solve(replace(problem, q=q), fit.values, fit.states, steps, enough=enough)
+        again = replace(problem, q=q)
+        fit = solve(again, fit.values, fit.states, steps, enough=enough, known=fit.linear)
         if not fit.converged and fit.deviance > enough:
             return fit
     for q in reversed([q for q in grid() if q < fit.problem.q]):
         lower = replace(problem, q=q)
-        lower = solve(lower, fit.values, fit.states, steps, enough=fit.deviance)
+        lower = solve(lower, fit.values, fit.states, steps, enough=fit.deviance, known=fit.linear)
         if lower.deviance >= fit.deviance:
             break
         fit = lower

@@ -71,6 +71,17 @@ def side_speeds(robot: Robot, gait: Gait, t: Array, values: Array) -> Array:
     )
 
 
+_Simulated = tuple[DrivePath, Path, Array, dict[str, float]]
+
+
+def _same(some: Sequence[Request], others: Sequence[Request]) -> bool:
+    """Whether the same is asked for, from the very same states."""
+    return len(some) == len(others) and all(
+        a.segment == b.segment and a.state is b.state and a.values == b.values
+        for a, b in zip(some, others, strict=True)
+    )
+
+
 class Simulator:
     """Simulates segments of the runs with any effects of the catalogue.
 
@@ -91,6 +102,7 @@ class Simulator:
             Segment, tuple[DrivePath, tuple[str, ...], tuple, DriveSlopes | None]
         ] = {}
         self._seen: dict[Segment, Recorded] = {}
+        self._last: tuple[tuple[str, ...], Sequence[Request], list[_Simulated]] | None = None
 
     def every(self, effects: tuple[str, ...]) -> tuple[str, ...]:
         """The effects with those that the nominal robot has already, in the catalogue's order."""
@@ -184,10 +196,18 @@ class Simulator:
             sought.append(Sought(path, made, p, by, drive_by, self.recorded(one.segment)))
         return [Linearisation(gram, end) for gram, end in grams(system, sought)]
 
-    def paths(
-        self, requests: Sequence[Request], effects: tuple[str, ...]
-    ) -> list[tuple[DrivePath, Path, Array, dict[str, float]]]:
-        """Each segment's drive and simulation, the motion's parameters, and all values."""
+    def paths(self, requests: Sequence[Request], effects: tuple[str, ...]) -> list[_Simulated]:
+        """Each segment's drive and simulation, the motion's parameters, and all values.
+
+        Those of the last call are kept: what has proved better is asked for again, to be
+        linearised.
+        """
+        last = self._last
+        if last is None or last[0] != effects or not _same(last[1], requests):
+            last = self._last = effects, tuple(requests), self._simulated(requests, effects)
+        return last[2]
+
+    def _simulated(self, requests: Sequence[Request], effects: tuple[str, ...]) -> list[_Simulated]:
         mechanical = self.every(effects)
         system, motion = driven(mechanical)
         # Most segments that are asked for at once are so with the same values.
