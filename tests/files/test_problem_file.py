@@ -63,6 +63,13 @@ def test_limits_beyond_the_servo_are_warned_about(write):
     assert "Read 3, beyond what the robot's servo can do, 2.6 rad." in issues[0].message
 
 
+def test_amplitudes_that_are_surely_degrees_are_warned_about(write):
+    (issue,) = lint_file(write("gait: {amplitude: [5, 70]}\n"))
+    assert (issue.level, issue.path) == ("warning", "gait.amplitude")
+    assert "degrees need their unit, as in `5 deg`" in issue.message
+    assert not lint_file(write("gait: {amplitude: [5 deg, 70 deg]}\n"))
+
+
 def test_the_robot_may_stand_in_the_file(write, robot_text):
     inline = "robot:\n" + "".join(f"  {line}\n" for line in robot_text.splitlines())
     assert read_problem(write(inline)).robot.platform2.c == 0.0641

@@ -277,7 +277,15 @@ def _contradictions(model: ProblemModel, robot: Robot, document: FileData) -> It
         if ratio.by == "inertia" and isinstance(written, dict) and "loads" in written:
             message = "Loads are given and not used. Write `by: loads`, or delete them."
             yield document.warning(("inertia_ratio", "loads"), message)
-    servo = robot.servo
+    servo, least = robot.servo, model.gait.amplitude.low
+    largest = servo.angle_limit if model.limits.angle is None else model.limits.angle
+    if least > largest:
+        message = (
+            f"Read amplitudes of {least:.4g} rad and more, beyond the largest joint angle, "
+            f"{largest:.4g} rad. No gait has them. Lower the bound; degrees need their unit, as in "
+            f"`{least:.4g} deg`."
+        )
+        yield document.warning(("gait", "amplitude"), message)
     for key, given, able, unit in (
         ("angle", model.limits.angle, servo.angle_limit, "rad"),
         ("rate", model.limits.rate, servo.rate_limit, "rad/s"),
