@@ -118,7 +118,7 @@ def fitted(
         trials.sort(key=lambda trial: trial[0].deviance)
         before = trials[0][0].deviance
         trials = [
-            (estimation.solve(some, fit.values, fit.states, steps), states)
+            (estimation.solve(some, fit.values, fit.states, steps, known=fit.linear), states)
             for fit, states in trials[: max(len(trials) // 2, 1)]
         ]
         gain = (before - min(fit.deviance for fit, _ in trials)) / steps

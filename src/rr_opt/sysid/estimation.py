@@ -452,7 +452,7 @@ def solve(
     trust region.
 
     enough  deviance that is of interest; a fit that would not come there at its pace is given up
-    known   the linearisation there, of the same problem with other process noise
+    known   the linearisation there, of this problem or of one with other process noise
     """
     low, high = problem.box
     u = np.clip(problem.scaled(values), low, high)
