@@ -89,6 +89,12 @@ def main() -> None:
         "",
         *others,
     ]
+    if others:
+        lines[-len(others) : -len(others)] = [
+            "No start led to a gait of these; where no sine has the direction asked for, nothing "
+            "proves that no gait has it, so they are told as not converged, exit code 4.",
+            "",
+        ]
     write("free", lines, {"free gaits that are optima": kept / len(rows)})
 
 
