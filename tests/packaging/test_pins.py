@@ -16,10 +16,19 @@ PYTHONS = [text.split()[-1] for text in CLASSIFIERS if text.startswith("Programm
 INSTALLED = {dist.name: dist for dist in importlib.metadata.distributions()}
 
 
+def section(name):
+    """The requirements under a heading."""
+    text = (ROOT / "requirements.lock").read_text().partition(f"# [{name}]\n")[2]
+    return [Requirement(line) for line in text.partition("\n\n")[0].splitlines()]
+
+
 def pins():
     """The requirements of run and dev, which are installed where tests run."""
-    text = (ROOT / "requirements.lock").read_text().partition("# [run]")[2].partition("# [docs]")[0]
-    return [Requirement(line) for line in text.splitlines() if line and not line.startswith("#")]
+    return [*section("run"), *section("dev")]
+
+
+def test_what_is_measured_against_others_has_all_it_needs():
+    assert {one.name for one in section("run")} <= {one.name for one in section("bench")}
 
 
 @pytest.mark.parametrize("python", PYTHONS)
