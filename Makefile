@@ -72,6 +72,7 @@ results: $(DEV) ## write the results that are kept in results/
 	$(BIN)/rr-opt study problems/studies/servo.yaml --restart --out results/servo
 	$(BIN)/rr-opt maximize-speed problems/robust --out results/robust
 	$(BIN)/rr-opt study problems/studies/economy.yaml --restart --out results/economy
+	$(BIN)/rr-opt study problems/studies/grip.yaml --restart --out results/grip
 	$(BIN)/python -m benchmarks.lab_agreement
 	$(BIN)/rr-opt reproduce --out results/paper
 	$(BIN)/rr-opt calibrate --out results/calibration
