@@ -74,6 +74,13 @@ def main() -> None:
         rows.append(f"| {name} | {' | '.join(cells)} | {seconds:.1f} |")
         print(rows[-1], end.programs, flush=True)
     kept = sum(gained <= _MOST for gained in gains)
+    if others:
+        others = [
+            "No start led to a gait of these; where no sine has the direction asked for, nothing "
+            "proves that no gait has it, so they are told as not converged, exit code 4.",
+            "",
+            *others,
+        ]
     lines = [
         "# Free gaits: does a climb by another method go on from the answer?",
         "",
@@ -89,12 +96,6 @@ def main() -> None:
         "",
         *others,
     ]
-    if others:
-        lines[-len(others) : -len(others)] = [
-            "No start led to a gait of these; where no sine has the direction asked for, nothing "
-            "proves that no gait has it, so they are told as not converged, exit code 4.",
-            "",
-        ]
     write("free", lines, {"free gaits that are optima": kept / len(rows)})
 
 

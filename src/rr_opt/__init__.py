@@ -29,10 +29,6 @@ from rr_opt.version import __version__
 if TYPE_CHECKING:
     from rr_opt.api.drive import circle as circle
     from rr_opt.api.drive import export as export
-    from rr_opt.api.drive import load_route as load_route
-    from rr_opt.api.drive import load_routes as load_routes
-    from rr_opt.api.drive import route as route
-    from rr_opt.api.drive import routes as routes
     from rr_opt.api.drive import simulate as simulate
     from rr_opt.api.files import init as init
     from rr_opt.api.files import lint as lint
@@ -50,6 +46,10 @@ if TYPE_CHECKING:
     from rr_opt.api.optimise import sweep as sweep
     from rr_opt.api.recordings import diagnose as diagnose
     from rr_opt.api.recordings import inspect as inspect
+    from rr_opt.api.route import load_route as load_route
+    from rr_opt.api.route import load_routes as load_routes
+    from rr_opt.api.route import route as route
+    from rr_opt.api.route import routes as routes
     from rr_opt.api.study import load_study as load_study
     from rr_opt.api.study import study as study
     from rr_opt.api.turn import turn as turn
@@ -94,12 +94,13 @@ if TYPE_CHECKING:
     from rr_opt.results.turn_chart import TurnChart as TurnChart
 
 _HOMES = {
-    "api.drive": "circle export load_route load_routes route routes simulate",
+    "api.drive": "circle export simulate",
     "api.files": "init lint schema",
     "api.load": "InputWarning RobotWithGait load load_experiment "
     "load_gait load_robot prototype shipped",
     "api.optimise": "maximize_speed shapes sweep",
     "api.recordings": "diagnose inspect",
+    "api.route": "load_route load_routes route routes",
     "api.study": "load_study study",
     "api.turn": "turn turn_chart",
     "model.experiment": "Experiment Noise Recording Run",

@@ -21,7 +21,8 @@ from rr_opt.version import __version__
 VERBS = {
     **dict.fromkeys(("maximize-speed", "shapes", "sweep"), "optimise"),
     **dict.fromkeys(("turn", "turn-chart"), "turn"),
-    **dict.fromkeys(("route", "circle", "simulate", "export"), "drive"),
+    "route": "route",
+    **dict.fromkeys(("circle", "simulate", "export"), "drive"),
     "study": "study",
     **dict.fromkeys(("inspect", "diagnose"), "recordings"),
     **dict.fromkeys(("init", "lint", "schema"), "files"),

@@ -11,6 +11,8 @@ from dataclasses import dataclass
 from typing import NoReturn
 
 import numpy as np
+from scipy.cluster.hierarchy import fcluster, linkage
+from scipy.spatial.distance import squareform
 
 from rr_opt.array import Array
 from rr_opt.model.experiment import Layout
@@ -191,9 +193,6 @@ def rigid_groups(labels: Sequence[str], seen: Array) -> tuple[list[int], list[in
     """
     if len(labels) < 4:
         _refuse(labels, "fewer than two markers for each platform")
-    from scipy.cluster.hierarchy import fcluster, linkage  # with the next a fifth of a second
-    from scipy.spatial.distance import squareform
-
     apart = np.linalg.norm(seen[:, :, None] - seen[:, None], axis=-1)
     known = np.isfinite(apart).any(axis=0)
     apart = np.where(known, apart, 0.0)
