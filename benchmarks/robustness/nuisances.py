@@ -24,7 +24,7 @@ from rr_opt.model.experiment import Recording, Start
 from rr_opt.model.gait import SineGait
 from rr_opt.model.robot import Robot
 from rr_opt.recordings.inspection import Circumstances, inspect
-from rr_opt.recordings.nuisances.evidence import Evidence
+from rr_opt.recordings.nuisances.evidence import ExaminedRecording
 from rr_opt.recordings.nuisances.start import initial
 from rr_opt.recordings.warnings import Notice
 
@@ -142,7 +142,9 @@ def drives(recording: Recording, case: Case, plan: Plan) -> bool:
     x, y, psi = motion.one.T
     vx, vy = (np.gradient(one, motion.t, edge_order=2)[0] for one in (x, y))
     speed = float(np.cos(psi[0]) * vx + np.sin(psi[0]) * vy)
-    found = initial(Evidence(recording, case.nominal, plan.gait, "rest"), case.nominal, plan.gait)
+    found = initial(
+        ExaminedRecording(recording, case.nominal, plan.gait, "rest"), case.nominal, plan.gait
+    )
     return found is None or found.drives(speed)
 
 

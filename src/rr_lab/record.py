@@ -20,7 +20,7 @@ from rr_opt.model.gait import SineGait
 from rr_opt.model.robot import EffectUse, Robot
 from rr_opt.outcome import InputError
 from rr_opt.results.result import Progress, Result, quiet
-from rr_opt.units import Quantity
+from rr_opt.units import Number
 
 STARTS, USES = ("rest", "running"), ("fit", "holdout")
 
@@ -106,11 +106,11 @@ def read_effects(texts: Iterable[str]) -> tuple[EffectUse, ...]:
     return tuple(uses)
 
 
-def _quantity(one: Parameter) -> Quantity:
+def _quantity(one: Parameter) -> Number:
     """How a parameter's value is read."""
     unit = "" if one.unit == "1" else one.unit
     least = None if one.signed or one.neutral is None else 0.0
-    return Quantity(unit, f"{one.typical:g} {unit}".strip(), at_least=least)
+    return Number(unit, f"{one.typical:g} {unit}".strip(), at_least=least)
 
 
 def read_noise(text: str) -> Noise:
@@ -122,8 +122,8 @@ def read_noise(text: str) -> Noise:
             "example '1 mm, 3 mrad'."
         )
     return Noise(
-        Quantity("m", "1 mm", above=0).read(parts[0].strip()),
-        Quantity("rad", "3 mrad", above=0).read(parts[1].strip()),
+        Number("m", "1 mm", above=0).read(parts[0].strip()),
+        Number("rad", "3 mrad", above=0).read(parts[1].strip()),
     )
 
 

@@ -206,7 +206,7 @@ def _factors(written: str) -> list[tuple[str, int]]:
 
 
 @dataclass(frozen=True)
-class Quantity:
+class Number:
     """A number with its unit and range, as a file or a caller may give it.
 
     unit      the SI unit, "" if it has none

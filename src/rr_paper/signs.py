@@ -51,7 +51,7 @@ VARIANTS = (
 )
 
 
-class Linear(NamedTuple):
+class SpeedEquation(NamedTuple):
     """vdot = slope v + drive: slope in 1/s, drive in m/s2."""
 
     slope: Array
@@ -60,7 +60,7 @@ class Linear(NamedTuple):
 
 def equation3(
     robot: Robot, phi: ArrayLike, dphi: ArrayLike, ddphi: ArrayLike, signs: Signs
-) -> Linear:
+) -> SpeedEquation:
     """Equation (3) at angles phi (rad) with their rates (rad/s, rad/s2); symbols as printed."""
     one, two = robot.platform1, robot.platform2
     m1, m2, k1, k2 = one.m, two.m, robot.k1, robot.k2
@@ -79,7 +79,7 @@ def equation3(
     B2 = dphi**2 * (J1 * c1 * c2 * sin**2 - S1 * arms) / (S1 * Dn)
     C = 2 * ((b1**2 * k1 + b2**2 * k2) * sin**2 + k1 * S1**2 + k2 * S2**2) / Dn
     D = 2 * dphi * sin * (c1 * k2 * (b2**2 - c2**2) * cos - c2 * (b1**2 * k1 + c1**2 * k2)) / Dn
-    return Linear(A - C, signs.B1 * B1 + signs.B2 * B2 + signs.D * D)
+    return SpeedEquation(A - C, signs.B1 * B1 + signs.B2 * B2 + signs.D * D)
 
 
 def yaw_rate(robot: Robot, v: ArrayLike, phi: ArrayLike, dphi: ArrayLike) -> Array:

@@ -77,7 +77,7 @@ def test_an_experiment_is_inspected_run_by_run(run, folder, tmp_path):
     low, high = command["ci95"]
     assert low < -0.038 < high or abs(command["value"] + 0.038) < 5e-4
     page = (tmp_path / "res" / "report.html").read_text()
-    assert page.count("data:image/svg+xml;base64,") == 8
+    assert page.count("data:image/svg+xml,") == 8
     assert "http://" not in page.replace("http://www.w3.org", "")
 
 

@@ -1,11 +1,11 @@
 """Candidates are ranked by feasibility, then success, then speed."""
 
-from rr_opt.design.candidate import Candidate
+from rr_opt.design.candidate import StartResult
 from rr_opt.model.gait import SineGait
 
 
 def candidate(feasible, success, speed):
-    return Candidate(
+    return StartResult(
         sign=1,
         gait=SineGait(1.0, 1.0),
         share=0.0,

@@ -19,7 +19,7 @@ def told(drawn):
 def drawn_place(svg, axes, k):
     """Where a line that is the only one of its colour begins, in shares of the picture."""
     width, height = map(float, re.search(r'viewBox="0 0 (\S+) (\S+)"', svg).groups())
-    path = re.search(r'<path d="M (\S+) (\S+) [^"]*"[^>]*stroke: #123456', svg)
+    path = re.search(r'<path d="M([^ L]+) ([^ L]+)L[^"]*"[^>]*stroke: #123456', svg)
     return float(path[1]) / width, float(path[2]) / height
 
 

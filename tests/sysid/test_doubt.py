@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from rr_opt.sysid.verdict import Result
+from rr_opt.sysid.verdict import Identification
 
 
 def candidate(*effects: str, elpd: float = 0.0, better: bool = True) -> Any:
@@ -23,7 +23,7 @@ def doubt(best: Any, *others: Any, constant=0.9, alike=0.9, predicts=0.9, none=F
         _as_machines_differ=alike,
         _predicts=predicts,
     )
-    return Result.doubt.fget(made)  # pyright: ignore
+    return Identification.doubt.fget(made)  # pyright: ignore
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from rr_opt.sysid.verdict import Result
+from rr_opt.sysid.verdict import Identification
 
 FORM, FIRST = 0.02, 100.0
 
@@ -23,7 +23,7 @@ def predicts(left: float, gain: float) -> float:
         plain=SimpleNamespace(predictive=[0.0, 0.0]),
         _form_error=FORM,
     )
-    return Result._predicts.fget(made)  # pyright: ignore
+    return Identification._predicts.fget(made)  # pyright: ignore
 
 
 @pytest.mark.parametrize(

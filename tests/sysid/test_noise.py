@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.signal import butter, lfilter, sosfiltfilt
 
-from rr_opt.sysid.model import Noise
+from rr_opt.sysid.model import ChannelNoise
 from rr_opt.sysid.noise import noise_of
 from tests.sysid.made_up import with_effect
 
@@ -65,7 +65,7 @@ def test_missing_samples_take_no_part():
 
 def test_other_noise_is_in_units_of_that_assumed():
     model = with_effect({}, ())
-    twice = (Noise(2.0), Noise(1.0, 9.0), Noise(), Noise())
+    twice = (ChannelNoise(2.0), ChannelNoise(1.0, 9.0), ChannelNoise(), ChannelNoise())
     (before, after) = model.runs[0], model.with_noise(twice).with_noise(twice).runs[0]
     assert after.sigma[0] / before.sigma[0] == pytest.approx([4.0, 1.0, 1.0, 1.0])
     assert after.correlation == pytest.approx([1.0, 9.0, 1.0, 1.0])

@@ -19,7 +19,7 @@ from typing import Any
 
 import casadi as ca
 
-from rr_lab.planar.layout import Layout, axis, left_of
+from rr_lab.planar.layout import PlanarLayout, axis, left_of
 from rr_lab.rig import (
     CABLE_ONSET,
     WHEELS,
@@ -48,7 +48,7 @@ class Moment:
     t        s since the robot was let go; free, 1 from then on and 0 before
     """
 
-    layout: Layout
+    layout: PlanarLayout
     w: ca.SX
     spins: ca.SX
     turns: ca.SX
@@ -132,7 +132,7 @@ def _stiff(rig: Rig) -> Motor:
     return Motor(inertia * QUICK**2, 2 * inertia * QUICK)
 
 
-def turned_by(built: Layout) -> str:
+def turned_by(built: PlanarLayout) -> str:
     """The coordinate that the motor turns: behind play a shaft, which has no inertia of its own."""
     return "shaft" if "shaft" in built.names else "phi"
 

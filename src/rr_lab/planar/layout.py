@@ -32,7 +32,7 @@ class Wheel:
 
 
 @dataclass(frozen=True)
-class Layout:
+class PlanarLayout:
     """q (n) are the coordinates, m and rad, by name; ends are the platforms' joint ends, x, y and
     heading (3). The first two bodies are the platforms; wheels are in the order of WHEELS."""
 
@@ -67,7 +67,7 @@ def coordinates(rig: Rig) -> tuple[str, ...]:
     return tuple(names)
 
 
-def layout(rig: Rig) -> Layout:
+def layout(rig: Rig) -> PlanarLayout:
     """The rig in the plane."""
     names = coordinates(rig)
     q = ca.SX.sym("q", len(names))
@@ -89,7 +89,7 @@ def layout(rig: Rig) -> Layout:
         *_axle(rig, 1, two, -1.0, at2, turned2, of("bend2")),
     )
     ends = ca.vertcat(at1, psi), ca.vertcat(at2, turned2)
-    return Layout(names, q, tuple(bodies), wheels, ends)
+    return PlanarLayout(names, q, tuple(bodies), wheels, ends)
 
 
 def _body(rig: Rig, i: int, part: Platform, ahead: float, joint: ca.SX, heading: ca.SX) -> Body:

@@ -39,7 +39,7 @@ from dataclasses import dataclass, replace
 import casadi as ca
 
 from rr_lab.planar.forces import Moment, Pull, bearings, pulls, pushed
-from rr_lab.planar.layout import Layout, axis, coordinates, layout, left_of
+from rr_lab.planar.layout import PlanarLayout, axis, coordinates, layout, left_of
 from rr_lab.rig import WHEELS, Rig, wheel_loads
 
 ONSET = 1e-4
@@ -177,7 +177,7 @@ def _sweep(rig: Rig, dt: float) -> ca.Function:
     return ca.Function("sweep", [*guess.parts, kept.w, kept.spins, signals], [w, spins])
 
 
-def _inertia(built: Layout, w: ca.SX) -> tuple[ca.SX, ca.SX]:
+def _inertia(built: PlanarLayout, w: ca.SX) -> tuple[ca.SX, ca.SX]:
     """The mass matrix (n, n) and what turning frames add (n)."""
     n = built.q.numel()
     mass, turned = ca.SX(n, n), ca.SX(n, 1)

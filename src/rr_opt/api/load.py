@@ -28,7 +28,7 @@ from rr_opt.model.machine import MachineExperiment
 from rr_opt.model.problem import GaitBounds, Limits, Problem, RatioChoice
 from rr_opt.model.robot import Robot
 from rr_opt.outcome import InputError
-from rr_opt.units import Quantity
+from rr_opt.units import Number
 
 
 def identity(asked: Problem | Experiment) -> tuple[str, str]:
@@ -59,12 +59,12 @@ QUANTITIES = {
     "amplitude": AMPLITUDE,
     "period": PERIOD,
     "offset": OFFSET,
-    "seconds": Quantity("s", "10", above=0),
-    "rate": Quantity("1/s", "100", above=0),
-    "radius": Quantity("m", "1.5 m"),
-    "heading": Quantity("rad", "90 deg"),
-    "within": Quantity("s", "4 s", above=0),
-    "length": Quantity("m", "80 cm", above=0),
+    "seconds": Number("s", "10", above=0),
+    "rate": Number("1/s", "100", above=0),
+    "radius": Number("m", "1.5 m"),
+    "heading": Number("rad", "90 deg"),
+    "within": Number("s", "4 s", above=0),
+    "length": Number("m", "80 cm", above=0),
 }
 """By the argument's name."""
 

@@ -74,7 +74,7 @@ def diagnose_machine(experiment: MachineExperiment, progress: Progress = quiet) 
     return ExplainedMachine(experiment.name, experiment.sha256, experiment, found, model.horizon)
 
 
-def identified(model: sysid.Machine, kind: str, progress: Progress) -> Diagnosis:
+def identified(model: sysid.MachineModel, kind: str, progress: Progress) -> Diagnosis:
     """The diagnosis of a robot or another machine. Raises NotConvergedError likewise."""
     from rr_opt.sysid.diagnose import diagnose
 

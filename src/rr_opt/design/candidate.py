@@ -12,7 +12,7 @@ from rr_opt.model.gait import Gait
 
 
 @dataclass(frozen=True)
-class Candidate:
+class StartResult:
     """What one start led to.
 
     sign         +1 forward, -1 backward
@@ -66,12 +66,12 @@ class Finds:
     """Candidates with their settings, in any order; why other starts led nowhere; and, where it
     is known, why no gait can keep all limits."""
 
-    pairs: list[tuple[Setting, Candidate]] = field(default_factory=list)
+    pairs: list[tuple[Setting, StartResult]] = field(default_factory=list)
     lost: list[str] = field(default_factory=list)
     clash: str = ""
 
     @property
-    def good(self) -> list[tuple[Setting, Candidate]]:
+    def good(self) -> list[tuple[Setting, StartResult]]:
         """Optima, best first."""
         optima = [pair for pair in self.pairs if pair[1].feasible and pair[1].success]
         return sorted(optima, key=lambda pair: pair[1].rank)
@@ -85,9 +85,9 @@ class Finds:
         return Finds(self.pairs + other.pairs, self.lost + other.lost, self.clash or other.clash)
 
 
-def distinct(ranked: list[tuple[Setting, Candidate]]) -> list[tuple[Setting, Candidate]]:
+def distinct(ranked: list[tuple[Setting, StartResult]]) -> list[tuple[Setting, StartResult]]:
     """One of each optimum; a gait and its mirror image (phi0 and -phi0) are one if alike."""
-    kept: list[tuple[Setting, Candidate]] = []
+    kept: list[tuple[Setting, StartResult]] = []
     for setting, one in ranked:
         if not any(
             setting is other and _same(one, twin, setting.dynamics.mirrored) for other, twin in kept
@@ -96,7 +96,7 @@ def distinct(ranked: list[tuple[Setting, Candidate]]) -> list[tuple[Setting, Can
     return kept
 
 
-def _same(one: Candidate, other: Candidate, mirrored: bool) -> bool:
+def _same(one: StartResult, other: StartResult, mirrored: bool) -> bool:
     """Before their meshes are refined, two finds of one optimum differ a little."""
     a, b = one.gait, other.gait
     offsets = (abs(a.offset), abs(b.offset)) if mirrored else (a.offset, b.offset)

@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from rr_opt.design.candidate import Candidate, Finds, distinct
+from rr_opt.design.candidate import Finds, StartResult, distinct
 from rr_opt.design.decisions import SQUARE, Setting, decisions, robot_of, settings_of
 from rr_opt.design.infeasible import posture_clashes
 from rr_opt.design.random_shapes import scan_shapes
@@ -39,7 +39,7 @@ _SUBSTEPS, _FINEST = 4, 192
 """Of a free gait's interval, and intervals of a Fourier gait, at most."""
 
 
-def solve_from(setting: Setting, sign: int, gait: Gait, share: float) -> Candidate:
+def solve_from(setting: Setting, sign: int, gait: Gait, share: float) -> StartResult:
     """Solve from a gait; of another shape than the sine on a mesh that is fine enough for its
     cycle."""
     wanted = setting.problem.gait
@@ -60,7 +60,7 @@ def solve_from(setting: Setting, sign: int, gait: Gait, share: float) -> Candida
     return solve(setting, sign, gait, share, regular(intervals))
 
 
-def refine(setting: Setting, candidate: Candidate) -> Candidate:
+def refine(setting: Setting, candidate: StartResult) -> StartResult:
     """Solve again until the mesh claims the true speed and no limit is broken between nodes."""
     if candidate.mesh is None:
         return refine_sine(setting, candidate)

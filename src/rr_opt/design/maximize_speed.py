@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rr_opt.design.candidate import Candidate, Finds, distinct
+from rr_opt.design.candidate import Finds, StartResult, distinct
 from rr_opt.design.decisions import decisions, robot_of, settings_of, share_of
 from rr_opt.design.families import find_families, refine
 from rr_opt.design.search import Progress, find_sines
@@ -51,10 +51,10 @@ class Optimum:
     status: Status
     message: str
     problem: Problem
-    best: Candidate | None = None
+    best: StartResult | None = None
     robot: Robot | None = None
     ratio: float | None = None
-    optima: tuple[Candidate, ...] = ()
+    optima: tuple[StartResult, ...] = ()
     starts: int = 0
     iterations: int = 0
     failures: tuple[str, ...] = ()
@@ -67,7 +67,7 @@ class Optimum:
         return self.best is not None and abs(self.best.prices["direction"]) > 1e-3
 
     @property
-    def ties(self) -> tuple[Candidate, ...]:
+    def ties(self) -> tuple[StartResult, ...]:
         """Other optima as fast as the best, within the resolution."""
         if self.best is None:
             return ()

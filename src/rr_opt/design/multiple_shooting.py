@@ -32,7 +32,7 @@ import casadi as ca
 
 from rr_opt.design.interval import Functions, IntervalTerms, interval_of
 from rr_opt.design.shapes import Shape
-from rr_opt.design.transcription import Layout
+from rr_opt.design.transcription import ProgramLayout
 from rr_opt.mechanics.runge_kutta import BUTCHER6, Tableau
 from rr_opt.model.ballast import By
 
@@ -66,7 +66,7 @@ class Shooting:
     checked phases, direction, node phases, looks and turn interval by interval).
     """
 
-    layout: Layout
+    layout: ProgramLayout
     terms: IntervalTerms
 
     @cached_property
@@ -98,13 +98,13 @@ def shooting(
 ) -> Shooting:
     """The program for robots with these effects and this way of changing the inertia."""
     terms = interval_of(effects, by, shape, looks, substeps, method, loads)
-    return Shooting(Layout(shape, intervals, looks, loads), terms)
+    return Shooting(ProgramLayout(shape, intervals, looks, loads), terms)
 
 
 class _Program:
     """The parts of the program as expressions."""
 
-    def __init__(self, layout: Layout, terms: IntervalTerms, functions: Functions):
+    def __init__(self, layout: ProgramLayout, terms: IntervalTerms, functions: Functions):
         self.layout, self.terms, self.functions = layout, terms, functions
         n, nz, nm = layout.intervals, len(layout.decisions), len(layout.means)
         self.states, self.wrt = len(layout.states), len(layout.local) + nz

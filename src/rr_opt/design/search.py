@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from rr_opt.design.candidate import Candidate, Finds
+from rr_opt.design.candidate import Finds, StartResult
 from rr_opt.design.decisions import Setting, decisions, scanned, settings_of
 from rr_opt.design.infeasible import NODES, clash, posture_clashes
 from rr_opt.design.seeds import tops
@@ -45,7 +45,7 @@ def find_sines(problem: Problem, progress: Progress) -> Finds:
     return finds + Finds([(setting, solve_from_kept(setting, way, found.gait, NODES))])
 
 
-def _turned_round(setting: Setting, best: Candidate) -> list[tuple[Setting, Candidate]]:
+def _turned_round(setting: Setting, best: StartResult) -> list[tuple[Setting, StartResult]]:
     """The same circle driven the other way, where a climb leads to it: a gait that does can be next
     to this one, V = 0 between them, too close for a scan to tell them apart."""
     gait, way = best.gait, -best.sign

@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 
 from rr_opt.array import Array
-from rr_opt.design.candidate import Candidate
+from rr_opt.design.candidate import StartResult
 from rr_opt.design.decisions import Setting, decisions, robot_of
 from rr_opt.design.terrain import Terrain
 from rr_opt.model.gait import SineGait
@@ -41,13 +41,13 @@ def climbed(terrain: Terrain, start: Array, nodes: int = FEWEST) -> tuple[Ascent
     return ascent, terrain.gait_at(start, ascent.x)
 
 
-def solve_sine(setting: Setting, sign: int, start: Array) -> Candidate:
+def solve_sine(setting: Setting, sign: int, start: Array) -> StartResult:
     """Maximise the speed in direction `sign`, 0 for either, from amplitude, period, offset and the
     ballast's share (4,), with the fewest phases."""
     return _candidate(Terrain(setting, decisions(setting.problem), sign), start, FEWEST)
 
 
-def solve_from_kept(setting: Setting, sign: int, start: Array, nodes: int) -> Candidate:
+def solve_from_kept(setting: Setting, sign: int, start: Array, nodes: int) -> StartResult:
     """The same from a gait within all limits at this many phases; at fewer it may not be."""
     terrain = Terrain(setting, decisions(setting.problem), sign)
     candidate = _candidate(terrain, start, FEWEST)
@@ -56,7 +56,7 @@ def solve_from_kept(setting: Setting, sign: int, start: Array, nodes: int) -> Ca
     return _candidate(terrain, start, nodes)
 
 
-def refine_sine(setting: Setting, candidate: Candidate) -> Candidate:
+def refine_sine(setting: Setting, candidate: StartResult) -> StartResult:
     """The same with more and more phases, until more of them change nothing."""
     terrain = Terrain(setting, decisions(setting.problem), candidate.sign)
     wanted, nodes = _ERROR[setting.landscape.linear], candidate.intervals
@@ -73,7 +73,7 @@ def refine_sine(setting: Setting, candidate: Candidate) -> Candidate:
         iterations += candidate.iterations
 
 
-def _settled(setting: Setting, candidate: Candidate) -> Candidate:
+def _settled(setting: Setting, candidate: StartResult) -> StartResult:
     """Where friction is not viscous the lines by which a cycle is closed may agree on none."""
     if setting.landscape.linear:
         return candidate
@@ -84,7 +84,7 @@ def _settled(setting: Setting, candidate: Candidate) -> Candidate:
     return replace(candidate, speed=speed)
 
 
-def _candidate(terrain: Terrain, start: Array, nodes: int) -> Candidate:
+def _candidate(terrain: Terrain, start: Array, nodes: int) -> StartResult:
     ascent, end = climbed(terrain, start, nodes)
     kept = ascent.violation <= FEASIBLE
     if not (kept and ascent.converged):
@@ -98,7 +98,7 @@ def _candidate(terrain: Terrain, start: Array, nodes: int) -> Candidate:
     speed = float(cycles.speed[0])
     prices, bound_prices = terrain.prices(end, speed, float(cycles.turn[0]), ascent)
     feasible = ascent.violation <= FEASIBLE
-    return Candidate(
+    return StartResult(
         sign=sign or int(math.copysign(1, speed)),
         gait=SineGait(*end[:3].tolist()),
         share=float(end[3]),

@@ -6,13 +6,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from rr_opt.array import Array
-from rr_opt.design.candidate import Candidate
+from rr_opt.design.candidate import StartResult
 from rr_opt.design.decisions import Setting, decisions, robot_of
 from rr_opt.design.landscape import Cycles, Landscape
 from rr_opt.design.multiple_shooting import shooting
 from rr_opt.design.shapes import shape_of
 from rr_opt.design.shapes.shape import path_bounds
-from rr_opt.design.transcription import GRIPS, MEANS, TURN, ZERO, Layout, Mesh
+from rr_opt.design.transcription import GRIPS, MEANS, TURN, ZERO, Mesh, ProgramLayout
 from rr_opt.model.gait import Gait, SineGait
 from rr_opt.model.problem import Interval
 from rr_opt.motion.steady_cycle import grip_after, steady_cycle
@@ -38,7 +38,7 @@ FEASIBLE = 1e-6
 """Largest violation of a row that still counts as kept."""
 
 
-def solve(setting: Setting, sign: int, gait: Gait, share: float, mesh: Mesh) -> Candidate:
+def solve(setting: Setting, sign: int, gait: Gait, share: float, mesh: Mesh) -> StartResult:
     """Maximise the speed in direction `sign` from a gait and a share of the ballast."""
     problem = setting.problem
     by = problem.inertia_ratio.by if problem.inertia_ratio else "inertia"
@@ -74,7 +74,7 @@ def solve(setting: Setting, sign: int, gait: Gait, share: float, mesh: Mesh) -> 
         load: float(sum(np.abs(multipliers[row]).sum() for row in layout.along(load)))
         for load in held
     }
-    return Candidate(
+    return StartResult(
         sign=sign,
         gait=shape.gait(values),
         share=float(values["ballast"]),
@@ -99,7 +99,9 @@ def solve(setting: Setting, sign: int, gait: Gait, share: float, mesh: Mesh) -> 
     )
 
 
-def _start(landscape: Landscape, layout: Layout, gait: Gait, share: float, phases: Array) -> Array:
+def _start(
+    landscape: Landscape, layout: ProgramLayout, gait: Gait, share: float, phases: Array
+) -> Array:
     """The vector of unknowns on the steady cycle of a gait."""
     fine = 4 * len(phases)
     cycle = cycle_along(landscape, gait, share, fine)
@@ -134,7 +136,9 @@ def cycle_along(landscape: Landscape, gait: Gait, share: float, nodes: int) -> C
         return landscape.along(angle, np.array([gait.period]), np.array([share]))
 
 
-def _bounds(setting: Setting, layout: Layout, margin: float) -> tuple[Array, Array, Array, Array]:
+def _bounds(
+    setting: Setting, layout: ProgramLayout, margin: float
+) -> tuple[Array, Array, Array, Array]:
     problem = setting.problem
     share = setting.fixed_share
     if share is None and setting.ballast.fixed:

@@ -123,7 +123,7 @@ ZERO = Interval(0.0, 0.0)
 
 
 @dataclass(frozen=True)
-class Layout:
+class ProgramLayout:
     """Unknowns and rows of the program of a shape with `intervals` intervals, in each of which
     what loads the robot, as named, is held at `looks` places beside the node."""
 

@@ -25,7 +25,7 @@ _WHOLE = 1e-4
 
 
 @dataclass(frozen=True)
-class Arc:
+class MeanMotion:
     """What a gait does on the way round: signed speed (m/s), curvature (1/m) and yaw rate
     (rad/s), positive to the left; heading (rad), length (m), time (s) and periods of the arc."""
 
@@ -50,7 +50,7 @@ class Turned:
     target: Target
     optimum: Optimum
     opened: bool
-    arc: Arc | None = None
+    arc: MeanMotion | None = None
 
 
 def fastest_turn(problem: Problem, target: Target, progress: Progress = lambda _: None) -> Turned:
@@ -81,7 +81,7 @@ def _sooner(problem: Problem, target: Target) -> str:
     return f" For this change of heading that is --{what} '{needed:.4g} {unit}' or more."
 
 
-def arc_of(optimum: Optimum, heading: float | None) -> Arc | None:
+def arc_of(optimum: Optimum, heading: float | None) -> MeanMotion | None:
     """The arc of this heading (rad), or a full circle, by an optimum's gait."""
     if optimum.best is None or optimum.robot is None:
         return None
@@ -89,7 +89,7 @@ def arc_of(optimum: Optimum, heading: float | None) -> Arc | None:
     yaw_rate = cycle.dpsi / cycle.period
     turned = math.copysign(2 * math.pi, yaw_rate) if heading is None else heading
     time = turned / yaw_rate
-    return Arc(
+    return MeanMotion(
         speed=cycle.speed,
         curvature=yaw_rate / abs(cycle.speed),
         yaw_rate=yaw_rate,

@@ -25,7 +25,7 @@ from rr_opt.model.parameters import (
 )
 from rr_opt.model.robot import Robot
 from rr_opt.outcome import InputError
-from rr_opt.units import Quantity, to_si
+from rr_opt.units import Number, to_si
 
 _ZEROS = ("psi_zero", "phi_zero")
 
@@ -63,7 +63,7 @@ class Uncertain:
             if value.strip().endswith("%"):
                 return Spread(relative=self._share(value))
         try:
-            return Spread(sigma=Quantity(self.unit, self.example, at_least=0).read(value))
+            return Spread(sigma=Number(self.unit, self.example, at_least=0).read(value))
         except InputError as error:
             other = "" if self.absolute else " A share such as `5 %`, or `unknown`, will do too."
             raise InputError(f"{error}{other}") from None
@@ -76,7 +76,7 @@ class Uncertain:
 
     def json_schema(self) -> dict[str, Any]:
         """JSON Schema: an absolute uncertainty, or other text."""
-        number = Quantity(self.unit, self.example, at_least=0).json_schema()
+        number = Number(self.unit, self.example, at_least=0).json_schema()
         return number if self.absolute else {**number, "examples": [self.example, "5 %", "unknown"]}
 
 
@@ -142,8 +142,8 @@ class ColumnOf:
         return Column(name, factor, None if bits is None else _BITS.read(bits))
 
     @property
-    def _factor(self) -> Quantity:
-        return Quantity(self.unit, f"0.001 {self.unit}".strip())
+    def _factor(self) -> Number:
+        return Number(self.unit, f"0.001 {self.unit}".strip())
 
     def json_schema(self) -> dict[str, Any]:
         """JSON Schema: a name, or a mapping."""
@@ -180,7 +180,7 @@ Up = Literal["x", "y", "z", "-x", "-y", "-z"]
 class Place:
     """Reads the place of a marker: [forward, left] or [forward, left, up], m."""
 
-    size = Quantity("m", "40 mm")
+    size = Number("m", "40 mm")
 
     def read(self, value: object) -> tuple[float, ...]:
         """The place. Raises InputError."""

@@ -16,7 +16,7 @@ from rr_opt.messages import shown
 from rr_opt.model.experiment import Column, Use
 from rr_opt.model.machine import Machine, MachineExperiment
 from rr_opt.model.parameters import Spread, Uncertainty
-from rr_opt.units import Quantity
+from rr_opt.units import Number
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ def model_of(machine: Machine) -> Any:
     """The keys of a machine's experiment file."""
 
     def quantity(unit: str, example: str = "0.001", above: float | None = None) -> Key:
-        return Key(Quantity(unit, example, above=above))
+        return Key(Number(unit, example, above=above))
 
     parameters = {
         one.name: (

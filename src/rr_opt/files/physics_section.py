@@ -10,7 +10,7 @@ from rr_opt.files.yaml_text import FileData
 from rr_opt.messages import shown, unknown_word
 from rr_opt.model.robot import EffectUse
 from rr_opt.outcome import InputError
-from rr_opt.units import Quantity
+from rr_opt.units import Number
 
 
 def read_effects(document: FileData) -> tuple[tuple[EffectUse, ...], list[Issue]]:
@@ -71,10 +71,10 @@ def _values(effect: Effect, entry: dict[str, Any]) -> tuple[dict[str, float], li
     return values, wrong
 
 
-def _quantity(parameter: Parameter) -> Quantity:
+def _quantity(parameter: Parameter) -> Number:
     low, high = parameter.bounds
     unit = parameter.unit.replace("dimensionless", "")
-    return Quantity(unit, f"{parameter.typical:g}", at_least=low, at_most=high)
+    return Number(unit, f"{parameter.typical:g}", at_least=low, at_most=high)
 
 
 def effects_json_schema() -> dict[str, Any]:

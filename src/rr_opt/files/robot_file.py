@@ -17,7 +17,7 @@ from rr_opt.messages import shown, unknown_word
 from rr_opt.model.ballast import inertia_ratio
 from rr_opt.model.parameters import SYMBOLS
 from rr_opt.model.robot import Platform, Robot, Servo
-from rr_opt.units import Quantity
+from rr_opt.units import Number
 
 _LARGEST_LENGTH = 5.0
 """Longer platforms are taken for millimetres written as metres, m."""
@@ -135,7 +135,7 @@ class PlatformModel(keys_of(Platform)):
     kappa: Annotated[float | None, Key(SYMBOLS["kappa"].quantity)] = Field(
         default=None, description=SYMBOLS["kappa"].description
     )
-    k: Annotated[float | None, Key(Quantity("N s/m", "0.155", at_least=0))] = Field(
+    k: Annotated[float | None, Key(Number("N s/m", "0.155", at_least=0))] = Field(
         default=None, description="Viscous friction of one wheel along the floor, kappa/h^2, N s/m."
     )
 

@@ -29,11 +29,11 @@ from rr_opt.sysid.diagnosis import Misfit
 from rr_opt.sysid.estimation import Fit
 from rr_opt.sysid.machine import Term
 from rr_opt.sysid.model import (
+    ChannelNoise,
     Choice,
     Data,
     EffectInfo,
     Linearisation,
-    Noise,
     Request,
     Segment,
     Simulation,
@@ -57,7 +57,7 @@ class OdeModel:
         self.experiment, self.machine = experiment, experiment.machine
         machine = self.machine
         self.channels = tuple(one.name for one in machine.outputs)
-        self._noise: Sequence[Noise] = [Noise()] * len(self.channels)
+        self._noise: Sequence[ChannelNoise] = [ChannelNoise()] * len(self.channels)
         self.nominal = dict(experiment.nominal)
         self._scales = scales_of(machine, experiment.runs, self.nominal)
         self._drives = MeasuredDrives(machine, experiment.runs, self._scales)
@@ -96,7 +96,7 @@ class OdeModel:
         edges = np.linspace(0, t.size, count + 1).astype(int).tolist()
         return [Piece(whole.recording, a, b) for a, b in itertools.pairwise(edges)]
 
-    def with_noise(self, noise: Sequence[Noise]) -> OdeModel:
+    def with_noise(self, noise: Sequence[ChannelNoise]) -> OdeModel:
         """The same with other noise."""
         other = copy.copy(self)
         other.__dict__.pop("_form_error", None)

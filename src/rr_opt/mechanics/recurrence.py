@@ -27,7 +27,7 @@ class Course:
     p: Array
 
 
-class _Run(ctypes.Structure):
+class _RecurrenceRun(ctypes.Structure):
     """`Run` of the C."""
 
     _fields_ = (
@@ -60,10 +60,10 @@ class Recurrence:
         ]
         made = [np.empty((len(run.inputs), run.first.size)) for run in runs]
         every = [
-            _Run(len(states), *(one.ctypes.data for one in (*arrays, states)))
+            _RecurrenceRun(len(states), *(one.ctypes.data for one in (*arrays, states)))
             for arrays, states in zip(kept, made, strict=True)
         ]
-        code.rr_recur(len(every), (_Run * len(every))(*every))
+        code.rr_recur(len(every), (_RecurrenceRun * len(every))(*every))
         return made
 
     @cached_property

@@ -15,13 +15,13 @@ from typing import Any, Literal
 from rr_opt.model.fields import SI, data, declared
 from rr_opt.model.robot import Platform, Robot
 from rr_opt.outcome import InputError
-from rr_opt.units import Quantity
+from rr_opt.units import Number
 
 About = Literal["joint", "centre"]
 By = Literal["inertia", "loads"]
 
 
-_DISTANCE = Quantity("m", "44.1 mm", at_least=0)
+_DISTANCE = Number("m", "44.1 mm", at_least=0)
 
 
 @data
@@ -35,7 +35,7 @@ class Loads:
     whole     True: only whole numbers of loads exist
     """
 
-    mass: SI = declared(Quantity("kg", "66 g", above=0), "Mass of one load, kg.", default=0.066)
+    mass: SI = declared(Number("kg", "66 g", above=0), "Mass of one load, kg.", default=0.066)
     distance: SI = declared(
         _DISTANCE, "From the joint P to the loads, towards the axle, m.", default=0.0441
     )

@@ -19,7 +19,7 @@ from rr_opt.model.gait import Gait
 from rr_opt.model.parameters import Uncertainty, default_uncertainty
 from rr_opt.model.robot import Robot
 from rr_opt.outcome import InputError
-from rr_opt.units import Quantity
+from rr_opt.units import Number
 
 
 @data
@@ -28,11 +28,11 @@ class CountScale:
 
     counts: int = declared(Count(2, 1_000_000), "How many counts there are.", default=1024)
     range: SI = declared(
-        Quantity("rad", "300 deg"),
+        Number("rad", "300 deg"),
         "The angle they cover, rad; negative where phi falls as they rise.",
         default=math.radians(300),
     )
-    zero: SI = declared(Quantity("", "512"), "The count at which phi = 0.", default=512.0)
+    zero: SI = declared(Number("", "512"), "The count at which phi = 0.", default=512.0)
 
     @property
     def each(self) -> float:
@@ -168,9 +168,9 @@ Start = Literal["rest", "running"]
 class Noise:
     """One standard deviation of the capture system: position (m), angle (rad), torque (N m)."""
 
-    position: SI = declared(Quantity("m", "1 mm", above=0), "Of x and y, m.")
-    angle: SI = declared(Quantity("rad", "3 mrad", above=0), "Of psi and phi, rad.")
-    torque: SI = declared(Quantity("N m", "3 mN*m", above=0), "Of the torque, N m.", default=0.003)
+    position: SI = declared(Number("m", "1 mm", above=0), "Of x and y, m.")
+    angle: SI = declared(Number("rad", "3 mrad", above=0), "Of psi and phi, rad.")
+    torque: SI = declared(Number("N m", "3 mN*m", above=0), "Of the torque, N m.", default=0.003)
 
     def of(self, channel: str) -> float:
         """That of x, y, psi, phi or torque."""

@@ -19,7 +19,7 @@ import numpy as np
 
 from rr_opt.messages import shown
 from rr_opt.outcome import InputError
-from rr_opt.units import Quantity
+from rr_opt.units import Number
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class Interval:
 class Range:
     """An interval of a quantity: a value fixes it, a pair (low, high) bounds it."""
 
-    quantity: Quantity
+    quantity: Number
 
     def is_read(self, value: object) -> bool:
         """Whether the value is an interval already."""
@@ -78,7 +78,7 @@ class Range:
 class Series:
     """A sequence of numbers of one quantity, with a least length."""
 
-    quantity: Quantity
+    quantity: Number
     least: int = 1
 
     def is_read(self, value: Any) -> bool:
@@ -145,7 +145,7 @@ class Count:
         return {"type": "integer", "minimum": self.least, "maximum": self.most, **step}
 
 
-Reader = Quantity | Range | Series | Count
+Reader = Number | Range | Series | Count
 
 if TYPE_CHECKING:
     # What a type checker is to see: each accepts more when a dataclass is made than it holds.
@@ -199,7 +199,7 @@ def data(cls: type[Class]) -> type[Class]:
 
     Raises InputError, naming class and field, for text that is not such a quantity.
     """
-    scalars: list[tuple[str, Quantity]] = []
+    scalars: list[tuple[str, Number]] = []
     others: list[tuple[str, Range | Series | Count]] = []
     then: Callable[[Any], None] | None = getattr(cls, "__post_init__", None)
 
@@ -227,7 +227,7 @@ def data(cls: type[Class]) -> type[Class]:
     declarations: Any = dataclasses.fields(made)  # pyright: ignore[reportArgumentType]
     for one in declarations:
         reader = one.metadata.get("reader")
-        if isinstance(reader, Quantity):
+        if isinstance(reader, Number):
             scalars.append((one.name, reader))
         elif reader:
             others.append((one.name, reader))

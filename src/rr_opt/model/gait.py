@@ -10,13 +10,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from rr_opt.array import Array
 from rr_opt.model.fields import SI, Numbers, Series, data, declared
-from rr_opt.units import Quantity
+from rr_opt.units import Number
 
-AMPLITUDE = Quantity("rad", "30 deg", at_least=0)
-PERIOD = Quantity("s", "1.2 s", at_least=0.01)
+AMPLITUDE = Number("rad", "30 deg", at_least=0)
+PERIOD = Number("s", "1.2 s", at_least=0.01)
 """No servo follows 100 Hz: a shorter period is a slip of the unit."""
-OFFSET = Quantity("rad", "10 deg")
-_ANGLE = Quantity("rad", "0.5")
+OFFSET = Number("rad", "10 deg")
+_ANGLE = Number("rad", "0.5")
 
 
 @data
@@ -162,9 +162,9 @@ class FreeGait:
 
     period: SI = declared(PERIOD, "period, s.")
     angle0: SI = declared(_ANGLE, "phi at the start, rad.")
-    rate0: SI = declared(Quantity("rad/s", "1.5"), "dphi/dt at the start, rad/s.")
+    rate0: SI = declared(Number("rad/s", "1.5"), "dphi/dt at the start, rad/s.")
     accelerations: Numbers = declared(
-        Series(Quantity("rad/s^2", "0.1"), least=2), "d2phi/dt2 on each interval, rad/s2."
+        Series(Number("rad/s^2", "0.1"), least=2), "d2phi/dt2 on each interval, rad/s2."
     )
 
     shape = "free"

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from rr_opt.units import Quantity
+from rr_opt.units import Number
 
 if TYPE_CHECKING:
     from rr_opt.model.robot import Robot
@@ -89,9 +89,9 @@ class RobotParameter:
         )
 
     @property
-    def quantity(self) -> Quantity:
+    def quantity(self) -> Number:
         """Its unit and range."""
-        return Quantity(self.unit, self.example, above=self.above, at_least=self.at_least)
+        return Number(self.unit, self.example, above=self.above, at_least=self.at_least)
 
     @property
     def description(self) -> str:

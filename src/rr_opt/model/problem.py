@@ -12,7 +12,7 @@ from rr_opt.model.fields import SI, Bounds, Count, Interval, OptionalSI, Range, 
 from rr_opt.model.gait import AMPLITUDE, OFFSET, PERIOD
 from rr_opt.model.robot import ANGLE_LIMIT, RATE_LIMIT, TORQUE_LIMIT, Robot
 from rr_opt.model.servo_command import CommandBounds
-from rr_opt.units import Quantity
+from rr_opt.units import Number
 
 Direction = Literal["forward", "backward", "either"]
 Shape = Literal["sine", "fourier", "free"]
@@ -54,7 +54,7 @@ class GaitBounds:
 class RatioChoice:
     """J20/J10 as a decision: its bounds, its definition and its realisation."""
 
-    bounds: Bounds = declared(Range(Quantity("", "0.2", above=0)), "J20/J10, dimensionless.")
+    bounds: Bounds = declared(Range(Number("", "0.2", above=0)), "J20/J10, dimensionless.")
     about: About = declared(
         None, "The J are taken about the joint P, or each centre of mass.", default="joint"
     )
@@ -78,7 +78,7 @@ here. The sweep's C code has the same number."""
 LEAST = ("singularity", "speed")
 """Limits below which something must not fall; of the others, above which it must not rise."""
 
-GRIP_LIMIT = Quantity("", "0.5", above=0, endless=True)
+GRIP_LIMIT = Number("", "0.5", above=0, endless=True)
 
 NEEDS_GRIP = 0.5
 """Side force over load above which a gait is warned of: rubber on a dry floor has 0.6 to 1, hard
@@ -103,7 +103,7 @@ class Limits:
         TORQUE_LIMIT, "Largest |torque|, N m; .inf: no limit.", default=None
     )
     singularity: SI = declared(
-        Quantity("m", "20 mm", above=0), "The least S1 = c1 cos phi + c2 allowed, m.", default=0.020
+        Number("m", "20 mm", above=0), "The least S1 = c1 cos phi + c2 allowed, m.", default=0.020
     )
 
     grip: SI = declared(
@@ -113,19 +113,19 @@ class Limits:
         default=math.inf,
     )
     power: SI = declared(
-        Quantity("W", "0.5 W", above=0, endless=True),
+        Number("W", "0.5 W", above=0, endless=True),
         "Largest mean of the servo's positive power torque dphi/dt over a period, W: what it gets "
         "back while it brakes does not count; .inf: no limit.",
         default=math.inf,
     )
     cost_of_transport: SI = declared(
-        Quantity("", "0.2", above=0, endless=True),
+        Number("", "0.2", above=0, endless=True),
         "Largest cost of transport: the servo's positive work per metre over the robot's weight; "
         ".inf: no limit.",
         default=math.inf,
     )
     speed: SI = declared(
-        Quantity("m/s", "50 mm/s", at_least=0.0), "Least mean speed, m/s, either way.", default=0.0
+        Number("m/s", "50 mm/s", at_least=0.0), "Least mean speed, m/s, either way.", default=0.0
     )
 
     @property
@@ -162,19 +162,19 @@ class Turn:
     """
 
     curvature: Bounds = declared(
-        Range(Quantity("1/m", "0.5")),
+        Range(Number("1/m", "0.5")),
         "Heading gained per metre along the mean circle, 1/m.",
         default=ANY,
     )
     yaw_rate: Bounds = declared(
-        Range(Quantity("rad/s", "10 deg/s")), "Heading gained per second, rad/s.", default=ANY
+        Range(Number("rad/s", "10 deg/s")), "Heading gained per second, rad/s.", default=ANY
     )
     heading: Bounds = declared(
-        Range(Quantity("rad", "90 deg")), "Heading gained per period, rad.", default=ANY
+        Range(Number("rad", "90 deg")), "Heading gained per period, rad.", default=ANY
     )
 
 
-_SHARE = Quantity("", "5 %", at_least=0.0, below=1.0)
+_SHARE = Number("", "5 %", at_least=0.0, below=1.0)
 
 
 @data

@@ -11,7 +11,7 @@ from typing import Any
 
 from rr_opt.model.fields import SI, data, declared
 from rr_opt.model.parameters import SYMBOLS
-from rr_opt.units import Quantity
+from rr_opt.units import Number
 
 
 def _parameter(symbol: str) -> Any:
@@ -51,9 +51,9 @@ class Platform:
         return self.I + self.m * (reach * reach)
 
 
-ANGLE_LIMIT = Quantity("rad", "2.6", above=0, below=math.pi)
-RATE_LIMIT = Quantity("rad/s", "30 rpm", above=0, endless=True)
-TORQUE_LIMIT = Quantity("N m", "14 kgf*cm", above=0, endless=True)
+ANGLE_LIMIT = Number("rad", "2.6", above=0, below=math.pi)
+RATE_LIMIT = Number("rad/s", "30 rpm", above=0, endless=True)
+TORQUE_LIMIT = Number("N m", "14 kgf*cm", above=0, endless=True)
 
 
 @data

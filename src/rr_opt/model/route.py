@@ -6,10 +6,10 @@ from typing import Literal
 
 from rr_opt.model.fields import SI, data, declared
 from rr_opt.model.problem import Direction, Problem
-from rr_opt.units import Quantity
+from rr_opt.units import Number
 
-_PLACE = Quantity("m", "1.5 m")
-_HEADING = Quantity("rad", "90 deg")
+_PLACE = Number("m", "1.5 m")
+_HEADING = Number("rad", "90 deg")
 
 
 @data
@@ -25,7 +25,7 @@ class Pose:
 class Straight:
     """A straight line ahead, m."""
 
-    length: SI = declared(Quantity("m", "2 m", above=0, at_most=1000), "Length, m.")
+    length: SI = declared(Number("m", "2 m", above=0, at_most=1000), "Length, m.")
 
 
 @data
@@ -33,10 +33,10 @@ class Arc:
     """An arc that begins ahead."""
 
     radius: SI = declared(
-        Quantity("m", "0.6 m", above=0, at_most=1000), "Radius of P's mean path, m."
+        Number("m", "0.6 m", above=0, at_most=1000), "Radius of P's mean path, m."
     )
     angle: SI = declared(
-        Quantity("rad", "90 deg", at_least=-20 * math.pi, at_most=20 * math.pi),
+        Number("rad", "90 deg", at_least=-20 * math.pi, at_most=20 * math.pi),
         "Change of heading, rad, positive to the left; at most ten turns.",
     )
 
@@ -62,17 +62,17 @@ Piece = Straight | Arc | Waypoint
 class Tolerance:
     """How exactly the route is to be driven."""
 
-    position: SI = declared(Quantity("m", "2 cm", above=0), "Of P at the end, m.", default=0.02)
+    position: SI = declared(Number("m", "2 cm", above=0), "Of P at the end, m.", default=0.02)
     heading: SI = declared(
-        Quantity("rad", "5 deg", above=0, below=math.pi),
+        Number("rad", "5 deg", above=0, below=math.pi),
         "Of platform 1 at the end, rad.",
         default=math.radians(5),
     )
     path: SI = declared(
-        Quantity("m", "5 cm", above=0), "Of P on the way, from the path, m.", default=0.05
+        Number("m", "5 cm", above=0), "Of P on the way, from the path, m.", default=0.05
     )
     speed: SI = declared(
-        Quantity("m/s", "2 mm/s", above=0), "At rest the robot is slower, m/s.", default=0.002
+        Number("m/s", "2 mm/s", above=0), "At rest the robot is slower, m/s.", default=0.002
     )
 
 

@@ -21,7 +21,7 @@ from rr_opt.recordings.clock_fit import ClockFit
 from rr_opt.recordings.markers.calibration import Calibration
 from rr_opt.recordings.markers.pose import MarkerFit, fit_markers
 from rr_opt.recordings.nuisances import nuisances
-from rr_opt.recordings.nuisances.evidence import Evidence
+from rr_opt.recordings.nuisances.evidence import ExaminedRecording
 from rr_opt.recordings.readers import MarkerData, ReadOptions, ServoLog, read_file
 from rr_opt.recordings.servo_clock import Synchrony, synchronised
 
@@ -163,7 +163,7 @@ def inspect(read: Recording | MarkerData, log: ServoLog | None, known: Circumsta
         if markers is not None:
             markers = replace(markers, recording=recording)
     cleaned = clean(recording)
-    evidence = Evidence(
+    evidence = ExaminedRecording(
         cleaned.recording, known.robot, known.gait, known.start,
         clock_known=synchrony is not None and synchrony.shift is not None,
         framed=markers is None or known.layout is not None,

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from rr_opt.design.candidate import Candidate
+from rr_opt.design.candidate import StartResult
 from rr_opt.design.decisions import ballast_interval, with_ballast
 from rr_opt.design.maximize_speed import Optimum
 from rr_opt.documents import document as doc
@@ -195,7 +195,7 @@ class FastestGait(Result):
         """Names of the limits that constrain the gait."""
         return [row.name for row in self.limits.values() if row.active] if self.replay else []
 
-    def ratio_of(self, candidate: Candidate) -> float:
+    def ratio_of(self, candidate: StartResult) -> float:
         """J20/J10 of one of the optima, in the problem's definition."""
         choice = self.problem.inertia_ratio
         span = ballast_interval(self.problem.robot, choice)

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from rr_opt.design.study.row import Optimum, Row
+from rr_opt.design.study.row import CaseOptimum, Row
 from rr_opt.documents.document import heading
 from rr_opt.files.study_axes import Axis
 from rr_opt.files.study_file import Study
@@ -147,11 +147,11 @@ def study_columns(
         return StudyColumn(name, unit, meaning, [cell(row) for row in rows])
 
     def of_optima(
-        name: str, unit: str, meaning: str, cell: Callable[[Optimum], Any]
+        name: str, unit: str, meaning: str, cell: Callable[[CaseOptimum], Any]
     ) -> StudyColumn:
         return of_rows(name, unit, meaning, lambda row: row.optimum and cell(row.optimum))
 
-    def price(name: str, unit: str, what: str, prices: Callable[[Optimum], Any]) -> StudyColumn:
+    def price(name: str, unit: str, what: str, prices: Callable[[CaseOptimum], Any]) -> StudyColumn:
         per, meaning = f"m/s per {unit}" if unit else "m/s", f"speed gained per unit of the {what}"
         # What is not active costs nothing.
         return of_optima(f"price_{name}", per, meaning, lambda one: prices(one).get(name, 0.0))

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar
 
-from rr_opt.design.turn import Arc
+from rr_opt.design.turn import MeanMotion
 from rr_opt.design.turn_target import Target
 from rr_opt.documents import document as doc
 from rr_opt.documents.texts import captions
@@ -33,7 +33,7 @@ class FastestTurn(FastestGait):
 
     target: Target = field(default_factory=Target)
     opened: bool = False
-    arc: Arc | None = None
+    arc: MeanMotion | None = None
     circle: CircleCheck | None = None
 
     @property
@@ -155,7 +155,7 @@ UNITS = {
 }
 
 
-def _facts(turn: FastestTurn, arc: Arc) -> Iterator[doc.Fact]:
+def _facts(turn: FastestTurn, arc: MeanMotion) -> Iterator[doc.Fact]:
     """The arc, or the full circle, and what a slightly easier turn would gain."""
     name = "circle" if turn.target.heading is None else "arc"
     degrees = abs(math.degrees(arc.heading))

@@ -11,7 +11,7 @@ import numpy as np
 
 from rr_opt.array import Array
 from rr_opt.sysid import estimation
-from rr_opt.sysid.estimation import Fit, Problem
+from rr_opt.sysid.estimation import Fit, FitProblem
 from rr_opt.sysid.model import Choice, Model, Quantity, Request, Segment
 from rr_opt.sysid.settings import SETTINGS
 
@@ -100,7 +100,7 @@ def fitted(
     ordered = tuple(sorted(choices))
     names = tuple(one.name for one in ordered)
     quantities = quantities_of(model, ordered)
-    problem = Problem(
+    problem = FitProblem(
         model, names, quantities, parent.problem.segments, parent.problem.values, parent.problem.q
     )
     plain = {q.name: q.centre for q in quantities}
@@ -155,7 +155,7 @@ def polished(candidate: Candidate) -> Candidate:
     return Candidate(candidate.choices, estimation.fitted(problem, whole.values, fit.states))
 
 
-def _tested(problem: Problem, parent: Fit) -> Problem:
+def _tested(problem: FitProblem, parent: Fit) -> FitProblem:
     """The problem of the few runs that the parent explains worst."""
     worst = sorted(problem.by_run, key=lambda run: -parent.evidences[run].excess)
     runs = worst[: SETTINGS.trial_runs]

@@ -33,7 +33,7 @@ _WORTH = 1000
 """Steps; what has fewer is done before a thread has begun."""
 
 
-class _Run(ctypes.Structure):
+class _CompiledRun(ctypes.Structure):
     """`Run` of the C."""
 
     _fields_ = (
@@ -209,7 +209,9 @@ class _Held:
         assert all(
             self.arrays[name] is arrays[name] for name in ("seen", "gram", "end") if name in arrays
         )
-        self.run = _Run(steps=steps, **{name: one.ctypes.data for name, one in self.arrays.items()})
+        self.run = _CompiledRun(
+            steps=steps, **{name: one.ctypes.data for name, one in self.arrays.items()}
+        )
 
 
 class _Few(NamedTuple):
@@ -220,7 +222,7 @@ class _Few(NamedTuple):
 
 
 def _array(held: Sequence[_Held]) -> ctypes.Array:
-    return (_Run * len(held))(*(one.run for one in held))
+    return (_CompiledRun * len(held))(*(one.run for one in held))
 
 
 def found(source: str, size: int, channels: int, *, make: bool) -> Compiled | None:

@@ -14,14 +14,14 @@ from rr_opt.sysid.diagnosis import Diagnosis
 from rr_opt.sysid.evaluation import evaluation, mismatch
 from rr_opt.sysid.intervals import estimates, released
 from rr_opt.sysid.location import residues, stages, where
-from rr_opt.sysid.machine import Machine
-from rr_opt.sysid.model import Noise
+from rr_opt.sysid.machine import MachineModel
+from rr_opt.sysid.model import ChannelNoise
 from rr_opt.sysid.noise import noise_in
 from rr_opt.sysid.remainder import dependences
 from rr_opt.sysid.selection import Selection, turned
 from rr_opt.sysid.summary import summary_of
 from rr_opt.sysid.verdict import (
-    Result,
+    Identification,
     alike,
     findings,
     remainder_of,
@@ -59,7 +59,7 @@ class _Timed:
         self.watch.seconds[self.step] = self.watch.seconds.get(self.step, 0.0) + spent
 
 
-def diagnose(model: Machine, progress: Callable[[str], None] = lambda _: None) -> Diagnosis:
+def diagnose(model: MachineModel, progress: Callable[[str], None] = lambda _: None) -> Diagnosis:
     """Diagnose any machine from its runs; `progress` is called with each step."""
     watch = Stopwatch(progress)
     result = identified(model, watch)
@@ -71,7 +71,7 @@ def diagnose(model: Machine, progress: Callable[[str], None] = lambda _: None) -
     return replace(found, summary=summary_of(found, worth, result.doubt))
 
 
-def _answer(result: Result) -> Diagnosis:
+def _answer(result: Identification) -> Diagnosis:
     verdict, selection, best = verdict_of(result), result.selection, result.best
     model, base = selection.model, selection.base
     named = findings(result) if verdict == "missing_physics" else ()
@@ -120,13 +120,13 @@ def _answer(result: Result) -> Diagnosis:
     )
 
 
-def _quieter(selection: Selection) -> list[Noise] | None:
+def _quieter(selection: Selection) -> list[ChannelNoise] | None:
     """The noise, if a search shows less than was assumed."""
     noise = noise_in(selection.best.simulated)
     return noise if noise and any(one.quieter for one in noise) else None
 
 
-def identified(model: Machine, watch: Stopwatch) -> Result:
+def identified(model: MachineModel, watch: Stopwatch) -> Identification:
     """Search for what is missing, with the noise that the nominal model shows; once more if the
     answer shows less."""
     runs = [k for k, run in enumerate(model.runs) if not run.held_out]
@@ -167,4 +167,4 @@ def identified(model: Machine, watch: Stopwatch) -> Result:
     with watch("locating the fault"):
         before = dependences(base, *model.unknown_inputs(base))
         after = dependences(fit, *model.unknown_inputs(fit)) if best.choices else before
-    return Result(selection, best, everywhere, plain, *levels, before, after)
+    return Identification(selection, best, everywhere, plain, *levels, before, after)

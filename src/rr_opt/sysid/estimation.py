@@ -126,7 +126,7 @@ def bounded_minimum(H: Array, g: Array, low: Array, high: Array) -> Array:
 
 
 @dataclass(frozen=True)
-class Problem:
+class FitProblem:
     """What is fitted, to which segments.
 
     values  of everything that is not fitted
@@ -258,13 +258,13 @@ class Problem:
 class Linear:
     """Segments' linearisations, so that other strengths of process noise cost nothing."""
 
-    problem: Problem
+    problem: FitProblem
     made: Mapping[Segment, Simulation]
     parts: Mapping[Segment, tuple[Array, Array]]
     states: States
 
     @classmethod
-    def of(cls, problem: Problem, values: Mapping[str, float], states: States, made) -> Linear:
+    def of(cls, problem: FitProblem, values: Mapping[str, float], states: States, made) -> Linear:
         """At a point that was simulated."""
         requests = problem.requests(values, states)
         every = problem.model.linearise(requests, problem.effects, problem.names)
@@ -358,7 +358,7 @@ class Fit:
     evidences  of each run, at the solution
     """
 
-    problem: Problem
+    problem: FitProblem
     values: Mapping[str, float]
     states: States
     linear: Linear
@@ -426,13 +426,13 @@ def _but(evidences: Mapping[int, Evidence], run: int) -> dict[int, Evidence]:
     return {other: e for other, e in evidences.items() if other != run}
 
 
-def _deviance(problem: Problem, evidences: Mapping[int, Evidence], u: Array) -> float:
+def _deviance(problem: FitProblem, evidences: Mapping[int, Evidence], u: Array) -> float:
     """-2 log of the marginal likelihood of runs."""
     H, _, value = summed(problem, evidences, u)
     return value + _volume(problem, H)
 
 
-def _volume(problem: Problem, H: Array) -> float:
+def _volume(problem: FitProblem, H: Array) -> float:
     """Of the prior over that of the posterior, -2 log of their ratio."""
     if not problem.quantities:
         return 0.0
@@ -440,7 +440,7 @@ def _volume(problem: Problem, H: Array) -> float:
 
 
 def solve(
-    problem: Problem,
+    problem: FitProblem,
     values: Mapping[str, float],
     states: States,
     steps: int = SETTINGS.steps,
@@ -492,7 +492,7 @@ def solve(
 
 
 def summed(
-    problem: Problem, evidences: Mapping[int, Evidence], u: Array
+    problem: FitProblem, evidences: Mapping[int, Evidence], u: Array
 ) -> tuple[Array, Array, float]:
     """H, g and value of the runs with the prior: of value + 2 g'd + d'Hd."""
     H, g = np.diag(problem.prior), problem.prior * u
@@ -511,7 +511,7 @@ def _step(H: Array, g: Array, radius: float, u: Array, box: tuple[Array, Array])
 
 @dataclass(frozen=True)
 class _Point:
-    problem: Problem
+    problem: FitProblem
     u: Array
     states: States
     made: Mapping[Segment, Simulation]
@@ -520,7 +520,7 @@ class _Point:
     @classmethod
     def of(
         cls,
-        problem: Problem,
+        problem: FitProblem,
         u: Array,
         states: States,
         made: Mapping[Segment, Simulation] | None = None,
@@ -537,7 +537,7 @@ class _Point:
 
 
 def _after(
-    problem: Problem,
+    problem: FitProblem,
     linear: Linear,
     evidences: Mapping[int, Evidence],
     here: _Point,
@@ -587,7 +587,7 @@ def most_likely(fit: Fit) -> float:
 
 
 def fitted(
-    problem: Problem,
+    problem: FitProblem,
     values: Mapping[str, float],
     states: States,
     steps: int = SETTINGS.steps,
@@ -626,10 +626,10 @@ def initial(
     values: Mapping[str, float],
     runs: Iterable[int],
     length: float | None = None,
-) -> tuple[Problem, dict[Segment, Array]]:
+) -> tuple[FitProblem, dict[Segment, Array]]:
     """The problem of some runs, and states to begin with."""
     cut = segments({r: model.runs[r] for r in runs}, length or model.segment_length)
-    problem = Problem(model, effects, quantities, cut, values)
+    problem = FitProblem(model, effects, quantities, cut, values)
     return problem, {one: model.initial_state(one, effects, values) for one in cut}
 
 
@@ -650,7 +650,7 @@ def predicted(fit: Fit, runs: Iterable[int], values: Mapping[str, float]) -> Fit
 
 def _whole(
     fit: Fit, runs: Iterable[int], values: Mapping[str, float]
-) -> tuple[Problem, dict[Segment, Array]]:
+) -> tuple[FitProblem, dict[Segment, Array]]:
     """Least squares over whole runs, and states to begin with: the fit's own where it has them."""
     problem = fit.problem
     cut = segments({r: problem.model.runs[r] for r in runs}, problem.model.horizon)

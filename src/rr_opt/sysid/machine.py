@@ -9,7 +9,7 @@ from typing import Protocol
 from rr_opt.array import Array
 from rr_opt.sysid.diagnosis import Misfit, NextExperiment
 from rr_opt.sysid.estimation import Fit
-from rr_opt.sysid.model import Choice, Linearisation, Model, Noise, Segment
+from rr_opt.sysid.model import ChannelNoise, Choice, Linearisation, Model, Segment
 
 CONSTANT = "nothing"
 """The variable of an input that is constant."""
@@ -32,7 +32,7 @@ class Term:
     shapes: Array
 
 
-class Machine(Model, Protocol):
+class MachineModel(Model, Protocol):
     """A model with ways to propose what is missing from it.
 
     inputs          channels by which an unknown input may enter, and each input in words
@@ -52,7 +52,7 @@ class Machine(Model, Protocol):
         """Initial guesses of effects that a score test cannot see, beside a fit without them."""
         ...
 
-    def with_noise(self, noise: Sequence[Noise]) -> Machine:
+    def with_noise(self, noise: Sequence[ChannelNoise]) -> MachineModel:
         """The same machine and runs with other noise in each channel, in units of that here."""
         ...
 

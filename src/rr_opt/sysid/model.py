@@ -89,7 +89,7 @@ class Choice:
 
 
 @dataclass(frozen=True)
-class Noise:
+class ChannelNoise:
     """The noise of a channel.
 
     level        standard deviation, in units of that assumed

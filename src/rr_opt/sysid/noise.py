@@ -18,7 +18,7 @@ import numpy as np
 
 from rr_opt.array import Array
 from rr_opt.sysid.estimation import Fit
-from rr_opt.sysid.model import Noise
+from rr_opt.sysid.model import ChannelNoise
 from rr_opt.sysid.settings import SETTINGS
 
 _BINS = 48
@@ -28,7 +28,7 @@ _NEAR = 3.0
 """Times the slow band's edge, up to which the spectrum is extrapolated from."""
 
 
-def noise_in(fit: Fit) -> list[Noise] | None:
+def noise_in(fit: Fit) -> list[ChannelNoise] | None:
     """That of each channel, from what a fit of whole runs leaves, as seams of segments would look
     like noise; None if it is as assumed."""
     problem = fit.problem
@@ -51,7 +51,7 @@ def noise_in(fit: Fit) -> list[Noise] | None:
     return noise if differs else None
 
 
-def _levelled(residuals: Sequence[Array], steps: Sequence[float], slow: float) -> Noise:
+def _levelled(residuals: Sequence[Array], steps: Sequence[float], slow: float) -> ChannelNoise:
     """The noise in residuals, at their own level where that is as near as spectra tell."""
     noise = noise_of(residuals, steps, slow)
     every = np.concatenate(residuals)
@@ -62,7 +62,7 @@ def _levelled(residuals: Sequence[Array], steps: Sequence[float], slow: float) -
 
 def noise_of(
     residuals: Sequence[Array], steps: Sequence[float], slowest: float = SETTINGS.slow
-) -> Noise:
+) -> ChannelNoise:
     """The noise in residuals (n,) of runs, in the units stated, 0 where there are no data.
 
     steps    between the samples of each, s
@@ -70,7 +70,7 @@ def noise_of(
     """
     fastest = 0.5 / max(steps)
     if fastest < _NEAR * slowest:
-        return Noise()
+        return ChannelNoise()
     edges = np.geomspace(slowest, fastest, _BINS + 1)
     density: list[list[float]] = [[] for _ in range(_BINS)]
     for r, step in zip(residuals, steps, strict=True):
@@ -89,14 +89,14 @@ def noise_of(
     middle, width = np.sqrt(edges[1:] * edges[:-1]), np.diff(edges)
     known = np.isfinite(seen)
     if known.sum() < _BINS // 2:
-        return Noise()
+        return ChannelNoise()
     near = known & (middle < _NEAR * slowest)
     edge = float(np.median(seen[near]))
     through = np.polyfit(middle[near] ** 2, edge / seen[near], 1)[1]
     slow = edge / float(np.clip(through, 0.5, 1.0))
     total = slow * slowest + float(np.sum((seen * width)[known])) / known.mean()
     variance = total / fastest
-    return Noise(math.sqrt(variance), max(slow / variance, 1.0))
+    return ChannelNoise(math.sqrt(variance), max(slow / variance, 1.0))
 
 
 def _median(n: int) -> float:

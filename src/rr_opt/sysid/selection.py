@@ -14,8 +14,8 @@ from dataclasses import dataclass, field, replace
 
 from rr_opt.sysid.candidates import Candidate, first, fitted, polished, quantities_of
 from rr_opt.sysid.constancy import constancy
-from rr_opt.sysid.machine import Machine
-from rr_opt.sysid.model import Choice, Noise
+from rr_opt.sysid.machine import MachineModel
+from rr_opt.sysid.model import ChannelNoise, Choice
 from rr_opt.sysid.score_test import scores
 from rr_opt.sysid.settings import SETTINGS
 
@@ -30,7 +30,7 @@ class Selection:
     best  the candidate that was chosen
     """
 
-    model: Machine
+    model: MachineModel
     base: Candidate
     progress: Progress = lambda _: None
     tried: dict[tuple[Choice, ...], Candidate] = field(default_factory=dict)
@@ -41,13 +41,13 @@ class Selection:
         self.best = self.tried[()] = self.base
 
     @classmethod
-    def begun(cls, model: Machine, base: Candidate, progress: Progress) -> Selection:
+    def begun(cls, model: MachineModel, base: Candidate, progress: Progress) -> Selection:
         """A search with the drive looked at."""
         selection = cls(model, base, progress)
         selection.drive()
         return selection
 
-    def again(self, noise: Sequence[Noise]) -> Selection:
+    def again(self, noise: Sequence[ChannelNoise]) -> Selection:
         """From the beginning, with other noise."""
         model = self.model.with_noise(noise)
         return self.begun(model, first(model, self.base.fit.problem.by_run), self.progress)
@@ -285,7 +285,7 @@ def _more(guess: Mapping[str, float], own: set[str]) -> dict[str, float]:
     return {name: value for name, value in guess.items() if name not in own}
 
 
-def turned(model: Machine, candidate: Candidate) -> Candidate:
+def turned(model: MachineModel, candidate: Candidate) -> Candidate:
     """The candidate with values that predict the same and are nearer to what was believed."""
     values = model.equivalent(candidate.fit.values)
     if values is None:

@@ -62,7 +62,7 @@ class Hats:
 
 
 @dataclass(frozen=True)
-class Linear:
+class LinearMotion:
     """The linearised motion from sample to sample, and of what is seen.
 
     A (samples - 1, size, size);  B (samples - 1, size, nw) of what is asked for, and after that of
@@ -88,7 +88,9 @@ class Part:
     hats: Hats | None = None
 
 
-def linear(system: System, parts: Sequence[Part], p: Array, wanted: Array) -> Iterator[Linear]:
+def linear(
+    system: System, parts: Sequence[Part], p: Array, wanted: Array
+) -> Iterator[LinearMotion]:
     """The motion linearised along predicted paths, of all or of none of which the drive changes,
     and likewise with hats.
 
@@ -111,7 +113,9 @@ def _at_once(parts: Sequence[Part]) -> Iterator[Sequence[Part]]:
         yield some
 
 
-def _linear(system: System, parts: Sequence[Part], p: Array, wanted: Array) -> Iterator[Linear]:
+def _linear(
+    system: System, parts: Sequence[Part], p: Array, wanted: Array
+) -> Iterator[LinearMotion]:
     size, nd = parts[0].made.states.shape[0], parts[0].path.at.shape[0]
     how = _frozen if system.stiff else _stages
     A, B = how(_Along(system, parts, p, wanted))
@@ -132,7 +136,7 @@ def _linear(system: System, parts: Sequence[Part], p: Array, wanted: Array) -> I
         a, b = A[during], B[during]
         for _ in range(int(np.log2(one.path.each))):
             a, b = a[1::2] @ a[::2], a[1::2] @ b[::2] + b[1::2]
-        yield Linear(a, b, by_state[seen], by_drive[seen], by_wanted[seen])
+        yield LinearMotion(a, b, by_state[seen], by_drive[seen], by_wanted[seen])
         step, sample = step + steps, sample + samples
 
 

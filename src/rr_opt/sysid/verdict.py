@@ -27,7 +27,7 @@ from rr_opt.sysid.settings import SETTINGS
 
 
 @dataclass(frozen=True)
-class Result:
+class Identification:
     """What the diagnosis rests on.
 
     best      the candidate that was chosen, with values that are wrong released
@@ -169,7 +169,7 @@ class Result:
         return sorted(others, key=lambda one: -one.elpd)
 
 
-def verdict_of(result: Result) -> Verdict:
+def verdict_of(result: Identification) -> Verdict:
     """Whether effects are shown, and if not, whether the nominal model is enough."""
     if result.shown:
         return "missing_physics"
@@ -181,7 +181,7 @@ def verdict_of(result: Result) -> Verdict:
     return "consistent"
 
 
-def findings(result: Result) -> tuple[Finding, ...]:
+def findings(result: Identification) -> tuple[Finding, ...]:
     """The effects that are shown, strongest first."""
     base = max(result.selection.base.excess, 1e-12) ** 2
     out = []
@@ -197,7 +197,7 @@ def findings(result: Result) -> tuple[Finding, ...]:
     return tuple(sorted(out, key=lambda one: -one.removes))
 
 
-def wrong_values(result: Result) -> tuple[Finding, ...]:
+def wrong_values(result: Identification) -> tuple[Finding, ...]:
     """The parameters that are not what they were believed to be."""
     intervals = estimates(result.best.fit)
     return tuple(
@@ -205,7 +205,7 @@ def wrong_values(result: Result) -> tuple[Finding, ...]:
     )
 
 
-def remainder_of(result: Result) -> Remainder:
+def remainder_of(result: Identification) -> Remainder:
     """What is left with the answer's effects."""
     after = result.final.excess
     share = result.share if result.best.choices else float(after > 0)
@@ -234,7 +234,7 @@ def _roughly(one: Candidate) -> float:
     return one.fit.excess
 
 
-def alike(result: Result) -> tuple[tuple[str, ...], ...]:
+def alike(result: Identification) -> tuple[tuple[str, ...], ...]:
     """Sets of effects that predict the recordings about as well as the answer does."""
     own = result.best
     near = []
@@ -246,7 +246,7 @@ def alike(result: Result) -> tuple[tuple[str, ...], ...]:
     return tuple(dict.fromkeys(groups))
 
 
-def rival_of(result: Result) -> tuple[str, Candidate] | None:
+def rival_of(result: Identification) -> tuple[str, Candidate] | None:
     """The candidate that comes next, of those that a recording may yet tell from the answer."""
     for one in result.rivals[:1]:
         gain, error = result.best.advantage(one)

@@ -8,7 +8,7 @@ from rr_opt.model.experiment import Recording
 from rr_opt.model.gait import SineGait
 from rr_opt.recordings.clock_fit import against_command
 from rr_opt.recordings.nuisances import command
-from rr_opt.recordings.nuisances.evidence import Evidence
+from rr_opt.recordings.nuisances.evidence import ExaminedRecording
 from rr_opt.recordings.readers.servo_log import ServoLog
 from rr_opt.recordings.servo_clock import against_log, log_notices
 
@@ -20,7 +20,7 @@ COUNT = np.radians(300) / 1024
 def notices(phi):
     """Of an angle against its command."""
     still = np.zeros(len(T))
-    given = Evidence(Recording.of(T, x=still, y=still, psi=still, phi=phi), None, GAIT)
+    given = ExaminedRecording(Recording.of(T, x=still, y=still, psi=still, phi=phi), None, GAIT)
     return list(command.look(given))
 
 

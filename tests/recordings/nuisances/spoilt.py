@@ -8,7 +8,7 @@ from rr_opt.files.problem_file import read_problem
 from rr_opt.model.experiment import CHANNELS, Noise, Recording
 from rr_opt.model.gait import SineGait
 from rr_opt.recordings.nuisances import nuisances
-from rr_opt.recordings.nuisances.evidence import Evidence
+from rr_opt.recordings.nuisances.evidence import ExaminedRecording
 from tests.recordings.clean.world import motion
 
 ROBOT = read_problem(None).robot
@@ -41,5 +41,5 @@ def recording(name="run.csv", seed=0, turned=0.0, gait=GAIT, start="running", ch
 
 def told(spoilt, robot=ROBOT, gait=GAIT, start="running"):
     """Codes of what is found, and all sentences."""
-    found = nuisances(Evidence(spoilt, robot, gait, start))
+    found = nuisances(ExaminedRecording(spoilt, robot, gait, start))
     return {one.code for one in found}, " ".join(found)

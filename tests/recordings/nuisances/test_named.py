@@ -8,7 +8,7 @@ import pytest
 
 from rr_opt.model.gait import SineGait
 from rr_opt.recordings.nuisances import late
-from rr_opt.recordings.nuisances.evidence import FAR, ROLLING, Evidence
+from rr_opt.recordings.nuisances.evidence import FAR, ROLLING, ExaminedRecording
 from tests.recordings.nuisances.spoilt import GAIT, NOISE, ROBOT, recording, told
 
 
@@ -83,7 +83,7 @@ def test_a_mirrored_floor_that_small_faults_explain_too(gait, named):
     as little slip."""
 
     spoilt = recording(gait=gait, turned=0.2, change=noisier(scaled(y=-1)))
-    assert ROLLING < Evidence(spoilt, ROBOT, gait).slip.size < FAR
+    assert ROLLING < ExaminedRecording(spoilt, ROBOT, gait).slip.size < FAR
     assert ("frame.wrong" in told(spoilt, gait=gait)[0]) == named
 
 
@@ -91,7 +91,7 @@ def test_exchanged_platforms_that_small_faults_explain_too():
     """phi against its command shows them all the same."""
     gait = SineGait(0.5, 1.6)
     spoilt = recording(gait=gait, change=noisier(platforms))
-    given = Evidence(spoilt, ROBOT, gait)
+    given = ExaminedRecording(spoilt, ROBOT, gait)
     assert given.forgiven.size < ROLLING < given.slip.size < FAR
     assert "platforms 1 and 2 are exchanged" in told(spoilt, gait=gait)[1]
 
@@ -107,9 +107,11 @@ def test_two_wrongs():
 def test_the_search_for_delays_costs_no_more_at_a_higher_rate(monkeypatch):
     quick = recording()
     quick = replace(quick, t=quick.t / 10_000)
-    tries, size = [], Evidence.slip_of
-    monkeypatch.setattr(Evidence, "slip_of", lambda *given: tries.append(1) or size(*given))
-    late._best(Evidence(quick, ROBOT, GAIT, "running"), (3,))
+    tries, size = [], ExaminedRecording.slip_of
+    monkeypatch.setattr(
+        ExaminedRecording, "slip_of", lambda *given: tries.append(1) or size(*given)
+    )
+    late._best(ExaminedRecording(quick, ROBOT, GAIT, "running"), (3,))
     assert len(tries) < 300
 
 

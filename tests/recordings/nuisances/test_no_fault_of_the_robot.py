@@ -8,7 +8,7 @@ from rr_opt.effects import CATALOGUE
 from rr_opt.machines.racer.racer import RollerRacer
 from rr_opt.model.gait import SineGait
 from rr_opt.recordings.nuisances import nuisances
-from rr_opt.recordings.nuisances.evidence import Evidence
+from rr_opt.recordings.nuisances.evidence import ExaminedRecording
 from tests.sysid.made_up import experiment, predicted, recorded
 
 # What says how phi moves against its command, and is true of these.
@@ -51,7 +51,7 @@ def test_none_is_told(effect, values):
 
     made = replace(recorded(given, predict, 1).experiment, name=effect)
     for run in made.runs:
-        found = nuisances(Evidence(run.recording, made.robot, run.gait, run.start))
+        found = nuisances(ExaminedRecording(run.recording, made.robot, run.gait, run.start))
         assert {one.code for one in found} <= OF_THE_SERVO, found
-        found = nuisances(Evidence(run.recording))
+        found = nuisances(ExaminedRecording(run.recording))
         assert {one.code for one in found} <= OF_THE_SERVO, found

@@ -5,7 +5,7 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from rr_opt.design.candidate import Candidate, distinct
+from rr_opt.design.candidate import StartResult, distinct
 from rr_opt.design.decisions import Setting, decisions, robot_of, settings_of
 from rr_opt.design.families import SIGNS, refine, solve_from
 from rr_opt.design.maximize_speed import maximize_speed
@@ -53,7 +53,7 @@ def _solve(task: Task) -> Row:
     setting = _only_setting(task.problem) if warm else None
     if setting is None:
         return _cold(task.problem)
-    reached: list[tuple[Foothold, Candidate]] = []
+    reached: list[tuple[Foothold, StartResult]] = []
     for foothold in task.footholds:
         candidate = _continued(setting, foothold)
         if candidate is not None:
@@ -85,7 +85,7 @@ def _only_setting(problem: Problem) -> Setting | None:
     return settings[0] if len(settings) == 1 else None
 
 
-def _continued(setting: Setting, foothold: Foothold) -> Candidate | None:
+def _continued(setting: Setting, foothold: Foothold) -> StartResult | None:
     """The optimum that a neighbour's leads to, if it leads to one."""
     wanted, shape = SIGNS[setting.problem.direction], setting.problem.gait.shape
     if foothold.sign not in wanted or foothold.gait.shape != shape:
@@ -97,7 +97,7 @@ def _continued(setting: Setting, foothold: Foothold) -> Candidate | None:
     return found if found.feasible and found.success else None
 
 
-def _best(setting: Setting, candidates: list[Candidate]) -> Candidate | None:
+def _best(setting: Setting, candidates: list[StartResult]) -> StartResult | None:
     """The fastest of them, each optimum refined once."""
     ranked = [(setting, one) for one in sorted(candidates, key=lambda one: one.rank)]
     refined = [refine(setting, one) for _, one in distinct(ranked)]
@@ -105,7 +105,7 @@ def _best(setting: Setting, candidates: list[Candidate]) -> Candidate | None:
     return min(good, key=lambda one: one.rank, default=None)
 
 
-def _doubtful(task: Task, row: Row, reached: list[Candidate]) -> bool:
+def _doubtful(task: Task, row: Row, reached: list[StartResult]) -> bool:
     """Whether neighbours disagree, or let expect another speed than was found."""
     if task.expected is None or len(reached) < len(task.footholds) or row.optimum is None:
         return True
@@ -114,7 +114,7 @@ def _doubtful(task: Task, row: Row, reached: list[Candidate]) -> bool:
     return not as_expected or not all(_is(one, row) for one in reached)
 
 
-def _is(candidate: Candidate, row: Row) -> bool:
+def _is(candidate: StartResult, row: Row) -> bool:
     """Whether a candidate, not yet refined, is the optimum of a row; a gait and its mirror image
     are one."""
     one, other = candidate.gait, row.optimum
@@ -145,7 +145,7 @@ def _cold(problem: Problem) -> Row:
     return replace(row, iterations=solved.iterations)
 
 
-def _warm(setting: Setting, best: Candidate) -> Row:
+def _warm(setting: Setting, best: StartResult) -> Row:
     robot, choice = robot_of(setting, best.share), setting.problem.inertia_ratio
     ratio = inertia_ratio(robot, choice.about if choice else "joint")
     return replace(measured(setting.problem, best, robot, ratio), started="warm")

@@ -4,9 +4,9 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from rr_opt.design.candidate import Candidate
+from rr_opt.design.candidate import StartResult
 from rr_opt.design.decisions import share_per_ratio
-from rr_opt.design.study.row import Optimum, Row, gait_record
+from rr_opt.design.study.row import CaseOptimum, Row, gait_record
 from rr_opt.model.problem import LARGEST_EXCESS, LEAST, Interval, Problem
 from rr_opt.model.robot import Robot
 from rr_opt.motion.energy import energy
@@ -52,7 +52,7 @@ class Held:
     bound_prices: Mapping[str, float]
 
 
-def held(problem: Problem, best: Candidate, reached: Mapping[str, float], ratio: float) -> Held:
+def held(problem: Problem, best: StartResult, reached: Mapping[str, float], ratio: float) -> Held:
     """What holds a candidate; reached: the extremes of what the limits bound."""
     prices = {
         name: best.prices[name]
@@ -72,7 +72,7 @@ def held(problem: Problem, best: Candidate, reached: Mapping[str, float], ratio:
     return Held(tuple(names), prices, bound_prices)
 
 
-def _on_limit(problem: Problem, best: Candidate, name: str, value: float) -> bool:
+def _on_limit(problem: Problem, best: StartResult, name: str, value: float) -> bool:
     """A sine that is held by a limit comes to it. Of another shape the angle stays a little short
     of its limit, and so may the torque: there the price says it."""
     limit = getattr(problem.limits, name)
@@ -84,13 +84,13 @@ def _on_limit(problem: Problem, best: Candidate, name: str, value: float) -> boo
     return slack <= _ON * abs(limit)
 
 
-def _matters(best: Candidate, price: float, size: float) -> bool:
+def _matters(best: StartResult, price: float, size: float) -> bool:
     """Whether a limit or bound of this size has a price that is no zero left by the solver."""
     return abs(price) * abs(size) > _PRICED * abs(best.speed)
 
 
 def _bounds(
-    problem: Problem, best: Candidate, ratio: float
+    problem: Problem, best: StartResult, ratio: float
 ) -> Iterator[tuple[str, str, float | None]]:
     gait = problem.gait
     ranges = {"amplitude": gait.amplitude, "period": gait.period, "offset": gait.offset}
@@ -110,7 +110,7 @@ def _bounds(
 
 
 def _side(
-    problem: Problem, best: Candidate, value: float, box: Interval, price: float | None
+    problem: Problem, best: StartResult, value: float, box: Interval, price: float | None
 ) -> str | None:
     """`least` or `largest` if a range that leaves a choice holds the value at that end."""
     size = max(abs(box.low), abs(box.high))
@@ -130,7 +130,7 @@ _STRAIGHT = 1e-7
 _SIDEWAYS = 1e-3
 
 
-def measured(problem: Problem, best: Candidate, robot: Robot, ratio: float) -> Row:
+def measured(problem: Problem, best: StartResult, robot: Robot, ratio: float) -> Row:
     """The row of an optimum of a problem, with the robot and the J20/J10 that it chose.
 
     NOT_CONVERGED if the steady cycle has another speed than the optimiser claims, or breaks a
@@ -157,7 +157,7 @@ def measured(problem: Problem, best: Candidate, robot: Robot, ratio: float) -> R
         return Row(Status.NOT_CONVERGED, message)
     work, turn = energy(robot, steady), steady.cycle.dpsi
     on = held(problem, best, extremes, ratio)
-    optimum = Optimum(
+    optimum = CaseOptimum(
         gait=gait_record(gait),
         sign=best.sign,
         share=best.share,

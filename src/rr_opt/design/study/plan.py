@@ -22,7 +22,7 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from rr_opt.design.study.row import Optimum, Row, gait_from
+from rr_opt.design.study.row import CaseOptimum, Row, gait_from
 from rr_opt.model.gait import Gait, SineGait
 from rr_opt.model.problem import Interval, Problem
 
@@ -43,7 +43,7 @@ class Foothold:
 
 def footholds(donors: Sequence[tuple[int, float]], rows: Mapping[int, Row]) -> list[Foothold]:
     """One foothold for each family of optima among the neighbours, that of the nearest first."""
-    families: list[list[tuple[int, float, Optimum]]] = []
+    families: list[list[tuple[int, float, CaseOptimum]]] = []
     for case, weight in sorted(donors, key=lambda donor: -donor[1]):
         optimum = rows[case].optimum
         if optimum is None:
@@ -56,7 +56,7 @@ def footholds(donors: Sequence[tuple[int, float]], rows: Mapping[int, Row]) -> l
     return [_between(family) for family in families]
 
 
-def _between(family: Sequence[tuple[int, float, Optimum]]) -> Foothold:
+def _between(family: Sequence[tuple[int, float, CaseOptimum]]) -> Foothold:
     """A start between the optima of a family, nearest first, where this case lies between them."""
     cases, given, optima = zip(*family, strict=True)
     nearest = optima[0]
@@ -76,7 +76,7 @@ def _between(family: Sequence[tuple[int, float, Optimum]]) -> Foothold:
     return Foothold(tuple(cases), nearest.sign, gait, mean("share"))
 
 
-def alike(one: Optimum, other: Optimum) -> bool:
+def alike(one: CaseOptimum, other: CaseOptimum) -> bool:
     """Whether two optima of neighbouring cases look like one family: the same direction, held by
     the same limits and bounds or their gaits near each other."""
 
@@ -119,7 +119,7 @@ def expected_speed(
     return math.exp(min(chord, tangents)), math.exp(max(chord, tangents))
 
 
-def _gain(optimum: Optimum, here: Problem, there: Problem) -> float:
+def _gain(optimum: CaseOptimum, here: Problem, there: Problem) -> float:
     """Gain of log |speed|, to first order, as limits and bounds move from one problem to another.
 
     First order in the logarithms of limits and bounds where they have one: speeds tend to go with

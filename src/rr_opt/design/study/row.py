@@ -15,7 +15,7 @@ _GAITS: dict[str, Any] = {one.shape: one for one in (SineGait, FourierGait, Free
 
 
 @dataclass(frozen=True)
-class Optimum:
+class CaseOptimum:
     """The best gait of a case. SI throughout; every number is of the steady cycle.
 
     gait            its shape and parameters
@@ -70,7 +70,7 @@ class Row:
 
     status: Status
     message: str
-    optimum: Optimum | None = None
+    optimum: CaseOptimum | None = None
     started: Started = "cold"
     tried: tuple[int, ...] = ()
     continued: tuple[int, ...] = ()
@@ -127,9 +127,9 @@ def row_from(record: Mapping[str, Any]) -> Row:
     return Row(**values)
 
 
-def _optimum_from(record: Mapping[str, Any]) -> Optimum:
+def _optimum_from(record: Mapping[str, Any]) -> CaseOptimum:
     values = dict(record)
-    _check_fields(Optimum, values)
+    _check_fields(CaseOptimum, values)
     held = values["held"]
     if not isinstance(held, (list, tuple)) or not all(isinstance(name, str) for name in held):
         raise ValueError(f"`held` is {_shown(held)}, not a list of names")
@@ -139,7 +139,7 @@ def _optimum_from(record: Mapping[str, Any]) -> Optimum:
         for key, price in values[name].items():
             _check_number(f"{name}.{key}", price)
     gait_from(values["gait"])
-    return Optimum(**{**values, "held": tuple(held)})
+    return CaseOptimum(**{**values, "held": tuple(held)})
 
 
 _PLAIN: dict[Any, str] = {str: "a text", bool: "true or false"}

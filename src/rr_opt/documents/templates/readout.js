@@ -75,8 +75,7 @@ for (const img of document.querySelectorAll("figure img")) {
   img.after(box);
   const look = (event) => {
     if (all === null) {
-      const bytes = Uint8Array.from(atob(img.src.split(",")[1]), (c) => c.charCodeAt(0));
-      const found = /<metadata id="readout">([^]*?)<\/metadata>/.exec(new TextDecoder().decode(bytes));
+      const found = /<metadata id="readout">([^]*?)<\/metadata>/.exec(decodeURIComponent(img.src));
       const plain = document.createElement("textarea");
       plain.innerHTML = found ? found[1] : "[]";
       all = JSON.parse(plain.value);

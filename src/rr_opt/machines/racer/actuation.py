@@ -40,7 +40,7 @@ _OPEN = 4
 
 
 @dataclass(frozen=True)
-class _Angle:
+class _RecordedAngle:
     """The angle recorded in runs, and how likely sets of effects make it.
 
     at  samples of each run that are looked at
@@ -92,7 +92,7 @@ class _Angle:
         return one.excess < max(SETTINGS.negligible**2 * samples, chance)
 
     @cached_property
-    def scanned(self) -> _Angle:
+    def scanned(self) -> _RecordedAngle:
         """A few of the runs."""
         return replace(self, at=dict([*self.at.items()][:_SCANNED]))
 
@@ -113,7 +113,7 @@ def actuation_sets(
     ordered = sorted(runs, key=lambda run: racer.experiment.runs[run].start == "rest")
     seen = {run: np.flatnonzero(np.isfinite(racer.runs[run].values[:, -1])) for run in ordered}
     every = max(sum(k.size for k in seen.values()) // _SAMPLES, 1)
-    angle = _Angle(racer, {run: k[::every] for run, k in seen.items() if k.size})
+    angle = _RecordedAngle(racer, {run: k[::every] for run, k in seen.items() if k.size})
     free = tuple(q for q in racer.parameters if q.name == "phi_zero")
     upstream = {name: info for name, info in racer.catalogue.items() if info.upstream}
     plain = [Choice(name) for name in upstream]
@@ -188,7 +188,7 @@ def _shared(racer: RacerModel, choice: Choice, found: Sequence[_Set]) -> Iterato
 
 
 def _fitted(
-    angle: _Angle,
+    angle: _RecordedAngle,
     racer: RacerModel,
     choices: tuple[Choice, ...],
     free: tuple[Quantity, ...],
@@ -202,7 +202,7 @@ def _fitted(
     def valued(u: Array) -> dict[str, float]:
         return dict(zip((q.name for q in quantities), (u * scale).tolist(), strict=True))
 
-    def left(u: Array, of: _Angle = angle) -> Array:
+    def left(u: Array, of: _RecordedAngle = angle) -> Array:
         values = valued(u)
         known = [u[k] - q.centre / q.scale for k, q in enumerate(free)]
         return np.concatenate([*of.residuals(values, effects).values(), known])

@@ -15,10 +15,10 @@ from rr_opt.machines.racer.parameters import ZERO_OFFSET, ZEROS, effect_info, no
 from rr_opt.machines.racer.simulation import Simulator, side_speeds, slips
 from rr_opt.model.experiment import CHANNELS, Experiment, Run
 from rr_opt.sysid.model import (
+    ChannelNoise,
     Data,
     EffectInfo,
     Linearisation,
-    Noise,
     Quantity,
     Request,
     Segment,
@@ -40,7 +40,7 @@ class RacerModel:
         self,
         experiment: Experiment,
         setting: OperatingRange | None = None,
-        noise: Sequence[Noise] = (Noise(),) * len(CHANNELS),
+        noise: Sequence[ChannelNoise] = (ChannelNoise(),) * len(CHANNELS),
     ) -> None:
         """The model of an experiment.
 
@@ -51,7 +51,7 @@ class RacerModel:
         self._given, self._noise = setting, noise
         self.nominal = nominal(experiment)
 
-    def with_noise(self, noise: Sequence[Noise]) -> Self:
+    def with_noise(self, noise: Sequence[ChannelNoise]) -> Self:
         """The same with other noise, its levels in units of those here."""
         of_stated = [
             replace(new, level=new.level * old.level)
@@ -217,7 +217,7 @@ def _travelled(data: Data) -> Array:
     return np.interp(data.t, at, way)
 
 
-def _data(run: Run, noise: Sequence[Noise]) -> Data:
+def _data(run: Run, noise: Sequence[ChannelNoise]) -> Data:
     recording = run.recording
     values = np.column_stack([recording.data(name) for name in CHANNELS])
     if run.start == "rest":

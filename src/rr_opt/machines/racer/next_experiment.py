@@ -19,7 +19,7 @@ from rr_opt.machines.racer.model import RacerModel
 from rr_opt.model.experiment import CHANNELS, Recording, Run, Start
 from rr_opt.model.gait import SineGait
 from rr_opt.sysid.diagnosis import NextExperiment
-from rr_opt.sysid.estimation import Fit, Linear, Problem, bounded_minimum
+from rr_opt.sysid.estimation import Fit, FitProblem, Linear, bounded_minimum
 from rr_opt.sysid.model import Request, Segment, Simulation
 
 _AMPLITUDES = (0.25, 0.45, 0.7, 1.0, 1.3)
@@ -167,7 +167,7 @@ def _begun(racer: RacerModel, best: Fit, empty: RacerModel, segment: Segment, pl
 
 def _linearised(
     planned: RacerModel, fit: Fit, begun: Mapping[Segment, Array] | None = None
-) -> tuple[Problem, Mapping[int, tuple[Array, float, Array]]]:
+) -> tuple[FitProblem, Mapping[int, tuple[Array, float, Array]]]:
     """H, g and value of every plan for the fit's quantities, its initial state eliminated.
 
     begun  the initial states, where the plans are the fit's own predictions

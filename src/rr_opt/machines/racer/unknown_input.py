@@ -23,7 +23,7 @@ from rr_opt.mechanics.kinematics import Force, Frame, Mechanism
 from rr_opt.motion.dynamics import Assembly, assembled
 from rr_opt.motion.floor_motion import FloorMotion, solved
 from rr_opt.sysid.model import Linearisation, Request
-from rr_opt.sysid.sensitivities import DriveSlopes, Hats, Linear, Part, gram_of, linear
+from rr_opt.sysid.sensitivities import DriveSlopes, Hats, LinearMotion, Part, gram_of, linear
 from rr_opt.sysid.shooting import DrivePath, System, predict
 
 PUSHES = ("wheel1l", "wheel1r", "wheel2l", "wheel2r", "side1", "side2", "angle")
@@ -135,7 +135,7 @@ def linearised_inputs(
 
 
 def _carried(
-    how: Linear, wanted: int, rows: NDArray[np.int_], drives: Array
+    how: LinearMotion, wanted: int, rows: NDArray[np.int_], drives: Array
 ) -> tuple[Array, Array]:
     """Derivatives of what is seen, (n, channels, ...), and of the last state, by the start, by what
     is wanted, and by pushes with DRIVES (k, 10, n)."""

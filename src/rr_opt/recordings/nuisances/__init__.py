@@ -7,7 +7,7 @@ an effect of the robot's physics, which obeys them or nearly so, does not pass f
 """
 
 from rr_opt.recordings.nuisances import clock, command, enough, frame, late, push, start, units
-from rr_opt.recordings.nuisances.evidence import Evidence, Look
+from rr_opt.recordings.nuisances.evidence import ExaminedRecording, Look
 from rr_opt.recordings.warnings import Notice
 
 CATALOGUE: tuple[Look, ...] = (
@@ -24,7 +24,7 @@ CATALOGUE: tuple[Look, ...] = (
 """Asked in this order until one finds what makes the others mean nothing."""
 
 
-def nuisances(evidence: Evidence) -> tuple[Notice, ...]:
+def nuisances(evidence: ExaminedRecording) -> tuple[Notice, ...]:
     """What is found in a recording that moves."""
     found: list[Notice] = []
     for look in CATALOGUE:

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from rr_opt.array import Array
-from rr_opt.recordings.nuisances.evidence import Evidence
+from rr_opt.recordings.nuisances.evidence import ExaminedRecording
 from rr_opt.recordings.warnings import Notice, notice
 
 _LENGTHS = (3.0, 2.0)
@@ -21,7 +21,7 @@ _SINE = 0.75
 """Of phi's variance in a window that a sine explains, where the angle is that of a gait."""
 
 
-def look(given: Evidence) -> Iterator[Notice]:
+def look(given: ExaminedRecording) -> Iterator[Notice]:
     """A clock that changes its rate."""
     t, phi = given.t, given.motion[3]
     known = np.isfinite(phi)

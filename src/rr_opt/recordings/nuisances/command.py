@@ -7,7 +7,7 @@ import numpy as np
 from rr_opt.array import Array
 from rr_opt.recordings.clock_fit import RUNS_OFF, ClockFit
 from rr_opt.recordings.nuisances.clock import dominant
-from rr_opt.recordings.nuisances.evidence import Evidence
+from rr_opt.recordings.nuisances.evidence import ExaminedRecording
 from rr_opt.recordings.warnings import Notice, notice
 
 _ALIKE, _OTHER = 0.5, 0.8
@@ -23,7 +23,7 @@ _HALF = 0.05
 """Periods."""
 
 
-def look(given: Evidence) -> Iterator[Notice]:
+def look(given: ExaminedRecording) -> Iterator[Notice]:
     """An angle that does not follow its command, or not at once."""
     if given.gait is None:
         return
@@ -44,7 +44,7 @@ def look(given: Evidence) -> Iterator[Notice]:
         yield from _details(given, fit)
 
 
-def _details(given: Evidence, fit: ClockFit) -> Iterator[Notice]:
+def _details(given: ExaminedRecording, fit: ClockFit) -> Iterator[Notice]:
     if abs(fit.offset) > max(_LATE, _SURE * fit.sigma[0]):
         low, high = sorted(1e3 * abs(end) for end in fit.interval(0))
         way, size = "lags" if fit.offset < 0 else "leads", 1e3 * abs(fit.offset)
@@ -65,7 +65,7 @@ def _scale(scale: float) -> str:
     return "play with inertia makes it more; a clock would not."
 
 
-def _late(given: Evidence, fit: ClockFit) -> str:
+def _late(given: ExaminedRecording, fit: ClockFit) -> str:
     if fit.offset > 0:
         return "a clock that is off, as no servo moves before its command"
     if given.clock_known:
@@ -79,7 +79,7 @@ def _late(given: Evidence, fit: ClockFit) -> str:
     return f"{both} This recording cannot distinguish the two: they have the same effect"
 
 
-def follows(given: Evidence, phi: Array) -> bool:
+def follows(given: ExaminedRecording, phi: Array) -> bool:
     """Whether an angle (n,) is less than a quarter of a period off its command, if that shows."""
     if given.gait is None:
         return True

@@ -6,7 +6,7 @@ import numpy as np
 
 from rr_opt.array import Array
 from rr_opt.model.experiment import CHANNELS
-from rr_opt.recordings.nuisances.evidence import Evidence
+from rr_opt.recordings.nuisances.evidence import ExaminedRecording
 from rr_opt.recordings.warnings import Notice, notice
 
 _FEWEST = 50
@@ -23,7 +23,7 @@ _HARDLY = 0.02
 """A path shorter than this shows little of friction, m."""
 
 
-def look(given: Evidence) -> Iterator[Notice]:
+def look(given: ExaminedRecording) -> Iterator[Notice]:
     """Why nothing, or little, can be learnt."""
     if (why := next(_reasons(given), None)) is not None:
         yield why
@@ -35,7 +35,7 @@ def look(given: Evidence) -> Iterator[Notice]:
         yield notice("motion.robot", far=1e3 * far)
 
 
-def _reasons(given: Evidence) -> Iterator[Notice]:
+def _reasons(given: ExaminedRecording) -> Iterator[Notice]:
     """Why nothing can be learnt, the gravest first; each applies only if none before it does."""
     t, data = given.t, dict(zip(CHANNELS, given.motion, strict=True))
     counts = {name: int(np.isfinite(values).sum()) for name, values in data.items()}

@@ -70,7 +70,7 @@ class Slip:
 
 
 @dataclass(frozen=True)
-class Evidence:
+class ExaminedRecording:
     """A cleaned recording, and what is known of how it was made; None: not known.
 
     clock_known  the offset of the recording's clock is known from a servo's log
@@ -230,4 +230,4 @@ _SURE, _UNSURE = 15.0, 5.0
 
 Name = TypeVar("Name")
 
-Look = Callable[[Evidence], Iterable[Notice]]
+Look = Callable[[ExaminedRecording], Iterable[Notice]]

@@ -7,7 +7,7 @@ import numpy as np
 
 from rr_opt.array import Array
 from rr_opt.recordings.nuisances.command import follows
-from rr_opt.recordings.nuisances.evidence import Evidence, Motion
+from rr_opt.recordings.nuisances.evidence import ExaminedRecording, Motion
 from rr_opt.recordings.warnings import Notice, notice
 
 _UNDONE: Mapping[str, Callable[[Array, Array, Array, Array], Motion]] = {
@@ -34,12 +34,12 @@ _TOO_FAR, _NOT_FAR = 10.0, 0.05
 slide leave 0.7."""
 
 
-def look(given: Evidence) -> Iterator[Notice]:
+def look(given: ExaminedRecording) -> Iterator[Notice]:
     """A frame, a zero or a sign that is wrong."""
     return _found(given, {name: undo(*given.motion) for name, undo in _UNDONE.items()}, units=True)
 
 
-def look_twice(given: Evidence) -> Iterator[Notice]:
+def look_twice(given: ExaminedRecording) -> Iterator[Notice]:
     """For two at once."""
     return _found(
         given,
@@ -51,7 +51,7 @@ def look_twice(given: Evidence) -> Iterator[Notice]:
 
 
 def _found(
-    given: Evidence, tried: Mapping[str, Motion], *, units: bool = False
+    given: ExaminedRecording, tried: Mapping[str, Motion], *, units: bool = False
 ) -> Iterator[Notice]:
     left = {
         name: given.explains(motion) for name, motion in tried.items() if follows(given, motion[3])

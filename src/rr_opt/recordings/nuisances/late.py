@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from rr_opt.array import Array
-from rr_opt.recordings.nuisances.evidence import ROLLING, Evidence, Motion
+from rr_opt.recordings.nuisances.evidence import ROLLING, ExaminedRecording, Motion
 from rr_opt.recordings.warnings import Notice, notice
 
 _PARTS = {"x and y": (0, 1), "psi": (2,), "phi": (3,)}
@@ -15,7 +15,7 @@ _SHORTEST = 0.02
 """Delays that are told, s: wrong lengths, or wheels that creep sideways, look like shorter ones."""
 
 
-def look(given: Evidence) -> Iterator[Notice]:
+def look(given: ExaminedRecording) -> Iterator[Notice]:
     """Channels that are late."""
     if given.slip.size < ROLLING:
         return
@@ -31,7 +31,7 @@ def look(given: Evidence) -> Iterator[Notice]:
         yield notice(code, late=", or ".join(late))
 
 
-def _best(given: Evidence, columns: tuple[int, ...]) -> tuple[float, float]:
+def _best(given: ExaminedRecording, columns: tuple[int, ...]) -> tuple[float, float]:
     """What is left if some channels are late, in noise, and by how much they are, s."""
     most = _FARTHEST * (given.gait.period if given.gait else 1.0) / given.step
 
@@ -53,7 +53,7 @@ def _best(given: Evidence, columns: tuple[int, ...]) -> tuple[float, float]:
     return given.explains(_earlier(given, columns, given.step * grid[at])), float(late)
 
 
-def _earlier(given: Evidence, columns: tuple[int, ...], late: float) -> Motion:
+def _earlier(given: ExaminedRecording, columns: tuple[int, ...], late: float) -> Motion:
     moved = [
         _at(given.t + late, given.t, one) if column in columns else one
         for column, one in enumerate(given.motion)

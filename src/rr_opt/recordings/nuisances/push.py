@@ -6,7 +6,7 @@ import numpy as np
 
 from rr_opt.array import Array
 from rr_opt.recordings.gaps import bridged
-from rr_opt.recordings.nuisances.evidence import Evidence
+from rr_opt.recordings.nuisances.evidence import ExaminedRecording
 from rr_opt.recordings.warnings import Notice, notice
 
 _WINDOW = 0.5
@@ -22,7 +22,7 @@ _MOST = 3
 """Of one recording that are reported."""
 
 
-def look(given: Evidence) -> Iterator[Notice]:
+def look(given: ExaminedRecording) -> Iterator[Notice]:
     """Pushes and surges."""
     width = max(1, round(_WINDOW / given.step))
     if not given.framed or len(given.t) < 4 * width:
@@ -59,7 +59,7 @@ def _moved(each: Array, width: int) -> Array:
     return sums - np.median(sums)
 
 
-def _unusual(given: Evidence, moved: Array) -> Array:
+def _unusual(given: ExaminedRecording, moved: Array) -> Array:
     """By how much it moves farther than at the same phase of the periods before and after, m."""
     period = round(given.gait.period / given.step) if given.gait else 0
     if not 0 < 2 * period < len(moved):

@@ -18,7 +18,7 @@ from rr_opt.model.robot import Robot
 from rr_opt.motion.dynamics import dynamics_of
 from rr_opt.motion.integrators import fixed_steps
 from rr_opt.recordings.gaps import bridged
-from rr_opt.recordings.nuisances.evidence import CLEAN, Evidence
+from rr_opt.recordings.nuisances.evidence import CLEAN, ExaminedRecording
 from rr_opt.recordings.warnings import Notice, notice
 
 _BEGINNING = 0.5
@@ -49,7 +49,7 @@ _FASTEST = 1e3
 """What goes farther or faster is not the motion of a robot, m or m/s."""
 
 
-def look(given: Evidence) -> Iterator[Notice]:
+def look(given: ExaminedRecording) -> Iterator[Notice]:
     """A start from rest that is none."""
     if given.gait is None or given.start != "rest":
         return
@@ -81,7 +81,7 @@ class Initial:
         return min(beyond) > _SURE_SPEED or max(beyond) < -_SURE_SPEED
 
 
-def initial(given: Evidence, robot: Robot, gait: Gait) -> Initial | None:
+def initial(given: ExaminedRecording, robot: Robot, gait: Gait) -> Initial | None:
     """The initial speed; None where the data are too few or the model is not of that robot."""
     n = int(np.searchsorted(given.t, _BEGINNING * gait.period))
     t = given.t[:n]
@@ -121,7 +121,7 @@ def _jump(robot: Robot, gait: Gait) -> float:
     return (with_ - without) * float(gait.rate([0.0])[0])
 
 
-def _against_later(given: Evidence, period: float) -> Iterator[Notice]:
+def _against_later(given: ExaminedRecording, period: float) -> Iterator[Notice]:
     """Where no robot is known: against the way in later periods."""
     ways, speeds = _periods(given, period)
     if len(ways) < _FEWEST:
@@ -138,7 +138,7 @@ def _against_later(given: Evidence, period: float) -> Iterator[Notice]:
         yield notice("start.running", speed=1e3 * (lacking + first) / part)
 
 
-def _periods(given: Evidence, period: float) -> tuple[Array, Array]:
+def _periods(given: ExaminedRecording, period: float) -> tuple[Array, Array]:
     """How far axle 1 rolls in the first part of each period from t = 0, m, and its speed there.
 
     The first is of all periods but those with gaps, the other m/s at their beginning.

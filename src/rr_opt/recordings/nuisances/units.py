@@ -6,7 +6,7 @@ import numpy as np
 
 from rr_opt.array import Array
 from rr_opt.model.experiment import Recording
-from rr_opt.recordings.nuisances.evidence import Evidence
+from rr_opt.recordings.nuisances.evidence import ExaminedRecording
 from rr_opt.recordings.time_axis import time_step
 from rr_opt.recordings.warnings import Notice, notice
 
@@ -63,7 +63,7 @@ _HEADING = 6.0
 """Nor does its heading swing further, relative to phi: in degrees it is 57 times too far."""
 
 
-def look(given: Evidence) -> Iterator[Notice]:
+def look(given: ExaminedRecording) -> Iterator[Notice]:
     """Lengths and angles in another unit, by the gait and the robot."""
     if given.gait is None or given.robot is None:
         return
