@@ -7,6 +7,7 @@ replaced: a device, a pipe or a link in the place of a result is refused, and st
 
 import json
 import os
+import re
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
@@ -99,7 +100,9 @@ def write_text(path: Path, text: str) -> Path:
 
 def strict_json(data: Mapping[str, Any]) -> str:
     """The data as JSON text with a newline at its end; raises ValueError for NaN or infinity."""
-    return json.dumps(data, indent=2, allow_nan=False, ensure_ascii=False) + "\n"
+    text = json.dumps(data, indent=2, allow_nan=False, ensure_ascii=False) + "\n"
+    # A list of numbers takes one line. No string has a line break, so this changes none.
+    return re.sub(r'\[\n[^"{}\[\]]+\]', lambda row: f"[{' '.join(row[0][1:-1].split())}]", text)
 
 
 def write_json(path: Path, data: Mapping[str, Any]) -> Path:
