@@ -49,7 +49,10 @@ def model_of(machine: Machine) -> Any:
     parameters = {
         one.name: (
             Annotated[float, quantity(one.unit, one.example)],
-            Field(description=f"{one.words[0].upper()}{one.words[1:]}, {one.unit}."),
+            Field(
+                default=... if one.default is None else one.default,
+                description=f"{one.words[0].upper()}{one.words[1:]}, {one.unit}.",
+            ),
         )
         for one in machine.parameters
     }

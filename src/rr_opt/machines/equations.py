@@ -11,7 +11,7 @@ import casadi as ca
 import numpy as np
 
 from rr_opt.array import Array
-from rr_opt.model.machine import Constant, Machine, MachineEffect, MachineRun, Scales
+from rr_opt.model.machine import Machine, MachineEffect, MachineRun, Scales
 from rr_opt.model.parameters import Uncertainty
 from rr_opt.sysid.machine import CONSTANT, Term
 from rr_opt.sysid.model import EffectInfo, Form, Quantity, Request
@@ -76,17 +76,18 @@ def parameter_quantity(machine: Machine, name: str, value: float, known: Uncerta
 
 def effect_info(effect: MachineEffect, scales: Scales) -> EffectInfo:
     """An effect as one that may be missing."""
-    sizes = {c.name: c.size(scales) for c in effect.constants}
 
-    def quantity(c: Constant) -> Quantity:
-        return Quantity(
-            effect.quantity(c.name), c.unit, 0.0, sizes[c.name], False, c.low, c.high, 0.0
+    def form(names: Sequence[str]) -> Form:
+        own = [(effect.quantity(c.name), c) for c in effect.constants if c.name in names]
+        quantities = (
+            Quantity(name, c.unit, 0.0, c.size(scales), False, c.low, c.high, 0.0)
+            for name, c in own
         )
+        return Form(tuple(quantities), ({name: c.begin * c.size(scales) for name, c in own},))
 
-    guess = {effect.quantity(c.name): c.begin * sizes[c.name] for c in effect.constants}
-    form = Form(tuple(map(quantity, effect.constants)), (guess,))
+    forms = effect.forms or (tuple(c.name for c in effect.constants),)
     return EffectInfo(
-        *(effect.name, effect.family, effect.channel, effect.sentence, (form,)),
+        *(effect.name, effect.family, effect.channel, effect.sentence, tuple(map(form, forms))),
         smooth=effect.smooth,
         form_error=effect.form_error,
     )

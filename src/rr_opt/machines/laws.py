@@ -148,15 +148,17 @@ def lagged(t: Array, u: Array, tau: float) -> Array:
     return out
 
 
-def late(name: str, words: str, *signals: str, low: float = -0.3) -> MachineEffect:
+def late(
+    name: str, words: str, *signals: str, low: float = -0.3, constant: str = "delay"
+) -> MachineEffect:
     """Some inputs are late, or early."""
 
     def law(t: Array, u: Signals, c: Names) -> Signals:
-        return {one: delayed(t, u[one], c.delay) for one in signals}
+        return {one: delayed(t, u[one], getattr(c, constant)) for one in signals}
 
     sentence = f"{words[0].upper()}{words[1:]} acts later than it is recorded."
     return MachineEffect(name, "signal", "actuation", "signal", f"a delay of {words}", sentence,
-                         (Constant("delay", "s", lambda _: 0.01, low, 0.3),), law)  # fmt: skip
+                         (Constant(constant, "s", lambda _: 0.01, low, 0.3),), law)  # fmt: skip
 
 
 def lagging(name: str, words: str, signal: str, tau: float) -> MachineEffect:

@@ -291,14 +291,15 @@ class OdeModel:
         return self._recordeds[segment]
 
     def _system(self, effects: tuple[str, ...]) -> tuple[System, tuple[str, ...]]:
-        own = (one.name for one in self._present(effects))
+        own = (one.name for one in self._present(effects) if one.name)
         return system_of(self.machine, tuple(own))
 
     def _signals(self, effects: tuple[str, ...]) -> list[MachineEffect]:
         return [one for one in self._present(effects) if one.port == "signal"]
 
     def _present(self, effects: tuple[str, ...]) -> list[MachineEffect]:
-        return [e for e in self.machine.effects if e.name in effects or e.name in self._given]
+        named = {*effects, *self._given}
+        return [*self.machine.signals, *(e for e in self.machine.effects if e.name in named)]
 
     # ---- data
 

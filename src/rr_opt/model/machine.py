@@ -33,6 +33,7 @@ class MachineParameter:
 
     spread     how well it is usually known
     low, high  it lies between, SI
+    default    of a file that does not give it; None: it has to
     """
 
     name: str
@@ -42,6 +43,7 @@ class MachineParameter:
     spread: Spread
     low: float = 0.0
     high: float = np.inf
+    default: float | None = None
 
 
 @dataclass(frozen=True)
@@ -50,6 +52,7 @@ class Channel:
 
     default  of an input that is not recorded; None: it has to be
     angle    a whole turn is nothing
+    steady   moves on between two updates, as what is measured does; a command stands still
     """
 
     name: str
@@ -57,6 +60,7 @@ class Channel:
     words: str
     default: float | None = None
     angle: bool = False
+    steady: bool = False
 
 
 @dataclass(frozen=True)
@@ -83,6 +87,7 @@ class MachineEffect:
     law         (names, constants) -> what it adds at its port; of a signal
                 (t, inputs, constants) -> the inputs that it changes
     words       as the object of a sentence
+    forms       names of the constants that each of its forms has, the simplest first; all
     smooth      whether it has a derivative by its constants where it vanishes
     form_error  by what share machines differ from this law
     """
@@ -95,12 +100,13 @@ class MachineEffect:
     sentence: str
     constants: tuple[Constant, ...]
     law: Callable[..., Any]
+    forms: tuple[tuple[str, ...], ...] = ()
     smooth: bool = True
     form_error: float = 0.1
 
     def quantity(self, constant: str) -> str:
-        """The full name of a constant."""
-        return f"{self.name}.{constant}"
+        """The full name of a constant; of what has no name, that of a parameter."""
+        return f"{self.name}.{constant}" if self.name else constant
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,6 +117,7 @@ class Machine:
     rates     (names, add) -> d(state)/dt by name
     seen      (names, add) -> outputs by name
     start     (outputs and their slopes, `q` and `q_rate`, and inputs) -> states where a run begins
+    signals   what inputs go through before they drive it, with parameters as its constants
     scales    (parameters, inputs, outputs' rates; RMS each) -> usual sizes for the effects
     ports     by channel of a fault: port, unit and words of an unknown input there
     variables what an unknown input may depend on: name of a state or input -> words and unit
@@ -132,6 +139,7 @@ class Machine:
     scales: Callable[[Mapping[str, float]], Scales]
     ports: Mapping[str, tuple[str, str, str]]
     variables: Mapping[str, tuple[str, str]]
+    signals: tuple[MachineEffect, ...] = ()
     step: float = 1e-3
     stiff: int = 1
     bandwidth: float = 15.0

@@ -95,6 +95,10 @@ def _run(plan: MachinePlan, one: PlannedRecording) -> MachineRun:
     held = held_for([data[c.name] for c in machine.inputs])
     for c in machine.channels:
         usual = input_noise(data[c.name], held) if c in machine.inputs else noise_of(data[c.name])
+        if c.steady and held > 1:
+            data[c.name] = between_updates(data[c.name], held)
+            # Of a parabola about its chords.
+            usual = float(np.sqrt(np.mean(np.diff(data[c.name][::held], 2) ** 2) / 120))
         sigma[c.name] = plan.noise.get(c.name, usual)
     doubts += _impossible(machine.inputs, machine.outputs, data)
     return MachineRun(
@@ -115,6 +119,14 @@ def held_for(inputs: Sequence[Array]) -> int:
     if changes.size < _UPDATES:
         return 1
     return max(int(np.percentile(np.diff(changes), 10)), 1)
+
+
+def between_updates(y: Array, held: int) -> Array:
+    """What was sampled and held, straight from update to update."""
+    changes = np.flatnonzero(np.diff(y) != 0) + 1
+    still = changes[np.diff(changes, prepend=0) > 1.5 * held] - held
+    knots = np.union1d(changes, still[still >= 0])
+    return np.interp(np.arange(y.size), knots, y[knots])
 
 
 def input_noise(y: Array, held: int) -> float:

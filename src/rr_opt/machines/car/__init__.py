@@ -21,7 +21,7 @@ from rr_opt.model.machine import (
 from rr_opt.model.parameters import Spread
 
 RIGID = 2e-3
-"""rad/N: so little do wheels slip that are taken not to."""
+"""rad/N: so little do wheels slip that are taken not to; what an effect adds comes on top."""
 
 SLOW = 0.3
 """m/s: a slip angle is that of a wheel that rolls at least so fast."""
@@ -36,8 +36,8 @@ def _rates(v: Names, add: Add) -> Mapping[str, Any]:
     roll = ca.sqrt(vx**2 + SLOW**2)
     front = ((v.vy + lf * v.r) * ca.cos(delta) - vx * ca.sin(delta)) / roll
     rear = (v.vy - lr * v.r) / roll
-    Ff = -front / (RIGID + add("front", slip=front))
-    Fr = -rear / (RIGID + add("rear", slip=rear))
+    Ff = -front / (RIGID + add("slip", slip=front, axle="front"))
+    Fr = -rear / (RIGID + add("slip", slip=rear, axle="rear"))
     inertia = mass * (v.L**2 + 0.08**2) / 12
     c, s = ca.cos(v.psi), ca.sin(v.psi)
     # The recorded point is ahead of the rear axle and to the left.
@@ -52,22 +52,25 @@ def _rates(v: Names, add: Add) -> Mapping[str, Any]:
     }
 
 
-def _compliance(axle: str) -> MachineEffect:
-    return MachineEffect(
-        f"{axle}_slip", "contact", "tyres", axle, f"lateral slip of the {axle} wheels",
-        f"The {axle} wheels slip sideways in proportion to their side force.",
-        (Constant("compliance", "rad/N", lambda _: 0.02, 0.0, 1.0),),
-        lambda _, c: c.compliance,
-    )  # fmt: skip
+def _slip(v: Names, c: Names) -> ca.SX:
+    front, rear = (c.front, c.front_grip), (c.rear, c.rear_grip)
+    compliance, grip = front if v.axle == "front" else rear
+    return compliance + grip * laws.size(v.slip)
 
 
-def _saturation(axle: str) -> MachineEffect:
-    return MachineEffect(
-        f"{axle}_grip", "contact", "tyres", axle, f"a limit to the grip of the {axle} wheels",
-        f"The side force of the {axle} wheels approaches a limit as they slip.",
-        (Constant("inverse", "1/N", lambda _: 0.1, 0.0, 10.0),),
-        lambda v, c: c.inverse * laws.size(v.slip),
-    )  # fmt: skip
+def _constants(name: str, unit: str, size: float, high: float) -> tuple[Constant, ...]:
+    """Of both axles."""
+    return tuple(Constant(f"{axle}{name}", unit, lambda _: size, 0.0, high)
+                 for axle in ("front", "rear"))  # fmt: skip
+
+
+LATERAL_SLIP = MachineEffect(
+    "lateral_slip", "contact", "tyres", "slip", "lateral slip of the wheels",
+    "The wheels slip sideways: in proportion to their side force, which approaches a limit.",
+    (*_constants("", "rad/N", 0.02, 1.0), *_constants("_grip", "1/N", 0.1, 10.0)),
+    _slip,
+    forms=(("front", "rear"), ("front", "rear", "front_grip", "rear_grip")),
+)  # fmt: skip
 
 
 CAR = Machine(
@@ -86,9 +89,13 @@ CAR = Machine(
         MachineParameter("ahead", "m", "recorded point ahead of the rear axle", "0.115",
                          Spread(5e-3), -1.0),
         MachineParameter("left", "m", "recorded point to the left", "-0.01", Spread(5e-3), -1.0),
+        MachineParameter("speed_late", "s", "time after which the speed acts, negative where it is "
+                         "recorded late", "0", Spread(0.05), -0.3, 0.3, 0.0),
+        MachineParameter("steering_late", "s", "time after which the steering command acts", "0",
+                         Spread(0.05), -0.3, 0.3, 0.0),
     ),
     inputs=(
-        Channel("vx", "m/s", "the speed along the car"),
+        Channel("vx", "m/s", "the speed along the car", steady=True),
         Channel("steering", "", "the steering command"),
     ),
     outputs=(
@@ -97,10 +104,7 @@ CAR = Machine(
         Channel("psi", "rad", "the heading", angle=True),
     ),
     effects=(
-        _compliance("front"),
-        _compliance("rear"),
-        _saturation("front"),
-        _saturation("rear"),
+        LATERAL_SLIP,
         MachineEffect("steering_curve", "steering", "steering", "steering",
                       "a steering map that is not straight",
                       "The steering angle is not proportional to its command.",
@@ -111,8 +115,10 @@ CAR = Machine(
                       (Constant("error", "dimensionless", lambda _: 0.05, -0.5, 1.0),),
                       lambda _, c: c.error),
         laws.lagging("steering_lag", "the steering", "steering", 0.1),
-        laws.late("speed_delay", "the speed", "vx"),
-        laws.late("steering_delay", "the steering", "steering"),
+    ),
+    signals=(
+        laws.late("", "the speed", "vx", constant="speed_late"),
+        laws.late("", "the steering", "steering", constant="steering_late"),
     ),
     rates=_rates,
     seen=lambda v, _: {"x": v.x, "y": v.y, "psi": v.psi},
