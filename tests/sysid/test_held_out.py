@@ -5,6 +5,7 @@ from typing import Any
 
 import pytest
 
+from rr_opt.sysid.settings import SETTINGS
 from rr_opt.sysid.verdict import Identification
 
 FORM, FIRST = 0.02, 100.0
@@ -28,7 +29,7 @@ def predicts(left: float, gain: float) -> float:
 
 @pytest.mark.parametrize(
     ("left", "gain", "likely"),
-    [(1.9, -20.0, 1.0), (2.1, -20.0, 0.0), (2.1, 20.0, 1.0), (50.0, 0.0, 0.5)],
+    [(1.9, -20.0, 1.0), (2.1, -30.0, 0.0), (2.1, 20.0, 1.0), (50.0, -SETTINGS.evidence, 0.5)],
 )
 def test_what_the_held_out_recordings_say(left, gain, likely):
     assert predicts(left, gain) == pytest.approx(likely, abs=1e-6)

@@ -11,9 +11,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 from rr_opt.sysid.candidates import Candidate, first, fitted, polished, quantities_of
 from rr_opt.sysid.constancy import constancy
+from rr_opt.sysid.estimation import predicted
 from rr_opt.sysid.machine import MachineModel
 from rr_opt.sysid.model import ChannelNoise, Choice
 from rr_opt.sysid.score_test import scores
@@ -55,7 +57,7 @@ class Selection:
     def run(self) -> Candidate:
         """Search; the candidate that was chosen."""
         seen: list[Candidate] = []
-        while self.best not in seen and not self.complete(self.best):
+        while self.best not in seen and not self._enough(self.best):
             seen.append(self.best)
             if len(self.best.choices) < SETTINGS.most_effects:
                 self._forward()
@@ -83,7 +85,21 @@ class Selection:
 
     def _better(self, candidate: Candidate, other: Candidate) -> bool:
         """Whether a larger candidate predicts better than one that leaves something."""
-        return candidate.predicts_better(other) and not self.complete(other)
+        return candidate.predicts_better(other) and not self._enough(other)
+
+    def _enough(self, candidate: Candidate) -> bool:
+        """Whether it is complete and, of the nominal model, predicts the recordings that were not
+        fitted: they may show plainly what the others hardly do."""
+        return self.complete(candidate) and (bool(candidate.choices) or self._foreseen)
+
+    @cached_property
+    def _foreseen(self) -> bool:
+        fit, model = self.base.fit, self.model
+        held = [k for k, run in enumerate(model.runs) if run.held_out]
+        if not held:
+            return True
+        most = SETTINGS.none**2 + model.form_error**2
+        return predicted(fit, held, fit.values).excess ** 2 <= most
 
     def needed(self, candidate: Candidate, other: Candidate) -> bool:
         """Whether it also accounts for most of what the other leaves."""

@@ -99,14 +99,16 @@ class Identification:
 
     @property
     def _predicts(self) -> float:
-        """How likely recordings that were not fitted are with the answer, and not with the nominal
-        model; that is not asked where they leave no more than machines differ from such models."""
+        """How likely the answer is after the recordings that were not fitted: before them it has at
+        least the evidence that an effect needs. That is not asked where they leave no more than
+        machines differ from such models."""
         if self.final.excess <= self._form_error * self.selection.base.excess:
             return 1.0
         runs = self.selection.model.runs
         own, other = self.everywhere.predictive, self.plain.predictive
         gains = [own[k] - other[k] for k, run in enumerate(runs) if run.held_out]
-        return float(expit(sum(gains))) if gains and self.best.choices else 1.0
+        odds = SETTINGS.evidence + sum(gains)
+        return float(expit(odds)) if gains and self.best.choices else 1.0
 
     @property
     def _form_errors(self) -> Mapping[str, float]:
