@@ -24,7 +24,7 @@ from rr_opt.motion.dynamics import Assembly, assembled
 from rr_opt.motion.floor_motion import FloorMotion, solved
 from rr_opt.sysid.model import Linearisation, Request
 from rr_opt.sysid.sensitivities import DriveSlopes, Hats, LinearMotion, Part, gram_of, linear
-from rr_opt.sysid.shooting import DrivePath, System, predict
+from rr_opt.sysid.shooting import DrivePath, System
 
 PUSHES = ("wheel1l", "wheel1r", "wheel2l", "wheel2r", "side1", "side2", "angle")
 """Rolling force at each wheel (N), side speed of each axle (m/s), error of the angle (rad)."""
@@ -110,14 +110,13 @@ def linearised_inputs(
     names = motion.parameters[:-FURTHER]
     p, by = values_of(given, names), values_by(given, names, wanted)
     every, parts = [], []
-    for request, pushes in zip(requests, inputs, strict=True):
+    simulated = simulator.paths(requests, effects)
+    for request, pushes, (path, made, *_) in zip(requests, inputs, simulated, strict=True):
         segment = request.segment
         t = racer.runs[segment.run].t[segment.span]
-        path = simulator.drive_path(segment, given, mechanical)
         drives = _drives(pushes, t)
         moments = _moments(path, t)
         plain = _with_drives(path, np.zeros(drives.shape[1:]), moments)
-        made = predict(system, plain, request.state, p)
         own = simulator.drive_slopes(segment, given, mechanical, wanted)
         rows = np.append(len(path.at) + np.arange(FURTHER), (0, 1))
         hats = Hats(rows, _passed(moments, path.each))
