@@ -75,7 +75,7 @@ class Settings:
     negligible: float = 0.1
     none: float = 0.2
     small: float = 0.01
-    accounted: float = 0.25
+    accounted: float = 1 / 3
     slow: float = 2.0
     shown: float = 0.01
     inconstant: float = 100.0
