@@ -19,7 +19,7 @@ DRY = rr.EffectUse("coulomb_friction", {"force1": 0.005, "force2": 0.005})
 
 def program(robot: rr.Robot) -> DriveProgram:
     leg = Leg(0, Pose(0.1, 0.2, 0.3), 1.0, 0.5)
-    sizes = [(2.3, 0.2, 0.05, 15.0), (7.1, 0.15, 0.3, 20.0), (3.4, 0.0, -0.1, 18.0)]
+    sizes = [(2.3, 0.2, 0.05, 15.0), (7.1, 0.15, 0.3, 20.0), (3.4, 0.02, -0.1, 18.0)]
     stages = [DriveStage(*size, leg, ends=True) for size in sizes]
     problem = Problem(robot, Limits(grip=0.4))
     return DriveProgram(problem, stages, Tolerance(), leg.start, math.pi, True)
@@ -43,6 +43,24 @@ def test_derivatives(effects):
         assert seen.rising[k] == pytest.approx((there.seconds - back.seconds) / scale, abs=1e-6)
         change = (there.values - back.values) / scale
         assert seen.slopes[smooth, k] == pytest.approx(change[smooth], rel=1e-3, abs=1e-3)
+
+
+def test_gaps_between_stages():
+    """Stages that begin elsewhere leave gaps; with the states that the linear model closes them by,
+    their square is left."""
+    one = program(rr.prototype())
+    ends = one.look(one.x0).samples.path[:, one.joints].T
+    assert not one.look(one.x0, ends).gaps.any()
+
+    def gap(by: float) -> tuple[float, float]:
+        apart = one.look(one.x0, ends + by * np.array([0.1, 0.2, 0.1, -0.1]))
+        closed = apart.samples.path[:, one.joints] + apart.samples.slopes[:, one.joints, -1]
+        return np.abs(apart.gaps).max(), np.abs(one.look(one.x0, closed.T).gaps).max()
+
+    (wide, left), (narrow, less) = gap(0.1), gap(0.01)
+    assert wide == pytest.approx(10 * narrow, rel=0.2)
+    assert left == pytest.approx(100 * less, rel=0.3)
+    assert left < 0.1 * wide
 
 
 def test_the_end_is_that_of_cvodes():

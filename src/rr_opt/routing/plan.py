@@ -124,11 +124,40 @@ def plan_route(
     if best.violation > _NEAR:
         message = (
             f"No drive was found. Piece {best.piece + 1} comes nearest to failing: its bound on "
-            f"the {best.where} is exceeded by {100 * best.violation:.2g} %. Lengthen the piece, "
-            "widen its radius, or widen the tolerance."
+            f"the {best.where} is exceeded by {100 * best.violation:.2g} %. "
+            f"{_nearest_drive(plan, best)}Lengthen the piece, widen its radius, or widen the "
+            "tolerance."
         )
         return replace(plan, status=Status.NOT_CONVERGED, message=message)
     return replace(plan, message="A drive that is locally the fastest and keeps every bound.")
+
+
+def _nearest_drive(plan: RoutePlan, drive: SolvedDrive) -> str:
+    """What the drive found keeps to instead, and why an arc from rest may need it.
+
+    Forward, the axle of platform 1 leads. Until platform 1 points into the arc the axle moves away
+    from the centre, at first at sqrt(R^2 + c1^2) from it; when it does no longer, P is c1 behind it
+    and at right angles to its radius, so at sqrt(R^2 + 2 c1^2) at least.
+    """
+    told = ""
+    if drive.violation <= drive.ease - 1 + BROKEN:
+        told = (
+            f"With {drive.ease:.3g} times the tolerances of position, heading and path it can be "
+            "driven. "
+        )
+    first, c1 = plan.legs[0], plan.problem.robot.platform1.c
+    width = plan.route.tolerance.path
+    if plan.way == "forward" and first.curvature:
+        radius = 1 / abs(first.curvature)
+        out = math.hypot(radius, math.sqrt(2) * c1) - radius
+        if out > width:
+            told += (
+                "Forward, on an arc from rest, P swings out until platform 1 has turned into it: "
+                f"by {1e3 * out:.0f} mm or more at a radius of {radius:.4g} m (tolerance.path: "
+                f"{1e3 * width:.4g}), by less from {c1**2 / width - width / 2:.3g} m on. Begin "
+                "with a straight line. "
+            )
+    return told
 
 
 def _near_the_path(problem: Problem, width: float) -> Problem:
@@ -175,29 +204,39 @@ def _stages(
     ]
     total = sum(part.length for part, *_ in parts)
     left = min(left, 0.7 * total)
+    robot = plan.problem.robot
+    lead = robot.platform1.c if plan.way == "forward" else robot.platform2.c
     driven, before = 0.0, math.nan
-    for part, gait, speed in parts:
+
+    def driving(gait: SineGait, speed: float, part: Leg, *ways: float) -> list[DriveStage]:
+        shape = gait.amplitude * 0.999, gait.offset, 2 * math.pi / gait.period
+        cycle = speed * gait.period
+        return [DriveStage(max(way / cycle - 1, 0.1), *shape, part, way) for way in ways if way > 0]
+
+    for k, (part, gait, speed) in enumerate(parts):
         length = min(part.length, max(total - left - driven, 0.05 * part.length))
         driven += part.length
-        omega = 2 * math.pi / gait.period
-        cycles = max(length / (speed * gait.period) - 1, 0.1)
-        shape = gait.amplitude * 0.999, gait.offset, omega
+        entry = leave = 0.0
         if part.curvature != before:
             # The launch, or a transition: until P moves at another angle to platform 1.
-            first = min(0.3 * cycles, _ENTRY / (speed * gait.period))
-            stages.append(DriveStage(first, *shape, part))
-            cycles = max(cycles - first - 1, 0.1)
-            before = part.curvature
-        stages.append(DriveStage(cycles, *shape, part, ends=True))
+            entry = min(0.3 * length, _ENTRY)
+        if k + 1 < len(parts) and parts[k + 1][0].curvature != part.curvature:
+            # The axle that leads comes to the change of curvature before P does.
+            leave = min(0.3 * length, lead)
+        elif k + 1 == len(parts) and part.curvature and coast:
+            # Platform 1 has to turn into the path before the robot stops.
+            leave = min(0.3 * length, lead + _ENTRY)
+        ways = [entry, length - entry - leave, leave]
+        stages += driving(gait, speed, part, *ways)
+        stages[-1] = replace(stages[-1], ends=True)
+        before = part.curvature
     if coast:
         part, gait, speed = parts[-1]
         stages[-1] = replace(stages[-1], ends=False)
         if part.curvature:
-            # Platform 1 has to turn into the path before the robot stops.
-            cycles = min(0.3 * stages[-1].cycles, _ENTRY / (speed * gait.period))
-            rest = max(stages[-1].cycles - cycles - 1, 0.1)
-            stages.append(replace(stages[-1], cycles=cycles, offset=0.5 * gait.offset))
-            stages[-2] = replace(stages[-2], cycles=rest)
+            last = stages.pop()
+            halves = driving(gait, speed, part, last.way / 2, last.way / 2)
+            stages += [replace(one, offset=0.5 * gait.offset) for one in halves]
         omega = 2 * math.pi / gait.period
         if brakes and not creeps:
             shape = 0.1 * gait.amplitude, 0.5 * gait.offset, omega
@@ -206,7 +245,12 @@ def _stages(
             shape = _CREEP * gait.amplitude, 0.5 * gait.offset, omega
             stages.append(DriveStage(_CREPT, *shape, part, fixed=True, fewest=_CREPT))
         cycles = 0.7 * coast.seconds / gait.period
-        stages.append(DriveStage(cycles, 0.0, 0.0, omega, part, ends=True, fixed=True))
+        last = DriveStage(cycles, 0.0, 0.0, omega, part, fixed=True, straight=creeps)
+        if part.curvature and not creeps:
+            # Bent, the joint leads along an arc; bent anew, it turns platform 1.
+            stages.append(replace(last, cycles=max(0.5 * cycles, 0.1)))
+            last = replace(last, cycles=max(0.5 * cycles - 1, 0.1))
+        stages.append(replace(last, ends=True))
     return stages
 
 

@@ -13,21 +13,24 @@ The motion and all derivatives are those of `rollout`; the solver is sequential 
 quadratic, programming.
 """
 
+import itertools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import casadi as ca
 import numpy as np
-from scipy.optimize import linprog, minimize, nnls
+from numpy.typing import NDArray
+from scipy.optimize import minimize, nnls
 
 from rr_opt.array import Array
 from rr_opt.model.command import Command, blended
 from rr_opt.model.problem import Problem
 from rr_opt.model.route import Pose, Tolerance
+from rr_opt.motion.dynamics import dynamics_of
 from rr_opt.routing.path import Leg, signed_distance
-from rr_opt.routing.rollout import LOADS, Samples, rollout, steps_for
+from rr_opt.routing.rollout import LOADS, STEPS, Samples, rollout, stepped, steps_for
 from rr_opt.verify.grid import reach
 
 _UNKNOWNS = 4
@@ -36,49 +39,67 @@ cycles, the phases at which blends begin do not depend on the frequencies, and t
 linear."""
 _LOOKS, _CLOSE = 12, 1e-4
 """Parts of a blend in each of which the largest rate is bounded."""
-_INSIDE = 0.97
-"""The program keeps to this share of each tolerance: steps are finite."""
+_INSIDE, _ROOM = 0.97, 0.01
+"""The program aims at this share of each tolerance and may miss it by so much: steps are finite."""
 _TIGHT = 0.999
 """The program keeps to this share of each limit: its bounds are good to `BROKEN`."""
 BROKEN = 1e-3
 """By so much, relative, a bound may be broken, and the drive counts as keeping it."""
-_TURNS, _TURN = 6, 0.5
-"""Gauss-Newton steps for a stage of the guess, and the longest, in scaled unknowns."""
-_TIGHTENED, _DENSE = 3, 0.99
-"""Solutions with the way bounded more tightly, until P stays so near the path at all samples."""
-_LINEAR, _QUADRATIC = 40, 80
+_SOFT = ("path", "position", "heading")
+"""Bounds whose tolerances are wider on the way to a drive."""
+_EASES = (4.0, 2.0)
+"""Times the tolerances, for which drives are found first."""
+_MOST, _AIMED, _CREEPING = 3, 4, 1e-4
+"""Of a stage's cycles, the most over those of steady speed and five more; times that the guess
+corrects them; and the least way of a cycle, m."""
+_SPEED = 0.05
+"""m/s: a gap of the speed between stages that counts as much as the tolerances."""
+_RESTORED, _DAMPED, _SOFTEST, _STIFFEST = 25, 1e-2, 1e-6, 1e6
+"""Most Levenberg-Marquardt steps, and their damping: at first, at least, at most."""
+_MOVES = (1.0, 0.3, 1.0, 0.1)
+"""Changes of a stage's scaled unknowns that are damped alike: steering is preferred to slowing."""
+_HARD, _SPARE = 10.0, 2e-3
+"""So many times more a limit's excess counts than that of a tolerance; and what steps aim at."""
+_NEWTON, _SHORT = 30, 1e-4
+"""Most steps of Newton's method within one of those, and the shortest."""
+_ROUNDS, _QUADRATIC, _SETTLED, _GAIN = 5, 100, 1e-8, 2e-4
+"""Of sequential quadratic programming: rounds, steps in each, gain of time, s, of the last step,
+and gain, relative, below which a round is the last."""
+_COST, _PENALTY = 12.0, 10.0
+"""The time of the drive as the program counts it, so that first steps are neither far nor short,
+and over it the price of tolerances twice as wide."""
+_FAR = 0.7
+"""Loads with so much to spare are left out of a round."""
 _ACTIVE = 1e-4
 """Of bounds that take part in the prices, what is left at most, relative."""
 _NUDGE = 1e-6
 """A change of the limit on singularity, relative."""
 _LOST = 1e3
 """What counts as the excess where there is no motion."""
-_PENALTY, _RADIUS, _SMALLEST, _SETTLED = 10.0, 0.5, 1e-5, 1e-8
-"""Most steps of either kind; penalty over the time of the guess; trust region of the scaled
-unknowns, at first and at last; gain of time, s, of the last step."""
-_PLACES, _BETWEEN = 100, 0.93
-"""About how many places have a bound on the distance from the path, and the share of the tolerance
-that it is: between them P swings with the gait."""
+_PLACES = 100
+"""About how many parts of the way have a bound on the largest distance from it."""
 
 
 @dataclass(frozen=True)
 class DriveStage:
-    """A stage of the drive: guesses of its unknowns, the leg it is on, whether its end is that of
-    the leg, whether its amplitude and frequency are as guessed, and the fewest cycles that it
-    takes."""
+    """A stage of the drive: guesses of its unknowns, the leg it is on and how much of it (m) the
+    guess drives, whether its end is that of the leg, whether its amplitude and frequency are as
+    guessed, the fewest cycles that it takes, and whether it ends with the joint straight."""
 
     cycles: float
     amplitude: float
     offset: float
     omega: float
     leg: Leg
+    way: float = 0.0
     ends: bool = False
     fixed: bool = False
     fewest: float = 0.05
+    straight: bool = False
 
     @property
     def coasts(self) -> bool:
-        """Whether the joint is held straight."""
+        """Whether the joint is held still."""
         return self.fixed and self.amplitude == 0
 
 
@@ -90,6 +111,7 @@ class SolvedDrive:
     pieces      of the route, of every segment of the command
     prices      time saved per unit of each limit by which it is raised, s: rate, angle, torque,
                 grip, singularity
+    ease        times the tolerances of place, heading and way that it keeps to; 1: as asked
     stationarity  what is left of the derivatives of the time, relative, when those of active bounds
                 are taken off times their prices: 0 at an optimum
     """
@@ -104,12 +126,17 @@ class SolvedDrive:
     pieces: tuple[int, ...]
     prices: dict[str, float]
     stationarity: float
+    ease: float
 
 
 @dataclass(frozen=True)
 class Look:
     """A drive with its time, s, and everything that has to be at least 0, relative; with their
-    derivatives by the unknowns, and which bound of which piece it is."""
+    derivatives by the unknowns, and which bound of which piece it is.
+
+    closing  what is added to the values, to first order, as gaps between stages are closed
+    gaps     between stages: (v, psi, x, y) over what counts as much
+    """
 
     command: Command
     seconds: float
@@ -118,11 +145,24 @@ class Look:
     values: Array
     slopes: Array
     names: list[tuple[str, int]]
+    closing: Array
+    gaps: Array
 
-    @property
+    @cached_property
+    def soft(self) -> Array:
+        """1 for bounds on the place, the heading and the way, else 0."""
+        return np.array([float(name in _SOFT) for name, _ in self.names])
+
+    def spare(self, ease: float) -> Array:
+        """The values if those tolerances are so many times as wide."""
+        return self.values + (ease - 1) * self.soft
+
+    @cached_property
     def violation(self) -> float:
-        """The largest share by which a bound is broken."""
-        return max(0.0, -float(self.values.min()))
+        """The largest share by which a bound is broken, beyond what the program keeps inside of
+        tolerances for rounding."""
+        room = np.array([_ROOM * (name in (*_SOFT, "speed")) for name, _ in self.names])
+        return max(0.0, -float((self.values + room).min()))
 
     def rank(self) -> tuple[bool, float]:
         """Drives that keep all bounds go first, the fastest of them in front."""
@@ -180,14 +220,19 @@ class DriveProgram:
         self.problem, self.stages, self.tolerance = problem, stages, tolerance
         self.start = (pose.x, pose.y, pose.heading + turned)
         self.turned, self.rest = turned, rest
-        self.width = tolerance.path * _BETWEEN
         limits = problem.limits
         self.loads = [k for k, name in enumerate(LOADS) if math.isfinite(getattr(limits, name))]
         guess = np.array([[s.cycles, s.amplitude, s.offset, s.omega] for s in stages])
         self.scale = np.tile([4.0, 0.2, 0.2, 0.0], len(stages))
         self.scale[3::4] = guess[:, 3]
         self.x0 = guess.ravel() / self.scale
-        self.steps = steps_for(self.command(guess.ravel()))
+        self.joined = np.array([_SPEED, tolerance.heading, tolerance.position, tolerance.position])
+        self.discretise(self.x0)
+
+    def discretise(self, x: Array) -> None:
+        """Take as many steps of integration as the unknowns ask for."""
+        self.steps = steps_for(self.command(x * self.scale))
+        self.joints = np.cumsum(self.steps)[1:-1:2] - 1
 
     def command(self, z: Array) -> Command:
         """The command of the unknowns, SI."""
@@ -216,52 +261,48 @@ class DriveProgram:
             d[6, 2 * k + 2 :, k * _UNKNOWNS] = 2 * math.pi
         return d
 
-    def look(self, x: Array) -> Look:
-        """The drive of the scaled unknowns and everything that has to be at least 0."""
+    def look(self, x: Array, starts: Array | None = None) -> Look:
+        """The drive of the scaled unknowns and everything that has to be at least 0. starts: v,
+        psi, x, y of all stages but the first, if they do not begin as the one before ends."""
         with np.errstate(over="ignore", invalid="ignore"):
-            return self._look(x)
+            return self._look(x, starts)
 
-    def _look(self, x: Array) -> Look:
+    def _look(self, x: Array, starts: Array | None) -> Look:
         z = x * self.scale
         command = self.command(z)
-        slopes = self.slopes(command)
+        slopes = np.pad(self.slopes(command), ((0, 0), (0, 0), (0, 1)))
+        given = {} if starts is None else {2 * k + 2: one for k, one in enumerate(starts)}
         samples = rollout(
-            self.problem.robot, command, slopes, self.steps, self.start, loads=self.loads
-        )
+            self.problem.robot, command, slopes, self.steps, self.start,
+            loads=self.loads, starts=given,
+        )  # fmt: skip
         rows = _Rows()
         limits, tolerance = self.problem.limits, self.tolerance
         pieces = [stage.leg.piece for stage in self.stages]
-        A, w, unit, room = z[1::4], z[3::4], np.eye(len(z)), reach(self.problem)
+        A, unit, room = z[1::4], np.eye(len(z), len(z) + 1), reach(self.problem)
         for sign in (1, -1):
             gradient = unit[1::4] + sign * unit[2::4]
             rows.at_most("angle", pieces, A + sign * z[2::4], gradient, room * _TIGHT)
         if math.isfinite(limits.rate):
-            rate = limits.rate * _TIGHT
-            gradient = unit[1::4] * w[:, None] + unit[3::4] * A[:, None]
-            rows.at_most("rate", pieces, A * w, gradient, rate)
-            blends = command.segments[:, ::2]
-            found = _blend_rates().map(len(pieces))(blends, _fastest(blends))
-            rates, by = (np.asarray(part) for part in found)
-            gradient = by.reshape(_LOOKS, len(pieces), 8)
-            gradient = np.einsum("lki,ikz->klz", gradient, slopes[:, ::2]).reshape(-1, len(z))
-            of = np.repeat(pieces, _LOOKS).tolist()
-            rows.within("rate", of, rates.T.ravel(), gradient, rate)
+            self._rates(rows, command, slopes, z, pieces)
         of_segment = np.split(np.arange(len(samples.t)), np.cumsum(self.steps)[:-1])
         for k, peaks, by in zip(self.loads, samples.peaks, samples.peak_slopes, strict=True):
             of = np.repeat(pieces, peaks.size // len(pieces)).tolist()
             name = LOADS[k]
             limit = getattr(limits, name) * _TIGHT
             rows.at_most(name, of, peaks.ravel(), by.reshape(peaks.size, -1), limit)
-        every = max(1, len(samples.t) // _PLACES)
+        window = max(STEPS, len(samples.t) // _PLACES)
         for k, stage in enumerate(self.stages):
             mine = np.concatenate(of_segment[2 * k : 2 * k + 2])
-            some = mine[every // 2 :: every]
-            off, by_x, by_y = signed_distance(stage.leg, *samples.path[2:4, some])
-            gradient = (
-                by_x[:, None] * samples.slopes[2, some] + by_y[:, None] * samples.slopes[3, some]
-            )
-            of = [stage.leg.piece] * len(some)
-            rows.within("path", of, off, gradient, self.width)
+            off, by_x, by_y = self.distance(k, *samples.path[2:4, mine])
+            for sign in (1, -1):
+                at, weights = _peaks_of(sign * off, window)
+                value = (weights * off[at]).sum(axis=1)
+                by = [weights[..., None] * part[at][..., None] for part in (by_x, by_y)]
+                gradient = (by[0] * samples.slopes[2][mine[at]]).sum(axis=1)
+                gradient += (by[1] * samples.slopes[3][mine[at]]).sum(axis=1)
+                of = [stage.leg.piece] * len(at)
+                rows.at_most("path", of, sign * value, sign * gradient, tolerance.path * _INSIDE)
             if stage.ends:
                 last = stage is self.stages[-1]
                 name, within = (
@@ -278,8 +319,45 @@ class DriveProgram:
             np.concatenate(rows.values), nan=-_LOST, posinf=-_LOST, neginf=-_LOST
         )
         gradients = np.nan_to_num(np.vstack(rows.slopes), posinf=0.0, neginf=0.0)
-        rising = slopes[7].sum(axis=0)
-        return Look(command, command.seconds, rising, samples, values, gradients, rows.names)
+        gaps = np.zeros(0)
+        if starts is not None:
+            gaps = (samples.path[:, self.joints].T - starts) / self.joined
+            gaps = np.nan_to_num(gaps.ravel(), nan=_LOST, posinf=_LOST, neginf=-_LOST)
+        return Look(
+            command, command.seconds, slopes[7].sum(axis=0)[:-1], samples, values,
+            gradients[:, :-1], rows.names, gradients[:, -1], gaps,
+        )  # fmt: skip
+
+    def _rates(
+        self, rows: _Rows, command: Command, slopes: Array, z: Array, pieces: list[int]
+    ) -> None:
+        """Bounds on the rate: A omega on a stage, and its peaks in parts of blends."""
+        A, w, unit, rate = z[1::4], z[3::4], np.eye(len(z), len(z) + 1), self.problem.limits.rate
+        rate *= _TIGHT
+        gradient = unit[1::4] * w[:, None] + unit[3::4] * A[:, None]
+        rows.at_most("rate", pieces, A * w, gradient, rate)
+        blends, of = command.segments[:, ::2], np.repeat(pieces, _LOOKS).tolist()
+        for sign in (1, -1):
+            found = _blend_rates().map(len(pieces))(blends, _fastest(blends, sign))
+            rates, by = (sign * np.asarray(part) for part in found)
+            gradient = by.reshape(_LOOKS, len(pieces), 8)
+            gradient = np.einsum("lki,ikz->klz", gradient, slopes[:, ::2])
+            rows.at_most("rate", of, rates.T.ravel(), gradient.reshape(len(of), -1), rate)
+
+    def distance(self, k: int, x: Array, y: Array) -> Array:
+        """`signed_distance` of places of a stage: from its leg, or from the one before or after it
+        where P is not yet or no longer beside it. (3, n)"""
+        leg = self.stages[k].leg
+        found = np.array(signed_distance(leg, x, y))
+        legs = [one.leg for one in self.stages]
+        before = next((one for one in legs[k::-1] if one is not leg), None)
+        after = next((one for one in legs[k:] if one is not leg), None)
+        for other, joint, sign in ((before, leg.start, -1), (after, leg.end, 1)):
+            if other:
+                cos, sin = math.cos(joint.heading), math.sin(joint.heading)
+                away = sign * (cos * (x - joint.x) + sin * (y - joint.y)) > 0
+                found[:, away] = signed_distance(other, x[away], y[away])
+        return found
 
     @property
     def bounds(self) -> list[tuple[float, float]]:
@@ -292,61 +370,39 @@ class DriveProgram:
             amplitude, offset = (0.0, min(box.amplitude.high, room)), (-room, room)
             if stage.fixed:
                 amplitude, omega = (stage.amplitude,) * 2, (stage.omega,) * 2
-            if stage.coasts:
+            if stage.straight:
                 offset = (0.0, 0.0)
-            found += [(stage.fewest, math.inf), amplitude, offset, omega]
+            found += [(stage.fewest, _MOST * (stage.cycles + 5)), amplitude, offset, omega]
         return [(low / s, high / s) for (low, high), s in zip(found, self.scale, strict=True)]
 
     def solve(self, progress: Callable[[str], None]) -> SolvedDrive:
-        """The fastest drive near the guess: linear steps until it keeps all bounds, as they lead
-        there from far away, then sequential quadratic programming, which follows curved bounds."""
-        low, high = np.array(self.bounds).T
+        """The fastest drive near the guess: one that keeps to wider tolerances, then sequential
+        quadratic programming, which narrows them at a price."""
         steps = 0
 
         def step(_: object = None) -> None:
             nonlocal steps
             steps += 1
-            progress(f"drive, step {steps} of {_LINEAR + _QUADRATIC}")
+            progress(f"drive, step {steps}")
 
-        x = self._feasible(self._steered(low, high), low, high, step)
-        seen: dict[bytes, Look] = {}
-
-        def look(x: Array) -> Look:
-            key = x.tobytes()
-            if key not in seen:
-                seen.clear()
-                seen[key] = self.look(x)
-            return seen[key]
-
-        best, found_at, success = look(x), x, False
-        for _ in range(_TIGHTENED):
-            found = minimize(
-                lambda x: (look(x).seconds, look(x).rising * self.scale),
-                x,
-                jac=True,
-                method="SLSQP",
-                bounds=list(zip(low, high, strict=True)),
-                constraints={
-                    "type": "ineq",
-                    "fun": lambda x: look(x).values,
-                    "jac": lambda x: look(x).slopes * self.scale,
-                },
-                callback=step,
-                options={"maxiter": _QUADRATIC, "ftol": _SETTLED},
-            )
-            x = np.clip(found.x, low, high)
-            if look(x).violation > BROKEN:
-                x = self._feasible(x, low, high, step)
-            here = look(x)
-            if here.rank() < best.rank():
-                best, found_at, success = here, x, bool(found.success)
-            # Between the places that are bounded P may swing out.
-            off = self._farthest(best.samples)
-            if best.violation > BROKEN or off <= _DENSE * self.tolerance.path:
+        x, starts = self.guess()
+        for ease in _EASES:
+            x, starts = self._restored(x, starts, ease, step)
+        best, found_at, success, ease_of = self.look(x), x, False, math.inf
+        for _ in range(_ROUNDS):
+            x, ease, solved = self._fastest(x, step)
+            if ease <= 1 + BROKEN:
+                ease = 1.0
+                self.discretise(x)
+                if self.look(x).violation > BROKEN:
+                    x, _ = self._restored(x, None, 1.0, step)
+            here = self.look(x)
+            (failed, before), (fails, now) = best.rank(), here.rank()
+            if (fails, now) >= (failed, before):
                 break
-            self.width *= _DENSE**2 * self.tolerance.path / off
-            seen.clear()
-            best, found_at = look(x), x
+            best, found_at, success, ease_of = here, x, solved, ease
+            if (solved and not fails) or (fails == failed and before - now < _GAIN * before):
+                break
         worst = int(np.argmin(best.values))
         pieces = tuple(piece for stage in self.stages for piece in [stage.leg.piece] * 2)
         return SolvedDrive(
@@ -358,6 +414,7 @@ class DriveProgram:
             success,
             pieces,
             *self._prices(found_at, best),
+            ease_of,
         )
 
     def _prices(self, x: Array, look: Look) -> tuple[dict[str, float], float]:
@@ -382,94 +439,157 @@ class DriveProgram:
         prices["singularity"] = -total["angle"] / room * (reach(less) - room) / (S * _NUDGE)
         return prices, left / float(np.linalg.norm(gradient))
 
-    def _farthest(self, samples: Samples) -> float:
-        """The largest distance of P from the leg that it is on, at all samples, m."""
-        off = 0.0
-        for k, stage in enumerate(self.stages):
-            mine = samples.segment // 2 == k
-            found, *_ = signed_distance(stage.leg, *samples.path[2:4, mine])
-            off = max(off, float(np.abs(found).max()))
-        return off
-
     def heading(self, leg: Leg, *, steady: bool) -> float:
         """Of platform 1 at the end of a leg, rad: along the path, or as it is in steady motion."""
         along = leg.end.heading + self.turned
         return along + slip(self.problem, leg, self.turned) if steady else along
 
-    def _steered(self, low: Array, high: Array) -> Array:
-        """The guess with cycles and offset of stage after stage changed so that each ends near the
-        end of its leg, by Gauss-Newton steps."""
-        x = np.clip(self.x0, low, high)
-        last = np.cumsum(self.steps)[1::2] - 1
+    def guess(self) -> tuple[Array, Array]:
+        """The unknowns and starts of stages, one stage after another simulated. Each begins on
+        the path with the speed that the one before ends with, platform 1 as in steady motion, and
+        takes as many cycles as its way asks for."""
+        low, high = np.array(self.bounds).T
+        z, starts = np.clip(self.x0, low, high) * self.scale, list[tuple[float, ...]]()
+        v, driven, planned = 0.0, 0.0, 0.0
         for k, stage in enumerate(self.stages):
-            if not stage.ends or stage.coasts or stage.leg is self.stages[-1].leg:
-                continue
-            free = np.array([4 * k, 4 * k + 2])
-            most = (reach(self.problem) - stage.amplitude) / self.scale[4 * k + 2]
-            if k > 1 and not self.stages[k - 1].ends:
-                free = np.append(free, 4 * k - 2)
-            end = stage.leg.end
-            goal = np.array([end.x, end.y, self.heading(stage.leg, steady=True)])
-            weight = 1 / np.array([self.tolerance.path, self.tolerance.path, 0.1])
-            best = math.inf
-            place, move = x[free], np.zeros(len(free))
-            for _ in range(_TURNS):
-                x[free] = np.clip(place + move, low[free], high[free])
-                x[free[1:]] = np.clip(x[free[1:]], -most, most)
-                command = self.command(x * self.scale)
-                part = Command(command.durations[: 2 * k + 2], command.knots[:, : 2 * k + 3])
-                slopes = self.slopes(command)[:, : 2 * k + 2]
-                steps = self.steps[: 2 * k + 2]
-                seen = rollout(self.problem.robot, part, slopes, steps, self.start)
-                miss = weight * (seen.path[[2, 3, 1], last[k]] - goal)
-                if miss @ miss < best:
-                    best, place = miss @ miss, x[free]
-                    J = weight[:, None] * (seen.slopes[[2, 3, 1], last[k]] * self.scale)[:, free]
-                    move = np.clip(np.linalg.lstsq(J, -miss, rcond=None)[0], -_TURN, _TURN)
-                else:
-                    move = move / 3
-                if np.abs(move).max() < 0.01:
-                    break
-            x[free] = place
-        return x
+            leg = stage.leg
+            if k and leg is not self.stages[k - 1].leg:
+                driven = planned = 0.0
+            planned += stage.way
+            beta = slip(self.problem, leg, self.turned)
+            for _ in range(_AIMED if stage.way else 0):
+                end, way = self._driven(k, z, v, beta)
+                each = max(abs(end) / math.cos(beta) * 2 * math.pi / stage.omega, _CREEPING)
+                cycles = z[4 * k] + (planned - driven - way) / each
+                z[4 * k] = min(max(stage.fewest, cycles), _MOST * (stage.cycles + 5))
+            v, way = self._driven(k, z, v, beta)
+            driven = min(driven + way, leg.length)
+            pose = leg.end if stage.ends else leg.at(driven)
+            starts.append((v, pose.heading + self.turned + beta, pose.x, pose.y))
+        return z / self.scale, np.array(starts[:-1]).reshape(-1, 4)
 
-    def _feasible(self, x: Array, low: Array, high: Array, step: Callable[[], None]) -> Array:
-        """Sequential linear programming in a trust region. The merit is the time with an exact
-        penalty for the bound that is broken most."""
-        here, radius = self.look(x), _RADIUS
-        moves = np.tile([1.0, 0.3, 1.0, 0.1], len(self.stages))
-        penalty = _PENALTY * here.seconds
-        for _ in range(_LINEAR):
-            if here.violation <= BROKEN or radius < _SMALLEST:
+    def _driven(self, k: int, z: Array, v: float, beta: float) -> tuple[float, float]:
+        """The speed, m/s, after a stage that begins with v, and the way of P, m."""
+        dynamics, way = dynamics_of(self.problem.robot), 0.0
+        p = dynamics.values(self.problem.robot)
+        for u in self.command(z).segments[:, 2 * k : 2 * k + 2].T:
+            count = max(6, math.ceil(STEPS * u[7] * (u[2] + u[5]) / (4 * math.pi)))
+            seen = stepped(dynamics.effects, p, v, u, np.arange(count + 1) / count)[0, 0]
+            way += u[7] * (seen.sum() + (v - seen[-1]) / 2) / count
+            v = float(seen[-1])
+        return v, abs(way) / math.cos(beta)
+
+    def _restored(
+        self, x: Array, starts: Array | None, ease: float, step: Callable[[], None]
+    ) -> tuple[Array, Array | None]:
+        """Levenberg-Marquardt steps on broken bounds and gaps between stages, until there are none.
+        Stages begin where the linear model takes them, or, if that is the better, as the ones
+        before end."""
+        low, high = np.array(self.bounds).T
+
+        def merit(look: Look) -> float:
+            broken = weights(look) * np.maximum(_SPARE - look.spare(ease), 0.0)
+            return float(broken @ broken + look.gaps @ look.gaps) / 2
+
+        def weights(look: Look) -> Array:
+            return np.where(look.soft, 1.0, _HARD)
+
+        damping, moves = _DAMPED, np.tile(_MOVES, len(self.stages))
+        self.discretise(x)
+        here = self.look(x, starts)
+        for _ in range(_RESTORED):
+            if (here.spare(ease).min() >= -BROKEN and not here.gaps.any()) or damping > _STIFFEST:
                 break
             step()
-            moved = linprog(
-                np.append(here.rising * self.scale, penalty),
-                A_ub=np.hstack([-here.slopes * self.scale, -np.ones((len(here.values), 1))]),
-                b_ub=here.values,
-                bounds=[
-                    *zip(
-                        np.maximum(low - x, -radius) * moves,
-                        np.minimum(high - x, radius) * moves,
-                        strict=True,
-                    ),
-                    (0.0, None),
-                ],
-            )
-            if moved.x is None:
-                break
-            there = np.clip(x + moved.x[:-1], low, high)
+            J = weights(here)[:, None] * here.slopes * self.scale * moves
+            values = weights(here) * (here.spare(ease) + here.closing - _SPARE)
+            move, left = _least(J, values, damping, (low - x) / moves, (high - x) / moves)
+            move = move * moves
+            there, then = np.clip(x + move, low, high), None
             seen = self.look(there)
-            before = here.seconds + penalty * here.violation
-            expected = before - here.seconds - moved.fun
-            gained = before - seen.seconds - penalty * seen.violation
-            if gained > 0.05 * expected:
-                x, here = there, seen
-            if gained > 0.7 * expected:
-                radius = min(2 * radius, _RADIUS)
-            elif gained < 0.3 * expected:
-                radius /= 3
-        return x
+            if starts is not None:
+                change = here.samples.slopes[:, self.joints] @ np.append(move * self.scale, 1.0)
+                then = (here.samples.path[:, self.joints] + change).T
+                apart = self.look(there, then)
+                if merit(apart) < merit(seen):
+                    seen = apart
+                else:
+                    then = seen.samples.path[:, self.joints].T
+            expected, gained = merit(here) - left, merit(here) - merit(seen)
+            if gained > 0.05 * max(expected, 0.0):
+                x, starts = there, then
+                self.discretise(x)
+                here = self.look(x, starts)
+                damping = max(damping / 5, _SOFTEST) if gained > 0.6 * expected else damping
+            else:
+                damping *= 6
+        return x, starts
+
+    def _fastest(self, x: Array, step: Callable[[], None]) -> tuple[Array, float, bool]:
+        """Sequential quadratic programming on the time with a price on the ease of tolerances: the
+        unknowns, the ease, and whether it is an optimum."""
+        low, high = np.array(self.bounds).T
+        self.discretise(x)
+        seen: dict[bytes, Look] = {}
+
+        def look(y: Array) -> Look:
+            key = y[:-1].tobytes()
+            if key not in seen:
+                seen.clear()
+                seen[key] = self.look(y[:-1])
+            return seen[key]
+
+        first = look(np.append(x, 1.0))
+        soft = first.soft
+        ease = 1 + max(0.0, -float((first.values * soft).min()))
+        loads = np.array([name in LOADS for name, _ in first.names])
+        near = ~loads | (first.values < _FAR)
+        unit, price = first.seconds / _COST, _PENALTY * _COST
+        found = minimize(
+            lambda y: (
+                look(y).seconds / unit + price * y[-1],
+                np.append(look(y).rising * self.scale / unit, price),
+            ),
+            np.append(x, ease),
+            jac=True,
+            method="SLSQP",
+            bounds=[*zip(low, high, strict=True), (1.0, ease)],
+            constraints={
+                "type": "ineq",
+                "fun": lambda y: look(y).spare(y[-1])[near],
+                "jac": lambda y: np.hstack([look(y).slopes * self.scale, soft[:, None]])[near],
+            },
+            callback=step,
+            options={"maxiter": _QUADRATIC, "ftol": _SETTLED / unit},
+        )
+        return np.clip(found.x[:-1], low, high), float(found.x[-1]), bool(found.success)
+
+
+def _least(J: Array, values: Array, damping: float, low: Array, high: Array) -> tuple[Array, float]:
+    """The step that minimises half the sum of squares of what is below 0 of values + J step, and of
+    the damped step, within bounds; and the first of both. By Newton's method."""
+
+    def broken(step: Array) -> Array:
+        return np.minimum(values + J @ step, 0.0)
+
+    def cost(step: Array) -> float:
+        return float(broken(step) @ broken(step) + damping * step @ step) / 2
+
+    step = np.clip(np.zeros(J.shape[1]), low, high)
+    for _ in range(_NEWTON):
+        now = broken(step)
+        slope = J.T @ now + damping * step
+        free = ~(((step <= low) & (slope > 0)) | ((step >= high) & (slope < 0)))
+        K = J[np.ix_(now < 0, free)]
+        newton, size = np.zeros(len(step)), 1.0
+        newton[free] = np.linalg.solve(K.T @ K + damping * np.eye(K.shape[1]), -slope[free])
+        before = cost(step)
+        while cost(np.clip(step + size * newton, low, high)) >= before and size > _SHORT:
+            size /= 2
+        if size <= _SHORT:
+            break
+        step = np.clip(step + size * newton, low, high)
+    return step, float(broken(step) @ broken(step)) / 2
 
 
 def slip(problem: Problem, leg: Leg, turned: float) -> float:
@@ -479,8 +599,9 @@ def slip(problem: Problem, leg: Leg, turned: float) -> float:
     return beta if turned == 0 else -beta
 
 
-def _fastest(blends: Array) -> Array:
-    """Where the rate is largest in each of `_LOOKS` equal parts of blends (8, K): (_LOOKS, K).
+def _fastest(blends: Array, sign: int) -> Array:
+    """Where the rate times a sign is largest in each of `_LOOKS` equal parts of blends (8, K):
+    (_LOOKS, K).
 
     A parabola through the ends and the middle of a part has its vertex near the peak, which a step
     of Newton's method comes to. The rate is level there, so that its derivatives at a fixed place
@@ -497,8 +618,23 @@ def _fastest(blends: Array) -> Array:
     here = blended(places[1], blends, np.sin, np.cos)[2]
     change = np.where(nearby == here, 1e-300, nearby - here)
     places[1] = np.clip(places[1] - _CLOSE * here / change, places[0], places[2])
-    sizes = np.abs(blended(places, blends, np.sin, np.cos)[1])
+    sizes = sign * blended(places, blends, np.sin, np.cos)[1]
     return np.take_along_axis(places, sizes.argmax(axis=0)[None], axis=0)[0]
+
+
+def _peaks_of(values: Array, window: int) -> tuple[NDArray[np.int_], Array]:
+    """Of samples, in windows of about this many: three places (K, 3) about the largest, and
+    their weights (K, 3) in the vertex of the parabola through them, which is level there."""
+    count = max(1, len(values) // window)
+    edges = len(values) * np.arange(count + 1) // count
+    at = np.array([low + values[low:high].argmax() for low, high in itertools.pairwise(edges)])
+    middle = np.clip(at, 1, len(values) - 2)
+    near = middle[:, None] + [-1, 0, 1]
+    first, here, last = values[near].T
+    bend = first - 2 * here + last
+    moved = np.where(bend < 0, 0.5 * (first - last) / np.minimum(bend, -1e-300), at - middle)
+    moved = np.where(np.abs(moved) < 1, moved, at - middle)
+    return near, np.stack([moved * (moved - 1) / 2, 1 - moved**2, moved * (moved + 1) / 2], axis=1)
 
 
 @lru_cache

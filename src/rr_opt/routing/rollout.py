@@ -12,9 +12,10 @@ the phase and its frame alone.
 
 import itertools
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from types import MappingProxyType
 
 import casadi as ca
 import numpy as np
@@ -26,7 +27,7 @@ from rr_opt.model.command import Command, blended
 from rr_opt.model.robot import Robot
 from rr_opt.motion.dynamics import derive, dynamics_of
 
-STEPS = 12
+STEPS = 16
 """Steps of order 6 in a period: a drive of 100 periods ends within some 10 um of the truth."""
 _INPUTS = 9
 """v at the start of a segment, and the eight numbers of the segment."""
@@ -239,12 +240,15 @@ def rollout(
     pose: tuple[float, float, float],
     *,
     loads: Sequence[int] = (),
+    starts: Mapping[int, Array] = MappingProxyType({}),
 ) -> Samples:
     """Drive a command from rest at the pose x (m), y (m), psi (rad).
 
     slopes  (8, N, z): derivatives of `command.segments` by the unknowns
     steps   of each segment
     loads   of which of LOADS peaks are wanted
+    starts  v, psi, x, y with which segments begin anew. The last of the unknowns is then what is
+            left of the gaps: at 1 closed, to first order.
     """
     dynamics = dynamics_of(robot)
     p = dynamics.values(robot)
@@ -255,13 +259,17 @@ def rollout(
     found, at = [], 0.0
     states, all_inputs = list[Array](), list[Array]()
     for k, (u, n) in enumerate(zip(command.segments.T, steps, strict=True)):
+        if k in starts:
+            for one, gap in zip((dv, dpsi, dx, dy), (v, psi, x, y) - starts[k], strict=True):
+                one[-1] += gap
+            v, psi, x, y = starts[k]
         grid = np.arange(n + 1) / n
         out = stepped(dynamics.effects, p, v, u, grid)
         states.append(np.concatenate([_from(v)[:, :, None], out], axis=2))
         local, S = out[0], out[1:]
         inputs = np.vstack([dv, slopes[:, k]])
         all_inputs.append(inputs)
-        d = np.einsum("isn,iz->snz", S, inputs)
+        d = np.tensordot(S, inputs, (0, 0))
         cos, sin = math.cos(psi), math.sin(psi)
         path, dpath = local.copy(), d.copy()
         path[1] += psi
@@ -273,7 +281,7 @@ def rollout(
         found.append((np.full(n, k), at + u[7] * grid[1:], path, dpath))
         at += u[7]
         v, psi, x, y = path[:4, -1]
-        dv, dpsi, dx, dy = dpath[:4, -1]
+        dv, dpsi, dx, dy = dpath[:4, -1].copy()
     segment, t, path, dpath = zip(*found, strict=True)
     peaks, by = (
         np.zeros((0, len(states), _PARTS, 2)),
