@@ -128,6 +128,7 @@ def test_a_limit_that_binds(name, limit, monkeypatch):
         return rr.route(rr.Route(replace(PROBLEM, limits=limits), (rr.Straight(1),)))
 
     def guess(program):
+        assert found.plan.drive
         command = found.plan.drive.command
         knots = command.knots[:, 2::2]
         cycles = command.durations[1::2] * knots[2] / (2 * math.pi)
