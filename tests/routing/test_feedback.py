@@ -29,11 +29,11 @@ def straight():
     return rr.route(rr.Route(PROBLEM, (rr.Straight(1),)), feedback=True)
 
 
-def driven(found, robot, closed=True):
+def driven(found, robot, closed=True, follower=None):
     """Pose and speed at the end, the segments made, and the poses seen, without noise."""
     control, v = found.feedback, 0.0
     p, effects = dynamics_of(robot).values(robot), dynamics_of(robot).effects
-    follower, planned = Follower(control), iter(control.command.segments.T)
+    follower, planned = follower or Follower(control), iter(control.command.segments.T)
     u = follower.first() if closed else next(planned)
     pose, segments, poses = control.place[0], [], []
     while u is not None:
@@ -64,8 +64,10 @@ def off(found, pose):
 
 @pytest.mark.parametrize("factor", [0.65, 0.8, 1.2])
 def test_other_friction(straight, factor):
-    pose, v, segments, _ = driven(straight, rough(factor))
+    follower = Follower(straight.feedback)
+    pose, v, segments, _ = driven(straight, rough(factor), follower=follower)
     assert off(straight, pose) < 0.02
+    assert follower.z[4] == pytest.approx(1 - factor, abs=0.02)
     assert abs(v) < 0.002
     assert off(straight, driven(straight, rough(factor), closed=False)[0]) > 0.02
     s = np.linspace(0, 1, 300)[:, None]

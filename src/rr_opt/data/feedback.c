@@ -29,11 +29,12 @@ static const double rr_place[RR_PERIODS + 1][3] = {{ array(c.place) }};
 static const double rr_speed[RR_PERIODS + 1] = {{ array(c.speed) }};
 static const int rr_group[RR_PERIODS + 1] = {{ array(c.group) }};
 static const double rr_value[RR_PERIODS + 1][9][9] = {{ array(c.value) }};
-/* The linear map of each period, where the robot is seen and how, the filter, the regulator. */
-static const double rr_F[RR_PERIODS][4][8] = {{ array(c.F) }};
+/* The map of each period, linear but for the last of F and H, by the product of speed and lack of
+ * friction; where the robot is seen; the filter; the regulator. */
+static const double rr_F[RR_PERIODS][4][9] = {{ array(c.F) }};
 static const double rr_B[RR_PERIODS][4][2] = {{ array(c.B) }};
 static const double rr_seen[RR_PERIODS][3] = {{ array(c.seen) }};
-static const double rr_H[RR_PERIODS][3][8] = {{ array(c.H) }};
+static const double rr_H[RR_PERIODS][3][9] = {{ array(c.H) }};
 static const double rr_G[RR_PERIODS][3][2] = {{ array(c.G) }};
 static const double rr_L[RR_PERIODS][6][3] = {{ array(c.L) }};
 static const double rr_gain[RR_PERIODS][2][9] = {{ array(c.gain) }};
@@ -102,12 +103,21 @@ static void rr_within(double g[8], double A, double o)
     }
 }
 
-/* An estimate with the speed as one that the planned robot would coast as far with. */
+/* An estimate with the speed as one with which the planned robot would coast as far. */
 static void rr_coasted(const double z[9], double out[9])
 {
     int i;
+    double far = 1 / fmax(1 - z[4], {{ constants.SLIPPERY }});
     for (i = 0; i < 9; i++)
-        out[i] = i == 3 ? z[3] * (1 + z[4]) : z[i];
+        out[i] = i == 3 ? z[3] * far : i == 4 ? far - 1 : z[i];
+}
+
+/* An estimate with speed times lack of friction in place of the constant. */
+static void rr_with_product(const double z[9], double out[9])
+{
+    int i;
+    for (i = 0; i < 9; i++)
+        out[i] = i < 8 ? z[i] : z[3] * z[4];
 }
 
 static void rr_enter(rr_route *r)
@@ -144,18 +154,20 @@ int rr_route_next(rr_route *r, double x, double y, double psi)
     int i, j, k = r->period, begin = k + 1, late, moves;
     double pose[3] = {x, y, psi}, surprise[3], moved[4], here[9], whole[9], best = HUGE_VAL;
     rr_apart(pose, rr_seen[k], surprise);
+    rr_with_product(r->z, whole);
     for (i = 0; i < 3; i++) {
-        for (j = 0; j < 8; j++)
-            surprise[i] -= rr_H[k][i][j] * r->z[j];
+        for (j = 0; j < 9; j++)
+            surprise[i] -= rr_H[k][i][j] * whole[j];
         surprise[i] -= rr_G[k][i][0] * r->u[0] + rr_G[k][i][1] * r->u[1];
     }
     for (i = 0; i < 6; i++)
         for (j = 0; j < 3; j++)
             r->z[i] += rr_L[k][i][j] * surprise[j];
+    rr_with_product(r->z, whole);
     for (i = 0; i < 4; i++) {
         moved[i] = rr_B[k][i][0] * r->u[0] + rr_B[k][i][1] * r->u[1];
-        for (j = 0; j < 8; j++)
-            moved[i] += rr_F[k][i][j] * r->z[j];
+        for (j = 0; j < 9; j++)
+            moved[i] += rr_F[k][i][j] * whole[j];
     }
     for (i = 0; i < 9; i++)
         here[i] = i < 4 ? moved[i] : i == 6 || i == 7 ? r->u[i - 6] : r->z[i];

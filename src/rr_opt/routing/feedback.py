@@ -2,17 +2,20 @@
 
 The drive is cut into periods. About it the state at the beginning of a period is linear,
 
-    z' = F z + B u,      y = H z + G u
+    z' = F (z, v lack) + B u,      y = H (z, v lack) + G u
 
-with z = (x, y, psi, v, inertia, bias, A, o): the pose and speed against the planned ones, in the
-frame of platform 1 as planned; two constants that are learnt, the excess of the masses over the
-friction and an error of the offset; and the corrections of amplitude and offset in force. u are
-those at the period's end, y the pose as it was seen, `delay` before that. A Kalman filter
-estimates z, a linear-quadratic regulator of finite horizon gives u, and its cost to go tells
-whether periods of a stage are to be repeated or left out. Corrections end where the servo's limits
-do. The drive ends by coasting for as long as the robot is seen to move; its end is where it comes
-to rest. What a robot coasts is its speed times the excess of its masses, the one product of states
-that counts: v is taken times 1 + inertia where corrections are chosen.
+but for a product, with z = (x, y, psi, v, lack, bias, A, o): the pose and speed against the planned
+ones, in the frame of platform 1 as planned; two constants that are learnt, the share of the
+friction that is lacking and an error of the offset; and the corrections of amplitude and offset in
+force. u are those at the period's end, y the pose as it was seen, `delay` before that. What
+friction takes from the speed is in proportion to both, and speeds are far from the planned ones if
+friction is: their product is the one that counts.
+
+A Kalman filter estimates z, a linear-quadratic regulator of finite horizon gives u, and its cost to
+go tells whether periods of a stage are to be repeated or left out. Corrections end where the
+servo's limits do. The drive ends by coasting for as long as the robot is seen to move; its end is
+where it comes to rest. What a robot coasts is in proportion to its speed over its friction: v and
+what friction lacks are divided by 1 - lack where corrections are chosen.
 """
 
 import math
@@ -32,7 +35,7 @@ from rr_opt.verify.grid import reach
 
 DELAY, NOISE = 0.05, (1e-3, 1e-3, 3e-3)
 """s; m, m and rad, 1 sigma: of the capture system."""
-_INERTIA, _BIAS = 0.2, 0.02
+_LACK, _BIAS = 0.2, 0.02
 """What is unknown of them at the start, relative and in rad, 1 sigma."""
 _UNMODELLED = np.array([1e-3, 1e-3, 3e-3, 6e-3, 0.01, 1e-3])
 """1 sigma of what a period adds to the first six of z beside the linear map."""
@@ -58,6 +61,8 @@ time, over that of coasting from the speed of the drive, in which every robot co
 LONGEST = 1.5
 """Periods that may be driven over those planned, before the drive goes on to its end."""
 _STATES = 8
+SLIPPERY = 0.2
+"""The least friction, relative, that is believed."""
 _CHANGE = 1e-4
 """Of the masses, for derivatives."""
 
@@ -73,7 +78,7 @@ class Feedback:
     group     (K + 1,): periods of a number above 0 that they share are alike
     place     (K + 1, 3): x (m), y (m), psi (rad) where periods begin; speed (K + 1,), m/s, there
     seen      (K, 3): where the robot is seen, `delay` before the end of a period
-    F, B, H, G    (K, 4, 8), (K, 4, 2), (K, 3, 8), (K, 3, 2); L (K, 6, 3) of the filter
+    F, B, H, G    (K, 4, 9), (K, 4, 2), (K, 3, 9), (K, 3, 2); L (K, 6, 3) of the filter
     gain      (K, 2, 9): u = -gain (z, 1);  value (K + 1, 9, 9): its square form is the cost to go
     """
 
@@ -124,8 +129,8 @@ def controller(plan: RoutePlan, problem: Problem, delay: float = DELAY) -> Feedb
             for e in (0.0, _CHANGE, -_CHANGE)
         )
         # More mass is less friction, of whatever law.
-        by_inertia = (heavy[0] - light[0]) / (2 * _CHANGE)
-        (H, G), ends = (_map(out[:, :, k], by_inertia[:, k]) for k in (steps - 2, -1))
+        by_lack = (heavy[:2] - light[:2]) / (2 * _CHANGE)
+        (H, G), ends = (_map(out[:, :, k], by_lack[:, :, k]) for k in (steps - 2, -1))
         # A pose from before the period tells nothing of it.
         maps.append((*ends, H[:3] * (late > 0), G[:3] * (late > 0)))
         seen.append(moved(pose, out[0, :, steps - 2]))
@@ -190,18 +195,19 @@ def apart(pose: Array, planned: Array) -> Array:
     return np.array([cos * dx + sin * dy, cos * dy - sin * dx, math.remainder(turn, 2 * math.pi)])
 
 
-def _map(out: Array, by_inertia: Array) -> tuple[Array, Array]:
-    """Rows x, y, psi, v of F and B from a motion (1 + 9, 5) in the frame of its start."""
+def _map(out: Array, by_lack: Array) -> tuple[Array, Array]:
+    """Rows x, y, psi, v of F and B from a motion (1 + 9, 4) in the frame of its start, and the
+    derivatives (2, 4) of it and of those by v."""
     local, S = out[0], out[1:]
-    d = np.zeros((10, 4))
+    d = np.zeros((11, 4))
     # A turn at the start turns the whole way.
     d[0, 2], d[1, 3] = 1, 1
     d[2] = 0, 1, -local[3], local[2]
-    d[3:] = S[0, :4], by_inertia[:4], S[2, :4] + S[5, :4], S[1, :4], S[2, :4], S[4, :4], S[5, :4]
+    d[3:] = S[0], by_lack[0], S[2] + S[5], S[1], S[2], by_lack[1], S[4], S[5]
     cos, sin = math.cos(local[1]), math.sin(local[1])
     v, psi, x, y = d.T
     rows = np.array([cos * x + sin * y, cos * y - sin * x, psi, v])
-    return rows[:, :_STATES], rows[:, _STATES:]
+    return rows[:, : _STATES + 1], rows[:, _STATES + 1 :]
 
 
 def _regulator(
@@ -220,7 +226,7 @@ def _regulator(
     for k in reversed(range(len(F))):
         # Beside the rows of the map, what is constant and the corrections that come into force.
         A, b = np.diag([1.0] * 6 + [0.0] * 2 + [1.0]), np.zeros((_STATES + 1, 2))
-        A[:4, :_STATES], b[:4], b[6, 0], b[7, 1] = F[k], B[k], 1, 1
+        A[:4, :_STATES], b[:4], b[6, 0], b[7, 1] = F[k, :, :_STATES], B[k], 1, 1
         # The joint ends as planned.
         most = np.array([_LEAST + _AMPLITUDE * amplitude[k + 1], _OFFSET])
         cost = np.diag((1e6 if k == len(F) - 1 else 1) / most**2)
@@ -234,7 +240,7 @@ def _regulator(
 
 def _filter(F: Array, H: Array) -> Array:
     """Gains of the Kalman filter."""
-    P = np.diag(np.square([*NOISE, 0.0, _INERTIA, _BIAS]))
+    P = np.diag(np.square([*NOISE, 0.0, _LACK, _BIAS]))
     noise, gains = np.diag(np.square(NOISE)), []
     for k in range(len(F)):
         h, A = H[k, :, :6], np.eye(6)
@@ -289,9 +295,9 @@ class Follower:
         """The segment after a pose x (m), y (m), psi (rad) seen `delay` before the end of the one
         under way; None at the end of the drive."""
         c, k, z, u = self.control, self.period, self.z, self.u
-        surprise = apart(pose, c.seen[k]) - c.H[k] @ z - c.G[k] @ u
+        surprise = apart(pose, c.seen[k]) - c.H[k] @ _with_product(z) - c.G[k] @ u
         z[:6] += c.L[k] @ surprise
-        z[:4] = c.F[k] @ z + c.B[k] @ u
+        z[:4] = c.F[k] @ _with_product(z) + c.B[k] @ u
         z[6:] = u
         self.made += 1
         self._go_to(k + 1)
@@ -329,9 +335,16 @@ class Follower:
         return u
 
 
+def _with_product(z: Array) -> Array:
+    """z and v times the lack of friction."""
+    return np.append(z, z[3] * z[4])
+
+
 def _coasted(z: Array) -> Array:
-    """(z, 1) with the speed as one that a robot of the planned masses would coast as far with."""
-    return np.array([*z[:3], z[3] * (1 + z[4]), *z[4:], 1.0])
+    """(z, 1) with the speed as one with which the planned robot would coast as far: that is in
+    proportion to 1/friction, and so is what the lack of it adds to the planned one."""
+    far = 1 / max(1 - z[4], SLIPPERY)
+    return np.array([*z[:3], z[3] * far, far - 1, *z[5:], 1.0])
 
 
 def within(u: Array, wanted: Array, limits: Array) -> Array:
