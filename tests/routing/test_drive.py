@@ -1,6 +1,7 @@
 """A route is driven from rest to rest within its tolerance; the laboratory agrees; what cannot be
 driven is named."""
 
+import cmath
 import json
 import math
 from dataclasses import replace
@@ -11,6 +12,9 @@ import pytest
 import rr_opt as rr
 from benchmarks.route.problems import ROBOTS
 from rr_opt.model.ballast import with_inertia_ratio
+from rr_opt.model.route import Pose
+from rr_opt.routing.path import Leg
+from rr_opt.routing.plan import swing_out
 from rr_opt.routing.program import DriveProgram
 from tests.mechanics.multipliers import rates, solve
 
@@ -78,20 +82,46 @@ def test_a_u_turn_led_by_the_front_axle():
 
 
 def test_an_arc_from_rest_swings_out():
-    """Forward, by sqrt(R^2 + 2 c1^2) - R at least: the drive that is found goes so far."""
+    """Forward, by sqrt(R^2 + 2 c1^2) - R on a long arc: the drive that is found goes so far."""
     c1 = REFERENCE.robot.platform1.c
+    arc = Leg(0, Pose(), 0.6 * math.pi, 1 / 0.6)
     found = rr.route(rr.Route(REFERENCE, (rr.Arc(0.6, math.pi),)))
-    assert found.status is rr.Status.NOT_CONVERGED
-    least = math.sqrt(0.36 + 2 * c1**2) - 0.6
+    assert found.status is rr.Status.INFEASIBLE
+    least = swing_out(arc, c1)
+    assert least == pytest.approx(math.sqrt(0.36 + 2 * c1**2) - 0.6, abs=1e-3)
     assert found.replay
     assert found.replay.path >= least
-    assert f"by {1e3 * least:.0f} mm or more at a radius of 0.6 m" in found.message
+    assert f"by {1e3 * least:.0f} mm or more" in found.message
     assert "times the tolerances" in found.message
+
+
+@pytest.mark.parametrize(("radius", "angle"), [(1.0, 1.4), (0.8, 1.5), (0.6, 3.0)])
+def test_the_least_that_it_swings_out(radius, angle):
+    """Axle 1 is led in small steps, turned inwards as far as P may be out. It comes round the arc
+    with a little more room than the least, and not with a little less."""
+    c1 = REFERENCE.robot.platform1.c
+    least = swing_out(Leg(0, Pose(), radius * angle, 1 / radius), c1)
+
+    def around(w: float) -> float:
+        """The angle, rad, that P comes to before it is too far out, or at the end of the arc."""
+        axle, before = complex(c1, -radius), 0.0
+        while before < angle:
+            rho = abs(axle)
+            out = (rho**2 + c1**2 - (radius + w) ** 2) / (2 * c1 * rho)
+            if out > 1:
+                break
+            heading = cmath.phase(axle) + math.pi / 2 - math.asin(max(out, 0.0))
+            before = cmath.phase((axle - cmath.rect(c1, heading)) * 1j)
+            axle += cmath.rect(1e-3, heading)
+        return before
+
+    assert around(0.95 * least) < angle - 0.95 * least / radius
+    assert around(1.2 * least) >= angle - 1.2 * least / radius
 
 
 def test_a_route_that_runs_out_is_faster(turned):
     asked = replace(turned.plan.route, end="running")
-    assert rr.route(asked).seconds < turned.seconds - 1.5
+    assert rr.route(asked).seconds < turned.seconds - 1
 
 
 def test_files(turned, tmp_path):
@@ -141,6 +171,8 @@ def test_a_limit_that_binds(name, limit, monkeypatch):
         command = found.plan.drive.command
         knots = command.knots[:, 2::2]
         cycles = command.durations[1::2] * knots[2] / (2 * math.pi)
+        if len(cycles) != len(program.stages):
+            return begun(program)
         x = np.vstack([cycles, knots]).T.ravel() / program.scale
         program.discretise(x)
         return x, program.look(x).samples.path[:, program.joints].T
@@ -152,6 +184,7 @@ def test_a_limit_that_binds(name, limit, monkeypatch):
     assert 0.998 * limit <= row.value <= limit
     assert row.piece == 1
     assert found.record()["solver"]["stationarity"] < 1e-3
+    begun = DriveProgram.guess
     monkeypatch.setattr(DriveProgram, "guess", guess)
     less, more = driven(-0.002).seconds, driven(0.002).seconds
     assert less

@@ -67,7 +67,7 @@ def test_other_friction(straight, factor):
     follower = Follower(straight.feedback)
     pose, v, segments, _ = driven(straight, rough(factor), follower=follower)
     assert off(straight, pose) < 0.02
-    assert follower.z[4] == pytest.approx(1 - factor, abs=0.02)
+    assert follower.z[4] == pytest.approx(1 - factor, abs=0.03)
     assert abs(v) < 0.002
     assert off(straight, driven(straight, rough(factor), closed=False)[0]) > 0.02
     s = np.linspace(0, 1, 300)[:, None]

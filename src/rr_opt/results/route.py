@@ -195,12 +195,7 @@ class DrivenRoute(Result):
             },
             "limits": [plain(row) for row in self.limits.values()],
             "check": replay and picked(replay, "position heading speed path reached excess"),
-            "solver": plan.drive
-            and {
-                "steps": plan.drive.iterations,
-                "converged": plan.drive.success,
-                "stationarity": plan.drive.stationarity,
-            },
+            "solver": plan.drive and picked(plan.drive, "ease stationarity"),
             "tolerance": plain(plan.route.tolerance),
             "robot": plain(self.robot),
         }

@@ -1,10 +1,12 @@
 """From a route to the fastest drive found: path, gaits of its legs, then one program of all."""
 
+import itertools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.optimize import root_scalar
 
 from rr_opt.design.maximize_speed import maximize_speed
 from rr_opt.model.gait import SineGait
@@ -14,7 +16,7 @@ from rr_opt.motion.dynamics import require_friction
 from rr_opt.outcome import InputError, Status
 from rr_opt.routing.gaits import Chart, Coasting, Way, binding_limits, chart, coasting
 from rr_opt.routing.path import Leg, legs_of
-from rr_opt.routing.program import BROKEN, DriveProgram, DriveStage, SolvedDrive, slip
+from rr_opt.routing.program import BROKEN, DriveProgram, DriveStage, FoundDrive, SolvedDrive, slip
 
 Progress = Callable[[str], None]
 
@@ -28,6 +30,11 @@ _NEAR = 0.03
 wider: the replay decides."""
 _SWING = 0.4
 """Of the tolerance of the way, so much is for the swing of P with each period."""
+_STARTS = (((4.0, 2.0), (0.0, 0.0)), ((4.0, 2.0, 1.4, 1.0), (math.exp(-1), 1 - math.exp(-1))))
+"""Different starts lead to different optima. Each is: times the tolerances for which drives are
+found one after another; and how much of the turn from one curvature to the next the guess does
+before, and on, the last bit of a leg, which is as long as the axle that leads is ahead of P. If P
+keeps to the path these are the last ones."""
 _ENTRY = 0.1
 """m: a transition between curvatures has unknowns of its own for about so long."""
 _LONGEST = 1.2
@@ -69,7 +76,8 @@ class RoutePlan:
         """Of platform 1 at the end, rad: along the path, or as it is in steady motion."""
         along = self.legs[-1].end.heading + self.turned
         running = self.route.end == "running"
-        return along + slip(self.problem, self.legs[-1], self.turned) if running else along
+        beta = slip(self.problem, self.legs[-1].curvature, self.turned)
+        return along + beta if running else along
 
 
 def plan_route(
@@ -103,61 +111,96 @@ def plan_route(
     if not math.isfinite(time(way)):
         return RoutePlan(Status.INFEASIBLE, _why_not(route, charts, paths), route, problem, way)
     legs = tuple(paths[way])
-    found = [charts[way].fastest(leg.curvature) for leg in legs]
-    gaits, speeds = zip(*(one for one in found if one), strict=True)
+    known = [charts[way].fastest(leg.curvature) for leg in legs]
+    gaits, speeds = zip(*(one for one in known if one), strict=True)
     sign = 1 if way == "forward" else -1
     coast = coasting(problem, sign * speeds[-1], route.tolerance.speed)
     plan = RoutePlan(Status.OPTIMAL, "", route, problem, way, legs, gaits, speeds, coast)
-    best: SolvedDrive | None = None
-    for brakes in (True, False) if route.end == "rest" else (False,):
-        stages = _stages(plan, coast if route.end == "rest" else None, brakes=brakes, creeps=creeps)
-        program = DriveProgram(
-            problem, stages, route.tolerance, route.start, plan.turned, route.end == "rest"
-        )
-        drive = program.solve(progress)
-        if best is None or _rank(drive) < _rank(best):
-            best = drive
-        if best.violation <= BROKEN:
+    slows = coast if route.end == "rest" else None
+    steps = itertools.count(1)
+
+    def step() -> None:
+        progress(f"drive, step {next(steps)}")
+
+    found, doomed = (
+        list[tuple[FoundDrive, DriveProgram]](),
+        _swings_out(plan) > route.tolerance.path,
+    )
+    for brakes in (True, False) if slows else (False,):
+        for eases, turned in _STARTS:
+            stages = _stages(plan, charts[way], slows, turned, brakes=brakes, creeps=creeps)
+            if any(program.stages == stages for _, program in found):
+                continue
+            program = DriveProgram(
+                problem, stages, route.tolerance, route.start, plan.turned, slows is not None
+            )
+            found.append((program.find(step, eases), program))
+        if doomed or (len(found) > 1 and any(one.look.violation <= BROKEN for one, _ in found)):
             break
-    assert best is not None
-    plan = replace(plan, drive=best)
-    if best.violation > _NEAR:
-        message = (
-            f"No drive was found. Piece {best.piece + 1} comes nearest to failing: its bound on "
-            f"the {best.where} is exceeded by {100 * best.violation:.2g} %. "
-            f"{_nearest_drive(plan, best)}Lengthen the piece, widen its radius, or widen the "
-            "tolerance."
-        )
-        return replace(plan, status=Status.NOT_CONVERGED, message=message)
+    best, program = min(found, key=lambda one: one[0].rank())
+    drive = program.solve(best, step)
+    plan = replace(plan, drive=drive)
+    if drive.violation > _NEAR:
+        return _not_found(plan, drive)
     return replace(plan, message="A drive that is locally the fastest and keeps every bound.")
 
 
-def _nearest_drive(plan: RoutePlan, drive: SolvedDrive) -> str:
-    """What the drive found keeps to instead, and why an arc from rest may need it.
-
-    Forward, the axle of platform 1 leads. Until platform 1 points into the arc the axle moves away
-    from the centre, at first at sqrt(R^2 + c1^2) from it; when it does no longer, P is c1 behind it
-    and at right angles to its radius, so at sqrt(R^2 + 2 c1^2) at least.
-    """
+def _not_found(plan: RoutePlan, drive: SolvedDrive) -> RoutePlan:
+    """The plan with a drive that breaks bounds: why there is none, and what it keeps to instead."""
     told = ""
     if drive.violation <= drive.ease - 1 + BROKEN:
         told = (
             f"With {drive.ease:.3g} times the tolerances of position, heading and path it can be "
             "driven. "
         )
-    first, c1 = plan.legs[0], plan.problem.robot.platform1.c
-    width = plan.route.tolerance.path
-    if plan.way == "forward" and first.curvature:
-        radius = 1 / abs(first.curvature)
-        out = math.hypot(radius, math.sqrt(2) * c1) - radius
-        if out > width:
-            told += (
-                "Forward, on an arc from rest, P swings out until platform 1 has turned into it: "
-                f"by {1e3 * out:.0f} mm or more at a radius of {radius:.4g} m (tolerance.path: "
-                f"{1e3 * width:.4g}), by less from {c1**2 / width - width / 2:.3g} m on. Begin "
-                "with a straight line. "
-            )
-    return told
+    out, width = _swings_out(plan), plan.route.tolerance.path
+    if out > width:
+        radius = 1 / abs(plan.legs[0].curvature)
+        message = (
+            f"The route cannot be driven: on an arc of radius {radius:.4g} m from "
+            "rest, forward and without backing up, P swings out until platform 1 has turned into "
+            f"it, by {1e3 * out:.0f} mm or more (tolerance.path: {1e3 * width:.4g}). {told}Begin "
+            "with a straight line, widen the radius, or widen the tolerance."
+        )
+        return replace(plan, status=Status.INFEASIBLE, message=message)
+    message = (
+        f"No drive was found. Piece {drive.piece + 1} comes nearest to failing: its bound on the "
+        f"{drive.where} is exceeded by {100 * drive.violation:.2g} %. {told}Lengthen the piece, "
+        "widen its radius, or widen the tolerance."
+    )
+    return replace(plan, status=Status.NOT_CONVERGED, message=message)
+
+
+def _swings_out(plan: RoutePlan) -> float:
+    """`swing_out` of a plan."""
+    forward = plan.way == "forward"
+    return swing_out(plan.legs[0], plan.problem.robot.platform1.c) if forward else 0.0
+
+
+def swing_out(leg: Leg, c1: float) -> float:
+    """The least distance, m, from the path that P comes to on a leg from rest, driven forward
+    without backing up, whatever the joint does.
+
+    Axle 1, c1 ahead of P, begins at rho = sqrt(R^2 + c1^2) from the centre of an arc. It moves
+    along platform 1's axis, at an angle alpha outwards: d rho/ds = sin alpha. P is within B = R + w
+    of the centre if sin alpha >= (rho^2 + c1^2 - B^2)/(2 c1 rho). If that is above 0 at the start
+    the axle moves out ever faster, up to rho = B + c1, which it comes to on a way of
+    c1 log(2 c1 (B + c1)/(R^2 + 2 c1^2 - B^2)) at most: before that it has to be round the arc.
+    """
+    if not leg.curvature:
+        return 0.0
+    R = 1 / abs(leg.curvature)
+
+    def missing(w: float) -> float:
+        """Of the way round the arc, m."""
+        B, around = R + w, (leg.length - w) / R - math.atan(c1 / R)
+        ratio = 2 * c1 * (B + c1) / (R**2 + 2 * c1**2 - B**2)
+        return math.hypot(R, c1) * around - c1 * math.log(ratio)
+
+    most = (1 - 1e-9) * (math.hypot(R, math.sqrt(2) * c1) - R)
+    if missing(most) > 0:
+        return most
+    return root_scalar(missing, bracket=(0.0, most)).root if missing(0.0) > 0 else 0.0
 
 
 def _near_the_path(problem: Problem, width: float) -> Problem:
@@ -171,11 +214,6 @@ def _near_the_path(problem: Problem, width: float) -> Problem:
     most = max(box.low, min(box.high, _SWING * width * (c1 + c2) / (c1 * c2)))
     amplitude = Interval(box.low, most)
     return replace(problem, gait=replace(problem.gait, amplitude=amplitude))
-
-
-def _rank(drive: SolvedDrive) -> tuple[bool, float]:
-    broken = drive.violation > BROKEN
-    return broken, drive.violation if broken else drive.command.seconds
 
 
 def _path(route: Route, gaits: Chart) -> list[Leg]:
@@ -192,9 +230,16 @@ def _path(route: Route, gaits: Chart) -> list[Leg]:
 
 
 def _stages(
-    plan: RoutePlan, coast: Coasting | None, *, brakes: bool, creeps: bool
+    plan: RoutePlan,
+    gaits: Chart,
+    coast: Coasting | None,
+    turned: tuple[float, float],
+    *,
+    brakes: bool,
+    creeps: bool,
 ) -> list[DriveStage]:
-    """A guess: each part of a leg with its gait, then stages to brake, to creep, and to coast."""
+    """A guess: each part of a leg with its gait, then stages to brake, to creep, and to coast.
+    turned: of the turn to the next curvature, what is done before and on the last bit of a leg."""
     stages = list[DriveStage]()
     left = coast.distance if coast else 0.0
     parts = [
@@ -211,47 +256,65 @@ def _stages(
     def driving(gait: SineGait, speed: float, part: Leg, *ways: float) -> list[DriveStage]:
         shape = gait.amplitude * 0.999, gait.offset, 2 * math.pi / gait.period
         cycle = speed * gait.period
-        return [DriveStage(max(way / cycle - 1, 0.1), *shape, part, way) for way in ways if way > 0]
+        beta = slip(plan.problem, part.curvature, plan.turned)
+        driven = [way for way in ways if way > 0]
+        return [DriveStage(max(way / cycle - 1, 0.1), *shape, part, beta, way) for way in driven]
 
     for k, (part, gait, speed) in enumerate(parts):
         length = min(part.length, max(total - left - driven, 0.05 * part.length))
         driven += part.length
         entry = leave = 0.0
+        after = parts[k + 1][0].curvature if k + 1 < len(parts) else 0.0
         if part.curvature != before:
             # The launch, or a transition: until P moves at another angle to platform 1.
             entry = min(0.3 * length, _ENTRY)
-        if k + 1 < len(parts) and parts[k + 1][0].curvature != part.curvature:
+        if k + 1 < len(parts) and after != part.curvature:
             # The axle that leads comes to the change of curvature before P does.
             leave = min(0.3 * length, lead)
         elif k + 1 == len(parts) and part.curvature and coast:
             # Platform 1 has to turn into the path before the robot stops.
             leave = min(0.3 * length, lead + _ENTRY)
-        ways = [entry, length - entry - leave, leave]
-        stages += driving(gait, speed, part, *ways)
+        stages += driving(gait, speed, part, entry, length - entry - leave)
+        if leave:
+            now = slip(plan.problem, part.curvature, plan.turned)
+            then = slip(plan.problem, after, plan.turned)
+            stages[-1] = replace(stages[-1], slip=now + turned[0] * (then - now))
+            mixed = gaits.fastest(part.curvature + turned[1] * (after - part.curvature))
+            stages += driving(*(mixed or (gait, speed)), part, leave)
+            if sum(turned):
+                stages[-1] = replace(stages[-1], slip=then)
         stages[-1] = replace(stages[-1], ends=True)
         before = part.curvature
     if coast:
-        part, gait, speed = parts[-1]
-        stages[-1] = replace(stages[-1], ends=False)
+        part, gait, _ = parts[-1]
+        last = replace(stages.pop(), ends=False)
         if part.curvature:
-            last = stages.pop()
-            halves = driving(gait, speed, part, last.way / 2, last.way / 2)
-            stages += [replace(one, offset=0.5 * gait.offset) for one in halves]
-        omega = 2 * math.pi / gait.period
-        if brakes and not creeps:
-            shape = 0.1 * gait.amplitude, 0.5 * gait.offset, omega
-            stages.append(DriveStage(0.3 * coast.seconds / gait.period, *shape, part))
-        if creeps:
-            shape = _CREEP * gait.amplitude, 0.5 * gait.offset, omega
-            stages.append(DriveStage(_CREPT, *shape, part, fixed=True, fewest=_CREPT))
-        cycles = 0.7 * coast.seconds / gait.period
-        last = DriveStage(cycles, 0.0, 0.0, omega, part, fixed=True, straight=creeps)
-        if part.curvature and not creeps:
-            # Bent, the joint leads along an arc; bent anew, it turns platform 1.
-            stages.append(replace(last, cycles=max(0.5 * cycles, 0.1)))
-            last = replace(last, cycles=max(0.5 * cycles - 1, 0.1))
-        stages.append(replace(last, ends=True))
+            # Half as bent, in two stages.
+            last = replace(last, cycles=max((last.cycles - 1) / 2, 0.1), way=last.way / 2)
+            last = replace(last, offset=0.5 * gait.offset)
+            stages.append(last)
+        stages += [last, *_stopping(part, gait, coast, brakes=brakes, creeps=creeps)]
     return stages
+
+
+def _stopping(
+    part: Leg, gait: SineGait, coast: Coasting, *, brakes: bool, creeps: bool
+) -> list[DriveStage]:
+    """The stages in which the robot comes to rest."""
+    stages, omega = list[DriveStage](), 2 * math.pi / gait.period
+    if brakes and not creeps:
+        shape = 0.1 * gait.amplitude, 0.5 * gait.offset, omega
+        stages.append(DriveStage(0.3 * coast.seconds / gait.period, *shape, part))
+    if creeps:
+        shape = _CREEP * gait.amplitude, 0.5 * gait.offset, omega
+        stages.append(DriveStage(_CREPT, *shape, part, fixed=True, fewest=_CREPT))
+    cycles = 0.7 * coast.seconds / gait.period
+    last = DriveStage(cycles, 0.0, 0.0, omega, part, fixed=True, straight=creeps)
+    if part.curvature and not creeps:
+        # Bent, the joint leads along an arc; bent anew, it turns platform 1.
+        stages.append(replace(last, cycles=max(0.5 * cycles, 0.1)))
+        last = replace(last, cycles=max(0.5 * cycles - 1, 0.1))
+    return [*stages, replace(last, ends=True)]
 
 
 def _why_not(route: Route, charts: dict[Way, Chart], paths: dict[Way, list[Leg]]) -> str:

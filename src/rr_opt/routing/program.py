@@ -15,7 +15,8 @@ quadratic, programming.
 
 import itertools
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 
@@ -47,8 +48,6 @@ BROKEN = 1e-3
 """By so much, relative, a bound may be broken, and the drive counts as keeping it."""
 _SOFT = ("path", "position", "heading")
 """Bounds whose tolerances are wider on the way to a drive."""
-_EASES = (4.0, 2.0)
-"""Times the tolerances, for which drives are found first."""
 _MOST, _AIMED, _CREEPING = 3, 4, 1e-4
 """Of a stage's cycles, the most over those of steady speed and five more; times that the guess
 corrects them; and the least way of a cycle, m."""
@@ -62,9 +61,14 @@ _HARD, _SPARE = 10.0, 2e-3
 """So many times more a limit's excess counts than that of a tolerance; and what steps aim at."""
 _NEWTON, _SHORT = 30, 1e-4
 """Most steps of Newton's method within one of those, and the shortest."""
-_ROUNDS, _QUADRATIC, _SETTLED, _GAIN = 5, 100, 1e-8, 2e-4
-"""Of sequential quadratic programming: rounds, steps in each, gain of time, s, of the last step,
-and gain, relative, below which a round is the last."""
+_ROUNDS, _QUADRATIC, _SETTLED = 5, 100, 1e-8
+"""Of sequential quadratic programming: rounds, steps in each, gain of time, s, of the last step."""
+_HASTY, _PATIENT, _GAIN, _STATIONARY = (12, 1e-4), (100, 1e-4), 3e-5, 1e-4
+"""To tell which drive is the fastest, and to come to the optimum near it: steps in which a round
+has to gain something, and what it has to gain for another one, relative. What that something is,
+and what is left of derivatives at an optimum."""
+_JOINED = 1e-6
+"""Gaps that are none, over what counts as much as the tolerances."""
 _COST, _PENALTY = 12.0, 10.0
 """The time of the drive as the program counts it, so that first steps are neither far nor short,
 and over it the price of tolerances twice as wide."""
@@ -82,8 +86,9 @@ _PLACES = 100
 
 @dataclass(frozen=True)
 class DriveStage:
-    """A stage of the drive: guesses of its unknowns, the leg it is on and how much of it (m) the
-    guess drives, whether its end is that of the leg, whether its amplitude and frequency are as
+    """A stage of the drive: guesses of its unknowns, the leg it is on, the angle (rad) of P's
+    motion to platform 1 at its end, how much of the leg (m) the guess drives, whether its end is
+    that of the leg, whether its amplitude and frequency are as
     guessed, the fewest cycles that it takes, and whether it ends with the joint straight."""
 
     cycles: float
@@ -91,6 +96,7 @@ class DriveStage:
     offset: float
     omega: float
     leg: Leg
+    slip: float = 0.0
     way: float = 0.0
     ends: bool = False
     fixed: bool = False
@@ -121,8 +127,6 @@ class SolvedDrive:
     violation: float
     where: str
     piece: int
-    iterations: int
-    success: bool
     pieces: tuple[int, ...]
     prices: dict[str, float]
     stationarity: float
@@ -164,10 +168,28 @@ class Look:
         room = np.array([_ROOM * (name in (*_SOFT, "speed")) for name, _ in self.names])
         return max(0.0, -float((self.values + room).min()))
 
+
+@dataclass(frozen=True)
+class FoundDrive:
+    """Scaled unknowns, their drive, and times the tolerances that it keeps to."""
+
+    x: Array
+    look: Look
+    ease: float
+
+    @property
+    def cost(self) -> float:
+        """The time, or if bounds are broken by how much."""
+        broken = self.look.violation > BROKEN
+        return self.look.violation if broken else self.look.seconds
+
     def rank(self) -> tuple[bool, float]:
         """Drives that keep all bounds go first, the fastest of them in front."""
-        broken = self.violation > BROKEN
-        return broken, self.violation if broken else self.seconds
+        return self.look.violation > BROKEN, self.cost
+
+
+class _StalledError(Exception):
+    """A round of programming gains nothing any more."""
 
 
 class _Rows:
@@ -375,59 +397,56 @@ class DriveProgram:
             found += [(stage.fewest, _MOST * (stage.cycles + 5)), amplitude, offset, omega]
         return [(low / s, high / s) for (low, high), s in zip(found, self.scale, strict=True)]
 
-    def solve(self, progress: Callable[[str], None]) -> SolvedDrive:
-        """The fastest drive near the guess: one that keeps to wider tolerances, then sequential
-        quadratic programming, which narrows them at a price."""
-        steps = 0
-
-        def step(_: object = None) -> None:
-            nonlocal steps
-            steps += 1
-            progress(f"drive, step {steps}")
-
+    def find(self, step: Callable[[], None], eases: Sequence[float]) -> FoundDrive:
+        """A drive near the guess: drives that keep to these times the tolerances one after another,
+        then sequential quadratic programming, which narrows them at a price."""
         x, starts = self.guess()
-        for ease in _EASES:
+        for ease in eases:
             x, starts = self._restored(x, starts, ease, step)
-        best, found_at, success, ease_of = self.look(x), x, False, math.inf
+        return self._hurried(self._fastest(x, step, _HASTY[0]), step, *_HASTY)
+
+    def _hurried(
+        self, found: FoundDrive, step: Callable[[], None], patience: int, worth: float
+    ) -> FoundDrive:
+        """A drive after rounds of programming, until they gain little or it is an optimum."""
         for _ in range(_ROUNDS):
-            x, ease, solved = self._fastest(x, step)
-            if ease <= 1 + BROKEN:
-                ease = 1.0
-                self.discretise(x)
-                if self.look(x).violation > BROKEN:
-                    x, _ = self._restored(x, None, 1.0, step)
-            here = self.look(x)
-            (failed, before), (fails, now) = best.rank(), here.rank()
-            if (fails, now) >= (failed, before):
+            if found.ease == 1 and self._prices(found)[1] < _STATIONARY:
                 break
-            best, found_at, success, ease_of = here, x, solved, ease
-            if (solved and not fails) or (fails == failed and before - now < _GAIN * before):
+            after = self._fastest(found.x, step, patience)
+            better = after.rank() < found.rank()
+            gain, found = 1 - after.cost / found.cost, after if better else found
+            if not better or gain < worth:
                 break
-        worst = int(np.argmin(best.values))
+        return found
+
+    def solve(self, found: FoundDrive, step: Callable[[], None]) -> SolvedDrive:
+        """The fastest drive near one that was found."""
+        found = self._hurried(found, step, *_PATIENT)
+        look = found.look
+        worst = int(np.argmin(look.values))
         pieces = tuple(piece for stage in self.stages for piece in [stage.leg.piece] * 2)
         return SolvedDrive(
-            best.command,
-            best.samples,
-            best.violation,
-            *best.names[worst],
-            steps,
-            success,
+            look.command,
+            look.samples,
+            look.violation,
+            *look.names[worst],
             pieces,
-            *self._prices(found_at, best),
-            ease_of,
+            *self._prices(found),
+            found.ease,
         )
 
-    def _prices(self, x: Array, look: Look) -> tuple[dict[str, float], float]:
+    def _prices(self, found: FoundDrive) -> tuple[dict[str, float], float]:
         """The prices of limits at an answer, by non-negative least squares over active bounds, and
         its stationarity."""
         low, high = np.array(self.bounds).T
+        x, look = found.x, found.look
         active, unit = look.values < _ACTIVE, np.eye(len(x))
         sides = unit[:, x - low < _ACTIVE], -unit[:, high - x < _ACTIVE]
         gradient = look.rising * self.scale
         normals = np.hstack([(look.slopes[active] * self.scale).T, *sides])
-        found, left = nnls(normals, gradient)
+        made, left = nnls(normals, gradient)
         total = dict.fromkeys(("angle", "rate", *LOADS), 0.0)
-        for (name, _), one in zip(np.array(look.names, object)[active], found, strict=False):
+        for (name, _), one in zip(np.array(look.names, object)[active], made, strict=False):
             if name in total:
                 total[name] += float(one)
         limits, room = self.problem.limits, reach(self.problem)
@@ -442,7 +461,7 @@ class DriveProgram:
     def heading(self, leg: Leg, *, steady: bool) -> float:
         """Of platform 1 at the end of a leg, rad: along the path, or as it is in steady motion."""
         along = leg.end.heading + self.turned
-        return along + slip(self.problem, leg, self.turned) if steady else along
+        return along + slip(self.problem, leg.curvature, self.turned) if steady else along
 
     def guess(self) -> tuple[Array, Array]:
         """The unknowns and starts of stages, one stage after another simulated. Each begins on
@@ -456,7 +475,7 @@ class DriveProgram:
             if k and leg is not self.stages[k - 1].leg:
                 driven = planned = 0.0
             planned += stage.way
-            beta = slip(self.problem, leg, self.turned)
+            beta = stage.slip
             for _ in range(_AIMED if stage.way else 0):
                 end, way = self._driven(k, z, v, beta)
                 each = max(abs(end) / math.cos(beta) * 2 * math.pi / stage.omega, _CREEPING)
@@ -498,7 +517,8 @@ class DriveProgram:
         self.discretise(x)
         here = self.look(x, starts)
         for _ in range(_RESTORED):
-            if (here.spare(ease).min() >= -BROKEN and not here.gaps.any()) or damping > _STIFFEST:
+            apart = np.abs(here.gaps).max(initial=0.0)
+            if (here.spare(ease).min() >= -BROKEN and apart < _JOINED) or damping > _STIFFEST:
                 break
             step()
             J = weights(here)[:, None] * here.slopes * self.scale * moves
@@ -525,9 +545,8 @@ class DriveProgram:
                 damping *= 6
         return x, starts
 
-    def _fastest(self, x: Array, step: Callable[[], None]) -> tuple[Array, float, bool]:
-        """Sequential quadratic programming on the time with a price on the ease of tolerances: the
-        unknowns, the ease, and whether it is an optimum."""
+    def _fastest(self, x: Array, step: Callable[[], None], patience: int) -> FoundDrive:
+        """Sequential quadratic programming on the time with a price on the ease of tolerances."""
         low, high = np.array(self.bounds).T
         self.discretise(x)
         seen: dict[bytes, Look] = {}
@@ -539,30 +558,49 @@ class DriveProgram:
                 seen[key] = self.look(y[:-1])
             return seen[key]
 
+        def stepped(y: Array) -> None:
+            nonlocal best, at
+            step()
+            broken = max(0.0, -float(look(y).spare(y[-1]).min()))
+            cost = look(y).seconds / unit + price * (y[-1] + broken)
+            if cost < best:
+                best, at = cost, y.copy()
+            history.append(best)
+            if len(history) > patience and history[-1 - patience] - best < _GAIN * _COST:
+                raise _StalledError
+
         first = look(np.append(x, 1.0))
         soft = first.soft
         ease = 1 + max(0.0, -float((first.values * soft).min()))
         loads = np.array([name in LOADS for name, _ in first.names])
         near = ~loads | (first.values < _FAR)
         unit, price = first.seconds / _COST, _PENALTY * _COST
-        found = minimize(
-            lambda y: (
-                look(y).seconds / unit + price * y[-1],
-                np.append(look(y).rising * self.scale / unit, price),
-            ),
-            np.append(x, ease),
-            jac=True,
-            method="SLSQP",
-            bounds=[*zip(low, high, strict=True), (1.0, ease)],
-            constraints={
-                "type": "ineq",
-                "fun": lambda y: look(y).spare(y[-1])[near],
-                "jac": lambda y: np.hstack([look(y).slopes * self.scale, soft[:, None]])[near],
-            },
-            callback=step,
-            options={"maxiter": _QUADRATIC, "ftol": _SETTLED / unit},
-        )
-        return np.clip(found.x[:-1], low, high), float(found.x[-1]), bool(found.success)
+        best, at, history = math.inf, np.append(x, ease), list[float]()
+        with suppress(_StalledError):
+            minimize(
+                lambda y: (
+                    look(y).seconds / unit + price * y[-1],
+                    np.append(look(y).rising * self.scale / unit, price),
+                ),
+                at,
+                jac=True,
+                method="SLSQP",
+                bounds=[*zip(low, high, strict=True), (1.0, ease)],
+                constraints={
+                    "type": "ineq",
+                    "fun": lambda y: look(y).spare(y[-1])[near],
+                    "jac": lambda y: np.hstack([look(y).slopes * self.scale, soft[:, None]])[near],
+                },
+                callback=stepped,
+                options={"maxiter": _QUADRATIC, "ftol": _SETTLED / unit},
+            )
+        x, ease = np.clip(at[:-1], low, high), float(at[-1])
+        if ease <= 1 + BROKEN:
+            ease = 1.0
+            self.discretise(x)
+            if self.look(x).violation > BROKEN:
+                x, _ = self._restored(x, None, 1.0, step)
+        return FoundDrive(x, self.look(x), ease)
 
 
 def _least(J: Array, values: Array, damping: float, low: Array, high: Array) -> tuple[Array, float]:
@@ -592,10 +630,10 @@ def _least(J: Array, values: Array, damping: float, low: Array, high: Array) -> 
     return step, float(broken(step) @ broken(step)) / 2
 
 
-def slip(problem: Problem, leg: Leg, turned: float) -> float:
-    """beta of a leg's steady motion, rad: on a circle P moves at sin(beta) = c1 kappa to the axis
-    of platform 1. turned: 0 if platform 1 leads, else pi."""
-    beta = math.asin(max(-0.9, min(0.9, problem.robot.platform1.c * leg.curvature)))
+def slip(problem: Problem, curvature: float, turned: float) -> float:
+    """beta of steady motion, rad: on a circle P moves at sin(beta) = c1 kappa to the axis of
+    platform 1. turned: 0 if platform 1 leads, else pi."""
+    beta = math.asin(max(-0.9, min(0.9, problem.robot.platform1.c * curvature)))
     return beta if turned == 0 else -beta
 
 
