@@ -122,10 +122,8 @@ def plan_route(
     def step() -> None:
         progress(f"drive, step {next(steps)}")
 
-    found, doomed = (
-        list[tuple[FoundDrive, DriveProgram]](),
-        _swings_out(plan) > route.tolerance.path,
-    )
+    doomed = _swings_out(plan) > route.tolerance.path
+    found = list[tuple[FoundDrive, DriveProgram]]()
     for brakes in (True, False) if slows else (False,):
         for eases, turned in _STARTS:
             stages = _stages(plan, charts[way], slows, turned, brakes=brakes, creeps=creeps)
@@ -179,7 +177,7 @@ def _swings_out(plan: RoutePlan) -> float:
 
 def swing_out(leg: Leg, c1: float) -> float:
     """The least distance, m, from the path that P comes to on a leg from rest, driven forward
-    without backing up, whatever the joint does.
+    without backing up or turning round, whatever the joint does.
 
     Axle 1, c1 ahead of P, begins at rho = sqrt(R^2 + c1^2) from the centre of an arc. It moves
     along platform 1's axis, at an angle alpha outwards: d rho/ds = sin alpha. P is within B = R + w
@@ -193,7 +191,7 @@ def swing_out(leg: Leg, c1: float) -> float:
 
     def missing(w: float) -> float:
         """Of the way round the arc, m."""
-        B, around = R + w, (leg.length - w) / R - math.atan(c1 / R)
+        B, around = R + w, leg.length / R - math.asin(min(w / R, 1.0)) - math.atan(c1 / R)
         ratio = 2 * c1 * (B + c1) / (R**2 + 2 * c1**2 - B**2)
         return math.hypot(R, c1) * around - c1 * math.log(ratio)
 
