@@ -186,10 +186,14 @@ def test_a_limit_that_binds(name, limit, monkeypatch):
     assert found.record()["solver"]["stationarity"] < 1e-3
     begun = DriveProgram.guess
     monkeypatch.setattr(DriveProgram, "guess", guess)
-    less, more = driven(-0.002).seconds, driven(0.002).seconds
-    assert less
-    assert more
-    assert row.shadow_price == pytest.approx((less - more) / (0.004 * limit), rel=0.01)
+    slopes = []
+    for by in (-0.004, -0.001, 0.001, 0.004):
+        seconds = driven(by).seconds
+        assert seconds
+        assert found.seconds
+        slopes.append((found.seconds - seconds) / (by * limit))
+    # Optima lie close together: one of these drives may come to another.
+    assert row.shadow_price == pytest.approx(np.median(slopes), rel=0.01)
     assert not found.warnings
     assert found.plan.drive
     stopped = replace(found.plan, drive=replace(found.plan.drive, stationarity=0.1))
