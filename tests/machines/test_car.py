@@ -97,6 +97,12 @@ def test_what_is_held_moves_on_between_updates():
     assert moved[:9] == pytest.approx(np.zeros(9))
 
 
+def test_what_is_held_begins_where_it_is():
+    y = np.repeat([2.0, 1.0, 1.0], (2, 4, 4))
+    assert between_updates(y, 4)[:3] == pytest.approx([2, 1.5, 1])
+    assert between_updates(np.full(9, 0.7), 4) == pytest.approx(np.full(9, 0.7))
+
+
 @pytest.mark.skipif(not REAL, reason="RR_OPT_REAL names no folder of public recordings")
 def test_the_rear_tyres(tmp_path):
     """Against the mean slip angle of the rear axle per side acceleration: no model of the car."""

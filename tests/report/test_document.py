@@ -87,6 +87,7 @@ def test_every_tag_is_closed_and_nothing_is_fetched():
     text = page(document())
     Closing().feed(text)
     assert open_tags == []
+    assert "http" not in re.sub(r'"data:.*?"', "", text)
     assert [source.split(":")[0] for source in sources] == ["data", "a/b.html"]
 
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 _WIDTH = 100
 _PLAIN = " !()*+,-./:;=?@[]_{|}"
-"""What an SVG keeps in a data URI; in base64 it would be a third longer."""
+"""What an SVG keeps in a data URI; in base64 it would be a quarter longer."""
 
 
 def terminal(document: doc.Document) -> str:

@@ -87,7 +87,8 @@ class MachineEffect:
     law         (names, constants) -> what it adds at its port; of a signal
                 (t, inputs, constants) -> the inputs that it changes
     words       as the object of a sentence
-    forms       names of the constants that each of its forms has, the simplest first; all
+    forms       names of the constants that each of its forms has, the simplest first; none
+                given, it has one form with all of them
     smooth      whether it has a derivative by its constants where it vanishes
     form_error  by what share machines differ from this law
     """

@@ -94,11 +94,14 @@ def _run(plan: MachinePlan, one: PlannedRecording) -> MachineRun:
         data[c.name] = y
     held = held_for([data[c.name] for c in machine.inputs])
     for c in machine.channels:
-        usual = input_noise(data[c.name], held) if c in machine.inputs else noise_of(data[c.name])
         if c.steady and held > 1:
             data[c.name] = between_updates(data[c.name], held)
             # Of a parabola about its chords.
             usual = float(np.sqrt(np.mean(np.diff(data[c.name][::held], 2) ** 2) / 120))
+        elif c in machine.inputs:
+            usual = input_noise(data[c.name], held)
+        else:
+            usual = noise_of(data[c.name])
         sigma[c.name] = plan.noise.get(c.name, usual)
     doubts += _impossible(machine.inputs, machine.outputs, data)
     return MachineRun(
@@ -125,7 +128,7 @@ def between_updates(y: Array, held: int) -> Array:
     """What was sampled and held, straight from update to update."""
     changes = np.flatnonzero(np.diff(y) != 0) + 1
     still = changes[np.diff(changes, prepend=0) > 1.5 * held] - held
-    knots = np.union1d(changes, still[still >= 0])
+    knots = np.union1d(np.append(changes, 0), still[still >= 0])
     return np.interp(np.arange(y.size), knots, y[knots])
 
 

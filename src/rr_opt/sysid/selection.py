@@ -102,7 +102,7 @@ class Selection:
         return predicted(fit, held, fit.values).excess ** 2 <= most
 
     def needed(self, candidate: Candidate, other: Candidate) -> bool:
-        """Whether it also accounts for most of what the other leaves."""
+        """Whether it also accounts for a good share of what the other leaves."""
         return self._better(candidate, other) and candidate.accounts(other) > SETTINGS.accounted
 
     def fitted(
