@@ -1,5 +1,5 @@
-"""A car whose tyres give way, driven through bends: made by SciPy, its speed sampled, held and
-late. And the rear tyres of the public recordings where RR_OPT_REAL names their folder."""
+"""A car whose tyres give way, driven through bends: made by SciPy. Its speed, of a motor that drives
+both axles, is sampled, held and late. And the rear tyres of the public recordings where RR_OPT_REAL names their folder."""
 
 import os
 from pathlib import Path
@@ -28,13 +28,14 @@ def speed(t, kind):
 
 
 def bends(t, kind):
-    """The steering command, which changes four times in three seconds."""
-    steps = np.random.default_rng(kind).choice([-0.6, -0.3, 0.0, 0.3, 0.6], 200)
-    return steps[(np.asarray(t) / 0.75).astype(int)]
+    """The steering command, which turns round four times in three seconds."""
+    ends = np.random.default_rng(kind).choice([-0.6, -0.3, 0.0, 0.3, 0.6], 200)
+    return np.interp(t, 0.75 * np.arange(ends.size), ends)
 
 
 def driven(seconds, kind):
-    """t, x, y, psi of the recorded point: two axles, forces in proportion to slip angles."""
+    """t, x, y, psi of the recorded point, and the mean of the speeds at which both axles' wheels
+    would roll without slip: two axles, forces in proportion to slip angles."""
     lf, lr, mass = L * MR / (MF + MR), L * MF / (MF + MR), MF + MR
     inertia = mass * (L**2 + 0.08**2) / 12
 
@@ -56,19 +57,20 @@ def driven(seconds, kind):
         x + ahead * np.cos(psi) - LEFT * np.sin(psi),
         y + ahead * np.sin(psi) + LEFT * np.cos(psi),
     )
-    return t, x, y, psi
+    v = speed(t, kind)
+    return t, x, y, psi, (v + v / np.cos(GAIN * bends(t, kind))) / 2
 
 
 def write(folder, seconds=12.0):
     rng, entries = np.random.default_rng(3), []
     for kind in (0, 1, 2):
-        t, x, y, psi = driven(seconds, kind)
-        held = np.floor(t / UPDATE + 1e-9) * UPDATE
+        t, x, y, psi, wheels = driven(seconds, kind)
+        seen = np.interp(np.floor(t / UPDATE + 1e-9) * UPDATE - LATE, t, wheels)
         x, y, psi = (
             one + sigma * rng.standard_normal(t.size)
             for one, sigma in ((x, 1e-3), (y, 1e-3), (psi, 3e-3))
         )
-        columns = [t, x, y, psi, speed(held - LATE, kind), bends(t, kind)]
+        columns = [t, x, y, psi, seen, bends(t, kind)]
         np.savetxt(folder / f"{kind}.csv", np.column_stack(columns), "%.7g", ",",
                    header="t,x,y,psi,vx,steering", comments="")  # fmt: skip
         entries.append(f"  - {{file: {kind}.csv{', use: holdout' if kind == 2 else ''}}}")
@@ -85,6 +87,7 @@ def test_tyres_that_give_way_are_named(tmp_path):
         assert one.low < true - RIGID < one.high
         assert one.value == pytest.approx(true - RIGID, rel=0.1)
     assert found.found.parameters["speed_late"].value == pytest.approx(-LATE, abs=0.01)
+    assert found.found.parameters["front_share"].value == pytest.approx(0.5, abs=0.05)
     errors = found.errors(held_out=True)
     assert all(e["after"] < 0.5 * e["parameters"] for e in errors.values())
 

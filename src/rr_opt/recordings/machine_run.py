@@ -94,10 +94,10 @@ def _run(plan: MachinePlan, one: PlannedRecording) -> MachineRun:
         data[c.name] = y
     held = held_for([data[c.name] for c in machine.inputs])
     for c in machine.channels:
-        if c.steady and held > 1:
-            data[c.name] = between_updates(data[c.name], held)
+        if c.steady and (own := held_for([data[c.name]])) > 1:
+            data[c.name] = between_updates(data[c.name], own)
             # Of a parabola about its chords.
-            usual = float(np.sqrt(np.mean(np.diff(data[c.name][::held], 2) ** 2) / 120))
+            usual = float(np.sqrt(np.mean(np.diff(data[c.name][::own], 2) ** 2) / 120))
         elif c in machine.inputs:
             usual = input_noise(data[c.name], held)
         else:

@@ -457,6 +457,11 @@ def solve(
     low, high = problem.box
     u = np.clip(problem.scaled(values), low, high)
     here = _Point.of(problem, u, states, known and known.made)
+    if known is None:
+        # States that went astray with other values would not come back.
+        own = {one: problem.model.initial_state(one, problem.effects, problem.valued(u))
+               for one in problem.segments}  # fmt: skip
+        here = here.joined(_Point.of(problem, u, own))
     radius, converged = SETTINGS.stride, False
     linear = replace(known, problem=problem) if known else here.linear()
     evidences = linear.evidences(problem.q)
@@ -515,7 +520,13 @@ class _Point:
     u: Array
     states: States
     made: Mapping[Segment, Simulation]
-    cost: float
+    losses: Mapping[int, float]
+
+    @property
+    def cost(self) -> float:
+        """The sum of all losses, and of the prior's."""
+        cost = sum(self.losses.values()) + float(self.problem.prior @ self.u**2)
+        return cost if np.isfinite(cost) else np.inf
 
     @classmethod
     def of(
@@ -529,8 +540,19 @@ class _Point:
             requests = problem.requests(problem.valued(u), states)
             every = problem.model.simulate(requests, problem.effects)
             made = dict(zip(problem.segments, every, strict=True))
-        cost = problem.cost(problem.misfits(made, states), u)
-        return cls(problem, u, states, made, cost if np.isfinite(cost) else np.inf)
+        losses = {run: problem.loss(run, e) for run, e in problem.misfits(made, states).items()}
+        return cls(problem, u, states, made, losses)
+
+    def joined(self, other: _Point) -> _Point:
+        """Of each run the better; the other may lack some."""
+        runs = [run for run, loss in other.losses.items() if not loss >= self.losses[run]]
+        parts = [one for run in runs for one in self.problem.by_run[run]]
+        return replace(
+            self,
+            states={**self.states, **{one: other.states[one] for one in parts}},
+            made={**self.made, **{one: other.made[one] for one in parts}},
+            losses={**self.losses, **{run: other.losses[run] for run in runs}},
+        )
 
     def linear(self) -> Linear:
         return Linear.of(self.problem, self.problem.valued(self.u), self.states, self.made)
@@ -548,6 +570,14 @@ def _after(
     would outweigh everything, the states follow them."""
     states = linear.moved(evidences, d, share)
     after = _Point.of(problem, here.u + d, states)
+    for less in (0.3, 0.1, 0.0):
+        astray = [run for run, loss in after.losses.items()
+                  if not loss <= max(here.losses[run], evidences[run].at(d)) + SETTINGS.tolerance]
+        if not astray:
+            break
+        part = replace(problem, segments=tuple(s for s in problem.segments if s.run in astray))
+        states = linear.moved(evidences, d, less * share)
+        after = after.joined(_Point.of(part, here.u + d, states))
     if after.cost < here.cost or all(len(p) == 1 for p in problem.by_run.values()):
         return after
     values, joined = problem.valued(here.u + d), {}

@@ -32,7 +32,8 @@ def _rates(v: Names, add: Add) -> Mapping[str, Any]:
     lf = v.L * v.mr / (v.mf + v.mr)
     lr = v.L - lf
     mass = v.mf + v.mr
-    vx = v.vx * (1 + add("speed"))
+    # In a bend front wheels are faster than rear ones: here, as if none slipped.
+    vx = v.vx * (1 + add("speed")) / (1 + v.front_share * (1 / ca.cos(delta) - 1))
     roll = ca.sqrt(vx**2 + SLOW**2)
     front = ((v.vy + lf * v.r) * ca.cos(delta) - vx * ca.sin(delta)) / roll
     rear = (v.vy - lr * v.r) / roll
@@ -89,6 +90,9 @@ CAR = Machine(
         MachineParameter("ahead", "m", "recorded point ahead of the rear axle", "0.115",
                          Spread(5e-3), -1.0),
         MachineParameter("left", "m", "recorded point to the left", "-0.01", Spread(5e-3), -1.0),
+        MachineParameter("front_share", "dimensionless", "share of the front wheels in the measured "
+                         "speed: 0 if a rear axle's is, 0.5 if a motor's that drives both", "0",
+                         Spread(0.5), 0.0, 1.0, 0.0),
         MachineParameter("speed_late", "s", "time after which the speed acts, negative where it is "
                          "recorded late", "0", Spread(0.05), -0.3, 0.3, 0.0),
         MachineParameter("steering_late", "s", "time after which the steering command acts", "0",
