@@ -76,7 +76,7 @@ def with_unit(value: float, unit: str, digits: int = 4) -> str:
 def words_of(name: str) -> str:
     """An effect's name as words: `coulomb_friction` as `Coulomb friction`."""
     words = name.replace("com_", "centre-of-mass ").replace("left_right", "left-right")
-    return words.replace("_", " ").replace("coulomb", "Coulomb")
+    return words.replace("_", " ").replace("coulomb", "Coulomb").replace("stribeck", "Stribeck")
 
 
 def counted(count: int, singular: str, plural: str = "") -> str:

@@ -47,8 +47,13 @@ def test_what_was_not_needed_is_said_to_leave_most():
     assert said == "What predicts best is servo lag, but most of the misfit is left."
 
 
+def test_what_predicts_too_little_better_is_said_to_be_open():
+    said = doubt(candidate(), candidate("coulomb_friction", elpd=3.0, better=False))
+    assert said.startswith("What predicts best is Coulomb friction, but by too little to be sure")
+
+
 def test_nothing_is_said_where_nothing_predicts_better():
-    assert doubt(candidate(better=False)) == ""
+    assert doubt(candidate(), candidate("coulomb_friction", elpd=-1.0)) == ""
 
 
 def test_what_only_recordings_show_that_were_not_fitted_is_to_be_fitted():

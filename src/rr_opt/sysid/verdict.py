@@ -79,12 +79,12 @@ class Identification:
 
     @property
     def doubt(self) -> str:
-        """What predicts best, and why it is not named, or where it shows; "" if nothing predicts
-        better than the nominal model."""
+        """What predicts best, and why it is not named, or where it shows; "" if nothing was found
+        to predict better than the nominal model."""
         if not self.best.choices and self.selection.complete(self.best):
             return "The recordings that were fitted show none of it: fit those that do."
         best = self.best if self.best.choices else max(self._ended, key=lambda one: one.elpd)
-        if not best.predicts_better(self.selection.base):
+        if not best.effects:
             return ""
         reasons = {
             "recordings disagree on the values": self.constancy.probability,
@@ -92,7 +92,9 @@ class Identification:
             "the recordings that were not fitted do not bear it out": self._predicts,
         }
         against = [reason for reason, likely in reasons.items() if likely <= SETTINGS.named]
-        if not self.best.choices:
+        if not best.predicts_better(self.selection.base):
+            against = ["by too little to be sure: these recordings cannot tell"]
+        elif not self.best.choices:
             against = ["most of the misfit is left"]
         names = listed(words_of(name) for name in best.effects)
         return f"What predicts best is {names}, but {listed(against) or 'others do about as well'}."
