@@ -1,5 +1,6 @@
-"""A car whose tyres give way, driven through bends: made by SciPy. Its speed, of a motor that drives
-both axles, is sampled, held and late. And the rear tyres of the public recordings where RR_OPT_REAL names their folder."""
+"""A car whose tyres give way, driven through bends: made by SciPy. Its speed, of a motor that
+drives both axles, is sampled, held and late. And the rear tyres of the public recordings where
+RR_OPT_REAL names their folder."""
 
 import os
 from pathlib import Path

@@ -571,8 +571,11 @@ def _after(
     states = linear.moved(evidences, d, share)
     after = _Point.of(problem, here.u + d, states)
     for less in (0.3, 0.1, 0.0):
-        astray = [run for run, loss in after.losses.items()
-                  if not loss <= max(here.losses[run], evidences[run].at(d)) + SETTINGS.tolerance]
+        astray = [
+            run
+            for run, loss in after.losses.items()
+            if not loss <= max(here.losses[run], evidences[run].at(d)) + SETTINGS.tolerance
+        ]
         if not astray:
             break
         part = replace(problem, segments=tuple(s for s in problem.segments if s.run in astray))

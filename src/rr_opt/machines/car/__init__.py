@@ -90,8 +90,8 @@ CAR = Machine(
         MachineParameter("ahead", "m", "recorded point ahead of the rear axle", "0.115",
                          Spread(5e-3), -1.0),
         MachineParameter("left", "m", "recorded point to the left", "-0.01", Spread(5e-3), -1.0),
-        MachineParameter("front_share", "dimensionless", "share of the front wheels in the measured "
-                         "speed: 0 if a rear axle's is, 0.5 if a motor's that drives both", "0",
+        MachineParameter("front_share", "dimensionless", "share of the front wheels in the speed "
+                         "that is measured: 0 of a rear axle's, 0.5 of a motor's for both", "0",
                          Spread(0.5), 0.0, 1.0, 0.0),
         MachineParameter("speed_late", "s", "time after which the speed acts, negative where it is "
                          "recorded late", "0", Spread(0.05), -0.3, 0.3, 0.0),
