@@ -53,7 +53,7 @@ _MOST, _AIMED, _CREEPING = 3, 4, 1e-4
 corrects them; and the least way of a cycle, m."""
 _SPEED = 0.05
 """m/s: a gap of the speed between stages that counts as much as the tolerances."""
-_RESTORED, _DAMPED, _SOFTEST, _STIFFEST = 25, 1e-2, 1e-6, 1e6
+_RESTORED, _DAMPED, _SOFTEST, _STIFFEST = 60, 1e-2, 1e-6, 1e6
 """Most Levenberg-Marquardt steps, and their damping: at first, at least, at most."""
 _MOVES = (1.0, 0.3, 1.0, 0.1)
 """Changes of a stage's scaled unknowns that are damped alike: steering is preferred to slowing."""
@@ -559,13 +559,14 @@ class DriveProgram:
             return seen[key]
 
         def stepped(y: Array) -> None:
-            nonlocal best, at
+            nonlocal best, at, driven
             step()
             broken = max(0.0, -float(look(y).spare(y[-1]).min()))
             cost = look(y).seconds / unit + price * (y[-1] + broken)
             if cost < best:
-                best, at = cost, y.copy()
-            history.append(best)
+                best, at, driven = cost, y.copy(), y[-1] + broken <= 1 + BROKEN
+            # What is no drive yet may take its time.
+            history.append(best if driven else math.inf)
             if len(history) > patience and history[-1 - patience] - best < _GAIN * _COST:
                 raise _StalledError
 
@@ -575,7 +576,7 @@ class DriveProgram:
         loads = np.array([name in LOADS for name, _ in first.names])
         near = ~loads | (first.values < _FAR)
         unit, price = first.seconds / _COST, _PENALTY * _COST
-        best, at, history = math.inf, np.append(x, ease), list[float]()
+        best, at, driven, history = math.inf, np.append(x, ease), False, list[float]()
         with suppress(_StalledError):
             minimize(
                 lambda y: (
