@@ -2,15 +2,15 @@
 
 The drive is a sequence of stages. A stage first blends amplitude, offset and frequency from those
 of the stage before, over one cycle, and then goes on with them: its unknowns are for how many
-cycles, and the three. The first begins from the joint at rest; the last holds it straight and lets
-the robot coast. Minimised is the time of the drive. Bounded are
+cycles, and the three. The first begins from the joint at rest; in the last the joint stands still
+and the robot coasts. Minimised is the time of the drive. Bounded are
 
     angle, rate, torque      of the servo, and the grip of the wheels, at their peaks
     the way                  P's distance from the path, and from the end of each leg when it is due
     the end                  place, heading, speed
 
-The motion and all derivatives are those of `rollout`; the solver is sequential linear, then
-quadratic, programming.
+The motion and all derivatives are those of `rollout`. Levenberg-Marquardt steps lead to a drive,
+and sequential quadratic programming (SLSQP) to the fastest near it.
 """
 
 import itertools
@@ -86,10 +86,16 @@ _PLACES = 100
 
 @dataclass(frozen=True)
 class DriveStage:
-    """A stage of the drive: guesses of its unknowns, the leg it is on, the angle (rad) of P's
-    motion to platform 1 at its end, how much of the leg (m) the guess drives, whether its end is
-    that of the leg, whether its amplitude and frequency are as
-    guessed, the fewest cycles that it takes, and whether it ends with the joint straight."""
+    """A stage of the drive, with guesses of its unknowns.
+
+    leg       on which it is
+    slip      angle of P's motion to platform 1 at its end, rad
+    way       how much of the leg the guess drives, m
+    ends      whether its end is that of the leg
+    fixed     whether its amplitude and frequency are as guessed
+    fewest    cycles that it takes
+    straight  whether it ends with the joint straight
+    """
 
     cycles: float
     amplitude: float
