@@ -30,11 +30,17 @@ _NEAR = 0.03
 wider: the replay decides."""
 _SWING = 0.4
 """Of the tolerance of the way, so much is for the swing of P with each period."""
-_STARTS = (((4.0, 2.0), (0.0, 0.0)), ((4.0, 2.0, 1.4, 1.0), (math.exp(-1), 1 - math.exp(-1))))
-"""Different starts lead to different optima. Each is: times the tolerances for which drives are
-found one after another; and how much of the turn from one curvature to the next the guess does
-before, and on, the last bit of a leg, which is as long as the axle that leads is ahead of P. If P
-keeps to the path these are the last ones."""
+_LATE, _TURNED = (0.0, 0.0), (math.exp(-1), 1 - math.exp(-1))
+"""Of the turn from one curvature to the next, what the guess does before, and on, the last bit of a
+leg, which is as long as the axle that leads is ahead of P. With the latter P keeps to the path."""
+_STARTS = (
+    (True, (4.0, 2.0), _LATE),
+    (True, (4.0, 2.0, 1.4, 1.0), _TURNED),
+    (True, (3.0, 1.0), _TURNED),
+    (False, (4.0, 2.0), _LATE),
+)
+"""Different starts lead to different optima: whether a stage brakes, and times the tolerances for
+which drives are found one after another. Two are tried, and more until there is a drive."""
 _ENTRY = 0.1
 """m: a transition between curvatures has unknowns of its own for about so long."""
 _LONGEST = 1.2
@@ -124,16 +130,16 @@ def plan_route(
 
     doomed = _swings_out(plan) > route.tolerance.path
     found = list[tuple[FoundDrive, DriveProgram]]()
-    for brakes in (True, False) if slows else (False,):
-        for eases, turned in _STARTS:
-            stages = _stages(plan, charts[way], slows, turned, brakes=brakes, creeps=creeps)
-            if any(program.stages == stages for _, program in found):
-                continue
-            program = DriveProgram(
-                problem, stages, route.tolerance, route.start, plan.turned, slows is not None
-            )
-            found.append((program.find(step, eases), program))
-        if doomed or (len(found) > 1 and any(one.look.violation <= BROKEN for one, _ in found)):
+    for brakes, eases, turned in _STARTS:
+        stages = _stages(plan, charts[way], slows, turned, brakes=brakes, creeps=creeps)
+        if found and stages == found[0][1].stages:
+            continue
+        program = DriveProgram(
+            problem, stages, route.tolerance, route.start, plan.turned, slows is not None
+        )
+        found.append((program.find(step, eases), program))
+        driven = any(one.look.violation <= BROKEN for one, _ in found)
+        if len(found) > 1 and (doomed or driven):
             break
     best, program = min(found, key=lambda one: one[0].rank())
     drive = program.solve(best, step)

@@ -2,15 +2,15 @@
 
 The drive is a sequence of stages. A stage first blends amplitude, offset and frequency from those
 of the stage before, over one cycle, and then goes on with them: its unknowns are for how many
-cycles, and the three. The first begins from the joint at rest; the last holds it straight and lets
-the robot coast. Minimised is the time of the drive. Bounded are
+cycles, and the three. The first begins from the joint at rest; in the last the joint stands still
+and the robot coasts. Minimised is the time of the drive. Bounded are
 
     angle, rate, torque      of the servo, and the grip of the wheels, at their peaks
     the way                  P's distance from the path, and from the end of each leg when it is due
     the end                  place, heading, speed
 
-The motion and all derivatives are those of `rollout`; the solver is sequential linear, then
-quadratic, programming.
+The motion and all derivatives are those of `rollout`. Levenberg-Marquardt steps lead to a drive,
+and sequential quadratic programming (SLSQP) to the fastest near it.
 """
 
 import itertools
@@ -53,7 +53,7 @@ _MOST, _AIMED, _CREEPING = 3, 4, 1e-4
 corrects them; and the least way of a cycle, m."""
 _SPEED = 0.05
 """m/s: a gap of the speed between stages that counts as much as the tolerances."""
-_RESTORED, _DAMPED, _SOFTEST, _STIFFEST = 25, 1e-2, 1e-6, 1e6
+_RESTORED, _DAMPED, _SOFTEST, _STIFFEST = 60, 1e-2, 1e-6, 1e6
 """Most Levenberg-Marquardt steps, and their damping: at first, at least, at most."""
 _MOVES = (1.0, 0.3, 1.0, 0.1)
 """Changes of a stage's scaled unknowns that are damped alike: steering is preferred to slowing."""
@@ -86,10 +86,16 @@ _PLACES = 100
 
 @dataclass(frozen=True)
 class DriveStage:
-    """A stage of the drive: guesses of its unknowns, the leg it is on, the angle (rad) of P's
-    motion to platform 1 at its end, how much of the leg (m) the guess drives, whether its end is
-    that of the leg, whether its amplitude and frequency are as
-    guessed, the fewest cycles that it takes, and whether it ends with the joint straight."""
+    """A stage of the drive, with guesses of its unknowns.
+
+    leg       on which it is
+    slip      angle of P's motion to platform 1 at its end, rad
+    way       how much of the leg the guess drives, m
+    ends      whether its end is that of the leg
+    fixed     whether its amplitude and frequency are as guessed
+    fewest    cycles that it takes
+    straight  whether it ends with the joint straight
+    """
 
     cycles: float
     amplitude: float
@@ -559,13 +565,14 @@ class DriveProgram:
             return seen[key]
 
         def stepped(y: Array) -> None:
-            nonlocal best, at
+            nonlocal best, at, driven
             step()
             broken = max(0.0, -float(look(y).spare(y[-1]).min()))
             cost = look(y).seconds / unit + price * (y[-1] + broken)
             if cost < best:
-                best, at = cost, y.copy()
-            history.append(best)
+                best, at, driven = cost, y.copy(), y[-1] + broken <= 1 + BROKEN
+            # What is no drive yet may take its time.
+            history.append(best if driven else math.inf)
             if len(history) > patience and history[-1 - patience] - best < _GAIN * _COST:
                 raise _StalledError
 
@@ -575,7 +582,7 @@ class DriveProgram:
         loads = np.array([name in LOADS for name, _ in first.names])
         near = ~loads | (first.values < _FAR)
         unit, price = first.seconds / _COST, _PENALTY * _COST
-        best, at, history = math.inf, np.append(x, ease), list[float]()
+        best, at, driven, history = math.inf, np.append(x, ease), False, list[float]()
         with suppress(_StalledError):
             minimize(
                 lambda y: (
