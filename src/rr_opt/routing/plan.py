@@ -40,7 +40,8 @@ _STARTS = (
     (False, (4.0, 2.0), _LATE),
 )
 """Different starts lead to different optima: whether a stage brakes, and times the tolerances for
-which drives are found one after another. Two are tried, and more until there is a drive."""
+which drives are found one after another. Of a route with bends two are tried, of a straight one the
+last, and more until there is a drive."""
 _ENTRY = 0.1
 """m: a transition between curvatures has unknowns of its own for about so long."""
 _LONGEST = 1.2
@@ -129,17 +130,19 @@ def plan_route(
         progress(f"drive, step {next(steps)}")
 
     doomed = _swings_out(plan) > route.tolerance.path
+    bends = any(leg.curvature for leg in legs)
     found = list[tuple[FoundDrive, DriveProgram]]()
-    for brakes, eases, turned in _STARTS:
+    for brakes, eases, turned in _STARTS if bends else reversed(_STARTS):
         stages = _stages(plan, charts[way], slows, turned, brakes=brakes, creeps=creeps)
         if found and stages == found[0][1].stages:
             continue
         program = DriveProgram(
             problem, stages, route.tolerance, route.start, plan.turned, slows is not None
         )
-        found.append((program.find(step, eases), program))
+        one = program.find(step, eases)
+        found.append((program.hurried(one, step) if bends else one, program))
         driven = any(one.look.violation <= BROKEN for one, _ in found)
-        if len(found) > 1 and (doomed or driven):
+        if len(found) > bends and (doomed or driven):
             break
     best, program = min(found, key=lambda one: one[0].rank())
     drive = program.solve(best, step)

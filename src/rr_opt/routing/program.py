@@ -63,10 +63,10 @@ _NEWTON, _SHORT = 30, 1e-4
 """Most steps of Newton's method within one of those, and the shortest."""
 _ROUNDS, _QUADRATIC, _SETTLED = 5, 100, 1e-8
 """Of sequential quadratic programming: rounds, steps in each, gain of time, s, of the last step."""
-_HASTY, _PATIENT, _GAIN, _STATIONARY = (12, 1e-4), (100, 1e-4), 3e-5, 1e-4
-"""To tell which drive is the fastest, and to come to the optimum near it: steps in which a round
-has to gain something, and what it has to gain for another one, relative. What that something is,
-and what is left of derivatives at an optimum."""
+_HASTY, _GAIN, _WORTH, _STATIONARY = 12, 3e-5, 1e-4, 1e-3
+"""To tell which drive is the fastest, steps in which a round has to gain something; to come to the
+optimum near it, they are as many as the unknowns. What that something is, and what a round has to
+gain for another one, relative; and what is left of derivatives at an optimum."""
 _JOINED = 1e-6
 """Gaps that are none, over what counts as much as the tolerances."""
 _COST, _PENALTY = 12.0, 10.0
@@ -409,10 +409,10 @@ class DriveProgram:
         x, starts = self.guess()
         for ease in eases:
             x, starts = self._restored(x, starts, ease, step)
-        return self._hurried(self._fastest(x, step, _HASTY[0]), step, *_HASTY)
+        return self._fastest(x, step, _HASTY)
 
-    def _hurried(
-        self, found: FoundDrive, step: Callable[[], None], patience: int, worth: float
+    def hurried(
+        self, found: FoundDrive, step: Callable[[], None], patience: int = _HASTY
     ) -> FoundDrive:
         """A drive after rounds of programming, until they gain little or it is an optimum."""
         for _ in range(_ROUNDS):
@@ -421,13 +421,13 @@ class DriveProgram:
             after = self._fastest(found.x, step, patience)
             better = after.rank() < found.rank()
             gain, found = 1 - after.cost / found.cost, after if better else found
-            if not better or gain < worth:
+            if not better or gain < _WORTH:
                 break
         return found
 
     def solve(self, found: FoundDrive, step: Callable[[], None]) -> SolvedDrive:
         """The fastest drive near one that was found."""
-        found = self._hurried(found, step, *_PATIENT)
+        found = self.hurried(found, step, len(found.x))
         look = found.look
         worst = int(np.argmin(look.values))
         pieces = tuple(piece for stage in self.stages for piece in [stage.leg.piece] * 2)
