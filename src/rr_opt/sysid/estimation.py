@@ -249,10 +249,6 @@ class FitProblem:
             out[run] = total
         return out
 
-    def cost(self, misfits: Mapping[int, float], u: Array) -> float:
-        """The sum of all losses, and of the prior's."""
-        return sum(self.loss(r, e) for r, e in misfits.items()) + float(self.prior @ u**2)
-
 
 @dataclass(frozen=True)
 class Linear:
@@ -545,7 +541,11 @@ class _Point:
 
     def joined(self, other: _Point) -> _Point:
         """Of each run the better; the other may lack some."""
-        runs = [run for run, loss in other.losses.items() if not loss >= self.losses[run]]
+        runs = [
+            run
+            for run, loss in other.losses.items()
+            if loss < self.losses[run] or math.isnan(self.losses[run])
+        ]
         parts = [one for run in runs for one in self.problem.by_run[run]]
         return replace(
             self,
