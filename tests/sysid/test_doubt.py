@@ -53,6 +53,7 @@ def test_what_predicts_too_little_better_is_said_to_be_open():
 
 
 def test_nothing_is_said_where_nothing_predicts_better():
+    assert doubt(candidate(better=False)) == ""
     assert doubt(candidate(), candidate("coulomb_friction", elpd=-1.0)) == ""
 
 

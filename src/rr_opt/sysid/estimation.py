@@ -457,7 +457,8 @@ def solve(
         # States that went astray with other values would not come back.
         own = {one: problem.model.initial_state(one, problem.effects, problem.valued(u))
                for one in problem.segments}  # fmt: skip
-        here = here.joined(_Point.of(problem, u, own))
+        if any(not np.array_equal(own[one], states[one]) for one in own):
+            here = here.joined(_Point.of(problem, u, own))
     radius, converged = SETTINGS.stride, False
     linear = replace(known, problem=problem) if known else here.linear()
     evidences = linear.evidences(problem.q)
