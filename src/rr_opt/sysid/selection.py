@@ -143,6 +143,8 @@ class Selection:
         """A step; alternatives are sought until one is settled."""
         self.progress("testing what may be missing")
         found = [*self._scored()]
+        if self._settled(found):
+            found += self._unscored()
         if not self._settled(found):
             found += self._extended()
         if not self._settled(found):
@@ -173,6 +175,15 @@ class Selection:
         if best is None or not self.complete(best):
             for one in pairs:
                 yield self.fitted((*parent.choices, *one.choices), [one.guess], parent)
+
+    def _unscored(self) -> Iterator[Candidate]:
+        """Effects of usual size that a score test cannot see, lest an imitation be settled for."""
+        parent = self.best
+        for name, info in self.model.catalogue.items():
+            form = info.forms[0]
+            if not (info.smooth or info.upstream or name in parent.effects) and form.guesses:
+                usual = {q.name: q.scale for q in form.quantities}
+                yield self.fitted((*parent.choices, Choice(name)), [usual], parent)
 
     def _extended(self) -> Iterator[Candidate]:
         """Each effect in a fuller form."""
@@ -251,9 +262,9 @@ class Selection:
         """Drop effects, or parts of them, that are not needed: two may be that are not singly."""
         whole = self.best
         while self.best.choices:
-            smaller = [one for one in self._fewer(self.best) if not needed(whole, one)]
-            smaller += [one for one in self._simpler(self.best) if not whole.predicts_better(one)]
-            best = _best(smaller)
+            fewer = [one for one in self._fewer(self.best) if not needed(whole, one)]
+            simpler = [one for one in self._simpler(self.best) if not whole.predicts_better(one)]
+            best = _best(fewer) or _best(simpler)
             if best is None:
                 return
             self.best = best
