@@ -39,6 +39,11 @@ class DriveSlopes:
     at: Array
     nodes: Array
 
+    def part(self, first: int, last: int, each: int) -> DriveSlopes:
+        """From sample `first` to sample `last`, with `each` steps between two samples."""
+        nodes = self.nodes[:, :, first * each : last * each]
+        return DriveSlopes(self.at[:, first : last + 1], nodes)
+
 
 @dataclass(frozen=True)
 class Slopes:

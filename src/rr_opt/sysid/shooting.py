@@ -6,6 +6,8 @@ where there is a compiler, and then several runs are stepped at once. For how a 
 on everything see `linear`.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
@@ -58,6 +60,12 @@ class DrivePath:
         """(steps, 1 + 3 size): each step's length, and its drive at all three places."""
         nodes = self.nodes.transpose(2, 1, 0).reshape(self.h.size, -1)
         return np.column_stack([self.h, nodes])
+
+    def part(self, first: int, last: int) -> DrivePath:
+        """From sample `first` to sample `last`."""
+        during = slice(first * self.each, last * self.each)
+        h, nodes, at = self.h[during], self.nodes[:, :, during], self.at[:, first : last + 1]
+        return DrivePath(h, nodes, at, self.each)
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,10 @@ The state is x, y, psi and z = v - g dphi, which jumps of the servo's rate leave
 axles may slip it is x, y, psi, v and both side speeds.
 """
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
 import numpy as np
@@ -74,6 +77,17 @@ def side_speeds(robot: Robot, gait: Gait, t: Array, values: Array) -> Array:
 _Simulated = tuple[DrivePath, Path, Array, dict[str, float]]
 
 
+@dataclass(frozen=True)
+class _DrivenRun:
+    """A run's drive with some values, how late the recording's clock is, and its steps."""
+
+    given: Mapping[str, float]
+    drive: Drive
+    late: float
+    effects: tuple[str, ...]
+    path: DrivePath
+
+
 def _same(some: Sequence[Request], others: Sequence[Request]) -> bool:
     """Whether the same is asked for, from the very same states."""
     return len(some) == len(others) and all(
@@ -97,10 +111,9 @@ class Simulator:
         built_in: frozenset[str],
     ) -> None:
         self._runs, self._data, self._nominal, self.built_in = runs, data, nominal, built_in
-        self._paths: dict[Segment, tuple[Drive, float, tuple[str, ...], DrivePath]] = {}
-        self._slopes: dict[
-            Segment, tuple[DrivePath, tuple[str, ...], tuple, DriveSlopes | None]
-        ] = {}
+        self._driven: dict[int, _DrivenRun] = {}
+        self._parts: dict[Segment, tuple[DrivePath, DrivePath]] = {}
+        self._slopes: dict[int, tuple[DrivePath, tuple[str, ...], tuple, DriveSlopes | None]] = {}
         self._seen: dict[Segment, Recorded] = {}
         self._last: tuple[tuple[str, ...], Sequence[Request], list[_Simulated]] | None = None
 
@@ -131,13 +144,23 @@ class Simulator:
 
         effects  all of them
         """
-        drive, late = self.drives.of(segment.run, given, effects), lateness(given, effects)
-        kept = self._paths.get(segment)
-        if kept is None or kept[0] is not drive or kept[1:3] != (late, effects):
-            t = self._data[segment.run].t[segment.span]
-            path = drive_path(drive, steps_of(drive, t, late, **grain(effects)), late)
-            kept = self._paths[segment] = drive, late, effects, path
-        return kept[3]
+        whole, kept = self._whole(segment.run, given, effects).path, self._parts.get(segment)
+        if kept is None or kept[0] is not whole:
+            kept = self._parts[segment] = whole, whole.part(segment.first, segment.last)
+        return kept[1]
+
+    def _whole(self, run: int, given: Mapping[str, float], effects: tuple[str, ...]) -> _DrivenRun:
+        kept = self._driven.get(run)
+        if kept and kept.given is given and kept.effects == effects:
+            return kept
+        drive, late = self.drives.of(run, given, effects), lateness(given, effects)
+        if kept and kept.drive is drive and (kept.late, kept.effects) == (late, effects):
+            path = kept.path
+        else:
+            steps = steps_of(drive, self._data[run].t, late, **grain(effects))
+            path = drive_path(drive, steps, late)
+        self._driven[run] = _DrivenRun(given, drive, late, effects, path)
+        return self._driven[run]
 
     def drive_slopes(
         self,
@@ -147,13 +170,13 @@ class Simulator:
         wanted: tuple[str, ...],
     ) -> DriveSlopes | None:
         """How the drive changes with what is wanted; None if it does not."""
-        path, kept = self.drive_path(segment, given, effects), self._slopes.get(segment)
+        run, path = segment.run, self._whole(segment.run, given, effects).path
         own = tuple(given[name] for name in wanted if "." in name)
+        kept = self._slopes.get(run)
         if kept is None or kept[0] is not path or kept[1:3] != (wanted, own):
-            t = self._data[segment.run].t[segment.span]
-            by = drive_slopes(self.drives, segment.run, t, given, effects, wanted)
-            kept = self._slopes[segment] = path, wanted, own, by
-        return kept[3]
+            by = drive_slopes(self.drives, run, self._data[run].t, given, effects, wanted)
+            kept = self._slopes[run] = path, wanted, own, by
+        return kept[3] and kept[3].part(segment.first, segment.last, path.each)
 
     def recorded(self, segment: Segment) -> Recorded:
         """What was recorded of a segment: its last sample is the next one's first."""
