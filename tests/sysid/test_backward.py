@@ -1,13 +1,14 @@
 """Backward steps: what two effects account for together is not lost by dropping one at a time."""
 
 from dataclasses import dataclass
+from typing import Any
 
 from rr_opt.sysid.selection import Selection
 
 
 @dataclass(frozen=True)
 class Made:
-    choices: tuple[str, ...]
+    choices: Any
     excess: float
     given_up: bool = False
 
@@ -15,9 +16,17 @@ class Made:
     def elpd(self) -> float:
         return -self.excess
 
+    def predicts_better(self, other) -> bool:
+        return self.excess < 0.9 * other.excess
 
-MADE = {one.choices: one for one in (Made((), 10.0), Made(("a",), 7.5), Made(("b",), 7.8),
-                                     Made(("a", "b"), 6.0))}  # fmt: skip
+
+MADE = {
+    one.choices: one
+    for one in (
+        *(Made((), 10.0), Made(("a",), 7.5), Made(("b",), 7.8), Made(("a", "b"), 6.0)),
+        *(Made(("a plain",), 9.0), Made(("a plain", "b"), 6.1)),
+    )
+}
 """The pair leaves 36 % of the mean square, and more than half of what either leaves alone."""
 
 
@@ -25,12 +34,13 @@ class Dropping(Selection):
     def __init__(self) -> None:
         self.best = MADE["a", "b"]  # pyright: ignore
 
-    def _fewer(self, candidate):
+    def _fewer(self, candidate) -> Any:
         for choice in candidate.choices:
             yield MADE[tuple(c for c in candidate.choices if c != choice)]  # pyright: ignore
 
-    def _simpler(self, candidate):
-        return iter(())
+    def _simpler(self, candidate) -> Any:
+        if candidate.choices == ("a", "b"):
+            yield MADE["a plain", "b"]  # pyright: ignore
 
 
 def test_the_whole_is_held_against_what_is_left_of_it():
@@ -43,3 +53,9 @@ def test_what_is_not_needed_at_all_goes():
     selection = Dropping()
     selection._backward(lambda *_: False)
     assert selection.best.choices == ()
+
+
+def test_an_effect_is_dropped_before_another_is_simplified():
+    selection = Dropping()
+    selection._backward(lambda _, part: part.excess > 7.6)
+    assert selection.best.choices == ("a",)

@@ -60,7 +60,7 @@ class MeasuredDrives:
         if piece not in kept:
             if piece.recording not in kept:
                 kept[piece.recording] = self._whole(piece.recording, signals, constants)
-            kept[piece] = _cut(kept[piece.recording], piece)
+            kept[piece] = kept[piece.recording].part(piece.first, piece.until - 1)
         return kept[piece]
 
     def slopes(
@@ -121,10 +121,3 @@ def beside(moved: DriveSlopes | None, more: DriveSlopes, wanted: int) -> DriveSl
         np.concatenate([moved.at, more.at], axis=-1),
         np.concatenate([moved.nodes, more.nodes], axis=-1),
     )
-
-
-def _cut(whole: DrivePath, piece: Piece) -> DrivePath:
-    """Samples first <= k < until."""
-    each = whole.each
-    steps, at = slice(piece.first * each, (piece.until - 1) * each), slice(piece.first, piece.until)
-    return DrivePath(whole.h[steps], whole.nodes[:, :, steps], whole.at[:, at], each)

@@ -1,0 +1,68 @@
+"""Before an effect is settled for, those that a score test cannot see are fitted too."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from rr_opt.sysid.model import Choice, EffectInfo, Form, Quantity
+from rr_opt.sysid.selection import Selection
+
+
+@dataclass(frozen=True)
+class Made:
+    choices: Any
+    elpd: float
+    given_up: bool = False
+
+    @property
+    def effects(self) -> tuple[str, ...]:
+        return tuple(one.name for one in self.choices)
+
+    def predicts_better(self, other) -> bool:
+        return self.elpd > other.elpd + 5
+
+
+def effect(name: str, *, smooth: bool, guesses: tuple[Mapping[str, float], ...] = ({},)):
+    size = Quantity(f"{name}.size", "m", 0.0, 0.3, False, 0.0, 9.0, 0.0)
+    form = Form((size,), guesses)
+    return EffectInfo(name, "", "rolling", "", (form,), smooth)
+
+
+class Settling(Selection):
+    """Drag leaves nothing; so does whatever else is fitted, which predicts as in `elpd`."""
+
+    def __init__(self, elpd: float) -> None:
+        self.best = Made((), -100.0)  # pyright: ignore
+        self.progress = lambda _: None
+        self.elpd, self.guesses = elpd, {}
+        known = [effect("drag", smooth=True), effect("creep", smooth=False)]
+        known.append(effect("patch", smooth=False, guesses=()))
+        self.model = SimpleNamespace(catalogue={one.name: one for one in known})  # pyright: ignore
+
+    def complete(self, candidate):
+        return True
+
+    def fitted(self, choices, guesses, parent=None) -> Any:
+        self.guesses[choices] = guesses
+        return Made(choices, self.elpd)
+
+    def _scored(self) -> Any:
+        return [Made((Choice("drag"),), 0.0)]
+
+    def _extended(self) -> Any:
+        raise LookupError("not settled")
+
+
+def test_an_effect_without_a_score_is_fitted_from_its_usual_size():
+    selection = Settling(elpd=10.0)
+    selection._forward()
+    assert selection.guesses == {(Choice("creep"),): [{"creep.size": 0.3}]}
+    assert selection.best.effects == ("creep",)
+
+
+def test_a_tie_is_not_settled():
+    with pytest.raises(LookupError, match="not settled"):
+        Settling(elpd=-1.0)._forward()
