@@ -14,7 +14,7 @@ from rr_opt.formatting import counted
 from rr_opt.model.experiment import Flag, Recording
 from rr_opt.recordings.gaps import Gap, Jump, gaps, jumps, without_inventions
 from rr_opt.recordings.noise import NoiseEstimate
-from rr_opt.recordings.nuisances.units import unit_notices
+from rr_opt.recordings.nuisances.plausible import unit_notices
 from rr_opt.recordings.outliers import outliers, step_of, usual_noise
 from rr_opt.recordings.time_axis import LACKING, time_step
 from rr_opt.recordings.warnings import Notice, notice, size_text

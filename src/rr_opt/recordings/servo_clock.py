@@ -18,7 +18,7 @@ from rr_opt.model.experiment import Recording, Start
 from rr_opt.model.gait import Gait
 from rr_opt.recordings.clock_fit import ClockFit, Reference, clock_fit, command_reference
 from rr_opt.recordings.outliers import outliers
-from rr_opt.recordings.readers.servo_log import ServoLog
+from rr_opt.recordings.readers.plain_csv import ServoLog
 from rr_opt.recordings.smoothing import derivatives
 from rr_opt.recordings.warnings import Notice, notice
 

@@ -13,15 +13,18 @@ from rr_opt.messages import listed
 from rr_opt.model.experiment import CHANNELS, Flag, Layout, Recording
 from rr_opt.recordings.cleaning import unwrapped
 from rr_opt.recordings.markers.calibration import Calibration, calibration
-from rr_opt.recordings.markers.layout import (
+from rr_opt.recordings.markers.rigid import (
     Bodies,
     Complex,
+    RigidFit,
     bodies_of,
     check_scale,
+    fit,
+    marker_noise,
     places_of,
+    refined,
     seen_from_above,
 )
-from rr_opt.recordings.markers.rigid import RigidFit, fit, marker_noise, refined
 from rr_opt.recordings.markers.swaps import (
     Ghosts,
     Order,
