@@ -80,41 +80,25 @@ _LATEST = 1e6
 """Nor do they begin later than this after the command, eleven days, s."""
 
 
-def unit_notices(recording: Recording) -> tuple[Notice, ...]:
+def unit_notices(recording: Recording) -> Iterator[Notice]:
     """What looks like another unit. Nothing is converted: the experimenter has to say."""
-    return (*_of_time(recording), *_of_place(recording), *_of_angles(recording))
-
-
-def _of_time(recording: Recording) -> Iterator[Notice]:
-    if len(recording) and abs(recording.t[0]) > _LATEST:
-        yield notice("units.calendar", start=recording.t[0])
-        return
-    step = time_step(recording.t)
-    if step < _SLOWEST or len(recording) < 3:
-        return
-    if abs(step - 1) < 1e-6:
+    t, step = recording.t, time_step(recording.t)
+    if len(t) and abs(t[0]) > _LATEST:
+        yield notice("units.calendar", start=t[0])
+    elif len(t) > 2 and abs(step - 1) < 1e-6:
         yield notice("units.frames")
-    else:
+    elif len(t) > 2 and step >= _SLOWEST:
         yield notice("units.milliseconds" if step < 1000 * _SLOWEST else "units.time", step=step)
-
-
-def _of_place(recording: Recording) -> Iterator[Notice]:
-    ranges = [_whole_range(recording.data(channel)) for channel in ("x", "y")]
+    known = (values[np.isfinite(values)] for values in map(recording.data, ("x", "y", "phi")))
+    x, y, phi = (values if len(values) else np.zeros(1) for values in known)
+    ranges = float(np.ptp(x)), float(np.ptp(y))
     if max(ranges) > _NO_ROOM:
         yield notice("units.place", widest=max(ranges))
     elif max(ranges) > _ROOM:
         yield notice("units.millimetres", ranges=" and ".join(f"{size:.4g}" for size in ranges))
-
-
-def _of_angles(recording: Recording) -> Iterator[Notice]:
-    phi = np.abs(recording.data("phi"))
-    largest = float(np.nanmax(phi)) if np.isfinite(phi).any() else 0.0
+    largest = float(np.abs(phi).max())
     if largest > 2 * np.pi:
         yield notice("units.angle" if largest > _NO_ANGLE else "units.degrees", largest=largest)
-
-
-def _whole_range(values: Array) -> float:
-    return float(np.nanmax(values) - np.nanmin(values)) if np.isfinite(values).any() else 0.0
 
 
 _LENGTHS = 5.0
