@@ -48,8 +48,9 @@ class ClockShift:
     t_mid: float
 
     def interval(self, which: int = 0) -> tuple[float, float]:
-        """95 % interval of the offset (0), s, or of the drift (1)."""
-        value, half = (self.offset, self.drift)[which], COVERED * self.sigma[which]
+        """95 % interval of offset (0), drift (1) or, of a fit, scale (2) or bias (3)."""
+        value = getattr(self, ("offset", "drift", "scale", "bias")[which])
+        half = COVERED * self.sigma[which]
         return value - half, value + half
 
 
