@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 import yaml
 
-from rr_opt.files.schemas import schema
+from rr_opt.files.lint import schema
 from tests.files.test_schemas import accepts
 
 GOOD = yaml.safe_load("""

@@ -13,8 +13,7 @@ from hypothesis import strategies as st
 from rr_opt.files.fields import keys_of
 from rr_opt.files.issue import InvalidFileError
 from rr_opt.files.lint import lint_file
-from rr_opt.files.problem_file import read_problem
-from rr_opt.files.problem_model import ProblemModel
+from rr_opt.files.problem_file import ProblemModel, read_problem
 from rr_opt.files.robot_file import PlatformModel, RobotModel, read_robot
 from rr_opt.files.source import SHIPPED
 from rr_opt.model.problem import GaitBounds, Limits, RatioChoice

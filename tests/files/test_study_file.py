@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from rr_opt.files.issue import InvalidFileError
+from rr_opt.files.lint import schema
 from rr_opt.files.problem_file import read_problem
-from rr_opt.files.schemas import schema
 from rr_opt.files.study_file import read_study
 
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from rr_opt.files.study_keys import key_of
+from rr_opt.files.study_axes import key_of
 from rr_opt.results.study_table import axis_words, key_words, value_text
 
 

@@ -7,8 +7,9 @@ from typing import Any, Literal
 import numpy as np
 
 from rr_opt.documents.archive import file_for_result, write_text
-from rr_opt.files import schemas
+from rr_opt.files import lint as of_files
 from rr_opt.files.experiment_file import read_plan
+from rr_opt.files.fields import schema_of
 from rr_opt.files.issue import Issue
 from rr_opt.files.lint import experiment_file, lint_file
 from rr_opt.files.source import EXPERIMENT
@@ -22,11 +23,11 @@ def schema(kind: str, machine: str = "racer") -> dict[str, Any]:
     Every field carries a description with its unit. Raises InputError for any other kind.
     """
     if machine == "racer" or kind != "experiment":
-        return schemas.schema(kind)
+        return of_files.schema(kind)
     from rr_opt.files.machine_file import model_of
     from rr_opt.machines.registry import machine_named
 
-    return schemas.schema_of(model_of(machine_named(machine))[0], f"{machine} experiment")
+    return schema_of(model_of(machine_named(machine))[0], f"{machine} experiment")
 
 
 def lint(path: str | Path) -> list[Issue]:

@@ -22,7 +22,7 @@ from rr_opt.recordings.clock_fit import at_commanded_rate
 from rr_opt.recordings.experiment import inspect_experiment, is_experiment, usable
 from rr_opt.recordings.inspection import Circumstances, inspect_file
 from rr_opt.recordings.readers import ReadOptions
-from rr_opt.recordings.readers.columns import columns_from
+from rr_opt.recordings.readers.plain_csv import columns_from
 from rr_opt.results.inspection import InspectedRecordings
 from rr_opt.results.result import Progress, quiet
 

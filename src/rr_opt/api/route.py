@@ -14,8 +14,7 @@ from rr_opt.batch.run import pool_of, run
 from rr_opt.design.study.case import portable
 from rr_opt.documents.archive import folder_for_results
 from rr_opt.files.issue import Issue
-from rr_opt.files.route_file import read_route
-from rr_opt.files.route_study_file import RouteStudy, read_routes
+from rr_opt.files.route_file import RouteStudy, read_route, read_routes
 from rr_opt.model.route import Route
 from rr_opt.outcome import RollerRacerError, Status
 from rr_opt.results.result import Progress, quiet

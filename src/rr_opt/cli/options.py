@@ -197,7 +197,7 @@ def read_problem(path: Path | None) -> Problem:
 
 def names_routes(path: Path) -> bool:
     """Whether a study file is one of routes. Raises InputError if it cannot be read."""
-    from rr_opt.files.route_study_file import is_of_routes
+    from rr_opt.files.route_file import is_of_routes
     from rr_opt.files.source import read_document
 
     return is_of_routes(read_document(path))

@@ -204,7 +204,14 @@ def plan_from(document: FileData, file: Path) -> tuple[ExperimentPlan | None, li
         return None, issues
     for key, message in shares_of_nothing(model.uncertainty, robot):
         issues.append(document.warning(("uncertainty", key), message))
-    issues += _beyond_the_model(document, robot, [run.gait.peak_angle for run in runs])
+    for at, run in enumerate(runs):
+        if run.gait.peak_angle >= robot.singular_angle:
+            message = (
+                f"The gait reaches |phi| = {run.gait.peak_angle:.4g} rad, and beyond "
+                f"{robot.singular_angle:.4g} rad lies the singular posture, where a model without "
+                "side slip means nothing."
+            )
+            issues.append(document.warning(("recordings", at, "gait"), message))
     plan = ExperimentPlan(
         name=file.absolute().parent.name,
         document=document,
@@ -258,17 +265,3 @@ def _markers(document: FileData) -> tuple[Any, list[Issue]]:
         return layout_from(document.section("markers"))
     message = f"Read {shown(given)}. Expected `platform1` and `platform2`, each with its markers."
     return None, [document.error(("markers",), message)]
-
-
-def _beyond_the_model(document: FileData, robot: Robot, peaks: list[float]) -> list[Issue]:
-    """Recordings that reach the posture where a model without side slip means nothing."""
-    message = (
-        "The gait reaches |phi| = {peak:.4g} rad, and beyond {limit:.4g} rad lies the singular "
-        "posture, where a model without side slip means nothing."
-    )
-    limit = robot.singular_angle
-    return [
-        document.warning(("recordings", at, "gait"), message.format(peak=peak, limit=limit))
-        for at, peak in enumerate(peaks)
-        if peak >= limit
-    ]

@@ -193,3 +193,26 @@ def _model_at(model: type[BaseModel], path: tuple[str | int, ...]) -> type[BaseM
             elif isinstance(kind, type) and issubclass(kind, BaseModel):
                 model = kind
     return model
+
+
+_DIALECT = "https://json-schema.org/draft/2020-12/schema"
+
+
+def schema_of(model: type[BaseModel], kind: str) -> dict[str, Any]:
+    """The JSON Schema of a kind of file with these keys."""
+    generated = model.model_json_schema()
+    return {"$schema": _DIALECT, "title": f"rr-opt {kind} file", **_tidied(generated)}
+
+
+def _tidied(node: Any) -> Any:
+    """Without pydantic's titles, and without null as the default of a key that may be absent."""
+    if isinstance(node, list):
+        return [_tidied(item) for item in node]
+    if not isinstance(node, dict):
+        return node
+    return {
+        key: _tidied(value)
+        for key, value in node.items()
+        if not (key == "default" and value is None)
+        and not (key == "title" and isinstance(value, str))
+    }

@@ -1,13 +1,17 @@
-"""Every problem of a file at once, before anything is computed from it."""
+"""Input files of every kind: all that is wrong in one at once, and the JSON Schema of its keys."""
 
 from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
+from rr_opt.files.fields import schema_of
 from rr_opt.files.issue import InvalidFileError, Issue
-from rr_opt.files.problem_file import kind_of, problem_from, problem_sources
-from rr_opt.files.robot_file import robot_from, singular_posture
+from rr_opt.files.problem_file import ProblemModel, kind_of, problem_from, problem_sources
+from rr_opt.files.robot_file import RobotModel, robot_from, singular_posture
 from rr_opt.files.source import experiment_path, problem_path, read_document
 from rr_opt.files.yaml_text import FileData
+from rr_opt.messages import unknown_word
+from rr_opt.outcome import InputError
 
 
 def lint_file(path: str | Path) -> list[Issue]:
@@ -24,7 +28,7 @@ def lint_file(path: str | Path) -> list[Issue]:
         if kind == "robot":
             return _robot_issues(document)
         if kind == "study":
-            from rr_opt.files.route_study_file import is_of_routes, routes_from
+            from rr_opt.files.route_file import is_of_routes, routes_from
             from rr_opt.files.study_file import study_from
 
             of_routes = is_of_routes(document)
@@ -67,3 +71,25 @@ def _robot_issues(document: FileData) -> list[Issue]:
     if notice:
         issues.append(document.warning(("servo", "angle_limit"), notice))
     return issues
+
+
+def schema(kind: str) -> dict[str, Any]:
+    """The JSON Schema (2020-12) of a kind of file: robot, problem, study, experiment or route.
+
+    With it editors complete and check files. Every field carries a description with its unit; the
+    SI unit alone is under `x-unit`. Raises InputError for any other kind.
+    """
+    from rr_opt.files.experiment_model import ExperimentModel
+    from rr_opt.files.route_file import RouteModel
+    from rr_opt.files.study_axes import StudyModel
+
+    models = {
+        "robot": RobotModel,
+        "problem": ProblemModel,
+        "study": StudyModel,
+        "experiment": ExperimentModel,
+        "route": RouteModel,
+    }
+    if kind not in models:
+        raise InputError(unknown_word(kind, list(models), "kind of file"))
+    return schema_of(models[kind], kind)

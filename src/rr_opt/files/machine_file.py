@@ -40,15 +40,21 @@ def _section(name: str, doc: str, fields: Mapping[str, Any]) -> Any:
     return create_model(name, __base__=FileModel, __doc__=doc, **fields)
 
 
+def _optional(reader: Any, description: str) -> tuple[Any, Any]:
+    """A key that may be absent."""
+    return Annotated[Any, Key(reader)], Field(default=None, description=description)
+
+
+def _optional_section(model: Any, description: str) -> tuple[Any, Any]:
+    """A section that may be absent, as all its keys may be."""
+    return model, Field(default_factory=model, description=description)
+
+
 def model_of(machine: Machine) -> Any:
     """The keys of a machine's experiment file."""
-
-    def quantity(unit: str, example: str = "0.001", above: float | None = None) -> Key:
-        return Key(Number(unit, example, above=above))
-
     parameters = {
         one.name: (
-            Annotated[float, quantity(one.unit, one.example)],
+            Annotated[float, Key(Number(one.unit, one.example))],
             Field(
                 default=... if one.default is None else one.default,
                 description=f"{one.words[0].upper()}{one.words[1:]}, {one.unit}.",
@@ -57,29 +63,23 @@ def model_of(machine: Machine) -> Any:
         for one in machine.parameters
     }
     known = {
-        one.name: (
-            Annotated[Spread | None, Key(Uncertain(one.unit, one.example))],
-            Field(default=None, description=f"One sigma of the {one.words}, {one.unit}. "
-                                            f"Default: {_spread_words(one.spread, one.unit)}."),
+        one.name: _optional(
+            Uncertain(one.unit, one.example),
+            f"One sigma of the {one.words}, {one.unit}. "
+            f"Default: {_spread_words(one.spread, one.unit)}.",
         )
         for one in machine.parameters
-    }  # fmt: skip
+    }
     noise = {
-        one.name: (
-            Annotated[float | None, quantity(one.unit, above=0)],
-            Field(default=None, description=f"Of {one.words}, {one.unit}; else from the data."),
+        one.name: _optional(
+            Number(one.unit, "0.001", above=0), f"Of {one.words}, {one.unit}; else from the data."
         )
         for one in machine.channels
     }
+    channels = [(one.name, one.unit, one.words) for one in machine.channels]
     where = {
-        name: (
-            Annotated[Any, Key(_Where(unit))],
-            Field(default=None, description=f"Where {words} is, {unit}; or its constant value."),
-        )
-        for name, unit, words in (
-            ("t", "s", "the time"),
-            *((one.name, one.unit, one.words) for one in machine.channels),
-        )
+        name: _optional(_Where(unit), f"Where {words} is, {unit}; or its constant value.")
+        for name, unit, words in (("t", "s", "the time"), *channels)
     }
     columns = _section("ColumnsModel", "Columns by channel.", where)
     entry = _section(
@@ -88,7 +88,7 @@ def model_of(machine: Machine) -> Any:
         {
             "file": (str, Field(description="Its file, CSV or JSON, relative to this one.")),
             "use": (Use, Field(default="fit", description="holdout: kept back, to check the fit.")),
-            "columns": (columns, Field(default_factory=columns, description="Its own columns.")),
+            "columns": _optional_section(columns, "Its own columns."),
         },
     )
     uncertainty = _section("UncertaintyModel", "How well nominal values are known.", known)
@@ -102,15 +102,9 @@ def model_of(machine: Machine) -> Any:
                 _section("ParametersModel", "Nominal values.", parameters),
                 Field(description="Nominal values."),
             ),
-            "uncertainty": (
-                uncertainty,
-                Field(default_factory=uncertainty, description="How well they are known."),
-            ),
-            "noise": (noises, Field(default_factory=noises, description="How well it is seen.")),
-            "columns": (
-                columns,
-                Field(default_factory=columns, description="Columns of the recordings."),
-            ),
+            "uncertainty": _optional_section(uncertainty, "How well they are known."),
+            "noise": _optional_section(noises, "How well it is seen."),
+            "columns": _optional_section(columns, "Columns of the recordings."),
             "recordings": (
                 Annotated[list[entry], SkipValidation],
                 Field(description="The recordings.", json_schema_extra={"minItems": 1}),

@@ -3,19 +3,74 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
+from typing import Annotated, Any, Literal
 
-from rr_opt.files.fields import another_file, validate
-from rr_opt.files.issue import InvalidFileError, Issue, Level, has_errors, required
-from rr_opt.files.problem_model import OWN_SHAPE, ProblemModel
+from pydantic import Field, SkipValidation
+
+from rr_opt.files.fields import FileModel, Keys, another_file, validate
+from rr_opt.files.issue import InvalidFileError, Issue, has_errors, required
 from rr_opt.files.robot_file import RobotModel, robot_from
 from rr_opt.files.source import SHIPPED, fingerprint, is_result, linked, problem_path, read_document
 from rr_opt.files.yaml_text import FileData
 from rr_opt.messages import nearest, shown
 from rr_opt.model.ballast import with_inertia_ratio
-from rr_opt.model.problem import GaitBounds, Problem, RatioChoice, reachable
+from rr_opt.model.problem import (
+    Direction,
+    GaitBounds,
+    Limits,
+    Objective,
+    Problem,
+    RatioChoice,
+    Shape,
+    Spreads,
+    reachable,
+)
 from rr_opt.model.robot import Robot
 from rr_opt.outcome import InputError
+
+OWN_SHAPE: dict[str, Shape] = {"harmonics": "fourier", "intervals": "free"}
+"""Keys of a gait that belong to one shape only."""
+
+
+def _needs(key: str, shape: Shape) -> dict[str, Any]:
+    """JSON Schema: where the key stands, the shape is this one."""
+    then = {"properties": {"shape": {"const": shape}}, "required": ["shape"]}
+    return {"if": {"required": [key]}, "then": then}
+
+
+_GAIT = Keys(schema={"allOf": [_needs(key, shape) for key, shape in OWN_SHAPE.items()]})
+
+
+class ProblemModel(FileModel):
+    """Which gait drives the robot fastest? Plain numbers are SI; a text may carry a unit."""
+
+    robot: Annotated[str | RobotModel | None, SkipValidation] = Field(
+        default=None,
+        description="A robot file, relative to this file, or the robot itself. "
+        "Without it: the paper's prototype.",
+    )
+    gait: Annotated[GaitBounds, _GAIT] = Field(
+        default_factory=GaitBounds, description="Which gaits are allowed."
+    )
+    inertia_ratio: Annotated[RatioChoice, Keys(alone="bounds")] | None = Field(
+        default=None, description="J20/J10 as a choice. Without it: the robot as it is."
+    )
+    limits: Annotated[Limits, Keys()] = Field(
+        default_factory=Limits,
+        description="What a gait may ask of the robot. What is not given is what the robot's servo "
+        "can do.",
+    )
+    direction: Direction = Field(default="either", description="Which way the robot shall go.")
+    objective: Objective = Field(
+        default="speed",
+        description="What is best: the largest speed, or the least cost of transport.",
+    )
+    robust: Annotated[Spreads, Keys()] | None = Field(
+        default=None,
+        description="How well the robot is known. With it a gait is sought too that is fast on "
+        "95 % of the robots that it may be.",
+    )
+
 
 Kind = Literal["robot", "problem", "study", "experiment", "route", "result"]
 
@@ -47,37 +102,32 @@ def read_as(kind: Kind, file: Path, expected: str) -> FileData:
     return document
 
 
-Finding = tuple[Level, str, str]
-"""Level, key under `inertia_ratio`, message."""
-
 _ROUNDING = 1e-9
 
 
-def ratio_findings(choice: RatioChoice, robot: Robot) -> Iterator[Finding]:
+def ratio_findings(choice: RatioChoice, robot: Robot, document: FileData) -> Iterator[Issue]:
     """What is wrong with a choice of ratios for this robot; the messages name a remedy."""
     loads = choice.loads
     if choice.by == "loads" and loads.distance == loads.spread == 0:
-        yield (
-            "error",
-            "loads",
+        message = (
             "Read loads at the joint itself, which do not change the inertia about it. "
-            "Give `distance` or `spread` a value above 0.",
+            "Give `distance` or `spread` a value above 0."
         )
+        yield document.error(("inertia_ratio", "loads"), message)
         return
     bounds = reachable(choice, robot).bounds
     for ratio in sorted({bounds.low, bounds.high}):
         try:
             with_inertia_ratio(robot, ratio, choice.about, choice.by, loads)
         except InputError as error:
-            yield "error", "bounds", str(error)
+            yield document.error(("inertia_ratio", "bounds"), str(error))
             return
     if bounds.low > choice.bounds.low * (1 + _ROUNDING):
-        yield (
-            "warning",
-            "bounds",
+        message = (
             f"The robot without loads has {bounds.low:.4g} already, and loads only add to it. "
-            f"The ratios from {choice.bounds.low:.4g} up to there are left out.",
+            f"The ratios from {choice.bounds.low:.4g} up to there are left out."
         )
+        yield document.warning(("inertia_ratio", "bounds"), message)
 
 
 LONGEST_PERIOD = 60.0
@@ -271,8 +321,7 @@ def _contradictions(model: ProblemModel, robot: Robot, document: FileData) -> It
         )
         yield document.error(("robust",), message)
     if ratio := model.inertia_ratio:
-        for level, key, message in ratio_findings(ratio, robot):
-            yield document.issue(level, ("inertia_ratio", key), message)
+        yield from ratio_findings(ratio, robot, document)
         written = document.data["inertia_ratio"]
         if ratio.by == "inertia" and isinstance(written, dict) and "loads" in written:
             message = "Loads are given and not used. Write `by: loads`, or delete them."

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from types import MappingProxyType
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import ConfigDict, Field, GetJsonSchemaHandler, SkipValidation
 from pydantic_core import CoreSchema
@@ -16,8 +16,12 @@ from rr_opt.files.yaml_text import FileData, KeyPath, path_text
 from rr_opt.messages import shown, unknown_word
 from rr_opt.model.ballast import inertia_ratio
 from rr_opt.model.parameters import SYMBOLS
-from rr_opt.model.robot import Platform, Robot, Servo
+from rr_opt.model.robot import EffectUse, Platform, Robot, Servo
+from rr_opt.outcome import InputError
 from rr_opt.units import Number
+
+if TYPE_CHECKING:
+    from rr_opt.effects.effect import Effect, Parameter
 
 _LARGEST_LENGTH = 5.0
 """Longer platforms are taken for millimetres written as metres, m."""
@@ -80,37 +84,29 @@ def _platform_doubts(platform: Platform) -> Iterator[tuple[str, str]]:
     if platform.a > platform.c:
         yield (
             "a",
-            (
-                f"a = {platform.a:.4g} m puts the centre of mass beyond the joint (c = "
-                f"{platform.c:.4g} m). a counts from the axle towards the "
-                "joint; check that it is not the distance from the joint."
-            ),
+            f"a = {platform.a:.4g} m puts the centre of mass beyond the joint (c = "
+            f"{platform.c:.4g} m). a counts from the axle towards the "
+            "joint; check that it is not the distance from the joint.",
         )
     if longest > _LARGEST_LENGTH:
         yield (
             key,
-            (
-                f"The platform is {longest:.4g} m long. Plain numbers are metres: write "
-                f"`{longest:g} mm` for millimetres."
-            ),
+            f"The platform is {longest:.4g} m long. Plain numbers are metres: write "
+            f"`{longest:g} mm` for millimetres.",
         )
     if platform.m / longest / longest / longest > _DENSITY:
         yield (
             "m",
-            (
-                f"The platform weighs {platform.m:.4g} kg, more than a cube of steel of its "
-                f"largest length, {longest:.3g} m. Plain numbers are kilograms: write "
-                f"`{platform.m:g} g` for grams."
-            ),
+            f"The platform weighs {platform.m:.4g} kg, more than a cube of steel of its "
+            f"largest length, {longest:.3g} m. Plain numbers are kilograms: write "
+            f"`{platform.m:g} g` for grams.",
         )
     if gyration > 3 * longest:
         yield (
             "I",
-            (
-                f"The radius of gyration sqrt(I/m) is {gyration:.3g} m, more than three times the "
-                f"platform's largest length, {longest:.3g} m. Check the "
-                "units of I (kg m2), m, c and b."
-            ),
+            f"The radius of gyration sqrt(I/m) is {gyration:.3g} m, more than three times the "
+            f"platform's largest length, {longest:.3g} m. Check the "
+            "units of I (kg m2), m, c and b.",
         )
 
 
@@ -146,10 +142,7 @@ class _EffectsSchema:
     def __get_pydantic_json_schema__(
         self, _: CoreSchema, handler: GetJsonSchemaHandler
     ) -> dict[str, Any]:
-        # Here and not above: the catalogue loads CasADi, and reading most files does not.
-        from rr_opt.files.physics_section import effects_json_schema
-
-        return effects_json_schema()
+        return {"type": "array", "items": {"oneOf": [*map(_effect_schema, _catalogue().values())]}}
 
 
 class RobotModel(FileModel):
@@ -228,9 +221,6 @@ def robot_from(document: FileData) -> tuple[Robot | None, list[Issue]]:
     issues += _friction_and_radius(document)
     beyond: dict[str, Any] = {}
     if "physics" in document.data:
-        # Here and not above: the catalogue loads CasADi, and reading most files does not.
-        from rr_opt.files.physics_section import read_effects
-
         beyond["physics"], found = read_effects(document)
         issues += found
     if "provenance" in document.data:
@@ -282,3 +272,92 @@ def _friction_and_radius(document: FileData) -> list[Issue]:
         )
         issues.append(document.error(("h",), message))
     return issues
+
+
+def _catalogue() -> Mapping[str, "Effect"]:
+    """The effects that a robot file may name; loaded here and not above, as they load CasADi."""
+    from rr_opt.effects import OF_ROBOTS
+
+    return OF_ROBOTS
+
+
+def read_effects(document: FileData) -> tuple[tuple[EffectUse, ...], list[Issue]]:
+    """The effects under `physics` of a robot; a parameter that is not given is neutral."""
+    if document.data["physics"] == []:
+        return (), []
+    sections, issues = document.entries(
+        "physics",
+        "a list of effects, each with a name and its parameters. Write for example "
+        "`- {name: coulomb_friction, F1: 0.02, F2: 0.02}`",
+        "{name: ..., and its parameters}",
+    )
+    catalogue, uses = _catalogue(), dict[str, EffectUse]()
+    for section in sections:
+        name = section.data.get("name")
+        effect = catalogue.get(name) if isinstance(name, str) else None
+        if effect is None:
+            known = ", ".join(catalogue)
+            message = f"Read {shown(name)}. Expected the name of an effect: {known}."
+            if isinstance(name, str):
+                message = unknown_word(name, list(catalogue), "effect")
+            issues.append(section.error(("name",), message))
+            continue
+        if effect.name in uses:
+            message = f"Read `{name}` a second time. Keep one, with all parameters."
+            issues.append(section.error(("name",), message))
+            continue
+        values, wrong = _values(effect, section.data)
+        issues += [section.error((key,), message) for key, message in wrong]
+        uses[effect.name] = EffectUse(effect.name, MappingProxyType(values))
+        if not wrong and len(section.data) == 1:
+            keys = ", ".join(q.name for q in effect.parameters)
+            message = f"No parameter is given, so it does nothing. Add {keys}."
+            issues.append(section.warning((), message))
+    return tuple(uses.values()), issues
+
+
+def _values(effect: "Effect", entry: dict[str, Any]) -> tuple[dict[str, float], list[Any]]:
+    values = {q.name: q.neutral for q in effect.parameters}
+    named = {key: q for q in effect.parameters for key in (q.name, *q.aliases)}
+    given: dict[str, str] = {}
+    wrong: list[Any] = []
+    for key, value in entry.items():
+        parameter = named.get(key)
+        if key == "name":
+            continue
+        if parameter is None:
+            wrong.append((key, unknown_word(key, ["name", *named], "key")))
+            continue
+        if parameter.name in given:
+            other = given[parameter.name]
+            wrong.append((key, f"`{key}` and `{other}` are the same parameter. Keep one."))
+        given[parameter.name] = key
+        try:
+            values[parameter.name] = _quantity(parameter).read(value)
+        except InputError as error:
+            wrong.append((key, str(error)))
+    return values, wrong
+
+
+def _quantity(parameter: "Parameter") -> Number:
+    low, high = parameter.bounds
+    unit = parameter.unit.replace("dimensionless", "")
+    return Number(unit, f"{parameter.typical:g}", at_least=low, at_most=high)
+
+
+def _effect_schema(effect: "Effect") -> dict[str, Any]:
+    parameters = {
+        key: {
+            **_quantity(parameter).json_schema(),
+            "description": f"{parameter.name}, {parameter.unit or 'dimensionless'}",
+        }
+        for parameter in effect.parameters
+        for key in (parameter.name, *parameter.aliases)
+    }
+    return {
+        "type": "object",
+        "description": effect.sentence,
+        "properties": {"name": {"const": effect.name}, **parameters},
+        "required": ["name"],
+        "additionalProperties": False,
+    }

@@ -1,6 +1,8 @@
 """A route file to a `Route`: its problem, its pieces, and everything that is wrong with them."""
 
-from dataclasses import replace
+from collections import Counter
+from dataclasses import dataclass, field, replace
+from hashlib import sha256
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -8,11 +10,11 @@ from pydantic import Field, SkipValidation
 
 from rr_opt.files.fields import FileModel, Keys, validate
 from rr_opt.files.issue import InvalidFileError, Issue, has_errors, required
-from rr_opt.files.problem_file import base_sources, problem_from, read_as
-from rr_opt.files.problem_model import ProblemModel
+from rr_opt.files.problem_file import ProblemModel, base_sources, problem_from, read_as
 from rr_opt.files.source import fingerprint
+from rr_opt.files.study_axes import StudyModel
 from rr_opt.files.yaml_text import FileData
-from rr_opt.messages import shown
+from rr_opt.messages import listed, shown
 from rr_opt.model.problem import Direction
 from rr_opt.model.route import Arc, Piece, Pose, Route, Straight, Tolerance, Waypoint
 
@@ -118,3 +120,59 @@ def _pieces(document: FileData) -> tuple[list[Piece], list[Issue]]:
             message = "Read an arc of 0 deg, which leads nowhere. Give its change of heading."
             issues.append(section.error(("arc",), message))
     return pieces, issues
+
+
+@dataclass(frozen=True)
+class RouteStudy:
+    """Routes that are driven each by itself; their names differ.
+
+    sha256  over the study file and every file of the routes, in hex
+    """
+
+    name: str
+    routes: tuple[Route, ...] = field(repr=False)
+    sha256: str
+
+
+def is_of_routes(document: FileData) -> bool:
+    """Whether a study file names routes."""
+    return "routes" in document.data
+
+
+def read_routes(path: str | Path) -> tuple[RouteStudy, list[Issue]]:
+    """The study of a file, and warnings. Raises InvalidFileError with all that is wrong."""
+    file = Path(path)
+    expected = "Read a file without `routes`. Expected the names of route files under this key."
+    document = read_as("study", file, expected)
+    if not is_of_routes(document):
+        raise InvalidFileError([document.error((), expected)])
+    study, issues = routes_from(document, file)
+    return required(study, issues), issues
+
+
+def routes_from(document: FileData, file: Path) -> tuple[RouteStudy | None, list[Issue]]:
+    """The study (None if an issue is an error), and all issues of it and of every route."""
+    model, issues = validate(StudyModel, document)
+    for key in document.data:
+        if key in ("problem", "vary", "together"):
+            message = f"Read `{key}` beside `routes`. Expected one or the other. Delete one."
+            issues.append(document.error((key,), message))
+    routes = list[Route]()
+    for name in (model and model.routes) or ():
+        try:
+            place = file.parent / name
+            route, found = route_from(read_as("route", place, ROUTE_EXPECTED), place)
+        except InvalidFileError as error:
+            issues += error.issues
+            continue
+        issues += found
+        if route is not None:
+            routes.append(route)
+    twice = [name for name, count in Counter(one.name for one in routes).items() if count > 1]
+    if twice:
+        message = f"Read {listed(twice)} twice. Expected files of different names. Rename one."
+        issues.append(document.error(("routes",), message))
+    if model is None or has_errors(issues):
+        return None, issues
+    whole = "".join([fingerprint([file]), *(route.sha256 for route in routes)])
+    return RouteStudy(file.stem, tuple(routes), sha256(whole.encode()).hexdigest()), issues

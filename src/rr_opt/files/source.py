@@ -9,6 +9,7 @@ import json
 import os
 import stat
 from collections.abc import Iterable
+from contextlib import suppress
 from importlib.resources import files
 from pathlib import Path
 
@@ -21,20 +22,6 @@ _MARKS = ("status", "input_sha256")
 """Keys that every result has and no input."""
 
 
-def parse_result(content: bytes, file: str) -> FileData | None:
-    """The data of a result; None if the content is anything else.
-
-    A result may hold more numbers than an input file may, and no line of it is worth naming.
-    """
-    if not content.lstrip().startswith(b"{"):
-        return None
-    try:
-        data = json.loads(content)
-    except (ValueError, RecursionError):
-        return None
-    return FileData(file, data, {}) if is_result(data) else None
-
-
 def is_result(data: object) -> bool:
     """Whether a mapping is a result of rr-opt."""
     return isinstance(data, dict) and all(key in data for key in _MARKS)
@@ -45,9 +32,17 @@ SHIPPED = Path(str(files("rr_opt"))) / "data" / "prototype"
 
 
 def read_document(path: Path) -> FileData:
-    """The data of a YAML file, or of a result. Raises InvalidFileError with all that is wrong."""
+    """The data of a YAML file, or of a result. Raises InvalidFileError with all that is wrong.
+
+    A result may hold more numbers than an input file may, and no line of it is worth naming.
+    """
     content = read_content(path)
-    return parse_result(content, str(path)) or parse_yaml(content, str(path))
+    if content.lstrip().startswith(b"{"):
+        with suppress(ValueError, RecursionError):
+            data = json.loads(content)
+            if is_result(data):
+                return FileData(str(path), data, {})
+    return parse_yaml(content, str(path))
 
 
 def linked(
@@ -103,11 +98,9 @@ def experiment_path(path: Path) -> Path:
 
 def recording_path(path: Path) -> Path:
     """The first file of a ROS 2 bag's folder; any other path as it is."""
-    try:
+    with suppress(OSError, ValueError):
         if (path / "metadata.yaml").is_file() and not (path / EXPERIMENT).exists():
             return min((*path.glob("*.mcap"), *path.glob("*.db3")), default=path)
-    except (OSError, ValueError):
-        pass
     return path
 
 

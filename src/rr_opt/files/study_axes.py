@@ -1,20 +1,186 @@
-"""What a study varies, as axes: each a row of values, which are combined with every other's."""
+"""What a study varies: keys of a problem, in axes whose values are combined with every other's."""
 
 import math
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from functools import lru_cache
+from typing import Annotated, Any, Literal
 
 import numpy as np
+from pydantic import Field, JsonValue, SkipValidation, WithJsonSchema, create_model
 
-from rr_opt.files.fields import validate
+from rr_opt.files.fields import FileModel, schema_of, validate
 from rr_opt.files.issue import Issue
-from rr_opt.files.problem_model import MOST_CASES, RangeModel
-from rr_opt.files.study_keys import ProblemKey, key_of
-from rr_opt.files.yaml_text import FileData, KeyPath
-from rr_opt.messages import shown
+from rr_opt.files.problem_file import ProblemModel
+from rr_opt.files.yaml_text import FileData, KeyPath, path_text
+from rr_opt.messages import shown, unknown_word
 from rr_opt.outcome import InputError
 from rr_opt.units import to_si, unit_written
+
+MOST_CASES = 100_000
+
+
+def _number(description: str, **default: Any) -> Any:
+    """A field read later, when the unit of its key is known."""
+    kinds: list[JsonValue] = [{"type": "number"}, {"type": "string"}]
+    return Field(description=description, json_schema_extra={"anyOf": kinds}, **default)
+
+
+# `from` is no name that a class body can hold.
+RangeModel: Any = create_model(
+    "RangeModel",
+    __base__=FileModel,
+    __doc__="Values from one to another, both included. Give count or step, not both.",
+    **{
+        "from": (Any, _number("The first value, with its unit if it has one.")),
+        "to": (Any, _number("The last value.")),
+        "count": (
+            Annotated[int, Field(ge=2, le=MOST_CASES)],
+            Field(default=None, description="How many values."),
+        ),
+        "step": (Any, _number("From one value to the next.", default=None)),
+        "spacing": (
+            Literal["linear", "log"],
+            Field(default="linear", description="log: each value is the last times a factor."),
+        ),
+    },
+)
+
+
+_VALUES: JsonValue = {
+    "type": "array",
+    "minItems": 1,
+    "description": "The values, one after another.",
+}
+_ONE: JsonValue = {"anyOf": [_VALUES, RangeModel.model_json_schema()]}
+Varied = Annotated[
+    dict[str, Any], SkipValidation, WithJsonSchema({"type": "object", "additionalProperties": _ONE})
+]
+
+
+class StudyModel(FileModel):
+    """A problem solved again and again with other values of some of its keys.
+
+    A key is named by its path in the problem file, `limits.rate` or `robot.platform2.I`, an entry
+    of a list by its index, `robot.physics[0].force1` or `gait.period[1]`.
+    """
+
+    problem: Annotated[str | ProblemModel | None, SkipValidation] = Field(
+        default=None,
+        description="A problem file, relative to this file, or the problem itself. "
+        "Without it: the paper's prototype.",
+    )
+    vary: Varied = Field(
+        default_factory=dict,
+        description="Keys of the problem, each with a list or a range of values. "
+        "Every combination is a case.",
+    )
+    together: list[Varied] = Field(
+        default_factory=list,
+        description="Groups of keys whose values, as many for each key, are taken in step.",
+    )
+    routes: list[str] | None = Field(
+        default=None,
+        min_length=1,
+        description="Instead of all others: route files, relative to this file, each a case.",
+    )
+
+
+_STEP = re.compile(r"(?:^|\.)([A-Za-z_][A-Za-z0-9_-]*)|\[([0-9]{1,3})\]")
+
+
+@dataclass(frozen=True)
+class ProblemKey:
+    """A key of a problem file.
+
+    unit   SI unit of a quantity, "" of a plain number, None of anything else
+    """
+
+    name: str
+    path: KeyPath
+    unit: str | None
+
+
+def key_of(name: str) -> ProblemKey:
+    """The key of this name. Raises InputError if no problem file has such a key."""
+    path = _split(name)
+    whole = problem_schema()
+    nodes = [whole]
+    unit = None
+    for depth, part in enumerate(path):
+        below, known = [], []
+        for node in nodes:
+            found, offered = _below(node, part, whole)
+            below += found
+            known += offered
+        if not below:
+            raise InputError(_unknown(path[:depth], part, known))
+        nodes = below
+        # An end of a pair has the unit of the pair.
+        units = [node["x-unit"] for node in _unfolded(nodes, whole) if "x-unit" in node]
+        unit = units[0] if units else unit if isinstance(part, int) else None
+    return ProblemKey(name, path, "" if unit == "dimensionless" else unit)
+
+
+@lru_cache
+def problem_schema() -> dict[str, Any]:
+    """The JSON Schema of problem files, read once."""
+    return schema_of(ProblemModel, "problem")
+
+
+def _split(name: str) -> KeyPath:
+    path: list[str | int] = []
+    place = 0
+    while place < len(name):
+        step = _STEP.match(name, place)
+        if step is None:
+            break
+        path.append(step[1] if step[1] else int(step[2]))
+        place = step.end()
+    if place < len(name) or not path:
+        raise InputError(
+            f"Read the key {name!r}. Expected the path of a key in a problem file. "
+            "Write for example `limits.rate` or `robot.physics[0].force1`."
+        )
+    return tuple(path)
+
+
+def _unfolded(nodes: list[dict[str, Any]], whole: dict[str, Any]) -> list[dict[str, Any]]:
+    """The nodes, with references followed and every alternative beside them."""
+    seen: list[dict[str, Any]] = []
+    todo = list(nodes)
+    while todo:
+        node = todo.pop()
+        if "$ref" in node:
+            todo.append(whole["$defs"][node["$ref"].removeprefix("#/$defs/")])
+        todo += [*node.get("anyOf", []), *node.get("oneOf", [])]
+        seen.append(node)
+    return seen
+
+
+def _below(
+    node: dict[str, Any], part: str | int, whole: dict[str, Any]
+) -> tuple[list[dict[str, Any]], list[str]]:
+    """What stands under a key or an index of a node, and the keys that could."""
+    found: list[dict[str, Any]] = []
+    known: list[str] = []
+    for one in _unfolded([node], whole):
+        known += one.get("properties", {})
+        if isinstance(part, int) and "items" in one:
+            found.append(one["items"])
+        elif part in one.get("properties", {}):
+            found.append(one["properties"][part])
+    return found, known
+
+
+def _unknown(before: KeyPath, part: str | int, known: list[str]) -> str:
+    place = f"`{path_text(before)}`" if before else "a problem"
+    if isinstance(part, int):
+        return f"Read the index [{part}]. Expected a key: {place} is no list. Delete the index."
+    if not known:
+        return f"Read `{part}` below {place}. Expected nothing: it has no keys. Delete `.{part}`."
+    return unknown_word(part, list(dict.fromkeys(known)), f"key below {place},")
 
 
 def refuse_conflict(
@@ -157,6 +323,13 @@ class Line:
     numbers: tuple[float, ...] | None
     unit: str
     place: KeyPath
+
+    def given(self, step: int) -> Any:
+        """The value of a step: in SI if it is a number, else as text."""
+        if self.numbers is not None:
+            return self.numbers[step]
+        value = self.values[step]
+        return value if isinstance(value, str) else shown(value)
 
 
 def line_at(

@@ -1,10 +1,11 @@
 """A study file to its cases, each a problem of its own that was checked like any other."""
 
+import copy
 import itertools
 import math
 import re
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -12,85 +13,130 @@ import numpy as np
 
 from rr_opt.files.fields import validate
 from rr_opt.files.issue import InvalidFileError, Issue, has_errors, required
-from rr_opt.files.problem_file import base_sources, problem_from, read_as
-from rr_opt.files.problem_model import StudyModel
-from rr_opt.files.route_study_file import is_of_routes
+from rr_opt.files.problem_file import Sources, base_sources, problem_from, read_as, with_robot
+from rr_opt.files.route_file import is_of_routes
 from rr_opt.files.source import fingerprint
-from rr_opt.files.study_axes import Axis, Line, axes_of
-from rr_opt.files.study_keys import with_values
-from rr_opt.files.yaml_text import FileData, KeyPath
+from rr_opt.files.study_axes import Axis, Line, StudyModel, axes_of
+from rr_opt.files.yaml_text import FileData, KeyPath, path_text
 from rr_opt.messages import shown
 from rr_opt.model.problem import Problem
+from rr_opt.outcome import InputError
+
+Setting = tuple[KeyPath, Any]
+"""Where a value goes in the problem, and the value as a file would hold it."""
+
+
+def with_values(
+    base: Sources, settings: Sequence[Setting], file: Path
+) -> tuple[Sources, list[Issue]]:
+    """The problem with values set in it, and an issue for each that has no place in it.
+
+    Robots are named relative to `file`.
+    """
+    problem, robot = base.problem, base.robot
+    problem = replace(problem, data=copy.deepcopy(problem.data))
+    paths, issues = base.paths, base.issues
+    misplaced: list[Issue] = []
+    # A robot that is named goes first: other settings may change it.
+    for keys, value in sorted(settings, key=lambda setting: len(setting[0])):
+        if keys == ("robot",):
+            changed = replace(problem, data={**problem.data, "robot": value})
+            sources = with_robot(changed, file)
+            problem, robot, issues = changed, sources.robot, sources.issues
+            paths = (*paths, *sources.paths)
+            continue
+        target, below = problem, keys
+        if keys[0] == "robot":
+            if robot is None:
+                continue
+            target = robot = replace(robot, data=copy.deepcopy(robot.data))
+            below = keys[1:]
+        try:
+            _set(target.data, below, value)
+        except InputError as error:
+            misplaced.append(Issue("error", path_text(keys), str(error)))
+    return Sources(paths, problem, robot, issues), misplaced
+
+
+def _set(data: Any, keys: KeyPath, value: Any) -> None:
+    """Set a value in nested data; sections that are missing are made."""
+    for depth, key in enumerate(keys[:-1]):
+        if isinstance(key, str) and isinstance(data, dict):
+            missing: Any = {} if isinstance(keys[depth + 1], str) else []
+            data = data.setdefault(key, missing)
+        else:
+            data = _entry(data, keys[: depth + 1])
+    last = keys[-1]
+    if isinstance(last, str) and isinstance(data, dict):
+        data[last] = value
+        return
+    _entry(data, keys)
+    data[last] = value
+
+
+def _entry(data: Any, keys: KeyPath) -> Any:
+    """What stands at an index that exists."""
+    at = keys[-1]
+    if isinstance(at, int) and isinstance(data, list) and at < len(data):
+        return data[at]
+    held = f"a list of {len(data)}" if isinstance(data, list) else shown(data)
+    wanted = "an entry of that number" if isinstance(at, int) else "keys with values under it"
+    raise InputError(
+        f"The problem has {held} at `{path_text(keys[:-1])}`. Expected {wanted}, to set "
+        f"`{path_text(keys)}`. Write it in the problem first."
+    )
+
 
 _NUMBERS = re.compile(r"[-+]?[0-9][0-9.e+-]*|'[^']*'")
 
 
-class CaseIssues:
-    """Gathers the issues of case after case.
+def _issues_of_cases(
+    document: FileData,
+    axes: Sequence[Axis],
+    found: Mapping[Issue, Sequence[tuple[int, ...]]],
+    count: int,
+) -> Iterator[Issue]:
+    """The issues of `count` cases, given with the steps of the axes that have them.
 
     An issue that a varied value is the reason of stands at that value in the study file and says
     which case has it first; one of the problem itself, which every case has, stands where it is.
     """
+    warned: set[tuple[KeyPath, str]] = set()
+    for issue, cases in found.items():
+        line = next((line for axis in axes for line in axis.lines if _is_about(issue, line)), None)
+        if line is None and len(cases) == count:
+            yield issue
+            continue
+        place: KeyPath = line.place if line else ()
+        # A warning about one value says what it would say about the next.
+        alike = place, _NUMBERS.sub("", issue.message)
+        if issue.level == "warning" and alike in warned:
+            continue
+        warned.add(alike)
+        where = f"{issue.path}: " if issue.path else ""
+        which = _cases_text(axes, cases) if len(cases) < count else ""
+        yield document.issue(issue.level, place, f"{where}{issue.message}{which}")
 
-    def __init__(self, document: FileData, axes: Sequence[Axis]):
-        self._document, self._axes = document, axes
-        self._lines = [line for axis in axes for line in axis.lines]
-        self._cases = 0
-        self._seen: dict[Issue, tuple[tuple[int, ...], int]] = {}
 
-    def add(self, steps: tuple[int, ...], issues: Sequence[Issue]) -> None:
-        """Note the issues of the case at these steps of the axes."""
-        self._cases += 1
-        for issue in dict.fromkeys(issues):
-            first, count = self._seen.get(issue, (steps, 0))
-            self._seen[issue] = first, count + 1
+def _is_about(issue: Issue, line: Line) -> bool:
+    # A robot's own file has its keys without `robot.`, a study those of its problem with `problem.`
+    # before them.
+    name = line.key.name
+    return any(
+        issue.path == varied or issue.path.startswith((f"{varied}.", f"{varied}["))
+        for varied in (name, name.removeprefix("robot."), f"problem.{name}")
+    )
 
-    def issues(self) -> list[Issue]:
-        """All of them, those of one place together."""
-        new: list[Issue] = []
-        warned: set[tuple[KeyPath, str]] = set()
-        for issue, (steps, count) in self._seen.items():
-            line = self._reason(issue)
-            if line is None and count == self._cases:
-                new.append(issue)
-                continue
-            place: KeyPath = line.place if line else ()
-            # A warning about one value says what it would say about the next.
-            alike = place, _NUMBERS.sub("", issue.message)
-            if issue.level == "warning" and alike in warned:
-                continue
-            warned.add(alike)
-            where = f"{issue.path}: " if issue.path else ""
-            message = f"{where}{issue.message}{self._cases_text(steps, count)}"
-            new.append(self._document.issue(issue.level, place, message))
-        return new
 
-    def _cases_text(self, steps: tuple[int, ...], count: int) -> str:
-        if count == self._cases:
-            return ""
-        case = ", ".join(self._value(one, steps) for one in self._lines)
-        more = f", and {count - 1} more" if count > 1 else ""
-        return f" (In the case {case}{more}.)"
-
-    def _reason(self, issue: Issue) -> Line | None:
-        """The varied key that an issue is about, if it is about one."""
-        for line in self._lines:
-            name = line.key.name
-            # A robot's own file has its keys without `robot.`, a study those of its problem with
-            # `problem.` before them.
-            for varied in (name, name.removeprefix("robot."), f"problem.{name}"):
-                if issue.path == varied or issue.path.startswith((f"{varied}.", f"{varied}[")):
-                    return line
-        return None
-
-    def _value(self, line: Line, steps: tuple[int, ...]) -> str:
-        for axis, step in zip(self._axes, steps, strict=True):
-            if line in axis.lines:
-                value = line.values[step]
-                finite = isinstance(value, float) and math.isfinite(value)
-                text = f"{value:.6g}" if finite else shown(value)
-                return f"{line.key.name} = {text}"
-        return line.key.name
+def _cases_text(axes: Sequence[Axis], cases: Sequence[tuple[int, ...]]) -> str:
+    values = []
+    for axis, step in zip(axes, cases[0], strict=True):
+        for line in axis.lines:
+            value = line.values[step]
+            finite = isinstance(value, float) and math.isfinite(value)
+            values.append(f"{line.key.name} = {f'{value:.6g}' if finite else shown(value)}")
+    more = f", and {len(cases) - 1} more" if len(cases) > 1 else ""
+    return f" (In the case {', '.join(values)}{more}.)"
 
 
 @dataclass(frozen=True)
@@ -117,18 +163,11 @@ class Study:
 
     def inputs(self, case: int) -> dict[str, Any]:
         """The varied keys of a case: SI where they are numbers, as written elsewhere."""
-        found: dict[str, Any] = {}
-        for axis, step in zip(self.axes, self.steps(case), strict=True):
-            for line in axis.lines:
-                value = line.values[step]
-                found[line.key.name] = (
-                    line.numbers[step]
-                    if line.numbers is not None
-                    else value
-                    if isinstance(value, str)
-                    else shown(value)
-                )
-        return found
+        return {
+            line.key.name: line.given(step)
+            for axis, step in zip(self.axes, self.steps(case), strict=True)
+            for line in axis.lines
+        }
 
 
 def read_study(path: str | Path) -> tuple[Study, list[Issue]]:
@@ -160,7 +199,7 @@ def study_from(document: FileData, file: Path) -> tuple[Study | None, list[Issue
         return None, list(dict.fromkeys([*issues, *problem_from(base)[1]]))
     problems: list[Problem] = []
     paths = [file, *base.paths]
-    found_in = CaseIssues(document, axes)
+    found_in: dict[Issue, list[tuple[int, ...]]] = {}
     for steps in itertools.product(*(range(len(axis)) for axis in axes)):
         settings = [
             (line.key.path, line.values[step])
@@ -170,10 +209,11 @@ def study_from(document: FileData, file: Path) -> tuple[Study | None, list[Issue
         sources, misplaced = with_values(base, settings, file)
         paths += [path for path in sources.paths if path not in paths]
         problem, of_case = problem_from(sources)
-        found_in.add(steps, [*misplaced, *of_case])
+        for issue in dict.fromkeys([*misplaced, *of_case]):
+            found_in.setdefault(issue, []).append(steps)
         if problem is not None:
             problems.append(problem)
-    issues += found_in.issues()
+    issues += _issues_of_cases(document, axes, found_in, math.prod(map(len, axes)))
     if has_errors(issues):
         return None, issues
     return Study(file.stem, tuple(axes), tuple(problems), fingerprint(paths)), issues

@@ -3,7 +3,7 @@
 Nothing is filled in, nothing is smoothed and no value is changed but for whole turns of an angle.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 
@@ -14,7 +14,7 @@ from rr_opt.formatting import counted
 from rr_opt.model.experiment import Flag, Recording
 from rr_opt.recordings.gaps import Gap, Jump, gaps, jumps, without_inventions
 from rr_opt.recordings.noise import NoiseEstimate
-from rr_opt.recordings.nuisances.units import unit_notices
+from rr_opt.recordings.nuisances.plausible import unit_notices
 from rr_opt.recordings.outliers import outliers, step_of, usual_noise
 from rr_opt.recordings.time_axis import LACKING, time_step
 from rr_opt.recordings.warnings import Notice, notice, size_text
@@ -28,13 +28,12 @@ def unwrapped(angle: Array) -> Array:
     return whole
 
 
-def turns_taken(angle: Array) -> int:
+def _turns_taken(angle: Array) -> int:
     """How often the angle (n,), rad, jumps by a turn from one sample to the next."""
     known = angle[np.isfinite(angle)]
     return int((np.abs(np.diff(np.unwrap(known) - known)) > np.pi).sum()) if len(known) else 0
 
 
-_ANGLES = ("psi", "phi")
 LARGEST = 1e12
 """What is beyond is no measurement in any unit, and would overflow where it is squared."""
 
@@ -59,13 +58,12 @@ class Cleaned:
 def clean(recording: Recording) -> Cleaned:
     """Look at every channel of a recording; its own doubts stay with it."""
     recording, inventions = without_inventions(_of_numbers(recording))
-    turns = {one: turns_taken(recording.data(one)) for one in _ANGLES}
-    units = unit_notices(recording)
-    if units:
-        turns = {}
+    turns = {one: _turns_taken(recording.data(one)) for one in ("psi", "phi")}
+    units = tuple(unit_notices(recording))
+    turns = {} if units else {one: count for one, count in turns.items() if count}
     recording = _without_turns(recording, turns)
     lacking = np.diff(recording.t) > LACKING * time_step(recording.t)
-    values, flags, sigma, noise, found, steps = {}, {}, {}, {}, {}, {}
+    flags, sigma, noise, found, steps = {}, {}, {}, {}, {}
     for channel in recording.channels:
         y = recording.data(channel)
         stated = recording.sigma[channel]
@@ -73,10 +71,7 @@ def clean(recording: Recording) -> Cleaned:
         steps[channel] = step_of(y)
         allowed = np.hypot(allowed, steps[channel] / np.sqrt(12))
         seen = outliers(recording.t, y, allowed)
-        values[channel] = recording.values[channel]
-        flags[channel] = recording.flags[channel] | np.where(
-            seen.outlier, np.uint8(Flag.OUTLIER), np.uint8(0)
-        ).astype(np.uint8)
+        flags[channel] = recording.flags[channel] | seen.outlier * np.uint8(Flag.OUTLIER)
         noise[channel] = seen.noise
         unsaid = not np.isfinite(stated).any()
         sigma[channel] = np.full(len(y), seen.sigma) if unsaid else stated
@@ -86,7 +81,7 @@ def clean(recording: Recording) -> Cleaned:
         found[channel] = tuple(jump for jump in all_jumps if not lacking[jump.row])
     made = replace(recording, sigma=MappingProxyType(sigma), flags=MappingProxyType(flags))
     holes = gaps(made)
-    turned = [notice("turns.angle", angle=one, count=n) for one, n in turns.items() if n]
+    turned = [notice("turns.angle", angle=one, count=n) for one, n in turns.items()]
     channels = channel_notices(made, noise, steps, holes, found, stated=recording.sigma)
     doubts = (*units, *inventions, *turned, *channels)
     return Cleaned(made, MappingProxyType(noise), holes, MappingProxyType(found), doubts)
@@ -101,13 +96,12 @@ def _of_numbers(recording: Recording) -> Recording:
     return replace(recording, flags=MappingProxyType(flags))
 
 
-def _without_turns(recording: Recording, turns: Mapping[str, int]) -> Recording:
+def _without_turns(recording: Recording, angles: Iterable[str]) -> Recording:
     """The same with the angles that jump by turns unwrapped; flagged samples stay as read."""
     values = dict(recording.values)
-    for angle, count in turns.items():
-        if count:
-            whole = unwrapped(recording.data(angle))
-            values[angle] = np.where(np.isfinite(whole), whole, values[angle])
+    for angle in angles:
+        whole = unwrapped(recording.data(angle))
+        values[angle] = np.where(np.isfinite(whole), whole, values[angle])
     return replace(recording, values=MappingProxyType(values))
 
 

@@ -29,36 +29,44 @@ Reference = Callable[[Array], tuple[Array, Array]]
 """The reference and its rate at times (m,), rad and rad/s; NaN where it is not known."""
 
 _FEWEST = 20
-_COVERED = 1.959964
+COVERED = 1.959964
 """Standard deviations on either side of 95 %."""
 
 
 @dataclass(frozen=True)
-class ClockFit:
-    """The reference's time is t + offset + drift (t - t_mid).
+class ClockShift:
+    """Another clock's time is t + offset + drift (t - t_mid).
 
     offset, drift  s, and s per s
-    scale, bias    of phi against the reference; 1, and rad
-    sigma          standard deviations of those four, in this order
+    sigma          their standard deviations, and of others that a kind of shift has
     t_mid          the middle of the samples that were used, s
-    residual       root mean square of what is left, rad
-    samples        how many were used
     """
 
     offset: float
     drift: float
-    scale: float
-    bias: float
-    sigma: tuple[float, float, float, float]
+    sigma: tuple[float, ...]
     t_mid: float
-    residual: float
-    samples: int
 
     def interval(self, which: int = 0) -> tuple[float, float]:
-        """95 % interval of offset (0), drift (1), scale (2) or bias (3)."""
-        value = (self.offset, self.drift, self.scale, self.bias)[which]
-        half = _COVERED * self.sigma[which]
+        """95 % interval of offset (0), drift (1) or, of a fit, scale (2) or bias (3)."""
+        value = getattr(self, ("offset", "drift", "scale", "bias")[which])
+        half = COVERED * self.sigma[which]
         return value - half, value + half
+
+
+@dataclass(frozen=True)
+class ClockFit(ClockShift):
+    """The shift to the reference's clock; its sigma has scale and bias, too.
+
+    scale, bias  of phi against the reference; 1, and rad
+    residual     root mean square of what is left, rad
+    samples      how many were used
+    """
+
+    scale: float
+    bias: float
+    residual: float
+    samples: int
 
 
 def clock_fit(t: Array, phi: Array, reference: Reference, offset: float) -> ClockFit | None:
@@ -94,10 +102,9 @@ def clock_fit(t: Array, phi: Array, reference: Reference, offset: float) -> Cloc
     variances = _variances(J, left)
     if variances is None:
         return None
-    sigma = np.sqrt(variances)
-    o, d, s, b = (float(value) for value in found.x)
-    rms = float(np.sqrt(np.mean(left**2)))
-    return ClockFit(o, d, s, b, tuple(sigma.tolist()), t_mid, rms, len(t))  # type: ignore[arg-type]
+    offset, drift, scale, bias = found.x.tolist()
+    sigma, rms = tuple(np.sqrt(variances).tolist()), float(np.sqrt(np.mean(left**2)))
+    return ClockFit(offset, drift, sigma, t_mid, scale, bias, rms, len(t))
 
 
 def _variances(J: Array, left: Array) -> Array | None:
@@ -145,23 +152,19 @@ def against_command(
     from_rest: the command begins at its time 0, and its first angle is held before.
     """
     reference = command_reference(gait, from_rest=from_rest)
-    shifts = (np.arange(_SHIFTS) / _SHIFTS - 0.5) * gait.period
-    start = _best_shift(t, phi, reference, shifts)
-    return None if start is None else clock_fit(t, phi, reference, start)
-
-
-def _best_shift(t: Array, phi: Array, reference: Reference, shifts: Array) -> float | None:
     known = np.flatnonzero(np.isfinite(phi))
     known = known[:: max(1, len(known) // 2000)]
     if len(known) < 2 or np.ptp(phi[known]) == 0:
         return None
     seen = phi[known] - phi[known].mean()
-    alike = []
-    for shift in shifts:
+
+    def alike(shift: float) -> float:
         g, _ = reference(t[known] + shift)
         g = g - g.mean()
-        alike.append(float(seen @ g) / max(float(np.linalg.norm(g)), 1e-300))
-    return float(shifts[int(np.argmax(alike))])
+        return float(seen @ g) / max(float(np.linalg.norm(g)), 1e-300)
+
+    shifts = (np.arange(_SHIFTS) / _SHIFTS - 0.5) * gait.period
+    return clock_fit(t, phi, reference, max(shifts.tolist(), key=alike))
 
 
 RUNS_OFF = 1e-5

@@ -5,8 +5,6 @@ before and one through a few after are compared half way between the two. At a k
 jump they do not.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 
@@ -113,7 +111,7 @@ def without_inventions(recording: Recording) -> tuple[Recording, tuple[Notice, .
         stretches = runs(member)
         if not stretches or member.mean() > _COMMON:
             continue
-        flag = (member * np.uint8(Flag.OUTLIER)).astype(np.uint8)
+        flag = member * np.uint8(Flag.OUTLIER)
         flags = {channel: own | flag for channel, own in recording.flags.items()}
         recording = replace(recording, flags=MappingProxyType(flags))
         first, last = max(stretches, key=lambda one: one[1] - one[0])
@@ -159,35 +157,25 @@ class Jump:
     size: float
 
 
-@dataclass(frozen=True)
-class _Steps:
-    """What parabolas through some samples to either side make of the place half way.
+def _between(y: Array, side: int) -> tuple[Array, Array, float]:
+    """What parabolas through some samples to either side make of the places half way.
 
-    size   of the jump there (m,), and the change of slope, bend (m,), per step of time
-    noise  standard deviation of the size, in that of a sample
+    The sizes of the jumps there (m,), the changes of slope (m,), per step of time; and the standard
+    deviation of a size, in that of a sample.
     """
+    since = -(np.arange(side) + 0.5)
+    level, slope, _ = np.linalg.pinv(np.vander(since, 3, increasing=True))
+    before, after = (sliding_window_view(y, side)[k : len(y) - 2 * side + 1 + k] for k in (0, side))
+    # The sides are mirrored, so their slopes have opposite signs.
+    size = after @ level - before @ level[::-1]
+    bend = after @ slope + before @ slope[::-1]
+    return size, bend, float(np.sqrt(2 * (level**2).sum()))
 
-    size: Array
-    bend: Array
-    noise: float
 
-    @property
-    def usual(self) -> float:
-        """Standard deviation of the bulk of the sizes."""
-        known = self.size[np.isfinite(self.size)]
-        return float(np.median(np.abs(known))) / 0.6745 if known.size else 0.0
-
-    @classmethod
-    def of(cls, y: Array, side: int) -> _Steps:
-        since = -(np.arange(side) + 0.5)
-        level, slope, _ = np.linalg.pinv(np.vander(since, 3, increasing=True))
-        before, after = (
-            sliding_window_view(y, side)[k : len(y) - 2 * side + 1 + k] for k in (0, side)
-        )
-        # The sides are mirrored, so their slopes have opposite signs.
-        size = after @ level - before @ level[::-1]
-        bend = after @ slope + before @ slope[::-1]
-        return cls(size, bend, float(np.sqrt(2 * (level**2).sum())))
+def _bulk(size: Array) -> float:
+    """Standard deviation of the bulk of sizes."""
+    known = size[np.isfinite(size)]
+    return float(np.median(np.abs(known))) / 0.6745 if known.size else 0.0
 
 
 def jumps(y: Array, sigma: float) -> tuple[Jump, ...]:
@@ -198,13 +186,12 @@ def jumps(y: Array, sigma: float) -> tuple[Jump, ...]:
     if len(y) < 2 * _SIDES[0] or not sigma > 0:
         return ()
     # Beside next to no noise, parabolas miss what the motion bends more: the shorter the less.
-    steps = [_Steps.of(y, side) for side in _SIDES]
-    scales = [max(sigma * one.noise, one.usual) for one in steps]
+    found = [_between(y, side) for side in _SIDES]
+    scales = [max(sigma * noise, _bulk(size)) for size, _, noise in found]
     k = int(np.argmin(scales))
+    size, bend, _ = found[k]
     # A kink that is not half way leaves the levels apart by a part of its change of slope.
-    beyond = np.maximum(np.abs(steps[k].size) - _KINK * np.abs(steps[k].bend), 0.0)
+    beyond = np.maximum(np.abs(size) - _KINK * np.abs(bend), 0.0)
     off = np.nan_to_num(beyond / scales[k])
     peak = (off > _SURE) & (off >= maximum_filter1d(off, _APART))
-    return tuple(
-        Jump(int(i) + _SIDES[k] - 1, float(steps[k].size[i])) for i in np.flatnonzero(peak)
-    )
+    return tuple(Jump(int(i) + _SIDES[k] - 1, float(size[i])) for i in np.flatnonzero(peak))

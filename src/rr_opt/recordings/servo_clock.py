@@ -16,9 +16,16 @@ from scipy.interpolate import CubicHermiteSpline
 from rr_opt.array import Array
 from rr_opt.model.experiment import Recording, Start
 from rr_opt.model.gait import Gait
-from rr_opt.recordings.clock_fit import ClockFit, Reference, clock_fit, command_reference
+from rr_opt.recordings.clock_fit import (
+    COVERED,
+    ClockFit,
+    ClockShift,
+    Reference,
+    clock_fit,
+    command_reference,
+)
 from rr_opt.recordings.outliers import outliers
-from rr_opt.recordings.readers.servo_log import ServoLog
+from rr_opt.recordings.readers.plain_csv import ServoLog
 from rr_opt.recordings.smoothing import derivatives
 from rr_opt.recordings.warnings import Notice, notice
 
@@ -156,25 +163,19 @@ def goal_fits(log: ServoLog, gait: Gait, *, from_rest: bool) -> tuple[ClockFit, 
     return likely_fits(t, goal, reference, shifts[lowest].tolist())
 
 
-_COVERED = 1.959964
 _LOSS = 1e-3
 """phi may move by so much less than the servo's shaft before play is suspected."""
 
 
 @dataclass(frozen=True)
-class Shift:
-    """The command's time is t + offset + drift (t - t_mid).
+class Shift(ClockShift):
+    """The shift to the command's clock.
 
-    offset, drift  s, and s per s; sigma: their standard deviations
-    play           by how much of the offset phi may be late behind the servo's shaft, s, as what
-                   gives between them makes phi move less
-    applied        whether the recording was moved: only if the offset or the drift is surely there
+    play     by how much of the offset phi may be late behind the servo's shaft, s, as what gives
+             between them makes phi move less
+    applied  whether the recording was moved: only if the offset or the drift is surely there
     """
 
-    offset: float
-    drift: float
-    sigma: tuple[float, float]
-    t_mid: float
     play: float
     applied: bool
 
@@ -182,16 +183,11 @@ class Shift:
         """The command's times of the recording's times t (n,), s."""
         return t + self.offset + self.drift * (t - self.t_mid)
 
-    def interval(self, which: int = 0) -> tuple[float, float]:
-        """95 % interval of the offset (0), s, or of the drift (1)."""
-        value, half = (self.offset, self.drift)[which], _COVERED * self.sigma[which]
-        return value - half, value + half
-
     def __str__(self) -> str:
         low, high = self.interval()
         return (
             f"t {self.offset:+.5f} s (95 %: {low:+.5f} to {high:+.5f} s), and gains "
-            f"{1e6 * self.drift:+.3g} +- {_COVERED * 1e6 * self.sigma[1]:.2g} us a second"
+            f"{1e6 * self.drift:+.3g} +- {COVERED * 1e6 * self.sigma[1]:.2g} us a second"
         )
 
 

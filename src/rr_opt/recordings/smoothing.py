@@ -81,16 +81,8 @@ few samples are left, at most uneven times, rounding takes more than the first. 
 than rounding can take: no entry of the precision is larger than 1e13."""
 
 
-@dataclass(frozen=True)
-class Precision:
-    """A block-tridiagonal matrix: blocks on the diagonal (n, 3, 3), and above it (n - 1, 3, 3)."""
-
-    diagonal: Array
-    above: Array
-
-
-def precision(step: Array, ratio: float, seen: Array, vague: float) -> Precision:
-    """That of the states at n nodes.
+def precision(step: Array, ratio: float, seen: Array, vague: float) -> tuple[Array, Array]:
+    """That of the states at n nodes: blocks on its diagonal (n, 3, 3), and above it (n - 1, 3, 3).
 
     step: (n - 1,), between nodes; ratio: q over a sample's variance; seen: (n, 3, 3), what the
     samples at a node say of its state, in units of one over that variance.
@@ -103,11 +95,12 @@ def precision(step: Array, ratio: float, seen: Array, vague: float) -> Precision
     D = seen + vague * np.eye(ORDER)
     D[1:] += W
     D[:-1] += np.swapaxes(A, 1, 2) @ WA
-    return Precision(D, -np.swapaxes(WA, 1, 2))
+    return D, -np.swapaxes(WA, 1, 2)
 
 
-def mean(P: Precision, pull: Array) -> Array:
-    """The states' means (n, 3); pull: (n, 3), what the samples make of each."""
+def mean(D: Array, B: Array, pull: Array) -> Array:
+    """Of a precision with these blocks: the states' means (n, 3); pull: (n, 3), what the samples
+    make of each."""
     n = len(pull)
     size = ORDER * n
     band = np.zeros((2 * ORDER, size))
@@ -115,8 +108,8 @@ def mean(P: Precision, pull: Array) -> Array:
         for j in range(ORDER):
             columns = np.arange(n) * ORDER + j
             if i <= j:
-                band[2 * ORDER - 1 + i - j, columns] = P.diagonal[:, i, j]
-            band[ORDER - 1 + i - j, columns[1:]] = P.above[:, i, j]
+                band[2 * ORDER - 1 + i - j, columns] = D[:, i, j]
+            band[ORDER - 1 + i - j, columns[1:]] = B[:, i, j]
     right = pull.reshape(size)
     return solveh_banded(band, right, overwrite_ab=True, check_finite=False).reshape(n, ORDER)
 
@@ -268,12 +261,12 @@ def _solved(step: Array, ratio: float, seen: Array, pull: Array) -> tuple[Array,
     """Means (n, 3) and covariances (n, 3, 3), with as vague a prior as rounding allows."""
     for vague in _VAGUE[:-1]:
         with suppress(np.linalg.LinAlgError):
-            return _posterior(precision(step, ratio, seen, vague), pull)
-    return _posterior(precision(step, ratio, seen, _VAGUE[-1]), pull)
+            return _posterior(*precision(step, ratio, seen, vague), pull)
+    return _posterior(*precision(step, ratio, seen, _VAGUE[-1]), pull)
 
 
-def _posterior(P: Precision, pull: Array) -> tuple[Array, Array]:
-    return mean(P, pull), covariance(P.diagonal, P.above)[0]
+def _posterior(D: Array, B: Array, pull: Array) -> tuple[Array, Array]:
+    return mean(D, B, pull), covariance(D, B)[0]
 
 
 def _nodes(u: Array) -> NDArray[np.int_]:

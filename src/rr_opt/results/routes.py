@@ -7,7 +7,7 @@ from typing import Any
 
 from rr_opt.documents import document as doc
 from rr_opt.documents.archive import strict_json
-from rr_opt.files.route_study_file import RouteStudy
+from rr_opt.files.route_file import RouteStudy
 from rr_opt.outcome import Status
 from rr_opt.results.result import Result
 

@@ -9,7 +9,7 @@ from rr_opt.model.gait import SineGait
 from rr_opt.recordings.clock_fit import against_command
 from rr_opt.recordings.nuisances import command
 from rr_opt.recordings.nuisances.evidence import ExaminedRecording
-from rr_opt.recordings.readers.servo_log import ServoLog
+from rr_opt.recordings.readers.plain_csv import ServoLog
 from rr_opt.recordings.servo_clock import against_log, log_notices
 
 GAIT = SineGait(0.7, 1.1, 0.1)

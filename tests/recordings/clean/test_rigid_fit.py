@@ -4,8 +4,7 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from rr_opt.model.experiment import Layout
-from rr_opt.recordings.markers.layout import bodies_of
-from rr_opt.recordings.markers.rigid import fit
+from rr_opt.recordings.markers.rigid import bodies_of, fit
 from tests.recordings.clean.world import LAYOUT, markers, motion
 
 SIGMA = 5e-4

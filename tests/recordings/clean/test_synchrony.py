@@ -6,7 +6,7 @@ from scipy.signal import lfilter
 
 from rr_opt.model.experiment import CHANNELS, Recording
 from rr_opt.model.gait import SineGait
-from rr_opt.recordings.readers.servo_log import ServoLog
+from rr_opt.recordings.readers.plain_csv import ServoLog
 from rr_opt.recordings.servo_clock import synchronised
 
 COUNT = np.radians(300) / 1024

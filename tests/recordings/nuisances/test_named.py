@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from rr_opt.model.gait import SineGait
-from rr_opt.recordings.nuisances import late
+from rr_opt.recordings.nuisances import frame
 from rr_opt.recordings.nuisances.evidence import FAR, ROLLING, ExaminedRecording
 from tests.recordings.nuisances.spoilt import GAIT, NOISE, ROBOT, recording, told
 
@@ -111,7 +111,7 @@ def test_the_search_for_delays_costs_no_more_at_a_higher_rate(monkeypatch):
     monkeypatch.setattr(
         ExaminedRecording, "slip_of", lambda *given: tries.append(1) or size(*given)
     )
-    late._best(ExaminedRecording(quick, ROBOT, GAIT, "running"), (3,))
+    frame._best(ExaminedRecording(quick, ROBOT, GAIT, "running"), (3,))
     assert len(tries) < 300
 
 

@@ -9,7 +9,7 @@ from rr_opt.files.issue import InvalidFileError
 from rr_opt.model.experiment import Column
 from rr_opt.recordings.experiment import experiment_of, read_experiment
 from rr_opt.recordings.readers import ReadOptions, ServoLog, read_file
-from rr_opt.recordings.readers.columns import columns_from
+from rr_opt.recordings.readers.plain_csv import columns_from
 from tests.recordings.read.test_experiment import GAIT, HEAD, motion, plain
 
 FOREIGN = """\

@@ -9,7 +9,7 @@ from rr_opt.model.experiment import Recording
 from rr_opt.recordings.readers import read_file
 from rr_opt.recordings.readers.marker_rows import MarkerData
 from rr_opt.recordings.readers.netcdf import write_netcdf
-from rr_opt.recordings.readers.servo_log import ServoLog
+from rr_opt.recordings.readers.plain_csv import ServoLog
 
 TEXTS = {
     "plain": ("t,x,y,psi,phi\n0,1,2,3,4\n1,1,2,3,4\n", Recording),

@@ -10,7 +10,7 @@ import pytest
 from rr_opt.files.issue import InvalidFileError
 from rr_opt.model.experiment import CountScale
 from rr_opt.recordings.readers import ReadOptions, read_file
-from rr_opt.recordings.readers.servo_log import ServoLog
+from rr_opt.recordings.readers.plain_csv import ServoLog
 
 TEXT = "t,goal,present\n7.000,512,500\n7.004,614.4,512\n7.008,,1023\n7.012,0,\n"
 

@@ -13,15 +13,18 @@ from rr_opt.messages import listed
 from rr_opt.model.experiment import CHANNELS, Flag, Layout, Recording
 from rr_opt.recordings.cleaning import unwrapped
 from rr_opt.recordings.markers.calibration import Calibration, calibration
-from rr_opt.recordings.markers.layout import (
+from rr_opt.recordings.markers.rigid import (
     Bodies,
     Complex,
+    RigidFit,
     bodies_of,
     check_scale,
+    fit,
+    marker_noise,
     places_of,
+    refined,
     seen_from_above,
 )
-from rr_opt.recordings.markers.rigid import RigidFit, fit, marker_noise, refined
 from rr_opt.recordings.markers.swaps import (
     Ghosts,
     Order,
@@ -142,7 +145,13 @@ def fit_markers(
         _rms(fitted.residual),
         tilt(bodies, height), tuple(swaps), ghosts, (),
     )  # fmt: skip
-    doubts = _notices(data, layout, made, learnt, always, noise_sigma)
+    doubts = (
+        *_of_layout(data, layout, made, learnt),
+        *_of_names(data, made, always),
+        *_of_ghosts(data, made),
+        *_of_noise(made, noise_sigma),
+        *_of_tilt(data, made),
+    )
     source = {**data.source, "motion": "a rigid fit of both platforms to the markers, by frame"}
     recording = replace(
         made.recording, source=MappingProxyType(source), doubts=(*data.doubts, *doubts)
@@ -197,24 +206,6 @@ _STATED = 1.5
 """Times the stated noise from which on the residuals contradict it."""
 _TILTS = 6.0
 """Times the typical tilt from which on a frame's is reported."""
-
-
-def _notices(
-    data: MarkerData,
-    layout: Layout,
-    made: MarkerFit,
-    learnt: Calibration | None,
-    always: Order | None,
-    noise_sigma: float | None,
-) -> tuple[Notice, ...]:
-    """All of them, the gravest first."""
-    return (
-        *_of_layout(data, layout, made, learnt),
-        *_of_names(data, made, always),
-        *_of_ghosts(data, made),
-        *_of_noise(made, noise_sigma),
-        *_of_tilt(data, made),
-    )
 
 
 def _of_layout(

@@ -18,8 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rr_opt.array import Array
-from rr_opt.recordings.markers.layout import Bodies
-from rr_opt.recordings.markers.rigid import beyond, fit, marker_noise
+from rr_opt.recordings.markers.rigid import Bodies, beyond, fit, marker_noise
 
 Order = tuple[int, ...]
 """For each marker the column that it is in; in its own place otherwise."""

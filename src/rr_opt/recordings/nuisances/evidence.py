@@ -126,15 +126,18 @@ class ExaminedRecording:
         """Of the recording as it is."""
         return self.slip_of(self.motion)
 
+    def _strides(self, motion: Iterable[Array], every: int = 1) -> list[Array]:
+        """dx, dy, dpsi and dphi over every `every`-th stride, and the means of psi and phi."""
+        ends = [(one[: -self.stride : every], one[self.stride :: every]) for one in motion]
+        moved = [last - first for first, last in ends]
+        return [*moved, *((first + last) / 2 for first, last in ends[2:])]
+
     def slip_of(self, motion: Iterable[Array], every: int = 1, scale: float = 1.0) -> Slip:
         """Of a motion that may have been, at every `every`-th stride.
 
         scale: of x and y, and so of their noise, in the motion against the recording.
         """
-        x, y, psi, phi = motion
-        S, k = self.stride, every
-        dx, dy, dpsi, dphi = ((one[S:] - one[:-S])[::k] for one in (x, y, psi, phi))
-        h, turn = ((one[S:] + one[:-S])[::k] / 2 for one in (psi, phi))
+        dx, dy, dpsi, dphi, h, turn = self._strides(motion, every)
         side1, along = np.cos(h) * dy - np.sin(h) * dx, np.cos(h) * dx + np.sin(h) * dy
         side2 = np.cos(h + turn) * dy - np.sin(h + turn) * dx
         dpsi2 = -(dpsi + dphi)
@@ -148,10 +151,7 @@ class ExaminedRecording:
     def forgiven(self) -> Slip:
         """What is left of the recording as it is if small faults are taken out of it that any
         laboratory has: a point tracked beside the joint, zeros of psi and phi, and lengths."""
-        x, y, psi, phi = self.motion
-        S = self.stride
-        dx, dy, dpsi, dphi = (one[S:] - one[:-S] for one in (x, y, psi, phi))
-        h, turn = ((one[S:] + one[:-S]) / 2 for one in (psi, phi))
+        dx, dy, dpsi, dphi, h, turn = self._strides(self.motion)
         along2 = np.cos(h + turn) * dx + np.sin(h + turn) * dy
         beside = dpsi * np.cos(turn), dpsi * np.sin(turn)
         slip = self.slip
@@ -164,10 +164,7 @@ class ExaminedRecording:
     @cached_property
     def sideways(self) -> float:
         """How far a turn of platform 1 takes the joint sideways, m per rad: c1, if all is right."""
-        x, y, psi, _ = self.motion
-        S = self.stride
-        dx, dy, dpsi = (one[S:] - one[:-S] for one in (x, y, psi))
-        h = (psi[S:] + psi[:-S]) / 2
+        dx, dy, dpsi, _, h, _ = self._strides(self.motion)
         return _lever(np.cos(h) * dy - np.sin(h) * dx, dpsi)
 
     def _length(self, axle: int, side: Array, turned: Array) -> float:

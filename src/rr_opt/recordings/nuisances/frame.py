@@ -1,4 +1,7 @@
-"""A floor frame, a zero or a sign that is wrong, or platforms that were mistaken for each other."""
+"""A frame, a zero or a sign that is wrong, platforms that were mistaken for each other, or a delay.
+
+Each is undone on trial: wheels that roll say whether the motion then is the likelier one.
+"""
 
 from collections.abc import Callable, Iterator, Mapping
 from itertools import combinations
@@ -7,7 +10,7 @@ import numpy as np
 
 from rr_opt.array import Array
 from rr_opt.recordings.nuisances.command import follows
-from rr_opt.recordings.nuisances.evidence import ExaminedRecording, Motion
+from rr_opt.recordings.nuisances.evidence import ROLLING, ExaminedRecording, Motion
 from rr_opt.recordings.warnings import Notice, notice
 
 _UNDONE: Mapping[str, Callable[[Array, Array, Array, Array], Motion]] = {
@@ -68,3 +71,63 @@ def _found(
     wrong = given.is_wrong(best) or not follows(given, given.motion[3])
     if wrong and (meant := given.likely(left)):
         yield notice("frame.wrong", meant=", or ".join(meant), left=given.slip.size, best=best)
+
+
+_PARTS = {"x and y": (0, 1), "psi": (2,), "phi": (3,)}
+_FARTHEST, _TRIES = 0.25, 41
+"""How late a channel may be, in periods or s, and how many delays begin the search."""
+_SHORTEST = 0.02
+"""Delays that are told, s: wrong lengths, or wheels that creep sideways, look like shorter ones."""
+
+
+def look_at_delays(given: ExaminedRecording) -> Iterator[Notice]:
+    """Channels that are late: filtered, buffered or stamped apart from the others."""
+    if given.slip.size < ROLLING:
+        return
+    found = {name: _best(given, columns) for name, columns in _PARTS.items()}
+    likely = given.likely({name: left for name, (left, _) in found.items()})
+    late = [
+        f"{name} by {1e3 * found[name][1]:+.3g} ms"
+        for name in likely
+        if abs(found[name][1]) > _SHORTEST
+    ]
+    if late:
+        code = "late.phi" if "phi" in likely else "late.place"
+        yield notice(code, late=", or ".join(late))
+
+
+def _best(given: ExaminedRecording, columns: tuple[int, ...]) -> tuple[float, float]:
+    """What is left if some channels are late, in noise, and by how much they are, s."""
+    most = _FARTHEST * (given.gait.period if given.gait else 1.0) / given.step
+
+    def left(steps: float) -> float:
+        return given.slip_of(_earlier(given, columns, steps * given.step)).size
+
+    # By whole steps: in between, the noise is smoothed, which looks like a better fit.
+    best, apart = 0.0, max(most, 1.0)
+    while True:
+        grid = np.unique(np.round(best + np.linspace(-apart, apart, _TRIES)))
+        sizes = np.array([left(one) for one in grid])
+        if np.diff(grid).max() <= 1:
+            break
+        best, apart = float(grid[int(np.argmin(sizes))]), max(1.0, np.ceil(2 * apart / _TRIES))
+    at = int(np.clip(np.argmin(sizes), 1, len(grid) - 2))
+    low, middle, high = sizes[at - 1 : at + 2] ** 2
+    bend = low - 2 * middle + high
+    late = given.step * (grid[at] + (0.5 * (low - high) / bend if bend > 0 else 0.0))
+    return given.explains(_earlier(given, columns, given.step * grid[at])), float(late)
+
+
+def _earlier(given: ExaminedRecording, columns: tuple[int, ...], late: float) -> Motion:
+    moved = [
+        _at(given.t + late, given.t, one) if column in columns else one
+        for column, one in enumerate(given.motion)
+    ]
+    return moved[0], moved[1], moved[2], moved[3]
+
+
+def _at(u: Array, t: Array, y: Array) -> Array:
+    """y (n,), seen at t, at the times u; NaN where it is not known."""
+    known = np.isfinite(y)
+    whole = np.interp(u, t, known.astype(float), left=0.0, right=0.0) > 0.999
+    return np.where(whole, np.interp(u, t, np.where(known, y, 0.0)), np.nan)

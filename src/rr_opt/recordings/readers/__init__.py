@@ -14,12 +14,11 @@ from rr_opt.recordings.readers import (
     plain_csv,
     qualisys_tsv,
     ros_bag,
-    servo_log,
     trc,
     vicon_csv,
 )
 from rr_opt.recordings.readers.marker_rows import MarkerData
-from rr_opt.recordings.readers.servo_log import ServoLog
+from rr_opt.recordings.readers.plain_csv import ServoLog
 from rr_opt.recordings.readers.text import Reader, ReadOptions, Text, decode, find_header
 
 __all__ = ["READERS", "MarkerData", "ReadOptions", "ServoLog", "read_file"]
@@ -32,8 +31,8 @@ READERS: tuple[Reader, ...] = (
     motive_csv.READER,
     qualisys_tsv.READER,
     vicon_csv.READER,
-    servo_log.READER,
-    plain_csv.READER,
+    plain_csv.LOG,
+    plain_csv.MOTION,
 )
 """Asked in this order whether a file is theirs."""
 

@@ -13,8 +13,14 @@ import numpy as np
 
 from rr_opt.files.issue import refuse
 from rr_opt.messages import shown
-from rr_opt.recordings.readers.bodies import body_data, matrices
-from rr_opt.recordings.readers.marker_rows import MarkerData, frames_of, marker_data, rate_in
+from rr_opt.recordings.readers.marker_rows import (
+    MarkerData,
+    body_data,
+    frames_of,
+    marker_data,
+    matrices,
+    rate_in,
+)
 from rr_opt.recordings.readers.text import Reader, ReadOptions, Text, cells_of, read_table
 from rr_opt.recordings.warnings import notice
 

@@ -11,9 +11,9 @@ import numpy as np
 
 from rr_opt.files.issue import refuse
 from rr_opt.messages import shown
-from rr_opt.recordings.readers.bodies import body_data
 from rr_opt.recordings.readers.marker_rows import (
     MarkerData,
+    body_data,
     count_notice,
     frames_of,
     marker_data,

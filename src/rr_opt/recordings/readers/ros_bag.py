@@ -17,9 +17,8 @@ from rr_opt.array import Array
 from rr_opt.files.issue import refuse
 from rr_opt.messages import shown
 from rr_opt.outcome import InputError
-from rr_opt.recordings.readers.bodies import body_data, matrices
-from rr_opt.recordings.readers.marker_rows import MarkerData
-from rr_opt.recordings.readers.servo_log import ServoLog
+from rr_opt.recordings.readers.marker_rows import MarkerData, body_data, matrices
+from rr_opt.recordings.readers.plain_csv import ServoLog
 from rr_opt.recordings.readers.text import Reader, ReadOptions
 from rr_opt.recordings.time_axis import LACKING, in_order, rate_of, time_step
 from rr_opt.recordings.warnings import Notice, notice
