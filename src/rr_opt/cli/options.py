@@ -107,23 +107,6 @@ def motion_folder(out: Path | None, name: str, film: Any, format: Any = "csv") -
     return results_folder(out, name)
 
 
-def study_folder(out: Path | None, name: str, *, netcdf: bool) -> Path:
-    """The folder of a study. Raises InputError also for a netCDF file that cannot be made here."""
-    from rr_opt.documents.archive import netcdf_writer
-
-    if netcdf:
-        netcdf_writer()
-    return results_folder(out, name)
-
-
-def inspection_folder(out: Path | None, source: Path, netcdf: Path | None) -> Path:
-    """The folder of an inspection. Raises InputError also for an impossible netCDF file."""
-    from rr_opt.api.recordings import check_files, name_of
-
-    check_files(source, netcdf)
-    return results_folder(out, f"{name_of(source)}-inspect")
-
-
 _UNITS = {"heading": "deg", "radius": "m", "within": "s", "length": "m"}
 
 
@@ -132,14 +115,7 @@ def turn_folder(
 ) -> Path:
     """NAME-turn-heading-90deg-radius-0.5m-whole, so that another turn has another folder."""
     folder = results_folder(out, "-".join([name, "turn", *_turn(asked | {"cycles": cycles})]))
-    _require_same_turn(folder, {**dict.fromkeys(_UNITS), **asked, "cycles": cycles}, force)
-    return folder
-
-
-def fastest_folder(out: Path | None, name: str, *, force: bool) -> Path:
-    """The folder of a fastest gait, which asks for no turn."""
-    folder = results_folder(out, name)
-    _require_same_turn(folder, {}, force)
+    require_same_turn(folder, {**dict.fromkeys(_UNITS), **asked, "cycles": cycles}, force)
     return folder
 
 
@@ -151,7 +127,7 @@ def _turn(asked: Mapping[str, Any]) -> list[str]:
     return [*(f"{key}-{size:.6g}{_UNITS[key]}" for key, size in shown.items()), *whole]
 
 
-def _require_same_turn(folder: Path, asked: Mapping[str, Any], force: bool) -> None:
+def require_same_turn(folder: Path, asked: Mapping[str, Any], force: bool) -> None:
     """Raise InputError if the folder has the answer to another turn, or to none."""
     import json
 
@@ -171,14 +147,6 @@ def _require_same_turn(folder: Path, asked: Mapping[str, Any], force: bool) -> N
         )
 
 
-def setpoints_file(out: Path | None, source: Path | None, format: Any) -> Path:
-    """--out, or out/NAME-... Raises InputError if it cannot be written."""
-    from rr_opt.documents.archive import file_for_result
-    from rr_opt.results.setpoints import ENDINGS
-
-    return file_for_result(out or Path("out") / f"{result_name(source)}{ENDINGS[format]}")
-
-
 def read_options(**given: str | float | None) -> dict[str, float]:
     """The options that were given, in SI. Raises InputError with all that is wrong with them."""
     from rr_opt.api.load import read_arguments
@@ -193,14 +161,6 @@ def read_problem(path: Path | None) -> Problem:
     if path is None:
         return shipped()
     return read(load, path)
-
-
-def names_routes(path: Path) -> bool:
-    """Whether a study file is one of routes. Raises InputError if it cannot be read."""
-    from rr_opt.files.route_study_file import is_of_routes
-    from rr_opt.files.source import read_document
-
-    return is_of_routes(read_document(path))
 
 
 def read(load: Callable[[Path], Read], path: Path) -> Read:

@@ -7,7 +7,6 @@ from typing import Any
 
 from rr_opt.documents import document as doc
 from rr_opt.documents.archive import strict_json
-from rr_opt.documents.texts import captions
 from rr_opt.files.record import plain
 from rr_opt.formatting import direction_text, number, with_unit
 from rr_opt.model.problem import GaitBounds
@@ -31,7 +30,7 @@ class FastestShapes(Result):
     FILE = "shapes.json"
     OTHERS = ("shapes.csv", "sine.json", "fourier-3.json", "fourier-5.json", "free.json")
     DRAW = "rr_opt.results.figures.fastest.draw_shapes"
-    CAPTIONS = captions("shapes")
+    CAPTIONS = doc.captions("shapes")
 
     name: str
     sha256: str

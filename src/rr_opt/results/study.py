@@ -14,7 +14,6 @@ from rr_opt.design.study.plan import branches, plan
 from rr_opt.design.study.row import Row
 from rr_opt.documents import document as doc
 from rr_opt.documents.archive import netcdf_writer
-from rr_opt.documents.texts import captions
 from rr_opt.files.study_file import Study
 from rr_opt.formatting import direction_text, number, speed_text, with_unit
 from rr_opt.messages import listed
@@ -48,7 +47,7 @@ class SolvedStudy(Result):
     FILE = "study.json"
     OTHERS = ("study.csv", "study.nc")
     DRAW = "rr_opt.results.figures.study.draw"
-    CAPTIONS = captions("study")
+    CAPTIONS = doc.captions("study")
 
     study: Study
     rows: tuple[Row, ...]

@@ -126,9 +126,8 @@ def draw(one: ExplainedExperiment) -> dict[str, tuple[str, str]]:
         "residue": _residue,
         "loss": _loss,
     }
-    with style.styled():
-        made = {name: make(one) for name, make in makers.items()}
-        return {name: (style.svg(each[0]), each[1]) for name, each in made.items() if each}
+    made = {name: make(one) for name, make in makers.items()}
+    return {name: (style.svg(each[0]), each[1]) for name, each in made.items() if each}
 
 
 def _evidence(one: ExplainedExperiment) -> tuple[Figure, str] | None:
@@ -275,9 +274,8 @@ _MOST_PARTS, _MOST_POINTS = 12, 2000
 
 def draw_machine(one: ExplainedMachine) -> dict[str, str]:
     """SVG text by name."""
-    with style.styled():
-        made = {"errors": _errors(one), "unknown": _unknown(one)}
-        return {name: style.svg(each) for name, each in made.items() if each}
+    made = {"errors": _errors(one), "unknown": _unknown(one)}
+    return {name: style.svg(each) for name, each in made.items() if each}
 
 
 def _errors(one: ExplainedMachine) -> Figure:

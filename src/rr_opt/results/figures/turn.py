@@ -12,8 +12,7 @@ from rr_opt.motion.rollout import repeated
 from rr_opt.motion.steady_cycle import SteadyCycle
 from rr_opt.results.figures import fastest, style
 from rr_opt.results.figures.motion import path
-from rr_opt.results.turn import FastestTurn
-from rr_opt.results.turn_chart import TurnChart
+from rr_opt.results.turn import FastestTurn, TurnChart
 from rr_opt.verify.turn_chart import Tightest, TurnMap
 
 
@@ -25,11 +24,11 @@ def draw_turn(turn: FastestTurn) -> dict[str, str]:
     return drawn
 
 
-def arc(ax: Axes, turn: FastestTurn) -> Axes:
+def arc(ax: Axes, turn: FastestTurn) -> None:
     """The circle, dashed; the arc of the turn as a band with its ends marked; the path of P, m."""
     way, replay, radius = turn.arc, turn.replay, turn.radius
     if way is None or replay is None or radius is None:
-        return ax
+        return
     steady = replay.steady
     cycles = max(1, math.ceil(way.periods - 1e-9))
     motion = repeated(steady, cycles, every=math.ceil(cycles * len(steady.t) / _SAMPLES))
@@ -46,7 +45,6 @@ def arc(ax: Axes, turn: FastestTurn) -> Axes:
     path(ax, turn.robot, motion, steady.speed, steady.gait.period)
     style.note(ax, f"radius {radius:.4g} m, {abs(math.degrees(way.heading)):.4g}°")
     ax.legend(loc="lower right")
-    return ax
 
 
 def _centre(steady: SteadyCycle) -> complex:
@@ -64,8 +62,7 @@ _WIDEST = 20.0
 
 def draw_chart(chart: TurnChart) -> dict[str, str]:
     """The chart as SVG text by its name."""
-    with style.styled():
-        return {"turn-chart": style.svg(turn_chart(chart.seen, chart.tight))}
+    return {"turn-chart": style.svg(turn_chart(chart.seen, chart.tight))}
 
 
 def turn_chart(seen: TurnMap, tight: Tightest | None) -> Figure:
