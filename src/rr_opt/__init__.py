@@ -85,9 +85,9 @@ if TYPE_CHECKING:
     from rr_opt.results.motion import DrivenCircle as DrivenCircle
     from rr_opt.results.motion import SimulatedMotion as SimulatedMotion
     from rr_opt.results.route import DrivenRoute as DrivenRoute
-    from rr_opt.results.route import DrivenRoutes as DrivenRoutes
     from rr_opt.results.setpoints import ExportedGait as ExportedGait
     from rr_opt.results.shapes import FastestShapes as FastestShapes
+    from rr_opt.results.study import DrivenRoutes as DrivenRoutes
     from rr_opt.results.study import SolvedStudy as SolvedStudy
     from rr_opt.results.sweep import Sweep as Sweep
     from rr_opt.results.turn import FastestTurn as FastestTurn
@@ -111,10 +111,10 @@ _HOMES = {
     "results.fastest": "FastestGait",
     "results.inspection": "InspectedRecordings",
     "results.motion": "DrivenCircle SimulatedMotion",
-    "results.route": "DrivenRoute DrivenRoutes",
+    "results.route": "DrivenRoute",
     "results.setpoints": "ExportedGait",
     "results.shapes": "FastestShapes",
-    "results.study": "SolvedStudy",
+    "results.study": "DrivenRoutes SolvedStudy",
     "results.sweep": "Sweep",
     "results.turn": "FastestTurn TurnChart",
 }

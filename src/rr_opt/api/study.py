@@ -26,8 +26,8 @@ from rr_opt.files.study_file import Study, read_study
 from rr_opt.model.route import Route
 from rr_opt.outcome import RollerRacerError, Status
 from rr_opt.results.result import Progress, quiet
-from rr_opt.results.route import DrivenRoute, DrivenRoutes
-from rr_opt.results.study import SolvedStudy
+from rr_opt.results.route import DrivenRoute
+from rr_opt.results.study import DrivenRoutes, SolvedStudy
 from rr_opt.routing.feedback import controller, with_reserve
 from rr_opt.routing.plan import plan_route
 from rr_opt.routing.replay import replay

@@ -107,24 +107,16 @@ def motion_folder(out: Path | None, name: str, film: Any, format: Any = "csv") -
     return results_folder(out, name)
 
 
-_UNITS = {"heading": "deg", "radius": "m", "within": "s", "length": "m"}
+TURN_UNITS = {"heading": "deg", "radius": "m", "within": "s", "length": "m"}
+"""What can be asked of a turn, and the unit it is shown in."""
 
 
-def turn_folder(
-    out: Path | None, name: str, asked: dict[str, float], cycles: str, *, force: bool
-) -> Path:
-    """NAME-turn-heading-90deg-radius-0.5m-whole, so that another turn has another folder."""
-    folder = results_folder(out, "-".join([name, "turn", *_turn(asked | {"cycles": cycles})]))
-    require_same_turn(folder, {**dict.fromkeys(_UNITS), **asked, "cycles": cycles}, force)
-    return folder
-
-
-def _turn(asked: Mapping[str, Any]) -> list[str]:
+def turn_words(asked: Mapping[str, Any]) -> list[str]:
     """What was asked of a turn, in words without spaces."""
-    sizes = {key: asked[key] for key in _UNITS if asked.get(key) is not None}
+    sizes = {key: asked[key] for key in TURN_UNITS if asked.get(key) is not None}
     shown = {key: math.degrees(size) if key == "heading" else size for key, size in sizes.items()}
     whole = ["whole"] if asked.get("cycles") == "whole" else []
-    return [*(f"{key}-{size:.6g}{_UNITS[key]}" for key, size in shown.items()), *whole]
+    return [*(f"{key}-{size:.6g}{TURN_UNITS[key]}" for key, size in shown.items()), *whole]
 
 
 def require_same_turn(folder: Path, asked: Mapping[str, Any], force: bool) -> None:
@@ -140,7 +132,11 @@ def require_same_turn(folder: Path, asked: Mapping[str, Any], force: bool) -> No
     except (OSError, ValueError, AttributeError, TypeError):
         return
     if there != asked:
-        words = f"the turn {' '.join(_turn(there))}" if there else "the fastest gait without a turn"
+        words = (
+            f"the turn {' '.join(turn_words(there))}"
+            if there
+            else "the fastest gait without a turn"
+        )
         raise InputError(
             f"{file}: The file has the answer to another question: {words}. Expected a folder for "
             "this one. Give another with --out, or --force to write over it."

@@ -92,7 +92,10 @@ def turn(
     with StepDisplay() as steps:
         asked = options.read_options(radius=radius, heading=heading, within=within, length=length)
         posed = options.read_problem(problem)
-        folder = options.turn_folder(out, posed.name, asked, cycles, force=force)
+        words = options.turn_words(asked | {"cycles": cycles})
+        folder = options.results_folder(out, "-".join([posed.name, "turn", *words]))
+        whole = {**dict.fromkeys(options.TURN_UNITS), **asked, "cycles": cycles}
+        options.require_same_turn(folder, whole, force)
         turned = rr.turn(posed, **asked, whole=cycles == "whole", progress=steps)
     show(turned, steps, folder, json=json, figures=figures)
 
@@ -358,10 +361,9 @@ def lint(
     json: Annotated[bool, typer.Option("--json", help="Print JSON on stdout.")] = False,
 ) -> None:
     """Check input files and list every mistake in them. Exits with 2 if there is an error."""
-    from rr_opt.api import files as library
     from rr_opt.files.issue import has_errors
 
-    checked = {str(file): library.lint(file) for file in files}
+    checked = {str(file): rr.lint(file) for file in files}
     wrong = any(has_errors(issues) for issues in checked.values())
     if json:
         found = [asdict(issue) for issues in checked.values() for issue in issues]

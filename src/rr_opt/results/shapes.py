@@ -73,7 +73,11 @@ class FastestShapes(Result):
         solved = [(one, abs(one.speed)) for one in self.solved if one.speed is not None]
         if failed or len(solved) < 2:
             return " ".join(failed)
-        speeds = ", ".join(f"{1e3 * speed:.1f} mm/s with {_with(one)}" for one, speed in solved)
+        words = {"free": "a free gait", "sine": "a sine"}
+        speeds = ", ".join(
+            f"{1e3 * speed:.1f} mm/s with {words.get(family(one), family(one))}"
+            for one, speed in solved
+        )
         gain = 100 * (solved[-1][1] / solved[0][1] - 1)
         text = f"Under the same limits {speeds}: {gain:.1f} % more than the best sine."
         for (smaller, slow), (larger, fast) in pairwise(solved):
@@ -136,11 +140,6 @@ def family(answer: FastestGait) -> str:
 def family_name(gait: GaitBounds) -> str:
     """`sine`, `3 harmonics` or `free`."""
     return f"{gait.harmonics} harmonics" if gait.shape == "fourier" else gait.shape
-
-
-def _with(answer: FastestGait) -> str:
-    shape = answer.problem.gait.shape
-    return {"free": "a free gait", "sine": "a sine"}.get(shape, family(answer))
 
 
 _UNITS = {

@@ -33,9 +33,11 @@ def draw(result: FastestGait) -> dict[str, str]:
     if replay is None or gait is None:
         return {}
     lines = gains(result.limits.values(), result.bounds.values())
+    rows = style.figure(style.WIDTH, 6.2)
+    cycle(list(rows.subplots(4, 1, sharex=True)), replay.steady, result.problem.limits)
     drawn = {
         "path": _path(result, replay),
-        "cycle": _cycle(result, replay),
+        "cycle": style.svg(rows),
         "prices": style.panel(0.9 + 0.42 * len(lines), lambda ax: prices(ax, lines, result.cost)),
     }
     if result.robust and result.problem.robust:
@@ -79,12 +81,6 @@ def _path(result: FastestGait, replay: Replay) -> str:
     straight = abs(steady.cycle.dpsi) < 1e-6
     shown, height = (along_travel(motion), 3.0) if straight else (motion, 5.0)
     return style.panel(height, lambda ax: path(ax, robot, shown, steady.speed, steady.gait.period))
-
-
-def _cycle(result: FastestGait, replay: Replay) -> str:
-    drawn = style.figure(style.WIDTH, 6.2)
-    cycle(list(drawn.subplots(4, 1, sharex=True)), replay.steady, result.problem.limits)
-    return style.svg(drawn)
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,6 @@ import math
 import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from rr_opt.formatting import with_unit
 from rr_opt.motion.rollout import repeated
@@ -13,7 +12,7 @@ from rr_opt.motion.steady_cycle import SteadyCycle
 from rr_opt.results.figures import fastest, style
 from rr_opt.results.figures.motion import path
 from rr_opt.results.turn import FastestTurn, TurnChart
-from rr_opt.verify.turn_chart import Tightest, TurnMap
+from rr_opt.verify.turn_chart import TurnMap
 
 
 def draw_turn(turn: FastestTurn) -> dict[str, str]:
@@ -61,12 +60,8 @@ _WIDEST = 20.0
 
 
 def draw_chart(chart: TurnChart) -> dict[str, str]:
-    """The chart as SVG text by its name."""
-    return {"turn-chart": style.svg(turn_chart(chart.seen, chart.tight))}
-
-
-def turn_chart(seen: TurnMap, tight: Tightest | None) -> Figure:
-    """All panels; offsets below 0 are the mirror image and not drawn."""
+    """The chart as SVG text by its name; offsets below 0 are the mirror image and not drawn."""
+    seen, tight = chart.seen, chart.tight
     count = len(seen.period)
     columns = min(count, 2)
     drawn = style.figure(style.WIDTH, 1.0 + 2.3 * -(-count // columns))
@@ -89,7 +84,7 @@ def turn_chart(seen: TurnMap, tight: Tightest | None) -> Figure:
         ax.set_ylabel("radius, m")
     handles, labels = axes[0, 0].get_legend_handles_labels()
     drawn.legend(handles, labels, loc="outside lower center", ncols=4, title="amplitude α")
-    return drawn
+    return {"turn-chart": style.svg(drawn)}
 
 
 def _panel(ax: Axes, seen: TurnMap, j: int) -> None:
