@@ -44,16 +44,16 @@ if TYPE_CHECKING:
     from rr_opt.api.optimise import maximize_speed as maximize_speed
     from rr_opt.api.optimise import shapes as shapes
     from rr_opt.api.optimise import sweep as sweep
+    from rr_opt.api.optimise import turn as turn
+    from rr_opt.api.optimise import turn_chart as turn_chart
     from rr_opt.api.recordings import diagnose as diagnose
     from rr_opt.api.recordings import inspect as inspect
-    from rr_opt.api.route import load_route as load_route
-    from rr_opt.api.route import load_routes as load_routes
-    from rr_opt.api.route import route as route
-    from rr_opt.api.route import routes as routes
+    from rr_opt.api.study import load_route as load_route
+    from rr_opt.api.study import load_routes as load_routes
     from rr_opt.api.study import load_study as load_study
+    from rr_opt.api.study import route as route
+    from rr_opt.api.study import routes as routes
     from rr_opt.api.study import study as study
-    from rr_opt.api.turn import turn as turn
-    from rr_opt.api.turn import turn_chart as turn_chart
     from rr_opt.model.experiment import Experiment as Experiment
     from rr_opt.model.experiment import Noise as Noise
     from rr_opt.model.experiment import Recording as Recording
@@ -85,24 +85,22 @@ if TYPE_CHECKING:
     from rr_opt.results.motion import DrivenCircle as DrivenCircle
     from rr_opt.results.motion import SimulatedMotion as SimulatedMotion
     from rr_opt.results.route import DrivenRoute as DrivenRoute
-    from rr_opt.results.routes import DrivenRoutes as DrivenRoutes
     from rr_opt.results.setpoints import ExportedGait as ExportedGait
     from rr_opt.results.shapes import FastestShapes as FastestShapes
+    from rr_opt.results.study import DrivenRoutes as DrivenRoutes
     from rr_opt.results.study import SolvedStudy as SolvedStudy
     from rr_opt.results.sweep import Sweep as Sweep
     from rr_opt.results.turn import FastestTurn as FastestTurn
-    from rr_opt.results.turn_chart import TurnChart as TurnChart
+    from rr_opt.results.turn import TurnChart as TurnChart
 
 _HOMES = {
     "api.drive": "circle export simulate",
     "api.files": "init lint schema",
     "api.load": "InputWarning RobotWithGait load load_experiment "
     "load_gait load_robot prototype shipped",
-    "api.optimise": "maximize_speed shapes sweep",
+    "api.optimise": "maximize_speed shapes sweep turn turn_chart",
     "api.recordings": "diagnose inspect",
-    "api.route": "load_route load_routes route routes",
-    "api.study": "load_study study",
-    "api.turn": "turn turn_chart",
+    "api.study": "load_route load_routes load_study route routes study",
     "model.experiment": "Experiment Noise Recording Run",
     "model.gait": "FourierGait FreeGait Gait SineGait",
     "model.problem": "GaitBounds Limits Problem RatioChoice",
@@ -114,13 +112,11 @@ _HOMES = {
     "results.inspection": "InspectedRecordings",
     "results.motion": "DrivenCircle SimulatedMotion",
     "results.route": "DrivenRoute",
-    "results.routes": "DrivenRoutes",
     "results.setpoints": "ExportedGait",
     "results.shapes": "FastestShapes",
-    "results.study": "SolvedStudy",
+    "results.study": "DrivenRoutes SolvedStudy",
     "results.sweep": "Sweep",
-    "results.turn": "FastestTurn",
-    "results.turn_chart": "TurnChart",
+    "results.turn": "FastestTurn TurnChart",
 }
 """Public names by the module that has them."""
 _MODULE_OF = {name: module for module, names in _HOMES.items() for name in names.split()}

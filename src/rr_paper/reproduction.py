@@ -10,7 +10,7 @@ import numpy as np
 
 from rr_opt.array import Array
 from rr_opt.documents import document as doc
-from rr_opt.documents.texts import prose
+from rr_opt.documents.document import prose
 from rr_opt.formatting import number
 from rr_opt.model.ballast import Loads, load_count
 from rr_opt.model.gait import SineGait

@@ -43,7 +43,7 @@ PLANTED = [
     ("terminal-in-cli", "rr_opt/design/planted.py", "import typer"),
     ("terminal-in-cli", "rr_lab/report/planted.py", "def f():\n    from rich.table import Table"),
     ("verbs-call-the-library", "rr_opt/cli/planted.py", "import rr_opt.motion.rollout"),
-    ("verbs-call-the-library", "rr_opt/cli/optimise.py", "import rr_opt.verify.sweep"),
+    ("verbs-call-the-library", "rr_opt/cli/verbs.py", "import rr_opt.verify.sweep"),
     ("processes-in-batch", "rr_opt/design/planted.py", "import joblib"),
     ("processes-in-batch", "rr_opt/cli/planted.py", "from distributed import Client"),
     ("plain-model", "rr_opt/model/robot.py", "import casadi as ca"),

@@ -5,9 +5,9 @@ import pytest
 from matplotlib.figure import Figure
 
 from rr_opt.motion.rollout import repeated
-from rr_opt.results.figures.fastest import draw, gains, prices
+from rr_opt.results.figures import style
+from rr_opt.results.figures.fastest import allowed, draw, gains, prices, speed_map
 from rr_opt.results.figures.motion import along_travel, cycle, instants, path
-from rr_opt.results.figures.speed_map import allowed, speed_map
 from rr_opt.verify.sweep import SpeedMap
 
 
@@ -26,8 +26,7 @@ def axes():
 def test_speed_map_marks_the_optimum(answer, data):
     best = answer.optimum.best.gait
     ax = axes()
-    returned = speed_map(ax, data, answer.optimum.problem, answer.optimum.robot, best)
-    assert returned is ax
+    speed_map(ax, data, answer.optimum.problem, answer.optimum.robot, best)
     stars = [line for line in ax.lines if line.get_marker() == "*"]
     assert [(float(s.get_xdata()[0]), float(s.get_ydata()[0])) for s in stars] == [
         (best.period, best.amplitude)
@@ -47,7 +46,7 @@ def test_path_ends_with_the_robot_and_keeps_poses_apart(answer):
     best = answer.optimum.best.gait
     assert instants(motion, 0.2)[-1] == len(motion.x) - 1
     ax = axes()
-    assert path(ax, answer.optimum.robot, motion, answer.replay.speed, best.period) is ax
+    path(ax, answer.optimum.robot, motion, answer.replay.speed, best.period)
     assert len(ax.patches) >= 9
 
 
@@ -75,6 +74,7 @@ def test_prices_put_the_dearest_first_and_idle_limits_last(answer):
 
 def test_drawing_twice_gives_the_same_files(answer, monkeypatch):
     monkeypatch.setattr("rr_opt.verify.sweep._SIDE", {True: 16, False: 16})
-    first, second = draw(answer), draw(answer)
+    with style.styled():
+        first, second = draw(answer), draw(answer)
     assert first.keys() == {"speed-map", "path", "cycle", "prices"}
     assert first == second

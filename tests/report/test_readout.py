@@ -7,7 +7,7 @@ from html import unescape
 import numpy as np
 import pytest
 
-from rr_opt.results.figures import readout, style
+from rr_opt.results.figures import style
 
 
 def told(drawn):
@@ -55,7 +55,7 @@ def test_cells_bands_and_the_names_of_lanes():
         drawn = style.figure()
         top, bottom = drawn.subplots(2, 1)
         z = np.array([[1.0, np.nan, 3.0], [4.0, 5.0, 6.0]])
-        readout.cells(top, np.arange(3.0), np.arange(2.0), z, "speed, mm/s")
+        style.cells(top, np.arange(3.0), np.arange(2.0), z, "speed, mm/s")
         bottom.fill_between([0, 1, 2], [0, 0, 0], [1, 2, 1], label="_as found")
         style.lanes(bottom, ["run01", "run02"])
         _, (first, second) = told(drawn)

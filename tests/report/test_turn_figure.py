@@ -10,7 +10,8 @@ from rr_opt.results.figures.turn import arc
 
 def test_the_circle_and_the_arc(answer):
     turned = rr.turn(answer.problem, radius=0.5, heading="90 deg")
-    ax = arc(Figure().add_subplot(), turned)
+    ax = Figure().add_subplot()
+    arc(ax, turned)
     lines = {line.get_label(): line.get_xydata() for line in ax.lines}
     circle, band, path = (lines[name] for name in ("circle", "turn", "path of P"))
     centre = (circle[0] + circle[180]) / 2

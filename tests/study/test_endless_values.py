@@ -8,8 +8,7 @@ from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure
 
 from rr_opt.outcome import Status
-from rr_opt.results.figures.study import active_areas, speed, study_map
-from rr_opt.results.figures.study_axes import grid_of, scale_of
+from rr_opt.results.figures.study import active_areas, grid_of, scale_of, speed, study_map
 from rr_opt.results.study import SolvedStudy
 
 ENDLESS = "problem: {gait: {period: 1 s, amplitude: [0.1, 1]}}\nvary:\n"

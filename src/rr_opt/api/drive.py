@@ -5,7 +5,7 @@ from typing import Literal, Protocol
 
 from rr_opt.api.load import PathLike, load_gait, read_arguments
 from rr_opt.model.gait import Gait
-from rr_opt.model.problem import Limits, Problem
+from rr_opt.model.problem import Problem
 from rr_opt.model.robot import Robot
 from rr_opt.motion import setpoints
 from rr_opt.motion.circle import circle_of, transient
@@ -49,12 +49,6 @@ def _driven(robot: Robot | HasGait | PathLike, gait: Gait | None) -> tuple[Robot
                          "solved.")  # fmt: skip
     status = getattr(robot, "status", None)
     return robot.robot, robot.gait, None if status is None else str(status)
-
-
-def _limits_of(source: Robot | HasGait) -> Limits | None:
-    """The limits that a gait was found within; None where none are known."""
-    problem = getattr(source, "problem", None)
-    return problem.limits if problem else getattr(source, "limits", None)
 
 
 def simulate(
@@ -122,7 +116,9 @@ def export(
     limits.
     """
     source = load_gait(robot) if isinstance(robot, str | Path) else robot
-    limits = _limits_of(source)
+    # The limits that the gait was found within, where they are known.
+    problem = getattr(source, "problem", None)
+    limits = problem.limits if problem else getattr(source, "limits", None)
     robot, gait, status = _driven(source, gait)
     limits = limits or Problem(robot).limits
     if rate is None:

@@ -40,7 +40,7 @@ def lint(path: str | Path) -> list[Issue]:
     experiment = experiment_file(path)
     if experiment is None:
         return lint_file(path)
-    from rr_opt.api.machine import lint_machine
+    from rr_opt.api.recordings import lint_machine
 
     if (found := lint_machine(experiment)) is not None:
         return found

@@ -116,7 +116,7 @@ def load_experiment(path: PathLike) -> Experiment | MachineExperiment:
 
     Raises InputError with everything that is wrong in the file and in every recording.
     """
-    from rr_opt.api.machine import load_machine, machine_of
+    from rr_opt.api.recordings import load_machine, machine_of
     from rr_opt.recordings.experiment import read_experiment
 
     machine = machine_of(path)

@@ -1,7 +1,8 @@
-"""Recordings: what looks wrong in them, and why the robot differs from its simulation."""
+"""Recordings: what looks wrong in them, and why the machine differs from its simulation."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -13,23 +14,29 @@ import numpy as np
 from rr_opt.api.load import identity, load_experiment
 from rr_opt.documents.archive import file_for_result
 from rr_opt.files.experiment_file import read_plan
-from rr_opt.files.source import fingerprint, recording_path
+from rr_opt.files.issue import InvalidFileError, Issue, has_errors
+from rr_opt.files.machine_file import machine_plan, read_machine_plan
+from rr_opt.files.source import experiment_path, fingerprint, read_document, recording_path
+from rr_opt.machines.registry import RACER, machine_named
+from rr_opt.messages import shown
 from rr_opt.model.experiment import Experiment, Run, Start
 from rr_opt.model.gait import Gait
-from rr_opt.model.machine import MachineExperiment
-from rr_opt.outcome import InputError
+from rr_opt.model.machine import Machine, MachineExperiment
+from rr_opt.outcome import InputError, NotConvergedError
 from rr_opt.recordings.clock_fit import at_commanded_rate
 from rr_opt.recordings.experiment import inspect_experiment, is_experiment, usable
 from rr_opt.recordings.inspection import Circumstances, inspect_file
+from rr_opt.recordings.machine_run import machine_experiment
 from rr_opt.recordings.readers import ReadOptions
 from rr_opt.recordings.readers.plain_csv import columns_from
-from rr_opt.results.inspection import InspectedRecordings
+from rr_opt.results.inspection import InspectedMachine, InspectedRecordings
 from rr_opt.results.result import Progress, quiet
 
 if TYPE_CHECKING:
     from rr_opt.results.diagnosis import ExplainedExperiment
     from rr_opt.results.machine_diagnosis import ExplainedMachine
-    from rr_opt.results.machine_inspection import InspectedMachine
+    from rr_opt.sysid.diagnosis import Diagnosis
+    from rr_opt.sysid.machine import MachineModel
 
 
 def inspect(
@@ -60,10 +67,8 @@ def inspect(
         wrong = [name for name, value in given.items() if value is not None]
         if wrong:
             _refuse(wrong)
-        from rr_opt.api.machine import inspect_machine, machine_of
-
         if (machine := machine_of(path)) is not None:
-            return inspect_machine(path, machine)
+            return InspectedMachine(load_machine(path, machine))
         found = inspect_experiment(path, progress)
         sha256 = read_plan(path)[0].sha256
     else:
@@ -117,18 +122,19 @@ def diagnose(
     if isinstance(experiment, str | Path):
         experiment = load_experiment(experiment)
     if isinstance(experiment, MachineExperiment):
-        from rr_opt.api.machine import diagnose_machine
+        from rr_opt.machines.ode import OdeModel
+        from rr_opt.results.machine_diagnosis import ExplainedMachine
 
-        return diagnose_machine(experiment, progress)
+        model, own = OdeModel(experiment), (experiment.name, experiment.sha256, experiment)
+        return ExplainedMachine(*own, _identified(model, "machine", progress), model.horizon)
     name, sha256 = identity(experiment)
     trial, left_out = usable(_cleaned(experiment))
     trial = at_commanded_rate(trial)
     # Here and not above: a wrong input is reported before a second of imports.
-    from rr_opt.api.machine import identified
     from rr_opt.machines.racer.racer import RollerRacer
     from rr_opt.results.diagnosis import ExplainedExperiment
 
-    found = identified(RollerRacer(trial), "robot", progress)
+    found = _identified(RollerRacer(trial), "robot", progress)
     return ExplainedExperiment(name, sha256, trial, found, left_out)
 
 
@@ -147,3 +153,54 @@ def _cleaned(experiment: Experiment) -> Experiment:
 
     runs = (run if run.recording.source else as_read(run) for run in experiment.runs)
     return replace(experiment, runs=tuple(runs))
+
+
+def machine_of(path: str | Path) -> Machine | None:
+    """The machine of an experiment; None for a Roller Racer's, and for a file that is no YAML.
+
+    Raises InvalidFileError for a machine that there is not.
+    """
+    try:
+        document = read_document(experiment_path(Path(path)))
+    except InvalidFileError:
+        return None
+    word = document.data.get("machine", RACER)
+    try:
+        known = word if isinstance(word, str) else shown(word)
+        return None if known == RACER else machine_named(known)
+    except InputError as error:
+        raise InvalidFileError([document.error(("machine",), str(error))]) from None
+
+
+def load_machine(path: str | Path, machine: Machine) -> MachineExperiment:
+    """The experiment with its recordings. Raises InvalidFileError with everything wrong."""
+    experiment, issues = machine_experiment(read_machine_plan(path, machine))
+    if has_errors(issues):
+        raise InvalidFileError(issues)
+    return experiment
+
+
+def lint_machine(path: str | Path) -> list[Issue] | None:
+    """All issues of an experiment with another machine; None for anything else."""
+    try:
+        machine = machine_of(path)
+        if machine is None:
+            return None
+        plan, issues = machine_plan(path, machine)
+        return [*issues, *(machine_experiment(plan)[1] if plan else ())]
+    except InvalidFileError as error:
+        return list(error.issues)
+
+
+def _identified(model: MachineModel, kind: str, progress: Progress) -> Diagnosis:
+    """The diagnosis of a robot or another machine. Raises NotConvergedError if it diverged."""
+    from rr_opt.sysid.diagnose import diagnose
+
+    found = diagnose(model, progress)
+    if not (found.before < math.inf and found.after < math.inf):
+        raise NotConvergedError(
+            "The fits did not converge: a simulation diverged. Expected motion near that of the "
+            f"nominal {kind}. Look at the recordings with `rr-opt inspect`, and check the {kind}'s "
+            "values."
+        )
+    return found

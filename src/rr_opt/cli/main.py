@@ -1,11 +1,10 @@
 """The command `rr-opt`: its verbs, and how each of them may end.
 
 Whatever a user can put right ends as a message on stderr and an exit code, never as a traceback.
-A verb is loaded when it is asked for, and heavy libraries by the verb that needs them, so that help
-comes at once. Other packages add verbs by the entry points `rr_opt.verbs`.
+Heavy libraries are loaded by the verb that needs them, so that help comes at once. Other packages
+add verbs by the entry points `rr_opt.verbs`.
 """
 
-from importlib import import_module
 from typing import Annotated, Any
 
 import typer
@@ -14,22 +13,16 @@ from typer.main import get_command_from_info
 from typer.models import CommandInfo
 
 from rr_opt import interrupt
+from rr_opt.cli import verbs
 from rr_opt.cli.steps import silence
 from rr_opt.outcome import EXIT_INTERRUPTED, EXIT_WRONG_INPUT, RollerRacerError
 from rr_opt.version import __version__
 
-VERBS = {
-    **dict.fromkeys(("maximize-speed", "shapes", "sweep"), "optimise"),
-    **dict.fromkeys(("turn", "turn-chart"), "turn"),
-    "route": "route",
-    **dict.fromkeys(("circle", "simulate", "export"), "drive"),
-    "study": "study",
-    **dict.fromkeys(("inspect", "diagnose"), "recordings"),
-    **dict.fromkeys(("init", "lint", "schema"), "files"),
-}
-"""Each verb with its module, in the order of the help; its function has its name."""
-
-
+VERBS = (
+    *("maximize-speed", "shapes", "sweep", "turn", "turn-chart", "route", "circle", "simulate"),
+    *("export", "study", "inspect", "diagnose", "init", "lint", "schema"),
+)
+"""In the order of the help; each is a function of its name in `verbs`."""
 _SHORT_HELP = {"help_option_names": ["-h", "--help"]}
 
 
@@ -43,15 +36,14 @@ class Verbs(TyperGroup):
     def get_command(self, ctx: Any, cmd_name: str) -> Any:  # noqa: ARG002
         """A verb, loaded now; None if there is none of that name."""
         if cmd_name in VERBS:
-            name = cmd_name.replace("-", "_")
-            verb = getattr(import_module(f"rr_opt.cli.{VERBS[cmd_name]}"), name)
+            verb = getattr(verbs, cmd_name.replace("-", "_"))
         else:
             other = _others().get(cmd_name)
             if other is None:
                 return None
             verb = other.load()
         made = _command(cmd_name, verb)
-        made.params += _quiet_option()
+        made.params += [one for one in _command("quiet", _quiet).params if one.name == "quiet"]
         return made
 
     def invoke(self, ctx: Any) -> Any:
@@ -84,24 +76,18 @@ class Verbs(TyperGroup):
             raise
 
 
-def _quiet_option() -> Any:
-    """--quiet, as every verb has it."""
-
-    def quiet(
-        quiet: Annotated[
-            bool,
-            typer.Option(
-                *("--quiet", "-q"),
-                callback=silence,
-                expose_value=False,
-                help="No progress and no warnings on stderr.",
-            ),
-        ] = False,
-    ) -> None:
-        silence(quiet)
-
-    made = _command("quiet", quiet)
-    return [one for one in made.params if one.name == "quiet"]
+def _quiet(
+    quiet: Annotated[
+        bool,
+        typer.Option(
+            *("--quiet", "-q"),
+            callback=silence,
+            expose_value=False,
+            help="No progress and no warnings on stderr.",
+        ),
+    ] = False,
+) -> None:
+    """A verb with nothing but the option that every verb has."""
 
 
 def _command(name: str, function: Any) -> Any:

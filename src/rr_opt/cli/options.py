@@ -107,51 +107,19 @@ def motion_folder(out: Path | None, name: str, film: Any, format: Any = "csv") -
     return results_folder(out, name)
 
 
-def study_folder(out: Path | None, name: str, *, netcdf: bool) -> Path:
-    """The folder of a study. Raises InputError also for a netCDF file that cannot be made here."""
-    from rr_opt.documents.archive import netcdf_writer
-
-    if netcdf:
-        netcdf_writer()
-    return results_folder(out, name)
+TURN_UNITS = {"heading": "deg", "radius": "m", "within": "s", "length": "m"}
+"""What can be asked of a turn, and the unit it is shown in."""
 
 
-def inspection_folder(out: Path | None, source: Path, netcdf: Path | None) -> Path:
-    """The folder of an inspection. Raises InputError also for an impossible netCDF file."""
-    from rr_opt.api.recordings import check_files, name_of
-
-    check_files(source, netcdf)
-    return results_folder(out, f"{name_of(source)}-inspect")
-
-
-_UNITS = {"heading": "deg", "radius": "m", "within": "s", "length": "m"}
-
-
-def turn_folder(
-    out: Path | None, name: str, asked: dict[str, float], cycles: str, *, force: bool
-) -> Path:
-    """NAME-turn-heading-90deg-radius-0.5m-whole, so that another turn has another folder."""
-    folder = results_folder(out, "-".join([name, "turn", *_turn(asked | {"cycles": cycles})]))
-    _require_same_turn(folder, {**dict.fromkeys(_UNITS), **asked, "cycles": cycles}, force)
-    return folder
-
-
-def fastest_folder(out: Path | None, name: str, *, force: bool) -> Path:
-    """The folder of a fastest gait, which asks for no turn."""
-    folder = results_folder(out, name)
-    _require_same_turn(folder, {}, force)
-    return folder
-
-
-def _turn(asked: Mapping[str, Any]) -> list[str]:
+def turn_words(asked: Mapping[str, Any]) -> list[str]:
     """What was asked of a turn, in words without spaces."""
-    sizes = {key: asked[key] for key in _UNITS if asked.get(key) is not None}
+    sizes = {key: asked[key] for key in TURN_UNITS if asked.get(key) is not None}
     shown = {key: math.degrees(size) if key == "heading" else size for key, size in sizes.items()}
     whole = ["whole"] if asked.get("cycles") == "whole" else []
-    return [*(f"{key}-{size:.6g}{_UNITS[key]}" for key, size in shown.items()), *whole]
+    return [*(f"{key}-{size:.6g}{TURN_UNITS[key]}" for key, size in shown.items()), *whole]
 
 
-def _require_same_turn(folder: Path, asked: Mapping[str, Any], force: bool) -> None:
+def require_same_turn(folder: Path, asked: Mapping[str, Any], force: bool) -> None:
     """Raise InputError if the folder has the answer to another turn, or to none."""
     import json
 
@@ -164,19 +132,15 @@ def _require_same_turn(folder: Path, asked: Mapping[str, Any], force: bool) -> N
     except (OSError, ValueError, AttributeError, TypeError):
         return
     if there != asked:
-        words = f"the turn {' '.join(_turn(there))}" if there else "the fastest gait without a turn"
+        words = (
+            f"the turn {' '.join(turn_words(there))}"
+            if there
+            else "the fastest gait without a turn"
+        )
         raise InputError(
             f"{file}: The file has the answer to another question: {words}. Expected a folder for "
             "this one. Give another with --out, or --force to write over it."
         )
-
-
-def setpoints_file(out: Path | None, source: Path | None, format: Any) -> Path:
-    """--out, or out/NAME-... Raises InputError if it cannot be written."""
-    from rr_opt.documents.archive import file_for_result
-    from rr_opt.results.setpoints import ENDINGS
-
-    return file_for_result(out or Path("out") / f"{result_name(source)}{ENDINGS[format]}")
 
 
 def read_options(**given: str | float | None) -> dict[str, float]:
@@ -193,14 +157,6 @@ def read_problem(path: Path | None) -> Problem:
     if path is None:
         return shipped()
     return read(load, path)
-
-
-def names_routes(path: Path) -> bool:
-    """Whether a study file is one of routes. Raises InputError if it cannot be read."""
-    from rr_opt.files.route_file import is_of_routes
-    from rr_opt.files.source import read_document
-
-    return is_of_routes(read_document(path))
 
 
 def read(load: Callable[[Path], Read], path: Path) -> Read:

@@ -3,7 +3,6 @@
 import re
 import sys
 import time
-from types import TracebackType
 from typing import Any, Self
 
 from rr_opt import interrupt
@@ -60,12 +59,7 @@ class StepDisplay:
                 print(f"{seconds:6.1f} s  {text}", file=sys.stderr, flush=True)  # noqa: T201
             self._stage = stage
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
         if self._bar is not None:
             self._bar.stop()
         if kind is None:
@@ -73,21 +67,15 @@ class StepDisplay:
 
 
 def _bar() -> Any:
+    from rich import progress as rich
     from rich.console import Console
-    from rich.progress import (
-        BarColumn,
-        Progress,
-        TextColumn,
-        TimeElapsedColumn,
-        TimeRemainingColumn,
-    )
 
-    return Progress(
-        TextColumn("{task.description:<28}"),
-        BarColumn(bar_width=24),
-        TimeElapsedColumn(),
-        TextColumn("left"),
-        TimeRemainingColumn(),
+    return rich.Progress(
+        rich.TextColumn("{task.description:<28}"),
+        rich.BarColumn(bar_width=24),
+        rich.TimeElapsedColumn(),
+        rich.TextColumn("left"),
+        rich.TimeRemainingColumn(),
         console=Console(stderr=True),
         transient=True,
         speed_estimate_period=60,

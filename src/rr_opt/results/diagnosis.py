@@ -7,9 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from rr_opt.documents import document as doc
-from rr_opt.documents.document import Fact, facts_alone
 from rr_opt.documents.rendering import terminal
-from rr_opt.documents.texts import captions
 from rr_opt.effects import CATALOGUE
 from rr_opt.files.record import robot_yaml
 from rr_opt.formatting import counted, words_of
@@ -52,7 +50,7 @@ class ExplainedExperiment(Explained[Experiment]):
 
     OTHERS = ("robot-corrected.yaml",)
     DRAW = "rr_opt.results.figures.diagnosis.draw"
-    CAPTIONS = captions("diagnosis")
+    CAPTIONS = doc.captions("diagnosis")
 
     left_out: tuple[str, ...] = ()
 
@@ -152,7 +150,7 @@ class ExplainedExperiment(Explained[Experiment]):
 
     def summary(self) -> str:
         """The verdict, what was found with its intervals, before and after, and what to do next."""
-        return terminal(facts_alone(_summary_facts(self), self.found.summary))
+        return terminal(doc.facts_alone(_summary_facts(self), self.found.summary))
 
     def drawn(self, progress: Progress = quiet) -> tuple[doc.Figure, ...]:
         """The figures, each with the caption that was drawn for it."""
@@ -258,40 +256,40 @@ def _open(one: ExplainedExperiment) -> Iterator[str]:
         yield found.next_experiment.sentence
 
 
-def _summary_facts(one: ExplainedExperiment) -> Iterator[Fact]:
+def _summary_facts(one: ExplainedExperiment) -> Iterator[doc.Fact]:
     found = one.found
-    yield Fact("verdict", f"{found.verdict}: {tables.headline(found)}")
+    yield doc.Fact("verdict", f"{found.verdict}: {tables.headline(found)}")
     if found.channel != "none":
-        yield Fact("  shows in", found.channel.replace("_", " "))
+        yield doc.Fact("  shows in", found.channel.replace("_", " "))
     if one.where:
         lit = next((each for each in found.stages if each.guilty), None)
         place = f"{tables.stage_name(lit)}: " if lit and lit.channel != found.channel else ""
-        yield Fact("  where", f"{place}{one.where}")
+        yield doc.Fact("  where", f"{place}{one.where}")
     for finding in found.findings:
         yield from _finding(finding, found.verdict)
     proof = counted(len(one.proof), "held out recording") if one.marked else one.proven_on
     misfit = f"{found.before:.2f} before, {found.after:.2f} after, in units of the noise"
-    yield Fact("misfit", f"{misfit} ({proof})")
+    yield doc.Fact("misfit", f"{misfit} ({proof})")
     for stage, word in zip(found.stages, tables.stage_words(found.stages), strict=True):
         text = f"{word}, {tables.stage_text(stage, found)}"
-        yield Fact(f"channel {tables.stage_name(stage)}", text)
+        yield doc.Fact(f"channel {tables.stage_name(stage)}", text)
     for group in found.indistinguishable:
-        yield Fact("indistinguishable", " or ".join(map(words_of, group)))
+        yield doc.Fact("indistinguishable", " or ".join(map(words_of, group)))
     if found.verdict != "consistent":
-        yield Fact("remainder", tables.remainder_text(found.remainder))
+        yield doc.Fact("remainder", tables.remainder_text(found.remainder))
     for each in found.residue:
-        yield Fact("left over", each.sentence)
+        yield doc.Fact("left over", each.sentence)
     if one.loss is not None:
-        yield Fact("lost speed", loss_line(one.loss))
+        yield doc.Fact("lost speed", loss_line(one.loss))
     if found.next_experiment is not None:
-        yield Fact("record next", found.next_experiment.sentence)
-    yield Fact("took", f"{sum(found.seconds.values()):.0f} s")
+        yield doc.Fact("record next", found.next_experiment.sentence)
+    yield doc.Fact("took", f"{sum(found.seconds.values()):.0f} s")
 
 
-def _finding(finding: Finding, verdict: str) -> Iterator[Fact]:
+def _finding(finding: Finding, verdict: str) -> Iterator[doc.Fact]:
     if verdict != "parameters":
         minor = ", minor" if finding.minor else ""
         head = f"confidence {finding.confidence:.2f}, explains {tables.share_text(finding)}{minor}"
-        yield Fact(tables.candidate_words([finding.name]), head)
+        yield doc.Fact(tables.candidate_words([finding.name]), head)
     for name, value in finding.parameters.items():
-        yield Fact(f"  {name}", tables.value_text(value))
+        yield doc.Fact(f"  {name}", tables.value_text(value))

@@ -140,12 +140,11 @@ def share_text(finding: Finding) -> str:
 def stage_words(stages: Sequence[Stage]) -> list[str]:
     """Of each channel `fault`, where an unknown input would explain most; `affected`, where one
     would explain some of the misfit too; or `clear`."""
-    return ["fault" if stage.guilty else _unlit(stage) for stage in stages]
-
-
-def _unlit(stage: Stage) -> str:
-    seen = stage.p_value < SETTINGS.false_alarm and stage.size > SETTINGS.negligible
-    return "affected" if seen else "clear"
+    words = []
+    for stage in stages:
+        seen = stage.p_value < SETTINGS.false_alarm and stage.size > SETTINGS.negligible
+        words.append("fault" if stage.guilty else "affected" if seen else "clear")
+    return words
 
 
 def stage_name(stage: Stage) -> str:

@@ -12,7 +12,6 @@ from rr_opt.design.candidate import StartResult
 from rr_opt.design.decisions import ballast_interval, with_ballast
 from rr_opt.design.maximize_speed import Optimum
 from rr_opt.documents import document as doc
-from rr_opt.documents.texts import captions
 from rr_opt.files.record import plain, robot_record
 from rr_opt.formatting import counted, direction_text, number, pace_text, with_unit
 from rr_opt.messages import listed
@@ -76,7 +75,7 @@ class FastestGait(Result):
     FILE = "result.json"
     OTHERS = ("trajectory.csv",)
     DRAW = "rr_opt.results.figures.fastest.draw"
-    CAPTIONS = captions("fastest")
+    CAPTIONS = doc.captions("fastest")
 
     name: str
     sha256: str
@@ -206,14 +205,11 @@ class FastestGait(Result):
     def checks(self) -> list[Check]:
         """Replay by CVODES, the limits over the whole cycle, the sweep, and the gait driven with
         all effects of the robot."""
-        checks = []
-        if self.replay:
-            error, excess = self.replay.error, self.replay.excess
-            allowed = LARGEST_REPLAY_ERROR * self.replay.allowance
-            speed = (
-                f"Replay by CVODES: {1e3 * self.replay.speed:+.3f} mm/s, relative error "
-                f"{error:.1e} (tolerance {allowed:.0e})."
-            )
+        checks, replay, sweep = list[Check](), self.replay, self.sweep
+        if replay:
+            allowed = LARGEST_REPLAY_ERROR * replay.allowance
+            speed = f"Replay by CVODES: {1e3 * replay.speed:+.3f} mm/s"
+            excess = replay.excess
             worst = (
                 f"none is exceeded by more than {excess:.1e} of its value "
                 f"(tolerance {LARGEST_EXCESS:.0e})."
@@ -221,11 +217,11 @@ class FastestGait(Result):
                 else "none is exceeded."
             )
             checks += [
-                Check(error <= allowed, speed),
+                _within(speed, replay.error, allowed),
                 Check(excess <= LARGEST_EXCESS, f"Limits over the whole cycle: {worst}"),
             ]
             if self.optimum.best:
-                name, share = worst_slack(self.optimum, self.optimum.best.gait, self.replay.reached)
+                name, share = worst_slack(self.optimum, self.optimum.best.gait, replay.reached)
                 most = LARGEST_SLACK[self.problem.gait.shape == "sine"]
                 slackness = (
                     f"Complementary slackness: the price of the {name} times its slack is "
@@ -233,31 +229,21 @@ class FastestGait(Result):
                 )
                 checks.append(Check(share <= most, slackness))
         if self.cost and self.energy:
-            error = abs(self.energy.cost_of_transport / self.cost - 1)
-            sentence = (
-                f"Cost of transport of the replay: {number(self.energy.cost_of_transport)}, "
-                f"relative error {error:.1e} (tolerance {LARGEST_COST_ERROR:.0e})."
-            )
-            checks.append(Check(error <= LARGEST_COST_ERROR, sentence))
-        if self.sweep:
-            better = _sweep_sentence(self.sweep, self.problem.gait.shape, self.cost)
-            checks.append(Check(self.sweep.better is None, better))
-            if not math.isnan(self.sweep.error):
-                error, allowed = self.sweep.error, self.sweep.largest_error
-                own = (
-                    f"The sweep's own model of the optimum: {1e3 * self.sweep.speed:+.3f} mm/s, "
-                    f"relative error {error:.1e} (tolerance {allowed:.0e})."
-                )
-                checks.append(Check(error <= allowed, own))
+            checks.append(self._cost_within("of the replay", self.energy.cost_of_transport))
+        if sweep:
+            better = _sweep_sentence(sweep, self.problem.gait.shape, self.cost)
+            checks.append(Check(sweep.better is None, better))
+            if not math.isnan(sweep.error):
+                own = f"The sweep's own model of the optimum: {1e3 * sweep.speed:+.3f} mm/s"
+                checks.append(_within(own, sweep.error, sweep.largest_error))
             if self.cost:
-                error = abs(self.sweep.cost / self.cost - 1)
-                own = (
-                    f"Cost of transport by the sweep's own model: {number(self.sweep.cost)}, "
-                    f"relative error {error:.1e} (tolerance {LARGEST_COST_ERROR:.0e})."
-                )
-                checks.append(Check(error <= LARGEST_COST_ERROR, own))
+                checks.append(self._cost_within("by the sweep's own model", sweep.cost))
         checks += self.robust.checks if self.robust else []
         return checks + (_driven_checks(self.driven, self.optimum) if self.driven else [])
+
+    def _cost_within(self, whose: str, cost: float) -> Check:
+        error = abs(cost / (self.cost or math.nan) - 1)
+        return _within(f"Cost of transport {whose}: {number(cost)}", error, LARGEST_COST_ERROR)
 
     @property
     def status(self) -> Status:
@@ -449,6 +435,10 @@ class FastestGait(Result):
         return {"trajectory.csv": trajectory_csv(self.replay.steady)}
 
 
+def _within(what: str, error: float, allowed: float) -> Check:
+    return Check(error <= allowed, f"{what}, relative error {error:.1e} (tolerance {allowed:.0e}).")
+
+
 LARGEST_DRIVEN_ERROR = 0.01
 """Of the speed with all effects against the optimiser's, relative, where that has them too or
 nothing was climbed."""
@@ -460,7 +450,6 @@ def _driven_checks(found: DrivenOptimum, optimum: Optimum) -> list[Check]:
     if best is None:
         return []
     names = listed(seen.effects)
-    error = seen.error(best.speed)
     if found.beyond and optimum.problem.gait.shape == "sine" and not optimum.problem.turn:
         worst, excess = optimum.problem.limits.worst(seen.reached)
         return [
@@ -470,13 +459,8 @@ def _driven_checks(found: DrivenOptimum, optimum: Optimum) -> list[Check]:
                 f"{max(excess, 0.0):.1e} of its value (tolerance {LARGEST_EXCESS:.0e}).",
             )
         ]
-    return [
-        Check(
-            error <= LARGEST_DRIVEN_ERROR,
-            f"Driven with {names}, the gait above as the command: {1e3 * seen.speed:+.3f} mm/s, "
-            f"relative error {error:.1e} (tolerance {LARGEST_DRIVEN_ERROR:.0e}).",
-        )
-    ]
+    own = f"Driven with {names}, the gait above as the command: {1e3 * seen.speed:+.3f} mm/s"
+    return [_within(own, seen.error(best.speed), LARGEST_DRIVEN_ERROR)]
 
 
 def _climbed(found: DrivenOptimum, optimum: Optimum) -> str:

@@ -3,7 +3,6 @@
 from collections.abc import Iterator
 
 from rr_opt.documents import document as doc
-from rr_opt.documents.document import Fact
 from rr_opt.effects.effect import Port
 from rr_opt.formatting import QUANTITIES, direction_text, number, speed_text, with_unit
 from rr_opt.messages import listed
@@ -16,12 +15,12 @@ _NEGLIGIBLE = 1e-4
 """A smaller coefficient, relative to the largest, is 0 to within the optimiser's tolerance."""
 
 
-def gait_facts(gait: Gait) -> tuple[Fact, ...]:
+def gait_facts(gait: Gait) -> tuple[doc.Fact, ...]:
     """Shape, amplitude, period, offset and, of a Fourier gait, the coefficients."""
     return (
-        Fact("gait", *_shape(gait)),
+        doc.Fact("gait", *_shape(gait)),
         _both("amplitude", gait.amplitude),
-        Fact("period", with_unit(gait.period, "s"), f"({with_unit(1 / gait.period, 'Hz')})"),
+        doc.Fact("period", with_unit(gait.period, "s"), f"({with_unit(1 / gait.period, 'Hz')})"),
         _both("offset", gait.offset),
         *_harmonics(gait),
     )
@@ -35,32 +34,32 @@ def _shape(gait: Gait) -> tuple[str, str]:
     return "sine", "phi(t) = amplitude sin(2 pi t/period) + offset"
 
 
-def _both(name: str, value: float) -> Fact:
+def _both(name: str, value: float) -> doc.Fact:
     first, _, second = QUANTITIES[name].both(value).partition(" (")
-    return Fact(name, first, f"({second}")
+    return doc.Fact(name, first, f"({second}")
 
 
-def _harmonics(gait: Gait) -> tuple[Fact, ...]:
+def _harmonics(gait: Gait) -> tuple[doc.Fact, ...]:
     if not isinstance(gait, FourierGait):
         return ()
     least = _NEGLIGIBLE * max(map(abs, gait.sines + gait.cosines))
     facts = []
     for n, sizes in enumerate(zip(gait.sines, gait.cosines, strict=True), 1):
         sine, cosine = (with_unit(size if abs(size) >= least else 0, "rad") for size in sizes)
-        facts.append(Fact(f"harmonic {n}", f"{sine} of the sine, {cosine} of the cosine"))
+        facts.append(doc.Fact(f"harmonic {n}", f"{sine} of the sine, {cosine} of the cosine"))
     return tuple(facts)
 
 
-def speed_fact(speed: float) -> Fact:
+def speed_fact(speed: float) -> doc.Fact:
     """A signed mean speed, and which platform leads."""
     leading = 1 if speed > 0 else 2
     return signed_fact("speed", speed, f"{direction_text(speed)}: platform {leading} leads")
 
 
-def signed_fact(label: str, speed: float, detail: str) -> Fact:
+def signed_fact(label: str, speed: float, detail: str) -> doc.Fact:
     """A signed speed in m/s, with mm/s and a remark as its detail."""
     value, _, other = speed_text(speed).partition(" (")
-    return Fact(label, value, f"({other}, {detail}" if other else detail)
+    return doc.Fact(label, value, f"({other}, {detail}" if other else detail)
 
 
 def ignored_effects(robot: Robot, *, commanded: bool = False) -> tuple[str, ...]:

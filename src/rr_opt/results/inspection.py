@@ -1,7 +1,7 @@
 """Recordings as they were found: what was read of each, and everything that looks wrong."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path, PurePath
 from typing import Any
@@ -10,9 +10,9 @@ import numpy as np
 
 from rr_opt.documents import document as doc
 from rr_opt.documents.archive import file_for_result, whole
-from rr_opt.documents.texts import captions
 from rr_opt.formatting import counted, number, with_unit
 from rr_opt.model.experiment import Flag, Recording
+from rr_opt.model.machine import MachineExperiment, MachineRun
 from rr_opt.recordings.clock_fit import ClockFit
 from rr_opt.recordings.inspection import Inspection
 from rr_opt.recordings.markers.pose import MarkerFit
@@ -33,7 +33,7 @@ class InspectedRecordings(Result):
 
     FILE = "inspection.json"
     DRAW = "rr_opt.results.figures.inspection.draw"
-    CAPTIONS = captions("inspection")
+    CAPTIONS = doc.captions("inspection")
     # They are in the page alone: there may be dozens.
     SVGS = False
 
@@ -61,12 +61,8 @@ class InspectedRecordings(Result):
         several, figures = len(self.recordings) > 1, []
         for place, one in enumerate(self.recordings, 1):
             progress(f"figures {place} of {len(self.recordings)}" if several else "figures")
-            for figure in doc.captioned(self.CAPTIONS, self._draw(one)):
-                own = {
-                    "name": f"{stem_of(one)}-{figure.name}",
-                    "title": f"{one.name}: {figure.title}",
-                }
-                figures.append(replace(figure, **own) if several else figure)
+            drawn = doc.captioned(self.CAPTIONS, self._draw(one))
+            figures += _named(drawn, one.name) if several else drawn
         return tuple(figures)
 
     def _record(self) -> dict[str, Any]:
@@ -80,27 +76,38 @@ class InspectedRecordings(Result):
         sections = [doc.Section("Recordings", (_table(found),), brief=False)] if several else []
         for one in found:
             doubts = doc.warnings(one.doubts) if one.doubts else "No warnings."
-            own = (f for f in figures if not several or f.name.rpartition("-")[0] == stem_of(one))
+            stem = PurePath(one.name).stem
+            own = (f for f in figures if not several or f.name.rpartition("-")[0] == stem)
             sections.append(doc.Section(one.name, (doc.Facts(tuple(_facts(one))), doubts)))
             sections.append(doc.gallery(own))
-        return doc.Document(
-            name=self.name,
-            kind="recordings",
-            title=f"{what} with {counted(count, 'warning')}"
-            if count
-            else f"{what} without warnings",
-            lead="Read each warning before using the recording. Nothing was filled in or dropped."
-            if count
-            else "Nothing looks wrong in the recordings.",
-            good=not count,
-            sections=tuple(sections),
-            footer=doc.versions(self.sha256),
-        )
+        dropped = "Nothing was filled in or dropped."
+        return _report(self.name, self.sha256, what, count, dropped, sections)
 
 
-def stem_of(one: Inspection) -> str:
-    """The name of a recording's file, without its ending."""
-    return PurePath(one.name).stem
+def _named(figures: Iterable[doc.Figure], recording: str) -> list[doc.Figure]:
+    """Figures of one of several recordings: their names begin with its file's."""
+    stem = PurePath(recording).stem
+    return [
+        replace(one, name=f"{stem}-{one.name}", title=f"{recording}: {one.title}")
+        for one in figures
+    ]
+
+
+def _report(
+    name: str, sha256: str, what: str, count: int, dropped: str, sections: Iterable[doc.Section]
+) -> doc.Document:
+    """count: of warnings; dropped: what was done with samples."""
+    return doc.Document(
+        name=name,
+        kind="recordings",
+        title=f"{what} with {counted(count, 'warning')}" if count else f"{what} without warnings",
+        lead=f"Read each warning before using the recording. {dropped}"
+        if count
+        else "Nothing looks wrong in the recordings.",
+        good=not count,
+        sections=tuple(sections),
+        footer=doc.versions(sha256),
+    )
 
 
 def _facts(found: Inspection) -> Iterator[doc.Fact]:
@@ -320,3 +327,95 @@ def _markers(fit: MarkerFit | None) -> dict[str, Any] | None:
         ],
         "frames_that_do_not_fit": len(fit.ghosts.lost),
     }
+
+
+@dataclass(frozen=True, repr=False)
+class InspectedMachine(Result):
+    """The recordings of an experiment, read and cleaned; all are in `experiment.runs`."""
+
+    FILE = "inspection.json"
+    DRAW = "rr_opt.results.figures.inspection.draw_machine"
+    CAPTIONS = doc.captions("machine inspection")
+    SVGS = False
+
+    experiment: MachineExperiment
+
+    @property
+    def sha256(self) -> str:
+        """Of the experiment's file and its recordings."""
+        return self.experiment.sha256
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What looks wrong, each with its recording's name."""
+        return tuple(f"{run.name}: {doubt}" for run in self.experiment.runs for doubt in run.doubts)
+
+    def drawn(self, progress: Progress = quiet) -> tuple[doc.Figure, ...]:
+        """The channels of each recording."""
+        figures = []
+        for run in self.experiment.runs:
+            progress(f"figure of {run.name}")
+            drawn = self._draw((self.experiment.machine, run))
+            figures += _named(doc.captioned(self.CAPTIONS, drawn), run.name)
+        return tuple(figures)
+
+    def _record(self) -> dict[str, Any]:
+        return {
+            "name": self.experiment.name,
+            "machine": self.experiment.machine.name,
+            "recordings": [self._recording(run) for run in self.experiment.runs],
+        }
+
+    def _recording(self, run: MachineRun) -> dict[str, Any]:
+        return {
+            "file": run.name,
+            "use": "holdout" if run.held_out else "fit",
+            "samples": len(run),
+            "rate": _rate(run),
+            "seconds": run.t[-1] - run.t[0],
+            "channels": {
+                name: {
+                    "low": np.nanmin(y),
+                    "high": np.nanmax(y),
+                    "missing": int(np.isnan(y).sum()),
+                    "sigma": run.sigma[name],
+                }
+                for name, y in _data(run).items()
+            },
+            "doubts": run.doubts,
+        }
+
+    def document(self, figures: Sequence[doc.Figure] = ()) -> doc.Document:
+        """Every recording with its channels and warnings."""
+        experiment, count = self.experiment, len(self.warnings)
+        sections = [doc.Section(run.name, tuple(self._blocks(run))) for run in experiment.runs]
+        what = f"{counted(len(experiment.runs), 'recording')} of {experiment.machine.words}"
+        sections.append(doc.gallery(figures))
+        dropped = "Wild samples were left out."
+        return _report(experiment.name, self.sha256, what, count, dropped, sections)
+
+    def _blocks(self, run: MachineRun) -> list[doc.Block]:
+        length = f"{with_unit(float(run.t[-1]), 's')}, {len(run)} samples at "
+        facts = doc.Facts((doc.Fact("length", length + with_unit(_rate(run), "Hz")),))
+        data = _data(run)
+        channels = doc.table_of(
+            [one for one in self.experiment.machine.channels if one.name in data],
+            {
+                "Channel": lambda c: f"{c.words} ({c.name})",
+                "From": lambda c: with_unit(float(np.nanmin(data[c.name])), c.unit, 3),
+                "To": lambda c: with_unit(float(np.nanmax(data[c.name])), c.unit, 3),
+                "Noise": lambda c: (
+                    with_unit(run.sigma[c.name], c.unit, 2) if run.sigma[c.name] else "exact"
+                ),
+                "Missing": lambda c: str(int(np.isnan(data[c.name]).sum())),
+            },
+        )
+        return [facts, channels, doc.warnings(run.doubts) if run.doubts else "No warnings."]
+
+
+def _data(run: MachineRun) -> Mapping[str, np.ndarray]:
+    return {**run.inputs, **run.outputs}
+
+
+def _rate(run: MachineRun) -> float:
+    return 1 / float(np.median(np.diff(run.t)))

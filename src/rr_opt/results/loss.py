@@ -21,7 +21,7 @@ from rr_opt.model.experiment import Experiment
 from rr_opt.model.gait import Gait
 from rr_opt.model.parameters import PARAMETERS, with_parameters
 from rr_opt.model.problem import Limits, Problem
-from rr_opt.model.robot import EffectUse, Robot, Servo
+from rr_opt.model.robot import EffectUse, Robot
 from rr_opt.motion.dynamics import ignored_in_steady_cycle
 from rr_opt.motion.servo import servo_made
 from rr_opt.motion.steady_cycle import steady_cycle
@@ -35,19 +35,15 @@ def corrected_robot(experiment: Experiment, found: Diagnosis) -> Robot:
     """The nominal robot with the re-estimated values, the accepted effects, and where from."""
     robot = experiment.robot
     fitted = {name: rounded(value) for name, value in found.values.items()}
+    # A servo no faster than it was seen to be: gaits are then sought that it can make.
+    seen = fitted.get("servo_rate_limit.rate_limit", math.inf)
     return replace(
         with_parameters(robot, {name: v for name, v in fitted.items() if name in PARAMETERS}),
-        servo=_servo(robot.servo, fitted),
+        servo=replace(robot.servo, rate_limit=min(robot.servo.rate_limit, seen)),
         physics=_physics(robot, fitted),
         provenance=MappingProxyType({**robot.provenance, **_provenance(experiment, found)}),
         name=f"{robot.name or experiment.name}, corrected",
     )
-
-
-def _servo(servo: Servo, fitted: Mapping[str, float]) -> Servo:
-    """The servo, no faster than it was seen to be: gaits are then sought that it can make."""
-    seen = fitted.get("servo_rate_limit.rate_limit", math.inf)
-    return replace(servo, rate_limit=min(servo.rate_limit, seen))
 
 
 def _physics(robot: Robot, fitted: Mapping[str, float]) -> tuple[EffectUse, ...]:
@@ -56,14 +52,10 @@ def _physics(robot: Robot, fitted: Mapping[str, float]) -> tuple[EffectUse, ...]
     for name, value in fitted.items():
         effect, dot, parameter = name.partition(".")
         if dot:
-            uses.setdefault(effect, {})[parameter] = _within(effect, parameter, value)
+            bounds = next(q.bounds for q in OF_ROBOTS[effect].parameters if q.name == parameter)
+            # Rounding may have left them.
+            uses.setdefault(effect, {})[parameter] = min(max(value, bounds[0]), bounds[1])
     return tuple(EffectUse(name, MappingProxyType(values)) for name, values in uses.items())
-
-
-def _within(effect: str, parameter: str, value: float) -> float:
-    """The value inside its bounds, which rounding may have left."""
-    low, high = next(q.bounds for q in OF_ROBOTS[effect].parameters if q.name == parameter)
-    return min(max(value, low), high)
 
 
 def _provenance(experiment: Experiment, found: Diagnosis) -> dict[str, str]:

@@ -8,7 +8,6 @@ import numpy as np
 
 from rr_opt.documents import document as doc
 from rr_opt.documents.rendering import terminal
-from rr_opt.documents.texts import captions
 from rr_opt.files.record import rounded, yaml_text
 from rr_opt.formatting import with_unit
 from rr_opt.model.machine import MachineExperiment, MachineRun
@@ -25,7 +24,7 @@ class ExplainedMachine(Explained[MachineExperiment]):
 
     OTHERS = (CORRECTED,)
     DRAW = "rr_opt.results.figures.diagnosis.draw_machine"
-    CAPTIONS = captions("machine")
+    CAPTIONS = doc.captions("machine")
 
     window: float
 

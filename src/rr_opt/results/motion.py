@@ -7,6 +7,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, Literal
 
+from rr_opt.documents import document as doc
 from rr_opt.documents.archive import (
     folder_for_results,
     netcdf_writer,
@@ -14,8 +15,6 @@ from rr_opt.documents.archive import (
     write_dataset,
     write_text,
 )
-from rr_opt.documents.document import Document, Fact, Figure, csv_text, facts_alone, heading
-from rr_opt.documents.texts import captions
 from rr_opt.formatting import QUANTITIES, number, side_text, speed_text, with_unit
 from rr_opt.model.gait import Gait
 from rr_opt.model.problem import LARGEST_EXCESS
@@ -83,7 +82,7 @@ class SimulatedMotion(GaitResult):
     """
 
     DRAW = "rr_opt.results.figures.motion.draw_motion"
-    CAPTIONS = captions("motion")
+    CAPTIONS = doc.captions("motion")
 
     start: str
     trajectory: Trajectory
@@ -129,15 +128,15 @@ class SimulatedMotion(GaitResult):
         for one in self.drawn(progress):
             written.append(write_text(folder / f"{one.name}.svg", one.svg))
         if film:
-            from rr_opt.results.figures.film import write_film
+            from rr_opt.results.figures.motion import write_film
 
             place = folder / f"motion.{film}"
             written.append(write_film(place, self.robot, self.trajectory, film, progress))
         return written
 
-    def document(self, figures: Sequence[Figure] = ()) -> Document:
+    def document(self, figures: Sequence[doc.Figure] = ()) -> doc.Document:
         """Gait, distance, speed and torque, for a terminal."""
-        return facts_alone(_facts(self))
+        return doc.facts_alone(_facts(self))
 
     def _record(self) -> dict[str, Any]:
         driven, measured = self.trajectory, self.measured
@@ -177,9 +176,9 @@ class DrivenCircle(GaitResult):
             },
         }
 
-    def document(self, figures: Sequence[Figure] = ()) -> Document:
+    def document(self, figures: Sequence[doc.Figure] = ()) -> doc.Document:
         """The circle and the start from rest, for a terminal."""
-        return facts_alone(_circle_facts(self))
+        return doc.facts_alone(_circle_facts(self))
 
 
 _COLUMNS = {
@@ -197,8 +196,8 @@ def trajectory_csv(trajectory: Trajectory) -> str:
     """t,x,y,psi,phi,v,torque in SI units, under a header row that has them."""
     names = [field.name for field in fields(Trajectory)]
     columns = (getattr(trajectory, name).tolist() for name in names)
-    head = [heading(name, _COLUMNS[name][0]) for name in names]
-    return csv_text(head, zip(*columns, strict=True))
+    head = [doc.heading(name, _COLUMNS[name][0]) for name in names]
+    return doc.csv_text(head, zip(*columns, strict=True))
 
 
 def write_netcdf(path: Path, trajectory: Trajectory) -> Path:
@@ -213,21 +212,21 @@ def write_netcdf(path: Path, trajectory: Trajectory) -> Path:
     return write_dataset(path, data)
 
 
-def _facts(motion: SimulatedMotion) -> Iterator[Fact]:
+def _facts(motion: SimulatedMotion) -> Iterator[doc.Fact]:
     data, measured = motion._record(), motion.measured
     begun = "rest" if motion.start == "rest" else "the steady state"
     degrees = number(math.degrees(data["turned"]))
     mean = f"{speed_text(measured.mean_v)}, mean v of axle 1"
     yield from gait_facts(motion.gait)
-    yield Fact("time", f"{number(data['seconds'])} s from {begun}")
-    yield Fact("moved", f"{number(data['distance'])} m, turned by {degrees} deg")
+    yield doc.Fact("time", f"{number(data['seconds'])} s from {begun}")
+    yield doc.Fact("moved", f"{number(data['distance'])} m, turned by {degrees} deg")
     if measured.speed is None:
-        yield Fact("speed", f"{mean}, less than a period")
+        yield doc.Fact("speed", f"{mean}, less than a period")
     else:
         circle = f"{speed_text(measured.speed)}, along the mean circle of the last period"
-        yield Fact("speed", circle)
-        yield Fact("", f"{mean} over the last period")
-    yield Fact("torque", f"{number(measured.peak_torque)} N m at most")
+        yield doc.Fact("speed", circle)
+        yield doc.Fact("", f"{mean} over the last period")
+    yield doc.Fact("torque", f"{number(measured.peak_torque)} N m at most")
 
 
 def check_files(format: Format, film: Film | None) -> None:
@@ -235,35 +234,35 @@ def check_files(format: Format, film: Film | None) -> None:
     if format == "netcdf":
         netcdf_writer()
     if film:
-        from rr_opt.results.figures.film import check_film
+        from rr_opt.results.figures.motion import check_film
 
         check_film(film)
 
 
-def _circle_facts(driven: DrivenCircle) -> Iterator[Fact]:
+def _circle_facts(driven: DrivenCircle) -> Iterator[doc.Fact]:
     circle, start = driven.circle, driven.transient
     yield from gait_facts(driven.gait)
     yield speed_fact(circle.speed)
     if circle.centre is None:
-        yield Fact("circle", f"straight: it turns by {circle.heading:.1e} rad a period")
+        yield doc.Fact("circle", f"straight: it turns by {circle.heading:.1e} rad a period")
     else:
         x, y = (with_unit(value, "m") for value in circle.centre)
         degrees, rate = (number(math.degrees(a)) for a in (circle.heading, circle.yaw_rate))
         radius, side = with_unit(circle.radius, "m"), side_text(circle.heading)
         periods = f"{number(circle.periods_round, 6)} periods"
         at = f"x = {x}, y = {y} in platform 1's axes at phase 0, P at the origin"
-        yield Fact("circle", f"radius {radius}", f"to the {side}")
-        yield Fact("curvature", f"{number(circle.curvature)} 1/m")
-        yield Fact("centre", at)
-        yield Fact("heading", f"{degrees} deg a period", f"{rate} deg/s")
-        yield Fact("full turn", with_unit(circle.time_round, "s"), periods)
-    yield Fact(
+        yield doc.Fact("circle", f"radius {radius}", f"to the {side}")
+        yield doc.Fact("curvature", f"{number(circle.curvature)} 1/m")
+        yield doc.Fact("centre", at)
+        yield doc.Fact("heading", f"{degrees} deg a period", f"{rate} deg/s")
+        yield doc.Fact("full turn", with_unit(circle.time_round, "s"), periods)
+    yield doc.Fact(
         "from rest",
         f"the deviation falls to 1/e in {with_unit(start.constant, 's')}, by "
         f"{number(100 * (1 - start.factor), 3)} % a period",
     )
     ahead = "behind" if start.lost >= 0 else "ahead of"
-    yield Fact(
+    yield doc.Fact(
         "lost",
         f"{with_unit(abs(start.lost), 'm')} {ahead} a robot that is steady from the start, "
         f"{with_unit(abs(start.delay), 's')}",

@@ -125,9 +125,12 @@ class Result:
         return terminal(self.document())
 
     def _draw(self, what: Any) -> Mapping[str, Any]:
-        """SVG texts by name; matplotlib is loaded only now."""
+        """SVG texts by name, in the style of all figures; matplotlib is loaded only now."""
+        from rr_opt.results.figures.style import styled
+
         module, _, function = self.DRAW.rpartition(".")
-        return getattr(import_module(module), function)(what) if module else {}
+        with styled():
+            return getattr(import_module(module), function)(what)
 
     def drawn(self, progress: Progress = quiet) -> tuple[Figure, ...]:
         """The figures with their captions."""

@@ -1,15 +1,21 @@
 """The gait that is fast on most of the robots that a file may mean, beside the nominal optimum."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
-from rr_opt.design.robust import RELIABLE
+import numpy as np
+
+from rr_opt.design.maximize_speed import Optimum
+from rr_opt.design.robust import RELIABLE, RobustGait, robust_gait
 from rr_opt.documents import document as doc
 from rr_opt.files.record import plain
 from rr_opt.formatting import number, with_unit
-from rr_opt.model.gait import Gait
+from rr_opt.model.ballast import inertia_ratio
+from rr_opt.model.gait import Gait, SineGait
+from rr_opt.model.problem import Spreads
+from rr_opt.results.fastest import FastestGait
 from rr_opt.results.result import Check
-from rr_opt.verify.spread import DRAWN
+from rr_opt.verify.spread import DRAWN, drawn
 
 _ALIKE = 1e-6
 SHORT = 0.01
@@ -93,3 +99,53 @@ class Robust:
             "torque_kept_by_nominal_gait": self.kept,
             "check": {"robots": DRAWN, "reaching": self.reaching, "keeping": self.keeping},
         }
+
+
+_MARGIN, _TIGHTENED = 1e-3, 6
+"""By so much more than enough robots shall keep the limit, so that the next try does; tries."""
+_SCALES = tuple(np.linspace(0.0, 2.0, 9).tolist())
+
+
+def robust_answer(best: FastestGait, spreads: Spreads) -> Robust | None:
+    """The robust gait beside the nominal optimum, and what robots drawn at random make of both."""
+    torque, choice = best.problem.limits.torque, best.problem.inertia_ratio
+    nominal = best.optimum.best.gait if best.optimum.best else None
+    if not isinstance(nominal, SineGait):
+        return None
+    found = _kept_by_most(best.optimum, spreads)
+    if found is None:
+        return None
+    gaits = (found.robot, found.gait), (best.robot, nominal)
+    seen, mine = (drawn(*one, spreads) for one in gaits)
+    other, speed = drawn(found.robot, found.gait, spreads, seed=2), seen.reached(RELIABLE)
+    first, second = (
+        tuple(drawn(*one, spreads, scale).reached(RELIABLE) for scale in _SCALES) for one in gaits
+    )
+    return Robust(
+        gait=best.command_for(found.gait),
+        ratio=inertia_ratio(found.robot, choice.about if choice else "joint"),
+        speed=speed,
+        nominal=found.nominal,
+        without=mine.reached(RELIABLE),
+        kept=mine.keeping(torque),
+        reaching=other.reaching(speed),
+        keeping=other.keeping(torque),
+        scales=_SCALES,
+        curves=(first, second),
+    )
+
+
+def _kept_by_most(optimum: Optimum, spreads: Spreads) -> RobustGait | None:
+    """The robust gait, the limit on torque tightened until enough of the robots drawn keep it."""
+    problem, torque = optimum.problem, optimum.problem.limits.torque
+    tightened = torque
+    for _ in range(_TIGHTENED):
+        limits = replace(problem.limits, torque=tightened)
+        found = robust_gait(replace(optimum, problem=replace(problem, limits=limits)), spreads)
+        if found is None:
+            return None
+        seen = drawn(found.robot, found.gait, spreads)
+        if seen.keeping(torque) >= RELIABLE:
+            return found
+        tightened *= torque / float(np.quantile(seen.torque, RELIABLE + _MARGIN))
+    return None

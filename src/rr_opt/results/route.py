@@ -12,7 +12,6 @@ import numpy as np
 
 from rr_opt.documents import document as doc
 from rr_opt.documents.archive import strict_json
-from rr_opt.documents.texts import captions
 from rr_opt.files.record import plain
 from rr_opt.formatting import number, with_unit
 from rr_opt.model.command import Command
@@ -63,7 +62,7 @@ class DrivenRoute(Result):
         *("motion.gif", "motion.mp4"),
     )
     DRAW = "rr_opt.results.figures.motion.draw_route"
-    CAPTIONS = captions("route")
+    CAPTIONS = doc.captions("route")
 
     name: str
     sha256: str
@@ -241,7 +240,7 @@ class DrivenRoute(Result):
         check_files("csv", film)
         written = super().save(path, figures=figures, progress=progress)
         if film and self.replay:
-            from rr_opt.results.figures.film import write_film
+            from rr_opt.results.figures.motion import write_film
 
             place, motion = Path(path) / f"motion.{film}", self.replay.trajectory
             written.append(write_film(place, self.robot, motion, film, progress))
@@ -283,12 +282,12 @@ def c_text(control: Feedback) -> str:
     text = environment.get_template("feedback.c").render(
         c=control, array=array, version=__version__, constants=feedback_constants
     )
-    return "\n".join(line for row in text.splitlines() for line in _folded(row)) + "\n"
-
-
-def _folded(line: str) -> list[str]:
-    """A line of an array in lines of a width that compilers and people can read."""
-    return textwrap.wrap(line, _WIDTH, subsequent_indent="    ") if len(line) > _WIDTH else [line]
+    lines = list[str]()
+    for row in text.splitlines():
+        # An array in lines of a width that compilers and people can read.
+        long = len(row) > _WIDTH
+        lines += textwrap.wrap(row, _WIDTH, subsequent_indent="    ") if long else [row]
+    return "\n".join(lines) + "\n"
 
 
 def _facts(result: DrivenRoute) -> Iterator[doc.Fact]:

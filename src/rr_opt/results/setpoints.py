@@ -8,8 +8,8 @@ from typing import Any, Literal
 
 import numpy as np
 
+from rr_opt.documents import document as doc
 from rr_opt.documents.archive import file_for_result, write_text
-from rr_opt.documents.document import Document, Fact, Figure, csv_text, facts_alone
 from rr_opt.formatting import QUANTITIES, number, speed_text, with_unit
 from rr_opt.model.problem import LARGEST_EXCESS
 from rr_opt.motion.setpoints import CENTRE, COUNT, Cost, SetPoints, interpolated, lag
@@ -82,9 +82,9 @@ class ExportedGait(GaitResult):
             "version": __version__,
         }
 
-    def document(self, figures: Sequence[Figure] = ()) -> Document:
+    def document(self, figures: Sequence[doc.Figure] = ()) -> doc.Document:
         """The set points and their cost, for a terminal."""
-        return facts_alone(_facts(self), MODEL)
+        return doc.facts_alone(_facts(self), MODEL)
 
 
 def text_of(points: SetPoints, format: Format) -> str:
@@ -96,9 +96,9 @@ def text_of(points: SetPoints, format: Format) -> str:
     times = (np.arange(len(points.angles)) / points.rate).tolist()
     if format == "csv":
         angles = points.angles.tolist(), np.degrees(points.angles).tolist()
-        return csv_text(("t [s]", "phi [rad]", "phi [deg]"), zip(times, *angles, strict=True))
+        return doc.csv_text(("t [s]", "phi [rad]", "phi [deg]"), zip(times, *angles, strict=True))
     if format == "servo":
-        return csv_text(("t [s]", "count"), zip(times, points.counts.tolist(), strict=True))
+        return doc.csv_text(("t [s]", "count"), zip(times, points.counts.tolist(), strict=True))
     return _c_header(points)
 
 
@@ -153,21 +153,23 @@ _STEPS = {
 }
 
 
-def _facts(result: ExportedGait) -> Iterator[Fact]:
+def _facts(result: ExportedGait) -> Iterator[doc.Fact]:
     points, cost = result.points, result.cost
     rate = f"{with_unit(points.rate, '', 6)} a second, one every {number(1e3 / points.rate)} ms"
     yield from gait_facts(points.gait)
-    yield Fact("set points", f"{len(points.angles)} a period, {rate}")
-    yield Fact("  period", _period_text(points))
+    yield doc.Fact("set points", f"{len(points.angles)} a period, {rate}")
+    yield doc.Fact("  period", _period_text(points))
     asked, sent = points.gait.amplitude, points.played.amplitude
     if not math.isclose(asked, sent, rel_tol=_NOTHING):
         change = f"lowered from {with_unit(asked, 'rad', 6)} ({100 * (sent / asked - 1):+.2f} %)"
-        yield Fact("  amplitude", f"{with_unit(sent, 'rad', 6)}, {change} to be within the limits")
-    yield Fact("speed", f"{speed_text(cost.nominal)}, of the gait itself")
+        yield doc.Fact(
+            "  amplitude", f"{with_unit(sent, 'rad', 6)}, {change} to be within the limits"
+        )
+    yield doc.Fact("speed", f"{speed_text(cost.nominal)}, of the gait itself")
     for name, change in cost.steps.items():
-        yield Fact(f"  {name}", f"{_change_text(change, cost.nominal)} {_STEPS[name]}")
+        yield doc.Fact(f"  {name}", f"{_change_text(change, cost.nominal)} {_STEPS[name]}")
     total = _change_text(sum(cost.steps.values()), cost.nominal)
-    yield Fact("  left", f"{speed_text(cost.final)}, {total}")
+    yield doc.Fact("  left", f"{speed_text(cost.final)}, {total}")
 
 
 def _period_text(points: SetPoints) -> str:

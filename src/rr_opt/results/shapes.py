@@ -7,7 +7,6 @@ from typing import Any
 
 from rr_opt.documents import document as doc
 from rr_opt.documents.archive import strict_json
-from rr_opt.documents.texts import captions
 from rr_opt.files.record import plain
 from rr_opt.formatting import direction_text, number, with_unit
 from rr_opt.model.problem import GaitBounds
@@ -31,7 +30,7 @@ class FastestShapes(Result):
     FILE = "shapes.json"
     OTHERS = ("shapes.csv", "sine.json", "fourier-3.json", "fourier-5.json", "free.json")
     DRAW = "rr_opt.results.figures.fastest.draw_shapes"
-    CAPTIONS = captions("shapes")
+    CAPTIONS = doc.captions("shapes")
 
     name: str
     sha256: str
@@ -74,7 +73,11 @@ class FastestShapes(Result):
         solved = [(one, abs(one.speed)) for one in self.solved if one.speed is not None]
         if failed or len(solved) < 2:
             return " ".join(failed)
-        speeds = ", ".join(f"{1e3 * speed:.1f} mm/s with {_with(one)}" for one, speed in solved)
+        words = {"free": "a free gait", "sine": "a sine"}
+        speeds = ", ".join(
+            f"{1e3 * speed:.1f} mm/s with {words.get(family(one), family(one))}"
+            for one, speed in solved
+        )
         gain = 100 * (solved[-1][1] / solved[0][1] - 1)
         text = f"Under the same limits {speeds}: {gain:.1f} % more than the best sine."
         for (smaller, slow), (larger, fast) in pairwise(solved):
@@ -137,11 +140,6 @@ def family(answer: FastestGait) -> str:
 def family_name(gait: GaitBounds) -> str:
     """`sine`, `3 harmonics` or `free`."""
     return f"{gait.harmonics} harmonics" if gait.shape == "fourier" else gait.shape
-
-
-def _with(answer: FastestGait) -> str:
-    shape = answer.problem.gait.shape
-    return {"free": "a free gait", "sine": "a sine"}.get(shape, family(answer))
 
 
 _UNITS = {

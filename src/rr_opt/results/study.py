@@ -1,7 +1,7 @@
-"""A study that was solved."""
+"""A study that was solved, and one of routes that were driven."""
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -13,8 +13,8 @@ from rr_opt.array import Array
 from rr_opt.design.study.plan import branches, plan
 from rr_opt.design.study.row import Row
 from rr_opt.documents import document as doc
-from rr_opt.documents.archive import netcdf_writer
-from rr_opt.documents.texts import captions
+from rr_opt.documents.archive import netcdf_writer, strict_json
+from rr_opt.files.route_file import RouteStudy
 from rr_opt.files.study_file import Study
 from rr_opt.formatting import direction_text, number, speed_text, with_unit
 from rr_opt.messages import listed
@@ -37,21 +37,12 @@ _SAME_SPEED = 1e-8
 """Cases whose speeds differ by less, relative, are equally fast."""
 
 
-@dataclass(frozen=True, repr=False)
-class SolvedStudy(Result):
-    """A study with all its rows.
-
-    rows  one for each case, in the order of `study.problems`; `row.optimum` is None where there is
-          none, and `row.message` says why
-    """
+class _Study(Result):
+    """What came of each case of a study: a row, and how it ended."""
 
     FILE = "study.json"
-    OTHERS = ("study.csv", "study.nc")
-    DRAW = "rr_opt.results.figures.study.draw"
-    CAPTIONS = captions("study")
 
-    study: Study
-    rows: tuple[Row, ...]
+    study: Any
 
     @property
     def name(self) -> str:
@@ -62,6 +53,50 @@ class SolvedStudy(Result):
     def sha256(self) -> str:
         """The fingerprint of its files."""
         return self.study.sha256
+
+    @property
+    def _statuses(self) -> list[Status]:
+        """Of each row."""
+        raise NotImplementedError
+
+    @property
+    def counts(self) -> dict[Status, int]:
+        """How many rows ended in each way."""
+        counted = Counter(self._statuses)
+        return {status: counted[status] for status in Status}
+
+    @property
+    def status(self) -> Status:
+        """OPTIMAL if any case has an optimum; else INFEASIBLE if no case has a feasible gait."""
+        return Status.of_cases(self.counts)
+
+    def _record(self) -> dict[str, Any]:
+        return {
+            "status": "studied",
+            "message": self.message,
+            "study": self.name,
+            "counts": {status.value: count for status, count in self.counts.items()},
+        }
+
+
+@dataclass(frozen=True, repr=False)
+class SolvedStudy(_Study):
+    """A study with all its rows.
+
+    rows  one for each case, in the order of `study.problems`; `row.optimum` is None where there is
+          none, and `row.message` says why
+    """
+
+    OTHERS = ("study.csv", "study.nc")
+    DRAW = "rr_opt.results.figures.study.draw"
+    CAPTIONS = doc.captions("study")
+
+    study: Study
+    rows: tuple[Row, ...]
+
+    @property
+    def _statuses(self) -> list[Status]:
+        return [row.status for row in self.rows]
 
     @cached_property
     def branches(self) -> tuple[int | None, ...]:
@@ -88,12 +123,6 @@ class SolvedStudy(Result):
         if np.isnan(speed).all():
             return None
         return int(np.flatnonzero(speed >= np.nanmax(speed) * (1 - _SAME_SPEED))[0])
-
-    @property
-    def counts(self) -> dict[Status, int]:
-        """How many rows ended in each way."""
-        counted = Counter(row.status for row in self.rows)
-        return {status: counted[status] for status in Status}
 
     def front(self, cost: str) -> list[int]:
         """The cases that no other one beats in both: less cost and more speed; cheapest first.
@@ -165,11 +194,6 @@ class SolvedStudy(Result):
             )
         yield from slippery(best.peak_grip)
 
-    @property
-    def status(self) -> Status:
-        """OPTIMAL if any case has an optimum; else INFEASIBLE if no case has a feasible gait."""
-        return Status.of_cases(self.counts)
-
     def save(
         self,
         path: str | Path,
@@ -200,11 +224,7 @@ class SolvedStudy(Result):
         """The content of study.json, SI: the table's columns row by row, and the gaits."""
         columns = self._columns
         cases = ({c.name: c.cells[k] for c in columns} for k in range(len(self.rows)))
-        return {
-            "status": "studied",
-            "message": self.message,
-            "study": self.study.name,
-            "counts": {status.value: count for status, count in self.counts.items()},
+        return super()._record() | {
             "varied": [[line.key.name for line in axis.lines] for axis in self.study.axes],
             "shape": self.study.shape,
             "pareto": {name: self.front(name) for name in COSTS},
@@ -340,3 +360,75 @@ def _cases_table(result: SolvedStudy, cases: Iterable[int]) -> doc.Table:
             ]
         )
     return doc.table(head, rows)
+
+
+@dataclass(frozen=True, repr=False)
+class DrivenRoutes(_Study):
+    """The routes of a study, driven.
+
+    rows  one for each route, in their order: what `DrivenRoute.record` has, and `cpu_seconds`. Of a
+          route that ended in an error there are `status` and `message` only
+    """
+
+    OTHERS = ("study.csv",)
+
+    study: RouteStudy
+    rows: tuple[Mapping[str, Any], ...]
+
+    @property
+    def _statuses(self) -> list[Status]:
+        return [Status(row["status"]) for row in self.rows]
+
+    @property
+    def message(self) -> str:
+        """The outcome in a sentence."""
+        return f"{self.counts[Status.OPTIMAL]} of {len(self.rows)} routes are driven."
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Of each route that is not driven, why."""
+        return tuple(
+            f"{route.name}: {row['message']}"
+            for route, row in zip(self.study.routes, self.rows, strict=True)
+            if row["status"] != Status.OPTIMAL.value
+        )
+
+    def _record(self) -> dict[str, Any]:
+        named = zip(self.study.routes, self.rows, strict=True)
+        return super()._record() | {"routes": [{"name": route.name, **row} for route, row in named]}
+
+    def _tables(self) -> Mapping[str, str]:
+        """study.csv, and of each route that is driven NAME.json, as route.json."""
+        named = list(zip(self.study.routes, self.rows, strict=True))
+        cells = ((route.name, *_cells(row)) for route, row in named)
+        tables = {"study.csv": doc.csv_text(("route", *_HEADINGS), cells)}
+        for route, row in named:
+            if row.get("command"):
+                tables[f"{route.name}.json"] = strict_json(row)
+        return tables
+
+    def document(self, figures: Sequence[doc.Figure] = ()) -> doc.Document:
+        """A table of the routes."""
+        rows = (
+            (route.name, doc.Badge(Status(row["status"]).words), *_cells(row)[1:])
+            for route, row in zip(self.study.routes, self.rows, strict=True)
+        )
+        table = doc.table(("route", *_HEADINGS), rows)
+        return doc.Document(
+            name=self.study.name,
+            kind="study",
+            title=self.message.removesuffix("."),
+            lead=" ".join(self.warnings),
+            good=self.status is Status.OPTIMAL,
+            sections=(doc.Section("Routes", (table,)), doc.gallery(figures)),
+            footer=doc.versions(self.sha256),
+        )
+
+
+_HEADINGS = "status", "length [m]", "time [s]", "end off by [m]", "way off by [m]", "CPU [s]"
+
+
+def _cells(row: Mapping[str, Any]) -> tuple[Any, ...]:
+    check = row.get("check") or {}
+    names = row.get("length"), row.get("seconds"), check.get("position"), check.get("path")
+    return (row["status"], *names, row.get("cpu_seconds"))

@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 
 from rr_opt.design.study.row import CaseOptimum, Row
+from rr_opt.documents.archive import netcdf_writer, write_dataset
 from rr_opt.documents.document import heading
 from rr_opt.files.study_axes import Axis, ProblemKey
 from rr_opt.files.study_file import Study
 from rr_opt.formatting import QUANTITIES, direction_text, with_unit
 from rr_opt.model.parameters import PARAMETERS, SYMBOLS
-from rr_opt.results.motion import netcdf_writer, write_dataset
 from rr_opt.units import to_si
 from rr_opt.version import __version__
 

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from typing import Any
 
 from rr_opt.documents import document as doc
-from rr_opt.documents.texts import captions
 from rr_opt.formatting import direction_text, number, pace_text, with_unit
 from rr_opt.model.problem import Problem
 from rr_opt.outcome import Status
@@ -25,8 +24,8 @@ class Sweep(Result):
 
     FILE = "sweep.json"
     OTHERS = ("sweep.csv",)
-    DRAW = "rr_opt.results.figures.speed_map.draw_sweep"
-    CAPTIONS = captions("sweep")
+    DRAW = "rr_opt.results.figures.fastest.draw_sweep"
+    CAPTIONS = doc.captions("sweep")
 
     name: str
     sha256: str

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from rr_opt.documents import document as doc
-from rr_opt.documents.texts import prose
+from rr_opt.documents.document import prose
 from rr_opt.files.record import plain
 from rr_opt.formatting import number
 from rr_opt.results.result import Result

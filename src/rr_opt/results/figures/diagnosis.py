@@ -126,9 +126,8 @@ def draw(one: ExplainedExperiment) -> dict[str, tuple[str, str]]:
         "residue": _residue,
         "loss": _loss,
     }
-    with style.styled():
-        made = {name: make(one) for name, make in makers.items()}
-        return {name: (style.svg(each[0]), each[1]) for name, each in made.items() if each}
+    made = {name: make(one) for name, make in makers.items()}
+    return {name: (style.svg(each[0]), each[1]) for name, each in made.items() if each}
 
 
 def _evidence(one: ExplainedExperiment) -> tuple[Figure, str] | None:
@@ -193,7 +192,9 @@ _FLAT = 0.6
 
 def _paths(one: ExplainedExperiment) -> tuple[Figure, str]:
     shown = one.proof[:_MOST_PATHS]
-    wide = all(_flat(one.experiment.runs[k].recording) for k in shown)
+    places = (map(one.experiment.runs[k].recording.data, ("x", "y")) for k in shown)
+    sizes = ([np.ptp(values[np.isfinite(values)]) for values in xy] for xy in places)
+    wide = all(height < _FLAT * width for width, height in sizes)
     columns = 1 if wide else min(len(shown), 2)
     made = style.figure(height=0.8 + (1.9 if wide else 2.7) * -(-len(shown) // columns))
     axes = style.grid(made, len(shown), columns)
@@ -230,11 +231,6 @@ def _path(ax: Axes, recording: Recording, nominal: Misfit, final: Misfit) -> Non
     ax.set_ylabel("y, m")
     ax.tick_params(labelsize=8.5)
     ax.locator_params(nbins=5)
-
-
-def _flat(recording: Recording) -> bool:
-    width, height = (np.ptp(y[np.isfinite(y)]) for y in map(recording.data, ("x", "y")))
-    return bool(height < _FLAT * width)
 
 
 def _distance(seen: Array, one: Misfit) -> float:
@@ -275,9 +271,8 @@ _MOST_PARTS, _MOST_POINTS = 12, 2000
 
 def draw_machine(one: ExplainedMachine) -> dict[str, str]:
     """SVG text by name."""
-    with style.styled():
-        made = {"errors": _errors(one), "unknown": _unknown(one)}
-        return {name: style.svg(each) for name, each in made.items() if each}
+    made = {"errors": _errors(one), "unknown": _unknown(one)}
+    return {name: style.svg(each) for name, each in made.items() if each}
 
 
 def _errors(one: ExplainedMachine) -> Figure:

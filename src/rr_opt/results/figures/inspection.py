@@ -241,28 +241,27 @@ def draw(found: Inspection) -> dict[str, str]:
     recording, gait, markers = found.recording, found.gait, found.markers
     stated = {name: float(np.median(recording.sigma[name])) for name in recording.channels}
     count = len(recording.channels)
-    with style.styled():
-        over = style.figure(style.WIDTH, 1.4 * count + 0.5)
-        axes = np.ravel(over.subplots(count, 1, sharex=True))
-        channels(list(axes), recording, found.cleaned.gaps)
-        over.align_ylabels()
-        drawn = {
-            "path": style.panel(4.4, lambda ax: path(ax, recording, gait)),
-            "channels": style.svg(over),
-            "noise": style.panel(3.2, lambda ax: noise(ax, found.cleaned.noise, stated)),
-        }
-        if gait is not None:
-            one = style.figure(style.WIDTH, 5.0)
-            above, below = one.subplots(2, 1, height_ratios=[1.4, 1])
-            folded(above, recording.t, recording.data("phi"), gait, found.command)
-            difference(below, recording.t, recording.data("phi"), gait)
-            drawn["command"] = style.svg(one)
-        if markers is not None:
-            one = style.figure(style.WIDTH, 4.8)
-            above, below = one.subplots(2, 1)
-            over_time(above, markers)
-            by_marker(below, markers)
-            drawn["rigid"] = style.svg(one)
+    over = style.figure(style.WIDTH, 1.4 * count + 0.5)
+    axes = np.ravel(over.subplots(count, 1, sharex=True))
+    channels(list(axes), recording, found.cleaned.gaps)
+    over.align_ylabels()
+    drawn = {
+        "path": style.panel(4.4, lambda ax: path(ax, recording, gait)),
+        "channels": style.svg(over),
+        "noise": style.panel(3.2, lambda ax: noise(ax, found.cleaned.noise, stated)),
+    }
+    if gait is not None:
+        one = style.figure(style.WIDTH, 5.0)
+        above, below = one.subplots(2, 1, height_ratios=[1.4, 1])
+        folded(above, recording.t, recording.data("phi"), gait, found.command)
+        difference(below, recording.t, recording.data("phi"), gait)
+        drawn["command"] = style.svg(one)
+    if markers is not None:
+        one = style.figure(style.WIDTH, 4.8)
+        above, below = one.subplots(2, 1)
+        over_time(above, markers)
+        by_marker(below, markers)
+        drawn["rigid"] = style.svg(one)
     return {name: small(text) for name, text in drawn.items()}
 
 
@@ -271,12 +270,11 @@ def draw_machine(one: tuple[Machine, MachineRun]) -> dict[str, str]:
     machine, run = one
     data = {**run.inputs, **run.outputs}
     shown = [c for c in machine.channels if c.name in data]
-    with style.styled():
-        made = style.figure(height=0.6 + 1.2 * len(shown))
-        axes = np.atleast_1d(made.subplots(len(shown), 1, sharex=True))
-        for ax, c in zip(axes, shown, strict=True):
-            ax.plot(*thinned(run.t, data[c.name]), color=style.INK, lw=1.1)
-            ax.set(ylabel=f"{c.name}, {c.unit}", xlim=(run.t[0], run.t[-1]))
-            _limits(ax, data[c.name])
-        axes[-1].set_xlabel("time, s")
-        return {"channels": small(style.svg(made))}
+    made = style.figure(height=0.6 + 1.2 * len(shown))
+    axes = np.atleast_1d(made.subplots(len(shown), 1, sharex=True))
+    for ax, c in zip(axes, shown, strict=True):
+        ax.plot(*thinned(run.t, data[c.name]), color=style.INK, lw=1.1)
+        ax.set(ylabel=f"{c.name}, {c.unit}", xlim=(run.t[0], run.t[-1]))
+        _limits(ax, data[c.name])
+    axes[-1].set_xlabel("time, s")
+    return {"channels": small(style.svg(made))}

@@ -3,22 +3,30 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+import shutil
+import subprocess
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from itertools import chain
+from pathlib import Path
+from typing import IO, TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.patches import Circle, Polygon
 from numpy.typing import ArrayLike, NDArray
+from PIL import Image
 
+from rr_opt.documents.archive import whole
 from rr_opt.formatting import number
 from rr_opt.model.problem import Limits
 from rr_opt.model.robot import Robot
 from rr_opt.motion.steady_cycle import Cycle, SteadyCycle, Trajectory
+from rr_opt.outcome import InputError, RollerRacerError
 from rr_opt.results.figures import style
-from rr_opt.results.motion import SimulatedMotion
+from rr_opt.results.motion import Film, SimulatedMotion
 
 if TYPE_CHECKING:
     from rr_opt.results.route import DrivenRoute
@@ -38,8 +46,7 @@ def draw_robot(ax: Axes, robot: Robot, motion: Trajectory, i: int, *, alpha: flo
     psi, phi, h = float(motion.psi[i]), float(motion.phi[i]), robot.h
     artists: list = []
 
-    def shape(points: ArrayLike, **look: Any) -> None:
-        points = np.asarray(points)
+    def shape(points: NDArray, **look: Any) -> None:
         corners = np.column_stack([np.real(points), np.imag(points)])
         artists.append(ax.add_patch(Polygon(corners, **look)))
 
@@ -84,7 +91,7 @@ _POSES = 20
 """Of the robot, along the diagonal of what is drawn."""
 
 
-def path(ax: Axes, robot: Robot, motion: Trajectory, speed: float, period: float) -> Axes:
+def path(ax: Axes, robot: Robot, motion: Trajectory, speed: float, period: float) -> None:
     """The path of P (m) and the robot at its last instant and at some before.
 
     motion: turned as it should be drawn; speed: signed, m/s, gives the colour; period: of the
@@ -101,7 +108,6 @@ def path(ax: Axes, robot: Robot, motion: Trajectory, speed: float, period: float
     ax.set_aspect("equal", adjustable="datalim")
     ax.margins(0.06)
     ax.set(xlabel="x, m", ylabel="y, m")
-    return ax
 
 
 def instants(motion: Trajectory, length: float) -> list[int]:
@@ -192,27 +198,31 @@ def _height(robot: Robot, trajectory: Trajectory) -> float:
     return round(_DPI / 2 * min(max((_WIDTH - 0.8) * high / wide + 0.9, 2.6), 8.0)) / (_DPI / 2)
 
 
-def cycle(axes: Sequence[Axes], steady: SteadyCycle, limits: Limits) -> Sequence[Axes]:
+def over_time(axes: Sequence[Axes], motion: Trajectory, rate: ArrayLike, limits: Limits) -> None:
     """Fill four axes, top to bottom: phi (rad), its rate (rad/s), v (m/s), torque (N m)."""
-    t = steady.t
-    against_limit(axes[0], t, steady.phi, limits.angle, "φ, rad")
-    against_limit(axes[1], t, steady.gait.rate(t), limits.rate, "dφ/dt, rad/s")
-    axes[2].plot(t, steady.v, color=style.INK)
-    mean = float(steady.v[:-1].mean())
-    axes[2].axhline(mean, color=style.colour_of(steady.speed), lw=1.3, ls=(0, (5, 2)))
+    t = motion.t
+    against_limit(axes[0], t, motion.phi, limits.angle, "φ, rad")
+    against_limit(axes[1], t, rate, limits.rate, "dφ/dt, rad/s")
+    axes[2].plot(t, motion.v, color=style.INK)
     axes[2].set_ylabel("v, m/s")
-    axes[2].margins(y=0.25)
-    means = f"mean of v {mean:+.4f} m/s, of P along its path {steady.speed:+.4f} m/s"
-    style.note(axes[2], means, color=style.colour_of(steady.speed))
-    against_limit(axes[3], t, steady.torque, limits.torque, "τ, N m")
+    against_limit(axes[3], t, motion.torque, limits.torque, "τ, N m")
     axes[3].set_xlabel("time, s")
     for ax in axes:
         ax.set_xlim(t[0], t[-1])
     axes[0].figure.align_ylabels(list(axes))  # type: ignore[union-attr]
-    return axes
 
 
-def against_limit(ax: Axes, t: ArrayLike, values: ArrayLike, limit: float, label: str) -> Axes:
+def cycle(axes: Sequence[Axes], steady: SteadyCycle, limits: Limits) -> None:
+    """A steady cycle in four axes, and the mean of its v."""
+    over_time(axes, steady, steady.gait.rate(steady.t), limits)
+    mean = float(steady.v[:-1].mean())
+    axes[2].axhline(mean, color=style.colour_of(steady.speed), lw=1.3, ls=(0, (5, 2)))
+    axes[2].margins(y=0.25)
+    means = f"mean of v {mean:+.4f} m/s, of P along its path {steady.speed:+.4f} m/s"
+    style.note(axes[2], means, color=style.colour_of(steady.speed))
+
+
+def against_limit(ax: Axes, t: ArrayLike, values: ArrayLike, limit: float, label: str) -> None:
     """A quantity over time with its limit; a limit far away is only named."""
     values = np.asarray(values, float)
     ax.plot(t, values, color=style.FORWARD)
@@ -220,82 +230,136 @@ def against_limit(ax: Axes, t: ArrayLike, values: ArrayLike, limit: float, label
     peak, unit = float(np.abs(values).max()), label.rsplit(", ", maxsplit=1)[-1]
     if not math.isfinite(limit):
         ax.margins(y=0.25)
-        return ax
+        return
     if peak < 0.4 * limit:
         ax.margins(y=0.3)
         style.note(ax, f"{100 * peak / limit:.0f} % of the limit, {number(limit)} {unit}")
-        return ax
+        return
     for value in (limit, -limit):
         ax.axhline(value, color=style.LIMIT, lw=1.2, ls=(0, (4, 2)))
     ax.set_ylim(-1.35 * max(limit, peak), 1.35 * max(limit, peak))
     style.note(ax, f"limit {number(limit)} {unit}", y=0.985, color=style.LIMIT)
     ax.axhline(0, color=style.GREY, lw=0.5)
-    return ax
 
 
 def draw_motion(motion: SimulatedMotion) -> dict[str, str]:
     """Four axes, top to bottom: path (m), phi (rad), v (m/s), torque (N m)."""
     robot, trajectory = motion.robot, motion.trajectory
-    with style.styled():
-        drawn = style.figure(style.WIDTH, 8.0)
-        axes = drawn.subplots(4, 1, gridspec_kw={"height_ratios": [2.4, 1, 1, 1]})
-        path(axes[0], robot, trajectory, float(trajectory.v.mean()), motion.gait.period)
-        axes[0].set_title("The path of P, and the robot at a few instants")
-        t = trajectory.t
-        against_limit(axes[1], t, trajectory.phi, robot.servo.angle_limit, "φ, rad")
-        axes[2].plot(t, trajectory.v, color=style.INK)
-        axes[2].set_ylabel("v, m/s")
-        against_limit(axes[3], t, trajectory.torque, robot.servo.torque_limit, "τ, N m")
-        for ax in axes[1:]:
-            ax.set_xlim(t[0], t[-1])
-        for ax in axes[1:3]:
-            ax.sharex(axes[3])
-            ax.tick_params(labelbottom=False)
-        axes[3].set_xlabel("time, s")
-        drawn.align_ylabels(list(axes[1:]))
-        return {"motion": style.svg(drawn)}
+    drawn = style.figure(style.WIDTH, 8.0)
+    axes = drawn.subplots(4, 1, gridspec_kw={"height_ratios": [2.4, 1, 1, 1]})
+    path(axes[0], robot, trajectory, float(trajectory.v.mean()), motion.gait.period)
+    axes[0].set_title("The path of P, and the robot at a few instants")
+    t = trajectory.t
+    against_limit(axes[1], t, trajectory.phi, robot.servo.angle_limit, "φ, rad")
+    axes[2].plot(t, trajectory.v, color=style.INK)
+    axes[2].set_ylabel("v, m/s")
+    against_limit(axes[3], t, trajectory.torque, robot.servo.torque_limit, "τ, N m")
+    for ax in axes[1:]:
+        ax.set_xlim(t[0], t[-1])
+    for ax in axes[1:3]:
+        ax.sharex(axes[3])
+        ax.tick_params(labelbottom=False)
+    axes[3].set_xlabel("time, s")
+    drawn.align_ylabels(list(axes[1:]))
+    return {"motion": style.svg(drawn)}
 
 
 def draw_route(result: DrivenRoute) -> dict[str, str]:
     """The way seen from above, and the drive over time."""
-    if result.replay is None or result.command is None:
+    replay, command = result.replay, result.command
+    if replay is None or command is None:
         return {}
-    return {"way": _way(result), "drive": _drive(result)}
+    drawn = style.figure(style.WIDTH, 7.0)
+    axes, driven = drawn.subplots(4, 1, sharex=True), replay.trajectory
+    over_time(axes, driven, command.at(driven.t)[1], result.plan.problem.limits)
+    return {"way": style.panel(5.0, lambda ax: _way(ax, result, driven)), "drive": style.svg(drawn)}
 
 
-def _way(result: DrivenRoute) -> str:
-    assert result.replay
-    driven, robot = result.replay.trajectory, result.robot
+def _way(ax: Axes, result: DrivenRoute, driven: Trajectory) -> None:
     poses = [leg.at(s) for leg in result.plan.legs for s in np.linspace(0, leg.length, 100)]
-    with style.styled():
-        drawn = style.figure(style.WIDTH, 5.0)
-        ax = drawn.subplots()
-        x, y = [pose.x for pose in poses], [pose.y for pose in poses]
-        ax.plot(x, y, color="#b4bdc6", lw=5, label="path asked")
-        ax.plot(driven.x, driven.y, color=style.INK, lw=1.2, label="path of P, driven")
-        for i in (0, *instants(driven, robot_length(robot))):
-            draw_robot(ax, robot, driven, i, alpha=0.7)
-        ax.set_aspect("equal", adjustable="datalim")
-        ax.set(xlabel="x, m", ylabel="y, m")
-        ax.legend()
-        return style.svg(drawn)
+    x, y = [pose.x for pose in poses], [pose.y for pose in poses]
+    ax.plot(x, y, color="#b4bdc6", lw=5, label="path asked")
+    ax.plot(driven.x, driven.y, color=style.INK, lw=1.2, label="path of P, driven")
+    for i in (0, *instants(driven, robot_length(result.robot))):
+        draw_robot(ax, result.robot, driven, i, alpha=0.7)
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.set(xlabel="x, m", ylabel="y, m")
+    ax.legend()
 
 
-def _drive(result: DrivenRoute) -> str:
-    assert result.replay
-    assert result.command
-    driven, limits = result.replay.trajectory, result.plan.problem.limits
-    with style.styled():
-        drawn = style.figure(style.WIDTH, 7.0)
-        axes = drawn.subplots(4, 1, sharex=True)
-        against_limit(axes[0], driven.t, driven.phi, limits.angle, "φ, rad")
-        against_limit(
-            axes[1], driven.t, result.command.at(driven.t)[1], limits.rate, "dφ/dt, rad/s"
+_RATE = {"gif": 20, "mp4": 30}
+_MOST_FRAMES = 1200
+
+
+def check_film(kind: Film) -> None:
+    """Raise InputError if films of this kind cannot be made on this machine."""
+    if kind == "mp4" and shutil.which("ffmpeg") is None:
+        raise InputError(
+            "MP4 films need the program ffmpeg, which was not found. Install ffmpeg, or make a "
+            "GIF with --animate gif."
         )
-        axes[2].plot(driven.t, driven.v, color=style.INK)
-        axes[2].set_ylabel("v, m/s")
-        against_limit(axes[3], driven.t, driven.torque, limits.torque, "τ, N m")
-        axes[3].set_xlabel("time, s")
-        axes[3].set_xlim(driven.t[0], driven.t[-1])
-        drawn.align_ylabels(list(axes))
-        return style.svg(drawn)
+
+
+def write_film(
+    path: Path,
+    robot: Robot,
+    trajectory: Trajectory,
+    kind: Film,
+    progress: Callable[[str], None] = lambda _: None,
+) -> Path:
+    """Write the film, in real time; a motion too long for that is shown faster."""
+    check_film(kind)
+    rate = _RATE[kind]
+    count = min(max(round(rate * float(trajectory.t[-1])), 1), _MOST_FRAMES)
+    chosen = np.linspace(0, len(trajectory.t) - 1, count + 1).round().astype(int)
+
+    def counted() -> Iterator[NDArray]:
+        for place, picture in enumerate(frames(robot, trajectory, chosen), 1):
+            progress(f"film, frame {place} of {len(chosen)}")
+            yield picture
+
+    with whole(path) as temporary:
+        if kind == "gif":
+            last = next(frames(robot, trajectory, chosen[-1:]))
+            _gif(temporary, counted(), rate, last)
+        else:
+            _mp4(temporary, counted(), rate)
+    return path
+
+
+def _gif(path: Path, pictures: Iterator[NDArray], rate: int, fullest: NDArray) -> None:
+    """One palette, of the fullest picture: colours then stay the same from frame to frame."""
+    palette = Image.fromarray(fullest).quantize(128, method=Image.Quantize.MAXCOVERAGE)
+    indexed = (
+        Image.fromarray(picture).quantize(palette=palette, dither=Image.Dither.NONE)
+        for picture in pictures
+    )
+    first = next(indexed)
+    first.save(path, save_all=True, append_images=indexed, duration=1000 // rate, loop=0)
+
+
+def _mp4(path: Path, pictures: Iterator[NDArray], rate: int) -> None:
+    first = next(pictures)
+    height, width, _ = first.shape
+    command = [
+        *("ffmpeg", "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24"),
+        *("-s", f"{width}x{height}", "-r", str(rate), "-i", "-"),
+        *("-c:v", "libx264", "-pix_fmt", "yuv420p", "-movflags", "+faststart", str(path)),
+    ]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.PIPE) as running:
+        try:
+            _feed(running.stdin, chain([first], pictures))
+        except BaseException:
+            running.kill()
+            raise
+        complaint = running.communicate()[1].decode(errors="replace").strip()
+    if running.returncode:
+        raise RollerRacerError(f"ffmpeg could not make the film: {complaint}")
+
+
+def _feed(pipe: IO[bytes] | None, pictures: Iterable[NDArray]) -> None:
+    # A pipe that breaks is ffmpeg giving up: its own words say why.
+    with suppress(BrokenPipeError):
+        for picture in pictures:
+            if pipe is not None:
+                pipe.write(picture.tobytes())

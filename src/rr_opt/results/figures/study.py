@@ -1,8 +1,9 @@
-"""A study over two of its inputs: a map of the speed, and the active limits and bounds."""
+"""The figures of a study: what it varies as axes, maps of the speed and of what limits it."""
 
 import itertools
 from collections import Counter
 from collections.abc import Iterator
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -10,18 +11,139 @@ from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap, ListedColormap, LogNorm, Normalize
 from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
+from numpy.typing import NDArray
 
-from rr_opt.formatting import counted
-from rr_opt.results.figures import readout, style
-from rr_opt.results.figures.study_axes import Scale, StudyGrid, grid_of, scale_of
+from rr_opt.array import Array
+from rr_opt.files.study_axes import Axis
+from rr_opt.formatting import counted, number
+from rr_opt.results.figures import style
 from rr_opt.results.study import SolvedStudy
-from rr_opt.results.study_table import held_words
+from rr_opt.results.study_table import axis_words, held_words, unit_of, value_text
+
+_EVEN = 0.05
+_WIDEST = 60
+"""Letters of names that fit side by side under a figure."""
+
+
+@dataclass(frozen=True)
+class Scale:
+    """The steps of an axis in the unit that people think in, and their names.
+
+    factor   how many of that unit are one SI unit
+    ordered  steps are numbers with a place on a scale, logarithmic if `log`. If one is none, or is
+             infinite, they are named and stand side by side, at 1, 2, 3 ..: the finite ones by
+             size, infinity last
+    """
+
+    label: str
+    steps: Array
+    texts: tuple[str, ...]
+    factor: float
+    ordered: bool
+    log: bool
+
+    @property
+    def order(self) -> list[int]:
+        """The steps from the smallest to the largest."""
+        return [int(step) for step in np.argsort(self.steps, kind="stable")]
+
+    @property
+    def edges(self) -> Array:
+        """Borders halfway between the ordered steps, and as far beyond the first and the last."""
+        steps = self.steps[self.order]
+        if len(steps) == 1:
+            return steps[0] + np.array([-0.5, 0.5])
+        placed = np.log(steps) if self.log else steps
+        middle = (placed[:-1] + placed[1:]) / 2
+        ends = [2 * placed[0] - middle[0], *middle, 2 * placed[-1] - middle[-1]]
+        return np.exp(ends) if self.log else np.array(ends)
+
+    def apply(self, ax: Axes, which: str = "x") -> None:
+        """Label the axis of a figure and set its scale."""
+        getattr(ax, f"set_{which}label")(self.label)
+        ticks = getattr(ax, f"set_{which}ticks")
+        if self.log:
+            getattr(ax, f"set_{which}scale")("log")
+            # At the steps themselves, at most six of them: powers of ten alone are too few.
+            ordered = np.sort(self.steps)
+            chosen = ordered[np.unique(np.linspace(0, len(ordered) - 1, 6).round().astype(int))]
+            ticks(chosen, [number(step, 2) for step in chosen])
+            ticks([], minor=True)
+        if not self.ordered:
+            slant = which == "x" and sum(map(len, self.texts)) > _WIDEST
+            style = {"rotation": 30, "ha": "right", "rotation_mode": "anchor"} if slant else {}
+            ticks(self.steps, self.texts, **style)
+
+
+def scale_of(axis: Axis) -> Scale:
+    """How to show an axis; keys that are varied in step are shown by the first."""
+    line = next((line for line in axis.lines if line.numbers is not None), axis.lines[0])
+    unit, factor = unit_of(line.key)
+    name, numbers = axis_words(axis), line.numbers
+    values = line.values if numbers is None else numbers
+    texts = tuple(value_text(line.key, value, 3) for value in values)
+    if numbers is None or not np.isfinite(numbers).all():
+        rank = np.arange(len(texts)) if numbers is None else np.argsort(np.argsort(numbers))
+        return Scale(name, np.asarray(1 + rank, float), texts, 1.0, False, False)
+    steps = factor * np.array(numbers)
+    label = f"{name}, {unit}" if unit else name
+    return Scale(label, steps, texts, factor, True, _even_in_log(steps))
+
+
+def _even_in_log(steps: Array) -> bool:
+    ordered = np.sort(steps)
+    if len(ordered) < 3 or ordered[0] <= 0 or ordered[-1] < 2 * ordered[0]:
+        return False
+    ratios, gaps = np.diff(np.log(ordered)), np.diff(ordered)
+    return bool(np.ptp(ratios) < _EVEN * ratios.mean() and np.ptp(gaps) > _EVEN * gaps.mean())
+
+
+@dataclass(frozen=True)
+class StudyGrid:
+    """cases (Y, X): of those that share a place, that with the fastest optimum."""
+
+    x: Scale
+    y: Scale
+    cases: NDArray[np.int_]
+
+    @property
+    def borders(self) -> tuple[Array, Array]:
+        """Where the cells of the map begin and end along x and y."""
+        return self.x.edges, self.y.edges
+
+    @property
+    def centres(self) -> tuple[Array, Array]:
+        """The steps along x and y."""
+        return self.x.steps[self.x.order], self.y.steps[self.y.order]
+
+    def frame(self, ax: Axes) -> None:
+        """Labels, scales and limits."""
+        self.x.apply(ax, "x")
+        self.y.apply(ax, "y")
+        (left, right), (low, high) = ((part[0], part[-1]) for part in self.borders)
+        ax.set(xlim=(left, right), ylim=(low, high))
+        ax.grid(visible=False)
+
+
+def grid_of(result: SolvedStudy) -> StudyGrid | None:
+    """The map over the two longest axes; None if the study has only one."""
+    shape = result.study.shape
+    if len(shape) < 2:
+        return None
+    first, second = sorted(np.argsort([-n for n in shape], kind="stable")[:2])
+    x, y = (scale_of(result.study.axes[at]) for at in (first, second))
+    cases = np.arange(len(result.rows)).reshape(shape)
+    cases = np.moveaxis(cases, (second, first), (0, 1)).reshape(shape[second], shape[first], -1)
+    speed = np.nan_to_num(result.speed, nan=-1.0)
+    best = np.take_along_axis(cases, speed[cases].argmax(axis=2)[:, :, None], axis=2)[:, :, 0]
+    return StudyGrid(x, y, best[np.ix_(y.order, x.order)])
+
 
 _LEAST_CELLS = 4
 """Along each axis, for lines of equal speed."""
 
 
-def study_map(ax: Axes, result: SolvedStudy, grid: StudyGrid) -> Axes:
+def study_map(ax: Axes, result: SolvedStudy, grid: StudyGrid) -> None:
     """A cell for each case, the colour its signed speed; lines part branches; the star is the
     fastest. Hatched: no optimum."""
     speed = 1e3 * result.values("speed")[grid.cases]
@@ -31,14 +153,13 @@ def study_map(ax: Axes, result: SolvedStudy, grid: StudyGrid) -> Axes:
     cells.set_edgecolor("face")
     ends = np.nanmin(speed, initial=0.0), np.nanmax(speed, initial=0.0)
     style.speed_bar(ax, cells).set_ylim(min(ends[0], 0.0), max(ends[1], 0.0))
-    readout.cells(ax, *grid.centres, speed, "mean speed, mm/s")
+    style.cells(ax, *grid.centres, speed, "mean speed, mm/s")
     _contours(ax, np.abs(speed), grid)
     _parting(ax, result, grid)
     row, column = np.unravel_index(np.nanargmax(np.abs(speed)), speed.shape)
     x, y = grid.centres
     ax.plot(x[column], y[row], ms=17, mew=1.1, zorder=5, **style.STAR)
     grid.frame(ax)
-    return ax
 
 
 def _contours(ax: Axes, speed: np.ndarray, grid: StudyGrid) -> None:
@@ -65,7 +186,7 @@ _COLOURS = ("#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#
 _OTHERS = "#9aa5b1"
 
 
-def active_lanes(ax: Axes, result: SolvedStudy) -> Axes:
+def active_lanes(ax: Axes, result: SolvedStudy) -> None:
     """A lane for each limit and bound, filled where it is active, over the only axis."""
     scale = scale_of(result.study.axes[0])
     rows = [result.rows[step].optimum for step in scale.order]
@@ -81,10 +202,9 @@ def active_lanes(ax: Axes, result: SolvedStudy) -> Axes:
     ax.set_xlim(borders[0], borders[-1])
     ax.grid(visible=False)
     scale.apply(ax)
-    return ax
 
 
-def active_areas(ax: Axes, result: SolvedStudy, grid: StudyGrid) -> Axes:
+def active_areas(ax: Axes, result: SolvedStudy, grid: StudyGrid) -> None:
     """Each case in the colour of what limits it; the rarest share a grey. Hatched: no optimum."""
     sets = [
         None if one.optimum is None else " + ".join(held_words(one.optimum.held))
@@ -110,7 +230,6 @@ def active_areas(ax: Axes, result: SolvedStudy, grid: StudyGrid) -> Axes:
     if np.isnan(index).any():
         handles.append(Patch(**style.HATCHED, label="no optimum"))
     ax.figure.legend(handles=handles, loc="outside lower left", labelcolor=style.INK)  # type: ignore[union-attr]
-    return ax
 
 
 _COSTS = (("peak_torque", "largest servo torque, N m"), ("cost_of_transport", "cost of transport"))
@@ -122,14 +241,13 @@ def draw(result: SolvedStudy) -> dict[str, str]:
         return {}
     axes = [at for at, n in enumerate(result.study.shape) if n > 1] or [0]
     ordered = [at for at in axes if scale_of(result.study.axes[at]).ordered] or axes[:1]
-    with style.styled():
-        speeds = style.figure(style.WIDTH, 4.3 * len(ordered))
-        for ax, along in zip(np.ravel(speeds.subplots(len(ordered), 1)), ordered, strict=True):
-            speed(ax, result, along)
-        costs = style.figure(style.WIDTH, 6.2)
-        for ax, (name, label) in zip(costs.subplots(2, 1), _COSTS, strict=True):
-            pareto(ax, result, name, label)
-        drawn = {"speed": style.svg(speeds), "pareto": style.svg(costs)}
+    speeds = style.figure(style.WIDTH, 4.3 * len(ordered))
+    for ax, along in zip(np.ravel(speeds.subplots(len(ordered), 1)), ordered, strict=True):
+        speed(ax, result, along)
+    costs = style.figure(style.WIDTH, 6.2)
+    for ax, (name, label) in zip(costs.subplots(2, 1), _COSTS, strict=True):
+        pareto(ax, result, name, label)
+    drawn = {"speed": style.svg(speeds), "pareto": style.svg(costs)}
     grid = grid_of(result)
     if grid is None:
         count = len({name for row in result.rows if row.optimum for name in row.optimum.held})
@@ -142,7 +260,7 @@ def draw(result: SolvedStudy) -> dict[str, str]:
     }
 
 
-def pareto(ax: Axes, result: SolvedStudy, name: str, label: str) -> Axes:
+def pareto(ax: Axes, result: SolvedStudy, name: str, label: str) -> None:
     """A dot for each case, blue forward and orange backward; ringed, on the line: no other case is
     both faster and cheaper. name: the number of the optimum that is the cost."""
     cost, speed = result.values(name), 1e3 * result.speed
@@ -166,7 +284,6 @@ def pareto(ax: Axes, result: SolvedStudy, name: str, label: str) -> Axes:
         ax.xaxis.set_minor_locator(NullLocator())
     ax.set(ylim=(0, 1.06 * np.nanmax(speed)), xlabel=label, ylabel="speed, mm/s")
     ax.legend(loc="best")
-    return ax
 
 
 FAMILY = LinearSegmentedColormap.from_list(
@@ -178,7 +295,7 @@ _PRICED = 0.22
 """Half the length of a shadow price's tangent, in gaps between steps."""
 
 
-def speed(ax: Axes, result: SolvedStudy, along: int) -> Axes:
+def speed(ax: Axes, result: SolvedStudy, along: int) -> None:
     """|speed| over the axis `along`. A line is broken where the branch changes; triangles point
     up for forward, down for backward; a short tangent is the limit's shadow price."""
     axes = [scale_of(axis) for axis in result.study.axes]
@@ -211,7 +328,6 @@ def speed(ax: Axes, result: SolvedStudy, along: int) -> Axes:
     ax.set(ylim=(0, 1.06e3 * np.nanmax(result.speed)), ylabel="speed, mm/s")
     if others:
         _explain(ax, others[0])
-    return ax
 
 
 def _lines(

@@ -5,16 +5,14 @@ import math
 import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from rr_opt.formatting import with_unit
 from rr_opt.motion.rollout import repeated
 from rr_opt.motion.steady_cycle import SteadyCycle
 from rr_opt.results.figures import fastest, style
 from rr_opt.results.figures.motion import path
-from rr_opt.results.turn import FastestTurn
-from rr_opt.results.turn_chart import TurnChart
-from rr_opt.verify.turn_chart import Tightest, TurnMap
+from rr_opt.results.turn import FastestTurn, TurnChart
+from rr_opt.verify.turn_chart import TurnMap
 
 
 def draw_turn(turn: FastestTurn) -> dict[str, str]:
@@ -25,11 +23,11 @@ def draw_turn(turn: FastestTurn) -> dict[str, str]:
     return drawn
 
 
-def arc(ax: Axes, turn: FastestTurn) -> Axes:
+def arc(ax: Axes, turn: FastestTurn) -> None:
     """The circle, dashed; the arc of the turn as a band with its ends marked; the path of P, m."""
     way, replay, radius = turn.arc, turn.replay, turn.radius
     if way is None or replay is None or radius is None:
-        return ax
+        return
     steady = replay.steady
     cycles = max(1, math.ceil(way.periods - 1e-9))
     motion = repeated(steady, cycles, every=math.ceil(cycles * len(steady.t) / _SAMPLES))
@@ -46,7 +44,6 @@ def arc(ax: Axes, turn: FastestTurn) -> Axes:
     path(ax, turn.robot, motion, steady.speed, steady.gait.period)
     style.note(ax, f"radius {radius:.4g} m, {abs(math.degrees(way.heading)):.4g}°")
     ax.legend(loc="lower right")
-    return ax
 
 
 def _centre(steady: SteadyCycle) -> complex:
@@ -63,13 +60,8 @@ _WIDEST = 20.0
 
 
 def draw_chart(chart: TurnChart) -> dict[str, str]:
-    """The chart as SVG text by its name."""
-    with style.styled():
-        return {"turn-chart": style.svg(turn_chart(chart.seen, chart.tight))}
-
-
-def turn_chart(seen: TurnMap, tight: Tightest | None) -> Figure:
-    """All panels; offsets below 0 are the mirror image and not drawn."""
+    """The chart as SVG text by its name; offsets below 0 are the mirror image and not drawn."""
+    seen, tight = chart.seen, chart.tight
     count = len(seen.period)
     columns = min(count, 2)
     drawn = style.figure(style.WIDTH, 1.0 + 2.3 * -(-count // columns))
@@ -92,7 +84,7 @@ def turn_chart(seen: TurnMap, tight: Tightest | None) -> Figure:
         ax.set_ylabel("radius, m")
     handles, labels = axes[0, 0].get_legend_handles_labels()
     drawn.legend(handles, labels, loc="outside lower center", ncols=4, title="amplitude α")
-    return drawn
+    return {"turn-chart": style.svg(drawn)}
 
 
 def _panel(ax: Axes, seen: TurnMap, j: int) -> None:
