@@ -11,7 +11,7 @@ from rr_opt.model.gait import SineGait
 from rr_opt.model.problem import Spreads
 from rr_opt.results.fastest import FastestGait
 from rr_opt.results.robust import Robust
-from rr_opt.verify.spread import drawn
+from rr_opt.verify.speeds import drawn
 
 _MARGIN, _TIGHTENED = 1e-3, 6
 """By so much more than enough robots shall keep the limit, so that the next try does; tries."""

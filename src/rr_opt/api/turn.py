@@ -4,8 +4,7 @@ from dataclasses import replace
 
 from rr_opt.api.load import PathLike, identity, problem_of, read_arguments
 from rr_opt.api.optimise import checked_optimum, driven_optimum, require_exact, require_known
-from rr_opt.design.turn import arc_of, fastest_turn
-from rr_opt.design.turn_target import Target, checked
+from rr_opt.design.turn import Target, arc_of, checked, fastest_turn
 from rr_opt.model.problem import Problem
 from rr_opt.motion.dynamics import require_friction
 from rr_opt.results.result import Progress, quiet

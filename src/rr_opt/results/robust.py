@@ -9,7 +9,7 @@ from rr_opt.files.record import plain
 from rr_opt.formatting import number, with_unit
 from rr_opt.model.gait import Gait
 from rr_opt.results.result import Check
-from rr_opt.verify.spread import DRAWN
+from rr_opt.verify.speeds import DRAWN
 
 _ALIKE = 1e-6
 SHORT = 0.01

@@ -5,8 +5,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar
 
-from rr_opt.design.turn import MeanMotion
-from rr_opt.design.turn_target import Target
+from rr_opt.design.turn import MeanMotion, Target
 from rr_opt.documents import document as doc
 from rr_opt.documents.texts import captions
 from rr_opt.files.record import plain
