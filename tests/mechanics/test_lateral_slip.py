@@ -80,7 +80,7 @@ def pushed(values, v, s1):
     straight and without yaw."""
     robot = mechanism()
     symbols = {name: ca.SX.sym(name) for name in values}
-    changed = lateral_slip.LATERAL_SLIP.enter(robot, symbols)
+    changed = lateral_slip.EFFECT.enter(robot, symbols)
     added = changed.forces[len(robot.forces)].vector
     own = next(force for force in robot.forces if force.platform == 1).vector
     given = [robot.phi, robot.speeds, *robot.parameters.values(), *symbols.values()]

@@ -4,7 +4,7 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from rr_opt.effects.rolling import KNOTS, ROLLING_FORCE_CURVE
+from rr_opt.effects.rolling_force_curve import EFFECT, KNOTS
 from rr_opt.mechanics.kinematics import mechanism
 
 SPEED, FORCES = 0.4, (0.02, 0.012, 0.009, 0.011, 0.03)
@@ -14,8 +14,8 @@ def _force(u):
     """Of the first wheel at a rolling speed, straight ahead: the last force that was added."""
     robot = mechanism()
     values = {"speed": ca.SX(SPEED)} | {f"force{k}": ca.SX(f) for k, f in enumerate(FORCES)}
-    assert ROLLING_FORCE_CURVE.enter is not None
-    added = ROLLING_FORCE_CURVE.enter(robot, values).forces[len(robot.forces) :][0].vector[0]
+    assert EFFECT.enter is not None
+    added = EFFECT.enter(robot, values).forces[len(robot.forces) :][0].vector[0]
     names = [*robot.parameters.values()]
     at = ca.Function("force", [robot.speeds, robot.phi, ca.vertcat(*names)], [added])
     return float(at([u, 0, 0, 0], 0.0, np.ones(len(names))))

@@ -1,35 +1,21 @@
-"""The catalogue: every effect of physics beyond the paper's model, in files of their kind.
+"""The catalogue: every effect of physics beyond the paper's model, one file each.
 
-To add an effect, define it there and name it in `_EFFECTS`.
+To add an effect, add a file that defines `EFFECT` and name it in `_MODULES`.
 """
 
 from collections.abc import Mapping
+from importlib import import_module
 from types import MappingProxyType
 
-from rr_opt.effects import assembly, floor, measurement, rolling, servo
 from rr_opt.effects.effect import Effect
-from rr_opt.effects.lateral_slip import LATERAL_SLIP
-from rr_opt.effects.servo_backlash import SERVO_BACKLASH
 
-_EFFECTS = (
-    servo.SERVO_LAG,
-    servo.SERVO_RATE_LIMIT,
-    SERVO_BACKLASH,
-    servo.SERVO_OFFSET,
-    rolling.COULOMB_FRICTION,
-    rolling.QUADRATIC_DRAG,
-    rolling.ROLLING_FORCE_CURVE,
-    rolling.LEFT_RIGHT_DRAG,
-    rolling.WHEEL_INERTIA,
-    assembly.AXLE_MISALIGNMENT,
-    floor.FLOOR_TILT,
-    floor.FLOOR_PATCH,
-    LATERAL_SLIP,
-    assembly.COM_OFFSET,
-    measurement.MARKER_OFFSET,
-    measurement.CLOCK_OFFSET,
-    measurement.ZERO_OFFSET,
-)
+_MODULES = """
+servo_lag servo_rate_limit servo_backlash servo_offset coulomb_friction quadratic_drag
+rolling_force_curve left_right_drag wheel_inertia axle_misalignment floor_tilt floor_patch
+lateral_slip com_offset marker_offset clock_offset zero_offset
+"""
+
+_EFFECTS = [import_module(f"{__name__}.{module}").EFFECT for module in _MODULES.split()]
 CATALOGUE: Mapping[str, Effect] = MappingProxyType({one.name: one for one in _EFFECTS})
 
 OF_ROBOTS: Mapping[str, Effect] = MappingProxyType(

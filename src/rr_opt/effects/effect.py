@@ -12,10 +12,6 @@ from rr_opt.mechanics.kinematics import Mechanism, Observation
 from rr_opt.model.robot import Robot
 from rr_opt.model.servo_command import LinearServo
 
-Symbols = Mapping[str, ca.SX]
-Values = Mapping[str, float]
-"""Of the parameters of an effect by name, SI."""
-
 
 class Port(StrEnum):
     """Where an effect enters."""
@@ -79,7 +75,9 @@ class Parameter:
         return self.typical_for(operated) if self.typical_for else self.typical
 
 
-ActuateAll = Callable[[Sequence[Drive], Sequence[Values], Sequence[FreeJoint | None]], list[Drive]]
+ActuateAll = Callable[
+    [Sequence[Drive], Sequence[Mapping[str, float]], Sequence[FreeJoint | None]], list[Drive]
+]
 
 
 @dataclass(frozen=True)
@@ -119,12 +117,12 @@ class Effect:
     port: Port
     parameters: tuple[Parameter, ...]
     sentence: str
-    enter: Callable[[Mechanism, Symbols], Mechanism] | None = None
+    enter: Callable[[Mechanism, Mapping[str, ca.SX]], Mechanism] | None = None
     actuate: Callable[..., Drive] | None = None
     actuate_all: ActuateAll | None = None
     frees_joint: bool = False
-    linear: Callable[[Values], LinearServo] | None = None
-    observe: Callable[[Observation, Symbols], Observation] | None = None
+    linear: Callable[[Mapping[str, float]], LinearServo] | None = None
+    observe: Callable[[Observation, Mapping[str, ca.SX]], Observation] | None = None
     delay: str | None = None
     stiff: bool = False
     near_discontinuous: bool = False
@@ -136,7 +134,7 @@ class Effect:
     def actuated(
         self,
         commands: Sequence[Drive],
-        values: Sequence[Values],
+        values: Sequence[Mapping[str, float]],
         joints: Sequence[FreeJoint | None],
     ) -> list[Drive]:
         """What the servo makes of each command, with the values and the joint of each."""

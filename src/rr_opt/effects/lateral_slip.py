@@ -24,11 +24,12 @@ by about a tenth in the force that lets go. So sliding is fitted together with c
 to s0 as a root of squares and stands for how gradual it is.
 """
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import casadi as ca
 
-from rr_opt.effects.effect import Effect, Parameter, Port, Symbols
+from rr_opt.effects.effect import Effect, Parameter, Port
 from rr_opt.mechanics.kinematics import Force, Mechanism, wheel_loads
 
 SMOOTHING_SPEED = 1e-4
@@ -38,7 +39,7 @@ _ITERATIONS = 4
 wheel's resistance is at most 0.9 of what its contact can hold."""
 
 
-def _enter(mechanism: Mechanism, values: Symbols) -> Mechanism:
+def _enter(mechanism: Mechanism, values: Mapping[str, ca.SX]) -> Mechanism:
     e = values["mu_ratio"]
     pushes = []
     for platform, load in wheel_loads(mechanism.parameters).items():
@@ -74,7 +75,7 @@ def _lag(resistance: ca.SX, lag: ca.SX, e: ca.SX, at_rest: ca.SX, grip: ca.SX) -
     return u
 
 
-LATERAL_SLIP = Effect(
+EFFECT = Effect(
     name="lateral_slip",
     family="contact",
     port=Port.CONSTRAINT,

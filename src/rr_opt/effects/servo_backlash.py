@@ -16,7 +16,7 @@ extrapolated to; from rest it is integrated over many periods, the last of which
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 
@@ -25,7 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rr_opt.array import Array
-from rr_opt.effects.effect import Effect, Parameter, Port, Values
+from rr_opt.effects.effect import Effect, Parameter, Port
 from rr_opt.mechanics.drive import Drive, FreeJoint
 from rr_opt.mechanics.recurrence import Course, Recurrence
 
@@ -85,12 +85,14 @@ class _Play:
         return self.dt * np.union1d(struck + self.hit[struck], left)
 
 
-def _actuate(command: Drive, values: Values, joint: FreeJoint | None = None) -> Drive:
+def _actuate(command: Drive, values: Mapping[str, float], joint: FreeJoint | None = None) -> Drive:
     return _actuate_all([command], [values], [joint])[0]
 
 
 def _actuate_all(
-    commands: Sequence[Drive], values: Sequence[Values], joints: Sequence[FreeJoint | None]
+    commands: Sequence[Drive],
+    values: Sequence[Mapping[str, float]],
+    joints: Sequence[FreeJoint | None],
 ) -> list[Drive]:
     """Several at once, which are integrated side by side."""
     gears = [
@@ -278,7 +280,7 @@ def _stepper(swing: ca.Function) -> Recurrence:
     return Recurrence(step)
 
 
-SERVO_BACKLASH = Effect(
+EFFECT = Effect(
     name="servo_backlash",
     family="actuation",
     port=Port.ACTUATION,

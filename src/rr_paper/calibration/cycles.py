@@ -28,7 +28,7 @@ import casadi as ca
 import numpy as np
 
 from rr_opt.array import Array
-from rr_opt.effects.rolling import SMOOTHING_SPEED
+from rr_opt.effects.coulomb_friction import SMOOTHING_SPEED
 from rr_opt.mechanics.code_generation import ArrayFunction, over_arrays
 from rr_opt.mechanics.kinematics import ROBOT_PARAMETERS, mechanism
 from rr_opt.motion.dynamics import derive

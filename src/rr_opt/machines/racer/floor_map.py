@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize
 
 from rr_opt.array import Array
-from rr_opt.effects.floor import BORDER
+from rr_opt.effects.floor_patch import BORDER
 from rr_opt.machines.racer.model import RacerModel
 from rr_opt.machines.racer.observed import Along, observed
 from rr_opt.machines.racer.unknown_input import PUSHES, linearised_inputs

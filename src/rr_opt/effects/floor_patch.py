@@ -1,53 +1,26 @@
-"""A floor that is not level, or not the same everywhere."""
+"""A part of the floor on which the wheels roll harder, or more easily.
+
+It is a circle about (x, y), or, if its radius is 0, everything beyond a straight edge through
+(edge_x, edge_y) in the direction `normal`. Each wheel feels the floor under itself, which
+multiplies its viscous drag and its dry friction, but not a drag that grows with the square of the
+speed, such as that of the air.
+
+The border is smoothed over 5 mm, about the length of a wheel's contact with a carpet.
+"""
 
 import math
-from dataclasses import replace
+from collections.abc import Mapping
 
 import casadi as ca
 
-from rr_opt.effects.effect import Effect, OperatingRange, Parameter, Port, Symbols
-from rr_opt.mechanics.kinematics import Force, G, Mechanism, Wheel, rotated, with_resistance
-
-
-def _floor_tilt(mechanism: Mechanism, values: Symbols) -> Mechanism:
-    downhill = G * ca.vertcat(values["tilt_x"], values["tilt_y"])
-    pulls = tuple(
-        Force(
-            body.platform,
-            body.point,
-            body.mass * rotated(downhill, -mechanism.heading(body.platform)),
-        )
-        for body in mechanism.bodies
-    )
-    return replace(mechanism, forces=mechanism.forces + pulls)
-
-
-FLOOR_TILT = Effect(
-    name="floor_tilt",
-    family="floor",
-    port=Port.FORCE,
-    parameters=(
-        Parameter("tilt_x", "rad", (-0.2, 0.2), 0.002),
-        Parameter("tilt_y", "rad", (-0.2, 0.2), 0.002),
-    ),
-    sentence="The floor slopes, and gravity pulls the robot downhill.",
-    enter=_floor_tilt,
-)
-
+from rr_opt.effects.effect import Effect, OperatingRange, Parameter, Port
+from rr_opt.mechanics.kinematics import Mechanism, Wheel, with_resistance
 
 BORDER = 0.005
-"""Width over which the drag changes, m: about the length of a wheel's contact with a carpet."""
+"""Width over which the drag changes, m."""
 
 
-def _floor_patch(mechanism: Mechanism, values: Symbols) -> Mechanism:
-    """A part of the floor on which the wheels roll harder, or more easily.
-
-    It is a circle about (x, y), or, if its radius is 0, everything beyond a straight edge through
-    (edge_x, edge_y) in the direction `normal`. Each wheel feels the floor under itself, which
-    multiplies its viscous drag and its dry friction, but not a drag that grows with the square of
-    the speed, such as that of the air.
-    """
-
+def _enter(mechanism: Mechanism, values: Mapping[str, ca.SX]) -> Mechanism:
     def law(wheel: Wheel, u: ca.SX) -> ca.SX:
         place = mechanism.floor_position(wheel.platform, wheel.point)
         from_centre = place - ca.vertcat(values["x"], values["y"])
@@ -71,7 +44,7 @@ def _straight(operated: OperatingRange) -> float:
     return max(2 * operated.extent, 0.5)
 
 
-FLOOR_PATCH = Effect(
+EFFECT = Effect(
     name="floor_patch",
     family="floor",
     port=Port.FORCE,
@@ -90,7 +63,7 @@ FLOOR_PATCH = Effect(
         Parameter("edge_y", "m", (-100.0, 100.0), 0.3, typical_for=_near),
     ),
     sentence="On a part of the floor the wheels roll harder, or more easily, than elsewhere.",
-    enter=_floor_patch,
+    enter=_enter,
     forms=(("multiplier", "x", "y", "radius"), ("multiplier", "normal", "edge_x", "edge_y")),
     differentiable=False,
 )

@@ -1,0 +1,53 @@
+"""Dry (Coulomb) friction at the wheels: a force that resists rolling, whatever the speed.
+
+The jump of the sign at u = 0 is smoothed to tanh(u/u0). At u0 = 2 mm/s the wheels of a robot that
+moves at decimetres per second spend about a per cent of their time inside the smoothed part, and
+the equations stay differentiable, which an optimiser needs. Against recordings it matters: of two
+plants whose friction sets in over 2 mm/s and over a tenth of that, each predicted with the u0 of
+the other gives an axle's force half as large or twice as large as it is. So in predictions u0 is a
+parameter, `onset`, to which the change of speed that the friction makes in 5 ms is added.
+"""
+
+from collections.abc import Mapping
+
+import casadi as ca
+
+from rr_opt.effects.effect import Effect, OperatingRange, Parameter, Port
+from rr_opt.mechanics.kinematics import Mechanism, with_resistance
+
+SMOOTHING_SPEED = 0.002
+"""u0, m/s, for an optimiser, and where `onset` is not given."""
+_STEP = 5e-3
+"""s; within a step of this length friction does not reverse a speed."""
+
+
+def _enter(mechanism: Mechanism, values: Mapping[str, ca.SX]) -> Mechanism:
+    u0 = SMOOTHING_SPEED
+    if mechanism.for_prediction:
+        p, forces = mechanism.parameters, 2 * (values["force1"] + values["force2"])
+        u0 = values["onset"] + _STEP * forces / (p["m1"] + p["m2"])
+    return with_resistance(
+        mechanism, lambda wheel, u: -values[f"force{wheel.platform}"] * ca.tanh(u / u0)
+    )
+
+
+def _viscous(operated: OperatingRange) -> float:
+    """The viscous force on a wheel at the robot's speed."""
+    return (operated.robot.k1 + operated.robot.k2) / 2 * operated.speed
+
+
+EFFECT = Effect(
+    name="coulomb_friction",
+    family="rolling",
+    port=Port.FORCE,
+    parameters=(
+        Parameter("force1", "N", (0.0, 10.0), 0.02, aliases=("F1",), typical_for=_viscous),
+        Parameter("force2", "N", (0.0, 10.0), 0.02, aliases=("F2",), typical_for=_viscous),
+        Parameter(
+            *("onset", "m/s", (2e-4, 0.05), 1e-3), neutral=SMOOTHING_SPEED, initial_guesses=(1.0,)
+        ),
+    ),
+    sentence="Each wheel resists rolling with a force that does not depend on its speed.",
+    enter=_enter,
+    near_discontinuous=True,
+)
