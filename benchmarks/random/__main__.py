@@ -24,7 +24,7 @@ from benchmarks.random.problems import draw, problem, turning
 from benchmarks.results import FOLDER, machine, write
 from rr_opt.design.decisions import decisions
 from rr_opt.design.infeasible import nearest_turn, posture_clashes
-from rr_opt.design.turn_target import LARGEST_RADIUS
+from rr_opt.design.turn import LARGEST_RADIUS
 from rr_opt.model.problem import Interval, Problem, Turn
 
 _SHORT = 1e-4

@@ -118,7 +118,7 @@ def ascend(program: Program, start: Array, penalty: float = 10.0) -> Ascent:
     x, radius, converged, iterations = start, _RADIUS, False, 0
     kept, least_penalty, smallest = False, penalty, max(program.unit, 1e-300)
     size = smallest
-    stencil, design = _stencil(len(x), program.step)
+    near, design = _stencil(len(x), program.step)
     here = program.look(x[None])
     value, violation = float(here.function[0]), float(program.violation(here.worst)[0])
     names, prices = here.names, Prices(np.zeros(len(here.rows)), *(np.zeros(0) for _ in range(3)))
@@ -127,7 +127,7 @@ def ascend(program: Program, start: Array, penalty: float = 10.0) -> Ascent:
         if violation <= FEASIBLE and not kept:
             # Values and prices on the way here can be a thousand times those here.
             kept, penalty, size, radius = True, least_penalty, smallest, _RADIUS
-        around = x + program.step * program.scale * stencil
+        around = x + program.step * program.scale * near
         function, rows, _, names, rounding = program.look(around)
         rounding = max(_ROUNDING, rounding)
         models = np.vstack([function, rows]) @ design.T
@@ -362,17 +362,23 @@ def _solved(E: Array, f: Array) -> Array:
     return np.asarray(np.linalg.solve(R, Q[-1]), float)
 
 
-@lru_cache
-def _stencil(n: int, step: float) -> tuple[Array, Array]:
-    """Points (M, n), the first in the middle, in stencils, and what makes of values at them those
-    of a quadratic, its slopes and its second derivatives, in scales."""
+def stencil(n: int) -> Array:
+    """Just enough points (M, n) for a quadratic in n variables, the first in the middle."""
     pairs = list(combinations(range(n), 2))
     points = np.zeros((1 + 2 * n + len(pairs), n))
     for i in range(n):
         points[1 + 2 * i, i], points[2 + 2 * i, i] = 1.0, -1.0
     for row, (i, j) in enumerate(pairs, start=1 + 2 * n):
         points[row, [i, j]] = 1.0
-    crossed = [points[:, [i]] * points[:, [j]] for i, j in pairs]
+    return points
+
+
+@lru_cache
+def _stencil(n: int, step: float) -> tuple[Array, Array]:
+    """Points (M, n), in stencils, and what makes of values at them those of a quadratic, its slopes
+    and its second derivatives, in scales."""
+    points = stencil(n)
+    crossed = [points[:, [i]] * points[:, [j]] for i, j in combinations(range(n), 2)]
     monomials = np.hstack([np.ones((len(points), 1)), points, points**2 / 2, *crossed])
     design = np.asarray(np.linalg.inv(monomials), float)
     design[1 : n + 1] /= step

@@ -4,9 +4,7 @@ import numpy as np
 import pytest
 
 from rr_opt.design.multiple_shooting import shooting
-from rr_opt.design.shapes.fourier import FourierShape
-from rr_opt.design.shapes.free import FreeShape
-from rr_opt.model.problem import Problem
+from rr_opt.design.shapes import FourierShape, FreeShape
 from rr_opt.motion.dynamics import derive
 from tests.robots import BENCHMARK, DRY
 
@@ -22,7 +20,7 @@ def program(request):
     ballast = [0.0, 3.0] if by == "loads" else [5e-4, 2e-3]
     phases = np.array([0.0, 0.11, 0.25, 0.4, 0.5, 0.66, 0.75, 0.9])
     shape = FreeShape() if request.param == "free" else FourierShape(3)
-    checks = shape.given(Problem(robot), np.array([0.03]))
+    checks = shape.given(np.array([0.03]))
     looks = 0 if request.param in {"inertia", "loads"} else 2
     places = np.linspace(0.2, 0.7, N * (looks + 1))
     p = [*dynamics.values(robot), *LOADS, *ballast, *checks, -1.0, *phases, *places]

@@ -11,8 +11,7 @@ from rr_opt.api.optimise import maximize_speed as checked
 from rr_opt.design.landscape import mean_positive
 from rr_opt.design.maximize_speed import maximize_speed
 from rr_opt.model.robot import EffectUse
-from rr_opt.motion.energy import energy
-from rr_opt.motion.steady_cycle import steady_cycle
+from rr_opt.motion.steady_cycle import energy, steady_cycle
 from rr_opt.outcome import InputError, Status
 from rr_opt.verify.fourier import positive_mean
 

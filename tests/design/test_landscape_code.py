@@ -9,7 +9,7 @@ import pytest
 from benchmarks.optimise.problems import PROBLEMS
 from rr_opt.design import landscape as landscape_code
 from rr_opt.design.decisions import decisions, settings_of
-from rr_opt.design.landscape import Cycles, LandscapeCode
+from rr_opt.design.landscape import Cycles
 
 pytestmark = pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
 
@@ -23,10 +23,10 @@ def test_landscape_code(name, monkeypatch, tmp_path):
     landscape = settings_of(problem, box)[0].landscape
     gaits = box.physical(np.random.default_rng(1).random((333, 4)))
     gaits[0, :3] *= 4  # past the singular posture
-    code = LandscapeCode(*landscape._code._functions)
+    code = landscape_code._code.__wrapped__(landscape._effects)
     landscape._code = None
     by_numpy = landscape.cycles(gaits, 24)
-    assert code.ready(gaits.shape[1])
+    assert code.code(gaits.shape[1])
     landscape._code = code
     compiled = landscape.cycles(gaits, 24)
     for field in fields(Cycles):

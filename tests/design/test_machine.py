@@ -5,16 +5,15 @@ import shutil
 import numpy as np
 import pytest
 
-from rr_opt.design import interval as machine
-from rr_opt.design.interval import IntervalTerms
-from rr_opt.design.shapes.fourier import FourierShape
-from rr_opt.mechanics.runge_kutta import BUTCHER6
+from rr_opt.design import multiple_shooting
+from rr_opt.design.multiple_shooting import IntervalTerms
+from rr_opt.design.shapes import FourierShape
 
 
 @pytest.fixture
-def code(monkeypatch, tmp_path):
+def terms(monkeypatch, tmp_path):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    return IntervalTerms((), "inertia", FourierShape(1), 0, 1, BUTCHER6, ("torque",)).code
+    return IntervalTerms((), "inertia", FourierShape(1), 0, 1, ("torque",))
 
 
 def _given(function):
@@ -23,17 +22,15 @@ def _given(function):
 
 
 @pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
-def test_compiled_alike(code):
-    code.used(machine._PAYS - 1)
-    assert code.compiled is None
-    code.used(1)
-    for one, other in zip(code.functions, code.compiled, strict=True):
+def test_compiled_alike(terms):
+    assert terms.compiled.code(multiple_shooting._PAYS) is None
+    compiled = terms.compiled.code(1)
+    for one, other in zip(terms.functions, compiled, strict=True):
         given = _given(one)
         expected = np.array(one(*given))
         assert np.abs(np.array(other(*given)) - expected).max() <= 1e-12 * np.abs(expected).max()
 
 
-def test_without_a_compiler(code, monkeypatch):
+def test_without_a_compiler(terms, monkeypatch):
     monkeypatch.setenv("CC", "no-such-compiler")
-    code.used(machine._PAYS)
-    assert code.compiled is None
+    assert terms.compiled.code(multiple_shooting._PAYS + 1) is None

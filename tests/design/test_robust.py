@@ -11,7 +11,7 @@ from rr_opt.model.problem import GaitBounds, Interval, Limits, Problem, Spreads
 from rr_opt.model.robot import Platform, Robot
 from rr_opt.motion.steady_cycle import peak_torque, steady_cycle
 from rr_opt.outcome import InputError
-from rr_opt.verify.spread import drawn
+from rr_opt.verify.speeds import drawn
 
 ROBOT = Robot(
     Platform(0.3049, 0.002099, 0.2396, 0.04239, 0.0584, 0.01778 * 0.03**2),

@@ -10,8 +10,7 @@ from benchmarks.random.problems import draw
 from benchmarks.random.problems import turning as turning_at_random
 from benchmarks.turn.problems import REFERENCE, SHORT, round_, turning
 from rr_opt.design.maximize_speed import maximize_speed
-from rr_opt.design.turn import fastest_turn
-from rr_opt.design.turn_target import Target
+from rr_opt.design.turn import Target, fastest_turn
 from rr_opt.model.problem import Interval
 from rr_opt.outcome import Status
 

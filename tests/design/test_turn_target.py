@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 
 from benchmarks.turn.problems import SHORT
-from rr_opt.design.turn_target import Target, checked, posed
+from rr_opt.design.turn import Target, checked, posed
 from rr_opt.model.problem import Interval
 from rr_opt.outcome import InputError
 

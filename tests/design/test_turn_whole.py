@@ -6,8 +6,7 @@ import pytest
 
 from benchmarks.turn.problems import PROTOTYPE, round_, turning, whole
 from rr_opt.design.maximize_speed import maximize_speed
-from rr_opt.design.turn import fastest_turn
-from rr_opt.design.turn_target import Target
+from rr_opt.design.turn import Target, fastest_turn
 from rr_opt.motion.steady_cycle import steady_cycle
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from rr_opt.model.gait import SineGait
-from rr_opt.motion.steady_cycle import grip_after, grip_needed, reference_cycle
+from rr_opt.motion.steady_cycle import grip_needed, grips, reference_cycle
 from tests.robots import BENCHMARK
 
 G = 9.80665
@@ -69,7 +69,7 @@ def test_newton_and_euler(offset):
     length = one.c + two.c
     N1 = G * (one.m * (length - one.a) + two.m * two.a) / length
     N2 = G * (one.m + two.m) - N1
-    found = np.array(grip_after(robot, gait, t, steady.v))
+    found = np.array(grips(robot, gait, t, steady.v))
     assert found == pytest.approx(sides.T / [[N1], [N2]], abs=2e-5 * np.abs(found).max())
     assert grip_needed(steady, robot) == pytest.approx(np.abs(found).max(axis=1), rel=1e-3)
 

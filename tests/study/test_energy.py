@@ -6,8 +6,7 @@ import pytest
 from rr_opt.mechanics.kinematics import G
 from rr_opt.model.gait import FreeGait, SineGait
 from rr_opt.motion.dynamics import dynamics_of
-from rr_opt.motion.energy import energy
-from rr_opt.motion.steady_cycle import reference_cycle, steady_cycle
+from rr_opt.motion.steady_cycle import energy, reference_cycle, steady_cycle
 from tests.robots import BENCHMARK, DRY
 
 GAITS = {

@@ -6,7 +6,7 @@ import pytest
 
 from rr_opt.design.decisions import decisions, robot_of, settings_of
 from rr_opt.design.families import refine, solve_from
-from rr_opt.design.study.measure import held, reached
+from rr_opt.design.study.case import held, reached
 from rr_opt.files.problem_file import read_problem
 from rr_opt.model.gait import SineGait
 from rr_opt.model.problem import GaitBounds, Interval, Limits, Problem, RatioChoice

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rr_opt.design.maximize_speed import maximize_speed
-from rr_opt.design.study.measure import measured
+from rr_opt.design.study.case import measured
 from rr_opt.files.problem_file import read_problem
 from rr_opt.model.problem import GaitBounds, Interval, Problem
 from rr_opt.motion.steady_cycle import reference_cycle

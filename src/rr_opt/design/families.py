@@ -1,27 +1,72 @@
-"""Optima among gaits that are no sines, found family by family.
+"""Optima of a problem: among sines, then family by family of gaits that are no sines.
 
-Every sine is a Fourier gait, and one of few harmonics is one of many; a free gait comes close to
-them all. So the optima of each family are starts in the next, which can only be faster, and
-shapes at random are other starts.
+Sines: tops all over the box, each climbed to its end. Every sine is a Fourier gait, and one of few
+harmonics is one of many; a free gait comes close to them all. So the optima of each family are
+starts in the next, which can only be faster, and shapes at random are other starts.
 """
 
-from collections.abc import Iterator
-from dataclasses import replace
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from rr_opt.array import Array
 from rr_opt.design.candidate import Finds, StartResult, distinct
-from rr_opt.design.decisions import SQUARE, Setting, decisions, robot_of, settings_of
-from rr_opt.design.infeasible import posture_clashes
-from rr_opt.design.random_shapes import scan_shapes
-from rr_opt.design.search import Progress, find_sines
-from rr_opt.design.sines import refine_sine, solve_sine
+from rr_opt.design.decisions import SQUARE, Setting, decisions, robot_of, scanned, settings_of
+from rr_opt.design.infeasible import NODES, clash, posture_clashes
+from rr_opt.design.seeds import tops
+from rr_opt.design.sines import WAYS, climbed, refine_sine, solve_from_kept, solve_sine
 from rr_opt.design.solve import dense, solve
+from rr_opt.design.terrain import Terrain
 from rr_opt.design.transcription import LADDER, Mesh, at_least, intervals_for, regular
-from rr_opt.model.gait import Gait
+from rr_opt.model.gait import FourierGait, Gait
 from rr_opt.model.problem import GaitBounds, Problem
 from rr_opt.motion.steady_cycle import steady_cycle
 from rr_opt.outcome import NotConvergedError
+from rr_opt.sqp import FEASIBLE
+
+Progress = Callable[[str], None]
+
+
+def find_sines(problem: Problem, progress: Progress) -> Finds:
+    """Climb from all over the box; if nothing was found, the clash of limits that explains it."""
+    box = decisions(problem)
+    posture = posture_clashes(problem, box)
+    if posture:
+        return Finds(clash=posture)
+    progress("scanning for starts")
+    way = WAYS[problem.direction]
+    settings = settings_of(problem, box)
+    finds = Finds()
+    for setting in settings:
+        inside = scanned(setting, box)
+        starts = inside.physical(tops(Terrain(setting, inside, way))[0]).T
+        for number, start in enumerate(starts, 1):
+            progress(f"start {number} of {len(starts)}")
+            finds.pairs.append((setting, solve_sine(setting, way, start)))
+    if finds.good and problem.turn and not way:
+        finds.pairs.extend(_turned_round(*finds.good[0]))
+    if finds.good:
+        return finds
+    progress("no start led to an optimum: looking everywhere for gaits that keep all limits")
+    found = clash(problem, box, settings)
+    if isinstance(found, str):
+        kept = any(one.feasible for _, one in finds.pairs)
+        return finds if kept else finds + Finds(clash=found)
+    setting = found.setting
+    return finds + Finds([(setting, solve_from_kept(setting, way, found.gait, NODES))])
+
+
+def _turned_round(setting: Setting, best: StartResult) -> list[tuple[Setting, StartResult]]:
+    """The same circle driven the other way, where a climb leads to it: a gait that does can be next
+    to this one, V = 0 between them, too close for a scan to tell them apart."""
+    gait, way = best.gait, -best.sign
+    terrain = Terrain(setting, decisions(setting.problem), way)
+    start = np.array([gait.amplitude, gait.period, gait.offset, best.share])
+    ascent, end = climbed(terrain, start)
+    return [(setting, solve_sine(setting, way, end))] if ascent.violation <= FEASIBLE else []
+
 
 _TRIAL = 36
 """Intervals on which a gait's own error is tried, to choose its mesh."""
@@ -168,7 +213,7 @@ def _next(problem: Problem, before: Finds, progress: Progress) -> Finds:
     if problem.gait.shape == "fourier" or len(starts) < _HANDED_ON:
         for setting in settings[:1] if starts else settings:
             most = _SCANNED if first else _SCANNED_LATER
-            seeds = scan_shapes(setting, SIGNS[problem.direction], most)
+            seeds = _scan_shapes(setting, SIGNS[problem.direction], most)
             starts += [(setting, *seed) for seed in seeds]
     name = "free gait" if problem.gait.shape == "free" else f"{problem.gait.harmonics} harmonics"
     finds = Finds()
@@ -179,3 +224,110 @@ def _next(problem: Problem, before: Finds, progress: Progress) -> Finds:
         except NotConvergedError as error:
             finds.lost.append(str(error))
     return finds
+
+
+_SHAPES, _TRIANGLES, _PHASES = 1500, 100, 48
+_CONSIDERED = 5
+"""Harmonics of the shapes: what more of them add is left to the solver."""
+_SHAPES_APART = 0.25
+
+
+@dataclass(frozen=True)
+class _Shapes:
+    """K shapes at random, as large as the limits on angle and rate allow or smaller.
+
+    period, offset, share (K,); sines, cosines (n, K), rad
+    """
+
+    period: Array
+    offset: Array
+    share: Array
+    sines: Array
+    cosines: Array
+
+    def gait(self, k: int) -> FourierGait:
+        """One of them."""
+        return FourierGait(
+            float(self.period[k]),
+            float(self.offset[k]),
+            tuple(self.sines[:, k].tolist()),
+            tuple(self.cosines[:, k].tolist()),
+        )
+
+    def angle(self) -> tuple[Array, Array, Array]:
+        """phi, dphi, ddphi at nodes and halfway between them, (2 N, K)."""
+        theta = 2 * math.pi * np.arange(2 * _PHASES) / (2 * _PHASES)
+        omega = 2 * math.pi / self.period
+        swing, rate, bend = (_waves(self.sines, self.cosines, theta, k) for k in range(3))
+        return self.offset + swing, omega * rate, omega**2 * bend
+
+
+def _scan_shapes(
+    setting: Setting, signs: tuple[int, ...], most: int
+) -> list[tuple[int, FourierGait, float]]:
+    """Direction (+1 forward, -1 backward), gait and share of the ballast of the best few shapes of
+    many that keep the limits but perhaps for the torque's, best first; where none has the least
+    amplitude, of those that come nearest."""
+    gait = setting.problem.gait
+    harmonics = _CONSIDERED if gait.shape == "free" else min(gait.harmonics, _CONSIDERED)
+    if decisions(setting.problem).empty or harmonics < 2:
+        return []
+    shapes = _random_shapes(setting, harmonics)
+    with np.errstate(all="ignore"):
+        cycles = setting.landscape.along(shapes.angle(), shapes.period, shapes.share)
+        excess = np.maximum(cycles.peak_torque / setting.problem.limits.torque - 1, 0.0)
+    known = np.isfinite(cycles.speed + excess) & np.isin(np.sign(cycles.speed), signs)
+    allowed = known & (shapes.sines[0] >= gait.amplitude.low)
+    size = np.where(allowed, np.abs(cycles.speed), 0.0)
+    merit = np.where(allowed, size - 3 * size.max() * excess, -np.inf)
+    if not allowed.any():
+        merit = np.where(known, shapes.sines[0], -np.inf)
+    vectors = np.vstack([shapes.sines, shapes.cosines])
+    return [
+        (int(np.sign(cycles.speed[k])), shapes.gait(k), float(shapes.share[k]))
+        for k in _unlike(merit, vectors / np.linalg.norm(vectors, axis=0), most)
+    ]
+
+
+def _random_shapes(setting: Setting, n: int) -> _Shapes:
+    problem = setting.problem
+    box, rng = decisions(problem), np.random.default_rng(0)
+    T = box.period.low * (box.period.high / box.period.low) ** rng.random(_SHAPES)
+    phi0 = box.offset.low + (box.offset.high - box.offset.low) * rng.random(_SHAPES)
+    share = rng.random(_SHAPES)
+    if setting.fixed_share is not None:
+        share[:] = setting.fixed_share
+    order = np.arange(1, n + 1)[:, None]
+    sines, cosines = (rng.normal(0, 0.5, (n, _SHAPES)) / order for _ in range(2))
+    sines[0], cosines[0] = 1.0, 0.0
+    # Triangles, the shape that needs the least rate for its first harmonic.
+    sines[:, :_TRIANGLES], cosines[:, :_TRIANGLES] = _triangle(n)[:, None], 0.0
+    theta = np.linspace(0, 2 * math.pi, 4 * _PHASES)
+    swing, rate = (np.abs(_waves(sines, cosines, theta, k)).max(axis=0) for k in range(2))
+    most_swing = np.minimum(problem.gait.amplitude.high, box.reach - np.abs(phi0))
+    largest = np.minimum(most_swing / swing, problem.limits.rate * T / (2 * math.pi * rate))
+    scale = largest * np.append(np.ones(_TRIANGLES), rng.uniform(0.3, 1.0, _SHAPES - _TRIANGLES))
+    return _Shapes(T, phi0, share, scale * sines, scale * cosines)
+
+
+def _triangle(n: int) -> Array:
+    """Its harmonics' sines, the first 1."""
+    order = np.arange(1, n + 1)
+    return np.sin(order * math.pi / 2) / order**2
+
+
+def _waves(sines: Array, cosines: Array, theta: Array, order: int) -> Array:
+    """The order-th derivative in theta at every phase, (len(theta), K)."""
+    n = np.arange(1, len(sines) + 1)
+    turned = theta[:, None] * n + order * math.pi / 2
+    return (n**order * np.sin(turned)) @ sines + (n**order * np.cos(turned)) @ cosines
+
+
+def _unlike(merit: Array, shapes: Array, most: int) -> list[int]:
+    """Indices of the best that are unlike better ones, best first."""
+    merit, chosen = merit.copy(), []
+    while len(chosen) < most and merit.max() > 0:
+        best = int(merit.argmax())
+        chosen.append(best)
+        merit[np.linalg.norm(shapes - shapes[:, [best]], axis=0) <= _SHAPES_APART] = -np.inf
+    return chosen

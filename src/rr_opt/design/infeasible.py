@@ -22,10 +22,9 @@ from rr_opt.design.decisions import (
 from rr_opt.design.seeds import THOROUGH, tops
 from rr_opt.design.sines import FEWEST, WAYS, climbed
 from rr_opt.design.terrain import STANDS, Aim, Terrain
-from rr_opt.design.turn_target import Nearest, asked_text, reached_text
 from rr_opt.messages import listed
 from rr_opt.model.gait import SineGait
-from rr_opt.model.problem import Interval, Problem, Turn
+from rr_opt.model.problem import ANY, Interval, Problem, Turn
 from rr_opt.sqp import FEASIBLE
 
 _ROUNDING = 1 + 1e-9
@@ -98,6 +97,29 @@ def clash(problem: Problem, box: Decisions, settings: list[Setting]) -> str | At
             other = seek(rows, "turn", -way) if way else found
             return " ".join([*_turn(problem, box, found, other), _evidence(found, box)])
     return found
+
+
+SURE = 2e-3
+"""The search is good to a few parts in ten thousand; what is reported as feasible, is."""
+
+
+@dataclass(frozen=True)
+class Nearest:
+    """The gait that comes nearest to a turn within all limits, and what it does.
+
+    speed    signed, m/s
+    torque   largest, N m; share: of the ballast's range
+    distance from the turn, relative
+    """
+
+    gait: SineGait
+    share: float
+    speed: float
+    curvature: float
+    yaw_rate: float
+    heading: float
+    torque: float
+    distance: float
 
 
 def nearest_turn(problem: Problem, box: Decisions) -> Nearest:
@@ -267,8 +289,8 @@ def _turn(problem: Problem, box: Decisions, found: Attempt, other: Attempt) -> l
     gait, held = nearest.gait, held_by(problem, box, nearest)
     held_text = listed(held) or "no limit: the robot itself turns no closer to it"
     sentences = [
-        f"The requested turn, {asked_text(turn)}, is infeasible.",
-        f"The closest feasible one is {reached_text(turn, nearest)}, with amplitude "
+        f"The requested turn, {_asked_text(turn)}, is infeasible.",
+        f"The closest feasible one is {_reached_text(turn, nearest)}, with amplitude "
         f"{gait.amplitude:.4g} rad, period {gait.period:.4g} s, offset {gait.offset:.4g} rad, at "
         f"{1e3 * abs(nearest.speed):.4g} mm/s. "
         f"It is limited by {held_text}.",
@@ -309,3 +331,56 @@ def held_by(problem: Problem, box: Decisions, nearest: Nearest) -> list[str]:
         elif bounds.high - value <= near:
             held.append(f"the {name}'s upper bound")
     return held
+
+
+def _asked_text(turn: Turn) -> str:
+    """What is asked, in words."""
+    parts = []
+    if turn.curvature != ANY:
+        parts.append(_radius(_binding(turn.curvature), not turn.curvature.fixed))
+    if turn.yaw_rate != ANY:
+        rate = _binding(turn.yaw_rate)
+        parts.append(f"at least {abs(rate):.4g} rad/s to the {_side(rate)}")
+    if turn.heading != ANY:
+        each = _binding(turn.heading)
+        parts.append(f"{abs(each):.4g} rad a period to the {_side(each)}")
+    return " with ".join(parts)
+
+
+def _reached_text(turn: Turn, nearest: Nearest) -> str:
+    """The same of what can be reached, rounded away from what cannot."""
+    parts = []
+    for name, asked in (
+        ("curvature", turn.curvature),
+        ("yaw_rate", turn.yaw_rate),
+        ("heading", turn.heading),
+    ):
+        if asked == ANY:
+            continue
+        value = getattr(nearest, name)
+        # Nearer to the asked value is infeasible: a little further away is reported.
+        value *= 1 - math.copysign(SURE, (asked.clip(value) - value) * value)
+        text = {
+            "curvature": _radius(value, False),
+            "yaw_rate": f"{abs(value):.4g} rad/s to the {_side(value)}",
+            "heading": f"{abs(value):.4g} rad a period to the {_side(value)}",
+        }
+        parts.append(text[name])
+    return " with ".join(parts)
+
+
+def _side(value: float) -> str:
+    """Which way a positive or negative turn goes."""
+    return "left" if value > 0 else "right"
+
+
+def _binding(asked: Interval) -> float:
+    """The end of an interval that asks for something: a finite one, the nearest to straight."""
+    ends = [end for end in (asked.low, asked.high) if math.isfinite(end)]
+    return min(ends, key=abs)
+
+
+def _radius(curvature: float, at_most: bool) -> str:
+    """`a radius of 0.3 m to the left`."""
+    most = "at most " if at_most else ""
+    return f"a radius of {most}{abs(1 / curvature):.4g} m to the {_side(curvature)}"

@@ -6,6 +6,8 @@ the cycle closes at the fixed point of their product. Other friction is replaced
 and those again, until the cycle stands still.
 """
 
+from __future__ import annotations
+
 import ctypes
 import math
 from dataclasses import dataclass, fields
@@ -16,7 +18,7 @@ import numpy as np
 
 from rr_opt.array import Array
 from rr_opt.mechanics.code_generation import ArrayFunction, in_stages, over_arrays, source_file
-from rr_opt.mechanics.compile_cache import library
+from rr_opt.mechanics.compile_cache import WhenItPays, library
 from rr_opt.mechanics.kinematics import G
 from rr_opt.model.ballast import By, Loads, hang
 from rr_opt.model.problem import Interval
@@ -31,43 +33,24 @@ _PAYS = 500_000
 """Gaits times phases after which to compile takes no longer than has been taken without."""
 
 
-class LandscapeCode:
-    """The loop over the gaits, for one model: compiled once it is used often, or before.
+def _by_code(loop: ctypes.CDLL, gaits: Array, p: Array, nodes: int) -> Cycles:
+    """Steady cycles by the compiled loop over the gaits, some at a time in the processor's vector
+    registers; sines, with viscous friction only.
 
-    Some gaits at a time in the processor's vector registers; sines, with viscous friction only.
-
-    affine  (phi, dphi, ddphi, p) -> gain on v and shift of vdot, w and side, one after the other
-    torque  (v, phi, dphi, ddphi, p) -> torque
+    gaits: amplitude, period, offset, (3 or more, K); p: parameters (K, n)
     """
-
-    def __init__(self, affine: ca.Function, torque: ca.Function) -> None:
-        self._functions, self._asked = (affine, torque), 0
-        self._loop: ctypes.CDLL | None = None
-
-    def ready(self, work: int) -> bool:
-        """Whether it is compiled, with so much more work (gaits times phases) to come."""
-        before, self._asked = self._asked, self._asked + work
-        if self._loop is None and (before == 0 or before < _PAYS <= self._asked):
-            self._loop = _library(*self._functions, make=self._asked >= _PAYS)
-        return self._loop is not None
-
-    def cycles(self, gaits: Array, p: Array, nodes: int) -> tuple[Array, ...]:
-        """speed, torque, v, chi, turn and mean as `landscape.Cycles` has them.
-
-        gaits: amplitude, period, offset, (3 or more, K); p: parameters (K, n)
-        """
-        count = gaits.shape[1]
-        amplitude, period, offset = np.ascontiguousarray(gaits[:3], dtype=float)
-        which = np.arange(count)
-        speed, turn, mean = np.empty(count), np.empty(count), np.empty((4, count))
-        v, chi, torque = np.empty((3, nodes, count))
-        sine, cosine = _waves(nodes)
-        given = (amplitude, offset, period, which, p, sine, cosine, speed, turn, mean)
-        pointers = (ctypes.c_void_p(one.ctypes.data) for one in (*given, v, chi, torque))
-        sizes = (ctypes.c_longlong(one) for one in (count, nodes))
-        if self._loop is None or not self._loop.rr_landscape(*sizes, *pointers):
-            raise MemoryError
-        return speed, torque, v, chi, turn, mean
+    count = gaits.shape[1]
+    amplitude, period, offset = np.ascontiguousarray(gaits[:3], dtype=float)
+    which = np.arange(count)
+    speed, turn, mean = np.empty(count), np.empty(count), np.empty((4, count))
+    v, chi, torque = np.empty((3, nodes, count))
+    sine, cosine = _waves(nodes)
+    given = (amplitude, offset, period, which, p, sine, cosine, speed, turn, mean)
+    pointers = (ctypes.c_void_p(one.ctypes.data) for one in (*given, v, chi, torque))
+    sizes = (ctypes.c_longlong(one) for one in (count, nodes))
+    if not loop.rr_landscape(*sizes, *pointers):
+        raise MemoryError
+    return Cycles(speed, torque, v, chi, turn, mean)
 
 
 @lru_cache
@@ -75,22 +58,6 @@ def _waves(nodes: int) -> tuple[Array, Array]:
     """Sine and cosine at the nodes and halfway between them."""
     theta = 2 * np.pi * (np.arange(2 * nodes) / (2 * nodes))
     return np.sin(theta), np.cos(theta)
-
-
-def _library(affine: ca.Function, torque: ca.Function, *, make: bool) -> ctypes.CDLL | None:
-    try:
-        lines, load = (
-            in_stages(affine, "affine", (1, 1, 1, 0)),
-            in_stages(torque, "torque", (1, 1, 1, 1, 0)),
-        )
-    except NotImplementedError:
-        return None
-    lanes, points = (source_file("rr_opt.mechanics", name) for name in ("lanes.c", "gait_points.c"))
-    loop = source_file("rr_opt.design", "landscape.c")
-    head = f"#define NP {affine.nnz_in(3)}\n"
-    head += f"#define NK_AFFINE {lines.kept[0]}\n#define NK_TORQUE {load.kept[0]}\n"
-    parts = [head, lanes, points, lines.source, load.source, loop]
-    return library("".join(parts), _FLAGS, make=make)
 
 
 _SECANTS, _TANGENTS = 4, 10
@@ -136,11 +103,12 @@ class Landscape:
     def cycles(self, gaits: Array, nodes: int) -> Cycles:
         """Steady cycles of gaits (4, K): amplitude, period, offset, ballast share."""
         count = gaits.shape[1]
-        if self._code and self._code.ready(count * nodes):
+        loop = self._code and self._code.code(count * nodes)
+        if loop:
             p = np.empty((count, len(self._names)))
             for column, values in zip(p.T, self._parameters(gaits[3]), strict=True):
                 column[:] = values
-            return Cycles(*self._code.cycles(gaits, p, nodes))
+            return _by_code(loop, gaits, p, nodes)
         blocks = math.ceil(count * nodes / _BLOCK)
         # A gait that does not settle comes out as inf or nan, which is the caller's to see.
         with np.errstate(all="ignore"):
@@ -262,9 +230,32 @@ def _grip(effects: tuple[str, ...]) -> ArrayFunction:
 
 
 @lru_cache
-def _code(effects: tuple[str, ...]) -> LandscapeCode:
+def _code(effects: tuple[str, ...]) -> WhenItPays[ctypes.CDLL]:
+    """The loop over the gaits, by gaits times phases.
+
+    affine  (phi, dphi, ddphi, p) -> gain on v and shift of vdot, w and side, one after the other
+    torque  (v, phi, dphi, ddphi, p) -> torque
+    """
     motion = derive(effects).motion
-    return LandscapeCode(_affine(motion), motion.factory("torque", motion.name_in(), ["torque"]))
+    affine = _affine(motion)
+    torque = motion.factory("torque", motion.name_in(), ["torque"])
+
+    def build(make: bool) -> ctypes.CDLL | None:
+        try:
+            lines = in_stages(affine, "affine", (1, 1, 1, 0))
+            load = in_stages(torque, "torque", (1, 1, 1, 1, 0))
+        except NotImplementedError:
+            return None
+        lanes, points = (
+            source_file("rr_opt.mechanics", name) for name in ("lanes.c", "gait_points.c")
+        )
+        loop = source_file("rr_opt.design", "landscape.c")
+        head = f"#define NP {affine.nnz_in(3)}\n"
+        head += f"#define NK_AFFINE {lines.kept[0]}\n#define NK_TORQUE {load.kept[0]}\n"
+        parts = [head, lanes, points, lines.source, load.source, loop]
+        return library("".join(parts), _FLAGS, make=make)
+
+    return WhenItPays(build, look=0, pays=_PAYS)
 
 
 def _affine(motion: ca.Function) -> ca.Function:

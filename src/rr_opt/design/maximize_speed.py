@@ -12,8 +12,7 @@ import numpy as np
 
 from rr_opt.design.candidate import Finds, StartResult, distinct
 from rr_opt.design.decisions import decisions, robot_of, settings_of, share_of
-from rr_opt.design.families import find_families, refine
-from rr_opt.design.search import Progress, find_sines
+from rr_opt.design.families import Progress, find_families, find_sines, refine
 from rr_opt.design.sines import WAYS, solve_sine
 from rr_opt.model.ballast import inertia_ratio
 from rr_opt.model.gait import SineGait

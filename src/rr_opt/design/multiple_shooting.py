@@ -23,18 +23,27 @@ interval carries on in the same way.
 
 Robot, limits and node phases are parameters: one compiled program serves every problem of its
 kind.
+
+An interval's functions are compiled where a C compiler is at hand and it pays. CasADi's virtual
+machine takes some 4 ns an operation, and an interval with its derivatives has some 30 000. Compiled
+they take a fifth of that, even unoptimised, as here: a compiler that optimises takes ten seconds
+over them instead of one, for code that is less than twice as fast.
 """
+
+from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from typing import Any, NamedTuple
 
 import casadi as ca
 
-from rr_opt.design.interval import Functions, IntervalTerms, interval_of
 from rr_opt.design.shapes import Shape
-from rr_opt.design.transcription import ProgramLayout
-from rr_opt.mechanics.runge_kutta import BUTCHER6, Tableau
-from rr_opt.model.ballast import By
+from rr_opt.design.transcription import COMMON, DYNAMIC, GRIPS, MEANS, ROWS, ProgramLayout
+from rr_opt.mechanics.compile_cache import WhenItPays, externals
+from rr_opt.mechanics.runge_kutta import BUTCHER6
+from rr_opt.model.ballast import By, hang
+from rr_opt.motion.dynamics import Dynamics, derive
 
 _IPOPT = {
     "print_time": False,
@@ -58,6 +67,203 @@ _IPOPT = {
 }
 
 
+_FLAGS = ("-O0", "-fPIC", "-shared")
+_FEW, _PAYS = 500, 13_000
+"""Evaluations of intervals after which it is seen whether the functions were compiled before, and
+after which to compile them takes no longer than has been taken without."""
+
+
+class Functions(NamedTuple):
+    """Of an interval: its values, their Jacobian and their weighted Hessian."""
+
+    step: ca.Function
+    jacobian: ca.Function
+    hessian: ca.Function
+
+
+class IntervalTerms:
+    """What one interval contributes: values, first and second derivatives.
+
+    functions  step (local, theta, width, looks, z, fixed) -> states at the end, integrals, path
+               rows; its Jacobian and, weighted, Hessian in (local, z)
+    compiled   the same as machine code, by number of evaluations
+    slopes, curves   their sparsity; they are given dense
+    period     the rows of a whole period
+    shared     length of `fixed`: robot, loads and ballast range
+    """
+
+    def __init__(
+        self,
+        effects: tuple[str, ...],
+        by: By,
+        shape: Shape,
+        looks: int,
+        substeps: int,
+        loads: tuple[str, ...],
+    ):
+        parameters = derive(effects).parameters
+        z = ca.SX.sym("z", len(COMMON + shape.decisions))
+        local_names = DYNAMIC + shape.states + shape.controls
+        local, places = ca.SX.sym("local", len(local_names)), ca.SX.sym("looks", looks + 1)
+        fixed = ca.SX.sym("fixed", len(parameters) + 5)
+        theta, width = ca.SX.sym("theta"), ca.SX.sym("width")
+        decided = _named(COMMON + shape.decisions, z)
+        values = _with_ballast(fixed, parameters, decided["ballast"], by)
+        interval = _Interval(
+            derive(effects), shape, values, decided, _named(local_names, local), theta, width
+        )
+        end = interval.end(substeps)
+        out = ca.cse(
+            ca.vertcat(
+                end[:2],
+                *shape.angle(decided, interval.here, theta + width, width)[: len(shape.states)],
+                end[2:],
+                *shape.path_rows(decided, interval.here, theta, width, places[looks]),
+                *interval.along(loads, end, ca.vertsplit(places)[:looks]),
+            )
+        )
+        inner = ca.vertcat(local, z)
+        inputs = [local, theta, width, places, z, fixed]
+        weights = ca.SX.sym("weights", out.numel())
+        slopes = ca.jacobian(out, inner)
+        curves = ca.hessian(ca.dot(weights, out), inner)[0]
+        self.shared = fixed.numel()
+        self.slopes, self.curves = slopes.sparsity(), curves.sparsity()
+        self.functions = Functions(
+            ca.Function("step", inputs, [out]),
+            ca.Function("jacobian", inputs, [ca.cse(ca.densify(slopes))]),
+            ca.Function("hessian", [*inputs, weights], [ca.cse(ca.densify(curves))]),
+        )
+        self.compiled = WhenItPays(self._compile, look=_FEW, pays=_PAYS)
+        self.period = _PeriodTerms(shape, z)
+
+    def _compile(self, make: bool) -> Functions | None:
+        compiled = externals("interval", self.functions, _FLAGS, make=make)
+        return Functions(*compiled) if compiled else None
+
+
+@dataclass(frozen=True)
+class _Interval:
+    """The motion within one interval, as expressions."""
+
+    dynamics: Dynamics
+    shape: Shape
+    values: ca.SX
+    decided: dict[str, ca.SX]
+    here: dict[str, ca.SX]
+    theta: ca.SX
+    width: ca.SX
+
+    def angle(self, fraction: float | ca.SX) -> tuple[Any, tuple[Any, Any, Any]]:
+        """The phase, and phi, dphi, ddphi, at a fraction of the interval."""
+        T, since = self.decided["period"], fraction * self.width
+        at = self.theta + since
+        phi, slope, bend = self.shape.angle(self.decided, self.here, at, since)
+        return at, (phi, slope / T, bend / T**2)
+
+    def motion(self, fraction: float, v: ca.SX) -> Any:
+        """vdot, w, side, torque and what is integrated, at a fraction of the interval."""
+        at, angle = self.angle(fraction)
+        moved = self.dynamics.motion(v, *angle, self.values)
+        return *moved, self.shape.integrands(angle[0], at)
+
+    def rhs(self, fraction: float, y: ca.SX) -> ca.SX:
+        """Derivative in theta of v, chi, V, E and the shape's integrals."""
+        T = self.decided["period"]
+        vdot, w, side, _, integrands = self.motion(fraction, y[0])
+        cos, sin = ca.cos(y[1]), ca.sin(y[1])
+        V = cos * y[0] - sin * side, sin * y[0] + cos * side
+        return ca.vertcat(T * vdot, T * w - self.decided["turn"], *V, cos, sin, *integrands)
+
+    def end(self, substeps: int) -> ca.SX:
+        """v, chi and the integrals at the end."""
+        sums = len(MEANS) + len(self.shape.integrals)
+        y = ca.vertcat(self.here["v"], self.here["chi"], ca.SX.zeros(sums))
+        for part in range(substeps):
+            y = BUTCHER6.step(
+                lambda fraction, y, part=part: self.rhs((part + fraction) / substeps, y),
+                y,
+                self.width / substeps,
+            )
+        return y
+
+    def along(self, loads: tuple[str, ...], end: ca.SX, places: list[ca.SX]) -> list[ca.SX]:
+        """Each load at the node, at places within the interval and, where it jumps at nodes, at the
+        end."""
+        start = ca.vertcat(self.here["v"], self.here["chi"])
+        v0, v1 = start[0], end[0]
+        d0, d1 = (self.width * self.rhs(at, y)[0] for at, y in ((0.0, start), (1.0, end)))
+        seen = [(0.0, v0), *((at, _cubic(at, v0, v1, d0, d1)) for at in places)]
+        seen += [(1.0, v1)] if self.shape.controls else []
+        known = [self._loads(at, v) for at, v in seen]
+        return [each[load] for load in loads for each in known]
+
+    def _loads(self, fraction: float | ca.SX, v: ca.SX) -> dict[str, ca.SX]:
+        inputs = (v, *self.angle(fraction)[1], self.values)
+        grips = zip(GRIPS, self.dynamics.grip(*inputs), strict=True)
+        return {"torque": self.dynamics.motion(*inputs)[3], **dict(grips)}
+
+
+def _cubic(at: ca.SX, v0: ca.SX, v1: ca.SX, d0: ca.SX, d1: ca.SX) -> ca.SX:
+    """The cubic through v0 at 0 and v1 at 1 with slopes d0 and d1 there."""
+    rest, rise = 1 - at, v1 - v0
+    return v0 + at * rise + at * rest * (rest * (d0 - rise) - at * (d1 - rise))
+
+
+def _with_ballast(fixed: ca.SX, names: tuple[str, ...], share: ca.SX, by: By) -> ca.SX:
+    """The robot's parameter vector with platform 2 changed by the ballast."""
+    values = {name: fixed[i] for i, name in enumerate(names)}
+    mass, distance, spread, low, high = ca.vertsplit(fixed[len(names) :])
+    amount = low + share * (high - low)
+    if by == "loads":
+        m, I, c, a = (values[f"{symbol}2"] for symbol in ("m", "I", "c", "a"))
+        values["m2"], values["I2"], reach = hang(m, I, c - a, (mass, distance, spread), amount)
+        values["a2"] = c - reach
+    else:
+        values["I2"] = amount
+    return ca.vertcat(*values.values())
+
+
+class _PeriodTerms:
+    """The limits of a shape and the rows of ROWS.
+
+    values  (z, mean, checks, sign) -> rows
+    slopes  -> their Jacobians in z and mean
+    curves  (.., multipliers) -> blocks z-z, z-mean and mean-mean of the Hessian
+    """
+
+    def __init__(self, shape: Shape, z: ca.SX):
+        mean_names = MEANS + shape.integrals
+        mean, sign = ca.SX.sym("mean", len(mean_names)), ca.SX.sym("sign")
+        checks = ca.SX.sym("checks", shape.checks)
+        decided = _named(COMMON + shape.decisions, z)
+        own = shape.limit_rows(decided, _named(mean_names, mean), tuple(ca.vertsplit(checks)))
+        V, E = mean[:2], mean[2:4]
+        rate = decided["turn"] / decided["period"]
+        rows = ca.vertcat(*own, sign * ca.dot(V, E), rate / ca.norm_2(V), rate, decided["turn"])
+        lam = ca.SX.sym("lam", len(shape.limits) + len(ROWS))
+        weighted = ca.dot(lam, rows)
+        inputs = [z, mean, checks, sign]
+        self.values = ca.Function("limits", inputs, [rows])
+        self.slopes = ca.Function(
+            "limit_slopes", inputs, [ca.jacobian(rows, z), ca.jacobian(rows, mean)]
+        )
+        self.curves = ca.Function(
+            "limit_curves",
+            [*inputs, lam],
+            [
+                ca.hessian(weighted, z)[0],
+                ca.jacobian(ca.gradient(weighted, z), mean),
+                ca.hessian(weighted, mean)[0],
+            ],
+        )
+
+
+def _named(names: tuple[str, ...], stacked: ca.SX) -> dict[str, ca.SX]:
+    """The entries of a vector by name."""
+    return dict(zip(names, ca.vertsplit(stacked), strict=True))
+
+
 @dataclass(frozen=True)
 class Shooting:
     """The program for one shape and number of intervals.
@@ -72,16 +278,16 @@ class Shooting:
     @cached_property
     def solver(self) -> ca.Function:
         """The solver by CasADi's virtual machine."""
-        return _Program(self.layout, self.terms, self.terms.code.functions).solver()
+        return _Program(self.layout, self.terms, self.terms.functions).solver()
 
     @property
     def fastest(self) -> ca.Function:
         """The same of machine code, where there is some."""
-        return self.solver if self.terms.code.compiled is None else self._compiled
+        return self.solver if self.terms.compiled.code(0) is None else self._compiled
 
     @cached_property
     def _compiled(self) -> ca.Function:
-        compiled = self.terms.code.compiled or self.terms.code.functions
+        compiled = self.terms.compiled.code(0) or self.terms.functions
         return _Program(self.layout, self.terms, compiled).solver()
 
 
@@ -93,12 +299,14 @@ def shooting(
     intervals: int,
     looks: int = 0,
     substeps: int = 1,
-    method: Tableau = BUTCHER6,
     loads: tuple[str, ...] = ("torque",),
 ) -> Shooting:
     """The program for robots with these effects and this way of changing the inertia."""
-    terms = interval_of(effects, by, shape, looks, substeps, method, loads)
+    terms = _terms(effects, by, shape, looks, substeps, loads)
     return Shooting(ProgramLayout(shape, intervals, looks, loads), terms)
+
+
+_terms = lru_cache(IntervalTerms)
 
 
 class _Program:
@@ -115,7 +323,7 @@ class _Program:
         ends = [terms.shared, terms.shared + checks, terms.shared + checks + 1]
         ends.append(ends[-1] + n)
         self.fixed, *others, thetas, looks = ca.vertsplit(self.p, [0, *ends, self.p.numel()])
-        self.per_period = (self.z, self.mean, self.fixed, *others)
+        self.per_period = (self.z, self.mean, *others)
         self.local = ca.reshape(rest, n, -1)
         widths = ca.vertcat(thetas[1:], thetas[0] + 1) - thetas
         self.per_node = (self.local.T, thetas.T, widths.T, ca.reshape(looks, -1, n))

@@ -10,12 +10,11 @@ from rr_opt.design.candidate import StartResult
 from rr_opt.design.decisions import Setting, decisions, robot_of
 from rr_opt.design.landscape import Cycles, Landscape
 from rr_opt.design.multiple_shooting import shooting
-from rr_opt.design.shapes import shape_of
-from rr_opt.design.shapes.shape import path_bounds
+from rr_opt.design.shapes import path_bounds, shape_of
 from rr_opt.design.transcription import GRIPS, MEANS, TURN, ZERO, Mesh, ProgramLayout
 from rr_opt.model.gait import Gait, SineGait
 from rr_opt.model.problem import Interval
-from rr_opt.motion.steady_cycle import grip_after, steady_cycle
+from rr_opt.motion.steady_cycle import grips, steady_cycle
 
 _SENTENCES = {
     "Solve_Succeeded": "A local optimum within the solver's tolerance.",
@@ -53,7 +52,7 @@ def solve(setting: Setting, sign: int, gait: Gait, share: float, mesh: Mesh) -> 
             setting.dynamics.values(problem.robot),
             [loads.mass, loads.distance, loads.spread],
             [setting.ballast.low, setting.ballast.high],
-            shape.given(problem, mesh.checks),
+            shape.given(mesh.checks),
             [sign],
             mesh.phases,
             np.column_stack([mesh.looks, mesh.turns]).ravel(),
@@ -64,7 +63,7 @@ def solve(setting: Setting, sign: int, gait: Gait, share: float, mesh: Mesh) -> 
     solver = program.fastest
     result = solver(x0=np.clip(x0, lbx, ubx), p=p, lbx=lbx, ubx=ubx, lbg=lbg, ubg=ubg)
     stats = solver.stats()
-    program.terms.code.used((1 + int(stats["iter_count"])) * mesh.intervals)
+    program.terms.compiled.code((1 + int(stats["iter_count"])) * mesh.intervals)
     x, g, lam_x, lam_g = (np.array(result[key]).ravel() for key in ("x", "g", "lam_x", "lam_g"))
     violation = float(np.max(np.maximum(np.maximum(lbg - g, g - ubg), 0.0)))
     status = stats["return_status"]
@@ -146,11 +145,11 @@ def _bounds(
     box = decisions(problem)
     period = box.period if box.period.fixed else problem.gait.period
     limits = {"torque": problem.limits.torque, **dict.fromkeys(GRIPS, problem.limits.grip)}
-    own = layout.shape.bounds(problem)
+    own, own_rows = layout.shape.bounds(problem)
     unknowns = {
         "period": period,
         "ballast": Interval(0.0, 1.0) if share is None else Interval(share, share),
-        **own.unknowns,
+        **own,
     }
     rows = {"direction": Interval(_AHEAD, np.inf)}
     for load in layout.loads:
@@ -162,7 +161,7 @@ def _bounds(
     # The heading is counted from platform 1's at phase 0.
     first = layout.first("chi")
     lbx[first], ubx[first] = ZERO.low, ZERO.high
-    return lbx, ubx, *layout.row_bounds({**rows, **own.rows})
+    return lbx, ubx, *layout.row_bounds({**rows, **own_rows})
 
 
 _SAMPLES = 1024
@@ -199,8 +198,8 @@ def dense(setting: Setting, gait: Gait, share: float) -> Dense:
     shares = [torque / limits.torque]
     if math.isfinite(limits.grip):
         t = np.arange(len(v)) / len(v) * gait.period
-        grips = grip_after(robot_of(setting, share), gait, t, v)
-        shares += [grip / limits.grip for grip in grips]
+        sides = grips(robot_of(setting, share), gait, t, v)
+        shares += [side / limits.grip for side in sides]
     used, peaks, checks = 0.0, np.zeros(0), np.zeros(0)
     for load in shares:
         height, at = _peaks(np.abs(load), smooth)

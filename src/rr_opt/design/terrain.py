@@ -15,7 +15,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rr_opt.array import Array
-from rr_opt.design.climb import Merit
 from rr_opt.design.decisions import Decisions, Setting, TurnRows, reach_before_singularity
 from rr_opt.design.landscape import Cycles, dense
 from rr_opt.design.transcription import ROWS
@@ -57,6 +56,26 @@ _CIRCLE, _SIDE = ("circle x", "circle y"), "side"
 LIMITS = ("rate", "angle", "singularity", "torque", "grip", "power", "cost_of_transport", "speed")
 Aim = Literal["speed", "rows", "turn"]
 Indices = NDArray[np.int_]
+
+
+@dataclass(frozen=True)
+class Merit:
+    """What is climbed: the speed less a penalty for each row outside its interval.
+
+    rows       the interval of each row
+    penalties  for an excess of 1 of each row, m/s
+    """
+
+    rows: tuple[Interval, ...]
+    penalties: tuple[float, ...]
+
+    def __call__(self, values: Array) -> Array:
+        """values: speed and rows, (1 + R, ...)."""
+        merit = values[0]
+        for row, asked, penalty in zip(values[1:], self.rows, self.penalties, strict=True):
+            excess = np.maximum(row - asked.high, asked.low - row)
+            merit = merit - penalty * np.maximum(excess, 0.0)
+        return merit
 
 
 @dataclass(frozen=True)

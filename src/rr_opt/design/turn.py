@@ -3,22 +3,127 @@
 A whole number of periods is found by branch and bound: solved for any number, and where the
 answer is no whole one, again for those below it and for those above it. A part that is slower
 than a whole number already found is left.
+
+Left is positive, counter-clockwise seen from above, whichever way the robot drives. A heading
+change and the circle it is made on have one sign, so of the two the heading says it.
 """
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from rr_opt.design.decisions import decisions
-from rr_opt.design.infeasible import nearest_turn, posture_clashes
+from rr_opt.design.decisions import decisions, reach_before_singularity
+from rr_opt.design.families import Progress
+from rr_opt.design.infeasible import SURE, nearest_turn, posture_clashes
 from rr_opt.design.maximize_speed import Optimum, maximize_speed
-from rr_opt.design.turn_target import SURE, Target, posed
-from rr_opt.model.problem import Interval, Problem
+from rr_opt.model.problem import Interval, Problem, Turn
 from rr_opt.motion.servo import for_joint
 from rr_opt.motion.steady_cycle import steady_cycle
-from rr_opt.outcome import Status
+from rr_opt.outcome import InputError, Status
 
-Progress = Callable[[str], None]
+LARGEST_RADIUS = 1000.0
+"""m; a wider circle is straight to a robot of this kind, and to the solver's tolerance."""
+
+
+@dataclass(frozen=True)
+class Target:
+    """A circle, or an arc of one.
+
+    heading   change of heading, rad, positive to the left; None: round and round
+    radius    of the circle, m; positive to the left where no heading says the side
+    within    longest time for the heading change, s
+    length    longest path for the heading change, m, along the mean circle
+    whole     the heading change has to take a whole number of periods
+    """
+
+    heading: float | None = None
+    radius: float | None = None
+    within: float | None = None
+    length: float | None = None
+    whole: bool = False
+
+    @property
+    def turn(self) -> Turn:
+        """What the gait has to do."""
+        if self.heading is None:
+            curvature = 1 / (self.radius or math.inf)
+            return Turn(curvature=Interval(curvature, curvature))
+        if self.radius is not None:
+            curvature = math.copysign(1 / self.radius, self.heading)
+            return Turn(curvature=Interval(curvature, curvature))
+        if self.within is not None:
+            return Turn(yaw_rate=_at_least(self.heading / self.within))
+        return Turn(curvature=_at_least(self.heading / (self.length or math.inf)))
+
+
+def _at_least(value: float) -> Interval:
+    """So much or more, on the same side."""
+    return Interval(value, math.inf) if value > 0 else Interval(-math.inf, value)
+
+
+def checked(target: Target) -> Target:
+    """The target, its radius positive where a heading says the side.
+
+    Raises InputError for what is no target, or for two that contradict each other.
+    """
+    given = [n for n in ("radius", "within", "length") if getattr(target, n) is not None]
+    for name in ("heading", "radius", "within", "length"):
+        value = getattr(target, name)
+        if value is not None and (value == 0 or not math.isfinite(value)):
+            raise InputError(f"--{name}: Read {value:g}. Expected a finite number other than 0.")
+    for name in ("within", "length"):
+        if (getattr(target, name) or 1.0) < 0:
+            raise InputError(f"--{name}: Read {getattr(target, name):g}. Expected it above 0.")
+    if len(given) != 1:
+        read = " and ".join(f"--{name}" for name in given) or "none"
+        raise InputError(
+            f"Read {read} of --radius, --within and --length. A turn is asked for by one of them. "
+            "Give --radius alone, or --heading with one of the three."
+        )
+    if target.heading is None and given != ["radius"]:
+        raise InputError(
+            f"Read --{given[0]} without --heading. Expected the change of heading that is to be "
+            "made within it. Add for example --heading '90 deg'."
+        )
+    if target.heading is None and target.whole:
+        raise InputError(
+            "Read --cycles whole without --heading. Expected the change of heading that a whole "
+            "number of periods is to make. Add for example --heading '90 deg'."
+        )
+    return _one_side(target)
+
+
+def _one_side(target: Target) -> Target:
+    radius, heading = target.radius, target.heading
+    if radius is None:
+        return target
+    if abs(radius) > LARGEST_RADIUS:
+        raise InputError(
+            f"--radius: Read {radius:g} m. Expected at most {LARGEST_RADIUS:g} m: a wider circle "
+            "is as good as straight. Ask `maximize-speed` for the fastest straight gait."
+        )
+    if heading is None:
+        return target
+    if radius < 0 < heading:
+        raise InputError(
+            f"Read a heading change of {heading:g} rad, to the left, and a radius of {radius:g} m, "
+            "to the right. Expected one side. Give the radius without its sign."
+        )
+    return replace(target, radius=abs(radius))
+
+
+def posed(problem: Problem, target: Target) -> tuple[Problem, bool]:
+    """The problem with the turn, and whether its offset was fixed and is now open: as far as
+    the limits and the least amplitude allow, to either side."""
+    problem = replace(problem, turn=target.turn)
+    if not problem.gait.offset.fixed:
+        return problem, False
+    limits = problem.limits
+    reach = min(limits.angle, reach_before_singularity(problem.robot, limits.singularity), math.pi)
+    room = reach - problem.gait.amplitude.low
+    if room <= 0:
+        return problem, False
+    return replace(problem, gait=replace(problem.gait, offset=Interval(-room, room))), True
+
 
 _WHOLE = 1e-4
 """A number of periods this near to a whole one is that."""

@@ -17,8 +17,7 @@ from rr_opt.motion.steady_cycle import (
     cycle_of,
     require_regular,
     steady_cycle,
-    torque_after,
-    torque_before,
+    torques,
 )
 from rr_opt.outcome import InputError
 
@@ -47,7 +46,7 @@ def rollout(robot: Robot, gait: Gait, seconds: float, start: Start, rate: float)
     v0 = 0.0 if start == "rest" else float(steady_cycle(robot, gait).v[0])
     t = np.arange(count + 1) / rate
     v, psi, x, y, _ = cvodes(robot, gait, v0, t)
-    return Trajectory(t, x, y, psi, gait.angle(t), v, torque_after(robot, gait, t, v))
+    return Trajectory(t, x, y, psi, gait.angle(t), v, torques(robot, gait, t, v))
 
 
 def repeated(steady: SteadyCycle, cycles: int, every: int = 1) -> Trajectory:
@@ -134,8 +133,8 @@ def measured(robot: Robot, gait: Gait, driven: Trajectory) -> Measured:
 
 def _peak(robot: Robot, gait: Gait, t: Array, v: Array) -> float:
     """Largest |torque| from the first to the last of the times t, on both sides of jumps, N m."""
-    after = torque_after(robot, gait, t, v)
-    before = torque_before(robot, gait, t, v) if gait.pieces > 1 else after
+    after = torques(robot, gait, t, v)
+    before = torques(robot, gait, t, v, before=True) if gait.pieces > 1 else after
     return float(max(np.abs(after[:-1]).max(), np.abs(before[1:]).max()))
 
 

@@ -28,6 +28,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rr_opt.array import Array
+from rr_opt.mechanics.kinematics import G
 from rr_opt.model.gait import Gait
 from rr_opt.model.problem import CANCELLED
 from rr_opt.model.robot import Robot
@@ -78,45 +79,35 @@ _JUST_BEFORE = 1e-6
 """Where the left side of a jump is evaluated, in lengths of a piece."""
 
 
-def grip_after(robot: Robot, gait: Gait, t: Array, v: Array) -> list[Array]:
+def grips(robot: Robot, gait: Gait, t: Array, v: Array, *, before: bool = False) -> list[Array]:
     """Side force over load of axles 1 and 2, (N,) each, at times t (N,) in s with speeds v (N,) in
-    m/s; where it jumps, the value after the jump."""
-    return _along(dynamics_of(robot).grip, robot, gait, t, v, gait.acceleration(t))
+    m/s; where it jumps, the value after the jump, or `before` it."""
+    return _along(dynamics_of(robot).grip, robot, gait, t, v, before)
 
 
 def grip_needed(steady: SteadyCycle, robot: Robot) -> tuple[float, float]:
     """Of axles 1 and 2 the largest side force over the load on them."""
-    gait, t, v = steady.gait, steady.t, steady.v
-    just_before = t - _JUST_BEFORE * gait.period / gait.pieces
-    after = grip_after(robot, gait, t, v)
-    before = _along(dynamics_of(robot).grip, robot, gait, t, v, gait.acceleration(just_before))
-    one, two = (_peak(gait.pieces, *sides) for sides in zip(after, before, strict=True))
+    sides = (
+        grips(robot, steady.gait, steady.t, steady.v, before=before) for before in (False, True)
+    )
+    one, two = (_peak(steady.gait.pieces, *both) for both in zip(*sides, strict=True))
     return one, two
 
 
-def torque_after(robot: Robot, gait: Gait, t: Array, v: Array) -> Array:
+def torques(robot: Robot, gait: Gait, t: Array, v: Array, *, before: bool = False) -> Array:
     """Torque on platform 2, N m, at times t (N,) in s with speeds v (N,) in m/s; where it jumps,
-    the value after the jump."""
-    return _torque(robot, gait, t, v, gait.acceleration(t))
-
-
-def torque_before(robot: Robot, gait: Gait, t: Array, v: Array) -> Array:
-    """The same; where it jumps, the value before the jump."""
-    just_before = t - _JUST_BEFORE * gait.period / gait.pieces
-    return _torque(robot, gait, t, v, gait.acceleration(just_before))
-
-
-def _torque(robot: Robot, gait: Gait, t: Array, v: Array, acceleration: Array) -> Array:
-    return _along(dynamics_of(robot).motion, robot, gait, t, v, acceleration)[3]
+    the value after the jump, or `before` it."""
+    return _along(dynamics_of(robot).motion, robot, gait, t, v, before)[3]
 
 
 def _along(
-    function: ca.Function, robot: Robot, gait: Gait, t: Array, v: Array, acceleration: Array
+    function: ca.Function, robot: Robot, gait: Gait, t: Array, v: Array, before: bool
 ) -> list[Array]:
     """A function of (v, phi, dphi, ddphi, p) along a gait: (N,) for each of its outputs."""
     values = np.tile(dynamics_of(robot).values(robot)[:, None], len(t))
-    inputs = (v[None], gait.angle(t)[None], gait.rate(t)[None], acceleration[None], values)
-    return [np.asarray(out).ravel() for out in function(*inputs)]
+    at = t - _JUST_BEFORE * gait.period / gait.pieces if before else t
+    angle = gait.angle(t), gait.rate(t), gait.acceleration(at)
+    return [np.asarray(out).ravel() for out in function(*np.array([v, *angle])[:, None], values)]
 
 
 def require_regular(robot: Robot, gait: Gait) -> None:
@@ -219,8 +210,8 @@ def _close(robot: Robot, gait: Gait, rollout: Callable[[float], Array]) -> Stead
 def _steady(robot: Robot, gait: Gait, path: Array) -> SteadyCycle:
     v, psi, x, y, _ = path
     t = np.linspace(0.0, gait.period, len(v))
-    after = torque_after(robot, gait, t, v)
-    before = torque_before(robot, gait, t, v) if gait.pieces > 1 else after
+    after = torques(robot, gait, t, v)
+    before = torques(robot, gait, t, v, before=True) if gait.pieces > 1 else after
     cycle = cycle_of(gait.period, x, y, psi)
     return SteadyCycle(t, x, y, psi, gait.angle(t), v, after, before, gait, cycle)
 
@@ -244,3 +235,45 @@ def _peak(pieces: int, after: Array, before: Array) -> float:
     at = np.arange(each + 1)
     spline = CubicSpline(at, np.hstack([inside, ends]), axis=1)
     return float(np.abs(spline(np.linspace(0, each, BETWEEN * each + 1))).max())
+
+
+@dataclass(frozen=True)
+class Energy:
+    """Per metre of the mean circle's path: gross and net work of the servo, J/m, and the cost of
+    transport, dimensionless; power: the gross work per second, W.
+
+    The servo's power is torque * dphi/dt. Over a period the kinetic energy returns to what it was,
+    so the net work of a period is what friction takes. A servo that brakes does not give energy
+    back, though: what its supply has to provide is the positive part of the power alone, the gross
+    work, which is never less than the net. The cost of transport is the gross work per metre over
+    the robot's weight. Losses within the servo are in neither.
+    """
+
+    gross: float
+    net: float
+    cost_of_transport: float
+    power: float
+
+
+def energy(robot: Robot, steady: SteadyCycle) -> Energy:
+    """The energy of a steady cycle."""
+    rate = steady.gait.rate(steady.t)
+    after, before = steady.torque * rate, steady.torque_before * rate
+    net = float(np.sum(after[:-1] + before[1:])) / 2
+    gross = float(np.sum(_positive(after[:-1], before[1:])))
+    period = steady.gait.period
+    path = abs(steady.speed) * period
+    step = float(steady.t[1] - steady.t[0])
+    per_metre = step / path
+    weight = robot.mass * G
+    return Energy(
+        gross * per_metre, net * per_metre, gross * per_metre / weight, gross * step / period
+    )
+
+
+def _positive(start: Array, end: Array) -> Array:
+    """Mean of the positive part of lines from start to end, exactly where one crosses zero."""
+    high, low = np.maximum(start, end), np.minimum(start, end)
+    crosses = (high > 0) & (low < 0)
+    above = np.where(crosses, high**2 / np.where(crosses, 2 * (high - low), 1.0), 0.0)
+    return np.where(crosses, above, np.maximum((start + end) / 2, 0.0))

@@ -19,8 +19,7 @@ from rr_opt.model.ballast import inertia_ratio, load_count
 from rr_opt.model.gait import Gait
 from rr_opt.model.problem import LARGEST_EXCESS, Problem
 from rr_opt.model.robot import Robot
-from rr_opt.motion.energy import Energy, energy
-from rr_opt.motion.steady_cycle import Cycle
+from rr_opt.motion.steady_cycle import Cycle, Energy, energy
 from rr_opt.outcome import Status
 from rr_opt.results.gait import gait_facts, robot_table, signed_fact, speed_fact
 from rr_opt.results.limits import (

@@ -15,7 +15,7 @@ from rr_opt.model.gait import Gait, SineGait
 from rr_opt.model.problem import Spreads
 from rr_opt.results.fastest import FastestGait
 from rr_opt.results.result import Check
-from rr_opt.verify.spread import DRAWN, drawn
+from rr_opt.verify.speeds import DRAWN, drawn
 
 _ALIKE = 1e-6
 SHORT = 0.01

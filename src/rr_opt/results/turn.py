@@ -7,8 +7,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from rr_opt.design.turn import MeanMotion
-from rr_opt.design.turn_target import Target
+from rr_opt.design.turn import MeanMotion, Target
 from rr_opt.documents import document as doc
 from rr_opt.files.record import plain
 from rr_opt.formatting import direction_text, number, side_text, with_unit

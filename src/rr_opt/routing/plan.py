@@ -2,12 +2,12 @@
 
 import itertools
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.optimize import root_scalar
 
+from rr_opt.design.families import Progress
 from rr_opt.design.maximize_speed import maximize_speed
 from rr_opt.model.gait import SineGait
 from rr_opt.model.problem import Interval, Problem
@@ -17,8 +17,6 @@ from rr_opt.outcome import InputError, Status
 from rr_opt.routing.gaits import Chart, Coasting, Way, binding_limits, chart, coasting
 from rr_opt.routing.path import Leg, legs_of
 from rr_opt.routing.program import BROKEN, DriveProgram, DriveStage, FoundDrive, SolvedDrive, slip
-
-Progress = Callable[[str], None]
 
 _RADII = 8
 """Radii that are tried for the arcs to a waypoint."""

@@ -289,13 +289,10 @@ class DriveProgram:
             d[6, 2 * k + 2 :, k * _UNKNOWNS] = 2 * math.pi
         return d
 
+    @np.errstate(over="ignore", invalid="ignore")
     def look(self, x: Array, starts: Array | None = None) -> Look:
         """The drive of the scaled unknowns and everything that has to be at least 0. starts: v,
         psi, x, y of all stages but the first, if they do not begin as the one before ends."""
-        with np.errstate(over="ignore", invalid="ignore"):
-            return self._look(x, starts)
-
-    def _look(self, x: Array, starts: Array | None) -> Look:
         z = x * self.scale
         command = self.command(z)
         slopes = np.pad(self.slopes(command), ((0, 0), (0, 0), (0, 1)))
@@ -338,7 +335,11 @@ class DriveProgram:
                 )
                 rows.near(name, stage.leg, samples, int(mine[-1]), within * _INSIDE)
         end, piece = samples.path[:, -1:], [pieces[-1]]
-        psi = end[1] - self.heading(self.stages[-1].leg, steady=not self.rest)
+        leg = self.stages[-1].leg
+        asked = leg.end.heading + self.turned
+        if not self.rest:
+            asked += slip(self.problem, leg.curvature, self.turned)
+        psi = end[1] - asked
         rows.within("heading", piece, psi, samples.slopes[1, -1:], tolerance.heading * _INSIDE)
         if self.rest:
             rows.within("speed", piece, end[0], samples.slopes[0, -1:], tolerance.speed * _INSIDE)
@@ -463,11 +464,6 @@ class DriveProgram:
         less = replace(self.problem, limits=replace(limits, singularity=S * (1 - _NUDGE)))
         prices["singularity"] = -total["angle"] / room * (reach(less) - room) / (S * _NUDGE)
         return prices, left / float(np.linalg.norm(gradient))
-
-    def heading(self, leg: Leg, *, steady: bool) -> float:
-        """Of platform 1 at the end of a leg, rad: along the path, or as it is in steady motion."""
-        along = leg.end.heading + self.turned
-        return along + slip(self.problem, leg.curvature, self.turned) if steady else along
 
     def guess(self) -> tuple[Array, Array]:
         """The unknowns and starts of stages, one stage after another simulated. Each begins on

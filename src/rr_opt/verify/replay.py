@@ -15,13 +15,13 @@ from rr_opt.model.gait import Gait
 from rr_opt.model.problem import CANCELLED, Limits
 from rr_opt.model.robot import Robot
 from rr_opt.motion.circle import Transient, circle_of, transient
-from rr_opt.motion.energy import energy
 from rr_opt.motion.integrators import cvodes
 from rr_opt.motion.steady_cycle import (
     BETWEEN,
     Cycle,
     SteadyCycle,
     cycle_of,
+    energy,
     grip_needed,
     peak_torque,
     reference_cycle,

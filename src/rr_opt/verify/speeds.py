@@ -1,6 +1,7 @@
 """Speed and peak torque of any number of gaits, each from as many samples as it needs."""
 
 import math
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -10,8 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 from rr_opt.array import Array
 from rr_opt.mechanics.kinematics import G
 from rr_opt.model.ballast import with_inertia_ratio
-from rr_opt.model.gait import Gait
-from rr_opt.model.problem import Problem
+from rr_opt.model.gait import Gait, SineGait
+from rr_opt.model.problem import Problem, Spreads
 from rr_opt.model.robot import Robot
 from rr_opt.motion.dynamics import derive, dynamics_of
 from rr_opt.verify.compiled_cycles import CompiledCycles, Points, Speeds
@@ -299,3 +300,45 @@ def _sampled_speed(robot: Robot, gait: Gait, samples: int) -> tuple[float, float
     if not np.isfinite(found.error[0, 0]):
         return math.nan, math.nan
     return float(found.speed[0, 0]), float(found.scale[0, 0])
+
+
+DRAWN = 20_000
+_DRAWN_TO = 1e-5
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """What many robots, drawn at random from those that a file may mean, make of a gait: signed
+    speed, m/s, and largest |torque|, N m, (K,)."""
+
+    speed: Array
+    torque: Array
+
+    def reaching(self, speed: float) -> float:
+        """The share of them that go at least as fast the same way."""
+        return float((self.speed * np.sign(speed) >= abs(speed)).mean())
+
+    def keeping(self, torque: float) -> float:
+        """The share of them that need no more torque, N m."""
+        return float((self.torque <= torque).mean())
+
+    def reached(self, share: float) -> float:
+        """The speed, m/s, that this share of them reaches, forward or backward as most go."""
+        way = float(np.sign(np.median(self.speed)))
+        return way * float(np.quantile(way * self.speed, 1 - share))
+
+
+def drawn(
+    robot: Robot, gait: SineGait, spreads: Spreads, scale: float = 1.0, seed: int = 1
+) -> Drawn:
+    """DRAWN robots; scale: of all spreads."""
+    dynamics, rng, count = dynamics_of(robot), np.random.default_rng(seed), DRAWN
+    p = np.repeat(dynamics.values(robot)[:, None], count, axis=1)
+    for which, spread in spreads.of(dynamics.parameters).items():
+        p[which] *= np.exp(scale * spread * rng.standard_normal(count))
+    ones = np.ones(count)
+    found = resolved(
+        model_of(robot), robot, gait.amplitude * ones, gait.offset * ones,
+        gait.period * ones[:, None], np.arange(count), p, _DRAWN_TO,
+    )  # fmt: skip
+    return Drawn(found.speed[:, 0], found.peak_torque[:, 0])

@@ -20,6 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rr_opt.array import Array
 from rr_opt.mechanics.code_generation import over_arrays
+from rr_opt.mechanics.compile_cache import WhenItPays
 from rr_opt.model.problem import CANCELLED
 from rr_opt.motion.dynamics import Dynamics
 from rr_opt.verify.compiled_cycles import CompiledCycles, Steady, compiled
@@ -115,20 +116,15 @@ class SteadyFourier:
         self._motion = over_arrays(motion)
         self._tangent = over_arrays(motion.factory("tangent", names, ["vdot", "jac:vdot:v"]))
         self._grip = over_arrays(dynamics.grip)
-        self._dynamics, self._asked = dynamics, 0
-        self._compiled: CompiledCycles | None = None
+        powers = self._powers.function if self.viscous else None
+        self._code = WhenItPays(
+            lambda make: compiled(dynamics, powers, make=make), look=0, pays=_PAYS[self.viscous]
+        )
 
     def compiled(self, points: int) -> CompiledCycles | None:
         """The same as machine code, if there is a compiler and it pays, with this number of points
         to come; what was compiled once is there at once."""
-        before, self._asked = self._asked, self._asked + points
-        if self._compiled is None and (before == 0 or before < _PAYS[self.viscous] <= self._asked):
-            self._compiled = compiled(
-                self._dynamics,
-                self._powers.function if self.viscous else None,
-                make=self._asked >= _PAYS[self.viscous],
-            )
-        return self._compiled
+        return self._code.code(points)
 
     # What is not finite has no settled cycle, and comes out as such.
     @np.errstate(divide="ignore", over="ignore", invalid="ignore")
