@@ -12,8 +12,8 @@ from pathlib import Path
 import pytest
 
 from rr_lab.files import seal_of
+from rr_lab.trial import MADE, SAID, SEALS, Trial, basis_of, made_row, said_row, tidy
 from rr_lab.trial.draws import Basis, SealedCase, draw_case
-from rr_lab.trial.trial import MADE, SAID, SEALS, Trial, basis_of, made_row, said_row, tidy
 from rr_opt.batch.journal import Journal
 from rr_opt.outcome import InputError
 

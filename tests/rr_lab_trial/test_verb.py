@@ -7,11 +7,11 @@ from dataclasses import replace
 import pytest
 from typer.testing import CliRunner
 
+from rr_lab import trial as one
 from rr_lab.case import ENGINES
-from rr_lab.trial import trial as one
+from rr_lab.trial import MADE
 from rr_lab.trial.draws import KINDS, draw_case
 from rr_lab.trial.isolation import diagnose_apart
-from rr_lab.trial.trial import MADE
 from rr_opt.cli.main import app
 from tests.rr_lab_trial.test_trial import STUB, made_up
 

@@ -5,7 +5,7 @@ from functools import partial
 from matplotlib.axes import Axes
 from matplotlib.patches import Rectangle
 
-from rr_lab.report.proof import Proof
+from rr_lab.report import Proof
 from rr_lab.trial.counts import Confusion, confusion
 from rr_opt.formatting import words_of
 from rr_opt.results.figures import style
