@@ -156,7 +156,7 @@ def _coulomb(rig: Rig, values: Values) -> None:
 
 
 def _equal(rig: Rig, values: Values) -> None:
-    _coulomb(rig, {"force1": values["force"], "force2": values["force"]})
+    _coulomb(rig, _equal_forces(rig.robot, values))
 
 
 def _equal_forces(_: Robot, values: Values) -> dict[str, float]:

@@ -10,9 +10,17 @@ from pathlib import Path
 from typing import Any
 
 from rr_lab.trial import OpenedTrial, statistics, tidy
-from rr_lab.trial.counts import COUNTS, TEXTS, TITLES, breakdown, by_engine, confusion
 from rr_lab.trial.outcome import Case
-from rr_lab.trial.statistics import SIZES, Rate
+from rr_lab.trial.statistics import (
+    COUNTS,
+    SIZES,
+    TEXTS,
+    TITLES,
+    Rate,
+    breakdown,
+    by_engine,
+    confusion,
+)
 from rr_opt.documents import document as doc
 from rr_opt.documents.rendering import columns
 from rr_opt.formatting import number
