@@ -21,10 +21,10 @@ from pathlib import Path
 from typing import Any
 
 from rr_lab.case import ENGINES
+from rr_lab.trial import Trial
 from rr_lab.trial.draws import KINDS, Basis, fingerprint, read_seed
 from rr_lab.trial.isolation import opened_case
 from rr_lab.trial.outcome import Case
-from rr_lab.trial.trial import Trial
 from rr_opt.batch.journal import Journal
 from rr_opt.batch.run import pool_of, run
 from rr_opt.documents.archive import write_text

@@ -26,11 +26,9 @@ import numpy as np
 
 from benchmarks.fit import ours
 from benchmarks.fit.case import TRUE, Array, Case, case, starts
-from benchmarks.fit.patience import PATIENCE, patience
 from benchmarks.fit.referee import Minimum, costs, minimum, same
 from benchmarks.fit.report import text
-from benchmarks.fit.tried import Tried
-from benchmarks.fit.ways import EXAMPLE, OURS, WAYS, near, way
+from benchmarks.fit.ways import EXAMPLE, OURS, PATIENCE, WAYS, Tried, near, patience, way
 from benchmarks.results import installed, write
 
 _DRAWS, _STARTS = 20, 40
@@ -113,7 +111,7 @@ def _cold(one: str) -> float:
     with tempfile.TemporaryDirectory() as cache:
         begun = _cpu()
         subprocess.run(
-            [sys.executable, "-m", "benchmarks.fit.one", one],
+            [sys.executable, "-m", "benchmarks.fit.ways", one],
             check=True, capture_output=True, env={**os.environ, "XDG_CACHE_HOME": cache},
         )  # fmt: skip
         return _cpu() - begun

@@ -15,7 +15,7 @@ import numpy as np
 
 from benchmarks.fit.case import RATE, TRUE, Array, Case, commanded
 from benchmarks.fit.equations import rates
-from benchmarks.fit.patience import PATIENCE
+from benchmarks.fit.ways import PATIENCE
 
 _SMOOTH = 10
 """Samples to either side of which the first guess of v is a slope."""

@@ -9,10 +9,8 @@ import numpy as np
 
 from benchmarks.fit.case import BOX, WITHIN
 from benchmarks.fit.equations import PARAMETERS
-from benchmarks.fit.patience import PATIENCE
 from benchmarks.fit.referee import Minimum
-from benchmarks.fit.tried import Tried
-from benchmarks.fit.ways import EXAMPLE, OURS, WAYS
+from benchmarks.fit.ways import EXAMPLE, OURS, PATIENCE, WAYS, Tried
 from benchmarks.results import installed, machine, spread
 
 _GOAL, _SHARE = 10.0, 38 / 40

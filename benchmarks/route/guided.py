@@ -6,9 +6,8 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
-from rr_lab.planar.drive import STEP, fine_enough, require_tame, still
+from rr_lab.planar.drive import STEP, fine_enough, require_tame, step_of, still
 from rr_lab.planar.layout import layout
-from rr_lab.planar.step import step_of
 from rr_lab.rig import Rig
 from rr_lab.run import Conditions, Motion
 from rr_opt.array import Array

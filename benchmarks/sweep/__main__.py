@@ -16,9 +16,9 @@ for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
 
 def main(quick: bool) -> None:
     from benchmarks.results import machine, write
-    from benchmarks.sweep import both_cores, cold, page, profiled
+    from benchmarks.sweep import cold, page, profiled
     from benchmarks.sweep.case import plane, space
-    from benchmarks.sweep.measure import measured
+    from benchmarks.sweep.measure import both_cores, measured
     from benchmarks.sweep.ways import WAYS
 
     os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
@@ -40,8 +40,8 @@ def main(quick: bool) -> None:
         for friction in ("viscous", "coulomb"):
             if way.name in here and way.counts[friction != "viscous"]:
                 starts[way.name][friction] = cold.seconds(way, friction)
-    busy = both_cores.lines(cases["viscous, four dimensions"], 3)
-    busy += both_cores.lines(cases["dry friction, alpha and T"], 3)
+    busy = both_cores(cases["viscous, four dimensions"], 3)
+    busy += both_cores(cases["dry friction, alpha and T"], 3)
     nonlinear = {label: work for label, work in cases.items() if work.friction != "viscous"}
     uncompiled = profiled.lines(nonlinear)
     lines, ratios = page.written(machine(), cases, found, starts, busy, uncompiled)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import time
 from dataclasses import dataclass, field
 from functools import lru_cache
@@ -9,9 +10,8 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from benchmarks.sweep.case import ACCURACY, Array, Work, drawn, error
-from benchmarks.sweep.steps import needed
-from benchmarks.sweep.ways import WAYS, Way
+from benchmarks.sweep.case import ACCURACY, LEAST_SPEED, Array, Work, drawn, error
+from benchmarks.sweep.ways import NODES, NUMBA, OURS, WAYS, Way
 from benchmarks.sweep.ways.ours import run
 
 _TIGHT = {"viscous": 1e-9, "quadratic": 1e-8, "coulomb": 2e-7}
@@ -82,6 +82,30 @@ def _needed(kind: str, work: Work) -> NDArray[np.int_]:
     return needed(kind, work, _true(work))
 
 
+_LEAST, _MOST = {"rk4": 32, "nodes": 16}, {"rk4": 16384, "nodes": 1024}
+
+
+def needed(kind: str, work: Work, true: Array) -> NDArray[np.int_]:
+    """How many steps or nodes a period each point needs: the fewest that are close enough, (K,).
+
+    Found beforehand and not counted, which favours whoever takes fixed steps. Powers of two; with
+    fewer than twice as many, the error may be small by chance.
+    """
+    finder = NUMBA if kind == "rk4" else NODES
+    found = np.zeros(work.size, int)
+    pending = np.arange(work.size)
+    n = _LEAST[kind]
+    before = np.zeros(work.size, bool)
+    while len(pending):
+        speed = finder.run(work.only(pending), n)
+        good = np.abs(speed - true[pending]) <= ACCURACY * np.maximum(true[pending], LEAST_SPEED)
+        settled = good & before[pending] | (n >= _MOST[kind])
+        found[pending[settled]] = n // 2
+        before[pending] = good
+        pending, n = pending[~settled], 2 * n
+    return found
+
+
 class _Job:
     """A way and its points, in groups that take as many steps."""
 
@@ -108,3 +132,28 @@ class _Job:
         if self._size > self._checked.size:
             speed = speed[drawn(self._size, _CHECKED)]
         return error(speed, self._true)
+
+
+def both_cores(work: Work, rounds: int) -> list[str]:
+    """How much sooner a sweep is done where more than one processor is free.
+
+    Wall-clock seconds of all points on one processor and on all, the least of the rounds.
+    """
+    free = os.sched_getaffinity(0)
+    everywhere = set(range(os.cpu_count() or 1))
+    told = []
+    for processors in ({min(everywhere)}, everywhere):
+        os.sched_setaffinity(0, processors)
+        walls, shares = [], []
+        for _ in range(rounds):
+            wall, cpu = time.perf_counter(), time.process_time()
+            OURS.run(work, 0)
+            walls.append(time.perf_counter() - wall)
+            shares.append((time.process_time() - cpu) / walls[-1])
+        told.append(
+            f"On {len(processors)} processor(s) {work.size:,} points with {work.friction} friction "
+            f"took {min(walls):.2f} s (least of {rounds}), {max(shares):.2f} processors busy at "
+            "best."
+        )
+    os.sched_setaffinity(0, free)
+    return [*told, f"Others used this machine too: load {os.getloadavg()[0]:.1f}."]

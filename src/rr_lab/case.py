@@ -12,9 +12,9 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 
+from rr_lab import mujoco
 from rr_lab.disturbances import disturbance_named
 from rr_lab.effects import rig_with
-from rr_lab.mujoco import drive as mujoco
 from rr_lab.rig import Rig
 from rr_lab.run import Conditions, Motion, captured
 from rr_opt.model.experiment import Experiment, Noise, Recording, Run, Start, Uncertainty, Use

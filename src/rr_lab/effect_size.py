@@ -105,11 +105,6 @@ def scaled_use(use: EffectUse, factor: float) -> EffectUse:
     return EffectUse(use.name, values)
 
 
-def scaled_case(case: Case, factor: float) -> Case:
-    """All effects of a case `factor` times as strong."""
-    return replace(case, effects=tuple(scaled_use(use, factor) for use in case.effects))
-
-
 def scaled_to(case: Case, target: float, size: Callable[[Case], float]) -> tuple[Case, float]:
     """The case with its effects scaled together until size(case) is `target`, and what it is.
 
@@ -120,7 +115,7 @@ def scaled_to(case: Case, target: float, size: Callable[[Case], float]) -> tuple
     low, high, factor, power = 1e-4, 1e4, 1.0, 1.0
     tried: list[tuple[Case, float, float]] = []
     for _ in range(TRIES):
-        trial = scaled_case(case, factor)
+        trial = replace(case, effects=tuple(scaled_use(use, factor) for use in case.effects))
         reached = max(size(trial), 1e-6)
         if tried:
             power = _slope(tried[-1][1:], (factor, reached), power)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rr_lab.mujoco.drive import servo_angles
+from rr_lab.mujoco import servo_angles
 from rr_lab.rig import Rig
 from rr_lab.run import Conditions, Motion
 from rr_opt.array import Array

@@ -2,20 +2,29 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 from rr_lab.case import ENGINES, Engine
 from rr_lab.mujoco.plant import engine as mujoco
-from rr_lab.report.cases import ProvedCase
-from rr_lab.report.proof import Proof
-from rr_lab.trial.draws import CODE, KINDS, Basis, read_kinds, read_seed, seed_of_commit
-from rr_lab.trial.trial import again, basis_of, whole_trial
+from rr_lab.report import Proof, ProvedCase
+from rr_lab.trial import MADE, SAID, Trial, again, basis_of, made_row, said_row
+from rr_lab.trial.draws import (
+    CODE,
+    KINDS,
+    Basis,
+    fingerprint,
+    read_kinds,
+    read_seed,
+    seed_of_commit,
+)
+from rr_opt.batch.journal import Journal
 from rr_opt.batch.run import pool_of, run
 from rr_opt.documents.archive import folder_for_results
 from rr_opt.results.result import Progress, Result, quiet
+from rr_opt.version import __version__
 
 
 @dataclass(frozen=True, repr=False)
@@ -55,31 +64,36 @@ def prove(
     Called again with the same arguments, an interrupted trial resumes. Raises InputError if the
     folder has another trial, or an answer that was changed.
     """
-    with closing(pool_of(workers, scheduler)) as pool:
-        opened = whole_trial(
-            folder,
-            basis,
-            cases,
-            run=partial(run, pool),
-            follow=partial(_follow, total=cases, progress=progress),
-            restart=restart,
-            make_only=make_only,
-        )
-    return Proof(opened) if opened else MadeCases(folder, cases)
+    code, one_by_one = fingerprint(), range(1, cases + 1)
+    drawn = {"seed": basis.seed, "kinds": list(basis.kinds), "engines": list(basis.engines)}
+    identity = {**drawn, "code": code, "version": __version__}
+    with (
+        closing(pool_of(workers, scheduler)) as pool,
+        Journal(folder / MADE, identity, read=made_row, restart=restart) as made,
+        Journal(folder / SAID, identity, read=said_row, restart=restart) as said,
+    ):
+        trial = Trial(folder, [basis.draw(number) for number in one_by_one])
 
+        def follow(words: str, steps: Iterator[int], journal: Journal) -> None:
+            """Carry the steps out and show how many are done."""
+            done = sum(number in journal.rows for number in one_by_one)
+            if done:
+                progress(f"{done} of {cases} cases were {words} in an earlier run.")
+            try:
+                progress(f"case {min(done + 1, cases)} of {cases}")
+                for _ in steps:
+                    done += 1
+                    progress(f"case {min(done + 1, cases)} of {cases}")
+            except KeyboardInterrupt:
+                kept = f"{done} of {cases} cases are {words}"
+                raise KeyboardInterrupt(f"{kept} and kept. Repeat the command to resume.") from None
 
-def _follow(words: str, steps: Iterator[int], done: int, total: int, progress: Progress) -> None:
-    """Carry the steps out and show how many are done."""
-    if done:
-        progress(f"{done} of {total} cases were {words} in an earlier run.")
-    try:
-        progress(f"case {min(done + 1, total)} of {total}")
-        for _ in steps:
-            done += 1
-            progress(f"case {min(done + 1, total)} of {total}")
-    except KeyboardInterrupt:
-        kept = f"{done} of {total} cases are {words}"
-        raise KeyboardInterrupt(f"{kept} and kept. Repeat the command to resume.") from None
+        follow("made and sealed", trial.make(made, partial(run, pool)), made)
+        if make_only:
+            return MadeCases(folder, cases)
+        follow("diagnosed", trial.diagnose(made.rows, said, partial(run, pool)), said)
+        opened = trial.open(made.rows, said.rows, identity)
+    return Proof(replace(opened, changed=fingerprint() != code))
 
 
 def prove_case(

@@ -11,8 +11,15 @@ import numpy as np
 from rr_lab.case import Case, Engine, Plan, Verdict, motion_of, stream
 from rr_lab.disturbances import disturbance_named
 from rr_lab.effect_size import COARSE, EffectSize, scaled_to
-from rr_lab.effects import NAMED, OUTSIDE_NAMES, REALISATIONS, effect_named, rig_with
-from rr_lab.effects.hidden_effect import HiddenEffect, Setting
+from rr_lab.effects import (
+    NAMED,
+    OUTSIDE_NAMES,
+    REALISATIONS,
+    HiddenEffect,
+    Setting,
+    effect_named,
+    rig_with,
+)
 from rr_opt.model.experiment import Noise
 from rr_opt.model.gait import SineGait
 from rr_opt.model.parameters import Uncertainty, default_uncertainty, parameters_of, with_parameters

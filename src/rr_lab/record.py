@@ -6,8 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from rr_lab.case import Case, Plan, stream
-from rr_lab.effects import effect_named
-from rr_lab.effects.hidden_effect import Parameter
+from rr_lab.effects import Parameter, effect_named
 from rr_lab.files import Delivery, Form, folder_of, is_own, seal_of, sealed_text
 from rr_lab.formats import drawn_clock
 from rr_lab.random_case import Request

@@ -19,7 +19,7 @@ def calibrate(
     with StepDisplay() as steps:
         steps("starting")
         folder = results_folder(out, "calibration")
-        from rr_paper.calibration.calibration import calibrate as compute
+        from rr_paper.calibration import calibrate as compute
 
         found = compute(steps)
     show(found, steps, folder, json=json)

@@ -34,9 +34,7 @@ def signs_figure(motion: Comparison) -> Figure:
     ax = drawn.subplots()
     for name, (label, colour, width, line) in _LINES.items():
         ax.plot(motion.t, 1e3 * motion.v[name], color=colour, lw=width, ls=line, label=label)
-    ax.set_title("Speed of axle 1 from rest")
-    ax.set_xlabel("time, s")
-    ax.set_ylabel("v, mm/s")
+    ax.set(title="Speed of axle 1 from rest", xlabel="time, s", ylabel="v, mm/s")
     ax.legend(loc="upper right", ncols=2)
     low, high = ax.get_ylim()
     ax.set_ylim(low, high + 0.35 * (high - low))
@@ -132,9 +130,7 @@ def start_figure(start: Start) -> Figure:
     path, speed = drawn.subplots(2, 1, height_ratios=[1, 1.6])
     moved = along_travel(start.driven)
     path.plot(moved.x, moved.y, color=style.colour_of(start.steady), lw=1.1)
-    path.set_title("Path of P from rest")
-    path.set_xlabel("x, m")
-    path.set_ylabel("y, m")
+    path.set(title="Path of P from rest", xlabel="x, m", ylabel="y, m")
     row = start.row
     speed.axhspan(
         1e3 * (row.mean - row.half_width), 1e3 * (row.mean + row.half_width), color=style.GREY,
@@ -232,8 +228,7 @@ def _speed_map(ax: Axes, surface: SpeedSurface, across: Array, singular: float) 
     bar.set_label("mean speed, mm/s  (− platform 2 leads)")
     bar.outline.set_visible(False)  # type: ignore[operator]
     ax.grid(False)
-    ax.set_ylabel("amplitude α, rad")
-    ax.set_title("Hatched: beyond 30 rpm")
+    ax.set(ylabel="amplitude α, rad", title="Hatched: beyond 30 rpm")
     ax.annotate(
         f"{number(singular, 3)} rad, singular posture, and {number(ANGLE_LIMIT)} rad, the servo's "
         "limit, are above the plot", (0, -0.2), xycoords="axes fraction", fontsize=8.5,
@@ -296,7 +291,6 @@ def circles_figure(turning: Turning) -> Figure:
     gait = turning.circles[0].gait
     ax.set_title(f"Circles at α = {number(gait.amplitude)} rad, T = {number(gait.period)} s")
     ax.set_aspect("equal", adjustable="datalim")
-    ax.set_xlabel("x, m")
-    ax.set_ylabel("y, m")
+    ax.set(xlabel="x, m", ylabel="y, m")
     ax.legend(loc="lower center", bbox_to_anchor=(0.5, 0.14))
     return drawn

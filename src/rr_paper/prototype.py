@@ -13,7 +13,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from rr_opt.model.ballast import inertia_ratio, with_inertia_ratio
+from rr_opt.model.ballast import About, By, inertia_ratio, with_inertia_ratio
 from rr_opt.model.robot import Platform, Robot
 from rr_opt.outcome import InputError
 from rr_paper.publication import TABLE_1, Row
@@ -68,62 +68,53 @@ class RatioDefinition:
     build: Callable[[Robot, float], Robot]
 
 
-def _axle_ratio(robot: Robot) -> float:
-    one, two = robot.platform1, robot.platform2
-    return (two.I + two.m * two.a**2) / (one.I + one.m * one.a**2)
-
-
-def _with_axle_ratio(robot: Robot, ratio: float) -> Robot:
-    one, two = robot.platform1, robot.platform2
-    return _with_inertia(robot, ratio * (one.I + one.m * one.a**2) - two.m * two.a**2)
-
-
-def _section2_offsets(robot: Robot) -> tuple[float, float]:
-    """J1 - I20 and J2 - I20 of section 2, kg m2."""
-    one, two = robot.platform1, robot.platform2
-    return (
-        one.I + one.m * one.a**2 + two.m * (two.a**2 + one.c**2 - two.c**2),
-        -two.m * (two.c**2 - two.a**2),
+def _ballast(name: str, about: About, by: By = "inertia") -> RatioDefinition:
+    return RatioDefinition(
+        name,
+        lambda robot: inertia_ratio(robot, about),
+        lambda robot, ratio: with_inertia_ratio(robot, ratio, about, by),
     )
 
 
-def _section2_ratio(robot: Robot) -> float:
-    J1, J2 = _section2_offsets(robot)
-    return (robot.platform2.I + J2) / (robot.platform2.I + J1)
+def _by_inertia(name: str, parts: Callable[[Robot], tuple[float, float, float]]) -> RatioDefinition:
+    """J20/J10 = (I2 + top)/(share I2 + bottom), of parts top, share and bottom."""
+
+    def ratio(robot: Robot) -> float:
+        top, share, bottom = parts(robot)
+        return (robot.platform2.I + top) / (share * robot.platform2.I + bottom)
+
+    def build(robot: Robot, ratio: float) -> Robot:
+        top, share, bottom = parts(robot)
+        inertia = (ratio * bottom - top) / (1 - share * ratio)
+        if inertia <= 0:
+            raise InputError(
+                f"The ratio needs I2 = {inertia:.3g} kg m2. It must be positive. Ask for a larger "
+                "one."
+            )
+        return replace(robot, platform2=replace(robot.platform2, I=inertia))
+
+    return RatioDefinition(name, ratio, build)
 
 
-def _with_section2_ratio(robot: Robot, ratio: float) -> Robot:
-    J1, J2 = _section2_offsets(robot)
-    return _with_inertia(robot, (ratio * J1 - J2) / (1 - ratio))
+def _about_axles(robot: Robot) -> tuple[float, float, float]:
+    one, two = robot.platform1, robot.platform2
+    return two.m * two.a**2, 0.0, one.I + one.m * one.a**2
 
 
-def _with_inertia(robot: Robot, inertia: float) -> Robot:
-    if inertia <= 0:
-        raise InputError(
-            f"The ratio needs I2 = {inertia:.3g} kg m2. It must be positive. Ask for a larger one."
-        )
-    return replace(robot, platform2=replace(robot.platform2, I=inertia))
+def _of_section2(robot: Robot) -> tuple[float, float, float]:
+    """J1 and J2 of section 2 both contain I20."""
+    one, two = robot.platform1, robot.platform2
+    bottom = one.I + one.m * one.a**2 + two.m * (two.a**2 + one.c**2 - two.c**2)
+    return -two.m * (two.c**2 - two.a**2), 1.0, bottom
 
 
-ABOUT_P = RatioDefinition(
-    "about P, by platform 2's inertia",
-    lambda robot: inertia_ratio(robot, "joint"),
-    lambda robot, ratio: with_inertia_ratio(robot, ratio, "joint"),
-)
+ABOUT_P = _ballast("about P, by platform 2's inertia", "joint")
 DEFINITIONS = (
     ABOUT_P,
-    RatioDefinition(
-        "about P, by loads of 66 g",
-        lambda robot: inertia_ratio(robot, "joint"),
-        lambda robot, ratio: with_inertia_ratio(robot, ratio, "joint", "loads"),
-    ),
-    RatioDefinition(
-        "about the centres of mass",
-        lambda robot: inertia_ratio(robot, "centre"),
-        lambda robot, ratio: with_inertia_ratio(robot, ratio, "centre"),
-    ),
-    RatioDefinition("about the axles' centres", _axle_ratio, _with_axle_ratio),
-    RatioDefinition("J2/J1 of section 2", _section2_ratio, _with_section2_ratio),
+    _ballast("about P, by loads of 66 g", "joint", "loads"),
+    _ballast("about the centres of mass", "centre"),
+    _by_inertia("about the axles' centres", _about_axles),
+    _by_inertia("J2/J1 of section 2", _of_section2),
 )
 
 

@@ -19,16 +19,18 @@ from rr_opt.model.robot import Robot
 from rr_opt.results.fastest import FastestGait
 from rr_opt.results.result import Result
 from rr_paper import publication
-from rr_paper.best_amplitude import BestAmplitude, Peak, audit_best_amplitude
 from rr_paper.consistency import KAPPA, LARGEST_WHEEL, Consistency, Hypothesis, audit_hypotheses
 from rr_paper.prototype import ABOUT_P, BOX, UNITS, Sensitivity, sensitivities
 from rr_paper.publication import CITATION, RATE_LIMIT, TABLE_3, captions
 from rr_paper.signs import SignAudit, audit_signs
 from rr_paper.statements import (
+    BestAmplitude,
+    Peak,
     PeriodLaw,
     ServoDemand,
     SingularPosture,
     Turning,
+    audit_best_amplitude,
     audit_period,
     audit_turning,
     servo_demands,

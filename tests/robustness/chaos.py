@@ -88,7 +88,7 @@ ClusterPool._check_versions = frail
 """,
     "prove killed": """
 import time
-from rr_lab.trial.trial import Journal, Trial
+from rr_lab.trial import Journal, Trial
 made, kept, waiting = Trial._made, Journal.append, []
 def row(self, id, case):
     waiting.append((self, id, case))
@@ -114,7 +114,7 @@ CASES = 13
 STUDY_VERB = ("study", "study.yaml", "--out", "res", "--no-figures")
 SHORT = """
 from functools import partial
-from rr_lab.trial.trial import Trial, make
+from rr_lab.trial import Trial, make
 Trial.make.__defaults__ = (partial(make, seconds=4.0),)
 """
 """Recordings of 4 s."""

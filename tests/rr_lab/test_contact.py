@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rr_lab.mujoco.drive import drive
+from rr_lab.mujoco import drive
 from rr_lab.mujoco.plant import Plant
 from rr_lab.rig import Rig
 from rr_lab.run import Conditions

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rr_lab.effects import rig_with
-from rr_lab.mujoco.drive import drive
+from rr_lab.mujoco import drive
 from rr_lab.mujoco.plant import Plant, stepped
 from rr_lab.run import Conditions
 from rr_opt.model.gait import SineGait

@@ -2,7 +2,7 @@
 
 import pytest
 
-from rr_lab.trial.counts import COUNTS, by_engine
+from rr_lab.trial.statistics import COUNTS, by_engine
 from tests.rr_lab_trial.made_up import case, said, truth
 
 DRAG = "quadratic_drag"

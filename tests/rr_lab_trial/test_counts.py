@@ -2,8 +2,7 @@
 
 import pytest
 
-from rr_lab.trial.counts import COUNTS, breakdown
-from rr_lab.trial.statistics import Rate
+from rr_lab.trial.statistics import COUNTS, Rate, breakdown
 from tests.rr_lab_trial.made_up import case, said, single, truth
 
 DRAG, SLIP, TILT = "quadratic_drag", "lateral_slip", "floor_tilt"

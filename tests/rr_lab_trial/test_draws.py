@@ -10,11 +10,11 @@ from rr_lab.case import ENGINES
 from rr_lab.disturbances import DISTURBANCES
 from rr_lab.effects import OUTSIDE_NAMES, REALISATIONS
 from rr_lab.random_case import SINGLES
-from rr_lab.trial.draws import BLOCK, KINDS, STRENGTHS, case_seed, draw_case, read_kinds
+from rr_lab.trial.draws import BLOCK, KINDS, STRENGTHS, Basis, case_seed, read_kinds
 from rr_opt.outcome import InputError
 
 SEED = "1df794d0"
-DRAWS = [draw_case(SEED, number) for number in range(1, 201)]
+DRAWS = [Basis(SEED).draw(number) for number in range(1, 201)]
 REALISED = {each.key for name in SINGLES for each in REALISATIONS[name]}
 
 
@@ -37,7 +37,7 @@ def test_seeds_differ():
 
 
 def test_a_case_alone_is_the_same_as_among_others():
-    assert draw_case(SEED, 57) == DRAWS[56]
+    assert Basis(SEED).draw(57) == DRAWS[56]
 
 
 def test_every_block_has_its_kinds_in_another_order():
@@ -47,7 +47,7 @@ def test_every_block_has_its_kinds_in_another_order():
 
 
 def test_another_seed_has_another_order():
-    other = [draw_case("1df794d1", number) for number in range(1, 41)]
+    other = [Basis("1df794d1").draw(number) for number in range(1, 41)]
     assert [kind(draw) for draw in other] != [kind(draw) for draw in DRAWS[:40]]
 
 
@@ -56,7 +56,7 @@ def test_another_seed_has_another_order():
 def test_every_pair_of_cases_is_of_one_kind_with_both_engines(seed, kinds):
     """So that half of any even number of cases is driven by each."""
     for number in range(1, 61, 2):
-        one, other = (draw_case(seed, n, kinds) for n in (number, number + 1))
+        one, other = (Basis(seed, kinds).draw(n) for n in (number, number + 1))
         assert {one.engine, other.engine} == set(ENGINES)
         assert kind(one) == kind(other)
 
@@ -67,7 +67,7 @@ def test_every_pair_of_cases_is_of_one_kind_with_both_engines(seed, kinds):
 )
 def test_everything_that_a_kind_stands_for_takes_turns_with_both_engines(name, items):
     count = 2 * (len(items) if name != "disturbed" else 2 * len(items))
-    draws = [draw_case(SEED, number, (name,)) for number in range(1, count + 1)]
+    draws = [Basis(SEED, (name,)).draw(number) for number in range(1, count + 1)]
     items_of = [(draw.disturbance, draw.kind if draw.disturbance else named(draw), draw.engine)
                 for draw in draws]  # fmt: skip
     assert len(set(items_of)) == count
@@ -102,21 +102,21 @@ def test_halves_do_not_go_together():
 
 def test_a_kind_may_name_what_is_hidden():
     kinds = read_kinds("pair:servo_lag/second_order+clock_offset, single:servo_backlash")
-    draws = [draw_case(SEED, number, kinds) for number in range(1, 25)]
+    draws = [Basis(SEED, kinds).draw(number) for number in range(1, 25)]
     keys = {f"single:{each.key}" for each in REALISATIONS["servo_backlash"]}
     assert {draw.kind for draw in draws} == {"pair:servo_lag/second_order+clock_offset", *keys}
     (only,) = read_kinds("single:servo_backlash/frictional")
-    assert draw_case(SEED, 1, (only,)).kind == only
+    assert Basis(SEED, (only,)).draw(1).kind == only
 
 
 def test_what_is_hidden_does_not_depend_on_the_engine():
     for number, draw in enumerate(DRAWS[:40], 1):
-        alone = draw_case(SEED, number, engines=("planar",))
+        alone = Basis(SEED, engines=("planar",)).draw(number)
         assert alone == replace(draw, engine="planar")
 
 
 def test_only_the_kinds_asked_for():
-    draws = [draw_case(SEED, number, ("null", "pair")) for number in range(1, 21)]
+    draws = [Basis(SEED, ("null", "pair")).draw(number) for number in range(1, 21)]
     assert Counter(map(kind, draws)) == {"null": 12, "pair": 8}
 
 

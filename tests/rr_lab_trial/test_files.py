@@ -5,8 +5,8 @@ import json
 
 import pytest
 
-from rr_lab.report.proof import Proof
-from rr_lab.trial.trial import OpenedTrial
+from rr_lab.report import Proof
+from rr_lab.trial import OpenedTrial
 from tests.rr_lab_trial.made_up import case, said, single, truth
 
 DRAG, SLIP = "quadratic_drag", "lateral_slip"

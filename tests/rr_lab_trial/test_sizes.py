@@ -3,8 +3,15 @@
 import numpy as np
 import pytest
 
-from rr_lab.trial.counts import confusion
-from rr_lab.trial.statistics import coverage, held_out, intervals, quantiles, remainders, uniformity
+from rr_lab.trial.statistics import (
+    confusion,
+    coverage,
+    held_out,
+    intervals,
+    quantiles,
+    remainders,
+    uniformity,
+)
 from tests.rr_lab_trial.made_up import case, said, single, truth
 
 DRAG, SLIP, DRY = "quadratic_drag", "lateral_slip", "coulomb_friction"

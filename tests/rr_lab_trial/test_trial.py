@@ -12,8 +12,8 @@ from pathlib import Path
 import pytest
 
 from rr_lab.files import seal_of
-from rr_lab.trial.draws import Basis, SealedCase, draw_case
-from rr_lab.trial.trial import MADE, SAID, SEALS, Trial, basis_of, made_row, said_row, tidy
+from rr_lab.trial import MADE, SAID, SEALS, Trial, basis_of, made_row, said_row, tidy
+from rr_lab.trial.draws import Basis, SealedCase
 from rr_opt.batch.journal import Journal
 from rr_opt.outcome import InputError
 
@@ -21,7 +21,7 @@ STUB = str(Path(__file__).parent / "stub.py")
 IDENTITY = {
     "seed": "5eed", "kinds": ["null"], "engines": ["planar"], "code": "none", "version": "0"
 }  # fmt: skip
-DRAWS = [draw_case("5eed", number, ("null",)) for number in range(1, 6)]
+DRAWS = [Basis("5eed", ("null",)).draw(number) for number in range(1, 6)]
 
 
 def made_up(draw):

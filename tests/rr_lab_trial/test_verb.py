@@ -7,11 +7,11 @@ from dataclasses import replace
 import pytest
 from typer.testing import CliRunner
 
+from rr_lab import trial as one
 from rr_lab.case import ENGINES
-from rr_lab.trial import trial as one
-from rr_lab.trial.draws import KINDS, draw_case
+from rr_lab.trial import MADE
+from rr_lab.trial.draws import KINDS, Basis
 from rr_lab.trial.isolation import diagnose_apart
-from rr_lab.trial.trial import MADE
 from rr_opt.cli.main import app
 from tests.rr_lab_trial.test_trial import STUB, made_up
 
@@ -89,4 +89,4 @@ def test_one_case_again_is_that_of_the_trial_in_the_folder(words, expected, tmp_
     for number in range(1, 7):
         again = ["prove", "--case", str(number), "--out", str(tmp_path), *words]
         assert CliRunner().invoke(app, again).exit_code == 0
-    assert seen == [draw_case(expected[0], number, *expected[1:]) for number in range(1, 7)]
+    assert seen == [Basis(expected[0], *expected[1:]).draw(number) for number in range(1, 7)]

@@ -3,7 +3,7 @@
 import pytest
 
 from rr_opt.files.problem_file import read_problem
-from rr_paper import best_amplitude, consistency, statements
+from rr_paper import consistency, statements
 from rr_paper.reproduction import Reproduction, reproduce
 
 
@@ -12,6 +12,6 @@ def found() -> Reproduction:
     with pytest.MonkeyPatch.context() as less:
         less.setattr(consistency, "_SCREENED", 80)
         less.setattr(consistency, "_STARTS", 1)
-        less.setattr(best_amplitude, "_PEAK_ROBOTS", 5)
+        less.setattr(statements, "_PEAK_ROBOTS", 5)
         less.setattr(statements, "_ROBOTS", 100)
         return reproduce(read_problem(None), lambda _: None)

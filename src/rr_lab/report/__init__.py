@@ -1,1 +1,378 @@
-"""The blind trial as files: the record, the table of cases, the page and the summary."""
+"""The outcome of a blind trial: README.md and page, proof.json, cases.csv, and the figure.
+
+What was hidden in each case, what was said, and how it came out.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import starmap
+from pathlib import Path
+from typing import Any
+
+from rr_lab.trial import OpenedTrial, statistics, tidy
+from rr_lab.trial.outcome import Case
+from rr_lab.trial.statistics import (
+    COUNTS,
+    SIZES,
+    TEXTS,
+    TITLES,
+    Rate,
+    breakdown,
+    by_engine,
+    confusion,
+)
+from rr_opt.documents import document as doc
+from rr_opt.documents.rendering import columns
+from rr_opt.formatting import number
+from rr_opt.results.result import Progress, Result, quiet
+
+_SAYS = TEXTS["tables"]
+SHARE = "share, 95 % interval"
+_KEY = ("false_claims", "single", "pair_both", "parameters", "outside", "no_answer")
+
+
+def hidden_text(case: Case) -> str:
+    """What was hidden, with its values in SI."""
+    truth = case.truth
+    if truth.nothing:
+        return "nothing"
+    if truth.kind == "parameters":
+        return ", ".join(f"{name} = {number(of[name])}" for name, of in truth.values.items())
+    # Of an effect outside the catalogue the answer has the values under `unknown`.
+    values = truth.values if truth.names else {truth.hidden[0]: truth.values.get("unknown", {})}
+    realised = truth.realised if truth.names else {}
+    return " + ".join(
+        _with_values(f"{name}/{realised[name]}" if name in realised else name, values.get(name, {}))
+        for name in truth.hidden
+    )
+
+
+def _with_values(name: str, values: Mapping[str, float]) -> str:
+    text = ", ".join(f"{key} {number(value, 3)}" for key, value in values.items())
+    return f"{name} ({text})" if text else name
+
+
+def size_text(case: Case) -> str:
+    """How large: `12.3 σ, 0.8 σ re-fitted`; empty where nothing is hidden."""
+    return "; ".join(
+        f"{number(case.truth.size[name], 3)} σ, {number(case.truth.remains[name], 3)} σ re-fitted"
+        for name in case.truth.hidden
+    )
+
+
+def said_text(case: Case) -> str:
+    """Verdict and names with their confidence, or why there is none."""
+    claim = case.claim
+    if claim is None:
+        return case.why_none
+    names = ", ".join(f"{one.name} ({one.confidence:.2f})" for one in claim.named)
+    return f"{claim.verdict}: {names}" if names else claim.verdict
+
+
+def remainder_text(case: Case) -> str:
+    """What the diagnosis says is left: `small, 3 %`; empty if it does not say."""
+    claim = case.claim
+    if claim is None or claim.share is None:
+        return claim.remainder if claim else ""
+    return f"{claim.remainder}, {100 * claim.share:.0f} % of the mismatch"
+
+
+def page_of(case: Case) -> str:
+    """The report of a case, from the trial's folder."""
+    return f"said/{case.id}/report.html" if case.claim else f"said/{case.id}/output.txt"
+
+
+def case_record(case: Case) -> dict[str, Any]:
+    """What was hidden in a case, and the diagnosis."""
+    return {
+        "case": case.id,
+        "kind": case.truth.kind,
+        "engine": case.truth.engine,
+        "outcome": case.outcome,
+        "counted": case.scored,
+        "hidden": hidden_text(case),
+        "said": said_text(case),
+        "remainder": remainder_text(case),
+    }
+
+
+@dataclass(frozen=True, repr=False)
+class ProvedCase(Result):
+    """One case, with what was hidden in it and what the diagnosis said; its files are in folder."""
+
+    case: Case
+    folder: Path
+
+    def record(self, files: Sequence[Path] = ()) -> dict[str, Any]:  # noqa: ARG002
+        """Both as plain data."""
+        return case_record(self.case)
+
+    def summary(self) -> str:
+        """Both for a terminal, with the folder of its files."""
+        case = self.case
+        rows = [
+            ("case", case.id),
+            ("kind", case.truth.kind),
+            ("engine", case.truth.engine),
+            ("disturbance", case.truth.disturbance),
+            ("hidden", hidden_text(case)),
+            ("size", size_text(case)),
+            ("said", said_text(case)),
+            ("remainder", remainder_text(case)),
+            ("outcome", case.outcome + ("" if case.scored else " (undetectable, not counted)")),
+            ("time", f"{case.wall:.0f} s, {case.cpu:.0f} s of CPU"),
+            ("files", str(self.folder)),
+        ]
+        return "\n".join(columns([row for row in rows if row[1]])) + "\n"
+
+    def save(self, *_: Any, **__: Any) -> list[Path]:
+        """The files are there already."""
+        return []
+
+
+def _records(rates: Mapping[str, Rate]) -> dict[str, Any]:
+    return {name: rate.record for name, rate in rates.items()}
+
+
+def proof_record(opened: OpenedTrial) -> dict[str, Any]:
+    """The content of `proof.json`."""
+    cases, words = opened.cases, TEXTS["tables"]
+    counted = confusion(cases)
+    covered = _records(statistics.coverage(statistics.intervals(cases)))
+    return {
+        "status": "scored",
+        "seed": opened.seed,
+        "version": opened.version,
+        "code_sha256": opened.code,
+        "code_changed": opened.changed,
+        "cases": len(cases),
+        "measures": {
+            one.name: {"definition": one.definition, **one.rate(cases).record} for one in COUNTS
+        },
+        "engines": {engine: _records(rates) for engine, rates in by_engine(cases).items()},
+        "breakdown": {
+            "definition": words["breakdown"],
+            **{what: _records(rates) for what, rates in breakdown(cases).items()},
+        },
+        "confusion": {
+            "definition": words["confusion"],
+            "rows": list(counted.rows),
+            "columns": list(counted.columns),
+            "counts": [
+                [counted.counts.get((row, column), 0) for column in counted.columns]
+                for row in counted.rows
+            ],
+        },
+        "coverage": {
+            "definition": words["coverage"],
+            "all": covered.pop("all", Rate(0, 0).record),
+            "quantities": covered,
+        },
+        "held_out": {"definition": words["held_out"], "kinds": statistics.held_out(cases)},
+        "remainder": {"definition": words["remainder"], "kinds": statistics.remainders(cases)},
+        "time": {
+            "definition": words["time"],
+            **statistics.times(cases),
+            "making_cpu": statistics.quantiles(opened.made_seconds),
+        },
+        "p_values": {"definition": words["p_values"], "tests": statistics.uniformity(cases)},
+        "misses": [{**case_record(case), "page": page_of(case)} for case in opened.misses],
+        "not_made": dict(opened.failed),
+    }
+
+
+def cases_csv(opened: OpenedTrial) -> str:
+    """A row for each case; where there are two effects, sigma is that of the smaller one."""
+    head = (
+        "case", "kind", "engine", "strength", "nominal_off", "hidden", "visible_sigma",
+        "refitted_sigma", "counted", "said", "outcome", "missed", "groups", "heldout_before",
+        "heldout_refitted", "heldout_after", "wall_s", "cpu_s", "disturbance", "remainder",
+        "remainder_share",
+    )  # fmt: skip
+    return doc.csv_text(head, map(_row, opened.cases), digits=6)
+
+
+def _row(case: Case) -> tuple[Any, ...]:
+    truth, claim = case.truth, case.claim
+    groups = ["|".join(sorted(group)) for group in claim.groups] if claim else []
+    fit = (claim.before, claim.refitted, claim.after) if claim else (None,) * 3
+    left = (claim.remainder, claim.share) if claim else (None,) * 2
+    return (
+        case.id, truth.kind, truth.engine, truth.strength, truth.spread > 0, hidden_text(case),
+        min(truth.size.values(), default=None), min(truth.remains.values(), default=None),
+        case.scored, said_text(case), case.outcome, case.missed, "; ".join(groups), *fit,
+        case.wall, case.cpu, truth.disturbance, *left,
+    )  # fmt: skip
+
+
+@dataclass(frozen=True, repr=False)
+class Proof(Result):
+    """The outcome of a trial, in its folder."""
+
+    FILE = "proof.json"
+    MARKDOWN = "README.md"
+    OTHERS = ("cases.csv",)
+    DRAW = "rr_lab.report.confusion_figure.draw"
+    CAPTIONS = {  # noqa: RUF012
+        "confusion": (
+            "Diagnosis against truth",
+            "A matrix of counts: what was hidden in rows, what the diagnosis named in columns",
+            _SAYS["confusion"],
+        )
+    }
+
+    opened: OpenedTrial
+
+    def _record(self) -> dict[str, Any]:
+        return proof_record(self.opened)
+
+    def _tables(self) -> dict[str, str]:
+        return {"cases.csv": cases_csv(self.opened)}
+
+    def document(self, figures: Sequence[doc.Figure] = ()) -> doc.Document:
+        """Counts, breakdowns and misses."""
+        return proof_document(self.opened, figures)
+
+    def _page(self, document: doc.Document) -> doc.Document:
+        """On the page alone the misses lead to their reports: these are not published."""
+        return proof_document(self.opened, document.figures, linked=True)
+
+    def save(
+        self, path: str | Path, *, figures: bool = True, progress: Progress = quiet
+    ) -> list[Path]:
+        """Write the outcome to the trial's folder, and remove what the seed makes again."""
+        written = super().save(path, figures=figures, progress=progress)
+        tidy(Path(path), [case.id for case in self.opened.cases if not case.missed])
+        return written
+
+
+def headline(opened: OpenedTrial) -> str:
+    """The two numbers that matter most."""
+    rates = {one.name: one.rate(opened.cases) for one in COUNTS}
+    words = {"single": "single effects named", "false_claims": "nulls with a false claim"}
+    parts = [f"{_of(rates[name])} {text}" for name, text in words.items() if rates[name].total]
+    return "Blind trial: " + (", ".join(parts) or f"{len(opened.misses)} misses")
+
+
+def proof_document(
+    opened: OpenedTrial, figures: Sequence[doc.Figure] = (), *, linked: bool = False
+) -> doc.Document:
+    """The whole report; linked: the misses lead to their reports, which lie next to the page."""
+    cases = opened.cases
+    rates = {one: one.rate(cases) for one in COUNTS}
+    every = {one: rate for one, rate in rates.items() if rate.total}
+    key = tuple(doc.Fact(one.title, _of(rate)) for one, rate in every.items() if one.name in _KEY)
+    counts = [(one.title, *_cells(rate), one.definition) for one, rate in every.items()]
+    broken_down = [
+        (what, name, *_cells(rate))
+        for what, by_name in breakdown(cases).items()
+        for name, rate in by_name.items()
+    ]
+    covered = statistics.coverage(statistics.intervals(cases))
+    sections = (
+        doc.Section("", (doc.Facts(key, key=True),)),
+        doc.Section("", (doc.Gallery(tuple(figures), wide=True),)),
+        doc.Section("Counts",
+                    (doc.table(("what", "count", SHARE, "what is counted"), counts),), brief=False),
+        _section("By engine", TEXTS["engines"], _by_engine(cases)),
+        _section("By effect, realisation and disturbance", _SAYS["breakdown"],
+                 doc.table(("by", "what", "right", SHARE), broken_down)),
+        _section("Coverage of the 95 % intervals", _SAYS["coverage"],
+                 doc.table(("quantity", "count", SHARE),
+                       [(name, *_cells(rate)) for name, rate in covered.items()])),
+        _section("Held-out error, medians", _SAYS["held_out"], _held_out(cases)),
+        _section("Remainder", _SAYS["remainder"], _remainders(cases)),
+        _section("p-values where nothing is hidden", _SAYS["p_values"], _p_values(cases)),
+        _section("Time", _SAYS["time"], _times(cases)),
+        doc.Section("Misses",
+                    (TEXTS["again"], _misses(opened, linked)) if opened.misses else ("None.",)),
+        doc.Section("Cases that the laboratory could not make",
+                    (doc.Facts(tuple(starmap(doc.Fact, opened.failed.items()))),)),
+    )  # fmt: skip
+    lead = f"{len(cases)} cases. {TEXTS['isolation']}"
+    lead += f" {TEXTS['changed']}" if opened.changed else ""
+    footer = (f"rr-opt {opened.version}", f"seed `{opened.seed}`", f"code SHA-256 `{opened.code}`")
+    return doc.Document("", "blind trial of the diagnosis", headline(opened), lead, sections,
+                    footer=footer)  # fmt: skip
+
+
+def _section(title: str, definition: str, numbers: doc.Table) -> doc.Section:
+    blocks: tuple[doc.Block, ...] = (definition, numbers) if numbers else ()
+    return doc.Section(title, blocks, brief=False)
+
+
+def _of(one: Rate) -> str:
+    """`17 of 20`."""
+    return f"{one.count} of {one.total}" if one.total else "no case"
+
+
+def _cells(one: Rate) -> tuple[str, str]:
+    """`17 of 20`, and `85 % (62 to 97)`."""
+    if one.fraction is None:
+        return _of(one), "–"
+    low, high = one.interval
+    return _of(one), f"{100 * one.fraction:.0f} % ({100 * low:.0f} to {100 * high:.0f})"
+
+
+def _numbers(values: Iterable[float | None]) -> list[str]:
+    return ["–" if value is None else number(value, 3) for value in values]
+
+
+def _by_engine(cases: Sequence[Case]) -> doc.Table:
+    """A row for each count with a column for each engine; counts without cases are left out."""
+    engines = by_engine(cases)
+    return doc.table(
+        ("what", *(word for name in engines for word in (name, "share"))),
+        [
+            (title, *(cell for rates in engines.values() for cell in _cells(rates[name])))
+            for name, title in TITLES.items()
+            if any(rates[name].total for rates in engines.values())
+        ],
+    )
+
+
+def _held_out(cases: Sequence[Case]) -> doc.Table:
+    rows = [
+        (kind, str(row["after"]["count"]),
+         *_numbers([*(row[when]["median"] for when in row), row["after"]["quantile90"]]))
+        for kind, row in statistics.held_out(cases).items()
+    ]  # fmt: skip
+    head = ("kind", "cases", "nominal", "re-fitted", "corrected", "corrected, 90 % below")
+    return doc.table(head, rows)
+
+
+def _remainders(cases: Sequence[Case]) -> doc.Table:
+    rows = [
+        (kind, *(str(row[size]) for size in SIZES), *_numbers([row["share"]]))
+        for kind, row in statistics.remainders(cases).items()
+    ]
+    return doc.table(("kind", *SIZES, "median share"), rows)
+
+
+def _p_values(cases: Sequence[Case]) -> doc.Table:
+    rows = [
+        (test, str(one["count"]), number(one["distance"], 2), number(one["chance"], 2),
+         str(one["below_005"]))
+        for test, one in statistics.uniformity(cases).items()
+    ]  # fmt: skip
+    return doc.table(("test", "nulls", "distance", "p-value", "below 0.05"), rows)
+
+
+def _times(cases: Sequence[Case]) -> doc.Table:
+    rows = [
+        (f"{name}, s", *_numbers(one[at] for at in ("median", "quantile90", "largest")))
+        for name, one in statistics.times(cases).items()
+    ]
+    return doc.table(("", "median", "90 % below", "most"), rows)
+
+
+def _misses(opened: OpenedTrial, linked: bool) -> doc.Table:
+    head = ("case", "outcome", "engine", "hidden", "size", "said")
+    return doc.table(
+        head,
+        [
+            (doc.Link(case.id, page_of(case)) if linked else case.id, case.outcome,
+             case.truth.engine, hidden_text(case), size_text(case), said_text(case))
+            for case in opened.misses
+        ],
+    )  # fmt: skip

@@ -5,8 +5,8 @@ from functools import partial
 from matplotlib.axes import Axes
 from matplotlib.patches import Rectangle
 
-from rr_lab.report.proof import Proof
-from rr_lab.trial.counts import Confusion, confusion
+from rr_lab.report import Proof
+from rr_lab.trial.statistics import Confusion, confusion
 from rr_opt.formatting import words_of
 from rr_opt.results.figures import style
 
@@ -45,8 +45,7 @@ def matrix(ax: Axes, counted: Confusion) -> None:
     for label in ax.get_xticklabels():
         label.set(ha="right", rotation_mode="anchor")
     ax.set_yticks([y + 0.5 for y in range(len(counted.rows))], map(words_of, counted.rows))
-    ax.set_xlabel("diagnosis")
-    ax.set_ylabel("hidden")
+    ax.set(xlabel="diagnosis", ylabel="hidden")
 
 
 def _cell(ax: Axes, x: int, y: int, count: int, total: int, *, right: bool) -> None:

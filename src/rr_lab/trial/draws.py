@@ -68,43 +68,37 @@ class Draw:
         return f"{self.number:03d}"
 
 
-def draw_case(
-    seed: str, number: int, kinds: tuple[str, ...] = KINDS, engines: tuple[Engine, ...] = ENGINES
-) -> Draw:
-    """Case 1, 2, ... of a trial of these kinds and engines."""
-    entries = [kind for kind in _ordered(kinds) for _ in range(BLOCK[_head(kind)])]
-    pair, second = divmod(number - 1, 2)
-    block, place = divmod(pair, len(entries))
-    order = [entries[k] for k in _stream(seed, "order", block).permutation(len(entries))]
-    kind = order[place]
-    # How many cases of the kind came before: items, engines and strengths take turns by it.
-    turn = 2 * (block * entries.count(kind) + order[:place].count(kind)) + second
-    items = _items(kind)
-    cycle, at = divmod(turn, len(items))
-    # Two cycles in a row have one order, so that the second gives each item the other engine.
-    rng = _stream(seed, "items", kind, cycle // 2)
-    item, disturbance = items[int(rng.permutation(len(items))[at])]
-    engine: Engine = engines[(int(rng.integers(len(engines))) + at + cycle) % len(engines)]
-    own, target = case_seed(seed, number), None
-    if item.startswith("single"):
-        low, high = list(STRENGTHS.values())[turn % len(STRENGTHS)]
-        target = float(np.exp(stream(own, "target").uniform(np.log(low), np.log(high))))
-    # The laboratory changes values of the nominal robot: the others stay true.
-    spread = 0.0 if item == "parameters" else float(turn // 2 % 2)
-    return Draw(number, item, target, spread, own, engine, disturbance)
-
-
 @dataclass(frozen=True)
 class Basis:
     """What the cases of a trial are drawn from."""
 
     seed: str
-    kinds: tuple[str, ...]
-    engines: tuple[Engine, ...]
+    kinds: tuple[str, ...] = KINDS
+    engines: tuple[Engine, ...] = ENGINES
 
     def draw(self, number: int) -> Draw:
         """Case 1, 2, ..."""
-        return draw_case(self.seed, number, self.kinds, self.engines)
+        entries = [kind for kind in _ordered(self.kinds) for _ in range(BLOCK[_head(kind)])]
+        pair, second = divmod(number - 1, 2)
+        block, place = divmod(pair, len(entries))
+        order = [entries[k] for k in _stream(self.seed, "order", block).permutation(len(entries))]
+        kind = order[place]
+        # How many cases of the kind came before: items, engines and strengths take turns by it.
+        turn = 2 * (block * entries.count(kind) + order[:place].count(kind)) + second
+        items = _items(kind)
+        cycle, at = divmod(turn, len(items))
+        # Two cycles in a row have one order, so that the second gives each item the other engine.
+        rng = _stream(self.seed, "items", kind, cycle // 2)
+        item, disturbance = items[int(rng.permutation(len(items))[at])]
+        first = int(rng.integers(len(self.engines)))
+        engine = self.engines[(first + at + cycle) % len(self.engines)]
+        own, target = case_seed(self.seed, number), None
+        if item.startswith("single"):
+            low, high = list(STRENGTHS.values())[turn % len(STRENGTHS)]
+            target = float(np.exp(stream(own, "target").uniform(np.log(low), np.log(high))))
+        # The laboratory changes values of the nominal robot: the others stay true.
+        spread = 0.0 if item == "parameters" else float(turn // 2 % 2)
+        return Draw(number, item, target, spread, own, engine, disturbance)
 
 
 def case_seed(seed: str, number: int) -> int:

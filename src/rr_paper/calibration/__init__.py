@@ -1,1 +1,131 @@
-"""The paper's prototype estimated from its nine measured averages, and models compared on them."""
+"""The calibration: what the nine averages say of the paper's robot, and of the models."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from rr_paper.calibration.comparison import Assessment, assess, coverage
+from rr_paper.calibration.fit import Data, Effort, Estimator, estimator, measured
+from rr_paper.calibration.intervals import Posterior, Profile, profiles, sample
+from rr_paper.calibration.models import (
+    DRY,
+    MODELS,
+    READINGS,
+    UNKNOWNS,
+    VISCOUS,
+    Model,
+    Reading,
+    shares,
+)
+from rr_paper.calibration.report import Calibration
+from rr_paper.calibration.result import ASSUMED, Alternative, Shipped, shipped_values
+from rr_paper.publication import COLUMNS, Column
+
+_CHEAP = Effort(log2_size=15, slices=12, values=25, starts=2, steps=20, sets=200)
+_MEDIUM = Effort(log2_size=13, slices=8, values=0, starts=0, steps=15, sets=0)
+_EXPENSIVE = Effort(log2_size=12, slices=5, values=11, starts=2, steps=9, sets=40)
+
+CHAINS, SWEEPS = 100, 2400
+"""Of the posterior sample of the viscous model."""
+COVERAGE_SETS = 100
+"""Simulated data sets on which the coverage of the intervals is counted."""
+
+REDUCED = {VISCOUS: {"log2_size": 14}, DRY: {"log2_size": 11, "slices": 3}}
+"""What is reduced for the other readings of J20/J10, by model."""
+
+
+def effort(model: Model) -> Effort:
+    """For a model."""
+    if model.cost > 10:
+        return _EXPENSIVE
+    return _MEDIUM if model.cost > 2 else _CHEAP
+
+
+def calibrate(progress: Callable[[str], None]) -> Calibration:
+    """All of it, in two or three minutes; the seeds are fixed, so results are reproducible.
+
+    progress(`WHAT 3 of 8`) is called often; an exception that it raises ends the work.
+    """
+    count = _Count(progress, len(MODELS) * len(COLUMNS) + len(COLUMNS) + 2)
+    viscous, assessments = _assess_all(count)
+    posterior: dict[Column, Posterior] = {}
+    for column in COLUMNS:
+        count.next(f"posterior, {column} column")
+        posterior[column] = sample(
+            viscous, measured(column), chains=CHAINS, sweeps=SWEEPS, tick=count.tick
+        )
+    count.next("coverage")
+    covered = coverage(
+        viscous, posterior["mean"], measured("mean"), sets=COVERAGE_SETS, tick=count.tick
+    )
+    count.next("other readings of J20/J10")
+    normal: dict[Column, tuple[Profile, ...]] = {}
+    shipped: dict[Column, Shipped] = {}
+    for column in COLUMNS:
+        data, least = measured(column), assessments[VISCOUS, column].student.deviance
+        normal[column] = profiles(viscous, data, range(viscous.points.shape[1]), "normal")
+        shipped[column] = _shipped(viscous, data, least)
+    return Calibration(assessments, posterior, normal, shipped, covered, _alternatives(count.tick))
+
+
+class _Count:
+    """Progress of work in a known number of parts."""
+
+    def __init__(self, progress: Callable[[str], None], total: int):
+        self._progress, self._total, self._done, self._words = progress, total, 0, ""
+
+    def next(self, words: str) -> None:
+        """The next part begins."""
+        self._done, self._words = self._done + 1, words
+        self.tick()
+
+    def tick(self) -> None:
+        """Still at it."""
+        self._progress(f"{self._words} {self._done} of {self._total}")
+
+
+def _estimator(model: Model, reading: Reading, work: Effort, tick: Callable[[], None]) -> Estimator:
+    return estimator(lambda points: model(points, reading), len(model.unknowns), work, tick)
+
+
+def _assess_all(count: _Count) -> tuple[Estimator, dict[tuple[str, Column], Assessment]]:
+    """The viscous model's estimator, and every model's assessments."""
+    estimators: dict[str, Estimator] = {}
+    assessments: dict[tuple[str, Column], Assessment] = {}
+    for name, model in MODELS.items():
+        for column in COLUMNS:
+            count.next(f"{name}, {column} column")
+            if name not in estimators:
+                estimators[name] = _estimator(model, READINGS[0], effort(model), count.tick)
+            inner = None
+            if name != VISCOUS:
+                inner = estimators[VISCOUS], assessments[VISCOUS, column]
+            assessments[name, column] = assess(estimators[name], model, column, inner)
+    return estimators[VISCOUS], assessments
+
+
+def _alternatives(tick: Callable[[], None]) -> tuple[Alternative, ...]:
+    """The viscous model, and that with dry friction, for every other reading of J20/J10."""
+    found = []
+    for reading in READINGS[1:]:
+        for name, reduced in REDUCED.items():
+            model = MODELS[name]
+            here = _estimator(model, reading, replace(effort(model), **reduced), tick)
+            for column in COLUMNS:
+                data = measured(column)
+                best = here.fit(data)
+                shipped = _shipped(here, data, best.deviance) if name == VISCOUS else None
+                found.append(Alternative(reading, model, column, best, shipped))
+    return tuple(found)
+
+
+def _shipped(viscous: Estimator, data: Data, least: float) -> Shipped:
+    """least: the viscous model's least deviance."""
+    values = shipped_values()
+    amplitude = UNKNOWNS["amplitude"].value(np.linspace(0, 1, 241))
+    points = {name: np.full(len(amplitude), value) for name, value in values.items()}
+    points["amplitude"] = amplitude
+    deviance = data.deviance(viscous.predict(shares((*ASSUMED, "amplitude"), points)))
+    best = int(deviance.argmin())
+    return Shipped(values, float(deviance[best] - least), float(amplitude[best]))

@@ -157,8 +157,7 @@ def coverage_figure(covered: Coverage) -> Figure:
         place = np.arange(len(names)) + 0.18 * (i - 1)
         ax.plot(place, 100 * share, mark, color=colour, ms=8, ls="", label=label, clip_on=False)
     ax.set_xticks(range(len(names)), [UNKNOWNS[name].symbol for name in names])
-    ax.set_ylim(50, 101)
-    ax.set_ylabel("intervals that contain the truth, %")
+    ax.set(ylim=(50, 101), ylabel="intervals that contain the truth, %")
     ax.grid(axis="x", visible=False)
     ax.legend(loc="lower left")
     return drawn

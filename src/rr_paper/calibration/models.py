@@ -191,23 +191,10 @@ def _gaits(x: Mapping[str, Array]) -> tuple[Array, Array]:
     return amplitude.ravel(), np.tile(PERIOD, len(amplitude))
 
 
-_Servo = Callable[[Array, Array, Mapping[str, Array]], Angle]
 _Speeds = Callable[[Mapping[str, Array], Reading], Array]
 
 
-def _exact(amplitude: Array, period: Array, _: Mapping[str, Array]) -> Angle:
-    return sine(amplitude, period, _SMOOTH)
-
-
-def _limited(amplitude: Array, period: Array, _: Mapping[str, Array]) -> Angle:
-    return limited(amplitude, period, _CORNERS)
-
-
-def _lagging(amplitude: Array, period: Array, x: Mapping[str, Array]) -> Angle:
-    return lagging(amplitude, period, np.repeat(x["lag"], len(ROWS)), _SMOOTH)
-
-
-def _viscous(servo: _Servo) -> _Speeds:
+def _viscous(servo: Callable[[Array, Array, Mapping[str, Array]], Angle]) -> _Speeds:
     def speeds(x: Mapping[str, Array], reading: Reading) -> Array:
         amplitude, period = _gaits(x)
         angle = servo(amplitude, period, x)
@@ -232,13 +219,14 @@ def _printed(x: Mapping[str, Array], reading: Reading) -> Array:
 _BASIC = ("a1", "a2", "b", "k", "amplitude")
 
 _ALL = (
-    Model("viscous", "viscous friction, as in the paper", _BASIC, _viscous(_exact),
-          profiled=_BASIC),
+    Model("viscous", "viscous friction, as in the paper", _BASIC,
+          _viscous(lambda alpha, T, _: sine(alpha, T, _SMOOTH)), profiled=_BASIC),
     Model("viscous+dry", "viscous and dry friction", (*_BASIC, "force"), _with_dry,
           cost=30, block=512, nested=True, profiled=("k", "force")),
-    Model("rate limit", "viscous, the servo limited to 30 rpm", _BASIC, _viscous(_limited),
-          cost=5, block=16),
-    Model("lag", "viscous, the servo with a lag", (*_BASIC, "lag"), _viscous(_lagging),
+    Model("rate limit", "viscous, the servo limited to 30 rpm", _BASIC,
+          _viscous(lambda alpha, T, _: limited(alpha, T, _CORNERS)), cost=5, block=16),
+    Model("lag", "viscous, the servo with a lag", (*_BASIC, "lag"),
+          _viscous(lambda alpha, T, x: lagging(alpha, T, np.repeat(x["lag"], len(ROWS)), _SMOOTH)),
           nested=True, profiled=("lag",)),
     Model("printed", "viscous, equation (3) as printed", _BASIC, _printed),
 )  # fmt: skip

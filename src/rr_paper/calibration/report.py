@@ -23,12 +23,12 @@ _DRAWS = 1000
 """Draws of each posterior that are written."""
 
 
-def record(found: Findings, verdict: str, conclusions: tuple[str, ...]) -> dict[str, Any]:
+def record(found: Findings) -> dict[str, Any]:
     """The content of calibration.json."""
     covered = found.coverage
     record = {
-        "verdict": verdict,
-        "conclusions": conclusions,
+        "verdict": verdict(found),
+        "conclusions": conclusions(found)["conclusions"],
         "t_of_the_intervals": T_POINT,
         "reading": READINGS[0].words,
         "unknowns": [
@@ -222,26 +222,17 @@ _TONES: dict[str, doc.Tone] = {
 }
 
 
-@dataclass(frozen=True)
-class Conclusions:
-    """The comparison in a headline, what follows from it, what the rows determine instead of single
-    values, and whether the shipped robot's values are inside."""
-
-    verdict: str
-    follows: tuple[str, ...]
-    valleys: tuple[str, ...]
-    shipped: tuple[str, ...]
-
-
-def conclusions(found: Findings) -> Conclusions:
-    """What the numbers say."""
+def verdict(found: Findings) -> str:
+    """The comparison of the models in a headline."""
     left_out = {key: one.left_out_deviance for key, one in found.assessments.items()}
-    helps = all(left_out[DRY, column] < left_out[VISCOUS, column] for column in COLUMNS)
-    verdict = (
-        "Viscous friction alone fits badly, dry friction helps; nine averages prove neither"
-        if helps
-        else "The nine averages cannot distinguish the models"
-    )
+    if all(left_out[DRY, column] < left_out[VISCOUS, column] for column in COLUMNS):
+        return "Viscous friction alone fits badly, dry friction helps; nine averages prove neither"
+    return "The nine averages cannot distinguish the models"
+
+
+def conclusions(found: Findings) -> dict[str, tuple[str, ...]]:
+    """What follows (`conclusions`), what the rows determine instead of single values (`valleys`),
+    and whether the shipped robot's values are inside (`shipped`)."""
     texts = prose(
         "rr_paper",
         "calibration.md",
@@ -250,8 +241,7 @@ def conclusions(found: Findings) -> Conclusions:
         readings=READINGS,
         joint_level=JOINT_LEVEL,
     )
-    parts = (texts[key].paragraphs for key in ("conclusions", "valleys", "shipped"))
-    return Conclusions(verdict, *parts)
+    return {key: one.paragraphs for key, one in texts.items()}
 
 
 def document(found: Findings, figures: Sequence[doc.Figure]) -> doc.Document:
@@ -265,18 +255,20 @@ def document(found: Findings, figures: Sequence[doc.Figure]) -> doc.Document:
     return doc.Document(
         "",
         "calibration of the paper's prototype",
-        said.verdict,
+        verdict(found),
         f"Estimated from the nine measured averages of {CITATION}. Each interval there comes from "
         f"three runs: half its width is {T_POINT:.2f} standard errors, and a row follows Student's "
         "t with 2 degrees of freedom, not the normal distribution.",
         (
             gallery("unknowns"),
             doc.Section(
-                "95 % intervals, viscous friction", (_interval_table(found), *said.valleys)
+                "95 % intervals, viscous friction", (_interval_table(found), *said["valleys"])
             ),
             gallery("predictions"),
             doc.Section("Models", (_model_table(found),)),
-            doc.Section("What follows, and what does not", (*said.follows, *said.shipped)),
+            doc.Section(
+                "What follows, and what does not", (*said["conclusions"], *said["shipped"])
+            ),
             gallery("coverage"),
             doc.Section("The boxes, and the reasons for them", (_box_table(),), brief=False),
             doc.Section("Other readings of J20/J10", (_reading_table(found),), brief=False),
@@ -373,8 +365,7 @@ class Calibration(Findings, Result):
     CAPTIONS = captions("calibration")
 
     def _record(self) -> dict[str, Any]:
-        said = conclusions(self)
-        return record(self, said.verdict, said.follows)
+        return record(self)
 
     def _tables(self) -> dict[str, str]:
         return tables(self)

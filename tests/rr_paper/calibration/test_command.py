@@ -7,7 +7,8 @@ import json
 
 import pytest
 
-from rr_paper.calibration import calibration, cycles, models
+from rr_paper import calibration
+from rr_paper.calibration import cycles, models
 from rr_paper.calibration.fit import Effort
 
 FILES = {

@@ -1,1 +1,0 @@
-"""How long marker files take to read, fit and clean."""
