@@ -10,13 +10,13 @@ from typing import Any
 
 from benchmarks.optimise.problems import PROBLEMS
 from rr_opt import sqp
-from rr_opt.design import climb, maximize_speed, search
+from rr_opt.design import families, maximize_speed, seeds
 from rr_opt.design.landscape import Landscape
 
 _PARTS = {
-    "scan and climbs": [(search, "tops")],
-    "climbs' quadratics": [(climb, "_best_step")],
-    "ends of climbs": [(search, "solve_sine"), (maximize_speed, "refine")],
+    "scan and climbs": [(families, "tops")],
+    "climbs' quadratics": [(seeds, "_best_step")],
+    "ends of climbs": [(families, "solve_sine"), (maximize_speed, "refine")],
     "their quadratic programs": [(sqp, "_step")],
     "cycles": [(Landscape, "cycles")],
 }

@@ -11,8 +11,7 @@ from rr_opt.design import maximize_speed as design
 from rr_opt.design.decisions import decisions
 from rr_opt.design.infeasible import posture_clashes
 from rr_opt.design.maximize_speed import Optimum
-from rr_opt.design.turn import arc_of, fastest_turn
-from rr_opt.design.turn import Target, checked
+from rr_opt.design.turn import Target, arc_of, checked, fastest_turn
 from rr_opt.messages import listed
 from rr_opt.model.problem import Problem
 from rr_opt.motion.dynamics import require_friction

@@ -20,8 +20,7 @@ from rr_opt.design.study.plan import plan
 from rr_opt.design.study.row import row_from, row_record
 from rr_opt.documents.archive import folder_for_results
 from rr_opt.files.issue import Issue
-from rr_opt.files.route_file import read_route
-from rr_opt.files.route_file import RouteStudy, read_routes
+from rr_opt.files.route_file import RouteStudy, read_route, read_routes
 from rr_opt.files.study_file import Study, read_study
 from rr_opt.model.route import Route
 from rr_opt.outcome import RollerRacerError, Status
