@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from rr_opt.machines.racer.racer import RollerRacer
-from rr_opt.machines.racer.unknown_terms import unknown_terms
+from rr_opt.machines.racer.unknown_input import unknown_terms
 from rr_opt.sysid.remainder import dependences
 from tests.sysid.made_up import base_of, with_effect
 

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from rr_opt.machines.racer.racer import RollerRacer
-from rr_opt.sysid.diagnosis import Remainder
-from rr_opt.sysid.summary import summary_of
+from rr_opt.sysid.diagnosis import Remainder, summary_of
 from tests.report.diagnosis.conftest import _experiment, _found
 
 
@@ -28,7 +27,7 @@ def found():
     ],
 )
 def test_it_opens_with_the_verdict(found, verdict, said):
-    text = summary_of(replace(found, verdict=verdict))
+    text = summary_of(replace(found, verdict=verdict, indistinguishable=()))
     assert text.startswith(f"{said} On recordings that were not fitted, the misfit fell from")
     assert "from 8.10 to 1.02 sigma, where 1 is the noise." in text
 
@@ -68,6 +67,14 @@ def test_what_remains_is_told_with_what_it_depends_on(found):
     )
     assert "What remains" not in summary_of(found)
     assert "What remains" not in summary_of(replace(left, verdict="consistent"))
+
+
+def test_a_tie_is_called_one(found):
+    tied = replace(found, indistinguishable=(("coulomb_friction", "lateral_slip"),))
+    said = "These recordings cannot distinguish that from lateral slip."
+    assert said in summary_of(tied)
+    assert said not in summary_of(replace(tied, indistinguishable=()))
+    assert said not in summary_of(replace(tied, verdict="unexplained"))
 
 
 def test_the_next_recording_is_asked_for_where_something_is_open(found):

@@ -10,16 +10,14 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 from rr_opt.sysid.candidates import Candidate, first, refitted
-from rr_opt.sysid.diagnosis import Diagnosis
+from rr_opt.sysid.diagnosis import Diagnosis, summary_of
 from rr_opt.sysid.evaluation import evaluation, mismatch
 from rr_opt.sysid.intervals import estimates, released
-from rr_opt.sysid.location import residues, stages, where
 from rr_opt.sysid.machine import MachineModel
 from rr_opt.sysid.model import ChannelNoise
 from rr_opt.sysid.noise import noise_in
-from rr_opt.sysid.remainder import dependences
+from rr_opt.sysid.remainder import dependences, residues, stages, where
 from rr_opt.sysid.selection import Selection, turned
-from rr_opt.sysid.summary import summary_of
 from rr_opt.sysid.verdict import (
     Identification,
     alike,

@@ -10,7 +10,7 @@ from rr_opt.machines.racer import floor_map, grip
 from rr_opt.machines.racer.actuation import actuation_sets
 from rr_opt.machines.racer.model import RacerModel
 from rr_opt.machines.racer.next_experiment import next_experiment
-from rr_opt.machines.racer.unknown_terms import unknown_terms
+from rr_opt.machines.racer.unknown_input import unknown_terms
 from rr_opt.sysid.diagnosis import Misfit, NextExperiment
 from rr_opt.sysid.estimation import Fit
 from rr_opt.sysid.machine import Term
