@@ -44,16 +44,16 @@ if TYPE_CHECKING:
     from rr_opt.api.optimise import maximize_speed as maximize_speed
     from rr_opt.api.optimise import shapes as shapes
     from rr_opt.api.optimise import sweep as sweep
-    from rr_opt.api.optimise import turn as turn
-    from rr_opt.api.optimise import turn_chart as turn_chart
     from rr_opt.api.recordings import diagnose as diagnose
     from rr_opt.api.recordings import inspect as inspect
-    from rr_opt.api.study import load_route as load_route
-    from rr_opt.api.study import load_routes as load_routes
+    from rr_opt.api.route import load_route as load_route
+    from rr_opt.api.route import load_routes as load_routes
+    from rr_opt.api.route import route as route
+    from rr_opt.api.route import routes as routes
     from rr_opt.api.study import load_study as load_study
-    from rr_opt.api.study import route as route
-    from rr_opt.api.study import routes as routes
     from rr_opt.api.study import study as study
+    from rr_opt.api.turn import turn as turn
+    from rr_opt.api.turn import turn_chart as turn_chart
     from rr_opt.model.experiment import Experiment as Experiment
     from rr_opt.model.experiment import Noise as Noise
     from rr_opt.model.experiment import Recording as Recording
@@ -98,9 +98,11 @@ _HOMES = {
     "api.files": "init lint schema",
     "api.load": "InputWarning RobotWithGait load load_experiment "
     "load_gait load_robot prototype shipped",
-    "api.optimise": "maximize_speed shapes sweep turn turn_chart",
+    "api.optimise": "maximize_speed shapes sweep",
     "api.recordings": "diagnose inspect",
-    "api.study": "load_route load_routes load_study route routes study",
+    "api.route": "load_route load_routes route routes",
+    "api.study": "load_study study",
+    "api.turn": "turn turn_chart",
     "model.experiment": "Experiment Noise Recording Run",
     "model.gait": "FourierGait FreeGait Gait SineGait",
     "model.problem": "GaitBounds Limits Problem RatioChoice",

@@ -1,4 +1,4 @@
-"""Gaits of a problem: the fastest, of each waveform and turn, checked; sweeps; turn charts."""
+"""Gaits of a problem: the fastest, and the fastest of each waveform, checked; sweeps."""
 
 from __future__ import annotations
 
@@ -6,12 +6,11 @@ import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rr_opt.api.load import PathLike, identity, problem_of, read_arguments
+from rr_opt.api.load import PathLike, identity, problem_of
 from rr_opt.design import maximize_speed as design
 from rr_opt.design.decisions import decisions
 from rr_opt.design.infeasible import posture_clashes
 from rr_opt.design.maximize_speed import Optimum
-from rr_opt.design.turn import Target, arc_of, checked, fastest_turn
 from rr_opt.messages import listed
 from rr_opt.model.problem import Problem
 from rr_opt.motion.dynamics import require_friction
@@ -20,12 +19,10 @@ from rr_opt.results.fastest import FastestGait
 from rr_opt.results.result import Progress, quiet
 from rr_opt.results.shapes import FastestShapes, family_name
 from rr_opt.results.sweep import Sweep
-from rr_opt.results.turn import FastestTurn, TurnChart
 from rr_opt.verify import sweep as verify
 from rr_opt.verify.grid import free_decisions
-from rr_opt.verify.replay import Replay, check_circle, replay
+from rr_opt.verify.replay import Replay, replay
 from rr_opt.verify.sweep import SweepCheck, SweepResult, check_optimum
-from rr_opt.verify.turn_chart import radius_claim, sign_claim, tightest, turn_map
 
 if TYPE_CHECKING:
     from rr_opt.machines.racer.driven import DrivenOptimum
@@ -172,66 +169,3 @@ def sweep(
     counts = max(2, math.ceil(points ** (1 / max(len(free_decisions(problem)), 1))))
     tried = verify.sweep(problem, counts, lambda done, of: progress(f"gait {done} of {of}"))
     return Sweep(*identity(problem), problem, tried)
-
-
-def turn(
-    problem: Problem | PathLike,
-    *,
-    radius: float | str | None = None,
-    heading: float | str | None = None,
-    within: float | str | None = None,
-    length: float | str | None = None,
-    whole: bool = False,
-    progress: Progress = quiet,
-) -> FastestTurn:
-    """The fastest gait round a circle or through a change of heading, checked.
-
-    radius   of the circle, m, positive to the left
-    heading  change of heading, rad, positive to the left; with radius, within or length
-    within   longest time for the change of heading, s
-    length   longest path for it, m
-    whole    make it in a whole number of periods
-
-    Each is a number in SI or a text with its unit. Where the problem fixes the offset, it is freed.
-    Raises InputError for what is no turn.
-    """
-    asked = {"radius": radius, "heading": heading, "within": within, "length": length}
-    target = checked(Target(**read_arguments(asked), whole=whole))
-    problem = problem_of(problem)
-    require_known(problem)
-    require_exact(problem)
-    name, sha256 = identity(problem)
-    turned = fastest_turn(problem, target, progress)
-    optimum, replayed, swept = checked_optimum(turned.optimum, progress)
-    best, robot, arc = optimum.best, optimum.robot, arc_of(optimum, target.heading)
-    found = FastestTurn(name, sha256, optimum, target=target, opened=turned.opened)
-    if best is None or robot is None or arc is None:
-        return found
-    progress("check of the circle")
-    wanted = target.turn.curvature
-    circle = check_circle(robot, best.gait, wanted.low if wanted.fixed else arc.curvature)
-    driven = driven_optimum(optimum, progress)
-    return replace(found, replay=replayed, sweep=swept, arc=arc, circle=circle, driven=driven)
-
-
-_DRAWN = (6, 4, 121)
-"""Amplitudes, periods and offsets of the chart."""
-_TESTED = (24, 10, 101)
-"""The same of the map on which the paper's claim is tested."""
-
-
-def turn_chart(problem: Problem | PathLike, *, progress: Progress = quiet) -> TurnChart:
-    """Radius over offset, amplitude and period, and the tightest circle within the limits.
-
-    The inertia ratio is that of the robot as it is. Raises InputError for a robot without friction.
-    """
-    problem = problem_of(problem)
-    require_friction(problem.robot)
-    progress("chart")
-    seen = turn_map(problem, _DRAWN)
-    progress("the paper's claim")
-    fine = turn_map(problem, _TESTED)
-    progress("tightest circle")
-    tight = tightest(problem)
-    claims = sign_claim(fine), radius_claim(fine)
-    return TurnChart(*identity(problem), problem, seen, tight, *claims)
