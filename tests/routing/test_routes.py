@@ -9,7 +9,7 @@ import pytest
 from typer.testing import CliRunner
 
 import rr_opt as rr
-from rr_opt.api import study
+from rr_opt.api import route
 from rr_opt.batch import ONE_THREAD
 from rr_opt.cli.main import app
 
@@ -54,7 +54,7 @@ def test_rows_are_those_of_the_routes(file, tmp_path, monkeypatch):
     kept = next(line for line in lines[1:] if json.loads(line)["case"] == 0)
     journal.write_text(lines[0] + kept)
     sent = []
-    monkeypatch.setattr(study, "run", lambda _pool, _, cases: iter(sent.append(list(cases)) or []))
+    monkeypatch.setattr(route, "run", lambda _pool, _, cases: iter(sent.append(list(cases)) or []))
     with pytest.raises(KeyError):
         rr.routes(file, folder=tmp_path / "out", workers=1)
     assert sent == [[1]]
