@@ -3,6 +3,7 @@
 import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from functools import lru_cache
 from typing import TypeVar
 
 Part = TypeVar("Part")
@@ -11,12 +12,16 @@ Done = TypeVar("Done")
 
 def in_threads(work: Callable[[Part], Done], parts: Sequence[Part]) -> list[Done]:
     """work(part) of each, in their order. It has to let other threads run, as what ctypes calls
-    does."""
-    workers = min(_processors(), len(parts))
-    if workers < 2:
+    does, and must not call this itself."""
+    if min(_processors(), len(parts)) < 2:
         return [work(part) for part in parts]
-    with ThreadPoolExecutor(workers) as pool:
-        return list(pool.map(work, parts))
+    return list(_pool(os.getpid()).map(work, parts))
+
+
+@lru_cache(maxsize=1)
+def _pool(process: int) -> ThreadPoolExecutor:
+    """Threads of this process: those of its parent do not follow it."""
+    return ThreadPoolExecutor(_processors(), f"rr-opt-{process}")
 
 
 def _processors() -> int:

@@ -118,18 +118,24 @@ def fitted(
         trials.sort(key=lambda trial: trial[0].deviance)
         before = trials[0][0].deviance
         trials = [
-            (estimation.solve(some, fit.values, fit.states, steps, known=fit.linear), states)
+            (
+                estimation.solve(
+                    some, fit.values, fit.states, steps, SETTINGS.search_tolerance, known=fit.linear
+                ),
+                states,
+            )
             for fit, states in trials[: max(len(trials) // 2, 1)]
         ]
         gain = (before - min(fit.deviance for fit, _ in trials)) / steps
     best, states = min(trials, key=lambda trial: trial[0].deviance)
     begun_with = {**states, **best.states}
     lacking = best.deviance - rival.deviance_of(some.by_run) if rival else -math.inf
-    slow = not best.converged and lacking > SETTINGS.patience * max(gain, SETTINGS.tolerance)
+    slow = not best.converged and lacking > SETTINGS.patience * max(gain, SETTINGS.search_tolerance)
     if slow or not math.isfinite(best.deviance):
         return Candidate(ordered, estimation.solve(problem, best.values, begun_with, 0), True)
     enough = rival.deviance if rival else math.inf
-    fit = estimation.fitted(problem, best.values, begun_with, enough=enough)
+    tolerance = SETTINGS.search_tolerance
+    fit = estimation.fitted(problem, best.values, begun_with, enough=enough, tolerance=tolerance)
     return Candidate(ordered, fit, not fit.converged and fit.deviance > enough)
 
 
@@ -145,6 +151,11 @@ def refitted(candidate: Candidate, runs: Iterable[int]) -> Candidate:
     settled = estimation.solve(held, fit.values, {one: states[one] for one in new})
     begun = {**fit.states, **settled.states}
     return Candidate(candidate.choices, estimation.fitted(problem, fit.values, begun))
+
+
+def settled(fit: Fit) -> Fit:
+    """A fit of the search, taken to its very end."""
+    return estimation.solve(fit.problem, fit.values, fit.states, known=fit.linear)
 
 
 def polished(candidate: Candidate) -> Candidate:

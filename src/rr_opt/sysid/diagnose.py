@@ -9,7 +9,7 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
-from rr_opt.sysid.candidates import Candidate, first, refitted
+from rr_opt.sysid.candidates import Candidate, first, refitted, settled
 from rr_opt.sysid.diagnosis import Diagnosis, summary_of
 from rr_opt.sysid.evaluation import evaluation, mismatch
 from rr_opt.sysid.intervals import estimates, released
@@ -145,7 +145,7 @@ def identified(model: MachineModel, watch: Stopwatch) -> Identification:
         model = selection.model
         best = turned(model, selection.best)
     with watch("looking for wrong values"):
-        fit = best.fit
+        fit = settled(best.fit)
         if selection.complete(best):
             fit = released(fit)
         best = Candidate(best.choices, fit)

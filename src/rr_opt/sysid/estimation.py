@@ -279,68 +279,88 @@ class Linear:
         model = problem.model
         scale, known = model.state_scale(problem.effects), model.state_prior(problem.effects)
         noise = problem.process_noise(run, q)
-        size, tight, prior = scale.size, 1 / noise, 1 / known**2
-        # Of the quantities, and of whatever else was linearised in.
-        nq = self.parts[parts[0]][1].shape[1] - size
-        own = size * len(parts)
-        H, g, value = np.zeros((own + nq, own + nq)), np.zeros(own + nq), 0.0
-        shared = np.arange(own, own + nq)
-        for k, one in enumerate(parts):
-            gram, end = self.parts[one]
-            here = np.append(np.arange(k * size, (k + 1) * size), shared)
-            H[np.ix_(here, here)] += gram[:-1, :-1]
-            g[here] += gram[:-1, -1]
-            value += gram[-1, -1]
-            at = here[:size]
-            H[at, at] += prior
-            g[at] += prior * self.states[one]
-            value += float(prior @ self.states[one] ** 2)
-            if k + 1 < len(parts):
-                gap = tight * (self.made[one].end - self.states[parts[k + 1]])
-                by = np.hstack([tight[:, None] * end, -np.diag(tight)])
-                both = np.concatenate([here, np.arange((k + 1) * size, (k + 2) * size)])
-                H[np.ix_(both, both)] += by.T @ by
-                g[both] += by.T @ gap
-                value += float(gap @ gap)
+        size, count, prior = scale.size, len(parts), 1 / known**2
+        grams, by, states, gaps = self._stacked[run]
+        # Of the states, of the quantities or whatever else was linearised in, and across.
+        nq, each, own = by.shape[2] - size, np.arange(count), size * count
+        S, g = np.zeros((count, size, count, size)), grams[:, :size, -1] + prior * states
+        S[each, :, each, :] = grams[:, :size, :size] + np.diag(prior)
+        across, H = grams[:, :size, size:-1].copy(), grams[:, size:-1, size:-1].sum(axis=0)
+        g_shared = grams[:, size:-1, -1].sum(axis=0)
+        value = float(grams[:, -1, -1].sum() + np.sum(prior * states**2))
+        # Where one segment ends and the next begins.
+        tight = noise**-2
+        pull = by.transpose(0, 2, 1) * tight
+        both, towards = pull @ by, (pull @ gaps[..., None])[..., 0]
+        before, after = each[:-1], each[1:]
+        S[before, :, before, :] += both[:, :size, :size]
+        S[after, :, after, :] += np.diag(tight)
+        S[before, :, after, :] -= pull[:, :size]
+        S[after, :, before, :] -= pull[:, :size].transpose(0, 2, 1)
+        across[:-1] += both[:, :size, size:]
+        across[1:] -= pull[:, size:].transpose(0, 2, 1)
+        H += both[:, size:, size:].sum(axis=0)
+        g[:-1] += towards[:, :size]
+        g[1:] -= tight * gaps
+        g_shared += towards[:, size:].sum(axis=0)
+        value += float(np.sum(tight * gaps**2))
         n = problem.degrees[run]
-        if not (np.isfinite(H).all() and np.isfinite(value)):
+        if not (np.isfinite(S).all() and np.isfinite(H).all() and np.isfinite(value)):
             return Evidence.diverged(n, own, nq)
         # In the states' own scales, as their units differ.
-        units = np.tile(scale, len(parts))
-        S = H[:own, :own] * units * units[:, None]
+        units = np.tile(scale, count)
+        S = S.reshape(own, own) * units * units[:, None]
         S[np.diag_indices(own)] += 1e-12 * np.trace(S) / own
-        factor = cho_factor(S, lower=True)
-        across = units[:, None] * H[:own, own:]
-        follow = -cho_solve(factor, across)
-        shift = -cho_solve(factor, units * g[:own])
-        misfit = value + float(units * g[:own] @ shift)
+        factor = cho_factor(S, lower=True, check_finite=False)
+        across = units[:, None] * across.reshape(own, nq)
+        g_own = units * g.ravel()
+        follow = -cho_solve(factor, across, check_finite=False)
+        shift = -cho_solve(factor, g_own, check_finite=False)
+        misfit = value + float(g_own @ shift)
         log = 2 * float(np.sum(np.log(np.diag(factor[0]))))
-        log += 2 * (len(parts) - 1) * float(np.sum(np.log(noise / scale)))
+        log += 2 * (count - 1) * float(np.sum(np.log(noise / scale)))
         proper = np.isfinite(known)
-        log += len(parts) * 2 * float(np.sum(np.log(known[proper] / scale[proper])))
+        log += count * 2 * float(np.sum(np.log(known[proper] / scale[proper])))
         excess, weight = misfit - n, 1.0
         if problem.robust:
             weight = 1 / (1 + max(excess / problem.correlation_times(run), 0.0))
         return Evidence(
             *(n, excess, problem.loss(run, misfit), log),
-            weight * (g[own:] + follow.T @ (units * g[:own])),
-            weight * (H[own:, own:] + across.T @ follow),
+            weight * (g_shared + follow.T @ g_own),
+            weight * (H + across.T @ follow),
             units * shift,
             units[:, None] * follow,
         )
+
+    @cached_property
+    def _stacked(self) -> Mapping[int, tuple[Array, Array, Array, Array]]:
+        """Of each run's segments: the grams; of all but the last how their ends move; the initial
+        states; and the gaps between the ends and what begins there."""
+        out = {}
+        for run, parts in self.problem.by_run.items():
+            states = np.array([self.states[one] for one in parts])
+            ends = np.array([self.made[one].end for one in parts[:-1]]).reshape(-1, states.shape[1])
+            out[run] = (
+                np.array([self.parts[one][0] for one in parts]),
+                np.array([self.parts[one][1] for one in parts])[:-1],
+                states,
+                ends - states[1:],
+            )
+        return out
 
     def evidences(self, q: float) -> dict[int, Evidence]:
         """Those of all runs."""
         return {run: self.evidence(run, q) for run in self.problem.by_run}
 
     def moved(
-        self, evidences: Mapping[int, Evidence], d: Array, share: float = 1.0
+        self, evidences: Mapping[int, Evidence], d: Array, shares: Mapping[int, float] | None = None
     ) -> dict[Segment, Array]:
-        """The states that are best after a change d of the quantities, or a share of the way."""
+        """The states after a change d of the quantities, all the way to their best, or in each
+        run a share of it."""
         out = {}
         for run, parts in self.problem.by_run.items():
             e = evidences[run]
-            change = (share * e.shift + e.follow @ d).reshape(len(parts), -1)
+            change = ((shares or {}).get(run, 1.0) * e.shift + e.follow @ d).reshape(len(parts), -1)
             out |= {one: self.states[one] + c for one, c in zip(parts, change, strict=True)}
         return out
 
@@ -443,12 +463,14 @@ def solve(
     tolerance: float = SETTINGS.tolerance,
     enough: float = math.inf,
     known: Linear | None = None,
+    relative: float = 0.0,
 ) -> Fit:
     """The best values and states, by Gauss-Newton steps within the quantities' bounds and a
     trust region.
 
-    enough  deviance that is of interest; a fit that would not come there at its pace is given up
-    known   the linearisation there, of this problem or of one with other process noise
+    tolerance  expected gain, in nats, or relative to the cost, below which a fit has converged
+    enough     deviance that is of interest; a fit that would not come there at its pace is given up
+    known      the linearisation there, of this problem or of one with other process noise
     """
     low, high = problem.box
     u = np.clip(problem.scaled(values), low, high)
@@ -459,36 +481,49 @@ def solve(
                for one in problem.segments}  # fmt: skip
         if any(not np.array_equal(own[one], states[one]) for one in own):
             here = here.joined(_Point.of(problem, u, own))
-    radius, converged = SETTINGS.stride, False
+    radius, stretch, converged = SETTINGS.stride, 1.0, False
     linear = replace(known, problem=problem) if known else here.linear()
     evidences = linear.evidences(problem.q)
     for step in range(steps):
         H, g, _ = summed(problem, evidences, here.u)
-        better, share = None, 1.0
-        for _ in range(6):
+        better, shares = None, dict.fromkeys(problem.by_run, 1.0)
+        for attempt in range(8):
             d = _step(H, g, radius, here.u, problem.box)
-            longest = float(np.abs(d).max(initial=0.0))
-            after = _after(problem, linear, evidences, here, d, share)
-            if after.cost < here.cost:
-                better = after
-                radius = min(max(radius, 3 * longest), SETTINGS.stride)
+            losses = _expected(evidences, here, d, shares)
+            expected = here.cost - _cost(problem, here.u + d, losses)
+            if math.isfinite(expected) and expected < max(tolerance, relative * here.cost):
                 break
-            radius, share = 0.3 * longest, 0.3 * share
+            d = np.clip(stretch * d, low - here.u, high - here.u)
+            after = _Point.of(problem, here.u + d, linear.moved(evidences, d, shares))
+            if not problem.names:
+                after = here.joined(after)
+            gain, longest = here.cost - after.cost, float(np.abs(d).max(initial=0.0))
+            if gain > 0:
+                better = after
+                # Robust losses bend less than their linearisation: a step may be twice as long.
+                full = attempt == 0 and math.isfinite(expected)
+                stretch = min(max(gain / expected, 1.0), 2.0) if full else 1.0
+                if attempt == 0 and not gain < 0.5 * expected:
+                    radius = min(max(radius, 3 * longest), SETTINGS.stride)
+                break
+            radius, stretch = 0.3 * longest, 1.0
+            for run, loss in after.losses.items():
+                if not loss <= max(here.losses[run], losses[run]):
+                    shares[run] = 0.3 * shares[run] if shares[run] > 0.1 else 0.0
         if better is None:
             converged = True
             break
-        gain = here.cost - better.cost
         there = better.linear()
         found = there.evidences(problem.q)
         if math.isinf(_deviance(problem, found, better.u)) and math.isfinite(here.cost):
             # At the edge of where the model can be simulated.
             break
         here, linear, evidences = better, there, found
-        if gain < tolerance:
+        if gain < max(tolerance, relative * here.cost):
             converged = True
             break
         lacking = _deviance(problem, evidences, here.u) - enough
-        if step + 1 >= SETTINGS.first_steps and lacking > SETTINGS.patience * gain:
+        if step + 1 >= SETTINGS.first_steps and lacking > SETTINGS.patience * max(gain, expected):
             break
     return Fit(problem, problem.valued(here.u), here.states, linear, evidences, converged)
 
@@ -522,8 +557,7 @@ class _Point:
     @property
     def cost(self) -> float:
         """The sum of all losses, and of the prior's."""
-        cost = sum(self.losses.values()) + float(self.problem.prior @ self.u**2)
-        return cost if np.isfinite(cost) else np.inf
+        return _cost(self.problem, self.u, self.losses)
 
     @classmethod
     def of(
@@ -559,49 +593,20 @@ class _Point:
         return Linear.of(self.problem, self.problem.valued(self.u), self.states, self.made)
 
 
-def _after(
-    problem: FitProblem,
-    linear: Linear,
-    evidences: Mapping[int, Evidence],
-    here: _Point,
-    d: Array,
-    share: float,
-) -> _Point:
-    """After a step; where the segments' ends bend away from the linearisation, so that the gaps
-    would outweigh everything, the states follow them."""
-    states = linear.moved(evidences, d, share)
-    after = _Point.of(problem, here.u + d, states)
-    for less in (0.3, 0.1, 0.0):
-        astray = [
-            run
-            for run, loss in after.losses.items()
-            if not loss <= max(here.losses[run], evidences[run].at(d)) + SETTINGS.tolerance
-        ]
-        if not astray:
-            break
-        part = replace(problem, segments=tuple(s for s in problem.segments if s.run in astray))
-        states = linear.moved(evidences, d, less * share)
-        after = after.joined(_Point.of(part, here.u + d, states))
-    if after.cost < here.cost or all(len(p) == 1 for p in problem.by_run.values()):
-        return after
-    values, joined = problem.valued(here.u + d), {}
-    longest = max(len(parts) for parts in problem.by_run.values())
-    for k in range(longest):
-        now = [parts[k] for parts in problem.by_run.values() if len(parts) > k]
-        joined |= {one: joined.get(one, states[one]) for one in now}
-        requests = [Request(one, values, joined[one]) for one in now]
-        made = problem.model.simulate(requests, problem.effects)
-        for one, result in zip(now, made, strict=True):
-            parts = problem.by_run[one.run]
-            if k + 1 < len(parts):
-                following = parts[k + 1]
-                end = linear.made[one].end + linear.parts[one][1] @ np.append(
-                    states[one] - linear.states[one], d
-                )
-                gap = end - states[following]
-                joined[following] = result.end - gap
-    other = _Point.of(problem, here.u + d, joined)
-    return min(after, other, key=lambda point: point.cost)
+def _expected(
+    evidences: Mapping[int, Evidence], here: _Point, d: Array, shares: Mapping[int, float]
+) -> dict[int, float]:
+    """The losses that the linearisation expects after a step."""
+    return {
+        run: e.at(d) + (1 - shares[run]) ** 2 * (here.losses[run] - e.value)
+        for run, e in evidences.items()
+    }
+
+
+def _cost(problem: FitProblem, u: Array, losses: Mapping[int, float]) -> float:
+    """The sum of all losses, and of the prior's."""
+    cost = sum(losses.values()) + float(problem.prior @ u**2)
+    return cost if np.isfinite(cost) else np.inf
 
 
 def grid() -> list[float]:
@@ -626,6 +631,7 @@ def fitted(
     states: States,
     steps: int = SETTINGS.steps,
     enough: float = math.inf,
+    tolerance: float = SETTINGS.tolerance,
 ) -> Fit:
     """The problem's solution with the most likely process noise.
 
@@ -634,19 +640,19 @@ def fitted(
     enough  deviance; a fit that will not come there need not be taken to its end
     """
     if all(len(parts) == 1 for parts in problem.by_run.values()):
-        return solve(problem, values, states, steps)
-    fit = solve(problem, values, states, SETTINGS.first_steps)
+        return solve(problem, values, states, steps, tolerance)
+    fit = solve(problem, values, states, SETTINGS.first_steps, tolerance)
     for _ in range(3):
         q = most_likely(fit)
         if q == fit.problem.q and fit.converged:
             break
         again = replace(problem, q=q)
-        fit = solve(again, fit.values, fit.states, steps, enough=enough, known=fit.linear)
+        fit = solve(again, fit.values, fit.states, steps, tolerance, enough, fit.linear)
         if not fit.converged and fit.deviance > enough:
             return fit
     for q in reversed([q for q in grid() if q < fit.problem.q]):
         lower = replace(problem, q=q)
-        lower = solve(lower, fit.values, fit.states, steps, enough=fit.deviance, known=fit.linear)
+        lower = solve(lower, fit.values, fit.states, steps, tolerance, fit.deviance, fit.linear)
         if lower.deviance >= fit.deviance:
             break
         fit = lower
@@ -671,9 +677,9 @@ def whole_runs(fit: Fit) -> Fit:
     """The same quantities by least squares over whole runs, or windows as long as the machine can
     be predicted: what the model predicts unaided."""
     single, states = _whole(fit, fit.problem.by_run, fit.values)
-    # What is left has to be known to a fraction of what would be negligible.
+    # What is left has to be known to a fraction of what would be negligible, or of itself.
     enough = 0.1 * SETTINGS.negligible**2 * fit.samples
-    return solve(single, fit.values, states, tolerance=enough)
+    return solve(single, fit.values, states, tolerance=enough, relative=0.02)
 
 
 def predicted(fit: Fit, runs: Iterable[int], values: Mapping[str, float]) -> Fit:

@@ -14,7 +14,9 @@ class Settings:
     least_process_noise   lower end of the grid: less is as good as none
     most_process_noise    upper end of the grid, which has half decades: segments are independent
     stride                longest step in a quantity, in its scales
-    tolerance             nats of deviance below which a fit has converged
+    tolerance             nats of deviance that a step has to be expected to gain, or the fit has
+                          converged: its values are within a tenth of a standard deviation
+    search_tolerance      the same for candidates: a tenth of what counts as evidence
     trial_runs            how many runs, those explained worst, initial guesses are tried on
     trial_steps           Gauss-Newton steps for the better half of the guesses, for the better half
                           of those, and so on
@@ -66,7 +68,8 @@ class Settings:
     least_process_noise: float = 0.02
     most_process_noise: float = 1e3
     stride: float = 3.0
-    tolerance: float = 0.05
+    tolerance: float = 0.01
+    search_tolerance: float = 0.5
     trial_runs: int = 2
     trial_steps: tuple[int, ...] = (1, 3)
     first_steps: int = 4

@@ -213,10 +213,11 @@ class Simulator:
             for values in neighbours(given, mechanical, wanted)
         ]
         self.drives.every(beside, mechanical)
+        by = {id(given): values_by(given, motion.parameters, wanted) for given in known.values()}
         for one, (path, made, p, given) in zip(requests, paths, strict=True):
-            by = values_by(given, motion.parameters, wanted)
             drive_by = self.drive_slopes(one.segment, given, mechanical, wanted)
-            sought.append(Sought(path, made, p, by, drive_by, self.recorded(one.segment)))
+            seen = self.recorded(one.segment)
+            sought.append(Sought(path, made, p, by[id(given)], drive_by, seen))
         return [Linearisation(gram, end) for gram, end in grams(system, sought)]
 
     def paths(self, requests: Sequence[Request], effects: tuple[str, ...]) -> list[_Simulated]:

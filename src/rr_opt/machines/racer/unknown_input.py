@@ -31,7 +31,7 @@ from rr_opt.sysid.estimation import Fit
 from rr_opt.sysid.machine import CONSTANT, Term
 from rr_opt.sysid.model import Linearisation, Request, Segment
 from rr_opt.sysid.sensitivities import DriveSlopes, Hats, LinearMotion, Part, gram_of, linear
-from rr_opt.sysid.shooting import DrivePath, System
+from rr_opt.sysid.shooting import DrivePath, Path, System
 
 PUSHES = ("wheel1l", "wheel1r", "wheel2l", "wheel2r", "side1", "side2", "angle")
 """Rolling force at each wheel (N), side speed of each axle (m/s), error of the angle (rad)."""
@@ -109,6 +109,8 @@ def linearised_inputs(
     in what is wanted and in the inputs.
 
     inputs  (k, 7, n) of each segment, rows as PUSHES
+
+    One step from sample to sample is fine enough for what a push changes.
     """
     simulator = racer.simulator
     mechanical = simulator.every(effects)
@@ -118,21 +120,23 @@ def linearised_inputs(
     p, by = values_of(given, names), values_by(given, names, wanted)
     every, parts = [], []
     simulated = simulator.paths(requests, effects)
-    for request, pushes, (path, made, *_) in zip(requests, inputs, simulated, strict=True):
-        segment = request.segment
+    for request, pushes, (fine, predicted, *_) in zip(requests, inputs, simulated, strict=True):
+        segment, each = request.segment, fine.each
+        path = DrivePath(
+            fine.h.reshape(-1, each).sum(axis=1), _sampled(fine.nodes, each), fine.at, 1
+        )
+        made = Path(predicted.states[:, ::each], predicted.seen)
         t = racer.runs[segment.run].t[segment.span]
         drives = _drives(pushes, t)
         moments = _moments(path, t)
         plain = _with_drives(path, np.zeros(drives.shape[1:]), moments)
         own = simulator.drive_slopes(segment, given, mechanical, wanted)
         rows = np.append(len(path.at) + np.arange(FURTHER), (0, 1))
-        hats = Hats(rows, _passed(moments, path.each))
         every.append(drives)
-        parts.append(Part(plain, made, own and _widened(own), hats))
-    how = linear(system, parts, p, by)
-    for request, part, drives, one in zip(requests, parts, every, how, strict=True):
-        assert part.hats is not None
-        seen, end = _carried(one, len(wanted), part.hats.rows, drives)
+        own = own and _widened(DriveSlopes(own.at, _sampled(own.nodes, each)))
+        parts.append(Part(plain, made, own, Hats(rows, _passed(moments))))
+    how = [*linear(system, parts, p, by)]
+    for request, part, (seen, end) in zip(requests, parts, _carried(how, every), strict=True):
         recorded = simulator.recorded(request.segment)
         weight = recorded.weight.ravel()
         columns = (seen.reshape(weight.size, -1) * weight[:, None])[weight > 0]
@@ -140,26 +144,55 @@ def linearised_inputs(
         yield Linearisation(gram_of(columns, residual), end)
 
 
+_COLUMNS_AT_ONCE = 1000
+"""Of segments side by side, lest memory run out."""
+
+
 def _carried(
-    how: LinearMotion, wanted: int, rows: NDArray[np.int_], drives: Array
-) -> tuple[Array, Array]:
-    """Derivatives of what is seen, (n, channels, ...), and of the last state, by the start, by what
-    is wanted, and by pushes with DRIVES (k, 10, n)."""
-    samples, _, size = how.by_state.shape
+    every: Sequence[LinearMotion], drives: Sequence[Array]
+) -> Iterator[tuple[Array, Array]]:
+    """Derivatives of what is seen of segments, (n, channels, ...), and of their last states, by the
+    start, by what is wanted, and by pushes with DRIVES (k, 10, n).
+
+    Segments, a few of them side by side, are padded to the same length.
+    """
+    some = max(_COLUMNS_AT_ONCE // max(len(drives[0]), 1), 1)
+    for first in range(0, len(every), some):
+        parts = [
+            (one, *_forced(one, d))
+            for one, d in zip(
+                every[first : first + some], drives[first : first + some], strict=True
+            )
+        ]
+        size, columns = parts[0][1].shape[1:]
+        longest = max(len(one.A) for one, *_ in parts)
+        A = np.zeros((longest, len(parts), size, size))
+        carried = np.zeros((longest + 1, len(parts), size, size + columns))
+        carried[0] = np.eye(size, size + columns)
+        for k, (one, forced, _) in enumerate(parts):
+            A[: len(one.A), k] = one.A
+            carried[1 : len(one.A) + 1, k, :, size:] = forced
+        for k in range(longest):
+            carried[k + 1] += A[k] @ carried[k]
+        for k, (one, _, direct) in enumerate(parts):
+            own = carried[: len(one.A) + 1, k]
+            seen = one.by_state @ own
+            seen[:, :, size:] += direct
+            yield seen, own[-1]
+
+
+def _forced(how: LinearMotion, drives: Array) -> tuple[Array, Array]:
+    """What is wanted and pushes with DRIVES (k, 10, n) add to the state from sample to sample
+    (n - 1, size, ...), and to what is seen at the samples (n, channels, ...)."""
+    wanted = how.by_wanted.shape[2]
     at = np.ascontiguousarray(drives.transpose(2, 1, 0))
     earlier, later = np.split(how.B[:, :, wanted:], 2, axis=2)
-    pushed = size + wanted
-    carried = np.empty((samples, size, pushed + len(drives)))
-    carried[0] = np.eye(size, pushed + len(drives))
-    for k in range(samples - 1):
-        now = carried[k + 1]
-        np.matmul(how.A[k], carried[k], out=now)
-        now[:, size:pushed] += how.B[k, :, :wanted]
-        now[:, pushed:] += earlier[k] @ at[k] + later[k] @ at[k + 1]
-    seen = how.by_state @ carried
-    seen[:, :, size:pushed] += how.by_wanted
-    seen[:, :, pushed:] += how.by_drive[:, :, rows] @ at
-    return seen, carried[-1]
+    pushed = earlier @ at[:-1] + later @ at[1:]
+    rows = [*range(-FURTHER, 0), 0, 1]
+    return (
+        np.concatenate([how.B[:, :, :wanted], pushed], axis=2),
+        np.concatenate([how.by_wanted, how.by_drive[:, :, rows] @ at], axis=2),
+    )
 
 
 def _widened(own: DriveSlopes) -> DriveSlopes:
@@ -170,16 +203,24 @@ def _widened(own: DriveSlopes) -> DriveSlopes:
     return DriveSlopes(at, nodes)
 
 
-def _passed(moments: Array, each: int) -> Array:
+def _sampled(nodes: Array, each: int) -> Array:
+    """The drive (size, 3, steps, ...) at the beginning, on average and at the end of the time
+    between two samples."""
+    split = nodes.reshape(*nodes.shape[:2], -1, each, *nodes.shape[3:])
+    ends = split[:, 0, :, 0], split[:, 1].mean(axis=2), split[:, 2, :, -1]
+    return np.stack(ends, axis=1)
+
+
+def _passed(moments: Array) -> Array:
     """How much of the time between two samples has passed at each node of the steps (3, steps)."""
-    steps = (moments.size - 1) // 2
     nodes = np.stack([moments[:-1:2], moments[1::2], moments[2::2]])
-    return nodes - np.arange(steps) // each
+    return nodes - np.arange((moments.size - 1) // 2)
 
 
 def _drives(pushes: Array, t: Array) -> Array:
     """Pushes (k, 7, n) as DRIVES (k, 10, n): with the rates of change that go with them."""
-    changes = np.gradient(pushes[:, 4:], t, axis=2)
+    moved = pushes[:, 4:]
+    changes = np.gradient(moved, t, axis=2) if moved.any() else moved
     return np.concatenate(
         [pushes[:, :_ANGLE], changes[:, :2], pushes[:, _ANGLE:], changes[:, 2:]], axis=1
     )
