@@ -42,6 +42,9 @@ from rr_opt.sysid.settings import SETTINGS
 
 States = Mapping[Segment, Array]
 
+_ATTEMPTS = 8
+"""At a step, each less than a third of the one before."""
+
 
 @dataclass(frozen=True)
 class Evidence:
@@ -481,45 +484,22 @@ def solve(
                for one in problem.segments}  # fmt: skip
         if any(not np.array_equal(own[one], states[one]) for one in own):
             here = here.joined(_Point.of(problem, u, own))
-    radius, stretch, converged = SETTINGS.stride, 1.0, False
+    trust, converged = _Trust(), False
     linear = replace(known, problem=problem) if known else here.linear()
     evidences = linear.evidences(problem.q)
     for step in range(steps):
-        H, g, _ = summed(problem, evidences, here.u)
-        better, shares = None, dict.fromkeys(problem.by_run, 1.0)
-        for attempt in range(8):
-            d = _step(H, g, radius, here.u, problem.box)
-            losses = _expected(evidences, here, d, shares)
-            expected = here.cost - _cost(problem, here.u + d, losses)
-            if math.isfinite(expected) and expected < max(tolerance, relative * here.cost):
-                break
-            d = np.clip(stretch * d, low - here.u, high - here.u)
-            after = _Point.of(problem, here.u + d, linear.moved(evidences, d, shares))
-            if not problem.names:
-                after = here.joined(after)
-            gain, longest = here.cost - after.cost, float(np.abs(d).max(initial=0.0))
-            if gain > 0:
-                better = after
-                # Robust losses bend less than their linearisation: a step may be twice as long.
-                full = attempt == 0 and math.isfinite(expected)
-                stretch = min(max(gain / expected, 1.0), 2.0) if full else 1.0
-                if attempt == 0 and not gain < 0.5 * expected:
-                    radius = min(max(radius, 3 * longest), SETTINGS.stride)
-                break
-            radius, stretch = 0.3 * longest, 1.0
-            for run, loss in after.losses.items():
-                if not loss <= max(here.losses[run], losses[run]):
-                    shares[run] = 0.3 * shares[run] if shares[run] > 0.1 else 0.0
+        least = max(tolerance, relative * here.cost)
+        better, expected = _stepped(linear, evidences, here, trust, least)
         if better is None:
             converged = True
             break
-        there = better.linear()
+        gain, there = here.cost - better.cost, better.linear()
         found = there.evidences(problem.q)
         if math.isinf(_deviance(problem, found, better.u)) and math.isfinite(here.cost):
             # At the edge of where the model can be simulated.
             break
         here, linear, evidences = better, there, found
-        if gain < max(tolerance, relative * here.cost):
+        if gain < least:
             converged = True
             break
         lacking = _deviance(problem, evidences, here.u) - enough
@@ -591,6 +571,50 @@ class _Point:
 
     def linear(self) -> Linear:
         return Linear.of(self.problem, self.problem.valued(self.u), self.states, self.made)
+
+
+@dataclass
+class _Trust:
+    """How far the linearisation is trusted.
+
+    radius   longest step, in scaled quantities
+    stretch  of a step: robust losses bend less than their linearisation, so it may be twice as long
+    """
+
+    radius: float = SETTINGS.stride
+    stretch: float = 1.0
+
+
+def _stepped(
+    linear: Linear, evidences: Mapping[int, Evidence], here: _Point, trust: _Trust, least: float
+) -> tuple[_Point | None, float]:
+    """A better point, and the gain expected of the step to it; None where less than `least` is
+    expected, or nothing gains. The states of runs that a step makes worse go a share of it."""
+    problem, shares, expected = linear.problem, dict.fromkeys(linear.problem.by_run, 1.0), 0.0
+    low, high = problem.box
+    H, g, _ = summed(problem, evidences, here.u)
+    for attempt in range(_ATTEMPTS):
+        d = _step(H, g, trust.radius, here.u, problem.box)
+        losses = _expected(evidences, here, d, shares)
+        expected = here.cost - _cost(problem, here.u + d, losses)
+        if math.isfinite(expected) and expected < least:
+            break
+        d = np.clip(trust.stretch * d, low - here.u, high - here.u)
+        after = _Point.of(problem, here.u + d, linear.moved(evidences, d, shares))
+        if not problem.names:
+            after = here.joined(after)
+        gain, longest = here.cost - after.cost, float(np.abs(d).max(initial=0.0))
+        if gain > 0:
+            full = attempt == 0 and math.isfinite(expected)
+            trust.stretch = min(max(gain / expected, 1.0), 2.0) if full else 1.0
+            if attempt == 0 and not gain < 0.5 * expected:
+                trust.radius = min(max(trust.radius, 3 * longest), SETTINGS.stride)
+            return after, expected
+        trust.radius, trust.stretch = 0.3 * longest, 1.0
+        for run, loss in after.losses.items():
+            if not loss <= max(here.losses[run], losses[run]):
+                shares[run] = 0.3 * shares[run] if shares[run] > 0.1 else 0.0
+    return None, expected
 
 
 def _expected(

@@ -16,7 +16,6 @@ from functools import lru_cache
 
 import casadi as ca
 import numpy as np
-from numpy.typing import NDArray
 
 from rr_opt.array import Array
 from rr_opt.machines.racer.model import RacerModel
