@@ -205,10 +205,10 @@ static void slope(const V* by, const Asked* asked, const Room* room, const V* M,
   }
 }
 
-/* The linearised motion at a node (0, 1, 2) of step k, at the state x: its slope over M. What the
-   rates are there comes first in `out`. */
+/* The linearised rates at a node (0, 1, 2) of step k, at the state x: `out` has what they are and
+   their derivatives, and the room the force. */
 static void linear(const Group* group, const Asked* asked, const Room* room, long long k, int node,
-                   const V* in, const V* x, const V* M, V* out, V* result) {
+                   const V* in, const V* x, V* out) {
   V at[NX + ND];
   long long place[L];
   int i, l;
@@ -222,7 +222,6 @@ static void linear(const Group* group, const Asked* asked, const Room* room, lon
   if (asked->moves) moved_at(group, asked, 1, place, room->moved);
   forced(out + NX, RATES_ROW, RATES_COLUMN, RX, RD, RP, NX, asked, room->moved, room->value,
          room->force);
-  slope(out + NX, asked, room, M, result);
 }
 
 INLINE void reach(const Room* room, V h, const V* K) {
@@ -240,14 +239,14 @@ INLINE void arrive(const Room* room, V h) {
 
 /* A step with the matrix z = h fx of its middle: (1 - 2z/3 + z^2/6)^-1 (1 + z/3), which damps. */
 static void linear_step(const Group* group, const Asked* asked, const Room* room, long long k,
-                        const V* in, const V* x, const V* end) {
-  V middle[NX], out[NX + RX + RD + RP], z[NX][NX], left[NX][NX];
+                        long long each, const V* in, const V* x, const V* end) {
+  V middle[NX], out[NX + RX + RD + RP], z[NX][NX], left[NX][NX], scale;
   long long n = room->n, c;
   int i, j, m;
   V *M = room->M, *to = room->K[1];
+  (void)each;
   for (i = 0; i < NX; ++i) middle[i] = (x[i] + end[i]) / 2.0;
-  /* The slope itself is not wanted here, but what it is made of. */
-  linear(group, asked, room, k, 1, in, middle, M, out, room->K[0]);
+  linear(group, asked, room, k, 1, in, middle, out);
   memset(z, 0, sizeof z);
   for (m = 0; m < RX; ++m) z[RATES_ROW[m]][RATES_COLUMN[m]] = in[0] * out[NX + m];
   for (i = 0; i < NX; ++i)
@@ -256,39 +255,54 @@ static void linear_step(const Group* group, const Asked* asked, const Room* room
       for (m = 0; m < NX; ++m) square += z[i][m] * z[m][j];
       left[i][j] = all(i == j ? 1.0 : 0.0) - 2.0 / 3.0 * z[i][j] + square / 6.0;
     }
-  for (i = 0; i < NX; ++i) {
-    V* row = to + i * n;
-    for (c = 0; c < n; ++c) row[c] = M[i * n + c];
-    for (c = 0; c < asked->nq; ++c) row[NX + c] += in[0] * room->force[i * asked->nq + c];
-    for (j = 0; j < NX; ++j) {
-      for (c = 0; c < n; ++c) row[c] += z[i][j] / 3.0 * M[j * n + c];
-      for (c = 0; c < asked->nq; ++c)
-        row[NX + c] -= z[i][j] / 6.0 * in[0] * room->force[j * asked->nq + c];
-    }
+  memcpy(to, M, sizeof(V) * NX * n);
+  for (i = 0; i < NX; ++i)
+    for (c = 0; c < asked->nq; ++c) to[i * n + NX + c] += in[0] * room->force[i * asked->nq + c];
+  for (m = 0; m < RX; ++m) {
+    const V a = z[RATES_ROW[m]][RATES_COLUMN[m]], third = a / 3.0, sixth = a * in[0] / 6.0;
+    const V *from = M + RATES_COLUMN[m] * n, *force = room->force + RATES_COLUMN[m] * asked->nq;
+    V* row = to + RATES_ROW[m] * n;
+    for (c = 0; c < n; ++c) row[c] += third * from[c];
+    for (c = 0; c < asked->nq; ++c) row[NX + c] -= sixth * force[c];
   }
   /* No pivots are looked for: what settles makes the diagonal large, the rest is near 1. */
-  for (m = 0; m < NX; ++m)
+  for (m = 0; m < NX; ++m) {
+    scale = 1.0 / left[m][m];
+    for (j = m; j < NX; ++j) left[m][j] *= scale;
+    for (c = 0; c < n; ++c) to[m * n + c] *= scale;
     for (i = 0; i < NX; ++i) {
-      V factor = left[i][m] / left[m][m];
-      if (i == m) continue;
+      const V factor = left[i][m];
+      if (i == m || !any(factor != all(0.0))) continue;
       for (j = m; j < NX; ++j) left[i][j] -= factor * left[m][j];
       for (c = 0; c < n; ++c) to[i * n + c] -= factor * to[m * n + c];
     }
-  for (i = 0; i < NX; ++i)
-    for (c = 0; c < n; ++c) M[i * n + c] = to[i * n + c] / left[i][i];
+  }
+  memcpy(M, to, sizeof(V) * NX * n);
 }
 
 #else
 
-/* The derivative of the classical Runge-Kutta step itself, whose stages' rates are worked out along
-   with their derivatives. */
+/* From so many steps between two samples the slope in the middle of a step is enough. */
+#define FINE 4
+
+/* The derivative of a step: of a fine one by the midpoint rule along its chord, of others of the
+   classical Runge-Kutta step itself, whose stages' rates are worked out with their derivatives. */
 static void linear_step(const Group* group, const Asked* asked, const Room* room, long long k,
-                        const V* in, const V* x, const V* end) {
+                        long long each, const V* in, const V* x, const V* end) {
   static const int NODES[4] = {0, 1, 1, 2};
   static const double REACH[4] = {0.0, 0.5, 0.5, 1.0};
   V at[NX], out[NX + RX + RD + RP];
+  long long c;
   int i, stage;
-  (void)end;
+  if (each >= FINE) {
+    for (i = 0; i < NX; ++i) at[i] = (x[i] + end[i]) / 2.0;
+    linear(group, asked, room, k, 1, in, at, out);
+    slope(out + NX, asked, room, room->M, room->K[0]);
+    reach(room, in[0] / 2.0, room->K[0]);
+    slope(out + NX, asked, room, room->at, room->K[1]);
+    for (c = 0; c < NX * room->n; ++c) room->M[c] += in[0] * room->K[1][c];
+    return;
+  }
   for (i = 0; i < NX; ++i) at[i] = x[i];
   for (stage = 0; stage < 4; ++stage) {
     V h = REACH[stage] * in[0];
@@ -296,8 +310,8 @@ static void linear_step(const Group* group, const Asked* asked, const Room* room
       for (i = 0; i < NX; ++i) at[i] = x[i] + h * out[i];
       reach(room, h, room->K[stage - 1]);
     }
-    linear(group, asked, room, k, NODES[stage], in, at, stage ? room->at : room->M, out,
-           room->K[stage]);
+    linear(group, asked, room, k, NODES[stage], in, at, out);
+    slope(out + NX, asked, room, stage ? room->at : room->M, room->K[stage]);
   }
   arrive(room, in[0]);
 }
@@ -395,7 +409,7 @@ int rr_grams(long long count, const Run* runs, long long each, long long nq, lon
         long long next = k < run->steps ? k + 1 : run->steps;
         for (i = 0; i < NX; ++i) end[i][l] = run->states[next * NX + i];
       }
-      linear_step(&group, &asked, &room, k, in, x, end);
+      linear_step(&group, &asked, &room, k, each, in, x, end);
       for (i = 0; i < NX; ++i) x[i] = end[i];
     }
     for (l = 0; l < group.own; ++l) {
