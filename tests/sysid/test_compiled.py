@@ -36,8 +36,9 @@ def both(system, drives, starts, p):
     for drive, one in zip(drives, made, strict=True):
         wanted = rng.normal(size=(p.size, 3)) * (np.arange(3) != 1)
         moved = DriveSlopes(
-            rng.normal(size=(*drive.at.shape, 3)) * (np.arange(3) != 0),
-            rng.normal(size=(*drive.nodes.shape, 3)) * (np.arange(3) != 0),
+            rng.normal(size=(*drive.at.shape, 2)),
+            rng.normal(size=(*drive.nodes.shape, 2)),
+            np.array([1, 2]),
         )
         values = one.seen + rng.normal(size=one.seen.shape)
         values[rng.uniform(size=values.shape) < 0.2] = np.nan
@@ -131,7 +132,9 @@ def test_what_leaves_the_numbers_counts_for_nothing(monkeypatch):
 def test_a_run_whose_drive_stays_beside_one_whose_drive_is_moved(monkeypatch):
     system, drive, start, p, _ = CASES["fine"]
     (made,) = predict_all(system, [(drive, np.array(start), np.array(p))])
-    moved = DriveSlopes(np.ones((*drive.at.shape, 1)), np.ones((*drive.nodes.shape, 1)))
+    moved = DriveSlopes(
+        np.ones((*drive.at.shape, 1)), np.ones((*drive.nodes.shape, 1)), np.array([0])
+    )
     recorded = Recorded.of(made.seen + 0.1, np.ones_like(made.seen))
     asked = [
         Sought(drive, made, np.array(p), np.ones((len(p), 1)), by, recorded) for by in (moved, None)

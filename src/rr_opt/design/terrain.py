@@ -12,9 +12,8 @@ from functools import cached_property
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
-from rr_opt.array import Array
+from rr_opt.array import Array, Indices
 from rr_opt.design.decisions import Decisions, Setting, TurnRows, reach_before_singularity
 from rr_opt.design.landscape import Cycles, dense
 from rr_opt.design.transcription import ROWS
@@ -55,7 +54,6 @@ _CIRCLE, _SIDE = ("circle x", "circle y"), "side"
 
 LIMITS = ("rate", "angle", "singularity", "torque", "grip", "power", "cost_of_transport", "speed")
 Aim = Literal["speed", "rows", "turn"]
-Indices = NDArray[np.int_]
 
 
 @dataclass(frozen=True)

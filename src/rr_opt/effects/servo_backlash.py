@@ -63,19 +63,24 @@ class _Play:
     rate: Array
     hit: Array
 
+    @cached_property
+    def _cubics(self) -> Array:
+        """Coefficients (4, n) of the lead over each step, until it hits a stop."""
+        a, b = self.lead[:-1], self.lead[1:]
+        u, w = self.rate[:-1] * self.dt, self.rate[1:] * self.dt
+        bend, twist = 3 * (b - a) - 2 * u - w, u + w - 2 * (b - a)
+        struck = self.hit < 1
+        flight = (b - a - u * self.hit) / self.hit**2
+        return np.array([a, u, np.where(struck, flight, bend), np.where(struck, 0.0, twist)])
+
     def at(self, k: NDArray[np.intp], fraction: Array) -> Array:
         """Lead and its rate (2, n) after a fraction of step k."""
-        a, b = self.lead[k], self.lead[k + 1]
-        u, w = self.rate[k] * self.dt, self.rate[k + 1] * self.dt
-        bend, twist = 3 * (b - a) - 2 * u - w, u + w - 2 * (b - a)
+        a, u, bend, twist = self._cubics[:, k]
         lead = a + fraction * (u + fraction * (bend + fraction * twist))
         rate = (u + fraction * (2 * bend + fraction * 3 * twist)) / self.dt
-        hit = self.hit[k]
-        flight = (b - a - u * hit) / hit**2
-        flying = a + fraction * (u + fraction * flight), (u + 2 * fraction * flight) / self.dt
-        struck, landed = hit < 1, fraction >= hit
-        lead = np.where(struck, np.where(landed, b, flying[0]), lead)
-        return np.array([lead, np.where(struck, np.where(landed, 0.0, flying[1]), rate)])
+        landed = np.flatnonzero(fraction >= self.hit[k])
+        lead[landed], rate[landed] = self.lead[k[landed] + 1], 0.0
+        return np.array([lead, rate])
 
     def jumps(self, half: float) -> Array:
         """Times, s, at which the rate jumps or begins: at an impact, and on leaving a stop."""

@@ -22,6 +22,8 @@ _FIRST_ORDER = 1e-6
 """A smaller beta, in units of tau squared, decays within any step."""
 _NEGLIGIBLE = 1e-10
 """A smaller term, relative to the largest, is left out."""
+_DECAYED = 40.0
+"""Time constants after which nothing is left of a free term."""
 
 
 def _actuate(command: Drive, values: Mapping[str, float], _: FreeJoint | None = None) -> Drive:
@@ -34,11 +36,11 @@ def _actuate(command: Drive, values: Mapping[str, float], _: FreeJoint | None = 
     kept = np.flatnonzero(np.abs(terms) > _NEGLIGIBLE * np.abs(terms).max())
     omega = 2 * np.pi * kept / command.period
     response = terms[kept] / (1 + 1j * omega * tau - omega**2 * beta)
-    derivatives = np.array([np.ones_like(omega), 1j * omega, -(omega**2)])
+    derivatives = np.array([np.ones_like(omega), 1j * omega, -(omega**2)]) * response
 
     def steady(t: Array) -> Array:
-        turning = np.exp(1j * omega[:, None] * np.asarray(t)[None])
-        return ((derivatives * response) @ turning).real
+        phase = omega[:, None] * np.asarray(t)[None]
+        return derivatives.real @ np.cos(phase) - derivatives.imag @ np.sin(phase)
 
     if not command.rest:
         return replace(command, at=steady)
@@ -46,11 +48,16 @@ def _actuate(command: Drive, values: Mapping[str, float], _: FreeJoint | None = 
     angle, rate, _ = steady(np.array([0.0]))[:, 0]
     rates, amounts = _free_response(tau, beta, before - angle, -rate)
 
+    free = amounts * rates ** np.arange(3)[:, None]
+    over = _DECAYED / np.abs(rates.real).min()
+
     def from_rest(t: Array) -> Array:
-        since = np.maximum(np.asarray(t, float), 0.0)
-        free = (amounts * rates ** np.arange(3)[:, None]) @ np.exp(rates[:, None] * since)
-        still = np.array([[before], [0.0], [0.0]])
-        return np.where(np.asarray(t) < 0, still, steady(t) + free.real)
+        t = np.asarray(t, float)
+        path = steady(t)
+        since = (t >= 0) & (t < over)
+        path[:, since] += (free @ np.exp(rates[:, None] * t[since])).real
+        path[:, t < 0] = [[before], [0.0], [0.0]]
+        return path
 
     return replace(command, at=from_rest)
 

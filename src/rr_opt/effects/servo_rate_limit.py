@@ -34,7 +34,6 @@ class _Segment(NamedTuple):
 class _Limited(NamedTuple):
     """A command, sampled: angle, rate and acceleration (3, n) at the times (n,), s."""
 
-    drive: Drive
     limit: float
     times: Array
     sampled: Array
@@ -50,10 +49,27 @@ class _Limited(NamedTuple):
             k, t = self._meeting(here, k) if here.rate else self._parting(k)
             if k == len(self.times):
                 return segments
-            angle, rate, _ = self.drive.at(np.array([t]))[:, 0].tolist()
+            angle, rate = self._between(k)(t)
             fast = not here.rate or abs(rate) > self.limit
             here = _Segment(t, angle, float(np.copysign(self.limit, rate)) if fast else 0.0)
             segments.append(here)
+
+    def _between(self, k: int) -> Callable[[float], tuple[float, float]]:
+        """The command's angle and rate between sample k - 1 and k, by Hermite's quintic."""
+        k = max(k, 1)
+        begin, h = float(self.times[k - 1]), float(self.times[k] - self.times[k - 1])
+        (y, y1), (v, v1), (a, a1) = (self.sampled[:, k - 1 : k + 1] * [[1], [h], [h**2]]).tolist()
+        off, turn, bend = y1 - y - v - a / 2, v1 - v - a, a1 - a
+        c3 = 10 * off - 4 * turn + bend / 2
+        c4, c5 = 7 * turn - 15 * off - bend, 6 * off - 3 * turn + bend / 2
+
+        def at(t: float) -> tuple[float, float]:
+            s = (t - begin) / h
+            angle = y + s * (v + s * (a / 2 + s * (c3 + s * (c4 + s * c5))))
+            rate = v + s * (a + s * (3 * c3 + s * (4 * c4 + s * 5 * c5)))
+            return angle, rate / h
+
+        return at
 
     def _parting(self, k: int) -> tuple[int, float]:
         """When the command begins to turn too fast: the index after that, and the time."""
@@ -64,8 +80,10 @@ class _Limited(NamedTuple):
         if k == 0:
             return 0, float(self.times[0])
 
+        command = self._between(k)
+
         def excess(t: float) -> float:
-            return abs(self.drive.at(np.array([t]))[1, 0]) - self.limit
+            return abs(command(t)[1]) - self.limit
 
         return k, _root(excess, self.times[k - 1], self.times[k])
 
@@ -78,8 +96,10 @@ class _Limited(NamedTuple):
             return len(self.times), 0.0
         k += int(met[0]) + 1
 
+        command = self._between(k)
+
         def gap(t: float) -> float:
-            return self.drive.at(np.array([t]))[0, 0] - here.y - here.rate * (t - here.t)
+            return command(t)[0] - here.y - here.rate * (t - here.t)
 
         return k, _root(gap, max(self.times[k - 1], here.t), self.times[k])
 
@@ -87,7 +107,7 @@ class _Limited(NamedTuple):
 def _actuate(command: Drive, values: Mapping[str, float], _: FreeJoint | None = None) -> Drive:
     limit = values["rate_limit"]
     times: Array = command.period / _STEPS * np.arange(_PERIODS * _STEPS + 1.0)
-    limited = _Limited(command, limit, times, command.at(times))
+    limited = _Limited(limit, times, command.at(times))
     if np.abs(limited.sampled[1]).max() <= limit:
         return command
     before = command.at(np.array([-1.0])) if command.rest else limited.sampled

@@ -76,17 +76,17 @@ class MeasuredDrives:
         if not own:
             return None
         here = self.path(piece, signals, values)
-        at = np.zeros((*here.at.shape, len(wanted)))
-        nodes = np.zeros((*here.nodes.shape, len(wanted)))
-        for effect, constant in own:
+        at = np.empty((*here.at.shape, len(own)))
+        nodes = np.empty((*here.nodes.shape, len(own)))
+        for k, (effect, constant) in enumerate(own):
             name = effect.quantity(constant.name)
             step, value = 0.05 * constant.size(self.scales), values.get(name, 0.0)
             ends = [min(max(value + s, constant.low), constant.high) for s in (step, -step)]
             up, down = (self.path(piece, signals, {**values, name: x}) for x in ends)
-            k = wanted.index(name)
             at[..., k] = (up.at - down.at) / (ends[0] - ends[1])
             nodes[..., k] = (up.nodes - down.nodes) / (ends[0] - ends[1])
-        return DriveSlopes(at, nodes)
+        columns = [wanted.index(effect.quantity(constant.name)) for effect, constant in own]
+        return DriveSlopes(at, nodes, np.array(columns))
 
     def _whole(
         self, recording: int, signals: Sequence[MachineEffect], constants: Sequence[float]
@@ -113,11 +113,11 @@ def straight(t: Array, inputs: Sequence[Array], unknown: int, step: float) -> Dr
 
 
 def beside(moved: DriveSlopes | None, more: DriveSlopes, wanted: int) -> DriveSlopes:
-    """Slopes by what is wanted, and by more."""
+    """Slopes by what is wanted, and by more behind it."""
     if moved is None:
-        shapes = (more.at.shape[:-1], more.nodes.shape[:-1])
-        moved = DriveSlopes(*(np.zeros((*shape, wanted)) for shape in shapes))
+        return replace(more, columns=wanted + more.columns)
     return DriveSlopes(
         np.concatenate([moved.at, more.at], axis=-1),
         np.concatenate([moved.nodes, more.nodes], axis=-1),
+        np.concatenate([moved.columns, wanted + more.columns]),
     )

@@ -131,7 +131,8 @@ def unknown_inputs(
         nodes = np.zeros((path.nodes.shape[0], 3, path.h.size, column))
         for (row, at, values), term in zip(shapes, terms, strict=True):
             nodes[row][:, :, list(term.columns)] = _hats(values[k], at)
-        return DriveSlopes(np.zeros((path.nodes.shape[0], path.at.shape[1], column)), nodes)
+        at = np.zeros((path.nodes.shape[0], path.at.shape[1], column))
+        return DriveSlopes(at, nodes, np.arange(column))
 
     return terms, (moved(k, path) for k, (_, path, _) in enumerate(made))
 

@@ -15,19 +15,19 @@ from typing import NamedTuple
 
 import casadi as ca
 import numpy as np
-from numpy.typing import NDArray
 
-from rr_opt.array import Array
+from rr_opt.array import Array, Indices
 from rr_opt.mechanics.code_generation import in_stages, source_file
 from rr_opt.mechanics.compile_cache import library
 from rr_opt.threads import in_threads
-
-Indices = NDArray[np.int64]
 
 _FLAGS = (
     *("-O2", "-march=native", "-fno-math-errno", "-fno-trapping-math"),
     *("-ffp-contract=fast", "-fPIC", "-shared"),
 )
+
+FINE = 4
+"""Of so many steps between two samples, the slope in the middle is enough for derivatives."""
 
 _WORTH = 1000
 """Steps; what has fewer is done before a thread has begun."""
@@ -54,7 +54,8 @@ class Rows:
 
     inputs, at, each, p, states  as `Compiled.predict` takes and gives them
     wanted  (np, nq) dp/dq
-    moved   d(drive)/dq at the samples (drive, samples, nq) and at the nodes (drive, 3, steps, nq)
+    moved   d(drive)/dq at the samples (drive, samples, k) and at the nodes (drive, 3, steps, k), of
+            those q that move it, and which they are (k,)
     data, weight  (samples, channels) what was recorded, and 1/sigma, 0 where nothing was
     more    (samples, channels, k) further columns
     """
@@ -65,7 +66,7 @@ class Rows:
     p: Array
     states: Array
     wanted: Array
-    moved: tuple[Array, Array] | None
+    moved: tuple[Array, Array, Indices] | None
     data: Array
     weight: Array
     more: Array | None = None
@@ -131,12 +132,13 @@ class Compiled:
         for run, (gram, end) in zip(runs, out, strict=True):
             moved = {}
             if moving.size:
-                at, nodes = run.moved or (
-                    np.zeros((drive, len(run.data), nq)),
-                    np.zeros((drive, 3, len(run.inputs), nq)),
-                )
-                moved["moved_at"] = at[:, :, moving].transpose(1, 0, 2)
-                moved["moved"] = nodes[:, :, :, moving].transpose(2, 1, 0, 3)
+                at = np.zeros((len(run.data), drive, moving.size))
+                nodes = np.zeros((len(run.inputs), 3, drive, moving.size))
+                if run.moved:
+                    own = np.searchsorted(moving, run.moved[2])
+                    at[:, :, own] = run.moved[0].transpose(1, 0, 2)
+                    nodes[:, :, :, own] = run.moved[1].transpose(2, 1, 0, 3)
+                moved = {"moved_at": at, "moved": nodes}
             if extras:
                 moved["more"] = run.more
             held.append(
@@ -187,15 +189,8 @@ class Compiled:
 
 def _moving(runs: Sequence[Rows]) -> Indices:
     """The columns of q that move the drive of any run (k,)."""
-    changes = [run.moved for run in runs if run.moved]
-    if not changes:
-        return np.zeros(0, np.int64)
-    moved = np.any([_columns(part) for both in changes for part in both], axis=0)
-    return np.flatnonzero(moved).astype(np.int64)
-
-
-def _columns(changes: Array) -> NDArray[np.bool_]:
-    return np.any(changes.reshape(-1, changes.shape[-1]) != 0, axis=0)
+    moving = [run.moved[2] for run in runs if run.moved]
+    return np.unique(np.concatenate([np.zeros(0, np.int64), *moving]).astype(np.int64))
 
 
 class _Held:
@@ -240,7 +235,7 @@ def source_of(step: ca.Function, rates: ca.Function, seen: ca.Function, *, stiff
     state, drive, p = (rates.numel_in(i) for i in range(3))
     head = {"NX": state, "ND": drive, "NP": p, "NY": seen.numel_out(0)}
     parts = [in_stages(step, "step", (1, 1, 0), "ALONE")]
-    head["K_STEP"] = parts[0].kept[0]
+    head |= {"K_STEP": parts[0].kept[0], "FINE": FINE}
     tables = []
     for name, letter, function in (("rates", "R", rates), ("seen", "S", seen)):
         inputs = function.sx_in()

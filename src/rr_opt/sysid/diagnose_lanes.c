@@ -282,9 +282,6 @@ static void linear_step(const Group* group, const Asked* asked, const Room* room
 
 #else
 
-/* From so many steps between two samples the slope in the middle of a step is enough. */
-#define FINE 4
-
 /* The derivative of a step: of a fine one by the midpoint rule along its chord, of others of the
    classical Runge-Kutta step itself, whose stages' rates are worked out with their derivatives. */
 static void linear_step(const Group* group, const Asked* asked, const Room* room, long long k,

@@ -10,16 +10,17 @@ further columns, and last what the prediction is off.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+import itertools
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rr_opt.array import Array
+from rr_opt.array import Array, Indices
 from rr_opt.mechanics.code_generation import ArrayFunction
-from rr_opt.sysid.compiled import Rows
+from rr_opt.sysid.compiled import FINE, Rows
 from rr_opt.sysid.shooting import DrivePath, Path, System, arrays_of, code_of
 
 Jacobian = tuple[Array, Array, Array]
@@ -30,19 +31,21 @@ _STEPS_AT_ONCE = 4000
 
 @dataclass(frozen=True)
 class DriveSlopes:
-    """How the drive changes with what is asked for, by index along the last axis.
+    """How the drive changes with what is asked for and moves it.
 
-    at      (size, samples, nw) at the samples
-    nodes   (size, 3, steps, nw) at the beginning, in the middle and at the end of each step
+    at       (size, samples, k) at the samples
+    nodes    (size, 3, steps, k) at the beginning, in the middle and at the end of each step
+    columns  (k,) which of what is asked for
     """
 
     at: Array
     nodes: Array
+    columns: Indices
 
     def part(self, first: int, last: int, each: int) -> DriveSlopes:
         """From sample `first` to sample `last`, with `each` steps between two samples."""
         nodes = self.nodes[:, :, first * each : last * each]
-        return DriveSlopes(self.at[:, first : last + 1], nodes)
+        return DriveSlopes(self.at[:, first : last + 1], nodes, self.columns)
 
 
 @dataclass(frozen=True)
@@ -97,15 +100,17 @@ def linear(
     system: System, parts: Sequence[Part], p: Array, wanted: Array
 ) -> Iterator[LinearMotion]:
     """The motion linearised along predicted paths, of all or of none of which the drive changes,
-    and likewise with hats.
+    with the same of what is wanted, and likewise with hats.
 
     wanted  (np, nw) how p changes with what is asked for
     """
-    for some in _at_once(parts):
-        yield from _linear(system, some, p, wanted)
+    for fine, alike in itertools.groupby(parts, lambda one: one.path.each >= FINE):
+        how = _frozen if system.stiff else _chords if fine else _stages
+        for some in _at_once(alike):
+            yield from _linear(how, system, some, p, wanted)
 
 
-def _at_once(parts: Sequence[Part]) -> Iterator[Sequence[Part]]:
+def _at_once(parts: Iterable[Part]) -> Iterator[Sequence[Part]]:
     """As many as fill an array that is worth a call, and no more memory than there is."""
     some, steps = [], 0
     for one in parts:
@@ -119,10 +124,13 @@ def _at_once(parts: Sequence[Part]) -> Iterator[Sequence[Part]]:
 
 
 def _linear(
-    system: System, parts: Sequence[Part], p: Array, wanted: Array
+    how: Callable[[_Along], tuple[Array, Array]],
+    system: System,
+    parts: Sequence[Part],
+    p: Array,
+    wanted: Array,
 ) -> Iterator[LinearMotion]:
     size, nd = parts[0].made.states.shape[0], parts[0].path.at.shape[0]
-    how = _frozen if system.stiff else _stages
     A, B = how(_Along(system, parts, p, wanted))
     at = np.hstack([one.made.states[:, :: one.path.each] for one in parts])
     drive = np.hstack([one.path.at for one in parts])
@@ -133,7 +141,7 @@ def _linear(
     by_wanted = by_p @ wanted
     if parts[0].drive_by is not None:
         moved = _joined([one.drive_by.at for one in parts if one.drive_by], 1)
-        by_wanted = by_wanted + np.einsum("sid,dsw->siw", by_drive, moved)
+        by_wanted[:, :, parts[0].drive_by.columns] += np.einsum("sid,dsw->siw", by_drive, moved)
     step = sample = 0
     for one in parts:
         steps, samples = one.path.h.size, one.path.at.shape[1]
@@ -197,7 +205,7 @@ class _Along:
 
     @cached_property
     def drive_by(self) -> Array | None:
-        """How the drive changes (size, 3, steps, nw)."""
+        """How the drive changes (size, 3, steps, k)."""
         some = [one.drive_by.nodes for one in self.parts if one.drive_by]
         return _joined(some, 2) if some else None
 
@@ -217,7 +225,8 @@ class _Along:
         fx, fd, fp = jacobian
         force = fp @ self.wanted
         if self.drive_by is not None:
-            force = force + np.einsum("sid,dsw->siw", fd, self.drive_by[:, node])
+            moving = self.parts[0].drive_by.columns
+            force[:, :, moving] += np.einsum("sid,dsw->siw", fd, self.drive_by[:, node])
         if self.hats is None:
             return np.concatenate([fx, force], axis=2)
         hat = fd[:, :, self.hats.rows]
@@ -247,6 +256,15 @@ def _stages(along: _Along) -> tuple[Array, Array]:
         return along.both(along.jacobian(x + reach * h * slopes[k], along.nodes[:, node]), node)
 
     return _combined(h, len(x), both)
+
+
+def _chords(along: _Along) -> tuple[Array, Array]:
+    """Transition matrices of fine steps: the midpoint rule along their chords."""
+    (before, after), h = along.ends, along.h[:, None, None]
+    size = len(before)
+    both = h * along.both(along.jacobian((before + after) / 2, along.nodes[:, 1]), 1)
+    z, push = both[:, :, :size], both[:, :, size:]
+    return np.eye(size) + z + z @ z / 2, push + z @ push / 2
 
 
 def _combined(h: Array, size: int, both: Callable[[int, float], Array]) -> tuple[Array, Array]:
@@ -348,9 +366,9 @@ def gram_of(*columns: Array) -> Array:
 
 def _rows(one: Sought) -> Rows:
     by, path = one.drive_by, one.path
-    moved = (by.at, by.nodes) if by else None
     return Rows(
-        *(path.inputs, path.at, path.each, one.p, one.made.states, one.wanted, moved),
+        *(path.inputs, path.at, path.each, one.p, one.made.states, one.wanted),
+        (by.at, by.nodes, by.columns) if by else None,
         *(one.recorded.values, one.recorded.weight, one.more),
     )
 

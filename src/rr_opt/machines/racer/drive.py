@@ -1,8 +1,9 @@
 """The joint's angle in a run, its steps, and how it changes with what the servo does wrong."""
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections import deque
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -22,8 +23,8 @@ _APART = 1e-6
 """A jump of dphi so near to an end of a step, s, is at it."""
 _MOST = 3
 """Between two samples; more of them are in a gap of the recording."""
-_KEPT = 512
-"""Drives."""
+_KEPT, _SEEN, _WORTH = 1024, 12, 200
+"""Drives, and paths of them with so many samples at least."""
 
 
 @dataclass(frozen=True)
@@ -105,6 +106,7 @@ class Drives:
     def __init__(self, runs: Sequence[Run]) -> None:
         self._runs = runs
         self._kept: dict[Made, Drive] = {}
+        self._seen: deque[tuple[Made, Array, Array]] = deque(maxlen=_SEEN)
 
     def of(self, run: int, given: Mapping[str, float], effects: tuple[str, ...]) -> Drive:
         """The angle that the servo makes of the gait commanded in a run."""
@@ -127,17 +129,53 @@ class Drives:
             )
             for run, given in asked
         ]
-        new = [key for key in dict.fromkeys(keys) if key not in self._kept]
-        drives = [commanded(self._runs[k].gait, self._runs[k].start == "rest") for k, _, _ in new]
-        joints = [joint for _, _, joint in new]
-        for n, name in enumerate(moving):
-            values = [dict(own[n][1]) for _, own, _ in new]
-            drives = CATALOGUE[name].actuated(drives, values, joints)
-        self._kept |= dict(zip(new, drives, strict=True))
+        self._make(keys)
         found = [self._kept[key] for key in keys]
         for oldest in list(self._kept)[: max(len(self._kept) - _KEPT, 0)]:
             del self._kept[oldest]
         return found
+
+    def _make(self, keys: Sequence[Made]) -> None:
+        """Make those that are not kept, from those without their last effect; all have the same
+        effects."""
+        new = [key for key in dict.fromkeys(keys) if key not in self._kept]
+        if not new:
+            return
+        last = len(new[0][1]) - 1
+        if last < 0:
+            runs = [self._runs[run] for run, _, _ in new]
+            drives = [commanded(run.gait, run.start == "rest") for run in runs]
+        else:
+            before: list[Made] = []
+            for run, own, joint in new:
+                free = any(CATALOGUE[name].frees_joint for name, _ in own[:last])
+                before.append((run, own[:last], joint if free else None))
+            self._make(before)
+            effect, values = (
+                CATALOGUE[new[0][1][last][0]],
+                [dict(own[last][1]) for _, own, _ in new],
+            )
+            commands = [replace(self._kept[b], at=self._remembered(b)) for b in before]
+            drives = effect.actuated(commands, values, [joint for _, _, joint in new])
+        self._kept |= dict(zip(new, drives, strict=True))
+
+    def _remembered(self, key: Made) -> Callable[[Array], Array]:
+        """What a drive is at the times that were asked for last: to see how it changes with values
+        of an effect, what the effect begins from is asked for again and again."""
+        at = self._kept[key].at
+
+        def again(t: Array) -> Array:
+            if np.size(t) < _WORTH:
+                return at(t)
+            for other, times, path in self._seen:
+                if other == key and np.array_equal(times, t):
+                    return path
+            path = at(t)
+            path.flags.writeable = False
+            self._seen.append((key, np.asarray(t), path))
+            return path
+
+        return again
 
 
 def drive_slopes(
@@ -162,9 +200,9 @@ def drive_slopes(
         return drive_path(drive, steps, late, mean=not here.smooth)
 
     path = path_at(given)
-    at = np.zeros((*path.at.shape, len(wanted)))
-    nodes = np.zeros((*path.nodes.shape, len(wanted)))
-    for k, name in moving:
+    at = np.empty((*path.at.shape, len(moving)))
+    nodes = np.empty((*path.nodes.shape, len(moving)))
+    for k, (_, name) in enumerate(moving):
         low, high = _ends(name, given)
         ends = [path_at({**given, name: value}) for value in (low, high)]
         at[:, :, k] = (ends[1].at - ends[0].at) / (high - low)
@@ -174,7 +212,7 @@ def drive_slopes(
         # integrates to is the change of phi.
         rise = (nodes[0, 2, 0] - nodes[0, 0, 0]) / path.h[0]
         at[1, 0] = nodes[1, :2, 0] = (6 * rise - nodes[1, 2, 0]) / 5
-    return DriveSlopes(at, nodes)
+    return DriveSlopes(at, nodes, np.array([k for k, _ in moving]))
 
 
 def lateness(given: Mapping[str, float], effects: tuple[str, ...]) -> float:

@@ -132,7 +132,7 @@ def linearised_inputs(
         own = simulator.drive_slopes(segment, given, mechanical, wanted)
         rows = np.append(len(path.at) + np.arange(FURTHER), (0, 1))
         every.append(drives)
-        own = own and _widened(DriveSlopes(own.at, _sampled(own.nodes, each)))
+        own = own and _widened(DriveSlopes(own.at, _sampled(own.nodes, each), own.columns))
         parts.append(Part(plain, made, own, Hats(rows, _passed(moments))))
     how = [*linear(system, parts, p, by)]
     for request, part, (seen, end) in zip(requests, parts, _carried(how, every), strict=True):
@@ -199,7 +199,7 @@ def _widened(own: DriveSlopes) -> DriveSlopes:
     at, nodes = (
         np.concatenate([part, np.zeros((FURTHER, *part.shape[1:]))]) for part in (own.at, own.nodes)
     )
-    return DriveSlopes(at, nodes)
+    return DriveSlopes(at, nodes, own.columns)
 
 
 def _sampled(nodes: Array, each: int) -> Array:
