@@ -54,7 +54,7 @@ class Slip:
     noise: tuple[float, float]
     along: Array
 
-    @property
+    @cached_property
     def size(self) -> float:
         """Root mean square, in noise; what is off for a moment counts as three times the usual.
 
