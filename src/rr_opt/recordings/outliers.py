@@ -125,13 +125,14 @@ def outliers(t: Array, y: Array, sigma: Array) -> Outliers:
     """The outliers of y (n,) at t (n,), s; NaN is no sample. sigma: (n,), as stated."""
     suspect = np.zeros(len(y), bool)
     known = np.isfinite(y)
+    noise = noise_of(y)
     if known.sum() < 4 or not np.nanmax(np.abs(y)) < 1e12:
-        return Outliers(suspect, noise_of(y), float(np.median(sigma)))
+        return Outliers(suspect, noise, float(np.median(sigma)))
     scale, sigma = 1.0, bounded(y, sigma)
     usual = float(np.median(sigma))
-    for _ in range(3):
+    for again in range(3):
         left = np.where(suspect, np.nan, y)
-        noise = noise_of(left)
+        noise = noise_of(left) if again else noise
         least = max(_LEAST, 1e-6 * float(np.nanstd(y)) / usual)
         scale = max(noise.sigma / usual, least) if np.isfinite(noise.sigma) else 1.0
         ratio = strength(left, scale * usual)
