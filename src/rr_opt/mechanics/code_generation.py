@@ -182,20 +182,20 @@ def over_arrays(function: ca.Function) -> ArrayFunction:
     """
     starts = np.cumsum([0, *(function.nnz_in(i) for i in range(function.n_in()))])
     ends = np.cumsum([0, *(function.nnz_out(i) for i in range(function.n_out()))])
-    steps: list[tuple[Any, int, tuple[int, ...], float]] = []
+    steps: list[tuple[Any, int, Any, int | None]] = []
     for k in range(function.n_instructions()):
         code = function.instruction_id(k)
         out, args = function.instruction_output(k), function.instruction_input(k)
         if code == ca.OP_INPUT:
-            steps.append((_READ, out[0], (int(starts[args[0]] + args[1]),), 0.0))
+            steps.append((_READ, out[0], int(starts[args[0]] + args[1]), None))
         elif code == ca.OP_CONST:
-            steps.append((_CONSTANT, out[0], (), function.instruction_constant(k)))
+            steps.append((_CONSTANT, out[0], np.float64(function.instruction_constant(k)), None))
         elif code == ca.OP_OUTPUT:
-            steps.append((_WRITE, int(ends[out[0]] + out[1]), (args[0],), 0.0))
+            steps.append((_WRITE, int(ends[out[0]] + out[1]), args[0], None))
         elif code in _BINARY:
-            steps.append((_BINARY[code][0], out[0], (args[0], args[1]), 0.0))
+            steps.append((_BINARY[code][0], out[0], args[0], args[1]))
         elif code in _UNARY:
-            steps.append((_UNARY[code][0], out[0], (args[0],), 0.0))
+            steps.append((_UNARY[code][0], out[0], args[0], None))
         else:
             raise NotImplementedError(f"operation {code} of {function.name()} has no array form")
 
@@ -204,15 +204,17 @@ def over_arrays(function: ca.Function) -> ArrayFunction:
     def evaluate(*arguments: ArrayLike) -> list[NDArray[np.float64]]:
         register: list = [None] * function.sz_w()
         results: list = [np.float64(0.0)] * int(ends[-1])
-        for apply, where, sources, number in steps:
-            if apply is _READ:
-                register[where] = arguments[sources[0]]
+        for apply, where, one, two in steps:
+            if two is not None:
+                register[where] = apply(register[one], register[two])
+            elif apply is _READ:
+                register[where] = arguments[one]
             elif apply is _CONSTANT:
-                register[where] = np.float64(number)
+                register[where] = one
             elif apply is _WRITE:
-                results[where] = register[sources[0]]
+                results[where] = register[one]
             else:
-                register[where] = apply(*[register[source] for source in sources])
+                register[where] = apply(register[one])
         return results
 
     return evaluate

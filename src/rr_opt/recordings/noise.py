@@ -59,7 +59,7 @@ class NoiseEstimate:
 def noise_of(y: Array) -> NoiseEstimate:
     """The noise of y (n,), samples at equal steps, NaN where there is none."""
     quick, slow = _differences(y, 1), _differences(y, 2)
-    sigma, slower = _spread(quick), _spread(slow)
+    sigma, slower = float(_spread(quick)), float(_spread(slow))
     known = int(np.isfinite(quick).sum())
     if not sigma > 0 or not slower > 0:
         return NoiseEstimate(sigma, math.nan, slower, math.nan)
@@ -67,45 +67,51 @@ def noise_of(y: Array) -> NoiseEstimate:
     relative = math.sqrt(_OVERLAP / (2 * known))
     if pieces < 4:
         return NoiseEstimate(sigma, sigma * relative, slower, math.nan)
-    ratios = []
-    for part in np.array_split(np.arange(len(quick)), pieces):
-        one, two = _spread(quick[part]), _spread(slow[part[part < len(slow)]])
-        if one > 0 and two > 0:
-            ratios.append((math.log(one), math.log(two / one)))
     p_white, between = math.nan, relative
-    if len(ratios) >= 4:
-        both = np.array(ratios)
-        spread = both.std(axis=0, ddof=1) / math.sqrt(len(both))
+    spreads = _spread(np.stack([_in_pieces(one, len(quick), pieces) for one in (quick, slow)]))
+    one, two = spreads[:, (spreads > 0).all(axis=0)]
+    if len(one) >= 4:
+        both = np.log([one, two / one])
+        spread = both.std(axis=1, ddof=1) / math.sqrt(len(one))
         between = max(float(spread[0]), relative)
-        p_white = float(2 * stdtr(len(both) - 1, -abs(both[:, 1].mean()) / max(spread[1], 1e-12)))
+        p_white = float(2 * stdtr(len(one) - 1, -abs(both[1].mean()) / max(spread[1], 1e-12)))
     return NoiseEstimate(sigma, sigma * between, slower, p_white)
+
+
+def _in_pieces(d: Array, n: int, pieces: int) -> Array:
+    """d (m,), the first of n places, in rows that are as long as each other but for a NaN."""
+    width = -(-n // pieces)
+    whole = np.concatenate([d, np.full(n - len(d), np.nan)])
+    ends = n - (width - 1) * np.arange(width * pieces - n)
+    return np.insert(whole, ends, np.nan).reshape(pieces, width)
 
 
 def spread_at(y: Array, stride: int) -> float:
     """The noise of y (n,) as differences over `stride` samples have it; NaN where it cannot."""
-    return _spread(_differences(y, stride))
+    return float(_spread(_differences(y, stride)))
 
 
 def _differences(y: Array, stride: int) -> Array:
-    """Sixth differences over `stride` samples, scaled to the noise's standard deviation."""
+    """Sixth differences over `stride` samples, scaled to the noise's standard deviation; NaN if
+    there are none."""
     n = len(y) - _ORDER * stride
     if n < 1:
-        return np.empty(0)
+        return np.full(1, np.nan)
     total = np.zeros(n)
     for i, sign in enumerate(_SIGNS):
         total += sign * y[i * stride : i * stride + n]
     return total / _NORM
 
 
-def _spread(d: Array) -> float:
-    """Standard deviation of the bulk of d, whatever the rest is; NaN for fewer than 10."""
-    d = np.abs(d[np.isfinite(d)])
-    if len(d) < 10:
-        return math.nan
-    sigma = float(np.median(d)) / 0.6745
+def _spread(d: Array) -> Array:
+    """Standard deviation of the bulk of d (..., n), whatever the rest is; NaN for fewer than 10."""
+    d = np.sort(np.where(np.isfinite(d), np.abs(d), np.nan))  # NaN last
+    known = np.isfinite(d).sum(axis=-1, keepdims=True)
+    middle = np.concatenate([(known - 1) // 2, known // 2], axis=-1)
+    sigma = np.take_along_axis(d, middle, axis=-1).mean(axis=-1, keepdims=True) / 0.6745
+    squares = np.cumsum(d**2, axis=-1)
     for _ in range(5):
-        inside = d[d <= _CUT * sigma]
-        if not len(inside) or not sigma > 0:
-            break
-        sigma = float(np.sqrt(np.mean(inside**2) / _KEPT))
-    return sigma
+        inside = (d <= _CUT * sigma).sum(axis=-1, keepdims=True)
+        square = np.take_along_axis(squares, inside - 1, axis=-1)
+        sigma = np.sqrt(square / (np.maximum(inside, 1) * _KEPT))
+    return np.where(known < 10, np.nan, sigma)[..., 0]

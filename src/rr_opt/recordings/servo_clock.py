@@ -11,7 +11,6 @@ from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 import numpy as np
-from scipy.interpolate import CubicHermiteSpline
 
 from rr_opt.array import Array
 from rr_opt.model.experiment import Recording, Start
@@ -98,6 +97,9 @@ def against_log(
     leaves whole periods open, so there may be many; the longest overlap is first. near: offsets, s,
     about which one is tried in any case. None at all if the two share no motion.
     """
+    # Here and not above: only servo logs need it.
+    from scipy.interpolate import CubicHermiteSpline
+
     angle = log.present_angle if log.present_angle is not None else log.goal_angle
     if angle is None:
         return ()

@@ -14,6 +14,7 @@ come back in the opposite order. Both are exact for any times and gaps, without 
 
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import lru_cache
 from math import factorial
 
 import numpy as np
@@ -54,13 +55,20 @@ def innovations(y: Array, ratio: float) -> tuple[Array, float]:
     the covariances of a quintic B-spline, times ratio, and of the third difference of white noise;
     their spectral factor is what whitens it.
     """
+    factor, variance = _spectral_factor(ratio)
+    return _whitened(y, factor), variance
+
+
+@lru_cache(maxsize=64)
+def _spectral_factor(ratio: float) -> tuple[Array, float]:
+    """What whitens a third difference (4,), and the variance of the innovations; see above."""
     covariances = np.zeros(2 * ORDER + 1)
     covariances[1:-1] = ratio * np.array([1.0, 26.0, 66.0, 26.0, 1.0]) / 120
     covariances += np.array([-1.0, 6.0, -15.0, 20.0, -15.0, 6.0, -1.0])
     roots = np.roots(covariances)
     factor = np.poly(roots[np.argsort(np.abs(roots))[:ORDER]]).real
     # The outermost covariance, -1, is the variance times the factor's last coefficient.
-    return _whitened(y, np.asarray(factor, float)), float(-1 / factor[-1])
+    return np.asarray(factor, float), float(-1 / factor[-1])
 
 
 def _whitened(y: Array, factor: Array) -> Array:

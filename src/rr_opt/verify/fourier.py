@@ -233,21 +233,26 @@ def solve_stiff(a: Array, b: Array, span: Array) -> tuple[Array, Array]:
     n, h = len(a), span / len(a)
     A, mean = _exponent(a, frequencies(n, span))
     # Clipped: where a step is stiffer, v is only as good as the samples are dense.
-    gain = np.exp(np.clip(np.roll(A, -1, axis=0) - A + mean * h, -10.0, 1.0))
+    gain = np.exp(np.clip(_ahead(A, 1) - A + mean * h, -10.0, 1.0))
     # exp of what a gathers from each near sample to the end of the step, one gain at a time.
-    next1, next2, last1, last2 = (np.roll(gain, k, axis=0) for k in (-1, -2, 1, 2))
+    next1, next2, last1, last2 = (_ahead(gain, k) for k in (1, 2, -1, -2))
     factors = (gain * last1 * last2, gain * last1, gain, 1.0, 1 / next1, 1 / (next1 * next2))
     shift = np.zeros_like(a)
     for k, weight, factor in zip(_NEAR, _WEIGHTS, factors, strict=True):
-        shift += weight * factor * np.roll(b, -k, axis=0)
+        shift += weight * factor * _ahead(b, k)
     shift *= h
     steps = 1
     while steps < n:
-        later = np.roll(gain, -steps, axis=0)
-        shift = later * shift + np.roll(shift, -steps, axis=0)
+        later = _ahead(gain, steps)
+        shift = later * shift + _ahead(shift, steps)
         gain = later * gain
         steps *= 2
     return shift / (1 - gain), mean
+
+
+def _ahead(x: Array, k: int) -> Array:
+    """The cyclic samples x (n, K) from k steps later; np.roll takes as long as the arithmetic."""
+    return np.concatenate([x[k:], x[:k]])
 
 
 def _exponent(a: Array, omega: Spectrum) -> tuple[Array, Array]:

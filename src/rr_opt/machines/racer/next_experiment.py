@@ -142,9 +142,9 @@ def _planned(
         )
         return racer.beside(replace(racer.experiment, runs=runs))
 
-    empty = made([np.zeros((t.size, len(CHANNELS))) for t in times])
+    empty, middle = made([np.zeros((t.size, len(CHANNELS))) for t in times]), _middle(racer)
     requests = [
-        Request(one, best.values, _begun(racer, best, empty, one, plan))
+        Request(one, best.values, _begun(racer, best, empty, one, plan, middle))
         for one, plan in zip(_whole(times), plans, strict=True)
     ]
     every = empty.simulator.paths(requests, best.effects)
@@ -156,10 +156,16 @@ def _whole(times: Sequence[Array]) -> list[Segment]:
     return [Segment(k, 0, t.size, t.size - 1) for k, t in enumerate(times)]
 
 
-def _begun(racer: RacerModel, best: Fit, empty: RacerModel, segment: Segment, plan: _Plan) -> Array:
-    """In the middle of the floor there is; running robots are as fast as the recorded ones."""
+def _middle(racer: RacerModel) -> Array:
+    """Of the floor there is (2,), m."""
     ends = np.vstack([run.values[np.isfinite(run.values[:, 0])][:, :2] for run in racer.runs])
-    middle = (np.nanmin(ends, axis=0) + np.nanmax(ends, axis=0)) / 2
+    return (np.nanmin(ends, axis=0) + np.nanmax(ends, axis=0)) / 2
+
+
+def _begun(
+    racer: RacerModel, best: Fit, empty: RacerModel, segment: Segment, plan: _Plan, middle: Array
+) -> Array:
+    """In the middle of the floor; running robots are as fast as the recorded ones."""
     z = 0.0 if plan.start == "rest" else racer.setting.speed
     plain = Request(segment, best.values, np.array([*middle, plan.heading, z]))
     return empty.simulator.converted(plain, (), best.effects)
@@ -181,7 +187,8 @@ def _linearised(
         requests = problem.requests(values, begun)
         return dict(zip(cut, planned.simulate(requests, problem.effects), strict=True))
 
-    made = made_from(states)
+    # Of plans that are predictions the states are known, and an undivided run needs no more.
+    made = {} if begun else made_from(states)
     for _ in range(0 if begun else _STATE_STEPS):
         linear = Linear.of(problem, values, states, made)
         moved = linear.moved(linear.evidences(problem.q), np.zeros(len(problem.names)))

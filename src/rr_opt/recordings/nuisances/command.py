@@ -30,17 +30,26 @@ def look_at_clock(given: ExaminedRecording) -> Iterator[Notice]:
     t, phi = given.t, given.motion[3]
     known = np.isfinite(phi)
     usual = given.gait.period if given.gait else dominant(t, phi)[0]
+    seen, angle = t[known], phi[known]
+    edges = np.concatenate([t[:1], seen, t[-1:]])
+    gaps = np.flatnonzero(np.diff(edges) >= _GAP * usual)
     for length in _LENGTHS if usual > 0 else ():
         starts = np.arange(t[0], t[-1] - length * usual, max(usual / 4, (t[-1] - t[0]) / 400))
         ends = starts + length * usual
-        pieces = [known & (t >= a) & (t <= b) for a, b in zip(starts, ends, strict=True)]
-        gaps = [np.diff(t[one], prepend=a, append=b).max()
-                for one, a, b in zip(pieces, starts, ends, strict=True)]  # fmt: skip
-        found = [
-            dominant(t[one], phi[one]) if gap < _GAP * usual else (np.nan, 0.0)
-            for one, gap in zip(pieces, gaps, strict=True)
-        ]
-        periods = np.array([period if share > _SINE else np.nan for period, share in found])
+        unseen = np.minimum.outer(ends, edges[gaps + 1]) - np.maximum.outer(starts, edges[gaps])
+        first, last = np.searchsorted(seen, starts), np.searchsorted(seen, ends, "right")
+        pieces = {
+            row: (seen[first[row] : last[row]], angle[first[row] : last[row]])
+            for row in np.flatnonzero((unseen < _GAP * usual).all(axis=1))
+        }
+        periods = np.full(len(starts), np.nan)
+        for row, piece in pieces.items():
+            periods[row] = period_of(*piece)
+        if not np.nanmax(periods, initial=0) > (1 + _LEAST) * np.nanmin(periods, initial=np.inf):
+            continue
+        for row, piece in pieces.items():
+            if not dominant(*piece)[1] > _SINE:
+                periods[row] = np.nan
         if at := _change(np.log(periods)):
             before, after = (float(np.nanmedian(one)) for one in (periods[:at], periods[at:]))
             when = _moment(t, phi, before, after, starts[at - 1])
@@ -94,11 +103,21 @@ def dominant(t: Array, y: Array) -> tuple[float, float]:
 
     NaN is no sample. The second is the part of y's variance; both are NaN where there are too few.
     """
+    period = period_of(t, y)
+    return period, explained(*_looked_at(t, y), period) if np.isfinite(period) else np.nan
+
+
+def _looked_at(t: Array, y: Array) -> tuple[Array, Array]:
     known = np.isfinite(y) & (t <= t[0] + _LONGEST)
-    if known.sum() < 8:
-        return np.nan, np.nan
-    t, y = t[known], y[known]
+    return t[known], y[known]
+
+
+def period_of(t: Array, y: Array) -> float:
+    """The first of `dominant` alone."""
+    t, y = _looked_at(t, y)
     n = min(len(t), _FINEST)
+    if n < 8:
+        return np.nan
     even = np.linspace(t[0], t[-1], n)
     z = np.interp(even, t, y)
     z = (z - z.mean()) * np.hanning(n)
@@ -106,13 +125,13 @@ def dominant(t: Array, y: Array) -> tuple[float, float]:
     # Less than one and a half turns in all is a trend, and no period.
     first = int(1.5 * _PADDED)
     if len(power) < first + 3 or not power[first:].max() > 0:
-        return np.nan, np.nan
+        return np.nan
     at = first + int(np.argmax(power[first:-1]))
     low, peak, high = np.log(np.maximum(power[at - 1 : at + 2], 1e-300))
     bend = low - 2 * peak + high
     off = 0.5 * (low - high) / bend if bend < 0 else 0.0
-    rate = (at + float(np.clip(off, -0.5, 0.5))) / (_PADDED * n * (even[1] - even[0]))
-    return 1 / rate, explained(t, y, 1 / rate)
+    rate = (at + min(max(off, -0.5), 0.5)) / (_PADDED * n * (even[1] - even[0]))
+    return float(1 / rate)
 
 
 def explained(t: Array, y: Array, period: float) -> float:

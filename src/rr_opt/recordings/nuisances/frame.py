@@ -56,6 +56,8 @@ def look_twice(given: ExaminedRecording) -> Iterator[Notice]:
 def _found(
     given: ExaminedRecording, tried: Mapping[str, Motion], *, units: bool = False
 ) -> Iterator[Notice]:
+    if given.slip.size < ROLLING:
+        return
     left = {
         name: given.explains(motion) for name, motion in tried.items() if follows(given, motion[3])
     }

@@ -10,7 +10,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.integrate import cumulative_trapezoid
 
 from rr_opt.array import Array
 from rr_opt.model.gait import Gait
@@ -94,8 +93,8 @@ def initial(given: ExaminedRecording, robot: Robot, gait: Gait) -> Initial | Non
         return None
     grid = np.linspace(0.0, gait.period, len(rest))
     speed = np.interp(t, grid, rest)
-    way = np.interp(t, grid, cumulative_trapezoid(rest, grid, initial=0))
-    more = np.interp(t, grid, cumulative_trapezoid(driving - rest, grid, initial=0)) / _SPEED
+    way = np.interp(t, grid, _ways(grid, rest))
+    more = np.interp(t, grid, _ways(grid, driving - rest)) / _SPEED
     steady = _STEADY * float(np.abs(speed).max()) / (t[-1] - t[0])
     A = np.column_stack([more, way, speed, t**2 / 2, np.ones(n)]) / given.sigma[0]
     b = (np.concatenate([[0.0], np.cumsum(rolled)]) - way) / given.sigma[0]
@@ -111,6 +110,11 @@ def initial(given: ExaminedRecording, robot: Robot, gait: Gait) -> Initial | Non
         of = np.array([1.0, -jump, 0.0, 0.0, 0.0])
         allowed.append((jump * (1 + found[1]), float(np.sqrt(of @ covariance @ of))))
     return Initial(float(found[0]), tuple(allowed))
+
+
+def _ways(t: Array, speed: Array) -> Array:
+    """How far something has come at t (n,), s, with a speed (n,), m/s, that changes linearly."""
+    return np.concatenate([[0.0], np.cumsum(np.diff(t) * (speed[1:] + speed[:-1]) / 2)])
 
 
 def _jump(robot: Robot, gait: Gait) -> float:

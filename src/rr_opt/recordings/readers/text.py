@@ -186,10 +186,14 @@ def read_table(
     cut = cut and text.lines[rows[-1]].count(separator) < width - 1
     doubts = [notice("file.cut", line=rows.pop() + 1)] if cut else []
     values = np.full((len(rows), width), np.nan)
+    numbers = _numbers_alone([text.lines[at] for at in rows], separator) if rows else values
+    told = numbers.shape == values.shape
+    if told:
+        values = numbers
     wrong: list[tuple[int, str]] = []
     mistakes = 0
     short: list[int] = []
-    for row, at in enumerate(rows):
+    for row, at in enumerate([] if told else rows):
         line = text.lines[at]
         cells = (line if separator == "," else line.replace(",", ".")).split(separator)
         messages: list[str] = []
@@ -222,6 +226,14 @@ def read_table(
         doubts.append(notice("file.infinite", rows=_rows_text(lines[endless.any(axis=1)].tolist())))
         values[endless] = np.nan
     return NumberTable(values, lines, tuple(doubts))
+
+
+def _numbers_alone(lines: Sequence[str], separator: str) -> Array:
+    """The numbers (n, columns) of rows that hold nothing else; empty if some hold more, or less."""
+    try:
+        return np.loadtxt(lines, delimiter=separator, comments=None, ndmin=2)
+    except ValueError:
+        return np.empty((0, 0))
 
 
 def _rows_text(lines: Sequence[int]) -> str:
