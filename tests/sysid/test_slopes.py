@@ -56,7 +56,7 @@ def path(rows: int, each: int) -> DrivePath:
 
 CASES = {
     "smooth": (pendulum(), path(2, 1), [0.4, -0.2], [9.0, 0.3], 1e-8),
-    "fine": (pendulum(), path(2, 4), [0.4, -0.2], [9.0, 0.3], 2e-5),
+    "fine": (pendulum(), path(2, 4), [0.4, -0.2], [9.0, 0.3], 1e-4),
     "stiff": (stiff(), path(3, 4), [0.4, 0.1], [0.5, 0.7], 2e-2),
     "racer": (racer(), path(2, 1), [0.1, 0.2, 0.3, 0.05], None, 1e-7),
 }

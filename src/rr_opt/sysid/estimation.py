@@ -471,7 +471,8 @@ def solve(
     """The best values and states, by Gauss-Newton steps within the quantities' bounds and a
     trust region.
 
-    tolerance  expected gain, in nats, or relative to the cost, below which a fit has converged
+    tolerance  expected gain, in nats, below which a fit has converged
+    relative   the same as a share of what is left beyond the noise
     enough     deviance that is of interest; a fit that would not come there at its pace is given up
     known      the linearisation there, of this problem or of one with other process noise
     """
@@ -488,7 +489,7 @@ def solve(
     linear = replace(known, problem=problem) if known else here.linear()
     evidences = linear.evidences(problem.q)
     for step in range(steps):
-        least = max(tolerance, relative * here.cost)
+        least = max(tolerance, relative * (here.cost - sum(problem.degrees.values())))
         better, expected = _stepped(linear, evidences, here, trust, least)
         if better is None:
             converged = True
