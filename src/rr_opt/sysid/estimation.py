@@ -591,8 +591,9 @@ def _stepped(
 ) -> tuple[_Point | None, float]:
     """A better point, and the gain expected of the step to it; None where less than `least` is
     expected, or nothing gains. The states of runs that a step makes worse go a share of it."""
-    problem, shares, expected = linear.problem, dict.fromkeys(linear.problem.by_run, 1.0), 0.0
+    problem, expected = linear.problem, 0.0
     low, high = problem.box
+    shares = dict.fromkeys(problem.by_run, 1.0)
     H, g, _ = summed(problem, evidences, here.u)
     for attempt in range(_ATTEMPTS):
         d = _step(H, g, trust.radius, here.u, problem.box)
@@ -602,8 +603,17 @@ def _stepped(
             break
         d = np.clip(trust.stretch * d, low - here.u, high - here.u)
         after = _Point.of(problem, here.u + d, linear.moved(evidences, d, shares))
-        if not problem.names:
-            after = here.joined(after)
+        for less in (0.3, 0.0):
+            if after.cost < here.cost or attempt > 1:
+                break
+            astray = {
+                run: less * shares[run]
+                for run, loss in after.losses.items()
+                if not loss <= max(here.losses[run], losses[run])
+            }
+            part = replace(problem, segments=tuple(s for s in problem.segments if s.run in astray))
+            states = linear.moved(evidences, d, shares | astray)
+            after = after.joined(_Point.of(part, here.u + d, states))
         gain, longest = here.cost - after.cost, float(np.abs(d).max(initial=0.0))
         if gain > 0:
             full = attempt == 0 and math.isfinite(expected)
@@ -704,7 +714,7 @@ def whole_runs(fit: Fit) -> Fit:
     single, states = _whole(fit, fit.problem.by_run, fit.values)
     # What is left has to be known to a fraction of what would be negligible, or of itself.
     enough = 0.1 * SETTINGS.negligible**2 * fit.samples
-    return solve(single, fit.values, states, tolerance=enough, relative=0.02)
+    return solve(single, fit.values, states, tolerance=enough, relative=0.002)
 
 
 def predicted(fit: Fit, runs: Iterable[int], values: Mapping[str, float]) -> Fit:
