@@ -68,8 +68,8 @@ class Settings:
     least_process_noise: float = 0.02
     most_process_noise: float = 1e3
     stride: float = 3.0
-    tolerance: float = 0.01
-    search_tolerance: float = 0.5
+    tolerance: float = 0.001
+    search_tolerance: float = 0.05
     trial_runs: int = 2
     trial_steps: tuple[int, ...] = (1, 3)
     first_steps: int = 4
