@@ -713,8 +713,8 @@ def whole_runs(fit: Fit) -> Fit:
     be predicted: what the model predicts unaided."""
     single, states = _whole(fit, fit.problem.by_run, fit.values)
     # What is left has to be known to a fraction of what would be negligible, or of itself.
-    enough = 0.01 * SETTINGS.negligible**2 * fit.samples
-    return solve(single, fit.values, states, tolerance=enough, relative=0.0002)
+    enough = SETTINGS.known * SETTINGS.negligible**2 * fit.samples
+    return solve(single, fit.values, states, tolerance=enough, relative=SETTINGS.known_share)
 
 
 def predicted(fit: Fit, runs: Iterable[int], values: Mapping[str, float]) -> Fit:

@@ -15,8 +15,11 @@ class Settings:
     most_process_noise    upper end of the grid, which has half decades: segments are independent
     stride                longest step in a quantity, in its scales
     tolerance             nats of deviance that a step has to be expected to gain, or the fit has
-                          converged: its values are within a tenth of a standard deviation
-    search_tolerance      the same for candidates: a tenth of what counts as evidence
+                          converged: its values are within a thirtieth of a standard deviation
+    search_tolerance      the same for candidates: a hundredth of what counts as evidence
+    known                 what simulations of whole runs leave is known to this share of what would be
+                          negligible,
+    known_share           or of itself: a fit that creeps on is not followed any further
     trial_runs            how many runs, those explained worst, initial guesses are tried on
     trial_steps           Gauss-Newton steps for the better half of the guesses, for the better half
                           of those, and so on
@@ -70,6 +73,8 @@ class Settings:
     stride: float = 3.0
     tolerance: float = 0.001
     search_tolerance: float = 0.05
+    known: float = 0.01
+    known_share: float = 0.0002
     trial_runs: int = 2
     trial_steps: tuple[int, ...] = (1, 3)
     first_steps: int = 4
