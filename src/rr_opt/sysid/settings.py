@@ -17,8 +17,8 @@ class Settings:
     tolerance             nats of deviance that a step has to be expected to gain, or the fit has
                           converged: its values are within a thirtieth of a standard deviation
     search_tolerance      the same for candidates: a hundredth of what counts as evidence
-    known                 what simulations of whole runs leave is known to this share of what would be
-                          negligible,
+    known                 what simulations of whole runs leave is known to this share of what would
+                          be negligible,
     known_share           or of itself: a fit that creeps on is not followed any further
     trial_runs            how many runs, those explained worst, initial guesses are tried on
     trial_steps           Gauss-Newton steps for the better half of the guesses, for the better half
