@@ -604,13 +604,13 @@ def _stepped(
         d = np.clip(trust.stretch * d, low - here.u, high - here.u)
         after = _Point.of(problem, here.u + d, linear.moved(evidences, d, shares))
         for less in (0.3, 0.0):
-            if after.cost < here.cost or attempt > 1:
-                break
             astray = {
                 run: less * shares[run]
                 for run, loss in after.losses.items()
                 if not loss <= max(here.losses[run], losses[run])
             }
+            if after.cost < here.cost or attempt > 1 or not astray:
+                break
             part = replace(problem, segments=tuple(s for s in problem.segments if s.run in astray))
             states = linear.moved(evidences, d, shares | astray)
             after = after.joined(_Point.of(part, here.u + d, states))
