@@ -224,9 +224,9 @@ class _Along:
         """fx and f_w side by side (steps, size, size + nw) at a node of all steps."""
         fx, fd, fp = jacobian
         force = fp @ self.wanted
-        if self.drive_by is not None:
-            moving = self.parts[0].drive_by.columns
-            force[:, :, moving] += np.einsum("sid,dsw->siw", fd, self.drive_by[:, node])
+        first = self.parts[0].drive_by
+        if first is not None and self.drive_by is not None:
+            force[:, :, first.columns] += np.einsum("sid,dsw->siw", fd, self.drive_by[:, node])
         if self.hats is None:
             return np.concatenate([fx, force], axis=2)
         hat = fd[:, :, self.hats.rows]
