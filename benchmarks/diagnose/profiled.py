@@ -11,12 +11,11 @@ from pathlib import Path
 from typing import Any
 from unittest.mock import patch
 
-import numpy as np
-
 from rr_opt.machines.racer.racer import RollerRacer
 from rr_opt.recordings.clock_fit import at_commanded_rate
 from rr_opt.recordings.experiment import read_experiment, usable
 from rr_opt.sysid import shooting
+from rr_opt.sysid.compiled import FINE
 from rr_opt.sysid.diagnose import diagnose
 from rr_opt.sysid.shooting import System
 
@@ -75,27 +74,24 @@ def _watched(
         finally:
             spent[name] += time.process_time() - begun
             if isinstance(first, System) and args and isinstance(args[0], Sequence):
-                steps = sum(_steps(one) for one in args[0])
-                done[name] += steps
-                works[name] += steps * _operations(first, name)
+                for one in args[0]:
+                    path = one[0] if isinstance(one, tuple) else one.path
+                    done[name] += path.h.size
+                    works[name] += path.h.size * _operations(first, name, path.each >= FINE)
 
     return watched
 
 
-def _steps(asked: Any) -> int:
-    path = asked[0] if isinstance(asked, tuple) else asked.path
-    return int(np.size(path.h))
+_counts: dict[tuple[System, str, bool], int] = {}
 
 
-_counts: dict[tuple[System, str], int] = {}
-
-
-def _operations(system: System, name: str) -> int:
-    """Operations that CasADi counts in a step: of the step, or of its four (stiff: one) Jacobians.
+def _operations(system: System, name: str, fine: bool) -> int:
+    """Operations that CasADi counts in a step: of the step, or of its four Jacobians, of which fine
+    and stiff steps have one.
 
     What is done with those, some ten more for each quantity that is asked for, is not counted.
     """
-    key = system, name
+    key = system, name, fine
     if key not in _counts:
         if name == "predictions":
             _counts[key] = shooting._step(system).n_instructions()
@@ -105,5 +101,5 @@ def _operations(system: System, name: str) -> int:
             inputs = system.rates.sx_in()
             value = system.rates(*inputs)
             by = ca.Function("by", inputs, ca.cse([value, ca.jacobian(value, ca.vertcat(*inputs))]))
-            _counts[key] = (1 if system.stiff else 4) * by.n_instructions()
+            _counts[key] = (1 if system.stiff or fine else 4) * by.n_instructions()
     return _counts[key]
