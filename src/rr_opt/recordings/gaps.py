@@ -7,11 +7,11 @@ jump they do not.
 
 from dataclasses import dataclass, replace
 from types import MappingProxyType
-from typing import Any
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
+from scipy.ndimage import maximum_filter1d
 
 from rr_opt.array import Array
 from rr_opt.formatting import counted
@@ -82,11 +82,6 @@ def bridged(t: Array, y: Array, longest: float = SHORT) -> Array:
         if a > 0 and b < len(t) and t[b] - t[a - 1] <= longest:
             bridge[a:b] = whole[a:b]
     return bridge
-
-
-def highest(y: NDArray[Any], width: int) -> NDArray[Any]:
-    """The largest of `width` neighbours, an odd number, about each of y (n,)."""
-    return sliding_window_view(np.pad(y, width // 2, mode="edge"), len(y)).max(axis=0)
 
 
 _COPIES = 3
@@ -198,5 +193,5 @@ def jumps(y: Array, sigma: float) -> tuple[Jump, ...]:
     # A kink that is not half way leaves the levels apart by a part of its change of slope.
     beyond = np.maximum(np.abs(size) - _KINK * np.abs(bend), 0.0)
     off = np.nan_to_num(beyond / scales[k])
-    peak = (off > _SURE) & (off >= highest(off, _APART))
+    peak = (off > _SURE) & (off >= maximum_filter1d(off, _APART))
     return tuple(Jump(int(i) + _SIDES[k] - 1, float(size[i])) for i in np.flatnonzero(peak))

@@ -12,10 +12,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import maximum_filter1d
 from scipy.special import ndtri
 
 from rr_opt.array import Array
-from rr_opt.recordings.gaps import highest
 from rr_opt.recordings.noise import NoiseEstimate, noise_of, spread_at
 from rr_opt.recordings.smoothing import bounded, smoothed, strength
 from rr_opt.recordings.time_axis import in_steps
@@ -151,13 +151,14 @@ def _suspects(t: Array, y: Array, sigma: Array, ratio: float) -> NDArray[np.bool
         off[rows] = _outliers_off(t[rows], y[rows], out[rows], sigma[rows], ratio)
         # Among neighbours that all are off, only the worst is known to be at fault.
         inside = np.where(out, 0.0, off)
-        worst = (inside > _SUSPECT) & (inside >= highest(inside, 5))
+        highest = np.asarray(maximum_filter1d(inside, 5), float)
+        worst = (inside > _SUSPECT) & (inside >= highest)
         back = out & look & (off <= _SUSPECT)
         if not worst.any():
             return out & ~back
         out = (out & ~back) | worst
         changed = (inside > _SUSPECT) | worst | back
-        look = highest(changed, 2 * _NEAR + 1)
+        look = np.asarray(maximum_filter1d(changed, 2 * _NEAR + 1), bool)
     return out
 
 

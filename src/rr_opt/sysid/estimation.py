@@ -604,15 +604,14 @@ def _stepped(
         d = np.clip(trust.stretch * d, low - here.u, high - here.u)
         after = _Point.of(problem, here.u + d, linear.moved(evidences, d, shares))
         for less in (0.3, 0.0):
-            astray = {
-                run: less * shares[run]
-                for run, loss in after.losses.items()
-                if not loss <= max(here.losses[run], losses[run])
-            }
-            if after.cost < here.cost or attempt > 1 or not astray:
+            if after.cost < here.cost or attempt > 1:
+                break
+            astray = _astray(after, here, losses)
+            if not astray:
                 break
             part = replace(problem, segments=tuple(s for s in problem.segments if s.run in astray))
-            states = linear.moved(evidences, d, shares | astray)
+            fewer = shares | {run: less * shares[run] for run in astray}
+            states = linear.moved(evidences, d, fewer)
             after = after.joined(_Point.of(part, here.u + d, states))
         gain, longest = here.cost - after.cost, float(np.abs(d).max(initial=0.0))
         if gain > 0:
@@ -622,10 +621,16 @@ def _stepped(
                 trust.radius = min(max(trust.radius, 3 * longest), SETTINGS.stride)
             return after, expected
         trust.radius, trust.stretch = 0.3 * longest, 1.0
-        for run, loss in after.losses.items():
-            if not loss <= max(here.losses[run], losses[run]):
-                shares[run] = 0.3 * shares[run] if shares[run] > 0.1 else 0.0
+        for run in _astray(after, here, losses):
+            shares[run] = 0.3 * shares[run] if shares[run] > 0.1 else 0.0
     return None, expected
+
+
+def _astray(after: _Point, here: _Point, losses: Mapping[int, float]) -> list[int]:
+    """The runs that a step made worse, and worse than was expected."""
+    return [
+        run for run, loss in after.losses.items() if not loss <= max(here.losses[run], losses[run])
+    ]
 
 
 def _expected(

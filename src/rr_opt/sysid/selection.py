@@ -276,10 +276,10 @@ class Selection:
     def _part(self, whole: Candidate, key: tuple[Choice, ...]) -> Candidate:
         """A candidate with fewer effects; before it counts as worse, fitted from the whole's
         values, as its own search may have ended in another minimum."""
-        begun_elsewhere = key in self.tried
-        part = self.fitted(key, [{}], whole)
-        if not begun_elsewhere:
+        if key not in self.tried:
+            # It will be fitted from there.
             self._compared.add((whole, key))
+        part = self.fitted(key, [{}], whole)
         if key and whole.predicts_better(part) and (whole, key) not in self._compared:
             self._compared.add((whole, key))
             again = fitted(self.model, key, whole.fit, [{}], part.fit)

@@ -151,10 +151,8 @@ class Drives:
                 free = any(CATALOGUE[name].frees_joint for name, _ in own[:last])
                 before.append((run, own[:last], joint if free else None))
             self._make(before)
-            effect, values = (
-                CATALOGUE[new[0][1][last][0]],
-                [dict(own[last][1]) for _, own, _ in new],
-            )
+            effect = CATALOGUE[new[0][1][last][0]]
+            values = [dict(own[last][1]) for _, own, _ in new]
             commands = [replace(self._kept[b], at=self._remembered(b)) for b in before]
             drives = effect.actuated(commands, values, [joint for _, _, joint in new])
         self._kept |= dict(zip(new, drives, strict=True))

@@ -113,7 +113,8 @@ def initial(given: ExaminedRecording, robot: Robot, gait: Gait) -> Initial | Non
 
 
 def _ways(t: Array, speed: Array) -> Array:
-    """How far something has come at t (n,), s, with a speed (n,), m/s, that changes linearly."""
+    """How far something has come at t (n,), s, with a speed (n,), m/s, that changes linearly: what
+    SciPy has in a package that takes a fifth of a second to load."""
     return np.concatenate([[0.0], np.cumsum(np.diff(t) * (speed[1:] + speed[:-1]) / 2)])
 
 
