@@ -14,12 +14,16 @@ def candidate(*effects: str, elpd: float = 0.0, better: bool = True) -> Any:
     )
 
 
-def doubt(best: Any, *others: Any, constant=0.9, alike=0.9, predicts=0.9, none=False) -> str:
+def doubt(
+    best: Any, *others: Any, constant=0.9, single=1.0, alike=0.9, predicts=0.9, none=False
+) -> str:
     made: Any = SimpleNamespace(
         best=best,
         _ended=[best, *others],
         selection=SimpleNamespace(base=candidate(), complete=lambda _: none),
         constancy=SimpleNamespace(probability=constant),
+        sound=constant * single * alike * predicts,
+        _constant=constant * single,
         _as_machines_differ=alike,
         _predicts=predicts,
     )
@@ -31,8 +35,10 @@ def doubt(best: Any, *others: Any, constant=0.9, alike=0.9, predicts=0.9, none=F
     [
         ({"constant": 0.1}, "but recordings disagree on the values."),
         ({"alike": 0.1}, "but more is left than machines differ from such models."),
+        ({"single": 0.5}, "but so many effects can imitate anything."),
         ({"predicts": 0.1}, "but the recordings that were not fitted do not bear it out."),
         ({"constant": 0.1, "alike": 0.1}, "disagree on the values and more is left than"),
+        ({"alike": 0.6, "predicts": 0.7}, "but more is left than machines differ"),
         ({}, "but others do about as well."),
     ],
 )

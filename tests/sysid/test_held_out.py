@@ -1,10 +1,12 @@
-"""Held-out recordings are asked only where the answer leaves more than machines differ by."""
+"""Held-out recordings are asked only where the answer leaves more than machines differ by; each
+further effect that the motion alone shows counts against the answer."""
 
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
+from rr_opt.sysid.constancy import Constancy
 from rr_opt.sysid.settings import SETTINGS
 from rr_opt.sysid.verdict import Identification
 
@@ -33,3 +35,16 @@ def predicts(left: float, gain: float) -> float:
 )
 def test_what_the_held_out_recordings_say(left, gain, likely):
     assert predicts(left, gain) == pytest.approx(likely, abs=1e-6)
+
+
+@pytest.mark.parametrize(("effects", "further"), [("a", 0), ("AB", 0), ("aB", 0), ("abC", 1)])
+def test_further_effects_that_the_motion_alone_shows(effects, further):
+    """Capitals are effects of the drive, which has a recording of its own."""
+    catalogue = {name: SimpleNamespace(upstream=name.isupper()) for name in effects}
+    made: Any = SimpleNamespace(
+        selection=SimpleNamespace(model=SimpleNamespace(catalogue=catalogue)),
+        best=SimpleNamespace(effects=tuple(effects)),
+        constancy=Constancy(10.0, 40),
+    )
+    odds = Constancy(10.0, 40).odds * SETTINGS.further**further
+    assert Identification._constant.fget(made) == pytest.approx(odds / (1 + odds))  # pyright: ignore

@@ -41,15 +41,19 @@ class Constancy:
     degrees: int
 
     @property
-    def probability(self) -> float:
-        """That the values are constant; 1/2 if nothing is known of that."""
+    def odds(self) -> float:
+        """That the values are constant, to that they are not; 1 if nothing is known of that."""
         k = self.degrees
         if not k:
-            return 0.5
+            return 1.0
         ratio = max(self.statistic / k, 1.0)
         occam = math.sqrt(k / (4 * math.pi)) * math.log(SETTINGS.inconstant)
-        odds = math.exp(-k / 2 * (ratio - 1 - math.log(ratio))) * occam
-        return odds / (1 + odds)
+        return math.exp(-k / 2 * (ratio - 1 - math.log(ratio))) * occam
+
+    @property
+    def probability(self) -> float:
+        """That the values are constant."""
+        return self.odds / (1 + self.odds)
 
 
 _NONE: Mapping = MappingProxyType({})

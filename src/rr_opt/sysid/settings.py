@@ -36,6 +36,8 @@ class Settings:
                           says nothing of it
     inconstant            largest factor by which an imitation's values vary more between recordings
                           than their uncertainty (mean square)
+    further               prior odds of each further effect that the motion alone shows: several can
+                          imitate anything
     form_errors           multiples of an effect's form error at which a remainder is as likely an
                           imitation's as a machine's
     misstated             relative difference from which the level of the noise is not as stated
@@ -87,6 +89,7 @@ class Settings:
     slow: float = 2.0
     shown: float = 0.01
     inconstant: float = 100.0
+    further: float = 0.25
     form_errors: float = 6.0
     misstated: float = 0.1
     correlated: float = 1.5

@@ -67,7 +67,16 @@ class Identification:
         """How likely the answer's effects are no imitation of something else: recordings agree on
         their values, those that were not fitted are predicted better with them, and what is left of
         the misfit is no more than machines differ from models of such effects."""
-        return self.constancy.probability * self._as_machines_differ * self._predicts
+        return self._constant * self._as_machines_differ * self._predicts
+
+    @property
+    def _constant(self) -> float:
+        """How likely the values are constant and those of what is there: of several effects that
+        the motion alone shows each further one makes an imitation easier."""
+        catalogue = self.selection.model.catalogue
+        seen = sum(not catalogue[name].upstream for name in self.best.effects)
+        odds = self.constancy.odds * SETTINGS.further ** max(seen - 1, 0)
+        return odds / (1 + odds)
 
     @property
     def _as_machines_differ(self) -> float:
@@ -86,12 +95,17 @@ class Identification:
         best = self.best if self.best.choices else max(self._ended, key=lambda one: one.elpd)
         if not best.effects:
             return ""
+        constant = self.constancy.probability
+        disagree = "recordings disagree on the values"
+        so_many = "so many effects can imitate anything"
         reasons = {
-            "recordings disagree on the values": self.constancy.probability,
+            disagree if constant <= SETTINGS.named else so_many: self._constant,
             "more is left than machines differ from such models": self._as_machines_differ,
             "the recordings that were not fitted do not bear it out": self._predicts,
         }
         against = [reason for reason, likely in reasons.items() if likely <= SETTINGS.named]
+        if not against and self.sound <= SETTINGS.named:
+            against = [min(reasons, key=lambda reason: reasons[reason])]
         if not best.predicts_better(self.selection.base):
             against = ["by too little to be sure: these recordings cannot tell"]
         elif not self.best.choices:
