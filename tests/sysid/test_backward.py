@@ -1,7 +1,10 @@
 """Backward steps: what two effects account for together is not lost by dropping one at a time."""
 
 from dataclasses import dataclass
+from types import SimpleNamespace
 from typing import Any
+
+import pytest
 
 from rr_opt.sysid.selection import Selection
 
@@ -59,3 +62,16 @@ def test_an_effect_is_dropped_before_another_is_simplified():
     selection = Dropping()
     selection._backward(lambda _, part: part.excess > 7.6)
     assert selection.best.choices == ("a",)
+
+
+@pytest.mark.parametrize(("form_error", "kept"), [(0.07, True), (0.08, False)])
+def test_what_machines_differ_by_calls_for_no_second_effect(form_error, kept):
+    """One effect leaves a mean square of which the second accounts for a third."""
+    rest = SimpleNamespace(effects=("a",), excess=0.075 * MADE[()].excess)
+    both: Any = SimpleNamespace(accounts=lambda _: 0.36)
+    selection: Any = SimpleNamespace(
+        _better=lambda *_: True,
+        model=SimpleNamespace(catalogue={"a": SimpleNamespace(form_error=form_error)}),
+        base=MADE[()],
+    )
+    assert Selection.needed(selection, both, rest) == kept  # pyright: ignore

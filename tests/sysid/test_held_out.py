@@ -1,6 +1,7 @@
 """Held-out recordings are asked only where the answer leaves more than machines differ by; each
 further effect that the motion alone shows counts against the answer."""
 
+import math
 from types import SimpleNamespace
 from typing import Any
 
@@ -48,3 +49,27 @@ def test_further_effects_that_the_motion_alone_shows(effects, further):
     )
     odds = Constancy(10.0, 40).odds * SETTINGS.further**further
     assert Identification._constant.fget(made) == pytest.approx(odds / (1 + odds))  # pyright: ignore
+
+
+@pytest.mark.parametrize(
+    ("left", "likely"),
+    [
+        ([0.0, 0.0, 0.0, 50.0], 1.0),  # one run goes astray
+        ([0.0, 0.0, 50.0, 50.0], 0.0),
+        ([12.0, 12.0, 12.0, 12.0], 0.5),
+        ([0.0, 50.0], 0.0),
+    ],
+)
+def test_what_is_left_over_all_recordings_but_the_worst(left, likely):
+    def misfits(excess):
+        return [SimpleNamespace(rms=math.hypot(one, 1)) for one in excess]
+
+    made: Any = SimpleNamespace(
+        selection=SimpleNamespace(model=SimpleNamespace(form_error=0.0)),
+        final=SimpleNamespace(misfits=misfits(left)),
+        refitted=SimpleNamespace(misfits=misfits([FIRST] * len(left))),
+        _form_error=FORM,
+    )
+    assert Identification._as_machines_differ.fget(made) == pytest.approx(  # pyright: ignore
+        likely, abs=0.05
+    )

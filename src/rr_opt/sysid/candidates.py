@@ -93,8 +93,9 @@ def fitted(
 ) -> Candidate:
     """A set of effects, fitted beside a fit without them.
 
-    guesses  of the new quantities. The parameters begin as in the parent's fit and, as what is
-             missing may have bent them, as believed. By successive halving the best is taken on
+    guesses  of the new quantities. The parameters begin as in the parent's fit or, as what is
+             missing may have bent them, as believed, whichever is better after a step. The best is
+             taken on
     rival    a fit that will not be beaten need not be taken to its end
     """
     ordered = tuple(sorted(choices))
@@ -106,35 +107,32 @@ def fitted(
     plain = {q.name: q.centre for q in quantities}
     kept = {k: v for k, v in parent.values.items() if k in plain}
     unbent = {**kept, **{q.name: q.centre for q in model.parameters}}
-    begun = [{**plain, **own, **guess} for guess in guesses for own in (kept, unbent)]
-    unlike = [values for k, values in enumerate(begun) if values not in begun[:k]]
-    some, trials = _tested(problem, parent), []
-    for values in unlike:
+    some, tolerance = _tested(problem, parent), SETTINGS.search_tolerance
+
+    def stepped(fit: Fit, steps: int) -> Fit:
+        return estimation.solve(some, fit.values, fit.states, steps, tolerance, known=fit.linear)
+
+    def begun(values: Mapping[str, float]) -> tuple[Fit, dict[Segment, Array]]:
         states = _converted(model, parent, names, values)
         part = {one: states[one] for one in some.segments}
-        trials.append((estimation.solve(some, values, part, 0), states))
-    gain = math.inf
-    for steps in SETTINGS.trial_steps:
-        trials.sort(key=lambda trial: trial[0].deviance)
-        before = trials[0][0].deviance
-        trials = [
-            (
-                estimation.solve(
-                    some, fit.values, fit.states, steps, SETTINGS.search_tolerance, known=fit.linear
-                ),
-                states,
-            )
-            for fit, states in trials[: max(len(trials) // 2, 1)]
-        ]
-        gain = (before - min(fit.deviance for fit, _ in trials)) / steps
+        return stepped(estimation.solve(some, values, part, 0), 1), states
+
+    trials = []
+    for guess in _unlike(guesses):
+        starts = _unlike({**plain, **own, **guess} for own in (kept, unbent))
+        trials.append(min(map(begun, starts), key=lambda trial: trial[0].deviance))
+    trials.sort(key=lambda trial: trial[0].deviance)
+    before = trials[0][0].deviance
+    tried = trials[: SETTINGS.trial_starts]
+    trials = [(stepped(fit, SETTINGS.trial_steps), states) for fit, states in tried]
     best, states = min(trials, key=lambda trial: trial[0].deviance)
+    gain = (before - best.deviance) / SETTINGS.trial_steps
     begun_with = {**states, **best.states}
     lacking = best.deviance - rival.deviance_of(some.by_run) if rival else -math.inf
-    slow = not best.converged and lacking > SETTINGS.patience * max(gain, SETTINGS.search_tolerance)
+    slow = not best.converged and lacking > SETTINGS.patience * max(gain, tolerance)
     if slow or not math.isfinite(best.deviance):
         return Candidate(ordered, estimation.solve(problem, best.values, begun_with, 0), True)
     enough = rival.deviance if rival else math.inf
-    tolerance = SETTINGS.search_tolerance
     fit = estimation.fitted(problem, best.values, begun_with, enough=enough, tolerance=tolerance)
     return Candidate(ordered, fit, not fit.converged and fit.deviance > enough)
 
@@ -180,6 +178,15 @@ def _converted(
         one: model.converted(Request(one, values, state), parent.effects, effects)
         for one, state in parent.states.items()
     }
+
+
+def _unlike(values: Iterable[Mapping[str, float]]) -> list[Mapping[str, float]]:
+    """Each once."""
+    out: list[Mapping[str, float]] = []
+    for one in values:
+        if one not in out:
+            out.append(one)
+    return out
 
 
 def weights(candidates: Sequence[Candidate], draws: int = 2000) -> Array:

@@ -102,8 +102,15 @@ class Selection:
         return predicted(fit, held, fit.values).excess ** 2 <= most
 
     def needed(self, candidate: Candidate, other: Candidate) -> bool:
-        """Whether it also accounts for a good share of what the other leaves."""
-        return self._better(candidate, other) and candidate.accounts(other) > SETTINGS.accounted
+        """Whether it also accounts for a good share of what the other leaves, which is more than
+        machines differ by from models of the other's effects."""
+        catalogue = self.model.catalogue
+        form_error = max((catalogue[name].form_error for name in other.effects), default=0.0)
+        return (
+            self._better(candidate, other)
+            and other.excess > form_error * self.base.excess
+            and candidate.accounts(other) > SETTINGS.accounted
+        )
 
     def fitted(
         self,

@@ -21,8 +21,8 @@ class Settings:
                           be negligible,
     known_share           or of itself: a fit that creeps on is not followed any further
     trial_runs            how many runs, those explained worst, initial guesses are tried on
-    trial_steps           Gauss-Newton steps for the better half of the guesses, for the better half
-                          of those, and so on
+    trial_starts          the best so many of them after one Gauss-Newton step
+    trial_steps           are taken so many further: a narrow minimum shows late
     first_steps           steps of a fit before the process noise is estimated
     patience              a fit that is behind another is given up unless this many steps like its
                           last one would catch up
@@ -78,7 +78,8 @@ class Settings:
     known: float = 0.01
     known_share: float = 0.0002
     trial_runs: int = 2
-    trial_steps: tuple[int, ...] = (1, 3)
+    trial_starts: int = 6
+    trial_steps: int = 4
     first_steps: int = 4
     patience: float = 10.0
     steps: int = 15

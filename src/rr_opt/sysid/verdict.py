@@ -80,10 +80,16 @@ class Identification:
 
     @property
     def _as_machines_differ(self) -> float:
-        """How likely what is left is what machines differ by from models of such effects."""
-        first = self.selection.base.excess**2
-        left = self.best.excess**2 - SETTINGS.none**2 - self.selection.model.form_error**2
-        share = math.sqrt(max(left, 0.0) / max(first, 1e-12))
+        """How likely what is left is what machines differ by from models of such effects. In one of
+        several recordings a simulation may go astray: the one that is explained worst is left out.
+        """
+        slight = SETTINGS.none**2 + self.selection.model.form_error**2
+        pairs = zip(self.final.misfits, self.refitted.misfits, strict=True)
+        squares = sorted((last.rms**2 - 1 - slight, first.rms**2 - 1) for last, first in pairs)
+        if len(squares) > 2:
+            squares.pop()
+        left, first = np.maximum(squares, 0.0).sum(axis=0)
+        share = math.sqrt(left / max(first, 1e-12))
         return 1 / (1 + (share / self._form_error / SETTINGS.form_errors) ** 4)
 
     @property

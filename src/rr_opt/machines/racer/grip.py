@@ -18,7 +18,7 @@ from rr_opt.mechanics.kinematics import ROBOT_PARAMETERS, wheel_loads
 from rr_opt.motion.dynamics import assembled
 from rr_opt.sysid.estimation import Fit
 
-_FRACTIONS = (0.97, 0.9, 0.8, 0.65, 0.45, 0.25)
+_FRACTIONS = (0.95, 0.6, 0.2, 0.03)
 """Of the largest grip needed, that are tried: just grazed, to hardly any."""
 
 
@@ -63,7 +63,7 @@ def slips(racer: RacerModel, fit: Fit) -> Sequence[tuple[int, Mapping[str, float
     (creep,) = forms[0].quantities
     most = grip_needed(racer, fit)
     creeping = [(0, {creep.name: size * creep.scale}) for size in (0.3, 3.0)]
-    gradual = {creep.name: 0.3 * creep.scale}
-    mu = "lateral_slip.mu"
-    sliding = [(1, {**gradual, mu: part * most}) for part in _FRACTIONS]
-    return [*creeping, *sliding]
+    mu, gradual = "lateral_slip.mu", 0.3 * creep.scale
+    sliding = [(1, {creep.name: gradual, mu: part * most}) for part in _FRACTIONS]
+    ice = (1, {creep.name: 300 * creep.scale, mu: _FRACTIONS[-1] * most})
+    return [*creeping, *sliding, ice]
