@@ -5,7 +5,8 @@ import pytest
 
 from rr_opt.machines.racer.grip import slips
 from rr_opt.machines.racer.simulation import side_speeds
-from rr_opt.sysid.model import Request, Segment
+from rr_opt.sysid.candidates import fitted
+from rr_opt.sysid.model import Choice, Request, Segment
 from tests.sysid.made_up import GAITS, ROBOT, base_of, with_effect
 
 SLIDES = {"lateral_slip.mu": 0.012}
@@ -64,3 +65,13 @@ def test_one_of_the_grips_to_begin_with_is_near_the_true_one(sliding):
     assert nearest < np.log(1.3)
     for form, guess in guesses:
         assert set(guess) == {q.name for q in forms[form].quantities}
+
+
+def test_wheels_that_hardly_hold_are_found():
+    """A guess near the true grip is behind those of other minima after a step."""
+    ice = {"lateral_slip.mu": 0.0012}
+    model = with_effect(ice, ("lateral_slip",))
+    bent = base_of(model).fit
+    guesses = [guess for form, guess in slips(model, bent) if form == 1]
+    found = fitted(model, [Choice("lateral_slip", 1)], bent, guesses, bent)
+    assert found.fit.values["lateral_slip.mu"] == pytest.approx(0.0012, rel=0.1)

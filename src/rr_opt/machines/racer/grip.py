@@ -65,5 +65,6 @@ def slips(racer: RacerModel, fit: Fit) -> Sequence[tuple[int, Mapping[str, float
     creeping = [(0, {creep.name: size * creep.scale}) for size in (0.3, 3.0)]
     mu, gradual = "lateral_slip.mu", 0.3 * creep.scale
     sliding = [(1, {creep.name: gradual, mu: part * most}) for part in _FRACTIONS]
+    # Wheels that hardly hold creep easily too, and from there more is seen of how they slide.
     ice = (1, {creep.name: 300 * creep.scale, mu: _FRACTIONS[-1] * most})
     return [*creeping, *sliding, ice]
