@@ -222,10 +222,11 @@ def findings(result: Identification) -> tuple[Finding, ...]:
 
 
 def wrong_values(result: Identification) -> tuple[Finding, ...]:
-    """The parameters that are not what they were believed to be."""
-    intervals = estimates(result.best.fit)
+    """The parameters that are not what they were believed to be, as likely as recordings agree on
+    the values."""
+    intervals, likely = estimates(result.best.fit), result.constancy.probability
     return tuple(
-        Finding(q.name, 1.0, {q.name: intervals[q.name]}, 1.0) for q in wrong(result.best.fit)
+        Finding(q.name, likely, {q.name: intervals[q.name]}, 1.0) for q in wrong(result.best.fit)
     )
 
 
