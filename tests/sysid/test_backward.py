@@ -66,7 +66,7 @@ def test_an_effect_is_dropped_before_another_is_simplified():
 
 @pytest.mark.parametrize(("form_error", "kept"), [(0.07, True), (0.08, False)])
 def test_what_machines_differ_by_calls_for_no_second_effect(form_error, kept):
-    """One effect leaves a mean square of which the second accounts for a third."""
+    """One effect leaves 7.5 % of the first misfit (RMS)."""
     rest = SimpleNamespace(effects=("a",), excess=0.075 * MADE[()].excess)
     both: Any = SimpleNamespace(accounts=lambda _: 0.36)
     selection: Any = SimpleNamespace(

@@ -7,9 +7,10 @@ from typing import Any
 
 import pytest
 
+from rr_opt.sysid import verdict
 from rr_opt.sysid.constancy import Constancy
 from rr_opt.sysid.settings import SETTINGS
-from rr_opt.sysid.verdict import Identification
+from rr_opt.sysid.verdict import Identification, wrong_values
 
 FORM, FIRST = 0.02, 100.0
 
@@ -73,3 +74,11 @@ def test_what_is_left_over_all_recordings_but_the_worst(left, likely):
     assert Identification._as_machines_differ.fget(made) == pytest.approx(  # pyright: ignore
         likely, abs=0.05
     )
+
+
+def test_a_wrong_value_is_as_sure_as_recordings_agree_on_it(monkeypatch):
+    monkeypatch.setattr(verdict, "wrong", lambda _: [SimpleNamespace(name="m1")])
+    monkeypatch.setattr(verdict, "estimates", lambda _: {"m1": None})
+    made: Any = SimpleNamespace(best=SimpleNamespace(fit=None), constancy=Constancy(10.0, 40))
+    (found,) = wrong_values(made)
+    assert found.confidence == Constancy(10.0, 40).probability < 0.9

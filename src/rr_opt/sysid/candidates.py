@@ -109,13 +109,14 @@ def fitted(
     unbent = {**kept, **{q.name: q.centre for q in model.parameters}}
     some, tolerance = _tested(problem, parent), SETTINGS.search_tolerance
 
-    def stepped(fit: Fit, steps: int) -> Fit:
-        return estimation.solve(some, fit.values, fit.states, steps, tolerance, known=fit.linear)
-
     def begun(values: Mapping[str, float]) -> tuple[Fit, dict[Segment, Array]]:
         states = _converted(model, parent, names, values)
         part = {one: states[one] for one in some.segments}
-        return stepped(estimation.solve(some, values, part, 0), 1), states
+        return estimation.solve(some, values, part, 1, tolerance), states
+
+    def stepped(fit: Fit) -> Fit:
+        steps = SETTINGS.trial_steps
+        return estimation.solve(some, fit.values, fit.states, steps, tolerance, known=fit.linear)
 
     trials = []
     for guess in _unlike(guesses):
@@ -123,8 +124,7 @@ def fitted(
         trials.append(min(map(begun, starts), key=lambda trial: trial[0].deviance))
     trials.sort(key=lambda trial: trial[0].deviance)
     before = trials[0][0].deviance
-    tried = trials[: SETTINGS.trial_starts]
-    trials = [(stepped(fit, SETTINGS.trial_steps), states) for fit, states in tried]
+    trials = [(stepped(fit), states) for fit, states in trials[: SETTINGS.trial_starts]]
     best, states = min(trials, key=lambda trial: trial[0].deviance)
     gain = (before - best.deviance) / SETTINGS.trial_steps
     begun_with = {**states, **best.states}
