@@ -20,8 +20,9 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.integrate import simpson
 
-from rr_opt.model.robot import Robot
+from rr_opt.model.robot import Platform, Robot
 
 Array = NDArray[np.float64]
 
@@ -47,6 +48,7 @@ class Beyond:
     pull   on every mass, N/kg, along the floor's axes
     grip   (wheel, s) -> force across a wheel that slips sideways at s, N; None: it cannot slip
     loose  the servo holds nothing: phi is free
+    bodies drag of both platforms in a medium, N s2/m2, shared as their faces
     """
 
     law: Law | None = None
@@ -56,6 +58,7 @@ class Beyond:
     pull: tuple[float, float] = (0.0, 0.0)
     grip: Law | None = None
     loose: bool = False
+    bodies: float = 0.0
 
 
 PAPER = Beyond()
@@ -107,6 +110,7 @@ def solve(
         mass = point(q, qd, number, (ahead, beyond.left[number - 1]))
         M += part.m * mass.J.T @ mass.J
         Q += part.m * mass.J.T @ (np.array(beyond.pull) - mass.rest)
+        Q += dragged(robot, number, mass, qd, beyond.bodies)
         centre, along, across, rate = axle(robot, q, qd, number, beyond.toe[number - 1])
         for side in (1, -1):
             toe = beyond.toe[number - 1]
@@ -134,6 +138,24 @@ def solve(
     forces = np.zeros(3)
     forces[[*([] if beyond.grip else [0, 1]), *([] if beyond.loose else [2])]] = solution[4:]
     return solution[:4], forces
+
+
+def half_length(part: Platform) -> float:
+    """Of a cube with the platform's mass and moment of inertia, m (2/3) r^2."""
+    return float(np.sqrt(1.5 * part.I / part.m))
+
+
+def dragged(robot: Robot, number: int, mass: Point, qd: Array, k: float) -> Array:
+    """The generalised force of a medium on a platform: at its centre of mass, and on strips of its
+    four sides as it turns."""
+    sizes = [half_length(part) for part in (robot.platform1, robot.platform2)]
+    r = sizes[number - 1]
+    k *= r**2 / (sizes[0] ** 2 + sizes[1] ** 2)
+    Q = mass.J.T @ (-k * np.hypot(np.linalg.norm(mass.velocity), 1e-4) * mass.velocity)
+    x = np.linspace(-r, r, 201)
+    speed = x * (qd[2] + qd[3] if number == 2 else qd[2])
+    moment = -2 * float(simpson(k / (2 * r) * np.abs(speed) * speed * x, x=x))
+    return Q + moment * np.array([0.0, 0.0, 1.0, 1.0 if number == 2 else 0.0])
 
 
 def slip(robot: Robot, q: Array, qd: Array) -> Array:

@@ -82,6 +82,7 @@ def beyond(robot: Robot) -> Beyond:
         toe=(toe["toe1"], toe["toe2"]),
         pull=(G * tilt["tilt_x"], G * tilt["tilt_y"]),
         grip=gripping(robot, slip) if slip else None,
+        bodies=given.get("quadratic_drag", {"coefficient_bodies": 0.0})["coefficient_bodies"],
     )
 
 

@@ -49,7 +49,8 @@ def test_with_friction_of_the_catalogue(case, x, y, psi):
         return -(robot.k1, robot.k2)[number - 1] * u - dry - drag
 
     # |u| is smoothed below 0.1 mm/s in the catalogue and is not here, hence the looser bounds.
-    found = at_place(*case, x, y, psi, multipliers.Beyond(law))
+    bodies = quadratic["coefficient_bodies"]
+    found = at_place(*case, x, y, psi, multipliers.Beyond(law, bodies=bodies))
     assert found == pytest.approx(derived(*case), rel=1e-5, abs=1e-5)
 
 
