@@ -33,8 +33,6 @@ class RacerModel:
     channels = CHANNELS
     segment_length = 5.0
     horizon = math.inf
-    bandwidth = SETTINGS.slow
-    correlation_time = SETTINGS.correlation_time
 
     def __init__(
         self,
@@ -62,6 +60,16 @@ class RacerModel:
     def beside(self, experiment: Experiment) -> Self:
         """Another experiment with the same robot, and the same usual sizes of effects."""
         return type(self)(experiment, self.setting, self._noise)
+
+    @property
+    def bandwidth(self) -> float:
+        """Hz."""
+        return SETTINGS.slow
+
+    @property
+    def correlation_time(self) -> float:
+        """In s."""
+        return SETTINGS.correlation_time
 
     @property
     def runs(self) -> Sequence[Data]:

@@ -1,0 +1,58 @@
+"""The numbers that were chosen, halved and doubled: what is computed again, and what is not."""
+
+import numpy as np
+import pytest
+
+from benchmarks.settings import Memory, Watched, changed, variants, varied
+from rr_opt.sysid.settings import SETTINGS
+
+
+@pytest.fixture
+def watched():
+    before = SETTINGS.__class__
+    object.__setattr__(SETTINGS, "__class__", Watched)
+    yield
+    object.__setattr__(SETTINGS, "__class__", before)
+
+
+def test_settings_are_noted_where_they_are_read(watched):
+    memory, calls = Memory(), []
+
+    @memory.remembering
+    def inner(numbers):
+        calls.append(numbers)
+        return SETTINGS.named * numbers.sum()
+
+    _ = SETTINGS.evidence
+    assert inner(np.ones(3)) == inner(np.ones(3))
+    assert inner(np.ones(2)) != inner(np.ones(3))
+    assert len(calls) == 2
+    assert memory.read == {"named"}
+
+
+def test_the_same_objects_are_the_same_arguments():
+    memory, calls = Memory(), []
+
+    @memory.remembering
+    def count(given, many=1):
+        calls.append(given)
+        return len(calls)
+
+    one, other = object(), object()
+    assert [count(one), count(one), count(other), count(one, many=2)] == [1, 1, 2, 3]
+
+
+def test_changes_end():
+    before = SETTINGS.named
+    with changed({"named": 0.9}):
+        assert SETTINGS.named == 0.9
+    assert before == SETTINGS.named
+
+
+def test_variants():
+    assert varied(4, 0.5) == 2
+    assert varied(1, 0.5) == 1
+    assert varied(0.5, 2.0) == pytest.approx(2 / 3)
+    assert varied(0.2, 2.0) == 0.4
+    assert list(variants(["further"])) == ["as chosen", "further halved", "further doubled"]
+    assert "growth halved" not in variants([])
