@@ -19,6 +19,7 @@ def test_dry_friction_is_named(tmp_path):
     assert found.found.after < 1.2 < found.found.before
     written = found.save(tmp_path / "out")
     assert {"diagnosis.json", "report.html", "machine-corrected.yaml"} <= {f.name for f in written}
+    assert "Pendulum · " in (tmp_path / "out/report.html").read_text()
     record = json.loads((tmp_path / "out/diagnosis.json").read_text())
     assert record["machine"] == "pendulum"
     errors = record["fit"]["heldout_error"]["q"]
@@ -75,7 +76,10 @@ def test_inspect_says_what_was_read(tmp_path):
     assert "2 recordings of a pendulum driven by a torque without warnings" in found.summary()
     pages = found.save(tmp_path / "out")
     assert {one.name for one in pages} == {"inspection.json", "report.html"}
-    assert "run0.csv: Channels" in (tmp_path / "out" / "report.html").read_text()
+    page = (tmp_path / "out" / "report.html").read_text()
+    assert "run0.csv: Channels" in page
+    assert "Pendulum · " in page
+    assert "Roller Racer" not in page
 
 
 def test_the_roller_racer_may_be_named(tmp_path):

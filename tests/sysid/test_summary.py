@@ -20,7 +20,11 @@ def found():
 @pytest.mark.parametrize(
     ("verdict", "said"),
     [
-        ("consistent", "The nominal model explains the recordings."),
+        (
+            "consistent",
+            "The nominal model explains the recordings once its values are refitted within their "
+            "uncertainties.",
+        ),
         ("parameters", "The model is right, but the value of Coulomb friction is not."),
         ("missing_physics", "The model leaves out Coulomb friction (confidence 99 %)."),
         ("unexplained", "Something is left out, and no effect of the catalogue is shown to be it."),
@@ -30,6 +34,11 @@ def test_it_opens_with_the_verdict(found, verdict, said):
     text = summary_of(replace(found, verdict=verdict, indistinguishable=()))
     assert text.startswith(f"{said} On recordings that were not fitted, the misfit fell from")
     assert "from 8.10 to 1.02 sigma, where 1 is the noise." in text
+
+
+def test_a_model_that_is_right_as_it_is_believed_to_be_is_not_refitted(found):
+    text = summary_of(replace(found, verdict="consistent", before=1.01))
+    assert text.startswith("The nominal model explains the recordings. On")
 
 
 @pytest.mark.parametrize(

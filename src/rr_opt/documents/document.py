@@ -241,6 +241,9 @@ class Section:
     brief: bool = True
 
 
+ROLLER_RACER = "Roller Racer"
+
+
 @dataclass(frozen=True)
 class Document:
     """A report.
@@ -251,6 +254,7 @@ class Document:
     lead    the outcome in a few sentences
     good    False if there is something to worry about
     footer  versions, fingerprints
+    machine what it is about
     """
 
     name: str
@@ -260,6 +264,7 @@ class Document:
     sections: tuple[Section, ...]
     good: bool = True
     footer: tuple[str, ...] = ()
+    machine: str = ROLLER_RACER
 
     @property
     def figures(self) -> tuple[Figure, ...]:

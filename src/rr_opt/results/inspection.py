@@ -94,7 +94,13 @@ def _named(figures: Iterable[doc.Figure], recording: str) -> list[doc.Figure]:
 
 
 def _report(
-    name: str, sha256: str, what: str, count: int, dropped: str, sections: Iterable[doc.Section]
+    name: str,
+    sha256: str,
+    what: str,
+    count: int,
+    dropped: str,
+    sections: Iterable[doc.Section],
+    machine: str = doc.ROLLER_RACER,
 ) -> doc.Document:
     """count: of warnings; dropped: what was done with samples."""
     return doc.Document(
@@ -107,6 +113,7 @@ def _report(
         good=not count,
         sections=tuple(sections),
         footer=doc.versions(sha256),
+        machine=machine,
     )
 
 
@@ -392,7 +399,8 @@ class InspectedMachine(Result):
         what = f"{counted(len(experiment.runs), 'recording')} of {experiment.machine.words}"
         sections.append(doc.gallery(figures))
         dropped = "Wild samples were left out."
-        return _report(experiment.name, self.sha256, what, count, dropped, sections)
+        machine = experiment.machine.name.capitalize()
+        return _report(experiment.name, self.sha256, what, count, dropped, sections, machine)
 
     def _blocks(self, run: MachineRun) -> list[doc.Block]:
         length = f"{with_unit(float(run.t[-1]), 's')}, {len(run)} samples at "

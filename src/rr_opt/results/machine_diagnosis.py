@@ -96,6 +96,7 @@ class ExplainedMachine(Explained[MachineExperiment]):
                 *(doc.Section(title, blocks) for title, blocks in sections.items()),
             ),
             footer=(*doc.versions(self.sha256), "all numbers are in `diagnosis.json`"),
+            machine=machine.name.capitalize(),
         )
 
     def summary(self) -> str:

@@ -6,6 +6,7 @@ from typing import Literal
 
 from rr_opt.array import Array
 from rr_opt.formatting import words_of
+from rr_opt.sysid.settings import SETTINGS
 
 Verdict = Literal["consistent", "parameters", "missing_physics", "unexplained"]
 
@@ -225,8 +226,10 @@ def summary_of(found: Diagnosis, worth: str = "", doubt: str = "") -> str:
     names = (words_of(one.name) for one in found.findings)
     listed = " and ".join(names)
     sure = ", ".join(f"{100 * one.confidence:.0f} %" for one in found.findings)
+    differs = found.before**2 - 1 > SETTINGS.none**2
+    refitted = " once its values are refitted within their uncertainties" if differs else ""
     opening = {
-        "consistent": "The nominal model explains the recordings.",
+        "consistent": f"The nominal model explains the recordings{refitted}.",
         "parameters": f"The model is right, but the value of {listed} is not.",
         "missing_physics": f"The model leaves out {listed} (confidence {sure}).",
         "unexplained": "Something is left out, and no effect of the catalogue is shown to be it.",

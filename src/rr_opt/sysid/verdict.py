@@ -233,7 +233,7 @@ def wrong_values(result: Identification) -> tuple[Finding, ...]:
 def remainder_of(result: Identification) -> Remainder:
     """What is left with the answer's effects."""
     after = result.final.excess
-    share = result.share if result.best.choices else float(after > 0)
+    share = result.share
     large = "small" if share <= SETTINGS.small else "large"
     size = "none" if after <= SETTINGS.none else large
     return Remainder(size, after, share)
