@@ -10,7 +10,7 @@ import pytest
 from rr_opt.sysid import verdict
 from rr_opt.sysid.constancy import Constancy
 from rr_opt.sysid.settings import SETTINGS
-from rr_opt.sysid.verdict import Identification, wrong_values
+from rr_opt.sysid.verdict import Identification, remainder_of, wrong_values
 
 FORM, FIRST = 0.02, 100.0
 
@@ -82,3 +82,17 @@ def test_a_wrong_value_is_as_sure_as_recordings_agree_on_it(monkeypatch):
     made: Any = SimpleNamespace(best=SimpleNamespace(fit=None), constancy=Constancy(10.0, 40))
     (found,) = wrong_values(made)
     assert found.confidence == Constancy(10.0, 40).probability < 0.9
+
+
+@pytest.mark.parametrize("choices", [(), ("a",)])
+def test_what_remains_is_a_share_of_the_first_misfit(choices):
+    """Also where values are wrong and no effect is missing."""
+    made: Any = SimpleNamespace(
+        nominal=SimpleNamespace(excess=50.0),
+        selection=SimpleNamespace(base=SimpleNamespace(excess=5.0)),
+        final=SimpleNamespace(excess=0.5),
+        best=SimpleNamespace(choices=choices),
+    )
+    made.share = Identification.share.fget(made)  # pyright: ignore
+    left = remainder_of(made)
+    assert (left.size, left.rms, left.share) == ("small", 0.5, pytest.approx(1e-4))
