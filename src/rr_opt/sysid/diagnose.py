@@ -18,6 +18,7 @@ from rr_opt.sysid.model import ChannelNoise
 from rr_opt.sysid.noise import noise_in
 from rr_opt.sysid.remainder import dependences, residues, stages, where
 from rr_opt.sysid.selection import Selection, turned
+from rr_opt.sysid.settings import SETTINGS
 from rr_opt.sysid.verdict import (
     Identification,
     alike,
@@ -142,8 +143,26 @@ def identified(model: MachineModel, watch: Stopwatch) -> Identification:
             watch.progress("the noise is less than it looked; once more")
             selection = selection.again(quieter)
             selection.run()
-        model = selection.model
-        best = turned(model, selection.best)
+    return chosen(selection, watch)
+
+
+def chosen(selection: Selection, watch: Stopwatch) -> Identification:
+    """What a search chose; of forms that predict about as well, if recordings disagree on its
+    values, the one on whose values they agree best."""
+    result = weighed(selection, selection.best, watch)
+    if result.constancy.probability > SETTINGS.named:
+        return result
+    best = selection.best
+    forms = (one for one in selection.alike() if one.effects == best.effects)
+    others = [one for one in forms if one is not best]
+    every = (result, *(weighed(selection, one, watch) for one in others))
+    return max(every, key=lambda one: one.constancy.odds)
+
+
+def weighed(selection: Selection, best: Candidate, watch: Stopwatch) -> Identification:
+    """A candidate as the answer of a search, with what speaks for it and against it."""
+    model, runs = selection.model, list(selection.base.fit.problem.by_run)
+    best = turned(model, best)
     with watch("looking for wrong values"):
         fit = settled(best.fit)
         if selection.complete(best):
