@@ -1,11 +1,12 @@
 """How the diagnosis depends on each number that was chosen: halved and doubled, on fixed cases.
 
-    python -m benchmarks.settings --cases 16 --workers 2
+    python -m benchmarks.settings --cases 40 --workers 2
+    python -m benchmarks.settings --cases 80 --only named,further --page judging.md
 
 Every variant of `rr_opt.sysid.settings` diagnoses the same cases of the laboratory, without the
 page. A case's variants share a process; what a number does not enter, such as a fit that a
 threshold only judges, is computed once. Finished cases are kept in --out; the same command resumes.
-The table goes to results/settings/README.md. A number that moves nothing either way can go.
+The table goes to results/settings. A number that moves nothing either way can go.
 """
 
 from __future__ import annotations
@@ -232,6 +233,7 @@ def main() -> None:
     parser.add_argument("--only", default="", help="settings, separated by commas")
     parser.add_argument("--kinds", default=",".join(KINDS))
     parser.add_argument("--out", type=Path, default=Path("out/settings"))
+    parser.add_argument("--page", default="README.md")
     given = parser.parse_args()
     basis = Basis(read_seed(given.seed), tuple(given.kinds.split(",")), ENGINES)
     trial = Trial(given.out, [basis.draw(number) for number in range(1, given.cases + 1)])
@@ -254,17 +256,18 @@ def main() -> None:
                     raise SystemExit(f"case {ids[number]}: {every}")
                 answers.append(number, every)
                 print(f"case {ids[number]}", flush=True)
-        cases = {
-            name: [
-                case_of(ids[number], _answer(given.out, ids[number]), row[name])
-                for number, row in answers.rows.items()
-            ]
-            for name in wanted
-        }
-    text = (
-        f"# Each chosen number halved and doubled\n\n{len(answers.rows)} cases, seed {basis.seed}"
-    )
-    write_text(RESULTS / "README.md", f"{text}.\n\n{table(cases)}")
+                rows = {ids[k]: row for k, row in answers.rows.items()}
+                write_text(RESULTS / given.page, page(given.out, basis.seed, rows))
+
+
+def page(folder: Path, seed: str, rows: Mapping[str, Mapping[str, Any]]) -> str:
+    """The table of the cases that are finished."""
+    cases = {
+        name: [case_of(id, _answer(folder, id), row[name]) for id, row in rows.items()]
+        for name in next(iter(rows.values()))
+    }
+    text = f"# Each chosen number halved and doubled\n\n{len(rows)} cases, seed {seed}."
+    return f"{text}\n\n{table(cases)}"
 
 
 def _answer(folder: Path, id: str) -> dict[str, Any]:
