@@ -1,10 +1,15 @@
 """The numbers that were chosen, halved and doubled: what is computed again, and what is not."""
 
+from contextlib import closing
+from functools import partial
+
 import numpy as np
 import pytest
 
-from benchmarks.settings import Memory, Watched, changed, variants, varied
+from benchmarks.settings.variants import Memory, Watched, changed, every_variant, variants, varied
+from rr_opt.batch.run import pool_of, run
 from rr_opt.sysid.settings import SETTINGS
+from tests.cli.test_diagnose import columns, write
 
 
 @pytest.fixture
@@ -56,3 +61,11 @@ def test_variants():
     assert varied(0.2, 2.0) == 0.4
     assert list(variants(["further"])) == ["as chosen", "further halved", "further doubled"]
     assert "growth halved" not in variants([])
+
+
+def test_changes_count_in_another_process(tmp_path):
+    folder = write(tmp_path, [columns(k, 6) for k in range(3)], ("fit", "holdout", "fit"))
+    wanted = {"as chosen": {}, "certain": {"inconstant": 1.01}}
+    with closing(pool_of(1, None)) as pool:
+        ((_, said),) = run(pool, partial(every_variant, wanted=wanted), {1: folder})
+    assert [one["verdict"] for one in said.values()] == ["consistent", "unexplained"]

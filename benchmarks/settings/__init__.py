@@ -1,0 +1,1 @@
+"""How the diagnosis depends on each number that was chosen."""
