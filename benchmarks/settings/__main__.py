@@ -70,7 +70,7 @@ def table(cases: Mapping[str, Sequence[Case]]) -> str:
             ),
             default=0.0,
         )
-        row = [name, *counts, str(wrong), f"{moves:.2f}", "; ".join(other)]
+        row = [name, *counts, str(wrong), f"{moves:.3f}", "; ".join(other)]
         lines.append("| " + " | ".join(row) + " |")
     return "\n".join(lines) + "\n"
 
