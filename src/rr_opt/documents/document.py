@@ -241,9 +241,6 @@ class Section:
     brief: bool = True
 
 
-ROLLER_RACER = "Roller Racer"
-
-
 @dataclass(frozen=True)
 class Document:
     """A report.
@@ -264,7 +261,7 @@ class Document:
     sections: tuple[Section, ...]
     good: bool = True
     footer: tuple[str, ...] = ()
-    machine: str = ROLLER_RACER
+    machine: str = "Roller Racer"
 
     @property
     def figures(self) -> tuple[Figure, ...]:

@@ -94,13 +94,7 @@ def _named(figures: Iterable[doc.Figure], recording: str) -> list[doc.Figure]:
 
 
 def _report(
-    name: str,
-    sha256: str,
-    what: str,
-    count: int,
-    dropped: str,
-    sections: Iterable[doc.Section],
-    machine: str = doc.ROLLER_RACER,
+    name: str, sha256: str, what: str, count: int, dropped: str, sections: Iterable[doc.Section]
 ) -> doc.Document:
     """count: of warnings; dropped: what was done with samples."""
     return doc.Document(
@@ -113,7 +107,6 @@ def _report(
         good=not count,
         sections=tuple(sections),
         footer=doc.versions(sha256),
-        machine=machine,
     )
 
 
@@ -399,8 +392,8 @@ class InspectedMachine(Result):
         what = f"{counted(len(experiment.runs), 'recording')} of {experiment.machine.words}"
         sections.append(doc.gallery(figures))
         dropped = "Wild samples were left out."
-        machine = experiment.machine.name.capitalize()
-        return _report(experiment.name, self.sha256, what, count, dropped, sections, machine)
+        report = _report(experiment.name, self.sha256, what, count, dropped, sections)
+        return replace(report, machine=experiment.machine.name.capitalize())
 
     def _blocks(self, run: MachineRun) -> list[doc.Block]:
         length = f"{with_unit(float(run.t[-1]), 's')}, {len(run)} samples at "

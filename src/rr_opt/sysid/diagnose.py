@@ -143,7 +143,14 @@ def identified(model: MachineModel, watch: Stopwatch) -> Identification:
             watch.progress("the noise is less than it looked; once more")
             selection = selection.again(quieter)
             selection.run()
-    return chosen(selection, watch)
+    result = chosen(selection, watch)
+    base, best = selection.base.fit, result.best
+    with watch("locating the fault"):
+        before = dependences(base, *selection.model.unknown_inputs(base))
+        after = before
+        if best.choices:
+            after = dependences(best.fit, *selection.model.unknown_inputs(best.fit))
+    return replace(result, before=before, after=after)
 
 
 def chosen(selection: Selection, watch: Stopwatch) -> Identification:
@@ -181,7 +188,4 @@ def weighed(selection: Selection, best: Candidate, watch: Stopwatch) -> Identifi
             every = range(len(model.runs))
             everywhere = refitted(best, every)
             plain = refitted(plain, every) if best.choices else everywhere
-    with watch("locating the fault"):
-        before = dependences(base, *model.unknown_inputs(base))
-        after = dependences(fit, *model.unknown_inputs(fit)) if best.choices else before
-    return Identification(selection, best, everywhere, plain, *levels, before, after)
+    return Identification(selection, best, everywhere, plain, *levels)

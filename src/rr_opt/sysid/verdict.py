@@ -44,8 +44,8 @@ class Identification:
     nominal: Evaluation
     refitted: Evaluation
     final: Evaluation
-    before: Sequence[Dependence]
-    after: Sequence[Dependence]
+    before: Sequence[Dependence] = ()
+    after: Sequence[Dependence] = ()
 
     @cached_property
     def _ended(self) -> list[Candidate]:
