@@ -64,14 +64,71 @@ def test_an_effect_is_dropped_before_another_is_simplified():
     assert selection.best.choices == ("a",)
 
 
+class Near(Selection):
+    """One effect leaves 7.5 % of the first misfit (RMS)."""
+
+    def __init__(self, form_error: float) -> None:
+        known = {"a": SimpleNamespace(form_error=form_error)}
+        self.model, self.base = SimpleNamespace(catalogue=known), MADE[()]  # pyright: ignore
+        self.best: Any = SimpleNamespace(
+            choices=("a",), effects=("a",), excess=0.075 * MADE[()].excess
+        )
+        self.forward = 0
+
+    def _better(self, candidate, other) -> bool:
+        return True
+
+    def _enough(self, candidate) -> bool:
+        return False
+
+    def _forward(self) -> None:
+        self.forward += 1
+
+    def _backward(self, needed) -> None: ...
+
+    _refine = _substitute = _polish = lambda _: None
+
+    def _simplest(self) -> Any:
+        return self.best
+
+
 @pytest.mark.parametrize(("form_error", "kept"), [(0.07, True), (0.08, False)])
 def test_what_machines_differ_by_calls_for_no_second_effect(form_error, kept):
-    """One effect leaves 7.5 % of the first misfit (RMS)."""
-    rest = SimpleNamespace(effects=("a",), excess=0.075 * MADE[()].excess)
     both: Any = SimpleNamespace(accounts=lambda _: 0.36)
+    selection = Near(form_error)
+    assert selection.needed(both, selection.best) == kept
+    selection.run()
+    assert selection.forward == kept
+
+
+def test_what_the_motion_does_not_show_goes_before_more_is_sought():
+    class Looking(Dropping):
+        def _enough(self, candidate) -> bool:
+            return False
+
+        def _better(self, candidate, other) -> bool:
+            return other.excess > 7.6
+
+        def _forward(self) -> None:
+            raise LookupError(self.best.choices)
+
+        def _close(self, candidate) -> bool:
+            return False
+
+    with pytest.raises(LookupError, match=r"\('a',\)"):
+        Looking().run()
+
+
+def test_a_part_that_leaves_nothing_is_taken_to_its_end(monkeypatch):
+    """It need not predict as well as the whole, by which it was given up."""
+    ended = Made(("a",), 0.1)
+    monkeypatch.setattr("rr_opt.sysid.selection.fitted", lambda *_: ended)
     selection: Any = SimpleNamespace(
-        _better=lambda *_: True,
-        model=SimpleNamespace(catalogue={"a": SimpleNamespace(form_error=form_error)}),
-        base=MADE[()],
+        tried={},
+        _compared=set(),
+        model=None,
+        fitted=lambda *_: SimpleNamespace(given_up=True, fit=None, excess=0.1),
+        complete=lambda one: one.excess < 0.2,
     )
-    assert Selection.needed(selection, both, rest) == kept  # pyright: ignore
+    assert Selection._part(selection, MADE["a", "b"], ("a",)) is ended  # pyright: ignore
+    assert selection.tried == {("a",): ended}

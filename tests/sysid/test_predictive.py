@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rr_opt.sysid.estimation import Evidence, initial, solve
+from rr_opt.sysid.estimation import Evidence, initial, root, solve
 from rr_opt.sysid.intervals import covariance
 from tests.sysid.linear_model import LinearModel
 
@@ -43,6 +43,21 @@ def test_runs_with_values_of_their_own_are_as_likely_as_by_their_covariance():
         left = J @ d - y
         assert wide.at(d) == pytest.approx(left @ np.linalg.solve(C, left))
     assert wide.log - plain.log == pytest.approx(np.linalg.slogdet(C)[1])
+
+
+def test_a_run_that_bends_downwards_spreads_too():
+    """Elimination can leave that of a run that hardly follows its model."""
+    none = np.zeros(0)
+    plain = Evidence(20.0, 3.0, 5.0, 1.5, np.ones(2), np.diag([-2.0, 1.0]), none, none)
+    wide = plain.spread(np.array([1.0, 0.5]))
+    # The rounded part counts as flat; the other is spread by half.
+    assert wide.log - plain.log == pytest.approx(np.log(1.25))
+    assert pytest.approx(np.diag([0.0, 1 / 1.25])) == wide.H
+
+
+def test_the_root_of_what_only_bends_downwards():
+    H = np.diag([-1.0, 1.25])
+    assert root(H) @ root(H).T == pytest.approx(np.diag([1.0, 3.75]))
 
 
 def test_a_run_is_predicted_no_better_than_machines_agree():

@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+from rr_opt.sysid.candidates import Candidate
 from rr_opt.sysid.model import Choice, EffectInfo, Form, Quantity
 from rr_opt.sysid.selection import Selection
 
@@ -23,6 +24,9 @@ class Made:
 
     def predicts_better(self, other) -> bool:
         return self.elpd > other.elpd + 5
+
+    def advances(self, _) -> bool:
+        return True
 
 
 def effect(name: str, *, smooth: bool, guesses: tuple[Mapping[str, float], ...] = ({},)):
@@ -66,3 +70,55 @@ def test_an_effect_without_a_score_is_fitted_from_its_usual_size():
 def test_a_tie_is_not_settled():
     with pytest.raises(LookupError, match="not settled"):
         Settling(elpd=-1.0)._forward()
+
+
+def test_two_effects_do_not_settle_what_one_may_do():
+    class Imitated(Settling):
+        def _scored(self) -> Any:
+            return [Made((Choice("drag"), Choice("tilt")), 0.0)]
+
+        def _extended(self) -> Any:
+            return []
+
+        def _proposed(self) -> Any:
+            return [Made((Choice("slip"),), 10.0)]
+
+    selection = Imitated(elpd=-50.0)
+    selection._forward()
+    assert selection.best.effects == ("slip",)
+
+
+@pytest.mark.parametrize(
+    ("whole", "segments", "taken"),
+    [(0.8, 1.0, True), (1.1, 0.8, True), (0.85, 0.85, False), (1.1, 0.99, False)],
+)
+def test_a_step_that_leaves_about_as_much_is_not_taken(whole, segments, taken):
+    """Mean squares of .64 and .72 of what there was; a third has to go."""
+
+    def left(excess: float, in_segments: float) -> Any:
+        fit: Any = SimpleNamespace(excess=in_segments)
+        one = Candidate((), fit)
+        one.__dict__["simulated"] = SimpleNamespace(excess=excess)
+        return one
+
+    assert left(2 * whole, 3 * segments).advances(left(2.0, 3.0)) == taken
+
+    class Bending(Settling):
+        def complete(self, candidate):
+            return False
+
+        def _scored(self) -> Any:
+            return [Advancing((Choice("drag"),), 0.0)]
+
+        def _extended(self) -> Any:
+            return []
+
+        _proposed = _extended
+
+    class Advancing(Made):
+        def advances(self, _) -> bool:
+            return taken
+
+    selection = Bending(elpd=0.0)
+    selection._forward()
+    assert bool(selection.best.choices) == taken

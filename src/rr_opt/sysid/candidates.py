@@ -63,6 +63,12 @@ class Candidate:
         beyond the noise (mean square)."""
         return 1 - self.excess**2 / max(other.excess**2, 1e-12)
 
+    def advances(self, other: Candidate) -> bool:
+        """Whether it accounts for a good share of that; or of what is left in segments, where what
+        it still lacks adds up less. What does neither only bends to what it cannot explain."""
+        in_segments = 1 - self.fit.excess**2 / max(other.fit.excess**2, 1e-12)
+        return in_segments > SETTINGS.accounted or self.accounts(other) > SETTINGS.accounted
+
     def predicts_better(self, other: Candidate) -> bool:
         """Whether the evidence from prediction is enough to prefer it."""
         if self.given_up:

@@ -82,8 +82,15 @@ class Evidence:
         """That of a run whose scaled quantities differ from the others' by as much (one sigma)."""
         if not sigma.any() or math.isinf(self.value):
             return self
-        across = self.H * sigma
-        factor = cholesky(np.eye(sigma.size) + sigma[:, None] * across, lower=True)
+        H = self.H
+        try:
+            factor = cholesky(np.eye(sigma.size) + sigma[:, None] * H * sigma, lower=True)
+        except LinAlgError:
+            # What elimination left negative says nothing.
+            w, V = np.linalg.eigh(H)
+            H = (V * np.maximum(w, 0)) @ V.T
+            factor = cholesky(np.eye(sigma.size) + sigma[:, None] * H * sigma, lower=True)
+        across = H * sigma
         half = solve_triangular(factor, across.T, lower=True)
         pull = solve_triangular(factor, sigma * self.g, lower=True)
         return replace(
@@ -91,7 +98,7 @@ class Evidence:
             value=self.value - float(pull @ pull),
             log=self.log + 2 * float(np.sum(np.log(np.diag(factor)))),
             g=self.g - half.T @ pull,
-            H=self.H - half.T @ half,
+            H=H - half.T @ half,
         )
 
 
@@ -110,7 +117,7 @@ def root(H: Array) -> Array:
             return cholesky(H + ridge * np.diag(np.abs(np.diag(H))), lower=True)
         except LinAlgError:
             continue
-    return cholesky(H + np.diag(np.abs(H).sum(axis=1)), lower=True)
+    return cholesky(H + 2 * np.diag(np.abs(H).sum(axis=1)), lower=True)
 
 
 def bounded_minimum(H: Array, g: Array, low: Array, high: Array) -> Array:

@@ -56,10 +56,12 @@ class Selection:
 
     def run(self) -> Candidate:
         """Search; the candidate that was chosen."""
+        # The drive's own recording may show what the motion does not.
+        self._backward(self._better)
         seen: list[Candidate] = []
         while self.best not in seen and not self._enough(self.best):
             seen.append(self.best)
-            if len(self.best.choices) < SETTINGS.most_effects:
+            if len(self.best.choices) < SETTINGS.most_effects and not self._close(self.best):
                 self._forward()
             self._backward(self._better)
         self._refine()
@@ -104,13 +106,17 @@ class Selection:
     def needed(self, candidate: Candidate, other: Candidate) -> bool:
         """Whether it also accounts for a good share of what the other leaves, which is more than
         machines differ by from models of the other's effects."""
-        catalogue = self.model.catalogue
-        form_error = max((catalogue[name].form_error for name in other.effects), default=0.0)
         return (
             self._better(candidate, other)
-            and other.excess > form_error * self.base.excess
+            and not self._close(other)
             and candidate.accounts(other) > SETTINGS.accounted
         )
+
+    def _close(self, candidate: Candidate) -> bool:
+        """Whether it leaves no more than machines differ by from models of its effects."""
+        catalogue = self.model.catalogue
+        form_error = max((catalogue[name].form_error for name in candidate.effects), default=0.0)
+        return candidate.excess <= form_error * self.base.excess
 
     def fitted(
         self,
@@ -158,14 +164,16 @@ class Selection:
             self.progress("looking where effects without derivatives may be")
             found += self._proposed()
         best = _best(found)
-        if best and best.predicts_better(self.best):
+        if best and best.predicts_better(self.best) and best.advances(self.best):
             self.best = best
 
     def _settled(self, found: Sequence[Candidate]) -> bool:
-        """Whether one leaves nothing and predicts better than all others of other effects, as what
-        is not may be an imitation of something that was not tried yet."""
+        """Whether one effect leaves nothing and predicts better than all others, as what is not, or
+        what takes two, may be an imitation of something that was not tried yet."""
         best = _best(found)
         if best is None or not self.complete(best):
+            return False
+        if len(best.choices) > len(self.best.choices) + 1:
             return False
         others = [one for one in found if one.effects != best.effects]
         return all(best.predicts_better(one) for one in (self.best, *others))
@@ -287,6 +295,9 @@ class Selection:
             # It will be fitted from there.
             self._compared.add((whole, key))
         part = self.fitted(key, [{}], whole)
+        if part.given_up and self.complete(part):
+            # It need not predict as well as the whole.
+            self.tried[key] = part = fitted(self.model, key, part.fit, [{}])
         if key and whole.predicts_better(part) and (whole, key) not in self._compared:
             self._compared.add((whole, key))
             again = fitted(self.model, key, whole.fit, [{}], part.fit)
