@@ -80,16 +80,12 @@ class Identification:
 
     @property
     def _as_machines_differ(self) -> float:
-        """How likely what is left is what machines differ by from models of such effects. In one of
-        several recordings a simulation may go astray: the one that is explained worst is left out.
-        """
+        """How likely what is left is what machines differ by from models of such effects: fitted to
+        all recordings, as the motion after a start may depend on the values by more than they are
+        known; whether recordings agree on them is another question."""
         slight = SETTINGS.none**2 + self.selection.model.form_error**2
-        pairs = zip(self.final.misfits, self.refitted.misfits, strict=True)
-        squares = sorted((last.rms**2 - 1 - slight, first.rms**2 - 1) for last, first in pairs)
-        if len(squares) > 2:
-            squares.pop()
-        left, first = np.maximum(squares, 0.0).sum(axis=0)
-        share = math.sqrt(left / max(first, 1e-12))
+        left = math.sqrt(max(self.everywhere.excess**2 - slight, 0.0))
+        share = left / max(self.plain.excess, 1e-6)
         return 1 / (1 + (share / self._form_error / SETTINGS.form_errors) ** 4)
 
     @property
