@@ -1,4 +1,4 @@
-"""A laboratory in two other physics engines: recordings with known or sealed physics in them.
+"""A laboratory with two other physics engines: recordings with known or sealed physics.
 
 The blind trial of the diagnosis is in `trial`.
 """

@@ -1,7 +1,7 @@
-"""A case: a robot, what is hidden in it, its runs, and the engine that drives it.
+"""A case: a robot, its hidden physics, its runs, and the engine that drives it.
 
-The engines share what is hidden, the command as the servo's faults shape it, and the capture
-system; no equation of motion and no contact.
+The engines share the hidden physics, the command as shaped by the servo's faults, and the capture
+system, but no equation of motion and no contact model.
 """
 
 import zlib
@@ -22,7 +22,7 @@ from rr_opt.model.gait import Gait, SineGait
 from rr_opt.model.robot import EffectUse, Robot
 
 Engine = Literal["mujoco", "planar"]
-"""A robot in three dimensions in MuJoCo, or two bodies in the plane, stepped here."""
+"""A three-dimensional robot in MuJoCo, or two planar bodies with an integrator of our own."""
 
 ENGINES: tuple[Engine, ...] = get_args(Engine)
 
@@ -77,9 +77,9 @@ def record(
     """Drive a gait on the virtual robot and record it `rate` times a second.
 
     start    `rest`: the command begins at t = 0; `running`: `periods` whole periods earlier
-    pose     x (m), y (m) and heading (rad) where the robot is put down
+    pose     initial x (m), y (m) and heading (rad)
     missing  fraction of the samples that are lost
-    step     of the integration, s; the engine's own if left out
+    step     integration step, s; default: the engine's own
     Raises InputError for an unknown effect, or if MuJoCo is needed and not installed.
     """
     rig = rig_with(robot, effects)
@@ -90,7 +90,7 @@ def record(
 
 
 def stream(seed: int, *purpose: object) -> np.random.Generator:
-    """The generator of a seed for a purpose; the same words give the same numbers."""
+    """The generator of a seed for a purpose; equal words give equal numbers."""
     words = [zlib.crc32(str(word).encode()) for word in purpose]
     return np.random.default_rng([seed, *words])
 
@@ -112,20 +112,20 @@ class Plan:
 
     @property
     def conditions(self) -> Conditions:
-        """How the robot is let go, at 100 samples a second."""
+        """The initial conditions, at 100 samples a second."""
         return Conditions(self.seconds, self.start, self.pose, periods=self.periods)
 
 
 @dataclass(frozen=True)
 class Case:
-    """What a diagnosis is tried on.
+    """A test case for a diagnosis.
 
     nominal   the robot as the experimenter believes it to be; robot, as it is
-    effects   what is hidden in it; verdict, what a right diagnosis says of it
+    effects   the hidden effects; verdict, that of a correct diagnosis
     changed   names of the parameters in which robot and nominal differ, for `parameters`
     missing   fraction of the samples that the capture system loses
-    engine    what drives it
-    disturbance  what goes wrong in the recordings, by name
+    engine    the physics engine
+    disturbance  of the recordings, by name
     """
 
     name: str
@@ -145,12 +145,12 @@ class Case:
 
     @property
     def rig(self) -> Rig:
-        """The robot as it is, with what is hidden in it."""
+        """The robot as it is, with its hidden effects."""
         return rig_with(self.robot, self.effects)
 
 
 def motion_of(case: Case, plan: Plan, step: float | None = None, *, torque: bool = False) -> Motion:
-    """What truly happens in a run; step: s, of the integration, the engine's own if left out."""
+    """The true motion of a run; step: of the integration, s; default: the engine's own."""
     clock = disturbance_named(case.disturbance).clock
     conditions = plan.conditions
     conditions = replace(

@@ -1,6 +1,6 @@
-"""What goes wrong between a motion and its recording, beyond white noise of the size stated.
+"""Disturbances between a motion and its recording, beyond white noise of the stated size.
 
-None of it is physics: the right diagnosis of a disturbed recording is that of an undisturbed one.
+None of them is physics: the right diagnosis of a disturbed recording is that of an undisturbed one.
 """
 
 from collections.abc import Callable, Mapping
@@ -13,15 +13,15 @@ from rr_opt.outcome import InputError
 
 Channels = Mapping[str, Array]
 Distortion = Callable[[Channels, Channels, float, np.random.Generator], Channels]
-"""(values, sigma of each channel, samples a second, random numbers) -> values as they are kept."""
+"""(values, sigma of each channel, samples a second, random numbers) -> recorded values."""
 
 
 @dataclass(frozen=True)
 class Disturbance:
     """noise      of unit variance, of n samples
-    distort    what becomes of the noisy channels
-    clock      seconds of the recording's clock in a true second
-    stated     the noise that the experiment states, over the true one
+    distort    distortion of the noisy channels
+    clock      seconds of the recording's clock per true second
+    stated     ratio of the noise stated in the experiment to the true one
     """
 
     name: str
@@ -36,10 +36,10 @@ NO_DISTURBANCE = Disturbance("", "white noise of the size stated")
 
 
 def _low_pass(cutoff: float) -> Distortion:
-    """Butterworth, second order, forwards and backwards, as motion capture software smooths."""
+    """Butterworth, second order, forwards and backwards, as in motion capture software."""
 
     def smooth(values: Channels, _sigma: Channels, rate: float, _: np.random.Generator) -> Channels:
-        from scipy.signal import butter, sosfiltfilt  # takes a second
+        from scipy.signal import butter, sosfiltfilt  # slow to import
 
         sections = butter(2, cutoff, fs=rate, output="sos")
         return {name: np.asarray(sosfiltfilt(sections, each)) for name, each in values.items()}
@@ -48,12 +48,12 @@ def _low_pass(cutoff: float) -> Distortion:
 
 
 CORRELATION = 0.8
-"""Of successive samples of coloured noise."""
+"""Correlation of successive samples of coloured noise."""
 
 
 def _coloured(rng: np.random.Generator, n: int) -> Array:
     """AR(1) noise of unit variance."""
-    from scipy.signal import lfilter  # takes a second
+    from scipy.signal import lfilter  # slow to import
 
     steps = np.sqrt(1 - CORRELATION**2) * rng.standard_normal(n)
     first = CORRELATION * rng.standard_normal()
@@ -61,11 +61,11 @@ def _coloured(rng: np.random.Generator, n: int) -> Array:
 
 
 OUTLIERS, FAR = 0.02, (10.0, 60.0)
-"""The share of samples that are wild, and by how many sigma."""
+"""The share of outlier samples, and their size in sigma."""
 
 
 def _wild(values: Channels, sigma: Channels, _rate: float, rng: np.random.Generator) -> Channels:
-    """A sample that is wild is so in all channels, as it is when a marker is mistaken."""
+    """An outlier affects all channels, as when a marker is mistaken."""
     n = len(next(iter(values.values())))
     wild = rng.random(n) < OUTLIERS
     return {
@@ -92,11 +92,11 @@ def _gaps(values: Channels, _sigma: Channels, rate: float, rng: np.random.Genera
 
 
 EVERY, LONG, BESIDE = 4.0, (0.1, 0.3), 0.15
-"""s: from one swap to the next on average, its length, and how much on either side mends it."""
+"""s: mean interval between swaps, their length, and how much on either side repairs them."""
 
 
 def _mended(values: Channels, _sigma: Channels, rate: float, rng: np.random.Generator) -> Channels:
-    """Swapped markers, mended by a cubic through the samples on either side."""
+    """Swapped markers, repaired by a cubic through the samples on either side."""
     made = {name: each.copy() for name, each in values.items()}
     n, beside = len(next(iter(values.values()))), round(BESIDE * rate)
     for _ in range(round(n / rate / EVERY)):
@@ -111,7 +111,7 @@ def _mended(values: Channels, _sigma: Channels, rate: float, rng: np.random.Gene
 
 
 COARSE_ANGLE = 3e-3
-"""rad, the step of coarse angles."""
+"""Step of coarse angles, rad."""
 
 
 def _coarse(values: Channels, _sigma: Channels, _rate: float, _: np.random.Generator) -> Channels:
@@ -139,7 +139,7 @@ DISTURBANCES = {
 
 
 def disturbance_named(name: str) -> Disturbance:
-    """By name, none for an empty one; raises InputError if there is no such disturbance."""
+    """The disturbance of a name, none for an empty one; raises InputError if there is none such."""
     if name and name not in DISTURBANCES:
         raise InputError(
             f"The laboratory has no disturbance {name!r}. Expected one of: "

@@ -1,7 +1,7 @@
-"""The size of hidden effects, by the laboratory's own runs, and the strength that gives a size.
+"""The size of hidden effects, from the laboratory's own runs, and the strength for a given size.
 
-A run of the case is compared with the same run of the nominal robot, both without noise, after the
-initial state has been fitted: place, heading and initial speed. The effect size is the RMS
+A run of the case is compared with the same run of the nominal robot, both without noise, after
+fitting the initial state: place, heading and initial speed. The effect size is the RMS
 difference in standard deviations of the noise.
 """
 
@@ -22,16 +22,16 @@ from rr_opt.model.parameters import parameters_of, with_parameters
 from rr_opt.model.robot import EffectUse, Robot
 
 COARSE = 1e-3
-"""s, the step: strength is not needed to better than a per cent."""
+"""Step, s: strength need not be accurate beyond a per cent."""
 
 SPEED_NUDGE = 0.02
-"""m/s, the change of speed by which the run's sensitivity to it is measured."""
+"""m/s, the change of speed for the finite-difference sensitivity of a run."""
 
 CHANNELS = ("x", "y", "psi", "phi")
 
 
 def exact_path(case: Case, plan: Plan, step: float = COARSE) -> Array:
-    """What is seen of a run of a case without noise, (4, n): CHANNELS."""
+    """The noise-free observations of a run of a case, (4, n): CHANNELS."""
     return _seen(motion_of(case, plan, step), case.rig.tracked)
 
 
@@ -42,7 +42,7 @@ def _seen(motion: Motion, tracked: Sequence[float] = (0.0, 0.0)) -> Array:
 
 @dataclass(frozen=True)
 class NominalRun:
-    """A nominal run, (4, n) each: its path, and the change for 1 m/s more at the start."""
+    """A nominal run, (4, n) each: its path, and its sensitivity to the initial speed, per m/s."""
 
     path: Array
     change: Array
@@ -60,8 +60,8 @@ class NominalRun:
         return cls(base, (nudged - base) / SPEED_NUDGE, sigma[:, None])
 
     def deviation(self, seen: Array) -> float:
-        """RMS deviation of a run from this one, in sigma, once its initial state is fitted."""
-        from scipy.optimize import least_squares  # seldom needed
+        """RMS deviation of a run from this one, in sigma, after fitting its initial state."""
+        from scipy.optimize import least_squares  # rarely needed
 
         def residual(p: Array) -> Array:
             x, y, psi, phi = self.path + p[3] * self.change
@@ -93,11 +93,11 @@ class EffectSize:
 
 TRIES = 6
 CLOSE = 0.1
-"""Relative; a strength is drawn over decades, so nothing is gained by more."""
+"""Relative tolerance; a strength is drawn over decades, so more accuracy gains nothing."""
 
 
 def scaled_use(use: EffectUse, factor: float) -> EffectUse:
-    """The effect `factor` times as strong; its places and directions stay."""
+    """The effect `factor` times as strong; its places and directions are unchanged."""
     effect = effect_named(use.name)
     values = {
         name: effect.accepted[name].scaled(value, factor) for name, value in use.values.items()
@@ -106,11 +106,11 @@ def scaled_use(use: EffectUse, factor: float) -> EffectUse:
 
 
 def scaled_to(case: Case, target: float, size: Callable[[Case], float]) -> tuple[Case, float]:
-    """The case with its effects scaled together until size(case) is `target`, and what it is.
+    """The case with its effects scaled together until size(case) is `target`, and the size reached.
 
-    size  RMS deviation from the nominal, in sigma; it is taken to grow with the strength.
-    The secant method on logarithms; where the effects reach what is believable first, or hardly
-    change what is seen (a limit that is not met), the nearest that was tried is returned.
+    size  RMS deviation from the nominal, in sigma; assumed to increase with the strength.
+    Secant method on logarithms. If the effects become implausibly large first, or hardly change the
+    observations (an inactive limit), the closest one tried is returned.
     """
     low, high, factor, power = 1e-4, 1e4, 1.0, 1.0
     tried: list[tuple[Case, float, float]] = []
@@ -134,27 +134,27 @@ def _miss(reached: float, target: float) -> float:
 
 
 def _slope(one: tuple[float, float], two: tuple[float, float], before: float) -> float:
-    """d log(reached) / d log(factor), kept between 0.3 and 3."""
+    """d log(reached) / d log(factor), clipped to 0.3 .. 3."""
     run = math.log(two[0] / one[0])
     rise = math.log(two[1] / one[1])
     return min(max(rise / run, 0.3), 3.0) if run else before
 
 
 NUDGE = 0.5
-"""Of one sigma, by which a parameter is moved for its derivative."""
+"""Step of a parameter for its finite difference, in sigma."""
 
 FARTHEST = 3.0
-"""Sigma, by which a parameter may be moved."""
+"""Largest change of a parameter, in sigma."""
 
 STEP, DIRECTIONS = 5e-3, 1e-2
-"""s, of the integration: in the runs that are compared, and for derivatives."""
+"""Integration steps, s: in the compared runs, and for derivatives."""
 
 FINEST = 1e-3
-"""s, the shortest step of nominal runs."""
+"""Shortest step of nominal runs, s."""
 
 STEPS = 3
 SETTLED = 0.02
-"""Sigma; a smaller step changes nothing."""
+"""Sigma; convergence threshold of the step."""
 
 
 @dataclass(frozen=True)
@@ -162,7 +162,7 @@ class Detectability:
     """Nominal runs by their plans, and how the parameters change them.
 
     slopes  for each run (4, n, parameters): x, y, psi, phi in sigma, per sigma of the parameter.
-            A friction of which nothing is known has its factor for a sigma, in its logarithm
+            For an unknown friction, sigma is the log of its factor
     """
 
     case: Case
@@ -205,11 +205,11 @@ class Detectability:
         return least
 
     def _stepped(self, at: Array, pairs: list[tuple[NominalRun, Array]]) -> Array:
-        """The parameters, in sigma, after a Gauss-Newton step with their uncertainties as prior, in
-        their box."""
+        """The parameters, in sigma, after a Gauss-Newton step with their uncertainties as prior,
+        within their box."""
         rows, sides = [np.eye(len(at))], [-at]
         for (run, seen), slopes in zip(pairs, self.slopes, strict=True):
-            # What the initial state can explain is taken out of both sides.
+            # The effect of the initial state is projected out of both sides.
             start = np.linalg.qr(_starts(run))[0]
             off = ((seen - run.path) / run.sigma).ravel()
             turned = slopes.reshape(off.size, -1)
@@ -217,7 +217,7 @@ class Detectability:
             sides.append(off - start @ (start.T @ off))
         known = self.case.uncertainty.values()
         most = np.array([1.0 if one.factor else FARTHEST for one in known])
-        # R of the QR factors has all that the least squares need of the thousands of rows.
+        # R of the QR factorisation replaces the thousands of rows of the least squares.
         table = np.column_stack([np.concatenate(rows), np.concatenate(sides)])
         reduced: Array = np.linalg.qr(table).R
         free = reduced[:-1]
@@ -235,7 +235,7 @@ def moved_robot(case: Case, sigmas: Array) -> Robot:
 
 
 def _starts(run: NominalRun) -> Array:
-    """What place, heading and first speed of a run change in it, in sigma, (4 n, 4)."""
+    """The sensitivity of a run to place, heading and initial speed, in sigma, (4 n, 4)."""
     x, y = run.path[:2]
     zero, one = np.zeros_like(x), np.ones_like(x)
     columns = [(one, zero, zero, zero), (zero, one, zero, zero), (-y, x, one, zero)]
@@ -244,5 +244,5 @@ def _starts(run: NominalRun) -> Array:
 
 
 def _driven(case: Case, runs: dict[Plan, NominalRun], step: float) -> dict[Plan, NominalRun]:
-    """The nominal runs with the paths of a case, driven with a step, s."""
+    """The nominal runs with the paths of a case, integrated with a step, s."""
     return {plan: replace(run, path=exact_path(case, plan, step)) for plan, run in runs.items()}

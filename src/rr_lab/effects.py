@@ -1,9 +1,9 @@
 """The effects that the laboratory can hide, by name and realisation.
 
-A hidden effect has a name and parameters; it says how they are drawn, and how it enters a rig. An
-effect of the catalogue may have several realisations: different physics that a user would call by
-the same name. Each is a `HiddenEffect` of its own. `effects.toml` has them all, and names functions
-of this module without the underscore.
+A hidden effect has a name and parameters; it defines how they are drawn, and how it changes a rig.
+An effect of the catalogue may have several realisations: different physics that a user would call
+by the same name. Each is a `HiddenEffect` of its own. `effects.toml` lists them all, with functions
+of this module named without the underscore.
 """
 
 import math
@@ -41,11 +41,10 @@ Values = Mapping[str, float]
 class Parameter:
     """A parameter of an effect.
 
-    typical  a size that is clearly seen in a recording of half a minute
-    neutral  the value at which it does nothing; inf for a limit. None: its size is no measure of
-             strength (a place, a direction), and it stays as it was drawn
-    most     the largest deviation from neutral that is still believable, or for a limit the least
-             value
+    typical  a size that is clearly visible in a recording of half a minute
+    neutral  the value without effect; inf for a limit. None: its size is no measure of strength
+             (a place, a direction), and it is never scaled
+    most     the largest plausible deviation from neutral, or for a limit the least value
     signed   whether it may have either sign
     plant    whether it is the laboratory's own: no parameter of the catalogue, so never scored
     """
@@ -59,7 +58,7 @@ class Parameter:
     plant: bool = False
 
     def scaled(self, value: float, factor: float) -> float:
-        """The value `factor` times as far from neutral, within what is believable."""
+        """The value `factor` times as far from neutral, within the plausible range."""
         if self.neutral is None:
             return value
         if self.neutral == math.inf:
@@ -70,10 +69,10 @@ class Parameter:
 
 @dataclass(frozen=True)
 class Setting:
-    """What drawn values may depend on.
+    """The context that drawn values may depend on.
 
     gaits   of the runs that will be recorded
-    passed  a place (m) that one of the runs passes in its middle, drawn anew at each call
+    passed  a place (m) in the middle of one of the runs, drawn anew at each call
     """
 
     rng: np.random.Generator
@@ -86,8 +85,8 @@ Enter = Callable[[Rig, Values], None]
 
 
 def adds(attribute: str, *names: str) -> Enter:
-    """Adds parameters to an attribute of the rig: one to a number, several to a list in order. One
-    that is not given adds nothing."""
+    """Adds parameters to an attribute of the rig: one to a number, several to a list in order.
+    Missing ones add nothing."""
 
     def enter(rig: Rig, values: Values) -> None:
         more = [values.get(name, 0.0) for name in names]
@@ -105,14 +104,14 @@ class HiddenEffect:
     """An effect that the laboratory can hide.
 
     what         one sentence for the sealed answer
-    enter        changes a rig by the values of the parameters; those not given are neutral
-    realisation  which physics of that name; empty where there is only one
+    enter        changes a rig according to the parameters; missing ones are neutral
+    realisation  which physics of that name; empty if there is only one
     named        whether it is in the catalogue, so that a diagnosis can name it
     also         parameters that may be given, and are never drawn
     draw         (setting, each parameter of about its typical size, either sign where it may) ->
-                 values that belong together; None: as they are
+                 consistent values; None: unchanged
     derived      (nominal robot, values) -> parameters of the catalogue that follow from them
-    sizes        the range of effect sizes, sigma, in which it is what it is called; None: any
+    sizes        the range of effect sizes, sigma, in which its name applies; None: any
     same_as      other names of the catalogue for the same motion
     """
 
@@ -130,7 +129,7 @@ class HiddenEffect:
 
     @property
     def key(self) -> str:
-        """Of this realisation: `servo_backlash/frictional`, or the name where there is one only."""
+        """The realisation: `servo_backlash/frictional`, or the bare name if there is only one."""
         return f"{self.name}/{self.realisation}" if self.realisation else self.name
 
     @property
@@ -139,7 +138,7 @@ class HiddenEffect:
         return {each.name: each for each in (*self.parameters, *self.also)}
 
     def drawn(self, setting: Setting) -> Values:
-        """Random values of about their typical size."""
+        """Random values around their typical size."""
         rng, values = setting.rng, {}
         for each in self.parameters:
             size = each.typical * math.exp(rng.uniform(-0.7, 0.7))
@@ -168,7 +167,7 @@ def _by_load(rig: Rig, values: Values) -> None:
 
 
 def _forces_of_loads(robot: Robot, values: Values) -> dict[str, float]:
-    """With the loads of a robot that stands."""
+    """With the wheel loads of a stationary robot."""
     one, _, two, _ = values["mu"] * wheel_loads(Rig(robot))
     return {"force1": float(one), "force2": float(two)}
 
@@ -191,7 +190,7 @@ def _wheel_inertia(rig: Rig, values: Values) -> None:
 
 
 def _slip(rig: Rig, values: Values) -> None:
-    """`mu`: the grip that lets go; `creep_compliance`: side speed per side force."""
+    """`mu`: the friction limit of the grip; `creep_compliance`: side speed per side force."""
     rig.mu = values.get("mu", rig.mu)
     rig.creep += values.get("creep_compliance", 0.0)
 
@@ -212,28 +211,28 @@ def _any_direction(setting: Setting, _: Values) -> Values:
 
 
 def _round_a_path(setting: Setting, values: Values) -> Values:
-    """A circle round a place that a run passes."""
+    """A circle around a place on a run."""
     x, y = setting.passed()
     radius = float(setting.rng.uniform(0.15, 0.55))
     return {"multiplier": 1 + values["multiplier"] / 2, "x": x, "y": y, "radius": radius}
 
 
 def _across_a_path(setting: Setting, values: Values) -> Values:
-    """An edge through a place that a run passes."""
+    """An edge through a place on a run."""
     x, y = setting.passed()
     normal = float(setting.rng.uniform(-math.pi, math.pi))
     return {"multiplier": 1 + values["multiplier"] / 2, "normal": normal, "edge_x": x, "edge_y": y}
 
 
 def _lag(rig: Rig, values: Values) -> None:
-    """A follower of first order, tau dy/dt = u - y, or with beta of second.
+    """A first-order lag, tau dy/dt = u - y, or with beta a second-order one.
 
-    Exact for a command that is straight in a step.
+    Exact for a command that is linear within a step.
     """
     tau, beta = values["tau"], values.get("beta", 0.0)
 
     def follow(t: Array, angle: Array) -> Array:
-        from scipy.signal import cont2discrete, lfilter  # takes a second
+        from scipy.signal import cont2discrete, lfilter  # slow to import
 
         system = [1.0], [beta, tau, 1.0] if beta else [tau, 1.0]
         discrete: Any = cont2discrete(system, t[1] - t[0], method="foh")
@@ -250,14 +249,14 @@ def _second_order(rig: Rig, values: Values) -> None:
 
 
 def _p_loop(rig: Rig, values: Values) -> None:
-    """A motor as soft as its lag says, which the load's torque deflects too."""
+    """A motor with the stiffness of its lag, which the load torque deflects too."""
     tau, zeta = values["tau"], values["zeta"]
     stiffness = swing_inertia(rig.robot) * (2 * zeta / tau) ** 2
     rig.motor = Motor(stiffness, stiffness * tau, feedforward=0.0)
 
 
 def _damped(setting: Setting, values: Values) -> Values:
-    """A servo that hardly overshoots: damping ratio 0.5 to 1.2."""
+    """A servo with little overshoot: damping ratio 0.5 to 1.2."""
     return {**values, "zeta": float(setting.rng.uniform(0.5, 1.2))}
 
 
@@ -294,8 +293,8 @@ def _backlash(rig: Rig, values: Values) -> None:
 
 
 def _frictional(setting: Setting, values: Values) -> Values:
-    """Friction from about the torque of the load's own inertia, where it begins to hold the load in
-    the play, to well above."""
+    """Friction from about the inertial torque of the load, where it begins to hold the load within
+    the backlash, to well above."""
     largest = max(gait.amplitude * gait.angular_frequency**2 for gait in setting.gaits)
     inertial = swing_inertia(setting.robot) * largest
     friction = inertial * math.exp(setting.rng.uniform(math.log(0.5), math.log(4.0)))
@@ -314,7 +313,7 @@ def _tether(rig: Rig, values: Values) -> None:
 
 
 def _beside_a_path(setting: Setting, values: Values) -> Values:
-    """Tied to a place somewhat off a run, and taut for a part of it."""
+    """Tied to a place beside a run, and taut for a part of it."""
     x, y = setting.passed()
     dx, dy = setting.rng.uniform(-0.3, 0.3, 2)
     return {**values, "x": float(x + dx), "y": float(y + dy)}
@@ -340,7 +339,7 @@ def _fault(rig: Rig, values: Values) -> None:
 
 
 def _pin(rig: Rig, values: Values) -> None:
-    """The platforms can shift against each other by the clearance, up to hard stops."""
+    """The platforms can shift relative to each other by the clearance, up to hard stops."""
     rig.pin = values["clearance"]
 
 
@@ -382,11 +381,11 @@ REALISATIONS: dict[str, tuple[HiddenEffect, ...]] = {
     name: tuple(effect for effect in EVERY if effect.name == name)
     for name in dict.fromkeys(effect.name for effect in EVERY)
 }
-"""By name, the first being the one that a bare name stands for."""
+"""By name; a bare name stands for the first."""
 
 NAMED = tuple(name for name, (first, *_) in REALISATIONS.items() if first.named)
 OUTSIDE_NAMES = tuple(name for name in REALISATIONS if name not in NAMED)
-"""Those that a diagnosis can name, and those outside its catalogue."""
+"""Effects that a diagnosis can name, and those outside its catalogue."""
 
 _BY_KEY = {effect.key: effect for effect in EVERY} | {
     name: first for name, (first, *_) in REALISATIONS.items()
@@ -406,9 +405,9 @@ def effect_named(key: str) -> HiddenEffect:
 
 
 def rig_with(robot: Robot, effects: Iterable[EffectUse] = ()) -> Rig:
-    """The robot with the effects in it, in the order given; those in its own `physics` come first.
+    """The robot with the effects, in the order given; those in its own `physics` come first.
 
-    Raises InputError for an effect or a parameter that is not known, or that is needed and missing.
+    Raises InputError for an effect or a parameter that is unknown, or required and missing.
     """
     rig = Rig(robot)
     for use in (*robot.physics, *effects):

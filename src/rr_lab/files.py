@@ -26,7 +26,7 @@ class Delivery:
     """The files of a run.
 
     form       `csv` has the joint and the angles; `vicon` and `c3d` have the markers
-    servo_log  whether each run comes with the servo's log; clock, that log's own
+    servo_log  whether each run comes with the servo's log; clock: of that log
     torque     whether the servo's torque is in the CSV
     """
 
@@ -48,7 +48,7 @@ _WRITTEN = "# Written by `rr-opt record`, which may write over it while it is un
 
 
 def is_own(content: bytes) -> bool:
-    """Whether it is an experiment.yaml of `record` that nobody has changed."""
+    """Whether it is an unchanged experiment.yaml written by `record`."""
     first, _, rest = content.partition(b"\n")
     return first == _first_line(rest)
 
@@ -126,7 +126,7 @@ def folder_of(
             rig = case.rig
             log = log_text(rig, plan.gait, plan.conditions, delivery.clock)
             yield delivery.log(plan), log.encode()
-    # Last, so that a folder with this file has all that it names.
+    # Written last, so that a folder with this file is complete.
     yield "experiment.yaml", experiment_text(case, delivery).encode()
 
 
@@ -145,7 +145,7 @@ def _recorded(case: Case, plan: Plan, n: int, delivery: Delivery) -> bytes:
 
 
 def csv_text(recording: Recording) -> str:
-    """t and the channels, SI; a value that is missing is left empty."""
+    """t and the channels, SI; missing values are empty."""
     lines = [",".join(("t", *recording.channels))]
     columns = [recording.data(channel) for channel in recording.channels]
     for t, *row in zip(recording.t, *columns, strict=True):
@@ -178,7 +178,7 @@ def _effects(case: Case) -> list[dict[str, Any]]:
 
 
 def _effect(robot: Robot, use: EffectUse) -> dict[str, Any]:
-    """One effect: the parameters of the catalogue, and apart from them the laboratory's own."""
+    """One effect: the parameters of the catalogue, and separately the laboratory's own."""
     effect = effect_named(use.name)
     what = effect.what if effect.named else f"{effect.name}: {effect.what}"
     realisation = effect.realisation if effect.named else effect.name
@@ -202,7 +202,7 @@ def _valued(value: float, unit: str) -> dict[str, Any]:
 
 
 def sealed_text(case: Case) -> str:
-    """The answer as JSON text, with a random word in it, so that its hash gives nothing away."""
+    """The answer as JSON text, with a random word, so that its hash reveals nothing."""
     return json.dumps({**answer(case), "salt": secrets.token_hex(16)}, indent=2) + "\n"
 
 

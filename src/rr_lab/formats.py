@@ -1,4 +1,4 @@
-"""Markers on the robot as a motion capture system sees them, and the files of laboratories."""
+"""Markers on the robot as seen by a motion capture system, and the file formats."""
 
 import tempfile
 from collections.abc import Mapping, Sequence
@@ -19,7 +19,7 @@ from rr_opt.model.robot import Robot
 from rr_opt.outcome import InputError
 
 HEIGHTS = (0.06, 0.07, 0.065, 0.08)
-"""m above the floor; all differ, so that no two sets of markers can be confused."""
+"""m above the floor; all different, so that no two sets of markers can be confused."""
 
 Places = Mapping[str, tuple[float, float, float]]
 """By marker: forward, left and up of P's point on the floor, m, in its platform's axes."""
@@ -35,7 +35,7 @@ class MarkerData:
 
 
 def places(robot: Robot) -> tuple[Places, Places]:
-    """Four markers on each platform, on corners of no symmetry.
+    """Four markers on each platform, in an asymmetric arrangement.
 
     Platform 1's forward axis goes from P to its axle, platform 2's from its axle to P.
     """
@@ -63,8 +63,8 @@ def marker_data(
 ) -> MarkerData:
     """The markers of a motion with white noise of `sigma` (m) on each coordinate.
 
-    tracked  how far platform 1's markers sit from where the layout says, m
-    missing  fraction of time for which each marker is hidden, in gaps of a tenth of a second
+    tracked  displacement of platform 1's markers from the layout, m
+    missing  fraction of time that each marker is hidden, in gaps of a tenth of a second
     """
     first, second = places(robot)
     parts = [_placed(motion.one, first, tracked), _placed(motion.two, second, (0.0, 0.0))]
@@ -99,7 +99,7 @@ SUBJECT = "Racer"
 def vicon_text(markers: MarkerData) -> str:
     """The section `Trajectories`: rate, names, columns and units, then a row for each frame, in mm.
 
-    Frames count from 1; a marker that was not seen leaves its cells empty.
+    Frames count from 1; a hidden marker has empty cells.
     """
     names = "".join(f",{SUBJECT}:{label},," for label in markers.labels)
     roles, units = ",X,Y,Z" * len(markers.labels), ",mm,mm,mm" * len(markers.labels)
@@ -154,14 +154,14 @@ class ServoClock:
 
 
 def drawn_clock(rng: np.random.Generator) -> ServoClock:
-    """Up to half a second and 0.1 per mille off."""
+    """Offset up to half a second, drift up to 0.1 per mille."""
     return ServoClock(float(rng.uniform(-0.5, 0.5)), float(rng.uniform(-1e-4, 1e-4)))
 
 
 def log_text(rig: Rig, gait: Gait, conditions: Conditions, clock: ServoClock) -> str:
     """CSV `t,goal,present` of one run, from the log's t = 0.
 
-    `present` is the angle of the servo's own shaft: play behind it does not show.
+    `present` is the angle of the servo's own shaft: backlash behind it is not visible.
     """
     own = np.arange(round(conditions.seconds * RATE) + 1) / RATE
     goal, present = servo_angles(rig, gait, conditions, own / (1 + clock.drift) + clock.offset)

@@ -29,7 +29,7 @@ from rr_opt.version import __version__
 
 @dataclass(frozen=True, repr=False)
 class MadeCases(Result):
-    """Cases that were made and sealed, to be diagnosed later."""
+    """Cases that were made and sealed, for a later diagnosis."""
 
     folder: Path
     cases: int
@@ -39,7 +39,7 @@ class MadeCases(Result):
         return {"status": "made", "cases": self.cases, "folder": str(self.folder)}
 
     def summary(self) -> str:
-        """Where they are."""
+        """Their folder."""
         cases, answers = self.folder / "cases", self.folder / "answers"
         return f"{self.cases} cases in {cases}, their answers in {answers}\n"
 
@@ -75,7 +75,7 @@ def prove(
         trial = Trial(folder, [basis.draw(number) for number in one_by_one])
 
         def follow(words: str, steps: Iterator[int], journal: Journal) -> None:
-            """Carry the steps out and show how many are done."""
+            """Run the steps and show how many are done."""
             done = sum(number in journal.rows for number in one_by_one)
             if done:
                 progress(f"{done} of {cases} cases were {words} in an earlier run.")
@@ -99,7 +99,7 @@ def prove(
 def prove_case(
     folder: Path, basis: Basis, number: int, *, progress: Callable[[str], None] = quiet
 ) -> ProvedCase:
-    """Make one case of a trial again and diagnose it."""
+    """Remake one case of a trial and diagnose it."""
     draw = basis.draw(number)
     place = folder / "again" / draw.id
     return ProvedCase(again(draw, place, progress), place)
@@ -113,14 +113,14 @@ def basis(
     engine: str | None = None,
     resumed: bool = False,
 ) -> tuple[Path, Basis]:
-    """The trial's folder, and what its cases are drawn from.
+    """The trial's folder, and the settings its cases are drawn from.
 
     seed     hexadecimal; None: the hash of the commit
     kinds    `null, single:EFFECT, ...`; None: all
     engine   mujoco, planar or both; None: both
-    resumed  what is left out is as in the trial that is in the folder
+    resumed  defaults are those of the trial in the folder
 
-    Raises InputError for what cannot be drawn, and for an engine that is not installed.
+    Raises InputError for invalid settings, and for an engine that is not installed.
     """
     place = folder_for_results(Path(folder))
     begun = basis_of(place) if resumed else None
@@ -131,7 +131,7 @@ def basis(
         word = seed_of_commit(CODE[-1], place)
     else:
         word = read_seed(seed)
-    # With another seed it is another trial.
+    # A different seed means a different trial.
     known = begun if begun and begun.seed == word else Basis(word, KINDS, ENGINES)
     one: dict[str | None, tuple[Engine, ...]] = {"mujoco": ("mujoco",), "planar": ("planar",)}
     found = Basis(

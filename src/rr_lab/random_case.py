@@ -28,7 +28,7 @@ from rr_opt.outcome import InputError
 
 
 def draw_effect(rng: np.random.Generator, effect: HiddenEffect, case: Case) -> EffectUse:
-    """An effect of about its typical size for a case that does not have it yet.
+    """An effect around its typical size for a case that does not have it yet.
 
     `effect_size.scaled_to` corrects its strength later.
     """
@@ -45,18 +45,18 @@ def draw_effect(rng: np.random.Generator, effect: HiddenEffect, case: Case) -> E
 
 
 GENTLEST, FIERCEST = 3.0, 42.0
-"""rad/s2, peak of phi's acceleration; below, the robot hardly moves, above, real wheels let go."""
+"""rad/s2, peak acceleration of phi: below it the robot hardly moves, above it real wheels slip."""
 
 CLEARANCE = 0.25
-"""The least S1 = c1 cos phi + c2 over c1 + c2: a distance from the singular posture."""
+"""Least S1 = c1 cos phi + c2 relative to c1 + c2: a margin to the singular posture."""
 
 SHORTEST = 0.65
-"""Of the longest run's length: people do not record runs of one length."""
+"""Shortest run relative to the longest: recorded runs differ in length."""
 
 
 def draw_plans(rng: np.random.Generator, robot: Robot, seconds: float = 30.0) -> tuple[Plan, ...]:
-    """Seven or eight runs of up to `seconds`: from three to all but two with an offset, one to
-    three from rest, two held out."""
+    """Seven or eight runs of up to `seconds`: at least three and at most all but two with an
+    offset, one to three from rest, two held out."""
     count = int(rng.integers(7, 9))
     turning = rng.permutation(count) < int(rng.integers(3, count - 1))
     resting = rng.permutation(count) < int(rng.integers(1, 4))
@@ -76,7 +76,7 @@ def draw_plans(rng: np.random.Generator, robot: Robot, seconds: float = 30.0) ->
 
 
 def draw_gait(rng: np.random.Generator, robot: Robot, turning: bool) -> SineGait:
-    """Amplitude 0.3 to 1.05 rad, period 0.8 to 2 s, offset up to 0.36 rad either way or none."""
+    """Amplitude 0.3 to 1.05 rad, period 0.8 to 2 s, offset up to +-0.36 rad or none."""
     while True:
         amplitude = round(float(rng.uniform(0.3, 1.05)), 3)
         period = round(0.05 * float(rng.integers(16, 41)), 2)
@@ -99,7 +99,7 @@ def draw_robot(rng: np.random.Generator) -> Robot:
     h = round(rng.uniform(0.015, 0.03), 4)
     c1, c2 = rng.uniform(0.13, 0.24), rng.uniform(0.048, 0.127)
     m1, m2 = rng.uniform(0.3, 0.7), rng.uniform(0.17, 0.6)
-    # Both platforms of a robot have like wheels; k, N s/m, spreads over a decade between robots.
+    # Both platforms have similar wheels; k, N s/m, spreads over a decade between robots.
     k = np.exp(rng.uniform(np.log(0.0105), np.log(0.085)))
     rate, torque = rng.choice([math.pi, 4.2, 5.5, 6.28]), rng.choice([1.37, 1.5, 2.0, 3.0])
     return Robot(
@@ -111,7 +111,7 @@ def draw_robot(rng: np.random.Generator) -> Robot:
 
 
 def _platform(rng: np.random.Generator, m: float, c: float, k: float, h: float) -> Platform:
-    """The radius of gyration of the real platforms is 65 to 110 mm, whatever their c."""
+    """The radius of gyration of real platforms is 65 to 110 mm, for any c."""
     gyration = rng.uniform(0.065, 0.11)
     return Platform(
         m=round(m, 3),
@@ -124,17 +124,17 @@ def _platform(rng: np.random.Generator, m: float, c: float, k: float, h: float) 
 
 
 def draw_noise(rng: np.random.Generator) -> Noise:
-    """That of a capture system: 0.5 to 1.5 mm, 3 to 4 mrad."""
+    """The noise of a capture system: 0.5 to 1.5 mm, 3 to 4 mrad."""
     return Noise(float(rng.choice([0.5e-3, 1e-3, 1.5e-3])), float(rng.choice([3e-3, 4e-3])))
 
 
 CANDIDATES = ("m1", "m2", "I1", "I2", "c1", "c2", "a1", "a2", "kappa1", "kappa2")
 
 SIGMAS = 4.0, 8.0
-"""By how many standard deviations a known value is wrong: more than chance would make it."""
+"""Error of a wrong known value, in standard deviations: larger than chance."""
 
 FACTORS = 1.5, 3.0
-"""By what factor a friction is, up or down."""
+"""Factor of a wrong friction, up or down."""
 
 
 def draw_wrong(
@@ -157,7 +157,7 @@ def draw_wrong(
 def draw_near(
     rng: np.random.Generator, nominal: Robot, uncertainty: dict[str, Uncertainty], spread: float
 ) -> Robot:
-    """The robot with every value off by chance, `spread` times what its uncertainty says."""
+    """The robot with random errors in every value, `spread` times its uncertainty."""
     values = parameters_of(nominal)
     for name in sorted(uncertainty):
         off = spread * float(np.clip(rng.standard_normal(), -2.5, 2.5))
@@ -167,33 +167,33 @@ def draw_near(
 
 KINDS = ("null", "parameters", "single", "pair", "outside")
 
-# Wheel inertia is a change of parameters in disguise: it is hidden only on request.
+# Wheel inertia is equivalent to a change of parameters: hidden only on request.
 SINGLES = tuple(name for name in NAMED if name != "wheel_inertia")
 
 SIZES = 3.0, 60.0
-"""Between which the effect size is drawn, sigma, uniformly in its logarithm."""
+"""Range of the effect size, sigma, drawn log-uniformly."""
 
 GAUGED = 3
-"""Runs on which the strength is set."""
+"""Runs used to set the strength."""
 
 
 @dataclass(frozen=True)
 class Request:
-    """What a case is made from; the same seed, kind and engine give the same.
+    """The specification of a case; equal seed, kind and engine give equal cases.
 
     robot, plans, noise  drawn if left out
-    effects     what is hidden; or
+    effects     the hidden effects; or
     kind        null, parameters, single, pair, outside or random; single:EFFECT, outside:EFFECT and
-                pair:EFFECT+EFFECT name what is hidden, a realisation as EFFECT/REALISATION
-    seed        of all that is drawn; 0 if left out, and with a kind a random one
-    seconds     of each run that is drawn, at most
+                pair:EFFECT+EFFECT name the hidden effects, a realisation as EFFECT/REALISATION
+    seed        of all random draws; default 0, or random if a kind is given
+    seconds     of each drawn run, at most
     missing     fraction of lost samples
-    engine      what drives it; robot, runs and effects are the same for all
+    engine      the physics engine; robot, runs and effects do not depend on it
     disturbance  of the recordings, by name
-    spread      0: but for what is hidden the nominal values are true; 1: they are drawn within
+    spread      0: the nominal values are true but for the hidden changes; 1: they are drawn within
                 their uncertainties
     target      size of each effect, sigma; drawn if left out
-    size        RMS deviation of a case from its nominal, in sigma; `EffectSize` if left out
+    size        RMS deviation of a case from its nominal, in sigma; default `EffectSize`
     """
 
     robot: Robot | None = None
@@ -231,7 +231,7 @@ class Request:
 
 
 def random_case(seed: int, kind: str = "random", **more: Any) -> Case:
-    """A case that is all drawn; more: fields of `Request`. Raises as `Request.case` does."""
+    """A fully random case; more: fields of `Request`. Raises as `Request.case` does."""
     return Request(kind=kind, seed=seed, **more).case()
 
 
@@ -243,7 +243,7 @@ def bare_case(
     robot: Robot | None = None,
     engine: Engine = "mujoco",
 ) -> Case:
-    """A case with nothing hidden, of the robot or of one drawn."""
+    """A case with nothing hidden, of the given robot or a random one."""
     nominal = robot or draw_robot(stream(seed, "robot"))
     uncertainty = default_uncertainty(nominal)
     true = nominal
@@ -266,7 +266,7 @@ def bare_case(
 def _hidden_in(
     case: Case, kind: str, target: float | None, size: Callable[[Case], float] | None
 ) -> Case:
-    """The case with what its seed and the kind hide in it; see `Request`."""
+    """The case with effects hidden according to its seed and the kind; see `Request`."""
     head, names = read_kind(kind, case.seed)
     if head == "null":
         return case
@@ -276,7 +276,7 @@ def _hidden_in(
         return replace(case, robot=robot, changed=changed, verdict="parameters")
     rng = stream(case.seed, "effects")
     effects = [_realisation(rng, name) for name in names or _names(rng, head)]
-    # Strength is that of the effect alone: errors of the nominal values are not to mask it.
+    # The strength of the effect alone: errors of the nominal values must not mask it.
     alone = replace(case, robot=case.nominal)
     size = size or EffectSize.of(alone, GAUGED)
     uses, notes = [], {}
@@ -292,7 +292,7 @@ def _hidden_in(
 
 
 def _verdict(effects: list[HiddenEffect]) -> Verdict:
-    """What a right diagnosis says of these effects."""
+    """The verdict of a correct diagnosis for these effects."""
     if not effects:
         return "consistent"
     return "missing_physics" if all(effect.named for effect in effects) else "unexplained"
@@ -329,7 +329,7 @@ def _names(rng: np.random.Generator, kind: str) -> tuple[str, ...]:
 
 
 def _realisation(rng: np.random.Generator, name: str) -> HiddenEffect:
-    """The realisation that a text asks for; any, if it is a bare name."""
+    """The realisation that a text names; a random one for a bare name."""
     if "/" in name:
         return effect_named(name)
     several = REALISATIONS[name]

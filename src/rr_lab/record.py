@@ -1,4 +1,4 @@
-"""Recordings of a virtual robot: the folder of a case, and its sealed answer apart from it."""
+"""Recordings of a virtual robot: the folder of a case, and its sealed answer, kept separately."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -25,7 +25,7 @@ STARTS, USES = ("rest", "running"), ("fit", "holdout")
 
 
 def nominal_robot(file: Path | None, kind: str | None) -> Robot | None:
-    """That of a robot file, or the paper's prototype; None, which is a random one, for a kind of
+    """The robot of a file, or the paper's prototype; None, meaning a random one, for a kind of
     case."""
     return load_robot(file) if file else None if kind else prototype()
 
@@ -55,7 +55,7 @@ def read_runs(texts: Iterable[str], seconds: float) -> tuple[Plan, ...]:
             wrong.append(f"--gait {text!r}: {error}")
             continue
         gait = SineGait(values["amplitude"], values["period"], values.get("offset", 0.0))
-        # Headings differ, as a floor's slope shows in no single one.
+        # Headings differ, as a floor's slope is not visible in a single one.
         pose = (0.0, 0.0, 2.4 * (n - 1))
         plans.append(Plan(f"run{n:02d}.csv", gait, seconds, start, use, pose))
     if wrong:
@@ -106,7 +106,7 @@ def read_effects(texts: Iterable[str]) -> tuple[EffectUse, ...]:
 
 
 def _quantity(one: Parameter) -> Number:
-    """How a parameter's value is read."""
+    """The parser of a parameter's value."""
     unit = "" if one.unit == "1" else one.unit
     least = None if one.signed or one.neutral is None else 0.0
     return Number(unit, f"{one.typical:g} {unit}".strip(), at_least=least)
@@ -127,12 +127,12 @@ def read_noise(text: str) -> Noise:
 
 
 HASH = "answer.sha256"
-"""In the folder: the answer's SHA-256, as sha256sum writes and checks it."""
+"""The file in the folder with the answer's SHA-256, in the format of sha256sum."""
 
 
 @dataclass(frozen=True, repr=False)
 class Recorded(Result):
-    """A case that was written; digest is that of the sealed answer, "" without one."""
+    """A recorded case; digest is that of the sealed answer, "" without one."""
 
     case: Case
     folder: Path
@@ -151,7 +151,7 @@ class Recorded(Result):
         return {**data, "seal": str(self.seal), "sha256": self.digest} if self.seal else data
 
     def summary(self) -> str:
-        """For a person."""
+        """The text for a terminal."""
         recordings = counted(len(self.case.plans), "recording")
         text = f"{self.folder}: {recordings}, {counted(len(self.files), 'file')}\n"
         if self.seal is None:
@@ -171,10 +171,10 @@ def record(
 ) -> Recorded:
     """Record a virtual robot into an experiment folder.
 
-    seal       the file for the answer; needed if a kind of case draws what is hidden
+    seal       the file for the answer; required if the hidden effects are drawn
     servo_log  add the servo's log, on its own clock; torque: add the servo's torque
 
-    Raises InputError for what does not go together, and for a folder with other recordings.
+    Raises InputError for contradictory arguments, and for a folder with other recordings.
     """
     if request.kind and (request.effects or seal is None):
         raise InputError(
@@ -211,7 +211,7 @@ def record(
 
 
 def _require_apart(folder: Path, seal: Path | None) -> None:
-    """Raise InputError if the answer could not be written, or would lie among the recordings."""
+    """Raise InputError if the answer cannot be written, or would be among the recordings."""
     if seal is not None and file_for_result(seal).resolve().is_relative_to(folder.resolve()):
         raise InputError(
             f"The seal {seal} lies in the folder of the recordings. Expected a place outside it. "
@@ -220,7 +220,7 @@ def _require_apart(folder: Path, seal: Path | None) -> None:
 
 
 def _require_own(folder: Path) -> None:
-    """Raise InputError if an experiment is there that `record` did not write, or not so."""
+    """Raise InputError for an experiment there that `record` did not write, or since changed."""
     file = folder / EXPERIMENT
     if file.is_file() and not is_own(file.read_bytes()):
         raise InputError(

@@ -1,6 +1,6 @@
-"""The robot on the laboratory's bench: what it is made of, before an engine is chosen.
+"""The physical robot in the laboratory: its composition, independent of an engine.
 
-A rig that no effect has touched is the nominal robot. It is plain data that every engine reads.
+A rig without effects is the nominal robot. It is plain data that every engine reads.
 """
 
 import math
@@ -22,21 +22,21 @@ GRIPS = 50.0
 """The grip of wheels that never slide."""
 
 Shaper = Callable[[Array, Array], Array]
-"""(times, angles the servo was to make) -> angles it makes; rad at equal steps, s."""
+"""(times, commanded angles) -> actual angles; rad at equal steps, s."""
 
 
 @dataclass
 class Wheels:
-    """The wheels at an instant, and what acts on them, which a law may change in place.
+    """The state of the wheels at an instant, and their friction, which a law may change in place.
 
-    t        since the robot was let go, s; negative while it settles
-    rate     of turning of each wheel, rad/s (4,)
+    t        since the robot was released, s; negative while it settles
+    rate     rotation rate of each wheel, rad/s (4,)
     angle    each has turned by, rad (4,)
     places   of the wheels' centres on the floor, m (4, 2)
     heading  of platform 1, rad
-    loads    with which the wheels press on the floor, N (4,)
-    damping  N m s (4,), dry N m (4,): friction as the rig has it
-    torque   N m (4,), what else turns them
+    loads    of the wheels on the floor, N (4,)
+    damping  N m s (4,), dry N m (4,): friction of the rig
+    torque   N m (4,), any other torque on them
     """
 
     t: float
@@ -65,18 +65,18 @@ class Tether:
 
 
 CABLE_ONSET = 5e-3
-"""m/s, over which a dragged cable's friction sets in, as u/sqrt(u^2 + onset^2)."""
+"""m/s, onset of a dragged cable's friction, as u/sqrt(u^2 + onset^2)."""
 
 
 def swing_inertia(robot: Robot) -> float:
-    """Of the platforms as they turn against each other about a joint at rest, kg m2."""
+    """Inertia of the platforms swinging against each other about a joint at rest, kg m2."""
     one, two = robot.platform1.joint_inertia, robot.platform2.joint_inertia
     return one * two / (one + two)
 
 
 @dataclass(frozen=True)
 class Motor:
-    """A servo's loop: its torque on platform 2, whose reaction is on platform 1, is
+    """A servo's loop: its torque on platform 2, with the reaction on platform 1, is
     stiffness * (asked - made) + damping * (feedforward * rate asked - rate made).
 
     stiffness, damping  N m/rad and N m s/rad
@@ -90,35 +90,33 @@ class Motor:
 
 @dataclass
 class Rig:
-    """A robot and what is hidden in it. Lists of four are by WHEELS, of two by platform.
+    """A robot with its hidden effects. Lists of four are by WHEELS, of two by platform.
 
     robot      its true values
     kappa      viscous friction, N m s; the robot's by default
     quadratic  friction, N m s2
     dry        friction, N m
     J          kg m2, hidden spin inertia
-    onset      m/s at the rim, over which dry friction sets in; None: an engine's own. MuJoCo has
-               its own always
+    onset      m/s at the rim, of dry friction; None: the engine's own, as always in MuJoCo
     toe        rad, the axle turned counter-clockwise about its centre
     left       m, the centre of mass to the left of the axis
     mu         grip of the wheels; large by default, so that none slides
     creep      m/(N s), side speed per side force of a wheel
     tilt       downhill components, rad
-    play       rad, between servo and platform 2
-    gear       N m/rad, stiffness of the flanks that bound the play; None: the engine's stiffest
+    play       rad, backlash between servo and platform 2
+    gear       N m/rad, stiffness of the backlash's flanks; None: the engine's stiffest
     hinge_dry  N m, dry friction between the two platforms, in the joint itself
-    motor      the servo's loop; None: one that is stiff enough to follow its command exactly
+    motor      the servo's loop; None: stiff enough to follow its command exactly
     pin        m, the joint pin's clearance
-    spring     N m/rad, with which each platform bends half way between joint and axle; None: it is
-               rigid
-    load       mass (kg) and stiffness (N/m) of what shifts on platform 1; None: nothing does
-    density    kg/m3, of a medium that drags at the platforms' bodies; see `box_of`
-    tether     the cord that holds platform 1; None: nothing does
-    cable      N, with which a cable that drags on the floor holds axle 2's centre back
-    offset     rad, is added to the command before it is shaped
+    spring     N m/rad, bending stiffness of each platform half way from joint to axle; None: rigid
+    load       mass (kg) and stiffness (N/m) of a shifting load on platform 1; None: no such load
+    density    kg/m3, of a medium with drag on the platforms' bodies; see `box_of`
+    tether     the cord that holds platform 1; None: no cord
+    cable      N, friction of a cable dragged on the floor by the centre of axle 2
+    offset     rad, added to the command before it is shaped
     shapers    of the command, in order
-    laws       of the wheels' friction, in order: each changes what the ones before it left
-    tracked    m, where the point that is taken for P lies in platform 1's frame
+    laws       of the wheels' friction, in order: each modifies the result of the previous ones
+    tracked    m, place in platform 1's frame of the point taken for P
     clock      s, recording time t is command time t + clock
     """
 
@@ -156,29 +154,29 @@ class Rig:
 
     @property
     def gravity(self) -> Any:
-        """On the floor's own axes, m/s2 (3,)."""
+        """Gravity along the floor's own axes, m/s2 (3,)."""
         x, y = np.sin(self.tilt)
         return GRAVITY * np.array([x, y, -np.sqrt(1 - x * x - y * y)])
 
 
 def box_of(m: float, I: float) -> tuple[float, float]:
     """Half the length and breadth, and half the height, m, of a box with a platform's mass and
-    moment of inertia (the other two being 0.6 I). A medium drags at its sides."""
+    moment of inertia (the other two being 0.6 I). Its sides have the drag."""
     return math.sqrt(1.5 * I / m), math.sqrt(0.3 * I / m)
 
 
 def wheel_loads(rig: Rig) -> Array:
-    """With which each wheel presses on the floor, N (4,), in the order of WHEELS.
+    """Load of each wheel on the floor, N (4,), in the order of WHEELS.
 
-    The robot stands on four wheels, on a joint that turns about the vertical alone: a stiff body,
-    whose weight and whose two moments on the floor give three conditions for four loads. Of all
-    loads that keep them, those are taken whose squares are least: the loads of four equal springs.
-    Without a mass off the axis both wheels of an axle carry the same, and those of platform 1
+    The robot stands on four wheels, with a joint that turns about the vertical only: a rigid body,
+    whose weight and whose two moments on the floor give three equations for four loads. The
+    minimum-norm solution is taken: the loads of four equal springs.
+    Without an off-axis mass both wheels of an axle carry the same, and those of platform 1
 
         N1 = g (m1 (c1 + c2 - a1) + m2 a2) / (c1 + c2)
 
-    Assumed: the posture is straight (at 0.9 rad the axles carry another half a per cent), the floor
-    is nearly level, and the masses are low, so that braking and turning move no load.
+    Assumed: a straight posture (at 0.9 rad the axles carry another half a per cent), a nearly level
+    floor, and low masses, so that braking and turning do not shift the load.
     """
     one, two = rig.robot.platform1, rig.robot.platform2
     stands = [(x, side * part.b) for x, part in ((one.c, one), (-two.c, two)) for side in (1, -1)]
@@ -199,33 +197,33 @@ class Circle:
     radius: float
 
     def depth(self, x: Any, y: Any) -> Any:
-        """How far inside a point is, m; negative outside. Of numbers or expressions."""
+        """Depth of a point inside, m; negative outside. For numbers or expressions."""
         return self.radius - ((x - self.x) ** 2 + (y - self.y) ** 2) ** 0.5
 
 
 @dataclass(frozen=True)
 class Edge:
-    """All that lies beyond a straight edge through (x, y), m; normal, rad, points into it."""
+    """Everything beyond a straight edge through (x, y), m; normal, rad, points into it."""
 
     x: float
     y: float
     normal: float
 
     def depth(self, x: Any, y: Any) -> Any:
-        """How far beyond a point is, m; negative before it. Of numbers or expressions."""
+        """Depth of a point beyond the edge, m; else negative. For numbers or expressions."""
         return (x - self.x) * math.cos(self.normal) + (y - self.y) * math.sin(self.normal)
 
 
 @dataclass(frozen=True)
 class Patch:
-    """Friction `times` as large for each wheel that is within."""
+    """Friction `times` as large for each wheel inside."""
 
     times: float
     within: Circle | Edge
 
     def __call__(self, wheels: Wheels) -> None:
-        """The friction of this instant."""
-        # Plain numbers: a law is asked at every step, and tables of four cost more than they do.
+        """The friction at this instant."""
+        # Python floats: a law is evaluated at every step, where arrays of four would cost more.
         for wheel, place in enumerate(wheels.places.tolist()):
             if self.within.depth(*place) > 0:
                 wheels.damping[wheel] *= self.times
@@ -234,14 +232,14 @@ class Patch:
 
 @dataclass(frozen=True)
 class Falling:
-    """Dry friction of all wheels that falls from `torque` (N m) to a third of it as they turn
-    faster than `rate` (rad/s)."""
+    """Dry friction of all wheels that falls from `torque` (N m) to a third of it with speeds above
+    `rate` (rad/s)."""
 
     torque: float
     rate: float
 
     def __call__(self, wheels: Wheels) -> None:
-        """The friction of this instant."""
+        """The friction at this instant."""
         wheels.dry += self.torque * (1 + 2 * np.exp(-((wheels.rate / self.rate) ** 2))) / 3
 
 
@@ -253,7 +251,7 @@ class Drift:
     time: float
 
     def __call__(self, wheels: Wheels) -> None:
-        """The friction of this instant."""
+        """The friction at this instant."""
         wheels.damping *= 1 + self.change * (1 - np.exp(-max(wheels.t, 0.0) / self.time))
 
 
@@ -264,7 +262,7 @@ class Rub:
     torque: float
 
     def __call__(self, wheels: Wheels) -> None:
-        """The friction of this instant."""
+        """The friction at this instant."""
         if wheels.angle[0] % (2 * np.pi) < 0.4 * np.pi:
             wheels.dry[0] += self.torque
 
@@ -277,5 +275,5 @@ class RollingResistance:
     h: float
 
     def __call__(self, wheels: Wheels) -> None:
-        """The friction of this instant."""
+        """The friction at this instant."""
         wheels.dry += self.mu * self.h * wheels.loads

@@ -1,4 +1,4 @@
-"""A run: the robot let go with a gait, what a capture system makes of it, and a recording of it."""
+"""A run: the robot released with a gait, its observation by a capture system, and the recording."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -16,14 +16,14 @@ from rr_opt.model.gait import Gait
 
 @dataclass(frozen=True)
 class Conditions:
-    """Conditions of a run: how a robot is let go, and what is recorded.
+    """Conditions of a run: how a robot is released, and what is recorded.
 
-    seconds, rate   how long is recorded, s, and how often, 1/s
+    seconds, rate   length of the recording, s, and sample rate, 1/s
     start           `rest`: the command begins at its time 0; `running`: `periods` whole periods
                     before, from rest
-    nudge           m/s, a push at the recording's t = 0, by which the whole mass would be faster
+    nudge           m/s, change of speed of the whole mass by a push at the recording's t = 0
     torque          whether the servo's torque is recorded too
-    pose            x (m), y (m) of P and heading (rad) of platform 1 where it is put down
+    pose            x (m), y (m) of P and heading (rad) of platform 1 at the start
     """
 
     seconds: float
@@ -35,17 +35,17 @@ class Conditions:
     torque: bool = False
 
     def begin(self, gait: Gait) -> float:
-        """When the command begins, s on its own clock."""
+        """Start of the command, s on its own clock."""
         return 0.0 if self.start == "rest" else -self.periods * gait.period
 
 
 @dataclass(frozen=True)
 class Motion:
-    """What truly happened, at the recording's times t (n,), s.
+    """The true motion, at the recording's times t (n,), s.
 
     one, two  x (m), y (m) and heading (rad, unwrapped) of the platforms' joint ends, (n, 3). A
               loose pin sets them apart
-    torque    of the servo on platform 2, N m (n,), if it was asked for
+    torque    of the servo on platform 2, N m (n,), if requested
     """
 
     t: Array
@@ -57,7 +57,7 @@ class Motion:
 def asked_angle(rig: Rig, gait: Gait, begin: float, t: NDArray[Any]) -> Array:
     """The angle that the servo is to make, rad, at the times t: the command, shaped by its faults.
 
-    begin  when the command begins, s; before it the servo holds its first angle
+    begin  start of the command, s; before it the servo holds its first angle
     """
     angle = gait.angle(np.maximum(t, begin)) + rig.offset
     for shaper in rig.shapers:
@@ -75,12 +75,12 @@ def captured(
     missing: float = 0.0,
     disturbance: Disturbance = NO_DISTURBANCE,
 ) -> Recording:
-    """A motion as it is recorded; with the torque if it was written down.
+    """The recording of a motion; with the torque if available.
 
-    noise        1 sigma as the experiment states it
+    noise        1 sigma as stated in the experiment
     tracked      the point that is taken for the joint, m, in platform 1's frame
-    missing      fraction of the samples that are lost, all channels at once
-    disturbance  what else goes wrong
+    missing      fraction of lost samples, all channels at once
+    disturbance  further disturbance
     """
     x, y, psi = motion.one.T
     phi = motion.two[:, 2] - psi
@@ -89,7 +89,7 @@ def captured(
         "x": x + dx * np.cos(psi) - dy * np.sin(psi),
         "y": y + dx * np.sin(psi) + dy * np.cos(psi),
         "psi": psi,
-        # The two headings are unwrapped apart, and may differ by whole turns.
+        # The two headings are unwrapped separately, and may differ by whole turns.
         "phi": phi - 2 * np.pi * np.round(phi[0] / (2 * np.pi)),
     }
     if motion.torque is not None:

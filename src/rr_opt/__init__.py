@@ -12,8 +12,8 @@
     found.verdict, found.effects
     rr.maximize_speed(problem.with_robot(found.corrected_robot))
 
-Numbers are in SI; constructors and functions also take text with a unit, such as "30 rpm". What a
-user can put right is raised as InputError. Everything is loaded when it is first used.
+Numbers are in SI; constructors and functions also take text with a unit, such as "30 rpm". Errors
+that a user can correct are raised as InputError. Modules are loaded on first use.
 
 The paper behind the names: A. Kilin, Yu. Karavaev and K. Yefremov, "Experimental
 investigations of the controlled motion of the Roller Racer robot".

@@ -1,4 +1,4 @@
-"""How numbers and quantities are written for people: the SI value, and the unit they think in."""
+"""How numbers and quantities are written for people: the SI value, and the customary unit."""
 
 import math
 from dataclasses import dataclass
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class ReportedQuantity:
-    """A quantity in reports: its name, SI unit, and a second unit with its worth per SI unit."""
+    """A quantity in reports: its name, SI unit, and a second unit with its factor per SI unit."""
 
     words: str
     unit: str
@@ -15,7 +15,7 @@ class ReportedQuantity:
 
     @property
     def common(self) -> tuple[str, float]:
-        """The unit people think in, and how many of it are one SI unit."""
+        """The customary unit, and how many of it are one SI unit."""
         return (self.other, self.factor) if self.other else (self.unit, 1.0)
 
     def both(self, value: float | None) -> str:
@@ -43,12 +43,12 @@ QUANTITIES = {
     "offset": ReportedQuantity("offset", "rad", "deg", _DEGREES),
     "inertia_ratio": ReportedQuantity("inertia ratio J20/J10", ""),
 }
-"""By the name under which a limit or a decision stands in files and results."""
+"""By the name of a limit or a decision in files and results."""
 
 
 _ROUNDING = 1e-12
 _CRAWLING = 1e-3
-"""Slower than this a speed is given in mm/s alone, m/s."""
+"""Slower speeds are given in mm/s alone, m/s."""
 
 
 def number(value: float, digits: int = 4) -> str:
@@ -80,7 +80,7 @@ def words_of(name: str) -> str:
 
 
 def counted(count: int, singular: str, plural: str = "") -> str:
-    """`1 iteration`, `2 iterations`; plural: where it is not the singular with an s."""
+    """`1 iteration`, `2 iterations`; plural: if it is not the singular with an s."""
     return f"{count} {singular if count == 1 else plural or f'{singular}s'}"
 
 
@@ -99,18 +99,18 @@ def pace_text(speed: float) -> str:
 
 
 def direction_text(speed: float) -> str:
-    """Which way a signed speed goes."""
+    """The direction of a signed speed."""
     return "forward" if speed > 0 else "backward"
 
 
 def side_text(value: float) -> str:
-    """Which way a positive or negative turn goes."""
+    """The side of a positive or negative turn."""
     return "left" if value > 0 else "right"
 
 
 def price_text(name: str, price: float, objective: str = "speed") -> str:
-    """A shadow price, per SI unit, as `+8.57 mm/s per rpm`, or of the cost of transport or a time,
-    which it lowers, as `-0.0012 per rpm`."""
+    """A shadow price, per SI unit, as `+8.57 mm/s per rpm`; of the cost of transport or a time,
+    which decrease, as `-0.0012 per rpm`."""
     unit, factor = QUANTITIES[name].common
     gained, kind = {"speed": (1e3, " mm/s"), "time": (-1.0, " s")}.get(objective, (-1.0, ""))
     per = gained * price / factor

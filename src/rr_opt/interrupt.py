@@ -1,9 +1,8 @@
 """Ctrl-C, remembered: compiled code may swallow the exception that Python raises for it.
 
-SIGTERM ends a run in the same way, so that no file is left half written. `held_back` lets both
-wait while something is done that must not stop in the middle. Masking them for this thread is not
-enough: where there are other threads, one of those takes the signal, and Python runs its handler
-in the main thread all the same.
+SIGTERM ends a run in the same way, so that no file is left half written. `held_back` defers both
+during an operation that must not be interrupted. Masking them for this thread is not enough: any
+other thread takes the signal, and Python still runs its handler in the main thread.
 """
 
 import signal
@@ -22,9 +21,9 @@ _seen = False
 
 
 def watch() -> None:
-    """From now on remember an interrupt beside raising KeyboardInterrupt for it.
+    """From now on remember an interrupt besides raising KeyboardInterrupt for it.
 
-    A run that was started to ignore interrupts goes on ignoring them.
+    A run that was started to ignore interrupts continues to ignore them.
     """
     for number in _SIGNALS:
         if signal.getsignal(number) is not signal.SIG_IGN:
@@ -33,7 +32,7 @@ def watch() -> None:
 
 
 def ignore() -> None:
-    """Ignore interrupts from now on: the work is done, or its failure is reported."""
+    """Ignore interrupts from now on: the work is done, or its failure has been reported."""
     for number in _SIGNALS:
         signal.signal(number, signal.SIG_IGN)
 
@@ -44,7 +43,7 @@ def seen() -> bool:
 
 
 def check() -> None:
-    """Raise KeyboardInterrupt if an earlier one went missing."""
+    """Raise KeyboardInterrupt if an earlier one was swallowed."""
     if _seen:
         raise KeyboardInterrupt
 
@@ -56,14 +55,14 @@ def _remember(_number: int, _frame: FrameType | None) -> None:
 
 
 def _unraisable(what: "sys.UnraisableHookArgs") -> None:
-    """Say nothing of an interrupt that fell into a finalizer: `check` raises it again."""
+    """Suppress the report of an interrupt in a finalizer: `check` raises it again."""
     if not (_seen and isinstance(what.exc_value, KeyboardInterrupt)):
         sys.__unraisablehook__(what)
 
 
 @contextmanager
 def held_back(*numbers: signal.Signals) -> Iterator[None]:
-    """Within it a handler of these signals waits; what came meanwhile is handled at its end."""
+    """Defer the handlers of these signals; pending ones run at the end."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return

@@ -7,12 +7,12 @@ from difflib import get_close_matches
 _LONGEST_SHOWN = 60
 _SHORTEST_GUESSED = 3
 _ALIKE = 0.72
-"""Twice the letters that two words share in order, over the letters of both: `friction` and
-`direction` have 0.71, `gate` and `gait` 0.75."""
+"""Similarity threshold: twice the letters that two words share in order, over the letters of both.
+`friction` and `direction` have 0.71, `gate` and `gait` 0.75."""
 
 
 def shown(value: object) -> str:
-    """A value as a message quotes it: on one line, without control characters, not long."""
+    """A value as quoted in a message: on one line, without control characters, not long."""
     text = _written(value)
     return text if len(text) <= _LONGEST_SHOWN else text[: _LONGEST_SHOWN - 4] + " ..."
 
@@ -32,10 +32,10 @@ def _written(value: object) -> str:
 
 
 def nearest(word: str, known: Sequence[str]) -> str | None:
-    """The known word that `word` was most likely meant to be, if one is near.
+    """The known word that was most likely meant by `word`, if one is close.
 
-    Near is the same word in other letters' case; a beginning, or a part between underscores, of
-    one known word alone; or most letters in the same order. Anything less is a guess.
+    Close is the same word in different case; a beginning, or a part between underscores, of exactly
+    one known word; or most letters in the same order. Anything less would be a guess.
     """
     meant = word.casefold()
     folded = {name.casefold(): name for name in reversed(known)}
@@ -49,14 +49,14 @@ def nearest(word: str, known: Sequence[str]) -> str | None:
 
 
 def unknown_word(word: str, known: Sequence[str], kind: str) -> str:
-    """The message for a word that is none of those known, naming the nearest."""
+    """The message for an unknown word, with the closest known one."""
     near = nearest(word, known)
     advice = f"Did you mean `{near}`?" if near else "Correct it, or delete it."
     return f"Read the {kind} {shown(word)}. Expected {one_of(known)}. {advice}"
 
 
 def one_of(words: Sequence[str]) -> str:
-    """The words as a message offers them."""
+    """The words as alternatives in a message."""
     return f"one of: {', '.join(words)}" if len(words) > 1 else f"`{words[0]}`"
 
 

@@ -1,8 +1,8 @@
-"""Sequential quadratic programming for a few variables, with derivatives from differences.
+"""Sequential quadratic programming for a few variables, with finite-difference derivatives.
 
 A smooth function of some four variables is maximised within bounds, linear constraints and rows.
-Each iteration lays a small stencil around the point, evaluates it in one call, and has of it the
-gradient and the Hessian of the function and of every row. The quadratic program for the step is
+Each iteration places a small stencil around the point, evaluates it in one call, and gets from it
+the gradient and the Hessian of the function and of every row. The quadratic program for the step is
 solved as a least-distance problem by non-negative least squares, as SLSQP does it (Lawson and
 Hanson, Solving Least Squares Problems, 1974, chapter 23).
 """
@@ -21,35 +21,35 @@ from rr_opt.array import Array
 Mask = NDArray[np.bool_]
 
 _GAIN, _LENGTH, _STATIONARY = 1e-9, 1e-7, 1e-4
-"""A step that gains less, relative, or that is shorter, in scales, is the last; and the slope,
-relative, of what its radius holds back from gaining more."""
+"""Convergence: relative gain and scaled length of the last step; and relative slope of further gain
+that only the trust radius prevents."""
 _ROUNDING = 1e-12
-"""Of a row, at least."""
+"""Rounding error of a row, at least."""
 _FRACTIONS = np.array([1.0, 0.6, 0.3, 0.1, 0.03])
-"""Of a step that are tried, all in one call."""
+"""Fractions of a step that are tried, all in one call."""
 _RADIUS = 0.2
-"""The longest step, in scales."""
+"""The largest trust radius, in scales."""
 _SHRUNK = 0.1
-"""What is left of it after a step that gains nothing."""
+"""Factor on the radius after a step that gains nothing."""
 _ITERATIONS = 100
 _CORRECTIONS = 3
-"""Of a step, at most."""
+"""Most corrections of a step."""
 FEASIBLE = 1e-7
-"""Largest violation of a row that still counts as kept."""
+"""Largest violation of a row that counts as satisfied."""
 _DEARER, DEAREST = 10.0, 1e5
-"""What a penalty is raised by where a climb ends with a row that fails, and the largest penalty, in
-values of the function: what needs a larger one has no solution near."""
+"""Factor on the penalty if a climb ends with a violated row, and the largest penalty, in values of
+the function: if that is not enough, there is no solution nearby."""
 _REPEATED, _SETTLED = 8, 1e-2
-"""Quadratic programs within a step, at most, and the change, relative, that ends them."""
+"""Most quadratic programs within a step, and the relative change that ends them."""
 _ACROSS, _FLAT, _SLIGHT = 10.0, 1e-6, 1e-3
-"""Curvature across rows that hold, and least curvature, relative to the largest curvature or slope
-of the function; and the least of those, relative to the penalty."""
+"""Curvature added across active rows, and least curvature, relative to the largest curvature or
+slope of the function; and the least of those, relative to the penalty."""
 
 
 class Seen(NamedTuple):
-    """Of K points: the function (K,); rows (R, K), smooth along the points, those of maxima over a
-    curve along the first point's maxima; worst (W, K), the same of each point for itself; names
-    of the rows; and the rounding of rows and, relative, of the function."""
+    """Values at K points: the function (K,); rows (R, K), smooth along the points, with maxima over
+    a curve followed from the first point's; worst (W, K), the same with each point's own maxima;
+    names of the rows; and the rounding of rows and, relative, of the function."""
 
     function: Array
     rows: Array
@@ -60,12 +60,12 @@ class Seen(NamedTuple):
 
 @dataclass(frozen=True)
 class Program:
-    """Maximise the function that is seen where rows are <= 0.
+    """Maximise the function subject to rows <= 0.
 
     low, high, scale   bounds (n,), and a small step of each variable (n,)
     matrix, most       linear constraints: matrix x <= most
     look               points (K, n) -> Seen
-    equal              number of rows and of worst, the first ones, that must be 0
+    equal              the first rows, of rows and worst, that must be 0: their number
     unit               a small value of the function
     """
 
@@ -80,15 +80,15 @@ class Program:
     step: float = 1e-3
 
     def violation(self, worst: Array) -> Array:
-        """Of the row that fails most, (K,)."""
+        """Violation of the worst row, (K,)."""
         size = np.concatenate([np.abs(worst[: self.equal]), worst[self.equal :]])
         return size.max(axis=0, initial=0.0)
 
 
 @dataclass(frozen=True)
 class Prices:
-    """Value gained per unit by which each row, each linear constraint, each upper bound is raised,
-    and each lower bound lowered; 0 where it does not hold."""
+    """Shadow prices: value gained per unit by which each row, linear constraint or upper bound is
+    raised, or a lower bound lowered; 0 where inactive."""
 
     rows: Array
     linear: Array
@@ -98,8 +98,8 @@ class Prices:
 
 @dataclass(frozen=True)
 class Ascent:
-    """Where a climb led: the point (n,), the function there, the violation of the row that fails
-    most, prices, of rows with these names; and whether no step gains anything more."""
+    """The result of a climb: the point (n,), the function there, the violation of the worst row,
+    prices, of rows with these names; and whether it has converged."""
 
     x: Array
     value: float
@@ -113,7 +113,7 @@ class Ascent:
 def ascend(program: Program, start: Array, penalty: float = 10.0) -> Ascent:
     """Climb from a start within the bounds.
 
-    penalty: of a violation of 1, in values of the function, to begin with.
+    penalty: initial value for a violation of 1, in values of the function.
     """
     x, radius, converged, iterations = start, _RADIUS, False, 0
     kept, least_penalty, smallest = False, penalty, max(program.unit, 1e-300)
@@ -125,7 +125,7 @@ def ascend(program: Program, start: Array, penalty: float = 10.0) -> Ascent:
     while not converged and iterations < _ITERATIONS:
         iterations += 1
         if violation <= FEASIBLE and not kept:
-            # Values and prices on the way here can be a thousand times those here.
+            # Values and prices along the way can be a thousand times larger than here.
             kept, penalty, size, radius = True, least_penalty, smallest, _RADIUS
         around = x + program.step * program.scale * near
         function, rows, _, names, rounding = program.look(around)
@@ -133,7 +133,7 @@ def ascend(program: Program, start: Array, penalty: float = 10.0) -> Ascent:
         models = np.vstack([function, rows]) @ design.T
         if not np.isfinite(models).all():
             break
-        # It never falls: a penalty that does would let the climb go round in a circle.
+        # It never decreases: otherwise the climb could cycle.
         size = max(abs(value), size)
         step, priced, promise = _step(program, x, models, radius, penalty * size)
         if not np.isfinite(step).all():
@@ -154,14 +154,14 @@ def ascend(program: Program, start: Array, penalty: float = 10.0) -> Ascent:
             radius = min(2 * radius, _RADIUS)
         else:
             radius = float(_FRACTIONS[best - 1]) * length
-        # A step that its radius cuts short, or that falls short of its promise, says nothing.
+        # A step cut short by its radius, or that gains less than predicted, is inconclusive.
         noise = penalty * rounding
         least = (_GAIN + noise) * size
         small = length <= _LENGTH or abs(gain if best == 1 else promise) <= least
         converged = length < (1 - _SETTLED) * reach and small
         ended = converged or reach <= _LENGTH
         if ended and violation > FEASIBLE and penalty < DEAREST:
-            # Where the function gains a lot along a row that hardly changes, breaking it paid.
+            # Where the function gains much along a row that hardly changes, violating it paid off.
             penalty, radius, converged = min(_DEARER * penalty, DEAREST), _RADIUS, False
         elif reach <= _LENGTH:
             converged = -noise * size <= promise <= (_STATIONARY * reach + noise) * size
@@ -170,8 +170,8 @@ def ascend(program: Program, start: Array, penalty: float = 10.0) -> Ascent:
 
 
 class _Tried(NamedTuple):
-    """Of a point and fractions of a step from it, (K,): points (K, n), function, violation, and the
-    function less a penalty for that; rows (K, R)."""
+    """A point and fractions of a step from it, (K,): points (K, n), function, violation, and the
+    penalised function; rows (K, R)."""
 
     points: Array
     function: Array
@@ -197,8 +197,8 @@ def _tried(
     penalty: float,
     rounding: float,
 ) -> _Tried:
-    """Fractions of a step, each brought nearer to the rows where any is off them: where rows bend,
-    the straight way to a step that keeps them does not."""
+    """Fractions of a step, each corrected towards violated rows: where rows bend, the straight line
+    to a feasible step violates them."""
     points = np.clip(x + _FRACTIONS[:, None] * program.scale * step, program.low, program.high)
     tried = _weighed(program, np.vstack([x, points]), penalty)
     for _ in range(_CORRECTIONS):
@@ -212,8 +212,8 @@ def _tried(
 
 
 def _corrected(program: Program, models: Array, prices: Prices, tried: _Tried) -> Array:
-    """Points (K, n) nearer to keeping the rows that hold: third derivatives, which the models lack,
-    carry a long step off rows that bend sharply."""
+    """Points (K, n) corrected towards the active rows: third derivatives, which the models lack,
+    carry a long step off sharply bent rows."""
     x, scale, equal = tried.points[0], program.scale, program.equal
     _, slopes, bends = _parts(models, len(x))
     held = np.concatenate([np.ones(equal, bool), prices.rows[equal:] > 0])
@@ -232,17 +232,17 @@ def _corrected(program: Program, models: Array, prices: Prices, tried: _Tried) -
     return np.where(inside[:, None], bent, tried.points)
 
 
-# Models may be so large that they overflow.
+# Models may be large enough to overflow.
 @np.errstate(over="ignore", divide="ignore", invalid="ignore")
 def _step(
     program: Program, x: Array, models: Array, radius: float, penalty: float
 ) -> tuple[Array, Prices, float]:
-    """The step, in scales, to the best of the quadratic models, the prices, and what the models
-    promise to gain.
+    """The step, in scales, to the optimum of the quadratic models, the prices, and the predicted
+    gain.
 
-    The models of the rows bend too, so quadratic programs follow each other within the step: along
-    a curved limit linear rows would let it go no further than their error. A last variable is by
-    how much rows may fail: where their slopes contradict each other they do.
+    The models of the rows are quadratic too, so several quadratic programs are solved within a
+    step: along a curved limit, linearised rows would restrict it to the size of their error. A last
+    variable relaxes the rows, for when their linearisations are inconsistent.
     """
     n, scale, equal = len(x), program.scale, program.equal
     values, slopes, bends = _parts(models, n)
@@ -267,7 +267,7 @@ def _step(
             step = np.full(n, np.nan)
             break
         least = max(np.abs(slopes[0]).max(initial=0.0), _SLIGHT * penalty)
-        # Where rows contradict each other none of them settles the step across it.
+        # Where rows are inconsistent, none of them determines the step across it.
         settled = found[:-1] > np.where(
             (found[-1] > 0) | (np.arange(len(normals)) >= rows + equal), 0.0, np.inf
         )
@@ -280,7 +280,7 @@ def _step(
             break
     parts = np.cumsum([rows + equal, len(straight), n])
     _, linear, at_high, at_low = np.split(found[:-1], parts)
-    # What holds the radius alone is no bound of the program.
+    # An active trust radius is not a bound of the program.
     at_high, at_low = at_high * (upper <= radius) / scale, at_low * (lower <= radius) / scale
     there = values + (slopes + bends @ step / 2) @ step
     promise = there[0] - values[0] - penalty * (_worst(there, equal) - _worst(values, equal))
@@ -288,17 +288,17 @@ def _step(
 
 
 def _worst(models: Array, equal: int) -> float:
-    """Violation of the row that fails most, by the models of the function and the rows."""
+    """Violation of the worst row, by the models of the function and the rows."""
     rows = models[1:].copy()
     rows[:equal] = np.abs(rows[:equal])
     return float(rows.max(initial=0.0))
 
 
 def _convex(bend: Array, least: float, held: Array) -> Array:
-    """A curvature that is convex, and the same along what is held by these normals.
+    """A convex curvature that is unchanged along the active rows, given by their normals.
 
-    Across them the step is settled by the rows: there curvature is added (as an augmented
-    Lagrangian does). What is not convex then is bent up.
+    Across them the rows determine the step: there curvature is added (as in an augmented
+    Lagrangian). Remaining negative curvature is raised.
     """
     size = max(float(np.abs(bend).max(initial=0.0)), least)
     unit = held / np.maximum(np.sqrt((held**2).sum(axis=1, keepdims=True)), 1e-300)
@@ -307,13 +307,13 @@ def _convex(bend: Array, least: float, held: Array) -> Array:
 
 
 def _quadratic(curve: Array, slope: Array, G: Array, h: Array, active: Mask) -> tuple[Array, Array]:
-    """min d'curve d/2 + slope'd with G d <= h, and the multipliers, as a least distance.
+    """min d'curve d/2 + slope'd with G d <= h, and the multipliers, as a least-distance problem.
 
-    active: rows that are likely to hold
+    active: rows that are likely to be active
     """
     size = np.sqrt(np.diag(curve))
     L = np.linalg.cholesky(curve / np.outer(size, size))
-    # In y = L'(size d) - centre it is the least |y| with normals y + least <= 0.
+    # In y = L'(size d) - centre: the least |y| with normals y + least <= 0.
     centre = -np.linalg.solve(L, slope / size)
     normals = np.asarray(np.linalg.solve(L, (G / size).T).T, float)
     least = normals @ centre - h
@@ -322,8 +322,8 @@ def _quadratic(curve: Array, slope: Array, G: Array, h: Array, active: Mask) -> 
 
 
 def _nonnegative(E: Array, active: Mask) -> tuple[Array, Array]:
-    """u >= 0 with the least |E u - f|, f the last unit vector, and E u - f; active: where u > 0 is
-    likely."""
+    """u >= 0 with the least |E u - f|, f the last unit vector, and E u - f; active: initial guess
+    of where u > 0."""
     f = np.zeros(len(E))
     f[-1] = 1.0
     length = np.maximum(np.sqrt((E * E).sum(axis=0)), 1e-300)
@@ -354,7 +354,7 @@ def _nonnegative(E: Array, active: Mask) -> tuple[Array, Array]:
 
 
 def _solved(E: Array, f: Array) -> Array:
-    """The least |E u - f|, whatever the signs."""
+    """The least |E u - f|, without sign constraints."""
     Q, R = np.linalg.qr(E)
     pivots = np.abs(np.diag(R))
     if E.shape[1] > len(E) or pivots.min() <= 1e-10 * pivots.max():
@@ -363,7 +363,7 @@ def _solved(E: Array, f: Array) -> Array:
 
 
 def stencil(n: int) -> Array:
-    """Just enough points (M, n) for a quadratic in n variables, the first in the middle."""
+    """A minimal set of points (M, n) for a quadratic in n variables, the first at the centre."""
     pairs = list(combinations(range(n), 2))
     points = np.zeros((1 + 2 * n + len(pairs), n))
     for i in range(n):
@@ -375,8 +375,8 @@ def stencil(n: int) -> Array:
 
 @lru_cache
 def _stencil(n: int, step: float) -> tuple[Array, Array]:
-    """Points (M, n), in stencils, and what makes of values at them those of a quadratic, its slopes
-    and its second derivatives, in scales."""
+    """Points (M, n), in stencils, and the matrix from values there to those of a quadratic: value,
+    slopes and second derivatives, in scales."""
     points = stencil(n)
     crossed = [points[:, [i]] * points[:, [j]] for i, j in combinations(range(n), 2)]
     monomials = np.hstack([np.ones((len(points), 1)), points, points**2 / 2, *crossed])

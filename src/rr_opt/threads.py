@@ -1,4 +1,4 @@
-"""Work side by side, on all processors that are free."""
+"""Parallel work in threads, on all processors that are free."""
 
 import os
 from collections.abc import Callable, Sequence
@@ -11,8 +11,8 @@ Done = TypeVar("Done")
 
 
 def in_threads(work: Callable[[Part], Done], parts: Sequence[Part]) -> list[Done]:
-    """work(part) of each, in their order. It has to let other threads run, as what ctypes calls
-    does, and must not call this itself."""
+    """work(part) of each, in order. It has to release the GIL, as ctypes calls do, and must not
+    call this itself."""
     if min(_processors(), len(parts)) < 2:
         return [work(part) for part in parts]
     return list(_pool(os.getpid()).map(work, parts))
@@ -20,7 +20,7 @@ def in_threads(work: Callable[[Part], Done], parts: Sequence[Part]) -> list[Done
 
 @lru_cache(maxsize=1)
 def _pool(process: int) -> ThreadPoolExecutor:
-    """Threads of this process: those of its parent do not follow it."""
+    """Threads of this process: a fork does not inherit its parent's."""
     return ThreadPoolExecutor(_processors(), f"rr-opt-{process}")
 
 

@@ -1,10 +1,10 @@
 """Numbers with units, such as `30 rpm`, to SI.
 
-The common ones are in a table; pint knows the others, and is loaded only when one is written. It
-never sees the text itself: the text is split here into names and small integer powers, so a hostile
-expression such as `9**9**9**9` is refused, not computed.
+Common units are in a table; pint knows the others, and is loaded only when needed. It never sees
+the text itself: the text is split here into names and small integer powers, so a hostile
+expression such as `9**9**9**9` is rejected, not computed.
 
-Angles are kept apart from plain numbers: 30 Hz is not 30 rad/s, and 5 % is not an angle.
+Angles are distinguished from plain numbers: 30 Hz is not 30 rad/s, and 5 % is not an angle.
 """
 
 import math
@@ -35,10 +35,10 @@ _KINDS = {
     "kg m^2/s": "a torque per angular rate",
     "kg/s": "a force per speed",
 }
-"""What base units measure."""
+"""The dimension of each base unit."""
 
 LARGEST = 1e30
-"""No quantity is as large, in any unit: products of such numbers overflow."""
+"""Larger quantities are rejected, in any unit: their products would overflow."""
 
 _LONGEST = 60
 """Longest text read as a number with a unit, characters."""
@@ -68,8 +68,8 @@ _COMMON = {
     "Hz": (1.0, "1/s"),
     "%": (0.01, ""),
 }
-"""What one is worth in base units, and those."""
-# A moment may be written per radian: the angle it is divided by says how it is used.
+"""The value of one in base units, and those."""
+# Rotational stiffness and damping may also be written per radian.
 _ALSO = {"N m s": ("N m s/rad",), "N m": ("N m/rad",)}
 
 
@@ -136,7 +136,7 @@ def _worth(written: str, unit: str, text: str) -> float:
 
 @lru_cache
 def _registry() -> Any:
-    # It takes a third of a second, and more for arrays of dask, which it would load to know them.
+    # Loading takes a third of a second, and more for dask arrays, which it would load to recognise.
     absent = "dask" not in sys.modules
     if absent:
         sys.modules["dask"] = None  # type: ignore[assignment]
@@ -150,7 +150,7 @@ def _registry() -> Any:
 
 @lru_cache(maxsize=256)
 def _base(written: str) -> tuple[float, frozenset[tuple[str, int]]]:
-    """What one `written` is worth in base units, and their powers."""
+    """The value of one `written` in base units, and their powers."""
     worth, powers = 1.0, Counter[str]()
     for name, power in _factors(written):
         factor, base = _COMMON.get(name) or _rare(name)
@@ -161,11 +161,11 @@ def _base(written: str) -> tuple[float, frozenset[tuple[str, int]]]:
 
 
 def _rare(name: str) -> tuple[float, str]:
-    """What one is worth in base units, and those, as pint knows it."""
+    """The value of one in base units, and those, according to pint."""
     registry = _registry()
     try:
         unit = registry.parse_units(name)
-        # Zero degrees Celsius or decibel is not nothing: such scales have no factor.
+        # Zero degrees Celsius or decibel is not zero: such scales have no factor.
         if registry.Quantity(0.0, unit).to_base_units().magnitude == 0.0:
             factor, base = registry.get_base_units(unit)
             return float(factor), f"{base:~C}"
@@ -211,7 +211,7 @@ class Number:
 
     unit      the SI unit, "" if it has none
     above     exclusive lower bound; at_least, at_most: inclusive; below: exclusive
-    endless   `.inf` is allowed and means that there is no limit
+    endless   `.inf` is allowed and means no limit
     example   a text that a user could write
     """
 

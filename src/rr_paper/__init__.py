@@ -1,1 +1,1 @@
-"""The paper: its tables and figures again, its statements checked, its unknowns estimated."""
+"""The paper: its tables and figures recomputed, its statements checked, its unknowns estimated."""

@@ -1,11 +1,11 @@
 """Which definitions of J20/J10, units of kappa and signs of (3) are consistent with the averages.
 
 Each hypothesis is fitted to the nine rows with everything else free inside `prototype.BOX`; Table
-1's masses and inertias stand, and all rows have one sign of the speed, whichever fits better.
-Chi-square counts in standard errors, half_width/t. A standard error of three runs has only two
-degrees of freedom, so the chi-square left is compared with squares of Student's t: p is the share
-of random sets of nine - fitted such squares that exceed it. That is approximate: it takes each
-fitted unknown to account for one row.
+1's masses and inertias are kept, and all rows have the same sign of the speed, whichever fits
+better. Chi-square is in standard errors, half_width/t. A standard error of three runs has only two
+degrees of freedom, so the residual chi-square is compared with squares of Student's t: p is the
+share of random sets of nine - fitted such squares that exceed it. This is approximate: it assumes
+that each fitted unknown accounts for one row.
 """
 
 import math
@@ -26,12 +26,12 @@ from rr_paper.publication import COLUMNS, RATIOS, ROWS, RUNS, TABLE_1, Column
 from rr_paper.signs import CORRECTED, PRINTED, Signs, steady_cycle
 
 _SCREENED, _STARTS, _SPACING, _SEED = 400, 8, 0.6, 1
-"""Screened points; of the best, how many are started from for each sign, and their least distance
-in the unit box."""
+"""Screened points; number of the best used as starts for each sign, and their least distance in the
+unit box."""
 _NO_CYCLE = 100.0
 """Residual of a row that has no steady speed, in standard errors."""
 _SAMPLES = 64
-"""Of half a period; enough up to the box's largest amplitude."""
+"""Samples per half period; enough up to the box's largest amplitude."""
 _SETS, _SETS_SEED = 200_000, 5
 
 Question = Literal["ratio", "kappa", "equation"]
@@ -39,7 +39,7 @@ QUESTIONS: tuple[Question, ...] = ("ratio", "kappa", "equation")
 
 KAPPA = TABLE_1["kappa"].value
 LARGEST_WHEEL = 0.04
-"""A wheel radius above what the drawings allow, m: with it kappa in N m s brakes least."""
+"""A wheel radius above what the drawings allow, m: it makes kappa in N m s brake least."""
 
 
 def predicted(
@@ -121,7 +121,7 @@ def fit(
 
 
 def _spread(unit: Array, chi2: Array) -> list[int]:
-    """The best points that keep their distance from better ones, so that each basin is tried."""
+    """The best points that are not close to better ones, so that each basin is tried."""
     chosen: list[int] = []
     for i in np.argsort(chi2):
         if all(np.linalg.norm(unit[i] - unit[j]) > _SPACING for j in chosen):
@@ -161,7 +161,7 @@ class Unloaded:
     """J20/J10 of Table 1's robot without loads, by one definition.
 
     low, high  over the box of a1 and a2
-    reached    the printed ratios that need no lighter platform 2 somewhere in the box
+    reached    the printed ratios that need no lighter platform 2, somewhere in the box
     """
 
     definition: RatioDefinition
@@ -184,7 +184,7 @@ class Consistency:
     still: dict[Column, float]
 
     def of(self, question: Question, column: Column) -> list[Hypothesis]:
-        """Those on one question and column."""
+        """Those for one question and column."""
         return [one for one in self.hypotheses if (one.question, one.column) == (question, column)]
 
 

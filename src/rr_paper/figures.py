@@ -105,7 +105,7 @@ def period_law_figure(law: PeriodLaw) -> Figure:
 _THREE = (style.FORWARD, style.PLATFORM1, style.BACKWARD)
 """Colours of three rows or circles."""
 _SHIFT = 0.02
-"""Between rows that would hide one another, rad."""
+"""Offset between rows that would coincide, rad."""
 
 
 def draw(found: Reproduction) -> dict[str, str]:
@@ -207,7 +207,7 @@ def period_figure(surface: SpeedSurface, tables: Tables, singular: float) -> Fig
 def _speed_map(ax: Axes, surface: SpeedSurface, across: Array, singular: float) -> TwoSlopeNorm:
     """Filled contours over `across` (the ratio or the period) and amplitude.
 
-    singular: the angle of the singular posture, rad. Returns the norm that colours a speed.
+    singular: the angle of the singular posture, rad. Returns the colour norm of the speed.
     """
     speed = 1e3 * surface.speed
     top = max(float(abs(speed).max()), 1e-9)
@@ -240,10 +240,10 @@ def _speed_map(ax: Axes, surface: SpeedSurface, across: Array, singular: float) 
 def _measured_means(
     ax: Axes, points: Sequence[tuple[float, float, Row]], norm: TwoSlopeNorm, *, stacked: bool
 ) -> None:
-    """Measured means at their places, in the colour of their speed, with their intervals.
+    """Measured means in the colour of their speed, with their intervals.
 
-    The tables give no sign; they are shown with the model's. stacked: points stand above one
-    another; else their numbers alternate above and below them.
+    The tables give no sign; the model's is used. stacked: points are above one another; else their
+    numbers alternate above and below them.
     """
     for i, (x, y, row) in enumerate(points):
         above = stacked or i % 2 == 0
@@ -267,7 +267,7 @@ def _printed_row(ax: Axes, x: float, row: Row, colour: str, label: str | None = 
 def _cut(
     ax: Axes, surface: SpeedSurface, rows: list[RecomputedRow], period: float, colour: str
 ) -> None:
-    """The model at one period, broken beyond 30 rpm, with what was measured."""
+    """The model at one period, broken beyond 30 rpm, with the measurements."""
     alpha = surface.amplitude
     speed = 1e3 * np.abs(surface.speed[:, int(np.abs(surface.period - period).argmin())])
     kept = 2 * np.pi * alpha / period <= RATE_LIMIT

@@ -1,4 +1,4 @@
-"""The paper's robot: Table 1, what it leaves out, and the possible definitions of J20/J10.
+"""The paper's robot: Table 1, its omissions, and the possible definitions of J20/J10.
 
 Table 1 leaves open a1 and a2 (c1 and c2 follow from c1 - a1 and c2 - a2), the half track b and
 the friction k of a wheel, here the same for all wheels. The paper varies J20/J10 by loads on
@@ -120,7 +120,7 @@ DEFINITIONS = (
 
 @dataclass(frozen=True)
 class Sensitivity:
-    """How far the |speed| of a gait moves as one unknown moves over its box, low to high.
+    """Change of a gait's |speed| as one unknown varies over its box, low to high.
 
     assumed  its value in the shipped robot
     """
@@ -139,7 +139,7 @@ class Sensitivity:
 
 
 def sensitivities(robot: Robot, row: Row) -> tuple[Sensitivity, ...]:
-    """Of each unknown of the robot alone, at the gait of a row of Table 3."""
+    """Sensitivity to each unknown of the robot alone, at the gait of a row of Table 3."""
     one, two = robot.platform1, robot.platform2
     assumed = {"a1": one.a, "a2": two.a, "b": one.b, "k": robot.k1}
     found = []

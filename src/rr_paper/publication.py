@@ -13,7 +13,7 @@ Known errata and omissions:
 - Section 3.1 sets J20/J10 to 0.08, 0.14, 0.17, 0.19 and 0.2; Table 2 has 0.16, 0.18 and 0.2.
 - The signs of equation (3) contradict equations (1), (2) and (4); see `rr_paper.signs`.
 
-The points of the paper's figures are not printed as numbers, so none of them is here.
+The points of the paper's figures are not printed as numbers, so they are not included.
 """
 
 import math
@@ -134,11 +134,11 @@ class Circles:
 
 FIGURE_6 = Circles(**_PAPER["figure_6"] | {"offsets": tuple(_PAPER["figure_6"]["offsets"])})
 BEST_AMPLITUDE = _PAPER["text"]["best_amplitude"]
-"""rad, up to which speed increases by the paper's conclusion."""
+"""rad, up to which speed increases according to the paper's conclusion."""
 
 
 def captions(of: str) -> Captions:
-    """Those of the calibration or of the reproduction, by the figure's name."""
+    """Captions of the calibration or of the reproduction, by the figure's name."""
     return {
         name: (one["title"], one["alt"], one["caption"])
         for name, one in read_data(f"{of}_figures.toml").items()

@@ -47,14 +47,14 @@ from rr_paper.tables import (
 )
 
 _TYPICAL = TABLE_3[1]
-"""The row that is driven where the paper does not say which run it shows."""
+"""The row that is driven if the paper does not say which run it shows."""
 
 
 _SECONDS = 10.0
 
 
 _SETTLED = 20.0
-"""A run from rest is steady by then, s."""
+"""Time after which a run from rest is steady, s."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -90,7 +90,7 @@ class Reproduction(Result):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Whether a check is missing."""
+        """A warning if a check is missing."""
         if self.mujoco is not None:
             return ()
         return (
@@ -118,7 +118,7 @@ class Reproduction(Result):
         }
 
     def _tables(self) -> dict[str, str]:
-        """The curves, and the table of each finding; that of the columns holds Tables 2 and 3."""
+        """The curves, and the table of each finding; that on the columns has Tables 2 and 3."""
         audit = {f"audit-{one.key}.csv": one.table.csv(digits=9) for one in findings(self)}
         audit["tables.csv"] = audit.pop("audit-columns.csv")
         return curves(self) | audit
@@ -157,7 +157,7 @@ class Reproduction(Result):
 
 
 def reproduce(problem: Problem, progress: Callable[[str], None]) -> Reproduction:
-    """Compute all of it for the robot of a problem, in a minute. Raises NotConvergedError."""
+    """The whole reproduction for the robot of a problem, in a minute. Raises NotConvergedError."""
     robot = problem.robot
     loaded = ABOUT_P.build(robot, _TYPICAL.ratio)
     gait = SineGait(_TYPICAL.amplitude or 0.0, _TYPICAL.period)
@@ -222,7 +222,7 @@ class Finding:
 
 
 def _sentences(one: Finding) -> str:
-    """Title and finding; a title that is a question ends with its own mark."""
+    """Title and finding; a title that is a question keeps its question mark."""
     return f"{one.title}{'' if one.title.endswith('?') else '.'} {one.finding}"
 
 

@@ -3,9 +3,9 @@
     vdot = (A - C) v + s1 B1 + s2 B2 + sD D
 
 Each letter stands for the expression printed under (3), except that epsilon, inside B2, has a sign
-of its own. This module is apart from `rr_opt.motion` because it must evaluate the printed
-equation, and because the audits and the calibration need thousands of robots at once: all
-functions broadcast, and a `Robot` may hold arrays (see `stacked`).
+of its own. This module is separate from `rr_opt.motion` because it must evaluate the printed
+equation, and because the audits and the calibration need thousands of robots at once: all functions
+broadcast, and a `Robot` may hold arrays (see `stacked`).
 """
 
 from collections.abc import Sequence
@@ -29,7 +29,7 @@ _TIGHT = {"method": "DOP853", "rtol": 1e-10, "atol": 1e-11}
 
 @dataclass(frozen=True)
 class Signs:
-    """Signs of the terms of equation (3); `epsilon` stands inside the bracket of B2."""
+    """Signs of the terms of equation (3); `epsilon` is inside the bracket of B2."""
 
     name: str
     B1: int
@@ -90,7 +90,7 @@ def yaw_rate(robot: Robot, v: ArrayLike, phi: ArrayLike, dphi: ArrayLike) -> Arr
 
 
 def stacked(robots: Sequence[Robot]) -> Robot:
-    """G robots as one whose numbers are arrays (G,)."""
+    """G robots as a single one with arrays of values (G,)."""
 
     def platform(of: Sequence[Platform]) -> Platform:
         columns: Any = [np.array([getattr(one, f.name) for one in of]) for f in fields(Platform)]
@@ -112,7 +112,7 @@ class Angle(NamedTuple):
 def sine(amplitude: Array, period: Array, n: int, first: float = 0.5) -> Angle:
     """A sine of amplitude (rad) and period (s), (G,), at n equal steps of half a period.
 
-    first: where in the first step the first sample is taken.
+    first: position of the first sample within the first step.
     """
     theta = (np.arange(n)[:, None] + first) * np.pi / n
     omega = 2 * np.pi / period
@@ -178,12 +178,12 @@ def path(robot: Robot, gait: SineGait, times: Array, signs: Signs) -> Array:
 _STATES, _SEED = 200, 7
 _RATE = 20.0
 _SAMPLES = 64
-"""Instants of half a period over which the energy is averaged."""
+"""Instants per half period over which the energy is averaged."""
 
 
 @dataclass(frozen=True)
 class Deviation:
-    """How far signs are from mechanics over random states of random robots: |difference of vdot|
+    """Deviation of signs from mechanics over random states of random robots: |difference of vdot|
     over the size of both and of the terms. The largest from each derivation; the median from Kane.
     """
 
@@ -225,14 +225,14 @@ class Energy:
 
     @property
     def gap(self) -> float:
-        """By how much the supplied power exceeds the dissipated one, W; 0 but for rounding."""
+        """Excess of the supplied power over the dissipated one, W; 0 but for rounding."""
         return self.servo + self.fictitious - self.friction
 
 
 @dataclass(frozen=True)
 class SignAudit:
-    """All about the signs; torque: largest relative difference of the servo's torque between Kane
-    and the multipliers over the random states."""
+    """The audit of the signs; torque: largest relative difference of the servo's torque between
+    Kane and the multipliers over the random states."""
 
     deviations: tuple[Deviation, ...]
     states: int
@@ -292,7 +292,7 @@ def _comparison(robot: Robot, gait: SineGait, seconds: float) -> Comparison:
 
 
 def energy_of(robot: Robot, gait: SineGait, signs: Signs) -> Energy:
-    """The energy balance of a steady straight gait that moves by these signs.
+    """The energy balance of a steady straight gait with these signs.
 
     The fictitious force pushes at axle 1 along platform 1, where it neither loads the servo nor
     changes the friction.

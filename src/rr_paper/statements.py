@@ -55,7 +55,7 @@ class ServoDemand:
 
     @property
     def excess(self) -> float | None:
-        """How far beyond Table 1's 30 rpm, rpm; None if it is not."""
+        """How far it exceeds Table 1's 30 rpm, rpm; None if it does not."""
         return self.rpm - RATE_LIMIT * RPM if self.rpm > RATE_LIMIT * RPM else None
 
 
@@ -70,7 +70,7 @@ class SingularPosture:
 
 
 def servo_demands(table2_amplitude: float) -> tuple[ServoDemand, ...]:
-    """Of every gait that the paper drove, and of the fastest corner of each surface."""
+    """For every gait that the paper drove, and the fastest corner of each surface."""
     return (
         *(
             ServoDemand(f"Table 3, row {i}", row.amplitude or math.nan, row.period)
@@ -86,13 +86,13 @@ def servo_demands(table2_amplitude: float) -> tuple[ServoDemand, ...]:
 
 
 def singular_posture(robot: Robot) -> SingularPosture:
-    """Where it is."""
+    """The singular posture of a robot and of the box."""
     angles = [one.singular_angle for one in box_grid(25)]
     return SingularPosture(robot.singular_angle, min(angles), max(angles))
 
 
 _NEAREST = 0.97
-"""How near an angle comes to the singular one."""
+"""Largest angle of the map, relative to the singular one."""
 _RATE = 50.0
 _MAP = (24, 10, 101)
 """Amplitudes, periods and offsets of the map, as in `rr-opt turn-chart`."""
@@ -116,7 +116,7 @@ class Turning:
     circles     the three of the figure
     offset, curvature  along phi0 > 0 at the figure's amplitude and period, up to the singular
                 posture: rad, 1/m (positive to the left)
-    sign, radius  the claims over all gaits of the shipped problem that keep its limits
+    sign, radius  the claims over all feasible gaits of the shipped problem
     """
 
     circles: tuple[GaitCircle, ...]
@@ -237,8 +237,8 @@ def fieller(one: tuple[float, float], two: tuple[float, float]) -> tuple[float, 
     """The interval of the ratio of two means, given with their half widths: all rho with
     |m1 - rho m2| within its own half width.
 
-    Without an upper end if the denominator's own interval contains 0; ratios below 0 are excluded
-    then, as the speeds of one robot have one sign.
+    It has no upper end if the denominator's own interval contains 0; negative ratios are then
+    excluded, as the speeds of one robot have one sign.
     """
     (m1, h1), (m2, h2) = one, two
     a, b, c = m2**2 - h2**2, m1 * m2, m1**2 - h1**2
@@ -274,7 +274,7 @@ def _spread(signs: Signs) -> Spread:
 
 
 _STEP = 0.02
-"""rad, of the amplitude."""
+"""Step of the amplitude, rad."""
 _PEAK_ROBOTS, _PEAK_SEED = 150, 3
 
 
@@ -283,7 +283,7 @@ class Peak:
     """Speed over amplitude at T = 1 s, up to Fig. 4's 1.4 rad or the singular posture.
 
     amplitude  of the largest |speed| in the direction in which small amplitudes drive, rad
-    inside     it is a maximum, and not the end of the range
+    inside     it is an interior maximum, not the end of the range
     reverses   the least amplitude that drives the other way, rad; None if none does
     """
 
@@ -294,8 +294,8 @@ class Peak:
 
 @dataclass(frozen=True)
 class PeakStatistics:
-    """Of random robots of the box at one J20/J10: how many have a maximum inside, and how many
-    drive the other way beyond some amplitude; quantiles 5, 50 and 95 % of the maxima inside."""
+    """For random robots of the box at one J20/J10: how many have an interior maximum, and how many
+    drive the other way beyond some amplitude; quantiles 5, 50 and 95 % of the interior maxima."""
 
     ratio: float
     robots: int
@@ -306,13 +306,13 @@ class PeakStatistics:
 
 @dataclass(frozen=True)
 class BestAmplitude:
-    """What remains of the paper's conclusion.
+    """The audit of the paper's conclusion.
 
     own      the prototype's peak by J20/J10
     fitted   those of the robots fitted to the tables, by name
     robots   those of random robots
     limited, unlimited  the checked optima within Fig. 5's range, with Table 1's limits and without
-    allowed  amplitude that 30 rpm leaves at T = 1 s, rad
+    allowed  largest amplitude within 30 rpm at T = 1 s, rad
     """
 
     own: tuple[tuple[float, Peak], ...]
@@ -331,7 +331,7 @@ class BestAmplitude:
 def audit_best_amplitude(
     robot: Robot, fits: Sequence[Hypothesis], progress: Callable[[str], None]
 ) -> BestAmplitude:
-    """Look for the best amplitude of this robot, of fitted and of random ones."""
+    """Find the best amplitude of this robot, of fitted and of random ones."""
     ratios = (*FIGURE_4.ratio, FIGURE_5.ratio[0])
     own = tuple((ratio, peak_of(ABOUT_P.build(robot, ratio), CORRECTED)) for ratio in ratios)
     fitted = []

@@ -22,7 +22,7 @@ AMPLITUDES = np.linspace(0.2, 1.5, 261)
 """Candidates for Table 2's amplitude, rad."""
 
 _RATE, _SECONDS = 100.0, 20.0
-"""Fig. 3: the capture system's rate, Hz, and a time in which the start is over, s."""
+"""Fig. 3: the capture system's rate, Hz, and a time by which the transient has decayed, s."""
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ class RecomputedRow:
 
 @dataclass(frozen=True)
 class Tables:
-    """Both tables, and what Table 2's amplitude may be.
+    """Both tables, and the possible amplitudes of Table 2.
 
     amplitude  the fitted one, rad
     speeds     of Table 2's rows at AMPLITUDES, signed, m/s, (3, n)
@@ -73,7 +73,7 @@ class Tables:
 def recompute(robot: Robot) -> Tables:
     """Both tables for this robot; J20/J10 about P.
 
-    Table 2's amplitude is the one of AMPLITUDES with the least sum of squared misses in half
+    Table 2's amplitude is the one of AMPLITUDES with the least sum of squared residuals in half
     widths.
     """
     speeds = np.array([predicted(robot, ABOUT_P, one) for one in AMPLITUDES.tolist()]).T

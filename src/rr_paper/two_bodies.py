@@ -29,7 +29,7 @@ class Accelerations(NamedTuple):
 
 
 def accelerate(robot: Robot, q: Array, qd: Array, ddphi: float, push: float = 0.0) -> Accelerations:
-    """Newton's and Euler's equations of both bodies with the constraints' second derivatives.
+    """The Newton-Euler equations of both bodies with the constraints' second derivatives.
 
     push: an external force at axle 1 along platform 1, N.
     """
@@ -39,7 +39,7 @@ def accelerate(robot: Robot, q: Array, qd: Array, ddphi: float, push: float = 0.
     g1, g2 = one.c - one.a, two.c - two.a
 
     G = constraints(robot, q)
-    # Minus the terms of the second derivatives that are free of accelerations.
+    # Minus the acceleration-free terms of the second derivatives.
     rest = np.concatenate(
         [-g1 * w1**2 * e1 - g2 * w2**2 * e2, [w1 * (e1 @ V1), w2 * (e2 @ V2), ddphi]]
     )
@@ -52,7 +52,7 @@ def accelerate(robot: Robot, q: Array, qd: Array, ddphi: float, push: float = 0.
 
 
 def placed(robot: Robot, phi: float, dphi: float, v: float) -> tuple[Array, Array]:
-    """q and qd that meet the constraints with P at the origin, psi = 0 and axle 1 rolling at v."""
+    """q and qd satisfying the constraints, P at the origin, psi = 0 and axle 1 rolling at v."""
     one, two = robot.platform1, robot.platform2
     e2 = axes(phi)[0]
     q = np.array([one.c - one.a, 0.0, 0.0, *(-(two.c - two.a) * e2), phi])

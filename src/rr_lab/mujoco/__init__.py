@@ -1,4 +1,4 @@
-"""A gait driven on a rig: MuJoCo steps it, and its motion is written down."""
+"""A gait driven on a rig: MuJoCo integrates it, and its motion is recorded."""
 
 import math
 from collections.abc import Iterator
@@ -16,16 +16,16 @@ from rr_opt.array import Array
 from rr_opt.model.gait import Gait
 
 SETTLE = 0.05
-"""s, in which the robot comes to rest on its wheels before anything else, on a level floor."""
+"""s, in which the robot settles on its wheels before the run, on a level floor."""
 
 STEP = 2.5e-4
-"""s. results/lab/README.md shows what it is worth."""
+"""s. results/lab/README.md shows its accuracy."""
 
 
 @dataclass(frozen=True)
 class Course:
-    """Of `count` steps, the robot is let go at `let_go`; the recording begins at `first` and has
-    what is at the beginning of every `every`-th step."""
+    """Of `count` steps, the robot is released at `let_go`; the recording begins at `first` and
+    samples the start of every `every`-th step."""
 
     let_go: int
     first: int
@@ -34,14 +34,14 @@ class Course:
 
     @property
     def recorded(self) -> range:
-        """Steps at whose beginning there is a sample."""
+        """Steps with a sample at their start."""
         return range(self.first, self.count, self.every)
 
     def parts(self, *, pushed: bool, torque: bool) -> Iterator[tuple[int, int]]:
         """Ranges of steps that can be taken in one call: first, and one past the last.
 
-        pushed  whether step `first` is unlike the others
-        torque  whether the steps that begin with a sample have to be looked at when they are taken
+        pushed  whether step `first` differs from the others
+        torque  whether the steps that begin with a sample have to be inspected individually
         """
         marks = {0, self.let_go, self.first, self.count}
         if pushed:
@@ -61,7 +61,7 @@ def fine_enough(rig: Rig, step: float) -> float:
 
 
 def drive(rig: Rig, gait: Gait, conditions: Conditions, step: float = STEP) -> Motion:
-    """Drive a gait and write down the motion. Raises NotConvergedError if it is lost."""
+    """Drive a gait and record the motion. Raises NotConvergedError if the simulation fails."""
     step = fine_enough(rig, step)
     plant = Plant.of(rig, step)
     every = max(1, round(1 / (conditions.rate * step)))
@@ -86,11 +86,11 @@ def servo_angles(rig: Rig, gait: Gait, conditions: Conditions, when: Array) -> t
 def _run(
     plant: Plant, conditions: Conditions, angle: Array, t: NDArray[Any], course: Course
 ) -> Motion:
-    """Step the flywheel through `angle`, rad, at the times t, s since the robot was let go."""
+    """Drive the flywheel through `angle`, rad, at the times t, s since the robot was released."""
     model, dt = plant.model, plant.model.opt.timestep
     plant.put_down(conditions.pose, angle[0])
     model.opt.gravity[:] = 0.0, 0.0, plant.rig.gravity[2]
-    # The acceleration that takes the flywheel, whose steps are q' = q + dt w', through `angle`.
+    # The acceleration that makes the flywheel, with steps q' = q + dt w', follow `angle`.
     push = np.diff(np.concatenate([angle[:1], angle]), 2) / dt**2
     seen, torques = [], []
     for start, stop in course.parts(pushed=conditions.nudge != 0, torque=conditions.torque):
@@ -111,6 +111,6 @@ def _run(
 
 
 def _placed(seen: Array) -> Array:
-    """x, y, heading (n, 3) from what the sensors see of a platform: place and forward axis."""
+    """x, y, heading (n, 3) from the sensors of a platform: place and forward axis."""
     heading = list(map(math.atan2, seen[:, 4].tolist(), seen[:, 3].tolist()))
     return np.column_stack([seen[:, :2], np.unwrap(heading)])

@@ -1,4 +1,4 @@
-"""A rig as MuJoCo's own model text: the numbers for the template `rig.xml`."""
+"""A rig as a MuJoCo model: the values for the template `rig.xml`."""
 
 from __future__ import annotations
 
@@ -21,43 +21,43 @@ if TYPE_CHECKING:
 
 
 MOTOR_INERTIA = 1e9
-"""kg m2. A flywheel too heavy for the robot to disturb, turned to the commanded angle, carries
-platform 2 with it by a stiff constraint: the angle is given, as the nominal model has it."""
+"""kg m2. A flywheel too heavy for the robot to disturb, turned to the commanded angle, drives
+platform 2 by a stiff constraint: the angle is prescribed, as in the nominal model."""
 
 GEAR_INERTIA = 1e-3
-"""kg m2, of the gear that play hangs on. Its turning is given, so it moves nothing else; with less,
-MuJoCo would take the stops for as light as the gear, and make them soft."""
+"""kg m2, of the gear that carries the backlash. Its motion is prescribed, so it moves nothing else;
+with less inertia, MuJoCo would make the stops as light as the gear, and soft."""
 
 BEAM_INERTIA = 1e-3
-"""kg m2, what swings on a bending beam, about; it sets its damping to a tenth of the critical."""
+"""kg m2, about that swinging on a bending beam; sets its damping to a tenth of critical."""
 
 LOAD_INERTIA = 1e-6
 """kg m2, of a loose load."""
 
 WHEEL_MASS = 5e-5
-"""kg, of one wheel; taken from its platform's."""
+"""kg, of one wheel; subtracted from its platform's."""
 
 HARD = 0.99
-"""MuJoCo's impedance of a contact that holds. Nearer to 1 the four wheels, one more than a stiff
-body needs to stand, chatter under large side forces."""
+"""MuJoCo's impedance of a non-sliding contact. Closer to 1, the four wheels, one more than a rigid
+body needs, chatter under large side forces."""
 
 SLIDING = 0.5
-"""The same of one that may slide. In MuJoCo a sliding contact pushes itself off the floor, by more
-the faster it slides. What the four wheels do not agree on of that lifts some and loads others by as
-much as their own weight, the harder the contacts the more: at 0.99 the side force of an axle was
-between 0.3 and 2.3 times the friction of its load, at 0.5 it is within 1 % of it."""
+"""The impedance of a contact that may slide. In MuJoCo a sliding contact pushes itself off the
+floor, in proportion to its speed. Differences of this between the wheels lift some and load others
+by as much as their own weight, the more the harder the contacts: at 0.99 the side force of an axle
+was between 0.3 and 2.3 times the friction of its load, at 0.5 it is within 1 % of it."""
 
 GRIP_RATE = 1.9
-"""How fast side slip is taken back, in units of 1/step. 2 would hold the mean of two steps' slips
-at zero and thus be of second order, but never die out; 1 lags by half a step."""
+"""Rate of side slip correction, in units of 1/step. 2 would keep the mean slip of two steps at zero
+and thus be of second order, but never decay; 1 lags by half a step."""
 
 CREEP_RATE = 1.65
-"""The same where wheels creep. What is left of a step's slip looks like creep of
-(1/CREEP_RATE - 1/2) step/mass: 2e-5 to 1e-4 m/(N s) for light robots. From 1.7 on, wheels that
-creep by less than that chatter."""
+"""The rate where wheels creep. The residual slip of a step resembles creep of (1/CREEP_RATE - 1/2)
+step/mass: 2e-5 to 1e-4 m/(N s) for light robots. From 1.7 on, wheels that creep by less than that
+chatter."""
 
 TURNING_LOAD = 5e-5
-"""kg, the least spin inertia of a wheel over h^2: what a wheel needs to be integrated at all."""
+"""kg, the least spin inertia of a wheel over h^2 that can be integrated."""
 
 
 def model_text(rig: Rig, step: float) -> str:
@@ -95,9 +95,9 @@ def _template() -> Template:
 
 
 def spin_inertia(rig: Rig, step: float) -> float:
-    """Spin inertia that each wheel is given, kg m2, so that its friction stops it in many steps.
+    """Spin inertia given to each wheel, kg m2, so that its friction stops it over many steps.
 
-    It is taken back from the platform, so that the nominal robot has none.
+    It is subtracted from the platform, so that the nominal robot is unchanged.
     """
     k = max(rig.kappa) / rig.robot.h**2
     return rig.robot.h**2 * max(TURNING_LOAD, 8 * k * step)
@@ -106,9 +106,9 @@ def spin_inertia(rig: Rig, step: float) -> float:
 def _platform(rig: Rig, i: int, part: Platform, ahead: float, J: float) -> dict[str, Any]:
     """Body and wheels of a platform, P at the origin, its axle `ahead` (+1) or behind (-1).
 
-    A rolling wheel carries the inertia of a load J/h^2 at its place. Two of them are, as the axle
-    does not slip, a load 2J/h^2 at its centre with the moment of inertia 2 b^2 J/h^2. These and the
-    wheels' own mass are taken from the platform; what is left is its body.
+    A rolling wheel carries the inertia of a load J/h^2 at its place. As the axle does not slip, the
+    pair acts as a load 2J/h^2 at its centre with the moment of inertia 2 b^2 J/h^2. These and the
+    wheels' own mass are subtracted from the platform to give its body.
     """
     h, left = rig.robot.h, rig.left[i]
     axle, centre = ahead * part.c, ahead * part.joint_to_centre
@@ -143,8 +143,8 @@ def _platform(rig: Rig, i: int, part: Platform, ahead: float, J: float) -> dict[
 
 
 def loop(rig: Rig) -> Motor | None:
-    """What holds phi at the command: the servo's loop and the gear in series; None if
-    both are stiff."""
+    """The compliance that holds phi at the command: servo loop and gear in series; None if both are
+    stiff."""
     gear = None
     if rig.gear is not None:
         gear = Motor(rig.gear, 2 * (rig.gear * GEAR_INERTIA) ** 0.5)
@@ -155,8 +155,8 @@ def loop(rig: Rig) -> Motor | None:
 
 
 def longest_step(rig: Rig) -> float:
-    """s, in which a compliant servo turns by a third of a radian of its own swing: explicit
-    steps, as MuJoCo takes them, lose it at six times that."""
+    """s, in which a compliant servo advances by a third of a radian of its own oscillation:
+    MuJoCo's explicit steps become unstable at six times that."""
     drive = loop(rig)
     if drive is None:
         return math.inf
@@ -174,7 +174,7 @@ def engine() -> Any:
             "The virtual laboratory has no engine: MuJoCo is not installed. Expected the package "
             "mujoco. Install it with: pip install 'rr-opt[lab]', or take the engine planar."
         ) from None
-    # Its warnings would go to a file in the working folder; `Plant.require_sound` looks for them.
+    # Its warnings would go to a file in the working folder; `Plant.require_sound` checks for them.
     mujoco.set_mju_user_warning(_silent)
     _stop_clock(mujoco)
     return mujoco
@@ -182,15 +182,15 @@ def engine() -> Any:
 
 @cache
 def _stop_clock(mujoco: Any) -> None:
-    """Keep MuJoCo from timing the parts of each step: with a model as small as this, reading the
+    """Keep MuJoCo from timing the parts of each step: for a model as small as this, reading the
     clock takes a sixth of the time."""
     try:
-        # MuJoCo has no clock unless it is given one. Its Python package gives it one and only ever
-        # puts another in its place, so the library is asked where it is kept.
+        # MuJoCo has no clock unless given one. Its Python package sets one and can only replace it,
+        # so its address is looked up in the library.
         library = ctypes.CDLL(mujoco._callbacks.__file__)
         ctypes.c_void_p.in_dll(library, "mjcb_time").value = None
     except (AttributeError, OSError, ValueError):
-        return  # Slower, and otherwise the same.
+        return  # slower, but otherwise the same
 
 
 def _silent(_: str) -> None:
@@ -199,7 +199,7 @@ def _silent(_: str) -> None:
 
 @dataclass
 class Plant:
-    """The rig, MuJoCo, its model and its data; and where in them the wheels' hinges and bodies are,
+    """The rig, MuJoCo, its model and its data; and the indices of the wheels' hinges and bodies,
     platform 1, and the first of the tyres."""
 
     rig: Rig
@@ -229,7 +229,7 @@ class Plant:
         return plant
 
     def put_down(self, pose: tuple[float, float, float], angle: float) -> None:
-        """P at (x, y), platform 1 heading (rad) as the pose says, and the joint at `angle` rad."""
+        """P at (x, y) and platform 1 heading (rad) as in the pose, the joint at `angle` rad."""
         x, y, heading = pose
         base = self.model.joint("base").qposadr[0]
         self.data.qpos[base : base + 2] = x, y
@@ -238,7 +238,7 @@ class Plant:
             self.data.qpos[self.model.joint(name).qposadr[0]] = angle
 
     def torque(self) -> float:
-        """Of the servo on platform 2, N m, in the last step."""
+        """Torque of the servo on platform 2, N m, in the last step."""
         data, joint = self.data, self.model.joint("phi").dofadr[0]
         if loop(self.rig) is None:
             kind = self.mujoco.mjtConstraint.mjCNSTR_EQUALITY
@@ -248,14 +248,14 @@ class Plant:
         return float(drive - self.model.dof_armature[joint] * data.qacc[joint])
 
     def push(self, acceleration: float) -> None:
-        """Push platform 1 along its axis with the force that would give all mass this, m/s2."""
+        """Push platform 1 along its axis so as to accelerate the whole mass by this, m/s2."""
         body = self.data.body("platform1")
         robot = self.rig.robot
         force = (robot.platform1.m + robot.platform2.m) * acceleration
         body.xfrc_applied[:3] = force * body.xmat[[0, 3, 6]]
 
     def brake(self, t: float) -> None:
-        """Set what brakes each wheel by the rig's laws, t s after the robot was let go."""
+        """Set the friction of each wheel by the rig's laws, t s after the robot was released."""
         rig, data = self.rig, self.data
         ahead = data.xmat[self.platform1, [0, 3]]
         wheels = Wheels(
@@ -276,7 +276,7 @@ class Plant:
         data.qfrc_applied[self.rolls] = wheels.torque
 
     def drag(self) -> None:
-        """Hold axle 2 back with the friction of a cable that it drags."""
+        """Apply the friction of a dragged cable to axle 2."""
         velocity, axle = np.empty(6), self.data.body("axle2")
         kind = self.mujoco.mjtObj.mjOBJ_XBODY
         self.mujoco.mj_objectVelocity(self.model, self.data, kind, axle.id, velocity, 0)
@@ -284,20 +284,20 @@ class Plant:
         axle.xfrc_applied[:2] = -self.rig.cable * along / np.hypot(np.hypot(*along), CABLE_ONSET)
 
     def loads(self) -> Array:
-        """With which the wheels pressed on the floor in the last step, N (4,); before the first
-        step what a robot that stands would."""
+        """Wheel loads on the floor in the last step, N (4,); before the first step those of a
+        stationary robot."""
         contacts = self.data.contact
         if not len(contacts):
             return wheel_loads(self.rig)
         rows, pressed = contacts.efc_address, np.zeros(len(WHEELS))
-        # A contact that is about to part has no row.
+        # A contact that is about to separate has no row.
         pressed[contacts.geom.max(axis=1)[rows >= 0] - self.tyre] = self.data.efc_force[
             rows[rows >= 0]
         ]
         return pressed
 
     def require_sound(self) -> None:
-        """Raises NotConvergedError if MuJoCo lost the motion."""
+        """Raises NotConvergedError if MuJoCo's simulation failed."""
         if self.data.warning.number.any():
             raise NotConvergedError(
                 "The laboratory's simulation broke down: MuJoCo met huge accelerations. Expected a "
@@ -305,14 +305,14 @@ class Plant:
             )
 
     def soften(self, creep: float) -> None:
-        """Let the contacts give way sideways by `creep`, m/(N s), each.
+        """Make each contact compliant sideways by `creep`, m/(N s).
 
-        MuJoCo holds a slip speed s with the force s b/R of its own softness R and rate b, so R/b is
-        the compliance. R of the friction rows is R of the normal row over `impratio`: the first is
-        raised through the second, so that b stays as fast as the step allows.
+        MuJoCo resists a slip speed s with the force s b/R from its softness R and rate b, so R/b is
+        the compliance. R of the friction rows is R of the normal row over `impratio`: the former is
+        increased through the latter, so that b stays as fast as the step allows.
         """
         mujoco, model, data = self.mujoco, self.model, self.data
-        # A contact that just touches makes no rows yet: the wheels are pressed in a little.
+        # A contact that just touches has no rows yet: the wheels are pressed in slightly.
         height = model.joint("base").qposadr[0] + 2
         data.qpos[height] -= 1e-6
         mujoco.mj_forward(model, data)
@@ -327,17 +327,17 @@ class Plant:
 
 
 def stepped(plant: Plant, controls: Array, times: Array) -> Array:
-    """Take a step with each control; what the sensors see at the beginning of each, (n, sensors).
+    """Take a step with each control; sensor values at the start of each, (n, sensors).
 
     controls  angular accelerations of the flywheel, rad/s2 (n,)
-    times     since the robot was let go, s (n,), for the laws
+    times     since the robot was released, s (n,), for the laws
 
-    Raises NotConvergedError if MuJoCo lost the motion.
+    Raises NotConvergedError if MuJoCo's simulation failed.
     """
-    # MuJoCo's own loop forgets forces.
+    # MuJoCo's own loop discards applied forces.
     alone = plant.rig.laws or plant.rig.cable or plant.data.xfrc_applied.any()
     seen = _one_by_one(plant, controls, times) if alone else _all(plant, controls)
-    # Asked here and not at the end of a run: that loop begins by forgetting earlier warnings.
+    # Checked here, not at the end of a run, as that loop first clears earlier warnings.
     plant.require_sound()
     return seen
 
@@ -362,7 +362,7 @@ def _all(plant: Plant, controls: Array) -> Array:
     kind = mujoco.mjtState.mjSTATE_FULLPHYSICS.value
     state = np.empty(mujoco.mj_stateSize(model, kind))
     mujoco.mj_getState(model, data, state, kind)
-    # The solver starts from the last step's answer.
+    # The solver is warm-started from the last step.
     warm = data.qacc_warmstart.copy()
     _, seen = mujoco.rollout.rollout(model, data, state, controls[:, None], initial_warmstart=warm)
     return seen[0]

@@ -1,1 +1,1 @@
-"""The second engine: two platforms in the plane, a motor, and four wheels on a floor that rubs."""
+"""The second engine: two planar bodies, a motor, and four wheels with friction on a floor."""

@@ -1,35 +1,35 @@
 """A gait driven on a rig in the plane.
 
-A wheel on the floor: it turns on its bearing, and its contact rubs where it slips.
+A wheel turns on its bearing, and its contact has friction where it slips.
 
 The contact slips sideways by s, and along by l = u - h spin, u the speed of the wheel's centre. The
-floor pushes it back with one force F that is shared by both,
+floor resists with one force F shared by both,
 
     F = -mu N tanh(r)/r (s/s1, l/l1),      r^2 = (s/s1)^2 + (l/l1)^2
 
-which is -mu N s/s1 for small slips and mu N for large ones, whatever their direction. Without creep
+which is -mu N s/s1 for small slips and mu N for large ones, in any direction. Without creep
 s1 = l1 = ONSET: a friction circle, and a wheel that slides sideways turns more slowly. Creep makes
-s1 larger, by mu N times its compliance, so it acts sideways alone.
+s1 larger, by mu N times its compliance, so it acts sideways only.
 
-The bearing resists with a torque D spin, D >= 0 of the spin as it is guessed: dry friction, for
-one, is D = torque/(spin^4 + onset^4)^(1/4). Only the wheel's spin inertia J keeps it turning; it
-may be none, as then the torques of floor and bearing balance at once.
+The bearing resists with a torque D spin, D >= 0 evaluated at the current iterate of the spin: dry
+friction, for example, is D = torque/(spin^4 + onset^4)^(1/4). Only the wheel's spin inertia J keeps
+it turning; it may be zero, as then the torques of floor and bearing balance instantly.
 
-As every force is a positive number times a speed, the guesses close in on the step's end however
-sharply friction sets in.
+As every force is a positive number times a speed, the iteration converges to the end of the step
+however abrupt the friction is.
 
 Newton and Euler for each body, along each coordinate: with p the place and theta the heading of a
 body,
 
     sum over bodies of  p_q' (m p'' - F) + theta_q' (I theta'' - M) = 0,
 
-where p_q is the derivative by the coordinates. Rates and coordinates are stepped by the backward
-differentiation formula of second order, which damps what is too fast for the step and does not
-have to follow it:
+where p_q is the derivative by the coordinates. Rates and coordinates are integrated by the
+second-order backward differentiation formula, which damps what is too fast for the step instead of
+following it:
 
     (3 w - 4 w1 + w2)/(2 dt) = w',      (3 q - 4 q1 + q2)/(2 dt) = w,
 
-w1 and w2 a step and two steps ago. The step's end is guessed SWEEPS times, see `Moment`.
+w1 and w2 one and two steps ago. The end of a step takes SWEEPS iterations, see `Moment`.
 """
 
 from __future__ import annotations
@@ -49,16 +49,16 @@ from rr_opt.model.gait import Gait
 from rr_opt.outcome import NotConvergedError
 
 ONSET = 1e-4
-"""m/s, over which a contact begins to slip. With the grip of a rig in which nothing slides it makes
-a side creep of some 1e-6 m/(N s)."""
+"""m/s, the slip at which a contact saturates. With the grip of a rig in which nothing slides it
+gives a side creep of some 1e-6 m/(N s)."""
 
 _STILL = 1e-12
-"""Of ONSET squared: keeps tanh(r)/r finite where nothing slips."""
+"""Relative to ONSET squared: keeps tanh(r)/r finite at zero slip."""
 
 
 @dataclass(frozen=True)
 class Rolling:
-    """pulls on the robot; the wheel's spin is `carried + taken * (speed along `way`)`, rad/s."""
+    """pulls: on the robot; the wheel's spin is `carried + taken * (speed along `way`)`, rad/s."""
 
     pulls: tuple[Pull, Pull]
     way: ca.SX
@@ -73,11 +73,11 @@ class Rolling:
 def rolling(
     moment: Moment, rig: Rig, n: int, load: float, bearing: ca.SX, kept: ca.SX, rate: float
 ) -> Rolling:
-    """What wheel n does.
+    """Spin and forces of wheel n.
 
     load     N, with which it presses on the floor
     bearing  D, N m s
-    kept     rad/s, the spin that it has without torque; rate (1/s) is what a torque changes it by
+    kept     rad/s, its spin without torque; rate (1/s): change of the spin per torque
     """
     wheel, h, J = moment.layout.wheels[n], rig.robot.h, rig.J[n]
     ahead = axis(wheel.heading)
@@ -99,15 +99,15 @@ def rolling(
 
 
 SWEEPS = 3
-"""Guesses of a step's end. Five do no better; two do as well where nothing slides or strikes."""
+"""Iterations per step. Five are no better; two suffice where nothing slides or strikes."""
 
 SIGNALS = ("asked", "rate", "t", "free", "nudge")
-"""What is given at the end of each step; see `Moment` and `pushed`."""
+"""Inputs at the end of each step; see `Moment` and `pushed`."""
 
 
 @dataclass(frozen=True)
 class State:
-    """Coordinates q (n) and rates w (n) of the layout; turns, rad, and spins, rad/s, of the wheels
+    """Coordinates q (n) and rates w (n) of the layout; angles, rad, and spins, rad/s, of the wheels
     (4)."""
 
     q: ca.SX
@@ -117,25 +117,25 @@ class State:
 
     @property
     def parts(self) -> tuple[ca.SX, ca.SX, ca.SX, ca.SX]:
-        """All of them, as they are stacked: 2 n + 8."""
+        """All of them, in stacking order: 2 n + 8."""
         return self.q, self.w, self.turns, self.spins
 
     def then(self, next: State) -> State:
-        """What would come after these two with rates and coordinates standing still."""
+        """The state after these two at constant rates and coordinates."""
         return State(*((4 * b - a) / 3 for a, b in zip(self.parts, next.parts, strict=True)))
 
     def moved(self, w: ca.SX, spins: ca.SX, dt: float) -> State:
-        """What comes instead, with these rates."""
+        """The state with these rates instead."""
         ahead = 2 * dt / 3
         return State(self.q + ahead * w, w, self.turns + ahead * spins, spins)
 
 
 def step_of(rig: Rig, dt: float) -> ca.Function:
-    """(states two steps ago and one step ago, SIGNALS at its end) -> the same a step of dt s on."""
+    """(states two and one steps ago, SIGNALS at the end of the step) -> the same, dt s later."""
     sweep, n = _sweep(rig, dt), len(coordinates(rig))
     older, old = _symbols(n, "older"), _symbols(n, "old")
     signals = ca.SX.sym("signals", len(SIGNALS))
-    # The end that there would be without forces, and the first guess of what they make of it.
+    # The force-free end of the step, and the first iterate with forces.
     kept = older.then(old)
     w, spins = 2 * old.w - older.w, 2 * old.spins - older.spins
     for _ in range(SWEEPS):
@@ -155,9 +155,9 @@ def _symbols(n: int, name: str) -> State:
 
 
 def _sweep(rig: Rig, dt: float) -> ca.Function:
-    """(a guessed State, w and spins without forces, signals) -> better w and spins.
+    """(an iterate of State, force-free w and spins, signals) -> better w and spins.
 
-    The guess enters the forces alone; the equations of motion are solved for w.
+    The iterate enters the forces only; the equations of motion are solved for w.
     """
     built, rate = layout(rig), 3 / (2 * dt)
     guess = replace(_symbols(len(built.names), "guess"), q=built.q)
@@ -177,14 +177,14 @@ def _sweep(rig: Rig, dt: float) -> ca.Function:
     for pull in acting:
         left += pull.hold * (pull.way.T @ pull.way)
         right += pull.push * pull.way.T
-    # Symmetric and positive: every hold is, and a coordinate without mass has a damper.
+    # Symmetric and positive: every hold is, and a massless coordinate has a damper.
     w = ca.ldl_solve(right, *ca.ldl(left))
     spins = ca.vertcat(*(wheel.spin(w) for wheel in wheels))
     return ca.Function("sweep", [*guess.parts, kept.w, kept.spins, signals], [w, spins])
 
 
 def _inertia(built: PlanarLayout, w: ca.SX) -> tuple[ca.SX, ca.SX]:
-    """The mass matrix (n, n) and what turning frames add (n)."""
+    """The mass matrix (n, n) and the terms from rotating frames (n)."""
     n = built.q.numel()
     mass, turned = ca.SX(n, n), ca.SX(n, 1)
     for body in built.bodies:
@@ -195,21 +195,21 @@ def _inertia(built: PlanarLayout, w: ca.SX) -> tuple[ca.SX, ca.SX]:
 
 
 STEP = 5e-4
-"""s. results/lab/README.md shows what it is worth."""
+"""s. results/lab/README.md shows its accuracy."""
 
 STRIKING = 2.5e-4
-"""s, the longest step of a rig in which parts strike each other: a blow takes some milliseconds."""
+"""s, the longest step of a rig with impacts, which take some milliseconds."""
 
 WILD = 1e3
 """m/s or rad/s: faster than any robot."""
 
 _AT_ONCE = 100
-"""Samples that are computed in one call."""
+"""Samples computed per call."""
 
 
 @dataclass(frozen=True)
 class Clock:
-    """The steps of an conditions, `every` to a sample; `before` samples come before the recording.
+    """The steps of a run's conditions, `every` per sample; `before` samples precede the recording.
 
     t  command time at the ends of the steps, s, and of two steps before the first
     """
@@ -232,21 +232,20 @@ class Clock:
 
     @property
     def samples(self) -> slice:
-        """Of steps: those at whose ends samples are taken."""
+        """The steps at whose ends samples are taken."""
         return slice(self.before * self.every - 1, None, self.every)
 
 
 def fine_enough(rig: Rig, step: float) -> float:
-    """The step actually used if `step` is requested, s: no longer than its blows
-    let it be."""
+    """The step actually used if `step` is requested, s: limited by the rig's impacts."""
     return min(step, STRIKING) if rig.play or rig.pin else step
 
 
 def drive(rig: Rig, gait: Gait, conditions: Conditions, step: float = STEP) -> Motion:
-    """Drive a gait and write down the motion. Raises NotConvergedError if it is lost."""
+    """Drive a gait and record the motion. Raises NotConvergedError if the simulation fails."""
     clock, begin = Clock.of(rig, gait, conditions, step), conditions.begin(gait)
     asked = asked_angle(rig, gait, begin, clock.t)
-    # The difference by which steps are made, so that what is asked and what is done compare.
+    # The difference formula of the integrator, so that commanded and actual rates are comparable.
     rate = (3 * asked[2:] - 4 * asked[1:-1] + asked[:-2]) / (2 * clock.dt)
     t = clock.t[2:]
     nudge = np.zeros(len(t))
@@ -258,7 +257,7 @@ def drive(rig: Rig, gait: Gait, conditions: Conditions, step: float = STEP) -> M
 
 
 def still(rig: Rig, conditions: Conditions, angle: float) -> Array:
-    """Two states one after the other, at rest with the joint at an angle, rad."""
+    """Two successive states, at rest with the joint at an angle, rad."""
     built = layout(rig)
     state = np.zeros(2 * len(built.names) + 8)
     state[:3], state[built.names.index("phi")] = conditions.pose, angle
@@ -277,7 +276,7 @@ def require_tame(rates: Array) -> None:
 
 
 def _run(rig: Rig, clock: Clock, conditions: Conditions, angle: float, signals: Array) -> Array:
-    """The states (k, samples), those before the recording among them, from rest at `angle` rad."""
+    """The states (k, samples), including those before the recording, from rest at `angle` rad."""
     built = layout(rig)
     sample = step_of(rig, clock.dt).fold(clock.every)
     samples, part = sample.mapaccum(_AT_ONCE), _AT_ONCE * clock.every

@@ -1,15 +1,15 @@
-"""What acts on a rig in the plane, but for its wheels: the motor, stops, and what bends or pushes.
+"""Forces on a rig in the plane, except for its wheels: motor, stops, compliances and pushes.
 
-A step ends where its forces say, and they depend on where it ends. So its end is guessed, forces
-are written as straight lines through the guess, and the end that these give is the next guess.
+The end of a step depends on its forces, and these on the end. So the end is found by iteration:
+forces are linearised about the current iterate, and the resulting end is the next one.
 
-The servo is a motor that turns platform 2 against platform 1 after its command. Its torque is
+The servo is a motor that turns platform 2 against platform 1 to follow its command. Its torque is
 stiffness * (asked - made) + damping * (the same of the rates), on platform 2 and with the other
-sign on platform 1; nothing limits it. Nothing but this makes the angle.
+sign on platform 1; it has no limit. Nothing else determines the angle.
 
-A stop bounds what has play: platform 2 on the motor's shaft, and the joint's pin in its hole. It is
-a stiff spring with a damper that fades in over the first depth, so that its force neither jumps at
-a touch nor ever pulls.
+A stop bounds a clearance: of platform 2 on the motor's shaft, and of the joint's pin in its hole.
+It is a stiff spring with a damper that fades in over a small depth, so that its force neither jumps
+on contact nor ever pulls.
 """
 
 import math
@@ -39,13 +39,13 @@ from rr_opt.outcome import InputError
 
 @dataclass(frozen=True)
 class Moment:
-    """The end of a step as it is guessed.
+    """The current iterate of the end of a step.
 
-    layout   with its coordinates q; w (n), their guessed rates; spins (4), rad/s, and turns (4),
+    layout   with its coordinates q; w (n), their rates; spins (4), rad/s, and angles turned (4),
              rad, of the wheels
-    ahead    s, by which a change of w changes q
-    asked    rad, the angle that the motor is to make; rate, rad/s, its own
-    t        s since the robot was let go; free, 1 from then on and 0 before
+    ahead    s, change of q per change of w
+    asked    rad, the commanded angle of the motor; rate, rad/s, its own
+    t        s since the robot was released; free, 1 from then on and 0 before
     """
 
     layout: PlanarLayout
@@ -59,15 +59,15 @@ class Moment:
     free: ca.SX
 
     def way(self, length: ca.SX) -> ca.SX:
-        """How each coordinate lengthens a length or an angle (1, n)."""
+        """The derivative of a length or an angle by each coordinate (1, n)."""
         return ca.jacobian(length, self.layout.q)
 
 
 @dataclass(frozen=True)
 class Pull:
-    """A force, or a torque, along a way (1, n): it is push - hold * (its speed at the step's end).
+    """A force or torque along a way (1, n): push - hold * (its speed at the end of the step).
 
-    hold is never negative: it is what keeps the step from running away.
+    hold is never negative, which keeps the step stable.
     """
 
     way: ca.SX
@@ -82,40 +82,40 @@ def spring(
     damping: ca.SX | float,
     rest: ca.SX | float = 0.0,
 ) -> Pull:
-    """What a spring with a damper pulls; length and rest in m or rad. Exact where the length is
-    straight in the coordinates."""
+    """The pull of a spring with a damper; length and rest in m or rad. Exact if the length is
+    linear in the coordinates."""
     way = moment.way(length)
     before = length - moment.ahead * (way @ moment.w)
     return Pull(way, damping + stiffness * moment.ahead, -stiffness * (before - rest))
 
 
 QUICK = 1000.0
-"""1/s, how fast the motor settles. At a commanded acceleration of 30 rad/s2 it is then
-30/QUICK^2 = 0.03 mrad behind, or up to three times that where its wheels stand in the way."""
+"""1/s, how fast the motor settles. At a commanded acceleration of 30 rad/s2 it lags by
+30/QUICK^2 = 0.03 mrad, or up to three times that where its wheels resist."""
 
 HINGE_ONSET = 1e-3
-"""rad/s, over which dry friction of the joint sets in; a joint that sticks creeps by some tenths of
-it, far less than an angle's noise in half a period."""
+"""rad/s, the onset of dry friction in the joint; a sticking joint creeps by some tenths of it, far
+less than an angle's noise in half a period."""
 
 SLACKENS = 2e-3
-"""s, in which a bent platform straightens: its axle has no mass of its own, so a damper alone says
-how fast."""
+"""s, in which a bent platform straightens: its axle has no mass of its own, so a damper alone sets
+the rate."""
 
 RINGS = 0.1
-"""A shifting load's damper over its spring and mass, c/sqrt(k m): it swings some ten times."""
+"""Damping of a shifting load, c/sqrt(k m): it oscillates some ten times."""
 
 STOPS_QUICK = 1000.0
-"""1/s, how fast what hits a stop comes to rest in it: within some milliseconds."""
+"""1/s, how fast an impact on a stop settles: within some milliseconds."""
 
 GEAR_SETTLES = 5e-3
-"""s, in which a compliant gear that is let go straightens."""
+"""s, in which a released compliant gear straightens."""
 
 FIRST_ANGLE, FIRST_LENGTH = 1e-5, 1e-6
-"""rad and m, the depth over which a stop's damper fades in; a hundredth of what noise lets see."""
+"""rad and m, the depth over which a stop's damper fades in; a hundredth of the noise."""
 
 
 def pulls(moment: Moment, rig: Rig) -> Iterator[Pull]:
-    """All that the rig has."""
+    """All pulls of the rig."""
     yield _turning(moment, rig)
     for part in (_hinge, _play, _pin, _bends, _shift, _medium, _cable):
         yield from part(moment, rig)
@@ -127,13 +127,13 @@ def motor(rig: Rig) -> Motor:
 
 
 def _stiff(rig: Rig) -> Motor:
-    """A motor that follows its command within a tenth of a milliradian, critically damped."""
+    """A critically damped motor that follows its command within a tenth of a milliradian."""
     inertia = swing_inertia(rig.robot)
     return Motor(inertia * QUICK**2, 2 * inertia * QUICK)
 
 
 def turned_by(built: PlanarLayout) -> str:
-    """The coordinate that the motor turns: behind play a shaft, which has no inertia of its own."""
+    """The coordinate that the motor turns: with backlash a shaft without inertia of its own."""
     return "shaft" if "shaft" in built.names else "phi"
 
 
@@ -153,19 +153,19 @@ def _hinge(moment: Moment, rig: Rig) -> Iterator[Pull]:
 
 
 def _play(moment: Moment, rig: Rig) -> Iterator[Pull]:
-    """The platform runs freely on the shaft, half the play to either side."""
+    """The platform moves freely on the shaft, by half the backlash on either side."""
     if rig.play:
         ahead = moment.layout.of("phi") - moment.layout.of("shaft")
-        # Otherwise as stiff as the motor against which it is pressed.
+        # Otherwise as stiff as the motor that it presses against.
         flank = Motor(rig.gear, GEAR_SETTLES * rig.gear) if rig.gear is not None else _stiff(rig)
         yield _stop(moment, ahead, rig.play / 2, flank.stiffness, flank.damping, FIRST_ANGLE)
 
 
 def _pin(moment: Moment, rig: Rig) -> Iterator[Pull]:
-    """A round pin in a round hole: free within, pushed back to the middle at the rim."""
+    """A round pin in a round hole: free inside, pushed back to the middle at the rim."""
     if rig.pin:
         across = [moment.layout.of(name) for name in ("pin_ahead", "pin_left")]
-        # The root has no slope in the middle, where nothing is pushed anyway.
+        # The root has no slope in the middle, where there is no force anyway.
         off = ca.sqrt(across[0] ** 2 + across[1] ** 2 + FIRST_LENGTH**2)
         one, two = rig.robot.platform1.m, rig.robot.platform2.m
         mass = one * two / (one + two)
@@ -176,7 +176,7 @@ def _pin(moment: Moment, rig: Rig) -> Iterator[Pull]:
 def _stop(
     moment: Moment, off: ca.SX, reach: float, stiffness: float, damping: float, first: float
 ) -> Pull:
-    """Stops at `reach` to both sides of 0."""
+    """Stops at `reach` on both sides of 0."""
     side = ca.sign(off)
     deep = ca.fmax(ca.fabs(off) - reach, 0)
     deepens = side * (moment.way(off) @ moment.w)
@@ -201,8 +201,8 @@ def _shift(moment: Moment, rig: Rig) -> Iterator[Pull]:
 
 
 def _medium(moment: Moment, rig: Rig) -> Iterator[Pull]:
-    """A medium that drags at the platforms: at a box with a drag coefficient of 1 at each of its
-    faces, and at its turning."""
+    """The drag of a medium on the platforms: on each face of a box with a drag coefficient of 1,
+    and on its rotation."""
     for body in moment.layout.bodies[:2] if rig.density else ():
         reach, height = box_of(body.m, body.I)
         ahead, moves = axis(body.heading), moment.way(body.place)
@@ -224,8 +224,8 @@ def _cable(moment: Moment, rig: Rig) -> Iterator[Pull]:
 
 
 def pushed(moment: Moment, rig: Rig, nudge: ca.SX) -> ca.SX:
-    """The generalised forces (n). nudge: m/s2, what a push on platform 1 along its axis gives all
-    mass. Slope and cord act once the robot is let go."""
+    """The generalised forces (n). nudge: m/s2, acceleration of the whole mass by a push on platform
+    1 along its axis. Slope and cord act once the robot is released."""
     total = ca.SX(moment.layout.q.numel(), 1)
     down = ca.vertcat(*map(float, rig.gravity[:2]))
     for body in moment.layout.bodies:
@@ -235,7 +235,7 @@ def pushed(moment: Moment, rig: Rig, nudge: ca.SX) -> ca.SX:
     total += moment.way(first.place).T @ (nudge * mass * axis(first.heading))
     if rig.tether is not None:
         post = ca.vertcat(rig.tether.x, rig.tether.y)
-        # The cord is tied over the mass's place on the axis.
+        # The cord is attached above the mass's place on the axis.
         tied = moment.layout.ends[0][:2] + rig.robot.platform1.joint_to_centre * axis(first.heading)
         length = ca.norm_2(tied - post)
         taut = rig.tether.stiffness * ca.fmax(length - rig.tether.slack, 0)
@@ -244,15 +244,14 @@ def pushed(moment: Moment, rig: Rig, nudge: ca.SX) -> ca.SX:
 
 
 DRY_ONSET = 2e-3
-"""m/s at the rim, over which dry friction sets in if the rig does not say, as
-u/(u^4 + onset^4)^(1/4): at three times that speed it is within a third of a per cent of its
-force."""
+"""m/s at the rim, default onset of dry friction, as u/(u^4 + onset^4)^(1/4): at three times that
+speed it is within a third of a per cent of its full force."""
 
 EDGE = 1e-3
-"""m, half the width of a patch's edge: about the length over which a tyre touches the floor."""
+"""m, half the width of a patch's edge: about the contact length of a tyre."""
 
 _SOFT = 0.02
-"""Of the cosine of a wheel's angle, over which a fault begins and ends: some degrees."""
+"""Range of the cosine of a wheel's angle over which a fault begins and ends: some degrees."""
 
 
 def bearings(moment: Moment, rig: Rig) -> list[ca.SX]:
@@ -275,7 +274,7 @@ def bearings(moment: Moment, rig: Rig) -> list[ca.SX]:
 def _changed(
     law: Any, moment: Moment, n: int, load: float, viscous: ca.SX, dry: ca.SX
 ) -> tuple[ca.SX, ca.SX]:
-    """Viscous (N m s) and dry (N m) friction of a wheel by one more law."""
+    """Viscous (N m s) and dry (N m) friction of a wheel after one more law."""
     match law:
         case Patch():
             place = moment.layout.wheels[n].place

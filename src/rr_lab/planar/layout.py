@@ -1,8 +1,8 @@
-"""Where everything of a rig is, as expressions of its coordinates.
+"""The geometry of a rig as expressions of its coordinates.
 
-P is at (x, y), platform 1 heads to psi from P to its axle, platform 2's axis from its axle to P is
-turned by phi against that. What only some rigs have is a coordinate more: the motor's shaft behind
-which there is play, the two ways of a loose pin, a bend of each platform, a load's shift.
+P is at (x, y), platform 1 heads to psi from P to its axle, and platform 2's axis, from its axle to
+P, is turned by phi relative to that. Some rigs have further coordinates: the motor's shaft before
+a backlash, the two displacements of a loose pin, a bend of each platform, a load's shift.
 """
 
 from dataclasses import dataclass
@@ -25,7 +25,7 @@ class Body:
 
 @dataclass(frozen=True)
 class Wheel:
-    """Where a wheel touches the floor (2, m), and the way it heads (rad)."""
+    """The contact point of a wheel on the floor (2, m), and its heading (rad)."""
 
     place: ca.SX
     heading: ca.SX
@@ -93,8 +93,8 @@ def layout(rig: Rig) -> PlanarLayout:
 
 
 def _body(rig: Rig, i: int, part: Platform, ahead: float, joint: ca.SX, heading: ca.SX) -> Body:
-    """A platform whose axle is `ahead` (+1) of its joint or behind it (-1). Moved to the left, its
-    mass keeps I about its centre."""
+    """A platform whose axle is `ahead` (+1) of its joint or behind it (-1). Its mass, if moved to
+    the left, keeps I about its centre."""
     along = axis(heading)
     place = joint + ahead * part.joint_to_centre * along + rig.left[i] * left_of(along)
     return Body(part.m, part.I, place, heading)
@@ -103,7 +103,7 @@ def _body(rig: Rig, i: int, part: Platform, ahead: float, joint: ca.SX, heading:
 def _axle(
     rig: Rig, i: int, part: Platform, ahead: float, joint: ca.SX, heading: ca.SX, bend: ca.SX
 ) -> tuple[Wheel, Wheel]:
-    """Its wheels, left and right. A platform that bends does so half way to its axle."""
+    """Its wheels, left and right. A bending platform does so half way to its axle."""
     half = ahead * part.c / 2
     centre = joint + half * axis(heading) + half * axis(heading + bend)
     heads = heading + bend + rig.toe[i]

@@ -1,6 +1,6 @@
 """The outcome of a blind trial: README.md and page, proof.json, cases.csv, and the figure.
 
-What was hidden in each case, what was said, and how it came out.
+For each case: what was hidden, the diagnosis, and the outcome.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -32,13 +32,13 @@ _KEY = ("false_claims", "single", "pair_both", "parameters", "outside", "no_answ
 
 
 def hidden_text(case: Case) -> str:
-    """What was hidden, with its values in SI."""
+    """The hidden effects, with their values in SI."""
     truth = case.truth
     if truth.nothing:
         return "nothing"
     if truth.kind == "parameters":
         return ", ".join(f"{name} = {number(of[name])}" for name, of in truth.values.items())
-    # Of an effect outside the catalogue the answer has the values under `unknown`.
+    # The answer lists effects outside the catalogue under `unknown`.
     values = truth.values if truth.names else {truth.hidden[0]: truth.values.get("unknown", {})}
     realised = truth.realised if truth.names else {}
     return " + ".join(
@@ -53,7 +53,7 @@ def _with_values(name: str, values: Mapping[str, float]) -> str:
 
 
 def size_text(case: Case) -> str:
-    """How large: `12.3 σ, 0.8 σ re-fitted`; empty where nothing is hidden."""
+    """Their size: `12.3 σ, 0.8 σ re-fitted`; empty if nothing is hidden."""
     return "; ".join(
         f"{number(case.truth.size[name], 3)} σ, {number(case.truth.remains[name], 3)} σ re-fitted"
         for name in case.truth.hidden
@@ -70,7 +70,7 @@ def said_text(case: Case) -> str:
 
 
 def remainder_text(case: Case) -> str:
-    """What the diagnosis says is left: `small, 3 %`; empty if it does not say."""
+    """The diagnosed remainder: `small, 3 %`; empty if not stated."""
     claim = case.claim
     if claim is None or claim.share is None:
         return claim.remainder if claim else ""
@@ -83,7 +83,7 @@ def page_of(case: Case) -> str:
 
 
 def case_record(case: Case) -> dict[str, Any]:
-    """What was hidden in a case, and the diagnosis."""
+    """The hidden effects of a case, and the diagnosis."""
     return {
         "case": case.id,
         "kind": case.truth.kind,
@@ -98,7 +98,7 @@ def case_record(case: Case) -> dict[str, Any]:
 
 @dataclass(frozen=True, repr=False)
 class ProvedCase(Result):
-    """One case, with what was hidden in it and what the diagnosis said; its files are in folder."""
+    """One case, with its hidden effects and the diagnosis; its files are in folder."""
 
     case: Case
     folder: Path
@@ -182,7 +182,7 @@ def proof_record(opened: OpenedTrial) -> dict[str, Any]:
 
 
 def cases_csv(opened: OpenedTrial) -> str:
-    """A row for each case; where there are two effects, sigma is that of the smaller one."""
+    """A row for each case; with two effects, sigma is that of the smaller one."""
     head = (
         "case", "kind", "engine", "strength", "nominal_off", "hidden", "visible_sigma",
         "refitted_sigma", "counted", "said", "outcome", "missed", "groups", "heldout_before",
@@ -234,13 +234,13 @@ class Proof(Result):
         return proof_document(self.opened, figures)
 
     def _page(self, document: doc.Document) -> doc.Document:
-        """On the page alone the misses lead to their reports: these are not published."""
+        """Links to the reports of the misses are on the page only: these are not published."""
         return proof_document(self.opened, document.figures, linked=True)
 
     def save(
         self, path: str | Path, *, figures: bool = True, progress: Progress = quiet
     ) -> list[Path]:
-        """Write the outcome to the trial's folder, and remove what the seed makes again."""
+        """Write the outcome to the trial's folder, and remove what the seed can regenerate."""
         written = super().save(path, figures=figures, progress=progress)
         tidy(Path(path), [case.id for case in self.opened.cases if not case.missed])
         return written
@@ -257,7 +257,7 @@ def headline(opened: OpenedTrial) -> str:
 def proof_document(
     opened: OpenedTrial, figures: Sequence[doc.Figure] = (), *, linked: bool = False
 ) -> doc.Document:
-    """The whole report; linked: the misses lead to their reports, which lie next to the page."""
+    """The whole report; linked: with links to the reports of the misses, next to the page."""
     cases = opened.cases
     rates = {one: one.rate(cases) for one in COUNTS}
     every = {one: rate for one, rate in rates.items() if rate.total}
@@ -319,7 +319,7 @@ def _numbers(values: Iterable[float | None]) -> list[str]:
 
 
 def _by_engine(cases: Sequence[Case]) -> doc.Table:
-    """A row for each count with a column for each engine; counts without cases are left out."""
+    """A row for each count with a column for each engine; counts without cases are omitted."""
     engines = by_engine(cases)
     return doc.table(
         ("what", *(word for name in engines for word in (name, "share"))),

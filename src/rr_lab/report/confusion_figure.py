@@ -24,7 +24,7 @@ def draw(proof: Proof) -> dict[str, str]:
 
 
 def matrix(ax: Axes, counted: Confusion) -> None:
-    """A square for each count; right ones are shaded by their share of the row."""
+    """A square for each count; correct ones are shaded by their share of the row."""
     totals = {
         row: sum(counted.counts.get((row, col), 0) for col in counted.columns)
         for row in counted.rows
@@ -54,7 +54,7 @@ def _cell(ax: Axes, x: int, y: int, count: int, total: int, *, right: bool) -> N
     square = partial(Rectangle, (x + 0.04, y + 0.04), 0.92, 0.92)
     ax.add_patch(square(facecolor=style.PAPER, edgecolor=style.FAINT, lw=0.6))
     if count:
-        # A miss stands out, however rare it is.
+        # A miss stands out, however rare.
         shade = 0.25 + 0.75 * share if right else 1.0
         ax.add_patch(square(facecolor=colour, alpha=shade, lw=0))
         ink = style.PAPER if shade > 0.6 else style.INK

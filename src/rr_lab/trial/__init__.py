@@ -32,9 +32,9 @@ from rr_opt.outcome import InputError, NotConvergedError
 
 @dataclass(frozen=True)
 class OpenedTrial:
-    """A trial that is over.
+    """A finished trial.
 
-    seed, code, version  what it was run with: the seed, the SHA-256 of the code, its version
+    seed, code, version  the seed, the SHA-256 of the code, its version
     failed               cases that the laboratory could not make, by ID, and why
     made_seconds         CPU time of making each case
     changed              whether the code changed while the trial ran
@@ -50,12 +50,12 @@ class OpenedTrial:
 
     @property
     def misses(self) -> tuple[Case, ...]:
-        """Every case that came out wrong, or without an answer."""
+        """Every case with a wrong answer, or none."""
         return tuple(case for case in self.cases if case.missed)
 
 
 class OnDemand(dict[int, Any]):
-    """value(key) for each of the keys, computed at each look-up; nothing is kept."""
+    """value(key) for each of the keys, computed at each look-up; nothing is cached."""
 
     def __init__(self, keys: Iterable[int], value: Callable[[int], Any]):
         super().__init__(dict.fromkeys(keys))
@@ -69,7 +69,7 @@ class OnDemand(dict[int, Any]):
 MADE, SAID, SEALS = "made.jsonl", "said.jsonl", "seals.txt"
 
 Run = Callable[[Callable[[Any], Any], Mapping[int, Any]], Iterator[tuple[int, Any]]]
-"""Each task's key with function(task) as they are finished; a text where the process died."""
+"""Each task's key with function(task) as they finish; a text if its process died."""
 
 
 @dataclass(frozen=True)
@@ -82,7 +82,7 @@ class Trial:
     def make(
         self, journal: Journal, run: Run, how: Callable[[Draw], SealedCase] = make
     ) -> Iterator[int]:
-        """Make the cases that the journal does not have; yields each case's number.
+        """Make the cases missing in the journal; yields each case's number.
 
         At the end all seals are written, in the form that `sha256sum --check` reads.
         """
@@ -95,7 +95,7 @@ class Trial:
         write_bytes(self.folder / SEALS, "".join(lines).encode())
 
     def _made(self, id: str, made: SealedCase | str) -> dict[str, Any]:
-        """The row of a case that was made; its files are written before it."""
+        """The row of a case that was made; its files are written first."""
         if isinstance(made, str) or made.failed:
             why = made if isinstance(made, str) else made.failed
             return {"seal": "", "failed": why, "seconds": None}
@@ -111,7 +111,7 @@ class Trial:
         command: tuple[str, ...] = COMMAND,
         limit: float = TIME_LIMIT,
     ) -> Iterator[int]:
-        """Diagnose the cases made that the journal does not have; yields each case's number."""
+        """Diagnose the cases missing in the journal; yields each case's number."""
         ids = {draw.number: draw.id for draw in self.draws if made[draw.number]["seal"]}
 
         def task(number: int) -> Task:
@@ -119,10 +119,10 @@ class Trial:
             files = {path.name: path.read_bytes() for path in sorted(folder.iterdir())}
             return Task(files, command, limit)
 
-        # Recordings are read when it is their turn: all together they would fill the memory.
+        # Recordings are read one case at a time: all together they would fill the memory.
         wanted = OnDemand((number for number in ids if number not in journal.rows), task)
         for number, ended in run(diagnose_apart, wanted):
-            # A text: the process that had started the diagnosis died.
+            # A text: the process running the diagnosis died.
             said = Reply(-1, {OUTPUT: ended.encode()}) if isinstance(ended, str) else ended
             place = self.folder / "said" / ids[number]
             shutil.rmtree(place, ignore_errors=True)
@@ -168,14 +168,14 @@ def _write(folder: Path, files: Mapping[str, bytes]) -> None:
 
 
 def tidy(folder: Path, right: Sequence[str]) -> None:
-    """Remove the recordings, which the seed makes again, and what was written of the cases, by ID,
-    that came out right."""
+    """Remove the recordings, which the seed can regenerate, and the output for the cases, by ID,
+    that were diagnosed correctly."""
     for place in ("cases", *(f"said/{name}" for name in right)):
         shutil.rmtree(folder / place, ignore_errors=True)
 
 
 def basis_of(folder: Path) -> Basis | None:
-    """What the trial in a folder is drawn from; None if there is none."""
+    """The settings of the trial in a folder; None if there is none."""
     journal = folder / MADE
     if not journal.is_file():
         return None

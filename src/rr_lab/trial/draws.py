@@ -1,11 +1,11 @@
 """The cases of a trial, drawn from its seed and their numbers; each driven, recorded and sealed.
 
 The seed of a published trial is the hash of the commit that it runs on. Nobody can choose it, as it
-changes with every change of the code that is tried.
+changes with every change of the code under test.
 
 Cases come in pairs of one kind, one driven by each engine, and kinds in blocks of fixed
-composition, shuffled. A case depends on nothing but seed, kinds and its own number: a trial can be
-extended, and one case can be made again by itself.
+composition, shuffled. A case depends only on seed, kinds and its own number: a trial can be
+extended, and a single case can be remade.
 """
 
 import hashlib
@@ -37,20 +37,20 @@ STRENGTHS = {"faint": (2.0, 5.0), "medium": (5.0, 15.0), "strong": (15.0, 60.0)}
 """Effect sizes, sigma; drawn uniformly in their logarithm."""
 
 CODE = tuple(Path(__file__).parents[2] / package for package in ("rr_opt", "rr_lab"))
-"""What is tried, and what tries it."""
+"""The code under test, and the code that tests it."""
 
 _BITS = 48
 
 
 @dataclass(frozen=True)
 class Draw:
-    """What a case is made from.
+    """The specification of a case.
 
     kind    as `random_case` takes it: null, parameters, pair, single:EFFECT/REALISATION, ...
     target  effect size of a single effect, sigma; None: drawn by the laboratory
     spread  0: the nominal values are true; 1: they are drawn within their uncertainties
     seed    the case's own
-    engine  what drives it
+    engine  the physics engine
     disturbance  of its recordings, by name
     """
 
@@ -64,13 +64,13 @@ class Draw:
 
     @property
     def id(self) -> str:
-        """Shows the number, and nothing else."""
+        """Reveals the number, and nothing else."""
         return f"{self.number:03d}"
 
 
 @dataclass(frozen=True)
 class Basis:
-    """What the cases of a trial are drawn from."""
+    """The settings that the cases of a trial are drawn from."""
 
     seed: str
     kinds: tuple[str, ...] = KINDS
@@ -83,7 +83,7 @@ class Basis:
         block, place = divmod(pair, len(entries))
         order = [entries[k] for k in _stream(self.seed, "order", block).permutation(len(entries))]
         kind = order[place]
-        # How many cases of the kind came before: items, engines and strengths take turns by it.
+        # How many cases of the kind came before: determines item, engine and strength in turn.
         turn = 2 * (block * entries.count(kind) + order[:place].count(kind)) + second
         items = _items(kind)
         cycle, at = divmod(turn, len(items))
@@ -96,7 +96,7 @@ class Basis:
         if item.startswith("single"):
             low, high = list(STRENGTHS.values())[turn % len(STRENGTHS)]
             target = float(np.exp(stream(own, "target").uniform(np.log(low), np.log(high))))
-        # The laboratory changes values of the nominal robot: the others stay true.
+        # The laboratory changes values of the nominal robot: the others remain true.
         spread = 0.0 if item == "parameters" else float(turn // 2 % 2)
         return Draw(number, item, target, spread, own, engine, disturbance)
 
@@ -112,7 +112,7 @@ def _stream(seed: str, *purpose: object) -> np.random.Generator:
 
 
 def _items(kind: str) -> tuple[tuple[str, str], ...]:
-    """Everything that a kind stands for: kind of case and disturbance."""
+    """All items of a kind: kind of case and disturbance."""
     head, _, name = kind.partition(":")
     if head == "disturbed":
         names = (name,) if name else tuple(DISTURBANCES)
@@ -129,7 +129,7 @@ def _head(kind: str) -> str:
 
 
 def _ordered(kinds: tuple[str, ...]) -> tuple[str, ...]:
-    """Each once, so that the order in which they are given changes nothing."""
+    """Each once, so that the given order does not matter."""
     return tuple(sorted(set(kinds), key=lambda kind: (KINDS.index(_head(kind)), kind)))
 
 
@@ -152,7 +152,7 @@ def read_kinds(text: str) -> tuple[str, ...]:
 
 
 def read_seed(text: str) -> str:
-    """A seed of the user's own, hexadecimal digits. Raises InputError for anything else."""
+    """A user-defined seed, hexadecimal digits. Raises InputError for anything else."""
     word = text.strip().lower().removeprefix("0x")
     if not word or set(word) - set("0123456789abcdef"):
         raise InputError(
@@ -163,9 +163,9 @@ def read_seed(text: str) -> str:
 
 
 def seed_of_commit(source: Path, results: Path) -> str:
-    """The hash of the commit that the code in `source` is at, 40 hexadecimal digits.
+    """The hash of the commit of the code in `source`, 40 hexadecimal digits.
 
-    results: a folder whose changes do not count. Raises InputError if there is no commit, or files
+    results: a folder whose changes are ignored. Raises InputError if there is no commit, or files
     differ from it.
     """
     try:
@@ -192,7 +192,7 @@ def seed_of_commit(source: Path, results: Path) -> str:
 
 def fingerprint(*sources: Path) -> str:
     """SHA-256 over the names and contents of all files of packages, by default of the diagnosis and
-    the laboratory: C and YAML decide what is computed too. What Python compiled is left out."""
+    the laboratory, including C and YAML, excluding compiled Python."""
     sums = hashlib.sha256()
     for source in sources or CODE:
         paths = (path for path in source.rglob("*") if path.is_file())
@@ -209,13 +209,13 @@ def _git(folder: Path, *words: str) -> str:
 
 
 TORQUE = 0.3
-"""The share of cases whose recordings have the servo's torque."""
+"""The share of cases with the servo's torque in the recordings."""
 
 
 @dataclass(frozen=True)
 class SealedCase:
-    """files by name; answer, a JSON text with a random word in it; seal, its SHA-256; seconds of
-    CPU. Where the laboratory failed, why, and nothing else."""
+    """files by name; answer, a JSON text with a random word in it; seal, its SHA-256; CPU seconds.
+    If the laboratory failed, only the reason."""
 
     files: Mapping[str, bytes]
     answer: str
@@ -244,7 +244,7 @@ def make(draw: Draw, seconds: float = 30.0) -> SealedCase:
 
 
 def _answer_text(case: Case, draw: Draw) -> str:
-    """The laboratory's answer, what was drawn, and how detectable each effect is."""
+    """The laboratory's answer, the drawn settings, and how detectable each effect is."""
     data: dict[str, Any] = {
         "number": draw.number,
         "kind": "disturbed" if draw.disturbance else draw.kind.partition(":")[0],
@@ -259,7 +259,7 @@ def _answer_text(case: Case, draw: Draw) -> str:
 
 
 def _remains(case: Case) -> dict[str, float]:
-    """RMS in sigma that each effect alone leaves after the parameters are re-fitted."""
+    """RMS in sigma that each effect alone leaves after re-fitting the parameters."""
     if not case.effects:
         return {}
     case = replace(case, disturbance="")

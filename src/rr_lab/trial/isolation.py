@@ -1,12 +1,12 @@
-"""One case diagnosed by a separate process, which is given the case's folder and nothing else.
+"""One case diagnosed by a separate process, given only the case's folder.
 
-What this isolates: the program runs in a new process, in a temporary folder that has the same name
-for every case and holds a copy of the recordings. Its arguments name that folder, its environment
-is a short list of variables, and its Python takes no settings from outside. No argument, variable,
-file or file name there reveals the case's number, its kind, the seed or where the answer is.
+Isolated: the program runs in a new process, in a temporary folder that has the same name for every
+case and holds a copy of the recordings. Its arguments name that folder, its environment is a short
+list of variables, and its Python takes no settings from outside. No argument, variable, file or
+file name there reveals the case's number, its kind, the seed or where the answer is.
 
-What it does not: the process belongs to the same user, who may read all files of the machine. A
-program that went to look for the answer would find it. `rr-opt diagnose` does not look.
+Not isolated: the process belongs to the same user, who may read all files of the machine. A program
+that searched for the answer would find it. `rr-opt diagnose` does not search.
 """
 
 import json
@@ -34,11 +34,11 @@ threading.Thread(target=end, daemon=True).start()
 from rr_opt.cli.entry import main
 main()
 """
-"""Ends when its standard input does: with the process that started it, however that ends."""
+"""Ends when its standard input closes: with its parent process, however that ends."""
 
 COMMAND = (sys.executable, "-I", "-u", "-c", _PROGRAM, "diagnose")
-"""-I: neither the current folder nor the environment adds to what Python loads; -u: what was
-printed before a crash is not lost."""
+"""-I: neither the current folder nor the environment affects imports; -u: output printed before a
+crash is not lost."""
 
 RECORDINGS, SAID, OUTPUT = "recordings", "said", "output.txt"
 KEPT = ("diagnosis.json", "report.html", "robot-corrected.yaml")
@@ -49,7 +49,7 @@ TIME_LIMIT = 3600.0
 
 _VARIABLES = ("PATH", "HOME", "LANG", "LC_ALL", "MPLCONFIGDIR", "SYSTEMROOT")
 _LONGEST = 20_000
-"""Characters of output that are kept."""
+"""Most characters of output that are kept."""
 
 
 @dataclass(frozen=True)
@@ -63,8 +63,8 @@ class Task:
 
 @dataclass(frozen=True)
 class Reply:
-    """How the program ended: exit code (negative: a signal), the files it wrote and `output.txt`,
-    wall and CPU time, s."""
+    """The outcome of the program: exit code (negative: a signal), the files it wrote and
+    `output.txt`, wall and CPU time, s."""
 
     exit_code: int
     files: Mapping[str, bytes]
@@ -74,7 +74,7 @@ class Reply:
 
     @property
     def row(self) -> dict[str, Any]:
-        """As plain data; `claim` is what is scored of the diagnosis, None if the program failed or
+        """As plain data; `claim` is the scored part of the diagnosis, None if the program failed or
         its answer cannot be read."""
         claim = None
         if self.exit_code == 0 and "diagnosis.json" in self.files:
@@ -101,7 +101,7 @@ def opened_case(id: str, answer: Mapping[str, Any], row: Mapping[str, Any]) -> C
 
 
 def diagnose_apart(task: Task) -> Reply:
-    """Run the program on a copy of the folder; returns how it ended, and raises nothing."""
+    """Run the program on a copy of the folder; returns its outcome, and raises nothing."""
     with tempfile.TemporaryDirectory(prefix="rr-opt-", ignore_cleanup_errors=True) as place:
         top = Path(place)
         (top / RECORDINGS).mkdir()
@@ -116,7 +116,7 @@ def diagnose_apart(task: Task) -> Reply:
 
 
 def _run(task: Task, top: Path) -> tuple[int, float, float, bool]:
-    """Exit code, wall and CPU time in s, and whether the time was up."""
+    """Exit code, wall and CPU time in s, and whether it timed out."""
     recordings, late = top / RECORDINGS, threading.Event()
     kept = {name: os.environ[name] for name in _VARIABLES if name in os.environ}
     began = time.perf_counter()
@@ -154,6 +154,6 @@ def _run(task: Task, top: Path) -> tuple[int, float, float, bool]:
 
 
 def _kill(process: subprocess.Popen[bytes]) -> None:
-    """End the program and all that it has started."""
+    """Kill the program and all its children."""
     with suppress(ProcessLookupError):
         os.killpg(process.pid, signal.SIGKILL)

@@ -1,4 +1,4 @@
-"""One case with its answer opened: what was hidden, what was said, and how it came out."""
+"""One opened case: what was hidden, the diagnosis, and the outcome."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from typing import Any
 from rr_lab.trial.draws import STRENGTHS
 
 FLOOR = 0.1
-"""Sigma of the noise, RMS: an effect that leaves less after a re-fit is undetectable."""
+"""Sigma of the noise, RMS: an effect with a smaller residual after a re-fit is undetectable."""
 
 SURE = 0.9
-"""A name with more confidence than this is named with confidence."""
+"""Confidence above which a name counts as confident."""
 
 
 @dataclass(frozen=True)
@@ -21,11 +21,11 @@ class Truth:
     hidden     names of the effects, also of those outside the catalogue
     values     by effect or, for `parameters`, by parameter: its parameters, SI
     size       RMS deviation of each effect alone from the nominal runs, sigma
-    remains    the same after the nominal parameters are re-fitted
+    remains    the same after re-fitting the nominal parameters
     spread     0: the nominal values are true; 1: drawn within their uncertainties
-    engine     what drove the robot
-    realised   by effect: which of its realisations, where it has several
-    same_as    by effect: other names of the catalogue that are as right
+    engine     the physics engine
+    realised   by effect: its realisation, if it has several
+    same_as    by effect: other names of the catalogue that are equally correct
     disturbance  of the recordings, by name
     """
 
@@ -64,7 +64,7 @@ class Truth:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """What a right diagnosis names: effects of the catalogue, or wrong parameters."""
+        """The names of a correct diagnosis: effects of the catalogue, or wrong parameters."""
         return () if self.kind == "outside" else tuple(self.values)
 
     @property
@@ -79,7 +79,7 @@ class Truth:
 
     @property
     def strength(self) -> str:
-        """Of a single effect, by its size before a re-fit; empty otherwise."""
+        """Of a single effect, by its size before a re-fit; else empty."""
         if self.kind != "single":
             return ""
         size = self.size[self.hidden[0]]
@@ -126,7 +126,7 @@ class Claim:
                 parameters alone re-fitted, corrected; None where it is unknown
     p_values    by the test's name
     remainder   what is left with the named effects: none, small, large, or empty if not stated
-    share       of the first mismatch that is left
+    share       of the initial mismatch that remains
     """
 
     verdict: str
@@ -166,7 +166,7 @@ class Claim:
 
 @dataclass(frozen=True)
 class Case:
-    """What was hidden and what was said (None: no answer). wall, cpu: of the diagnosis, s."""
+    """What was hidden, and the diagnosis (None: no answer). wall, cpu: of the diagnosis, s."""
 
     id: str
     truth: Truth
@@ -177,26 +177,26 @@ class Case:
 
     @property
     def found(self) -> tuple[str, ...]:
-        """The hidden names that were named, themselves or by one that stands for them."""
+        """The hidden names that were found, directly or by an equivalent."""
         said = self.claim.names if self.claim else ()
         return tuple(name for name in self.truth.names if any(self._stands(name, s) for s in said))
 
     @property
     def extra(self) -> tuple[str, ...]:
-        """Names that stand for nothing that is hidden."""
+        """Named effects that match nothing hidden."""
         said = self.claim.names if self.claim else ()
         return tuple(s for s in said if not any(self._stands(name, s) for name in self.truth.names))
 
     def _stands(self, hidden: str, said: str) -> bool:
-        """Whether a name that was said stands for a hidden one: the same, one that means the same
-        physics, or one that the diagnosis calls indistinguishable from it."""
+        """Whether a name matches a hidden one: the same, one for the same physics, or one that the
+        diagnosis calls indistinguishable from it."""
         groups = self.claim.groups if self.claim else ()
         equal = said in (hidden, *self.truth.same_as.get(hidden, ()))
         return equal or any({said, hidden} <= group for group in groups)
 
     @property
     def outcome(self) -> str:
-        """`right`, or what is wrong in a few words."""
+        """`right`, or the error in a few words."""
         claim, truth = self.claim, self.truth
         if claim is None:
             return "no answer"
@@ -210,7 +210,7 @@ class Case:
         return "right" if truth.kind in expected else self._naming()
 
     def _naming(self) -> str:
-        """How the names of a claim of missing physics came out."""
+        """The outcome of the names in a claim of missing physics."""
         if len(self.found) == len(self.truth.names):
             return "right, and more" if self.extra else "right"
         if self.found:
@@ -224,8 +224,8 @@ class Case:
 
     @property
     def missed(self) -> bool:
-        """Whether it is listed as a miss. If the effect is undetectable only a wrong name or no
-        answer is one: that the parameters explain it is then right."""
+        """Whether it is listed as a miss. For an undetectable effect only a wrong name or no answer
+        is one: explaining it by the parameters is then correct."""
         if self.scored:
             return self.outcome != "right"
         return self.claim is None or bool(self.claim.verdict == "missing_physics" and self.extra)

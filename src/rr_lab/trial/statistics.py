@@ -1,4 +1,4 @@
-"""What is counted and measured over the cases of a trial.
+"""Counts and statistics over the cases of a trial.
 
 The counts, which `texts.toml` defines in words, with their intervals; the confusion matrix; the
 coverage of intervals, p-values, held-out errors, remainders and times.
@@ -43,8 +43,8 @@ class Rate:
 
     @property
     def interval(self) -> tuple[float, float]:
-        """95 % interval of the probability by Clopper and Pearson (Biometrika 26, 404, 1934), which
-        covers at least that often."""
+        """95 % interval of the probability by Clopper and Pearson (Biometrika 26, 404, 1934), with
+        at least that coverage."""
         if not self.total:
             return 0.0, 1.0
         found = binomtest(self.count, self.total).proportion_ci(0.95, method="exact")
@@ -58,7 +58,7 @@ class Rate:
 
 
 _ANY_POINT = ("edge_x", "edge_y")
-"""Of a floor patch; any point on its edge is as good."""
+"""Of a floor patch; any point on its edge is equivalent."""
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,7 @@ class Interval:
     def covers(self) -> bool:
         """Whether it contains the true value."""
         true = self.true
-        if self.quantity.endswith(".normal"):  # a direction, the same a turn on
+        if self.quantity.endswith(".normal"):  # a direction, modulo a turn
             true += math.tau * round(((self.low + self.high) / 2 - true) / math.tau)
         return self.low <= true <= self.high
 
@@ -110,7 +110,7 @@ def coverage(every: Sequence[Interval]) -> dict[str, Rate]:
 
 
 FEWEST = 8
-"""With fewer p-values nothing is reported."""
+"""Fewest p-values that are reported."""
 
 
 def uniformity(cases: Sequence[Case]) -> dict[str, dict[str, Any]]:
@@ -137,7 +137,7 @@ SIZES = ("none", "small", "large")
 
 
 def quantiles(values: Iterable[float | None]) -> dict[str, Any]:
-    """Median, 90 % point, largest and count of the values that there are."""
+    """Median, 90 % point, largest and count of the existing values."""
     known = np.array([value for value in values if value is not None], float)
     if not known.size:
         return {"median": None, "quantile90": None, "largest": None, "count": 0}
@@ -150,7 +150,7 @@ def quantiles(values: Iterable[float | None]) -> dict[str, Any]:
 
 
 def by_kind(cases: Sequence[Case]) -> dict[str, list[Case]]:
-    """The cases with an answer, by kind, in the order in which kinds first come."""
+    """The cases with an answer, by kind, in order of first appearance."""
     kinds = dict.fromkeys(case.truth.kind for case in cases)
     return {kind: [c for c in cases if c.truth.kind == kind and c.claim] for kind in kinds}
 
@@ -167,8 +167,7 @@ def held_out(cases: Sequence[Case]) -> dict[str, dict[str, dict[str, Any]]]:
 
 
 def remainders(cases: Sequence[Case]) -> dict[str, dict[str, Any]]:
-    """By kind: how many answers say that none, a small or a large remainder is left, and the median
-    share."""
+    """By kind: how many answers state no, a small or a large remainder, and the median share."""
     table = {}
     for kind, own in by_kind(cases).items():
         claims = [case.claim for case in own if case.claim and case.claim.remainder]
@@ -206,7 +205,7 @@ class Count:
 
 
 def _kind(kind: str, *, detectable: bool | None = None) -> Predicate:
-    """Cases of a kind; detectable: only those whose effects are, or are not."""
+    """Cases of a kind; detectable: only those with detectable effects, or without."""
     return lambda case: case.truth.kind == kind and detectable in (None, case.scored)
 
 
@@ -267,7 +266,7 @@ _PREDICATES: dict[str, tuple[Predicate, Predicate]] = {
     ),
     "no_answer": (lambda _: True, lambda case: case.claim is None),
 }  # fmt: skip
-"""By name: among which cases, and which of them are counted."""
+"""By name: the cases considered, and those counted."""
 
 TEXTS = tomllib.loads(Path(__file__).with_name("texts.toml").read_text(encoding="utf-8"))
 
@@ -282,8 +281,7 @@ COUNTS = tuple(
 
 
 def breakdown(cases: Sequence[Case]) -> dict[str, dict[str, Rate]]:
-    """How many came out right by effect, by realisation where there are several, and by
-    disturbance."""
+    """Correct diagnoses by effect, by realisation if there are several, and by disturbance."""
     right: dict[str, dict[str, list[bool]]] = {"effect": {}, "realisation": {}, "disturbance": {}}
     for case in cases:
         for what, key in _rows(case).items():
@@ -308,7 +306,7 @@ def _rows(case: Case) -> dict[str, str]:
 
 
 def by_engine(cases: Sequence[Case]) -> dict[str, dict[str, Rate]]:
-    """By engine that drove any case: every count by name, and `coverage` of the intervals."""
+    """By engine: every count by name, and `coverage` of the intervals."""
     found = {}
     for engine in ENGINES:
         own = [case for case in cases if case.truth.engine == engine]
@@ -329,7 +327,7 @@ _WORDS = {"null": NOTHING, "consistent": NOTHING, "parameters": VALUE, "outside"
 
 @dataclass(frozen=True)
 class Confusion:
-    """counts[row, column]; a row or a column without any case is left out."""
+    """counts[row, column]; empty rows and columns are omitted."""
 
     rows: tuple[str, ...]
     columns: tuple[str, ...]

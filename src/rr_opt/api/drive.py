@@ -20,7 +20,7 @@ from rr_opt.results.setpoints import ExportedGait, Format, text_of
 
 
 class HasGait(Protocol):
-    """A result, or anything else that knows its robot and gait."""
+    """A result, or any other object with a robot and a gait."""
 
     @property
     def robot(self) -> Robot:
@@ -106,17 +106,17 @@ def export(
     """A gait as set points for a controller, and what they cost in speed.
 
     format       csv: time and angle; c-header: an array for C; servo: counts of the CDS5516
-    rate         set points a second; None: 125 or, for the servo's counts, the most below that at
-                 which the largest step of a whole number of counts is the limit of the rate
-    keep_period  change the rate and not the period, so that a whole number of them fits in
-    within_limits  lower the amplitude until the gait and the steps between set points, as they
-                 are written, are within the limits
+    rate         set points a second; None: 125 or, for the servo's counts, the highest rate
+                 below that for which the rate limit is a whole number of counts per step
+    keep_period  adjust the rate, not the period, to a whole number of set points per period
+    within_limits  lower the amplitude until the gait and the steps between the set points, as
+                     written, are within the limits
 
-    Raises InputError for an angle beyond the servo's counts, and where no amplitude is within the
+    Raises InputError for an angle beyond the servo's counts, and if no amplitude is within the
     limits.
     """
     source = load_gait(robot) if isinstance(robot, str | Path) else robot
-    # The limits that the gait was found within, where they are known.
+    # The limits of the problem that the gait solves, if known.
     problem = getattr(source, "problem", None)
     limits = problem.limits if problem else getattr(source, "limits", None)
     robot, gait, status = _driven(source, gait)
@@ -126,7 +126,7 @@ def export(
     else:
         each_second = read_arguments({"rate": rate})["rate"]
     points = setpoints.set_points(gait, each_second, keep_period=keep_period)
-    # Before the work, as an angle may be beyond the counts.
+    # Done first, as an angle may be beyond the counts.
     text_of(points, format)
     if within_limits:
         progress("limits")

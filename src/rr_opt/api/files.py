@@ -1,4 +1,4 @@
-"""Input files: what is wrong in them, and new ones to fill in."""
+"""Input files: their mistakes, and new ones to fill in."""
 
 from importlib.resources import files
 from pathlib import Path
@@ -31,7 +31,7 @@ def schema(kind: str, machine: str = "racer") -> dict[str, Any]:
 
 
 def lint(path: str | Path) -> list[Issue]:
-    """Everything that is wrong or looks wrong in an input file and the files that it names.
+    """Everything that is wrong or suspicious in an input file and the files that it names.
 
     A robot, problem, study or experiment file, or the folder of a problem or an experiment, whose
     recordings are read too. An Issue has `level` (`error` or `warning`), `message`, `file`, `line`
@@ -61,8 +61,8 @@ def init(kind: Kind, path: str | Path | None = None, *, force: bool = False) -> 
     """Write a commented input file, which can be used as it is; returns the files.
 
     kind   an experiment is a folder with simulated recordings, to be replaced by real ones
-    path   of the file, KIND.yaml if left out; of an experiment the folder, `experiment`
-    force  write over what is there
+    path   of the file, default KIND.yaml; for an experiment the folder, default `experiment`
+    force  overwrite existing files
 
     Raises InputError for a file that exists, unless force.
     """
@@ -74,7 +74,7 @@ def init(kind: Kind, path: str | Path | None = None, *, force: bool = False) -> 
     folder = Path(path or kind)
     places = [folder / EXPERIMENT, *(folder / f"run{number}.csv" for number in (1, 2, 3))]
     _require_new(places, force)
-    # The recordings go first: the experiment file names them.
+    # The recordings are first: the experiment file names them.
     for place in places[1:]:
         write_text(place, "t,x,y,psi,phi\n")
     write_text(places[0], text)

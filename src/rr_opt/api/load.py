@@ -1,4 +1,4 @@
-"""What users give, files and numbers with units, as objects with a name and a fingerprint."""
+"""User input, as files or numbers with units, to objects with a name and a fingerprint."""
 
 import dataclasses
 import hashlib
@@ -66,14 +66,14 @@ QUANTITIES = {
     "within": Number("s", "4 s", above=0),
     "length": Number("m", "80 cm", above=0),
 }
-"""By the argument's name."""
+"""Unit by the argument's name."""
 
 
 def read_arguments(given: Mapping[str, float | str | None], prefix: str = "") -> dict[str, float]:
-    """The arguments in SI, those that are None left out.
+    """The arguments in SI, without those that are None.
 
-    prefix: of the names in messages, `--` for options. Raises InputError with everything that is
-    wrong with all of them.
+    prefix: of the names in messages, `--` for options. Raises InputError with all mistakes in any
+    of them.
     """
     values, wrong = {}, []
     for name, value in given.items():
@@ -91,14 +91,14 @@ PathLike = str | Path
 
 
 class InputWarning(UserWarning):
-    """Something in a file looks wrong, and it can be used all the same."""
+    """Something in a file looks wrong, but the file is usable."""
 
 
 def load(path: PathLike) -> Problem:
     """The problem of a file, or of a folder with problem.yaml.
 
     A robot file stands for the shipped problem with that robot as it is and its servo's limits.
-    Warns with InputWarning of what looks wrong. Raises InputError with everything that is wrong.
+    Warns with InputWarning of suspicious values. Raises InputError with everything that is wrong.
     """
     problem = read_problem(path)
     for issue in lint_file(path):
@@ -144,7 +144,7 @@ class RobotWithGait:
 
     status    of the result that the gait was taken from; None if it was not taken from one
     limits    of the problem that it solves; None likewise
-    warnings  what a user may take this gait for that it is not
+    warnings  possible misunderstandings of what this gait is
     """
 
     robot: Robot
@@ -155,7 +155,7 @@ class RobotWithGait:
 
 
 _AMPLITUDE, _PERIOD, _OFFSET = 0.785, 1.0, 0.0
-"""The gait where none is given: the paper's run with T = 1 s."""
+"""The default gait: the paper's run with T = 1 s."""
 
 
 def load_gait(
@@ -167,10 +167,10 @@ def load_gait(
 ) -> RobotWithGait:
     """The robot of a file, and a gait for it; None: the paper's prototype.
 
-    A result.json has its own gait, of whatever shape. Of a problem the values that it fixes are
-    taken, and the others are those of the paper's run with T = 1 s, brought within the bounds.
-    amplitude (rad), period (s) and offset (rad), numbers or text with a unit, go before what the
-    file says. Raises InputError for a file without a robot or problem.
+    A result.json has its own gait, of any shape. A problem gives the values that it fixes; the
+    others are those of the paper's run with T = 1 s, clipped to the bounds. amplitude (rad), period
+    (s) and offset (rad), numbers or text with a unit, override the file. Raises InputError for a
+    file without a robot or problem.
     """
     values = read_arguments({"amplitude": amplitude, "period": period, "offset": offset})
     source = _source(None if path is None else Path(path), values)
@@ -195,7 +195,7 @@ def _source(path: Path | None, given: Container[str]) -> RobotWithGait:
         bounds.amplitude.clip(_AMPLITUDE), bounds.period.clip(_PERIOD), bounds.offset.clip(_OFFSET)
     )
     doubts = _doubts(path, gait, bounds, given)
-    # The shipped problem lets the ratio be chosen; what is driven then is the prototype.
+    # The shipped problem optimises the ratio; the robot driven here is the prototype.
     if path is None or problem.inertia_ratio is None:
         return RobotWithGait(problem.robot, gait, None, doubts)
     robot, note = _with_nearest_ratio(problem.robot, problem.inertia_ratio)
@@ -203,7 +203,7 @@ def _source(path: Path | None, given: Container[str]) -> RobotWithGait:
 
 
 def _with_nearest_ratio(robot: Robot, choice: RatioChoice) -> tuple[Robot, tuple[str, ...]]:
-    """The robot with the allowed inertia ratio that is nearest to its own, and what to say of it.
+    """The robot with the allowed inertia ratio closest to its own, and remarks on it.
 
     Raises InputError if no whole number of loads gives an allowed one.
     """
@@ -245,7 +245,7 @@ def _of_result(document: FileData) -> RobotWithGait:
         )
     servo = robot.get("servo")
     if isinstance(servo, dict):
-        # null in a result is a limit that does not exist.
+        # null in a result means no limit.
         robot["servo"] = {key: math.inf if v is None else v for key, v in servo.items()}
     read, issues = robot_from(document.section("robot"))
     gait, found = gait_from(document.section("gait"))
@@ -285,10 +285,10 @@ def _limits(document: FileData) -> Limits | None:
 def _doubts(
     path: Path | None, gait: Gait, bounds: GaitBounds | None, given: Container[str]
 ) -> tuple[str, ...]:
-    """What a user may take for the optimum of a file (None: the prototype), in whole sentences.
+    """Sentences on a gait that a user may mistake for the optimum of a file (None: the prototype).
 
-    bounds  of the problem; None of a robot file
-    given   what was asked of the gait: with amplitude and period the user has chosen it
+    bounds  of the problem; None for a robot file
+    given   gait arguments set by the user; amplitude and period together define the user's own gait
     """
     of = "the prototype" if path is None else str(path)
     units = {"amplitude": "rad", "period": "s"}

@@ -32,9 +32,9 @@ def maximize_speed(problem: Problem | PathLike, *, progress: Progress = quiet) -
     """The best gait of a problem or its file, checked by simulation and against a plain sweep: the
     fastest, or that of the least cost of transport.
 
-    Where no gait respects every limit, or a check fails, the result's `status` and `message` say
-    so. With `robust` it has besides the gait that is fast on most of the robots that the file may
-    mean. Raises InputError for a robot without friction, which has no steady speed.
+    If no gait respects every limit, or a check fails, the result's `status` and `message` say so.
+    With `robust` it also has the gait that is fast across the robot's uncertainty. Raises
+    InputError for a robot without friction, which has no steady speed.
     """
     problem = problem_of(problem)
     require_known(problem)
@@ -54,7 +54,7 @@ def maximize_speed(problem: Problem | PathLike, *, progress: Progress = quiet) -
 
 
 def require_known(problem: Problem) -> None:
-    """Raise InputError where energy counts and the optimiser lacks an effect on it."""
+    """Raise InputError for an energy criterion if the optimiser lacks an effect on it."""
     if not (problem.economy and problem.robot.physics):
         return
     from rr_opt.machines.racer.driven import beyond_optimiser
@@ -68,7 +68,7 @@ def require_known(problem: Problem) -> None:
 
 
 def driven_optimum(optimum: Optimum, progress: Progress) -> DrivenOptimum | None:
-    """The optimum driven with all effects of its robot, where the optimiser lacks some."""
+    """The optimum driven with all effects of its robot, if the optimiser lacks some."""
     if not optimum.problem.robot.physics:
         return None
     from rr_opt.machines.racer.driven import drive_optimum
@@ -78,7 +78,7 @@ def driven_optimum(optimum: Optimum, progress: Progress) -> DrivenOptimum | None
 
 
 def require_exact(problem: Problem) -> None:
-    """Raise InputError where robust gaits are asked for that only `maximize_speed` knows."""
+    """Raise InputError if robust gaits are requested that only `maximize_speed` supports."""
     if problem.robust:
         raise InputError(
             "Read `robust` in the problem. Robust gaits are found by `maximize-speed` only, not "
@@ -87,7 +87,7 @@ def require_exact(problem: Problem) -> None:
 
 
 _RESUMED = 2
-"""Climbs on from what the sweep found, at most."""
+"""Most further climbs from a better gait of the sweep."""
 
 
 def checked_optimum(
@@ -95,10 +95,10 @@ def checked_optimum(
 ) -> tuple[Optimum, Replay | None, SweepCheck | None]:
     """The optimum with its replay and the sweep against it; None and None if there is no gait.
 
-    Where the sweep found a better gait the optimiser climbs on from there, and what it comes to is
-    checked instead.
+    If the sweep found a better gait, the optimiser climbs on from there, and the result is checked
+    instead.
 
-    swept  a sweep of the whole problem, where that is done already
+    swept  a sweep of the whole problem, if available
     """
     if optimum.best is None and optimum.problem.gait.shape != "sine":
         return optimum, None, None
@@ -145,7 +145,7 @@ def shapes(problem: Problem | PathLike, *, progress: Progress = quiet) -> Fastes
     optima = design.compare_shapes(problem, progress)
     swept = None
     if any(one.best for one in optima):
-        # One for all: it is a sweep of the sines, whatever the shape.
+        # One for all: it sweeps the sines, whatever the shape.
         progress("sweep of all sines")
         swept = verify.sweep(problem)
     answers = []
@@ -160,7 +160,7 @@ def shapes(problem: Problem | PathLike, *, progress: Progress = quiet) -> Fastes
 def sweep(
     problem: Problem | PathLike, points: int = 10_000, *, progress: Progress = quiet
 ) -> Sweep:
-    """Evaluate about `points` gaits all over the bounds, and refine the best.
+    """Evaluate about `points` gaits over the whole bounds, and refine the best.
 
     Raises InputError for a robot without friction.
     """

@@ -1,4 +1,4 @@
-"""Recordings: what looks wrong in them, and why the machine differs from its simulation."""
+"""Recordings: checking them, and diagnosing why the machine differs from its simulation."""
 
 from __future__ import annotations
 
@@ -51,12 +51,12 @@ def inspect(
 ) -> InspectedRecordings | InspectedMachine:
     """A recording, or all of an experiment's folder, read and cleaned.
 
-    Nothing is filled in or dropped: outliers are flagged, gaps stay gaps. Of one recording,
+    Nothing is filled in or dropped: outliers are flagged, gaps stay gaps. For a single recording:
 
     layout     YAML file that says where each marker sits; None: estimated
     servo_log  the servo's log, on its own clock
     columns    by channel, the column of a text file that has it: `{"psi": "yaw [deg]"}`
-    gait       what was commanded
+    gait       the command
     start      `rest`: the robot stood still until t = 0
 
     Raises InputError for what cannot be read.
@@ -84,7 +84,7 @@ def inspect(
 
 
 def name_of(source: Path) -> str:
-    """What an inspection is called: the experiment's folder, or the recording's file."""
+    """The name of an inspection: the experiment's folder, or the recording's file."""
     full = source.resolve()
     if source.is_dir() or full.name == "experiment.yaml":
         return full.name if source.is_dir() else full.parent.name
@@ -101,7 +101,7 @@ def check_files(source: Path, netcdf: Path | None) -> None:
 
 
 def _refuse(given: list[str]) -> NoReturn:
-    """Of an experiment its file says all this. Raises InputError."""
+    """Raise InputError: an experiment file has these settings itself."""
     options = " and ".join(f"--{name.replace('_', '-')}" for name in given)
     raise InputError(
         f"{options} came with an experiment. Expected one recording: the experiment's file says "
@@ -112,12 +112,12 @@ def _refuse(given: list[str]) -> NoReturn:
 def diagnose(
     experiment: Experiment | MachineExperiment | str | Path, *, progress: Progress = quiet
 ) -> ExplainedExperiment | ExplainedMachine:
-    """What the simulation of a robot leaves out, how strong it is, and how sure that is.
+    """The physics missing from a robot's simulation, with its size and confidence.
 
     experiment  or its folder
 
-    Raises InputError for an experiment that cannot be used, with all reasons, and
-    NotConvergedError if no simulation comes near the recordings.
+    Raises InputError for an unusable experiment, with all reasons, and NotConvergedError if no
+    simulation comes close to the recordings.
     """
     if isinstance(experiment, str | Path):
         experiment = load_experiment(experiment)
@@ -130,7 +130,7 @@ def diagnose(
     name, sha256 = identity(experiment)
     trial, left_out = usable(_cleaned(experiment))
     trial = at_commanded_rate(trial)
-    # Here and not above: a wrong input is reported before a second of imports.
+    # Imported here: a wrong input is reported before a second of imports.
     from rr_opt.machines.racer.racer import RollerRacer
     from rr_opt.results.diagnosis import ExplainedExperiment
 
@@ -139,7 +139,7 @@ def diagnose(
 
 
 def _cleaned(experiment: Experiment) -> Experiment:
-    """With recordings that were made from arrays treated as those of files are."""
+    """The experiment with recordings from arrays cleaned like those from files."""
     from rr_opt.recordings.inspection import inspect
 
     def as_read(run: Run) -> Run:
@@ -156,9 +156,9 @@ def _cleaned(experiment: Experiment) -> Experiment:
 
 
 def machine_of(path: str | Path) -> Machine | None:
-    """The machine of an experiment; None for a Roller Racer's, and for a file that is no YAML.
+    """The machine of an experiment; None for a Roller Racer, and for a file that is not YAML.
 
-    Raises InvalidFileError for a machine that there is not.
+    Raises InvalidFileError for an unknown machine.
     """
     try:
         document = read_document(experiment_path(Path(path)))

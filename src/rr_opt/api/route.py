@@ -28,7 +28,7 @@ Read = TypeVar("Read")
 
 
 def load_route(path: PathLike) -> Route:
-    """The route of a file. Warns with InputWarning of what looks wrong.
+    """The route of a file. Warns with InputWarning of suspicious values.
 
     Raises InputError with everything that is wrong in it and in its problem.
     """
@@ -36,7 +36,7 @@ def load_route(path: PathLike) -> Route:
 
 
 def load_routes(path: PathLike) -> RouteStudy:
-    """The routes that a study file names. Warns with InputWarning of what looks wrong.
+    """The routes that a study file names. Warns with InputWarning of suspicious values.
 
     Raises InputError with everything that is wrong in any of them.
     """
@@ -118,13 +118,13 @@ _DIED = (
 
 
 def _driven_case(asked: Route) -> dict[str, Any]:
-    """The record of a route. Whatever goes wrong is a record that says so."""
+    """The record of a route. Any failure is reported as a record."""
     begun = time.process_time()
     try:
         record = route(asked).record()
     except RollerRacerError as error:
         record = _lost(str(error))
-    except Exception as error:  # one route shall not end the others
+    except Exception as error:  # one route must not end the others
         record = _lost(f"The route ended in an error that is a defect: {error!r}.")
     return record | {"cpu_seconds": time.process_time() - begun}
 
@@ -134,6 +134,6 @@ def _lost(message: str) -> dict[str, Any]:
 
 
 def _row(record: Mapping[str, Any]) -> dict[str, Any]:
-    """A row of the journal. Raises KeyError or ValueError if it is none."""
+    """A row of the journal. Raises KeyError or ValueError if it is not one."""
     Status(record["status"])
     return {**record, "message": str(record["message"])}

@@ -39,13 +39,13 @@ def study(
     restart: bool = False,
     progress: Progress = quiet,
 ) -> SolvedStudy:
-    """Solve every case of a study, or of a study file; each begins at its neighbours' optima.
+    """Solve every case of a study, or of a study file, with warm starts from neighbours.
 
-    folder     where finished rows are kept, so that the same call resumes after an interruption
+    folder     for finished rows, so that the same call resumes after an interruption
     workers    processes here; None: one for each core. A script that uses more than one keeps its
                own work under `if __name__ == "__main__":`
     scheduler  of a dask cluster to work on instead, `tcp://HOST:PORT`
-    cold       solve every case from cold starts alone
+    cold       no warm starts
     restart    discard the rows of an earlier run
 
     Raises InputError for a folder with the rows of another study.

@@ -1,4 +1,4 @@
-"""Turns: the fastest gait of one, checked, and the chart of what a robot can turn."""
+"""Turns: the fastest gait for one, checked, and the chart of the turns that a robot can make."""
 
 from dataclasses import replace
 
@@ -31,8 +31,8 @@ def turn(
     length   longest path for it, m
     whole    make it in a whole number of periods
 
-    Each is a number in SI or a text with its unit. Where the problem fixes the offset, it is freed.
-    Raises InputError for what is no turn.
+    Each is a number in SI or a text with its unit. If the problem fixes the offset, it is freed.
+    Raises InputError for an invalid turn.
     """
     asked = {"radius": radius, "heading": heading, "within": within, "length": length}
     target = checked(Target(**read_arguments(asked), whole=whole))
@@ -56,7 +56,7 @@ def turn(
 _DRAWN = (6, 4, 121)
 """Amplitudes, periods and offsets of the chart."""
 _TESTED = (24, 10, 101)
-"""The same of the map on which the paper's claim is tested."""
+"""The same for the map on which the paper's claim is tested."""
 
 
 def turn_chart(problem: Problem | PathLike, *, progress: Progress = quiet) -> TurnChart:

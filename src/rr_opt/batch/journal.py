@@ -2,7 +2,7 @@
 
 A line is written, flushed and synced before the next row is taken. A run that is killed while it
 writes leaves at most a torn last line, which the next run cuts off. Any other line that is not a
-row of the batch, or was changed since, is refused, with its number.
+row of the batch, or was changed since, is rejected, with its line number.
 """
 
 import fcntl
@@ -19,7 +19,7 @@ from rr_opt.outcome import InputError
 JOURNAL = "journal.jsonl"
 """Its name in the folder of a study."""
 SUM = "crc32"
-"""The key of a row's checksum, its last."""
+"""The key of a row's checksum, the last in the row."""
 
 _CHANGES = {
     "input_sha256": "the study file or a file that it names",
@@ -34,7 +34,7 @@ Row = TypeVar("Row")
 
 
 class Journal(Generic[Row]):
-    """The journal of one batch, open for more rows; no other run can open it meanwhile.
+    """The journal of one batch, open for appending; no other run can open it meanwhile.
 
     rows  finished rows by case
     """
@@ -48,14 +48,14 @@ class Journal(Generic[Row]):
         cases: int | None = None,
         restart: bool = False,
     ):
-        """Open the journal of the batch that `identity` describes, or begin it.
+        """Open or create the journal of the batch that `identity` describes.
 
         read     a row from its record; raises KeyError, TypeError or ValueError if it is not one
-        cases    how many there are, if that is known
+        cases    how many there are, if known
         restart  discard the rows of earlier runs
 
-        Raises InputError if the journal is of another batch, is damaged, is in use, or is no
-        regular file.
+        Raises InputError if the journal is of another batch, damaged, in use, or not a regular
+        file.
         """
         self._path, self._read, self._cases = path, read, cases
         self.rows: dict[int, Row] = {}
@@ -85,7 +85,7 @@ class Journal(Generic[Row]):
 
     def _lock(self) -> None:
         try:
-            # The system releases it when the process ends, however it ends.
+            # The system releases it when the process ends, for whatever reason.
             fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:
             raise InputError(
@@ -123,7 +123,7 @@ class Journal(Generic[Row]):
             self.rows[case] = row
 
     def _row(self, record: dict[str, Any]) -> tuple[int, Row]:
-        # Rows of earlier versions have none.
+        # Rows of earlier versions have no checksum.
         if SUM in record and record.pop(SUM) != (found := _sum(record)):
             raise ValueError(f"it was changed after it was written: its {SUM} would be {found}")
         case = record.pop("case")
@@ -153,7 +153,7 @@ def _text(record: Mapping[str, Any]) -> bytes:
 
 
 def _sum(row: Mapping[str, Any]) -> str:
-    """Tells a row that was changed by accident, or by hand; nothing keeps it from being forged."""
+    """Detects a row that was changed by accident or by hand; it does not prevent forgery."""
     return f"{zlib.crc32(_text(row)):08x}"
 
 

@@ -1,4 +1,4 @@
-"""Processes of this machine, or of a cluster, handed out by a dask scheduler."""
+"""Processes of this machine, or of a cluster via a dask scheduler."""
 
 import os
 import re
@@ -23,13 +23,13 @@ from rr_opt.version import __version__
 
 _LOOK = 1.0  # s
 _HANDED_ON = 1.0
-"""Time that the executor gets to hand on work before it is ended, s."""
+"""Time for the executor to hand over work before it is ended, s."""
 
 
 class LocalPool:
     """`workers` processes on this machine; None: one per usable core.
 
-    One case takes one core: numerical libraries are kept from starting threads of their own.
+    One case takes one core: numerical libraries are limited to one thread.
     """
 
     def __init__(self, workers: int | None = None):
@@ -39,19 +39,19 @@ class LocalPool:
 
     @property
     def ahead(self) -> int:
-        """Two cases a process: one that it works at, and the next."""
+        """Two cases per process: the current one and the next."""
         return 2 * self.workers
 
     def submit(self, function: Callable[[Any], Any], argument: Any) -> Future[Any]:
         """Have function(argument) computed."""
-        # An interrupt in the middle would leave work behind that nobody knows of.
+        # An interrupt halfway would leave work that nobody tracks.
         with held_back(signal.SIGINT, signal.SIGTERM), _blocked(signal.SIGINT):
             future = self._executor.submit(function, argument)
             self._given = {one for one in self._given if not one.done()} | {future}
         return future
 
     def is_lost(self, error: BaseException) -> bool:  # noqa: ARG002 - as every pool
-        """Never: BrokenExecutor reports what died."""
+        """Never: BrokenExecutor reports dead processes."""
         return False
 
     def restart(self) -> None:
@@ -61,7 +61,7 @@ class LocalPool:
 
     def close(self) -> None:
         """End all processes."""
-        # The executor's own thread fails loudly if it is ended before it has handed work on.
+        # The executor's own thread fails noisily if it is ended before it has handed over work.
         end = time.monotonic() + _HANDED_ON
         while time.monotonic() < end and not all(f.running() or f.done() for f in self._given):
             time.sleep(_HANDED_ON / 100)
@@ -70,7 +70,7 @@ class LocalPool:
         self._temporary.cleanup()
 
     def _started(self) -> ProcessPoolExecutor:
-        # A process that is killed leaves its temporary files.
+        # A killed process leaves its temporary files behind.
         self._temporary = tempfile.TemporaryDirectory(prefix="rr-opt-", ignore_cleanup_errors=True)
         return ProcessPoolExecutor(
             max_workers=self.workers,
@@ -83,9 +83,9 @@ class LocalPool:
 
 @contextmanager
 def _blocked(number: signal.Signals) -> Iterator[None]:
-    """Within it this thread takes no such signal, and neither do processes started here: they
-    inherit the mask, and Ctrl-C goes to them too while they still load."""
-    # Which would unblock it if it were started within (Python 3.11).
+    """Block the signal in this thread and in processes started within, which inherit the mask:
+    Ctrl-C reaches them too while they load."""
+    # It would unblock the signal if started within (Python 3.11).
     resource_tracker.ensure_running()
     mask = signal.pthread_sigmask(signal.SIG_BLOCK, [number])
     try:
@@ -95,7 +95,7 @@ def _blocked(number: signal.Signals) -> Iterator[None]:
 
 
 def _begin(parent: int) -> None:
-    """Leave Ctrl-C to the process that gives the work, and do not outlive it."""
+    """Leave Ctrl-C to the parent process, and exit with it."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
     def watch() -> None:
@@ -116,15 +116,15 @@ _PER_CORE = 2
 
 
 class ClusterPool:
-    """The workers of the scheduler at an address, tcp://HOST:PORT, however many come and go.
+    """The workers of the scheduler at an address, tcp://HOST:PORT, as they come and go.
 
-    A case whose worker dies is given to another one by the scheduler.
+    A case whose worker dies is rescheduled on another one.
     """
 
     def __init__(self, address: str):
         client = _client()
         try:
-            # A dask client that finds nobody waits long, and complains when it is thrown away.
+            # A dask client that finds no scheduler waits long, and complains when discarded.
             _knock(address)
             self._client = client(address, timeout=_PATIENCE, set_as_default=False)
         except (OSError, ValueError, TimeoutError) as error:
@@ -138,7 +138,7 @@ class ClusterPool:
 
     @property
     def ahead(self) -> int:
-        """Two cases for each thread of the workers there are now."""
+        """Two cases per thread of the current workers."""
         cores = sum(self._client.ncores().values())
         return max(_AT_LEAST, _PER_CORE * cores)
 
@@ -147,7 +147,7 @@ class ClusterPool:
         return self._executor.submit(function, argument)
 
     def is_lost(self, error: BaseException) -> bool:
-        """Whether the scheduler gave up a case because its workers died."""
+        """Whether the scheduler gave up on a case because its workers died."""
         from distributed import KilledWorker
 
         return isinstance(error, KilledWorker)
@@ -156,12 +156,12 @@ class ClusterPool:
         """Nothing to do: the scheduler replaces workers."""
 
     def close(self) -> None:
-        """Take back what is not done, and leave the cluster as it was."""
+        """Cancel unfinished work, and leave the cluster as it was."""
         self._executor.shutdown(wait=False)
         self._client.close(timeout=_PATIENCE)
 
     def _check_versions(self) -> None:
-        """Raise InputError if a worker has another rr-opt, or none."""
+        """Raise InputError if a worker has a different rr-opt, or none."""
         try:
             others = self._client.run(installed_version)
         except Exception as error:
@@ -178,20 +178,20 @@ class ClusterPool:
 
 
 def installed_version() -> str:
-    """The version of rr-opt where this runs."""
+    """The version of rr-opt on this worker."""
     # Cases leave a worker no time for threads of numerical libraries.
     os.environ.setdefault("OMP_NUM_THREADS", "1")
     return __version__
 
 
 def _knock(address: str) -> None:
-    """Raise ValueError if it is no address, OSError if no scheduler is there."""
+    """Raise ValueError for an invalid address, OSError if no scheduler is there."""
     match = _ADDRESS.fullmatch(address)
     if match is None or not 0 < int(match["port"]) < 2**16:
         raise ValueError("it is no address")
     place = match["host"].strip("[]"), int(match["port"])
     with socket.create_connection(place, _PATIENCE) as line:
-        # A scheduler speaks first, except where TLS has to be agreed on before.
+        # A scheduler speaks first, unless TLS has to be negotiated before.
         if match["scheme"] != "tls" and not line.recv(1):
             raise OSError("it hangs up")
 
@@ -213,5 +213,5 @@ def _client() -> Any:
 
 
 Pool = LocalPool | ClusterPool
-"""Processes that work at the same time. A future whose process died raises BrokenExecutor, and then
-every other future of the pool may too; `restart` makes the pool usable again."""
+"""Processes that work in parallel. A future whose process died raises BrokenExecutor, and then all
+other futures of the pool may too; `restart` makes the pool usable again."""

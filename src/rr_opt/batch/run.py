@@ -1,7 +1,7 @@
-"""Every case to an outcome, whatever happens to the processes that compute it.
+"""Bring every case to an outcome, even if the processes that compute it die.
 
-If a process dies, nothing says which case it died over. So every case that was under way is done
-again, each alone in the pool: the one over which a process dies once more is reported as lost.
+When a process dies, it is unknown which case killed it. So every case in progress is repeated, each
+alone in the pool: one that kills its process again is reported as lost.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 def pool_of(workers: int | None, scheduler: str | None) -> Pool:
     """`workers` processes on this machine (None: one per core), or those of a dask cluster."""
-    # Here and not above: it loads joblib, which only studies and trials need.
+    # Imported here as it loads joblib, which only studies and trials need.
     from rr_opt.batch.pools import ClusterPool, LocalPool
 
     return ClusterPool(scheduler) if scheduler else LocalPool(workers)
@@ -35,15 +35,15 @@ LOST = (
 
 
 class PoolLostError(RollerRacerError):
-    """The processes are gone, not over one case but for all of them."""
+    """The processes are gone for all cases, not because of one."""
 
 
 def run(
     pool: Pool, function: Callable[[Task], Result], tasks: Mapping[int, Task]
 ) -> Iterator[tuple[int, Result | str]]:
-    """Each task's key with function(task), as they are finished; a sentence where it was lost.
+    """Each task's key with function(task), as they finish; a sentence where it was lost.
 
-    function itself is not expected to raise. Raises PoolLostError if the pool cannot go on.
+    function itself is not expected to raise. Raises PoolLostError if the pool cannot continue.
     """
     waiting = list(tasks)[::-1]
     under_way: dict[Future[Any], int] = {}

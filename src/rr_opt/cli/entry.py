@@ -1,21 +1,21 @@
-"""Where `rr-opt` begins, and how Ctrl-C ends it."""
+"""The entry point of `rr-opt`, and how Ctrl-C ends it."""
 
 import gc
 import os
 
-# An interrupt while these are loaded shows a traceback, so they are few and light.
+# An interrupt during these imports shows a traceback, so they are few and light.
 from rr_opt import interrupt
 from rr_opt.outcome import EXIT_INTERRUPTED
 
 
 def main() -> None:
-    """Run the command, and end with 130 whatever an interrupt has turned into on its way.
+    """Run the command, and exit with 130 on an interrupt, whatever it was turned into.
 
-    Libraries that are being loaded, and compiled solvers, make other errors of it, or none.
+    Partly imported libraries and compiled solvers turn it into other errors, or swallow it.
     """
     try:
         interrupt.watch()
-        # What is being loaded is no garbage, and looking for some takes a tenth of the start.
+        # Imports create no garbage, and collecting it takes a tenth of the startup time.
         gc.set_threshold(100_000)
         from rr_opt.batch import ONE_THREAD
 
@@ -36,7 +36,7 @@ def main() -> None:
 
 
 def _end(*, silent: bool) -> None:
-    """End here and now: libraries that are half loaded complain when they are tidied up."""
+    """Exit immediately: partly imported libraries complain at an orderly exit."""
     import sys
 
     interrupt.ignore()

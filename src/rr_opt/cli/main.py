@@ -1,7 +1,7 @@
 """The command `rr-opt`: its verbs, and how each of them may end.
 
-Whatever a user can put right ends as a message on stderr and an exit code, never as a traceback.
-Heavy libraries are loaded by the verb that needs them, so that help comes at once. Other packages
+Errors that a user can correct end as a message on stderr and an exit code, never as a traceback.
+Heavy libraries are imported by the verb that needs them, so that help is fast. Other packages
 add verbs by the entry points `rr_opt.verbs`.
 """
 
@@ -22,7 +22,7 @@ VERBS = (
     *("maximize-speed", "shapes", "sweep", "turn", "turn-chart", "route", "circle", "simulate"),
     *("export", "study", "inspect", "diagnose", "init", "lint", "schema"),
 )
-"""In the order of the help; each is a function of its name in `verbs`."""
+"""In the order of the help; each is a function of that name in `verbs`."""
 _SHORT_HELP = {"help_option_names": ["-h", "--help"]}
 
 
@@ -34,7 +34,7 @@ class Verbs(TyperGroup):
         return [*VERBS, *sorted(_others())]
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:  # noqa: ARG002
-        """A verb, loaded now; None if there is none of that name."""
+        """A verb, imported now; None if there is none of that name."""
         if cmd_name in VERBS:
             verb = getattr(verbs, cmd_name.replace("-", "_"))
         else:
@@ -70,7 +70,7 @@ class Verbs(TyperGroup):
             typer.echo(f"{place}{what}. Check the name, the folder and its permissions.", err=True)
             raise typer.Exit(EXIT_WRONG_INPUT) from None
         except Exception:
-            # Ctrl-C comes out of CasADi, and of a library that is being loaded, as another error.
+            # Ctrl-C emerges from CasADi, and from a library during import, as another error.
             if interrupt.seen():
                 return _interrupted()
             raise

@@ -1,4 +1,4 @@
-"""Arguments and options that verbs have in common, and how they are read."""
+"""Arguments and options shared by verbs, and how they are read."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ Read = TypeVar("Read")
 
 @contextmanager
 def naming(source: Path | None) -> Iterator[None]:
-    """An error says which file it is about, as its gait may come from there."""
+    """Errors within this context name the file, as its gait may come from there."""
     try:
         yield
     except InputError as error:
@@ -35,9 +35,9 @@ def naming(source: Path | None) -> Iterator[None]:
 
 
 def place(text: str) -> Path:
-    """A path that the user named. Raises InputError for no name at all.
+    """A path named by the user. Raises InputError for an empty name.
 
-    Without this an empty one, as an unset variable of a script leaves it, is the current folder.
+    An empty one, such as from an unset script variable, would be the current folder.
     """
     if not text.strip():
         raise InputError(
@@ -48,12 +48,12 @@ def place(text: str) -> Path:
 
 
 def out_option(shown: str, help: str = "Folder for the results.", metavar: str = "DIR") -> Any:
-    """--out; shown: what it is if left out."""
+    """--out; shown: the default shown in the help."""
     return typer.Option("--out", "-o", parser=place, metavar=metavar, help=help, show_default=shown)
 
 
 def json_option(file: str) -> Any:
-    """--json, which prints what the file holds."""
+    """--json, which prints the content of the file."""
     return typer.Option("--json", help=f"Print only {file} on stdout.")
 
 
@@ -108,11 +108,11 @@ def motion_folder(out: Path | None, name: str, film: Any, format: Any = "csv") -
 
 
 TURN_UNITS = {"heading": "deg", "radius": "m", "within": "s", "length": "m"}
-"""What can be asked of a turn, and the unit it is shown in."""
+"""What a turn can specify, with the unit shown."""
 
 
 def turn_words(asked: Mapping[str, Any]) -> list[str]:
-    """What was asked of a turn, in words without spaces."""
+    """The requested turn, in words without spaces."""
     sizes = {key: asked[key] for key in TURN_UNITS if asked.get(key) is not None}
     shown = {key: math.degrees(size) if key == "heading" else size for key, size in sizes.items()}
     whole = ["whole"] if asked.get("cycles") == "whole" else []
@@ -120,7 +120,7 @@ def turn_words(asked: Mapping[str, Any]) -> list[str]:
 
 
 def require_same_turn(folder: Path, asked: Mapping[str, Any], force: bool) -> None:
-    """Raise InputError if the folder has the answer to another turn, or to none."""
+    """Raise InputError if the folder has the result of another turn, or of none."""
     import json
 
     file = folder / "result.json"
@@ -144,14 +144,14 @@ def require_same_turn(folder: Path, asked: Mapping[str, Any], force: bool) -> No
 
 
 def read_options(**given: str | float | None) -> dict[str, float]:
-    """The options that were given, in SI. Raises InputError with all that is wrong with them."""
+    """The options that were given, in SI. Raises InputError with all mistakes in them."""
     from rr_opt.api.load import read_arguments
 
     return read_arguments(given, prefix="--")
 
 
 def read_problem(path: Path | None) -> Problem:
-    """The problem of a file (None: the shipped one); what looks wrong goes to stderr."""
+    """The problem of a file (None: the shipped one); warnings go to stderr."""
     from rr_opt.api.load import load, shipped
 
     if path is None:
@@ -160,7 +160,7 @@ def read_problem(path: Path | None) -> Problem:
 
 
 def read(load: Callable[[Path], Read], path: Path) -> Read:
-    """What a function of the library loads from a file; what looks wrong goes to stderr."""
+    """The object that a library function loads from a file; warnings go to stderr."""
     from rr_opt.api.load import InputWarning
 
     with warnings.catch_warnings(record=True) as caught:
@@ -200,7 +200,7 @@ def read_command(**sizes: str | None) -> Gait | None:
 
 
 def read_gait(path: Path | None, **given: str | float | None) -> RobotWithGait:
-    """What a file (None: the prototype) gives to drive, at the sizes among the options.
+    """The robot and gait of a file (None: the prototype), with the given options for the gait.
 
     All options are read, so that every mistake in them is reported; warnings go to stderr.
     """
@@ -214,7 +214,7 @@ def read_gait(path: Path | None, **given: str | float | None) -> RobotWithGait:
 
 
 def result_name(path: Path | None) -> str:
-    """What a result is called: the folder it lies in; anything else as a problem is."""
+    """The name of a result: the folder it is in; for other files, as for a problem."""
     from rr_opt.files.problem_file import name_of
 
     if path is not None and path.name == "result.json":
@@ -329,9 +329,9 @@ def show(
     json: bool,
     **how: Any,
 ) -> None:
-    """Print a result and its warnings, write it to a place as asked (`how`), and print its files.
+    """Print a result and its warnings, write it as requested (`how`), and print its files.
 
-    The text comes first: figures take longer. Ends the command if it is not what was asked for.
+    The text comes first, as figures take longer. Exits with an error status if the result has one.
     """
     from rr_opt.documents.archive import strict_json
     from rr_opt.documents.rendering import columns

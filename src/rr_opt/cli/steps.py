@@ -1,4 +1,4 @@
-"""Progress on stderr: which step a verb is at, and for how long it has been running."""
+"""Progress on stderr: the current step of a verb, and the time elapsed."""
 
 import re
 import sys
@@ -9,7 +9,7 @@ from rr_opt import interrupt
 
 _COUNTED = re.compile(r"(.*?)\s*(\d+) of (\d+)$")
 _PARTS = 4
-"""Of a counted stage that are printed where stderr is no terminal."""
+"""Reports per counted stage if stderr is not a terminal."""
 
 _quiet = False
 
@@ -28,8 +28,8 @@ def silent() -> bool:
 class StepDisplay:
     """A context within which `steps(text)` shows the step; `start 3 of 8` moves a bar.
 
-    On a terminal one line is redrawn; elsewhere each stage is a line. A call also ends the work if
-    the user has asked for it.
+    On a terminal one line is redrawn; elsewhere each stage is a line. A call also raises a pending
+    interrupt.
     """
 
     def __init__(self) -> None:

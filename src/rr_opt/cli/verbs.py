@@ -132,8 +132,8 @@ def route(
 ) -> None:
     """Drive a route from rest, as fast as the robot can.
 
-    It consists of straights, arcs and waypoints. The drive is checked by simulation. `rr-opt init
-    route` writes a file to start from.
+    A route consists of straights, arcs and waypoints. The drive is checked by simulation. `rr-opt
+    init route` writes a file to start from.
     """
     with StepDisplay() as steps:
         asked = options.read(rr.load_route, route)

@@ -1,4 +1,4 @@
-"""Candidate optima: what each start led to, with the prices of what holds it; which are one."""
+"""Candidate optima: the result of each start with its shadow prices; which results are the same."""
 
 from __future__ import annotations
 
@@ -13,21 +13,21 @@ from rr_opt.model.gait import Gait
 
 @dataclass(frozen=True)
 class StartResult:
-    """What one start led to.
+    """The result of one start.
 
     sign         +1 forward, -1 backward
     gait, share  the gait, and the ballast's share of its range
     speed        signed, m/s
-    feasible     every row holds within FEASIBLE
-    success      the solver says it is an optimum
-    sentence     the same in words
+    feasible     every constraint holds to within FEASIBLE
+    success      the solver reports an optimum
+    sentence     the solver's outcome in words
     prices       speed gained per unit of each limit, m/s per unit: rate, angle, torque, grip,
                  singularity, direction, and curvature, yaw_rate, heading of the turn
     bound_prices speed gained per unit by which an active bound moves up: amplitude, period,
                  offset, ballast
     intervals    of the period, for the solver
     mesh         of multiple shooting; None for a sine
-    cost         of transport, where that is the objective; what prices refer to is then this
+    cost         of transport, where that is the objective; prices then refer to it
     """
 
     sign: int
@@ -47,24 +47,24 @@ class StartResult:
 
     @property
     def merit(self) -> float:
-        """What is maximised: |speed|, m/s, or the inverse of the cost of transport."""
+        """The objective to maximise: |speed|, m/s, or the inverse of the cost of transport."""
         return abs(self.speed) if self.cost is None else 1 / self.cost
 
     @property
     def value(self) -> float:
-        """|speed|, m/s, or the cost of transport: what a price is compared with."""
+        """The quantity that prices refer to: |speed|, m/s, or the cost of transport."""
         return abs(self.speed) if self.cost is None else self.cost
 
     @property
     def rank(self) -> tuple[bool, bool, float]:
-        """Sort key: infeasible last, then unsuccessful, then poor."""
+        """Sort key: infeasible last, then not converged, then by merit."""
         return (not self.feasible, not self.success, -self.merit)
 
 
 @dataclass(frozen=True)
 class Finds:
-    """Candidates with their settings, in any order; why other starts led nowhere; and, where it
-    is known, why no gait can keep all limits."""
+    """Candidates with their settings, in any order; why other starts failed; and, where known, why
+    no gait satisfies all limits."""
 
     pairs: list[tuple[Setting, StartResult]] = field(default_factory=list)
     lost: list[str] = field(default_factory=list)
@@ -86,7 +86,7 @@ class Finds:
 
 
 def distinct(ranked: list[tuple[Setting, StartResult]]) -> list[tuple[Setting, StartResult]]:
-    """One of each optimum; a gait and its mirror image (phi0 and -phi0) are one if alike."""
+    """Each distinct optimum once; a gait and its mirror image (phi0 and -phi0) are the same."""
     kept: list[tuple[Setting, StartResult]] = []
     for setting, one in ranked:
         if not any(
@@ -97,7 +97,7 @@ def distinct(ranked: list[tuple[Setting, StartResult]]) -> list[tuple[Setting, S
 
 
 def _same(one: StartResult, other: StartResult, mirrored: bool) -> bool:
-    """Before their meshes are refined, two finds of one optimum differ a little."""
+    """Whether two results are the same optimum, allowing for meshes not refined yet."""
     a, b = one.gait, other.gait
     offsets = (abs(a.offset), abs(b.offset)) if mirrored else (a.offset, b.offset)
     return (

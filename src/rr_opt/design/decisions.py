@@ -1,22 +1,22 @@
-"""The free decisions of a gait problem on a unit box, and the robots that they make.
+"""The decision variables of a gait problem on the unit box, and the robots that they define.
 
-The turn that a problem asks for is a row that a search can penalise. The curvature grows without
-bound where the mean velocity V passes by zero, and |V| has nearly a kink there. With the yaw rate
-omega and a length L the share
+A requested turn is a row that the search can penalise. Curvature itself makes a poor row: it grows
+without bound as the mean velocity V passes near zero, where |V| also has almost a kink. With the
+yaw rate omega and a length L,
 
     s = omega L / sqrt((omega L)^2 + V^2)
 
-says the same and is smooth in V and omega. L is the radius that is asked for, so that s changes
-fastest where it matters; but at most some lengths of the robot, or it would be a step where left
-turns into right.
+is equivalent, and smooth in V and omega. L is the requested radius, so that s is most sensitive
+near the target, but is capped at a few robot lengths: otherwise s would be almost a step between
+left and right.
 
 For a sine, three of the limits bound the amplitude alone once period and offset are chosen:
 
     alpha <= rate T/(2 pi)      alpha <= angle - |phi0|      alpha <= phi_s - |phi0|
 
-with phi_s where S1 = c1 cos phi + c2 comes down to the singularity margin. So bounds on T and
-phi0 are tightened until every choice leaves an amplitude, and the amplitude is measured as a
-share of what is left. Every point of the box then keeps these limits; only the torque is open.
+where S1 = c1 cos phi + c2 reaches the singularity margin at phi_s. So the bounds on T and phi0 are
+tightened until every choice leaves a feasible amplitude, and the amplitude is scaled by the range
+that remains. Every point of the box then satisfies these limits; only the torque is unchecked.
 """
 
 import math
@@ -34,12 +34,12 @@ from rr_opt.motion.dynamics import Dynamics, dynamics_of
 
 _LENGTHS = 5.0
 _SLOWEST = 1e-12
-"""A speed below it, m/s, counts as this where something is divided by it."""
+"""Slower speeds, m/s, count as this one in a denominator."""
 
 
 @dataclass(frozen=True)
 class TurnRows:
-    """Rows of a Turn: those of its quantities that are asked for, scaled."""
+    """Rows of a Turn: the quantities it asks for, scaled."""
 
     turn: Turn
     length: float
@@ -75,32 +75,31 @@ class TurnRows:
         return rows
 
     def slopes(self, speed: float, turn: float, period: float) -> dict[str, float]:
-        """What a row gains per unit of its quantity, at a gait."""
+        """Derivative of each row by its quantity, at a gait."""
         tangent = turn / period / abs(speed) * self.length
         found = {name: 1 / _size(getattr(self.turn, name)) for name in self.names}
         return found | {"curvature": self.length / (1 + tangent**2) ** 1.5}
 
 
 def turn_rows(turn: Turn, robot: Robot) -> TurnRows:
-    """The rows of a turn that this robot is to make."""
+    """The rows of the turn requested of this robot."""
     longest = _LENGTHS * (robot.platform1.c + robot.platform2.c)
     asked = turn.curvature != ANY and 1 / _size(turn.curvature)
     return TurnRows(turn, min(asked or longest, longest))
 
 
 def _size(asked: Interval) -> float:
-    """The size of what is asked; 1 if that is nothing but straight."""
+    """Scale of a requested interval; 1 if it only asks for straight."""
     ends = [abs(end) for end in (asked.low, asked.high) if math.isfinite(end)]
     return max(ends, default=0.0) or 1.0
 
 
 SQUARE = math.pi / 4
-"""Peak of a square wave over that of its first harmonic: no shape has a first harmonic that is
-larger against its largest value. So the shapes that need the least angle and the least rate for
-a first harmonic need this share of what the sine needs."""
+"""Ratio of peak to first harmonic of a square wave, the least of any waveform. A shape of given
+first harmonic needs at least this fraction of the sine's angle and rate."""
 
 NO_ROOM = 1e-7
-"""A range this narrow, relative, is a point."""
+"""Intervals narrower than this, relative, count as a point."""
 
 
 @dataclass(frozen=True)
@@ -111,9 +110,9 @@ class Decisions:
     amplitude        the problem's bounds, rad
     ballast          I2 (kg m2) or number of loads
     reach            largest |phi| that angle and singularity allow, rad
-    turn             what the problem asks of the turn; it bounds no decision by itself
+    turn             the requested turn; it bounds no decision by itself
     command          bounds of the commanded amplitude, where the servo lags
-    two_sided        the robot's two sides are alike: gaits at phi0 and -phi0 are mirror images
+    two_sided        the robot is left-right symmetric: gaits at phi0 and -phi0 are mirror images
     """
 
     period: Interval
@@ -152,8 +151,8 @@ class Decisions:
 
     @property
     def mirrored(self) -> bool:
-        """Every gait of the box has its mirror image in the box, and may do as well as it: one
-        of two mirror images turns the wrong way."""
+        """Every gait's mirror image is in the box too and performs equally well; not if a turn is
+        requested, as one of the two turns the wrong way."""
         symmetric = not self.offset.fixed and self.offset.low == -self.offset.high
         return symmetric and self.turn is None and self.two_sided
 
@@ -171,7 +170,7 @@ class Decisions:
         return np.array([amplitude, period, offset, unit[:, 3]])
 
     def unit(self, amplitude: float, period: float, offset: float, share: float) -> Array:
-        """The point of the unit box (4,) at or next to a gait; 0 along what is fixed."""
+        """The unit-box point (4,) at or nearest to a gait; 0 for fixed decisions."""
         point = np.zeros(4)
         if not self.period.fixed:
             point[0] = math.log(period / self.period.low) / math.log(
@@ -208,7 +207,7 @@ def decisions(problem: Problem) -> Decisions:
 
 
 def _tightened(interval: Interval) -> Interval:
-    """The interval, or one point where limits and bounds leave no more than rounding."""
+    """The interval, collapsed to a point where limits and bounds agree to within rounding."""
     low, high = interval.low, interval.high
     if abs(high - low) <= NO_ROOM * max(abs(low), abs(high)):
         return Interval(high, high)
@@ -241,7 +240,7 @@ def ballast_interval(robot: Robot, choice: RatioChoice | None) -> Interval:
 
 
 def share_per_ratio(robot: Robot, choice: RatioChoice) -> float:
-    """How far the ballast's share of its range moves per unit of J20/J10, at the upper bound."""
+    """Change of the ballast's share per unit of J20/J10, at the upper bound."""
 
     def amount(ratio: float) -> float:
         return ballast_interval(robot, replace(choice, bounds=Interval(ratio, ratio))).high
@@ -253,7 +252,7 @@ def share_per_ratio(robot: Robot, choice: RatioChoice) -> float:
 
 
 def share_of(problem: Problem, box: Decisions, ratio: float | None) -> float:
-    """Where in the ballast's range J20/J10 is this."""
+    """The share of the ballast's range that gives this J20/J10."""
     choice, span = problem.inertia_ratio, box.ballast.high - box.ballast.low
     if choice is None or ratio is None or not span:
         return 0.0
@@ -266,7 +265,7 @@ class Setting:
     """A problem, ready to be solved from any start.
 
     ballast      range of I2 (kg m2) or of the number of loads
-    fixed_share  where in it the ballast is fixed to a whole number of loads
+    fixed_share  position in that range, where the ballast is fixed to a whole number of loads
     """
 
     problem: Problem
@@ -292,7 +291,7 @@ def settings_of(problem: Problem, box: Decisions) -> list[Setting]:
 
 
 def scanned(setting: Setting, box: Decisions) -> Decisions:
-    """The box to scan: with a whole number of loads the ballast is not free."""
+    """The box to scan: a whole number of loads fixes the ballast."""
     if setting.fixed_share is None:
         return box
     count = box.ballast.low + setting.fixed_share * (box.ballast.high - box.ballast.low)

@@ -1,8 +1,8 @@
-"""Optima of a problem: among sines, then family by family of gaits that are no sines.
+"""Optima of a problem: among sines, then family by family of non-sinusoidal gaits.
 
-Sines: tops all over the box, each climbed to its end. Every sine is a Fourier gait, and one of few
-harmonics is one of many; a free gait comes close to them all. So the optima of each family are
-starts in the next, which can only be faster, and shapes at random are other starts.
+Sines: multistart over the whole box, with each climb run to convergence. Every sine is a Fourier
+gait, every Fourier gait is also one of more harmonics, and a free gait approximates them all. So
+each family is warm-started from the optima of the previous one, and from random shapes as well.
 """
 
 import math
@@ -30,7 +30,7 @@ Progress = Callable[[str], None]
 
 
 def find_sines(problem: Problem, progress: Progress) -> Finds:
-    """Climb from all over the box; if nothing was found, the clash of limits that explains it."""
+    """Climb from starts all over the box; if none succeeds, find the conflicting limits."""
     box = decisions(problem)
     posture = posture_clashes(problem, box)
     if posture:
@@ -59,8 +59,8 @@ def find_sines(problem: Problem, progress: Progress) -> Finds:
 
 
 def _turned_round(setting: Setting, best: StartResult) -> list[tuple[Setting, StartResult]]:
-    """The same circle driven the other way, where a climb leads to it: a gait that does can be next
-    to this one, V = 0 between them, too close for a scan to tell them apart."""
+    """The same circle driven the other way, if a climb leads to it. Its gait can be so close to
+    this one, with V = 0 between them, that a scan does not separate them."""
     gait, way = best.gait, -best.sign
     terrain = Terrain(setting, decisions(setting.problem), way)
     start = np.array([gait.amplitude, gait.period, gait.offset, best.share])
@@ -69,24 +69,23 @@ def _turned_round(setting: Setting, best: StartResult) -> list[tuple[Setting, St
 
 
 _TRIAL = 36
-"""Intervals on which a gait's own error is tried, to choose its mesh."""
+"""Intervals of the trial mesh on which a gait's discretisation error is measured."""
 _CLAIM = 3e-7
-"""Largest error of a claimed speed, relative."""
+"""Largest relative error of the speed on the mesh."""
 _PEAK = 3e-5
-"""Largest excess over a limit between nodes, relative: the solver moves peaks aside."""
+"""Largest relative violation of a limit between nodes, where the solver tends to move peaks."""
 _PATIENCE = 5
-"""Refinements after which the intervals are halved and, after as many more, a margin is kept from
-the torque's limit."""
+"""Refinements before the intervals are halved; after as many again, a margin to the torque limit is
+kept."""
 _PER_HARMONIC = 12
-"""Intervals of a period of the fastest harmonic, at least."""
+"""Fewest intervals per period of the fastest harmonic."""
 _REFINEMENTS = 14
 _SUBSTEPS, _FINEST = 4, 192
-"""Of a free gait's interval, and intervals of a Fourier gait, at most."""
+"""Most substeps of a free gait's interval, and most intervals of a Fourier gait."""
 
 
 def solve_from(setting: Setting, sign: int, gait: Gait, share: float) -> StartResult:
-    """Solve from a gait; of another shape than the sine on a mesh that is fine enough for its
-    cycle."""
+    """Solve from a gait; one that is not a sine gets a mesh fine enough for its cycle."""
     wanted = setting.problem.gait
     if wanted.shape == "sine":
         start = np.array([gait.amplitude, gait.period, gait.offset, share])
@@ -100,13 +99,13 @@ def solve_from(setting: Setting, sign: int, gait: Gait, share: float) -> StartRe
         intervals = intervals_for(_TRIAL, error, _CLAIM / 2)
     except NotConvergedError:  # dry friction too steep for so coarse a mesh
         intervals = LADDER[-1]
-    # Until an optimum is chosen, limits broken between nodes are no matter.
+    # Until an optimum is chosen, violations between nodes do not matter.
     intervals = max(intervals, at_least(_PER_HARMONIC * wanted.harmonics))
     return solve(setting, sign, gait, share, regular(intervals))
 
 
 def refine(setting: Setting, candidate: StartResult) -> StartResult:
-    """Solve again until the mesh claims the true speed and no limit is broken between nodes."""
+    """Re-solve until the mesh gives the true speed and no limit is violated between nodes."""
     if candidate.mesh is None:
         return refine_sine(setting, candidate)
     iterations, mesh = candidate.iterations, candidate.mesh
@@ -116,7 +115,7 @@ def refine(setting: Setting, candidate: StartResult) -> StartResult:
         error = abs(abs(candidate.speed) - abs(seen.speed)) / abs(seen.speed)
         finer = _finer(setting, mesh, error)
         if seen.used <= 1 + _PEAK and (finer is None or error <= _CLAIM):
-            # With no finer mesh left, the gait is as good as found; its speed is what was seen.
+            # On the finest mesh the gait is kept as it is, with its measured speed.
             speed = candidate.speed if error <= _CLAIM else seen.speed
             candidate = replace(candidate, speed=speed)
             break
@@ -134,9 +133,9 @@ def refine(setting: Setting, candidate: StartResult) -> StartResult:
 
 
 def _finer(setting: Setting, mesh: Mesh, error: float) -> Mesh | None:
-    """The mesh with which to go on; None if no finer one is left.
+    """The mesh for the next refinement; None if there is none finer.
 
-    The intervals of a free gait are the user's, as its accelerations are defined on them.
+    A free gait keeps the user's intervals, as its accelerations are defined on them.
     """
     if error <= _CLAIM:
         return mesh
@@ -150,26 +149,26 @@ def _finer(setting: Setting, mesh: Mesh, error: float) -> Mesh | None:
 
 SIGNS = {"forward": (1,), "backward": (-1,), "either": (1, -1)}
 _ON_THE_WAY = {"fourier": (3, 8), "free": (3, 5)}
-"""Numbers of harmonics of the families on the way to a larger one."""
+"""Numbers of harmonics of the intermediate families."""
 _HANDED_ON = 3
-"""How many optima of a family the next one starts from."""
+"""Optima of a family used as warm starts for the next."""
 _SCANNED, _SCANNED_LATER = 8, 2
-"""How many shapes at random the first family of several harmonics starts from, and a later one."""
+"""Random shapes used as starts by the first family of several harmonics, and by later ones."""
 _WORTH = 0.8
-"""Optima so much slower than the best are not handed on."""
+"""Optima slower than this fraction of the best are not used as warm starts."""
 
 
 def find_families(
     problem: Problem, progress: Progress, on_the_way: tuple[int, ...] | None = None
 ) -> Iterator[tuple[Problem, Finds]]:
-    """Optima, or why there are none, of the sines, then of each family up to the problem's.
+    """Optima of the sines, then of each family up to the problem's; or why there are none.
 
-    on_the_way: numbers of harmonics of the families between.
+    on_the_way: numbers of harmonics of the intermediate families.
     """
     sine = replace(problem, gait=replace(problem.gait, shape="sine"))
     finds = find_sines(sine, progress)
     yield sine, finds
-    # What a sine cannot do another shape may; but none can do what this says.
+    # Another shape may do what a sine cannot, but this conflict rules out every shape.
     hopeless = posture_clashes(_loosened(sine), decisions(problem))
     clash = Finds(clash=f"{finds.clash} {_OTHERS}") if hopeless else Finds()
     lost = Finds(lost=[f"Among sines: {finds.clash}"]) if finds.clash else Finds()
@@ -186,14 +185,14 @@ _OTHERS = (
 
 
 def _loosened(problem: Problem) -> Problem:
-    """With the least amplitude of a sine that needs no more than the thriftiest shape."""
+    """The problem with its least amplitude lowered to what the least demanding shape would need."""
     amplitude = problem.gait.amplitude
     amplitude = replace(amplitude, low=SQUARE * amplitude.low)
     return replace(problem, gait=replace(problem.gait, amplitude=amplitude))
 
 
 def _families(gait: GaitBounds, on_the_way: tuple[int, ...] | None) -> list[GaitBounds]:
-    """The family that is asked for, after those on the way to it."""
+    """The intermediate families, then the requested one."""
     before = _ON_THE_WAY[gait.shape] if on_the_way is None else on_the_way
     if gait.shape == "fourier":
         before = tuple(n for n in before if n < gait.harmonics)
@@ -201,7 +200,7 @@ def _families(gait: GaitBounds, on_the_way: tuple[int, ...] | None) -> list[Gait
 
 
 def _next(problem: Problem, before: Finds, progress: Progress) -> Finds:
-    """Solve in this problem's family from the optima of the one before."""
+    """Solve in this problem's family, warm-started from the optima of the previous one."""
     settings = settings_of(problem, decisions(problem))
     starts: list[tuple[Setting, int, Gait, float]] = []
     for old, one in distinct(before.good)[:_HANDED_ON]:
@@ -228,13 +227,13 @@ def _next(problem: Problem, before: Finds, progress: Progress) -> Finds:
 
 _SHAPES, _TRIANGLES, _PHASES = 1500, 100, 48
 _CONSIDERED = 5
-"""Harmonics of the shapes: what more of them add is left to the solver."""
+"""Harmonics of the random shapes; higher ones are left to the solver."""
 _SHAPES_APART = 0.25
 
 
 @dataclass(frozen=True)
 class _Shapes:
-    """K shapes at random, as large as the limits on angle and rate allow or smaller.
+    """K random shapes, at most as large as the limits on angle and rate allow.
 
     period, offset, share (K,); sines, cosines (n, K), rad
     """
@@ -265,9 +264,9 @@ class _Shapes:
 def _scan_shapes(
     setting: Setting, signs: tuple[int, ...], most: int
 ) -> list[tuple[int, FourierGait, float]]:
-    """Direction (+1 forward, -1 backward), gait and share of the ballast of the best few shapes of
-    many that keep the limits but perhaps for the torque's, best first; where none has the least
-    amplitude, of those that come nearest."""
+    """Direction (+1 forward, -1 backward), gait and ballast share of the best few random shapes
+    within all limits but perhaps the torque's, best first; if none reaches the least amplitude, of
+    those closest to it."""
     gait = setting.problem.gait
     harmonics = _CONSIDERED if gait.shape == "free" else min(gait.harmonics, _CONSIDERED)
     if decisions(setting.problem).empty or harmonics < 2:
@@ -300,7 +299,7 @@ def _random_shapes(setting: Setting, n: int) -> _Shapes:
     order = np.arange(1, n + 1)[:, None]
     sines, cosines = (rng.normal(0, 0.5, (n, _SHAPES)) / order for _ in range(2))
     sines[0], cosines[0] = 1.0, 0.0
-    # Triangles, the shape that needs the least rate for its first harmonic.
+    # Triangle waves, which need the least rate for their first harmonic.
     sines[:, :_TRIANGLES], cosines[:, :_TRIANGLES] = _triangle(n)[:, None], 0.0
     theta = np.linspace(0, 2 * math.pi, 4 * _PHASES)
     swing, rate = (np.abs(_waves(sines, cosines, theta, k)).max(axis=0) for k in range(2))
@@ -311,7 +310,7 @@ def _random_shapes(setting: Setting, n: int) -> _Shapes:
 
 
 def _triangle(n: int) -> Array:
-    """Its harmonics' sines, the first 1."""
+    """Sine coefficients of a triangle wave, the first equal to 1."""
     order = np.arange(1, n + 1)
     return np.sin(order * math.pi / 2) / order**2
 
@@ -324,7 +323,7 @@ def _waves(sines: Array, cosines: Array, theta: Array, order: int) -> Array:
 
 
 def _unlike(merit: Array, shapes: Array, most: int) -> list[int]:
-    """Indices of the best that are unlike better ones, best first."""
+    """Indices of the best shapes that differ from better ones, best first."""
     merit, chosen = merit.copy(), []
     while len(chosen) < most and merit.max() > 0:
         best = int(merit.argmax())

@@ -1,8 +1,8 @@
-"""Why no gait respects all limits, and how far each must change, in sentences.
+"""Why no gait satisfies all limits, and by how much each must change, in sentences.
 
 Angle, rate and singularity bound the amplitude alone, so their conflicts with the gait's bounds
-are known exactly. For the torque the smallest peak that any allowed gait has is sought, and for
-a turn the nearest that any allowed gait makes: by a scan whose resolution is reported, and climbs.
+are known exactly. For the torque, the gait of least peak torque is searched for; for a turn, the
+gait closest to it. Both searches are a scan, whose resolution is reported, followed by climbs.
 """
 
 import math
@@ -29,21 +29,21 @@ from rr_opt.sqp import FEASIBLE
 
 _ROUNDING = 1 + 1e-9
 _ENOUGH = 1 + 1e-5
-"""What a limit is raised to beyond the least that was found."""
+"""Factor applied to the least feasible value of a limit that was found."""
 NODES = 768
 _NEAR = 0.01
 _OPPOSITE = {"forward": "backward", "backward": "forward"}
 
 
 def posture_clashes(problem: Problem, box: Decisions) -> str:
-    """Why no gait keeps angle, rate and singularity; empty if some do."""
+    """Why no gait satisfies angle, rate and singularity; empty if some do."""
     return _told(_angle(problem) + _rate(problem) + _ballast(box))
 
 
 @dataclass(frozen=True)
 class Attempt:
-    """The gait (4,) that comes nearest to what is asked, on a setting; by how much it misses it;
-    and how many gaits were scanned for it."""
+    """The gait (4,) closest to the request in a setting; its violation; and how many gaits were
+    scanned to find it."""
 
     setting: Setting
     gait: Array
@@ -52,7 +52,7 @@ class Attempt:
 
 
 def attempt(terrains: list[Terrain]) -> Attempt:
-    """The best of all gaits, or the first that misses nothing."""
+    """The gait with the least violation, or the first that has none."""
     best, count = Attempt(terrains[0].setting, np.zeros(4), math.inf, 0), 0
     for terrain in terrains:
         points, more = tops(terrain, THOROUGH)
@@ -72,8 +72,8 @@ def _climbed(terrain: Terrain, start: Array, nodes: int) -> Attempt:
 
 
 def clash(problem: Problem, box: Decisions, settings: list[Setting]) -> str | Attempt:
-    """Why no gait that keeps angle, rate and singularity keeps the other limits too and turns as
-    asked; or one that does."""
+    """Why no gait within angle, rate and singularity satisfies the other limits and the turn; or a
+    gait that does."""
     way = WAYS[problem.direction]
 
     def seek(rows: tuple[str, ...], aim: Aim, way: int) -> Attempt:
@@ -100,12 +100,12 @@ def clash(problem: Problem, box: Decisions, settings: list[Setting]) -> str | At
 
 
 SURE = 2e-3
-"""The search is good to a few parts in ten thousand; what is reported as feasible, is."""
+"""Relative safety margin of reported values; the search is good to a few parts in 10 000."""
 
 
 @dataclass(frozen=True)
 class Nearest:
-    """The gait that comes nearest to a turn within all limits, and what it does.
+    """The gait closest to a turn within all limits, and its motion.
 
     speed    signed, m/s
     torque   largest, N m; share: of the ballast's range
@@ -123,7 +123,7 @@ class Nearest:
 
 
 def nearest_turn(problem: Problem, box: Decisions) -> Nearest:
-    """What the gait does that comes nearest to the turn within all other limits."""
+    """The motion of the gait closest to the turn within all other limits."""
     way, rows = WAYS[problem.direction], ("torque", "economy", "direction")
     settings = settings_of(problem, box)
     return _nearest(attempt([Terrain(o, scanned(o, box), way, rows, "turn") for o in settings]))
@@ -244,7 +244,7 @@ def _rate(problem: Problem) -> list[str]:
 
 
 def _up(value: float) -> str:
-    """Six digits, rounded up: the limit as printed is then enough."""
+    """Six digits, rounded up, so that the limit as printed is sufficient."""
     return _rounded(value, math.ceil)
 
 
@@ -255,7 +255,7 @@ def _down(value: float) -> str:
 
 def _rounded(value: float, towards: Callable[[float], int]) -> str:
     step = 10.0 ** (math.floor(math.log10(abs(value))) - 5) if value else 1.0
-    # What is exact to rounding stays as it is: 2.7 is not to become 2.70001.
+    # A value that is exact to within rounding is not rounded: 2.7 must not become 2.70001.
     nearest = round(value / step)
     exact = abs(value / step - nearest) < 1e-6
     return f"{(nearest if exact else towards(value / step)) * step:.6g}"
@@ -284,7 +284,7 @@ def _nearest(found: Attempt) -> Nearest:
 
 
 def _turn(problem: Problem, box: Decisions, found: Attempt, other: Attempt) -> list[str]:
-    """Why no gait turns as asked; other: the nearest that drives the other way."""
+    """Why no gait makes the turn; other: the closest one that drives the other way."""
     turn, nearest = problem.turn or Turn(), _nearest(found)
     gait, held = nearest.gait, held_by(problem, box, nearest)
     held_text = listed(held) or "no limit: the robot itself turns no closer to it"
@@ -301,7 +301,7 @@ def _turn(problem: Problem, box: Decisions, found: Attempt, other: Attempt) -> l
 
 
 def held_by(problem: Problem, box: Decisions, nearest: Nearest) -> list[str]:
-    """The limits and bounds at which a gait lies, in words."""
+    """The active limits and bounds of a gait, in words."""
     gait, limits = nearest.gait, problem.limits
     free = reach_before_singularity(problem.robot, limits.singularity)
     held = [
@@ -334,7 +334,7 @@ def held_by(problem: Problem, box: Decisions, nearest: Nearest) -> list[str]:
 
 
 def _asked_text(turn: Turn) -> str:
-    """What is asked, in words."""
+    """The request, in words."""
     parts = []
     if turn.curvature != ANY:
         parts.append(_radius(_binding(turn.curvature), not turn.curvature.fixed))
@@ -348,7 +348,7 @@ def _asked_text(turn: Turn) -> str:
 
 
 def _reached_text(turn: Turn, nearest: Nearest) -> str:
-    """The same of what can be reached, rounded away from what cannot."""
+    """The closest reachable value in words, rounded to the feasible side."""
     parts = []
     for name, asked in (
         ("curvature", turn.curvature),
@@ -358,7 +358,7 @@ def _reached_text(turn: Turn, nearest: Nearest) -> str:
         if asked == ANY:
             continue
         value = getattr(nearest, name)
-        # Nearer to the asked value is infeasible: a little further away is reported.
+        # Rounding towards the request would be infeasible.
         value *= 1 - math.copysign(SURE, (asked.clip(value) - value) * value)
         text = {
             "curvature": _radius(value, False),
@@ -375,7 +375,7 @@ def _side(value: float) -> str:
 
 
 def _binding(asked: Interval) -> float:
-    """The end of an interval that asks for something: a finite one, the nearest to straight."""
+    """The binding end of an interval: a finite one, the nearest to straight."""
     ends = [end for end in (asked.low, asked.high) if math.isfinite(end)]
     return min(ends, key=abs)
 

@@ -1,9 +1,9 @@
-"""Speed and peak torque of many gaits at once, coarsely: where multiple shooting should start.
+"""Speed and peak torque of many gaits at once on a coarse grid: starts for multiple shooting.
 
-The steady cycle of K gaits over N phases in whole-array arithmetic. Where friction is viscous
-vdot = a v + b, so each step of an integrator is an affine map of v, known for all steps at once;
-the cycle closes at the fixed point of their product. Other friction is replaced by lines in v,
-and those again, until the cycle stands still.
+The steady cycle of K gaits over N phases in whole-array arithmetic. With viscous friction
+vdot = a v + b, so each integrator step is an affine map of v, known for all steps in advance; the
+cycle closes at the fixed point of their composition. Other friction is linearised in v, repeatedly,
+until the cycle converges.
 """
 
 from __future__ import annotations
@@ -30,12 +30,12 @@ _FLAGS = (
     *("-fno-trapping-math", "-fPIC", "-shared"),
 )
 _PAYS = 500_000
-"""Gaits times phases after which to compile takes no longer than has been taken without."""
+"""Gaits times phases beyond which compiling pays off."""
 
 
 def _by_code(loop: ctypes.CDLL, gaits: Array, p: Array, nodes: int) -> Cycles:
-    """Steady cycles by the compiled loop over the gaits, some at a time in the processor's vector
-    registers; sines, with viscous friction only.
+    """Steady cycles by the compiled, vectorised loop over the gaits; sines with viscous friction
+    only.
 
     gaits: amplitude, period, offset, (3 or more, K); p: parameters (K, n)
     """
@@ -62,13 +62,13 @@ def _waves(nodes: int) -> tuple[Array, Array]:
 
 _SECANTS, _TANGENTS = 4, 10
 _TOO_SLOW, _SETTLED = 1e-9, 1e-7  # m/s
-# Gaits times phases in one go: some arrays of this length fit the processor's cache.
+# Gaits times phases per batch: a few arrays of this length fit the processor's cache.
 _BLOCK = 4096
 
 
 @dataclass(frozen=True)
 class Cycles:
-    """Steady cycles of K gaits at N phases: what a multiple-shooting start needs.
+    """Steady cycles of K gaits at N phases: the data for a multiple-shooting start.
 
     speed (K,) signed, m/s; torque (N, K) N m; v, chi (N, K) m/s, rad; turn (K,) rad;
     mean (4, K) V and E as in `multiple_shooting`.
@@ -88,7 +88,7 @@ class Cycles:
 
 
 class Landscape:
-    """The gaits of one robot, with its ballast running over an interval."""
+    """The gaits of one robot, with its ballast variable over an interval."""
 
     def __init__(self, dynamics: Dynamics, robot: Robot, by: By, loads: Loads, ballast: Interval):
         functions = _array_functions(dynamics.effects)
@@ -110,7 +110,7 @@ class Landscape:
                 column[:] = values
             return _by_code(loop, gaits, p, nodes)
         blocks = math.ceil(count * nodes / _BLOCK)
-        # A gait that does not settle comes out as inf or nan, which is the caller's to see.
+        # A gait that does not converge gives inf or nan; the caller checks.
         with np.errstate(all="ignore"):
             parts = [self._block(part, nodes) for part in np.array_split(gaits, blocks, axis=1)]
         if len(parts) == 1:
@@ -178,9 +178,9 @@ class Landscape:
     def _close_by_lines(self, angle: tuple[Array, ...], p: list, h: Array) -> Array:
         """v at the nodes of the cycle, for friction that is not viscous.
 
-        vdot is replaced by a line in v at every phase and the cycle closed, again and again: by
-        lines through v = 0 first, which settle from anywhere but slowly, then by tangents
-        (Newton-Kantorovich). Where the tangents have not settled the last of the former stand.
+        vdot is linearised in v at every phase and the cycle closed, repeatedly: first by secants
+        through v = 0, which converge slowly but from anywhere, then by tangents
+        (Newton-Kantorovich). Where the tangents do not converge, the last secant iterate is kept.
         """
         at_rest = self._tangent(np.zeros_like(angle[0]), *angle, *p)[0]
         v = np.zeros_like(angle[0])
@@ -211,9 +211,9 @@ def _angle(gaits: Array, phases: int) -> tuple[Array, Array, Array]:
 
 @lru_cache
 def _array_functions(effects: tuple[str, ...]) -> tuple[ArrayFunction, ...]:
-    """Over arrays: vdot, w, side of (v, phi, dphi, ddphi, p); torque of the same; and, of
-    (phi, dphi, ddphi, p), the gain on v and the shift of vdot, w and side where those are affine;
-    vdot and its slope in v of (v, phi, dphi, ddphi, p)."""
+    """Over arrays: vdot, w, side of (v, phi, dphi, ddphi, p); torque of the same; of (phi, dphi,
+    ddphi, p) the gain on v and the shift of vdot, w and side, where those are affine in v; vdot and
+    its slope in v, of (v, phi, dphi, ddphi, p)."""
     motion = derive(effects).motion
     names = motion.name_in()
     return (
@@ -231,7 +231,7 @@ def _grip(effects: tuple[str, ...]) -> ArrayFunction:
 
 @lru_cache
 def _code(effects: tuple[str, ...]) -> WhenItPays[ctypes.CDLL]:
-    """The loop over the gaits, by gaits times phases.
+    """The compiled loop over the gaits, once gaits times phases make it pay.
 
     affine  (phi, dphi, ddphi, p) -> gain on v and shift of vdot, w and side, one after the other
     torque  (v, phi, dphi, ddphi, p) -> torque
@@ -270,14 +270,14 @@ def _affine(motion: ca.Function) -> ca.Function:
 
 
 def _close_affine(a: Array, b: Array, h: Array) -> Array:
-    """v at nodes and midpoints of the periodic solution of v' = a v + b, given there.
+    """v at nodes and midpoints of the periodic solution of v' = a v + b, with a and b given there.
 
     Hermite-Simpson steps (Lobatto IIIA, order 4): with f = a v + b,
 
         v_mid = (v_0 + v_1)/2 + h/8 (f_0 - f_1),    v_1 = v_0 + h/6 (f_0 + 4 f_mid + f_1)
 
-    solved for v_1. Explicit steps of that order cost as much and run away where dry friction
-    makes a large.
+    solved for v_1. Explicit steps of the same order cost as much and are unstable where dry
+    friction makes a large.
     """
     a0, am, a1 = a[0::2], a[1::2], np.roll(a[0::2], -1, axis=0)
     b0, bm, b1 = b[0::2], b[1::2], np.roll(b[0::2], -1, axis=0)
@@ -293,7 +293,7 @@ def _close_affine(a: Array, b: Array, h: Array) -> Array:
 
 def _periodic(gain: Array, shift: Array) -> Array:
     """The periodic solution (N, K) of v_k+1 = gain_k v_k + shift_k."""
-    # Plain numbers run ten times faster than arrays of one.
+    # Python floats are ten times faster here than one-element arrays.
     single = gain.shape[1] == 1
     gains, shifts = (x[:, 0].tolist() if single else list(x) for x in (gain, shift))
     product, total = 1.0, 0.0
@@ -338,8 +338,8 @@ _NEWTON = 4
 def mean_positive(x: Array) -> Array:
     """Mean of the positive part of periodic functions (N, K), (K,).
 
-    Between two phases the function is the polynomial through six, integrated from its zero on
-    where it changes sign. At the zero it vanishes, so the mean is as smooth as the function.
+    Between two phases the function is the polynomial through six, integrated from its zero where it
+    changes sign. The integrand vanishes there, so the mean is as smooth as the function.
     """
     n = len(x)
     near = np.array([np.roll(x, -k, axis=0) for k in _NEAR])

@@ -1,9 +1,9 @@
 """The fastest gait of a problem: find the optima of its family, rank them, refine the best.
 
-Local optima are many, some on limits and some at the edge of the singular posture. The scan
-finds their basins; multiple shooting finds each optimum; they are ranked by feasibility,
-success and speed, in this order. The winner is solved again on a mesh whose accuracy was
-checked and whose nodes lie where the torque peaks, so that limits hold between the nodes too.
+There are many local optima, some on limits and some near the singular posture. The scan finds
+their basins; multiple shooting finds each optimum; they are ranked by feasibility, convergence and
+speed, in this order. The winner is re-solved on a mesh of verified accuracy with nodes where the
+torque peaks, so that limits hold between the nodes too.
 """
 
 from dataclasses import dataclass, replace
@@ -27,21 +27,21 @@ SAME_SPEED = 1e-5
 
 
 COMPARED = (3, 5)
-"""Numbers of harmonics that are compared with the sine and the free gait."""
+"""Numbers of harmonics compared with the sine and the free gait."""
 
 
 @dataclass(frozen=True)
 class Optimum:
     """The answer to a problem.
 
-    problem     about what the joint does, as `best` and `optima` are
+    problem     in terms of the joint motion, as are `best` and `optima`
     best        the winner; None unless status is OPTIMAL
     robot       the robot with the winner's inertia ratio
     ratio       its J20/J10, in the problem's definition (about P if the problem has none)
     optima      the distinct optima found that are at least half as fast as the best, best first;
                 ties are those within SAME_SPEED of the first
-    sideways    the best gait sits where forward turns into backward: its mean velocity is at
-                right angles to its mean heading, and its direction a matter of definition
+    sideways    the best gait is on the boundary between forward and backward: its mean velocity is
+                perpendicular to its mean heading, so its direction is a matter of definition
     starts      starts solved; iterations and failures over all of them
     intervals   mesh of the winner
     sine        speed of the best sine, where the problem asks for another shape, m/s
@@ -62,7 +62,7 @@ class Optimum:
 
     @property
     def sideways(self) -> bool:
-        """See above."""
+        """Whether the best gait drives sideways; see the class."""
         return self.best is not None and abs(self.best.prices["direction"]) > 1e-3
 
     @property
@@ -78,8 +78,8 @@ def maximize_speed(problem: Problem, progress: Progress = lambda _: None) -> Opt
     """Solve a gait problem.
 
     Returns an Optimum whose status is OPTIMAL, INFEASIBLE (the message names the limits that
-    clash and how far each must give) or NOT_CONVERGED; never a failure dressed as a solution.
-    Raises InputError for a robot that has no steady cycle to find.
+    conflict and by how much each must change) or NOT_CONVERGED; a failure is never returned as a
+    solution. Raises InputError for a robot without a steady cycle.
     """
     require_friction(problem.robot)
     _require_speed(problem)
@@ -92,8 +92,8 @@ def maximize_speed(problem: Problem, progress: Progress = lambda _: None) -> Opt
 
 
 def resumed(optimum: Optimum, gait: SineGait, ratio: float | None) -> Optimum:
-    """The optimum, or the better one that a climb leads to from a sine that was found elsewhere;
-    ratio: its J20/J10, None: of the robot as it is."""
+    """The optimum, or a better one reached from a sine that was found elsewhere; ratio: its
+    J20/J10, None: the robot as it is."""
     problem = optimum.problem
     if problem.gait.shape != "sine":
         return optimum
@@ -115,7 +115,7 @@ def resumed(optimum: Optimum, gait: SineGait, ratio: float | None) -> Optimum:
 
 
 def _require_speed(problem: Problem) -> None:
-    """Raise InputError where energy counts and the optimiser does not know it."""
+    """Raise InputError for an energy criterion that the optimiser cannot handle."""
     if problem.economy and problem.gait.shape != "sine":
         raise InputError(
             f"Read a `{problem.gait.shape}` gait with `objective: cost_of_transport` or one of the "
@@ -153,7 +153,7 @@ def _answer(problem: Problem, finds: Finds, progress: Progress) -> Optimum:
             continue
         good = distinct([(setting, refined), *good[1:]])
         others = good[1:]
-        # A coarse mesh can put a close second first: it is refined too before the choice falls.
+        # On a coarse mesh a runner-up may rank first: refine it too before choosing.
         if others and others[0][1].merit > refined.merit:
             good = sorted(good, key=lambda pair: pair[1].rank)
             continue

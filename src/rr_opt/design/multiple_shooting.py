@@ -1,33 +1,33 @@
 """The gait problem as a nonlinear program: multiple shooting over one period.
 
-Phase theta in [0, 1) counts the period. At every node theta_k the speed v_k of axle 1 and the
+The phase theta runs over [0, 1) in a period. At every node theta_k the speed v_k of axle 1 and the
 heading chi_k are unknowns, and a Runge-Kutta step must carry each node to the next and the last
-to the first. chi = psi - theta * turn is the heading seen from a frame that turns steadily with
-the gait, `turn` being the heading gained per period; so chi is periodic, straight gaits are no
+to the first. chi = psi - theta * turn is the heading in a frame that turns steadily with the
+gait, `turn` being the heading gained per period; so chi is periodic, straight gaits need no
 special case, and the average velocity
 
     V = integral over theta of Rot(chi) (v, side)
 
-is the mean of P's velocity in that frame. Its length is the speed along the mean circle,
-R |turn|/T: with p the position of P from the centre, seen from the turning frame, V is the mean
-of dp/dt + Omega x p, and the first term vanishes as p is periodic. It depends neither on the
-phase at which the period is cut nor, unlike R, on a division by turn.
+is the mean of P's velocity in that frame. Its magnitude is the speed along the mean circle,
+R |turn|/T: with p the position of P from the centre in the turning frame, V is the mean of
+dp/dt + Omega x p, and the first term vanishes as p is periodic. It does not depend on the phase
+at which the period starts, nor, unlike R, involve a division by turn.
 
 Derivatives. V and the mean heading vector E are unknowns of their own, tied to the sums over
-the intervals by linear rows. The Lagrangian is then a sum of terms that each know one interval
+the intervals by linear rows. The Lagrangian is then a sum of terms that each depend on one interval
 and the few decisions, so Jacobian and Hessian are assembled from one small function mapped over
-the intervals. (Left to itself, CasADi colours the whole graph and takes a hundred times longer.)
+the intervals. (CasADi by default colours the whole graph and takes a hundred times longer.)
 
-Shapes whose angle is more than one formula add states and controls at every node, which an
-interval carries on in the same way.
+Shapes whose angle is not a single formula add states and controls at every node, which an
+interval propagates in the same way.
 
 Robot, limits and node phases are parameters: one compiled program serves every problem of its
 kind.
 
-An interval's functions are compiled where a C compiler is at hand and it pays. CasADi's virtual
-machine takes some 4 ns an operation, and an interval with its derivatives has some 30 000. Compiled
-they take a fifth of that, even unoptimised, as here: a compiler that optimises takes ten seconds
-over them instead of one, for code that is less than twice as fast.
+An interval's functions are compiled where a C compiler is available and it pays. CasADi's virtual
+machine takes some 4 ns per operation, and an interval with its derivatives has some 30 000.
+Compiled without optimisation, as here, they take a fifth of that; optimising takes the compiler
+ten seconds instead of one, for code that is less than twice as fast.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ from rr_opt.motion.dynamics import Dynamics, derive
 _IPOPT = {
     "print_time": False,
     "error_on_fail": False,
-    # Prices of the program's parameters are not asked for, and cost more than a solve.
+    # Multipliers of the program's parameters are not needed, and cost more than a solve.
     "calc_lam_p": False,
     "no_nlp_grad": True,
     "ipopt.print_level": 0,
@@ -56,8 +56,8 @@ _IPOPT = {
     "ipopt.tol": 1e-9,
     "ipopt.max_iter": 200,
     "ipopt.max_cpu_time": 10.0,
-    # Starts are steady cycles, near an optimum and often on a limit: IPOPT shall not push them
-    # far inside, nor begin with a barrier that does.
+    # Starts are steady cycles, near an optimum and often on a limit: keep IPOPT from pushing them
+    # far inside, and from starting with a large barrier.
     "ipopt.mu_init": 1e-5,
     "ipopt.bound_push": 1e-6,
     "ipopt.bound_frac": 1e-6,
@@ -69,12 +69,12 @@ _IPOPT = {
 
 _FLAGS = ("-O0", "-fPIC", "-shared")
 _FEW, _PAYS = 500, 13_000
-"""Evaluations of intervals after which it is seen whether the functions were compiled before, and
-after which to compile them takes no longer than has been taken without."""
+"""Interval evaluations after which the cache of compiled functions is consulted, and after which
+compiling them pays off."""
 
 
 class Functions(NamedTuple):
-    """Of an interval: its values, their Jacobian and their weighted Hessian."""
+    """Functions of an interval: values, their Jacobian and their weighted Hessian."""
 
     step: ca.Function
     jacobian: ca.Function
@@ -86,8 +86,8 @@ class IntervalTerms:
 
     functions  step (local, theta, width, looks, z, fixed) -> states at the end, integrals, path
                rows; its Jacobian and, weighted, Hessian in (local, z)
-    compiled   the same as machine code, by number of evaluations
-    slopes, curves   their sparsity; they are given dense
+    compiled   machine code, once the number of evaluations makes it pay
+    slopes, curves   their sparsity; the functions return them dense
     period     the rows of a whole period
     shared     length of `fixed`: robot, loads and ballast range
     """
@@ -162,7 +162,7 @@ class _Interval:
         return at, (phi, slope / T, bend / T**2)
 
     def motion(self, fraction: float, v: ca.SX) -> Any:
-        """vdot, w, side, torque and what is integrated, at a fraction of the interval."""
+        """vdot, w, side, torque and the integrands, at a fraction of the interval."""
         at, angle = self.angle(fraction)
         moved = self.dynamics.motion(v, *angle, self.values)
         return *moved, self.shape.integrands(angle[0], at)
@@ -188,8 +188,8 @@ class _Interval:
         return y
 
     def along(self, loads: tuple[str, ...], end: ca.SX, places: list[ca.SX]) -> list[ca.SX]:
-        """Each load at the node, at places within the interval and, where it jumps at nodes, at the
-        end."""
+        """Each load at the node, at the given places within the interval and, where it jumps at
+        nodes, at the end."""
         start = ca.vertcat(self.here["v"], self.here["chi"])
         v0, v1 = start[0], end[0]
         d0, d1 = (self.width * self.rhs(at, y)[0] for at, y in ((0.0, start), (1.0, end)))
@@ -277,12 +277,12 @@ class Shooting:
 
     @cached_property
     def solver(self) -> ca.Function:
-        """The solver by CasADi's virtual machine."""
+        """The solver on CasADi's virtual machine."""
         return _Program(self.layout, self.terms, self.terms.functions).solver()
 
     @property
     def fastest(self) -> ca.Function:
-        """The same of machine code, where there is some."""
+        """The solver as machine code, where available."""
         return self.solver if self.terms.compiled.code(0) is None else self._compiled
 
     @cached_property
@@ -301,7 +301,7 @@ def shooting(
     substeps: int = 1,
     loads: tuple[str, ...] = ("torque",),
 ) -> Shooting:
-    """The program for robots with these effects and this way of changing the inertia."""
+    """The program for robots with these effects and this means of changing the inertia."""
     terms = _terms(effects, by, shape, looks, substeps, loads)
     return Shooting(ProgramLayout(shape, intervals, looks, loads), terms)
 
@@ -332,7 +332,7 @@ class _Program:
         self.g = self._rows()
 
     def solver(self) -> ca.Function:
-        """The solver, with the derivatives given."""
+        """The solver, supplied with the derivatives."""
         x, p = self.x, self.p
         lam_f, lam_g = ca.MX.sym("lam_f"), ca.MX.sym("lam_g", self.g.numel())
         given = {
@@ -367,7 +367,7 @@ class _Program:
         )
 
     def _jacobian(self) -> ca.MX:
-        """Rows of `slopes` are the outputs of a step, its columns (local, decisions) for each
+        """The rows of `slopes` are the outputs of a step, its columns (local, decisions) for each
         interval in turn."""
         n, nm, wrt = self.layout.intervals, self.mean.numel(), self.wrt
         nl, outputs = len(self.layout.local), self.terms.slopes.size1()
@@ -403,7 +403,7 @@ class _Program:
         return ca.vertcat(*rows)
 
     def _hessian(self, lam_f: ca.MX, lam_g: ca.MX) -> ca.MX:
-        """Of the Lagrangian; only its upper triangle is complete."""
+        """Hessian of the Lagrangian; only its upper triangle is complete."""
         n, nm, wrt = self.layout.intervals, self.mean.numel(), self.wrt
         nl, nz, tied = len(self.layout.local), self.z.numel(), self.states * n
         limits = tied + nm + len(self.layout.limits)

@@ -1,12 +1,12 @@
-"""The gait that is fast on most of the robots that a file may mean: by expansion to second order.
+"""The gait that is fast across the robot's uncertainty: by second-order expansion.
 
-The logarithms of what is uncertain are normal and independent. Along each of them the speed is the
-parabola through its values at the nominal robot and one standard deviation to either side, which
-gives mean, variance and skewness; Cornish and Fisher's expansion makes of these the speed that
-a share of the robots reaches. The torque's limit is kept by as many: all of the torque is raised by
-what a high mean of it is. What two do together beyond the sum is left out. So the speed is a smooth
-function of the gait, and is climbed as the nominal one is. Robots drawn at random say how far the
-expansion holds.
+The logarithms of the uncertain parameters are normal and independent. Along each of them the speed
+is the parabola through its values at the nominal robot and at +-1 standard deviation, which gives
+mean, variance and skewness; the Cornish-Fisher expansion turns these into a quantile of the
+speed. The torque limit is kept by the same share of robots: the torque is scaled by the quantile of
+a high-power mean of it. Interactions between parameters are neglected. So the speed is a smooth
+function of the gait, and is climbed as the nominal one is. Robots drawn at random show how accurate
+the expansion is.
 """
 
 import math
@@ -27,17 +27,17 @@ from rr_opt.model.robot import Robot
 from rr_opt.motion.steady_cycle import steady_cycle
 
 RELIABLE, _NORMAL = 0.95, 1.6448536269514722
-"""The share of the robots that reach a speed, and how many standard deviations from the mean of a
-normal distribution such a share is."""
+"""The share of robots that reach a speed, and the corresponding number of standard deviations of a
+normal distribution."""
 _POWER = 16
-"""Of the mean that stands for the peak of the torque."""
+"""Power of the mean that stands for the peak torque."""
 
 
 @dataclass(frozen=True)
 class RobustGait:
-    """The gait of the joint that goes fastest on the worst but 5 % of the robots.
+    """The gait of greatest 5 % quantile of speed over the robots.
 
-    speed     that 95 % of the robots reach with it, m/s, negative backward, as the expansion has it
+    speed     reached by 95 % of the robots, m/s, negative backward, by the expansion
     nominal   its speed on the nominal robot
     robot     the nominal robot, with the ratio that goes with the gait
     """
@@ -49,8 +49,8 @@ class RobustGait:
 
 
 class _Spread(Landscape):
-    """The gaits of robots that are not quite known: speed is that which 95 % of them reach, 0 where
-    they do not agree on the way; torque is what 95 % of them stay below."""
+    """The gaits of uncertain robots: 95 % of them reach the speed, which is 0 where they differ in
+    direction; 95 % of them stay below the torque."""
 
     def __init__(self, setting: Setting, spreads: Spreads):
         problem, choice = setting.problem, setting.problem.inertia_ratio
@@ -76,7 +76,7 @@ class _Spread(Landscape):
             self._off = None
 
     def cycles(self, gaits: Array, nodes: int) -> Cycles:
-        """As of a Landscape."""
+        """As for a Landscape, but quantiles."""
         middle = self._shifted(gaits, nodes, None)
         pairs = [
             [self._shifted(gaits, nodes, (which, math.exp(sign * spread))) for sign in (-1, 1)]
@@ -91,13 +91,13 @@ class _Spread(Landscape):
 
 
 def _load(cycles: Cycles) -> Array:
-    """What grows with the peak of the torque, and has no kink where one peak passes another."""
+    """A smooth measure of the peak torque, without kinks where one peak overtakes another."""
     return ((cycles.torque**_POWER).mean(axis=0) + 1e-300) ** (1 / _POWER)
 
 
 def _quantile(middle: Array, ends: Array, side: int) -> Array:
-    """What 95 % are above (side -1) or below (1), (K,), from the nominal value and those one
-    standard deviation to either side of it, (n, 2, K)."""
+    """The value that 95 % are above (side -1) or below (1), (K,), from the nominal value and those
+    at +-1 standard deviation, (n, 2, K)."""
     low, high = ends[:, 0], ends[:, 1]
     slopes, bends = (high - low) / 2, high + low - 2 * middle
     variance = (slopes**2 + bends**2 / 2).sum(axis=0)
@@ -108,8 +108,8 @@ def _quantile(middle: Array, ends: Array, side: int) -> Array:
 
 
 def robust_gait(optimum: Optimum, spreads: Spreads) -> RobustGait | None:
-    """The robust gait of the problem that an optimum solves; None where no gait that most of the
-    robots can do was found."""
+    """The robust gait of the problem that an optimum solves; None if no gait was found that most of
+    the robots can perform."""
     problem: Problem = optimum.problem
     box, way = decisions(problem), WAYS[problem.direction]
     best = None

@@ -1,15 +1,15 @@
-"""Tops: scan the whole box coarsely, climb from every promising point.
+"""Multistart: scan the whole box coarsely, climb from every promising point.
 
-Gaits that turn as asked are a thin layer of the box, which points all over it miss. So along lines
-of offsets the places are sought where a row crosses the end of its interval. Climbs from there
-weigh the turn twice: lightly, as a strict weight makes of the layer a ridge along which climbers
-hardly move, and strictly, as with a light one they would rather go fast beside the turn.
+Gaits that make a requested turn are a thin layer of the box, which scattered points miss. So along
+lines in the offset, the points are sought where a row crosses an end of its interval. Climbs from
+there penalise the turn twice: lightly first, as a strict penalty turns the layer into a ridge along
+which climbers hardly move; then strictly, as a light one lets them go fast off the turn.
 
-Each iteration of a climb lays a small stencil around every climber, evaluates all stencils in one
+Each iteration of a climb places a small stencil around every climber, evaluates all stencils in one
 call, and fits one quadratic to the speed and one to each row: the torque, and the turn if one is
-asked for. What is maximised is the speed less a penalty for rows outside their intervals: that has
-a kink where an interval ends, often right where the optimum is, so it is formed from the quadratics
-and not fitted itself.
+requested. The objective is the speed less a penalty for rows outside their intervals. It has a kink
+at an interval's end, often right at the optimum, so it is computed from the fitted quadratics
+rather than fitted itself.
 """
 
 import math
@@ -28,8 +28,8 @@ from rr_opt.sqp import stencil
 
 @dataclass(frozen=True)
 class Effort:
-    """How long to climb: at most `iterations`, with stencils of the `first` size until
-    nothing is gained with stencils of the `last`."""
+    """How long to climb: at most `iterations`, with stencils from the `first` size down to the
+    `last`."""
 
     iterations: int
     first: float
@@ -37,27 +37,27 @@ class Effort:
 
 
 _NODES, _FINER_NODES = 24, 48
-"""Phases of the scan and its climb, then of the climb that goes on from their tops: near the
-singular posture the coarse landscape has ripples that hold climbers back."""
+"""Phases of the scan and its climb, then of the climb that continues from their tops: near the
+singular posture the coarse landscape has spurious local optima."""
 _POINTS = {0: 1, 1: 128, 2: 512, 3: 1500, 4: 3000}
 _CLIMBERS = {0: 1, 1: 6, 2: 10, 3: 16, 4: 20}
-"""By how many decisions are free."""
+"""Climbers by number of free decisions."""
 _APART = 0.2
 _ROUGH = Effort(iterations=8, first=0.08, last=0.02)
 _THOROUGH = Effort(iterations=25, first=0.04, last=0.006)
 _LIGHT, _STRICT = 3.0, 30.0
-"""Penalties for an excess of 1, in the largest speed there is."""
+"""Penalties for an excess of 1, in units of the largest speed."""
 _LINES, _LINE, _BISECTIONS = 300, 17, 5
 _OFF = 0.05
-"""Excess beyond which a top is on no way to a gait that keeps the rows."""
+"""Excess beyond which a top is not near a feasible gait."""
 _WORTH = 0.5
-"""A top so much slower than the best is no start."""
+"""Tops slower than this fraction of the best are not used as starts."""
 _MOST = 12
 
 
 @dataclass(frozen=True)
 class Patience:
-    """points   factor on the usual numbers of points and climbers"""
+    """points   factor on the default numbers of points and climbers"""
 
     points: int = 1
     climbers: int = 1
@@ -67,8 +67,8 @@ USUAL, THOROUGH = Patience(), Patience(16, 4)
 
 
 def tops(terrain: Terrain, patience: Patience = USUAL) -> tuple[Array, int]:
-    """Points (K, 4) of the unit box, best first, each at its own top as far as a coarse landscape
-    tells; and how many points were scanned."""
+    """Points (K, 4) of the unit box, best first, each a local optimum of the coarse landscape; and
+    how many points were scanned."""
     box, free = terrain.box, terrain.box.free
     coarse, finer = (partial(terrain.over, nodes=n) for n in (_NODES, _FINER_NODES))
     points = scan(box, patience.points * _POINTS[len(free)])
@@ -91,13 +91,13 @@ def tops(terrain: Terrain, patience: Patience = USUAL) -> tuple[Array, int]:
 
 
 def share_of(best: float, share: float) -> float:
-    """The value that is this share of the best, or as much worse where that is negative."""
+    """This share of the best value; as far below it where that is negative."""
     return best - (1 - share) * abs(best)
 
 
 def _unit(terrain: Terrain, seen: Array) -> float:
-    """The largest speed of gaits that keep the rows nearly, m/s: others can be a hundred times as
-    fast, and would drown what is to be distinguished."""
+    """The largest speed of nearly feasible gaits, m/s: infeasible ones can be a hundred times
+    faster, too coarse a scale."""
     if terrain.aim != "speed":
         return 1.0
     near = terrain.merit(1.0, 1.0, 1.0)(_still(seen)) >= -_OFF
@@ -105,14 +105,14 @@ def _unit(terrain: Terrain, seen: Array) -> float:
 
 
 def _still(seen: Array) -> Array:
-    """The same rows at no speed."""
+    """The same rows with zero speed."""
     return np.array([np.zeros_like(seen[0]), *seen[1:]])
 
 
 def scan(decisions: Decisions, count: int) -> Array:
-    """Points of the unit box along the free coordinates, stretched so that a sixth of them lies
-    on each pair of faces, where optima tend to be. Gaits at phi0 and -phi0 are mirror images, so
-    of a symmetric range one half is enough, if it does not matter which way they turn."""
+    """Points of the unit box along the free coordinates, stretched so that a sixth of them lies on
+    each pair of faces, where optima tend to be. Gaits at phi0 and -phi0 are mirror images, so half
+    of a symmetric range suffices unless the side of the turn matters."""
     free = decisions.free
     points = np.zeros((count, 4))
     if free:
@@ -123,7 +123,7 @@ def scan(decisions: Decisions, count: int) -> Array:
 
 
 def _peaks(points: Array, values: Array, most: int) -> list[int]:
-    """Indices of the best points that keep their distance from better ones, best first."""
+    """Indices of the best points that are not close to better ones, best first."""
     open_ = np.isfinite(values)
     chosen: list[int] = []
     while open_.any() and len(chosen) < most:
@@ -134,7 +134,7 @@ def _peaks(points: Array, values: Array, most: int) -> list[int]:
 
 
 def _crossings(points: Array, terrain: Terrain) -> Array:
-    """Points where a row of the turn comes to an end of its interval, on lines through these."""
+    """Points where a row of the turn crosses an end of its interval, on lines through these."""
     box = terrain.box
     asked = box.turn.intervals if box.turn else ()
     first = len(terrain.kept) - len(asked) + 1
@@ -169,7 +169,7 @@ _NEXT_TO = 0.06
 _SAMPLES = 256
 
 Surface = Callable[[Array], Array]
-"""What is climbed: points (K, 4) -> speed and R rows, (1 + R, K)."""
+"""The function to climb: points (K, 4) -> speed and R rows, (1 + R, K)."""
 
 
 def climb(
@@ -177,7 +177,7 @@ def climb(
 ) -> tuple[Array, Array]:
     """Climb from x (K, 4) along the free coordinates; the tops and their merit, best first.
 
-    A climber that comes next to a better one gives up: both are on their way to the same top.
+    A climber that comes close to a better one stops: both are heading for the same optimum.
     """
     best = merit(surface(x))
     d = len(free)
@@ -186,7 +186,7 @@ def climb(
     around_it, design = _stencil(d)
     size = np.full(len(x), effort.first)
     for _ in range(effort.iterations):
-        # Near a face the stencil moves inside; its quadratic still serves up to the face.
+        # Near a face the stencil is shifted inside; its quadratic is still valid up to the face.
         centre = np.clip(x[:, free], size[:, None], 1 - size[:, None])
         trial = np.repeat(x[:, None, :], len(around_it) + 1, axis=1)
         trial[:, :-1, free] = centre[:, None, :] + size[:, None, None] * around_it
@@ -231,16 +231,16 @@ def _monomials(s: Array) -> Array:
 
 @lru_cache
 def _stencil(d: int) -> tuple[Array, Array]:
-    """Just enough points for a quadratic in d variables, and what turns values at them into its
-    coefficients."""
+    """A minimal set of points for a quadratic in d variables, and the matrix from values there to
+    its coefficients."""
     points = stencil(d)
     design: Array = np.linalg.inv(_monomials(points)).astype(float)
     return points, design
 
 
 def _best_step(models: Array, centre: Array, size: Array, merit: Merit) -> Array:
-    """The best step (K, d), in stencils, of a cloud within two stencils and the unit box, then
-    of smaller clouds around that. A cloud serves kinks and slopes alike."""
+    """The best step (K, d), in stencils, from a cloud within two stencils and the unit box, then
+    from smaller clouds around it. A cloud copes with kinks and slopes alike."""
     low = np.maximum(-2.0, -centre / size[:, None])
     high = np.minimum(2.0, (1 - centre) / size[:, None])
     cloud = _cloud(centre.shape[1])
@@ -269,7 +269,7 @@ def spread(count: int, d: int) -> Array:
 
 
 def _apart(x: Array, values: Array) -> list[int]:
-    """Indices of climbers that are not next to a better one."""
+    """Indices of climbers that are not close to a better one."""
     kept: list[int] = []
     for i in np.argsort(-values):
         if all(np.abs(x[i] - x[j]).max() > _NEXT_TO for j in kept):

@@ -1,19 +1,19 @@
 """Shapes of gaits: what each adds to the unknowns and rows of multiple shooting.
 
-phi is a function of the phase theta alone, given the shape's decisions and, for a shape that is
-not one formula, unknowns at every node. Rates are in radians per period until the period divides
-them, so that it does not get into the shape. A shape is hashable, as programs are kept by shape:
+phi is a function of the phase theta alone, given the shape's decisions and, for a shape that is not
+a single formula, unknowns at every node. Rates are in radians per period, so that a shape does not
+depend on the period. A shape is hashable, as programs are cached by shape:
 
-    decisions    unknowns that hold for the whole period, beside period, ballast and turn
-    states       unknowns at every node that an interval carries on to the next
+    decisions    unknowns of the whole period, besides period, ballast and turn
+    states       unknowns at every node that an interval propagates to the next
     controls     unknowns at every node, constant over the interval that begins there
-    integrals    means over the period, of `integrands`, that rows and bounds need
+    integrals    means of `integrands` over the period, needed by rows and bounds
     limits       rows that hold once a period: `limit_rows`
-    path         rows at every node: `path_rows`, of the interval from theta on, and at a place
-    checks       how many numbers it is given, such as phases, that `limits` depend on: `given`
+    path         rows at every node: `path_rows`, of the interval from theta, at one point
+    checks       number of parameters, such as phases, that `limits` depend on: `given`
     angle        phi, dphi/dtheta, d2phi/dtheta2 (rad) at phase theta, `since` after the node
-    bounds       intervals of these unknowns, and of rows, by name; what has no name is free
-    start, gait  the unknowns of a gait, or of one close to it, and the gait of a solution
+    bounds       intervals of these unknowns, and of rows, by name; those not named are free
+    start, gait  the unknowns of a gait, or an approximation of it, and the gait of a solution
     prices, bound_prices  speed gained per unit of the limits on rate, angle and singularity, and
                  per unit by which an active bound of amplitude or offset moves up
 """
@@ -38,13 +38,13 @@ Values = Mapping[str, Any]
 
 TURN = 2 * math.pi
 GRID = 16
-"""Phases of the regular grid for each harmonic."""
+"""Phases of the regular grid per harmonic."""
 PATH = ("angle", "swing", "rate")
 """phi, phi - phi0 and dphi/dt."""
 
 
 def path_bounds(problem: Problem) -> dict[str, Interval]:
-    """Bounds of PATH. The singular posture is one of two angles, so its margin is one as well."""
+    """Bounds of PATH. The singularity margin is a bound on the angle too."""
     limits = problem.limits
     reach = min(limits.angle, reach_before_singularity(problem.robot, limits.singularity))
     most = {"angle": reach, "swing": problem.gait.amplitude.high, "rate": limits.rate}
@@ -52,14 +52,14 @@ def path_bounds(problem: Problem) -> dict[str, Interval]:
 
 
 class _Priced:
-    """What the shapes share: bounds and prices of the angle and its rate."""
+    """Common to the shapes: bounds and prices of the angle and its rate."""
 
     def _along(self, multipliers: Values) -> dict[str, Array]:
-        """Multipliers of PATH, all of each."""
+        """All multipliers of each of PATH."""
         raise NotImplementedError
 
     def offset_bounds(self, problem: Problem) -> Interval:
-        """Those of the problem, or one point where its limits leave no more."""
+        """The problem's bounds, collapsed to a point where its limits leave no room."""
         box = decisions(problem)
         return box.offset if box.offset.fixed else problem.gait.offset
 
@@ -70,13 +70,13 @@ class _Priced:
         edge = reach_before_singularity(robot, limits.singularity)
         if limits.angle <= edge:
             return {"rate": rate, "angle": angle, "singularity": 0.0}
-        # c1 cos(edge) + c2 = margin, so a wider margin brings the edge closer.
+        # c1 cos(edge) + c2 = margin, so a wider margin reduces the edge.
         closer = 1 / (robot.platform1.c * math.sin(edge))
         return {"rate": rate, "angle": 0.0, "singularity": -angle * closer}
 
     def bound_prices(self, on_bounds: Values, multipliers: Values) -> dict[str, float]:
-        """Speed gained per unit by which the active bound moves up: the largest amplitude holds the
-        swing, the least one the first harmonic."""
+        """Speed gained per unit by which the active bound moves up: the largest amplitude bounds
+        the swing, the least amplitude the first harmonic."""
         first = float(on_bounds["sine1"] if "sine1" in on_bounds else multipliers["first"])
         most = float(np.abs(self._along(multipliers)["swing"]).sum())
         amplitude = most if most > abs(first) else first
@@ -87,12 +87,11 @@ class _Priced:
 class FourierShape(_Priced):
     """phi = offset + sum over n of sine_n sin(2 pi n theta) + cosine_n cos(2 pi n theta).
 
-    cosine_1 is 0: that says at which phase the period begins, which nothing else does.
+    cosine_1 is 0: this fixes the phase at which the period begins, which is otherwise arbitrary.
 
-    Limits on angle and rate hold at phases that are checked. Held at a few phases alone, a limit is
-    broken between them: the solver moves the peaks there. So the phases at which an answer breaks
-    limits are added to the checked ones, and none is taken away, until the peaks have nowhere to
-    go.
+    Limits on angle and rate hold at the checked phases only, and the solver moves the peaks in
+    between. So the phases at which a solution violates a limit are added to the checked ones, and
+    none is removed, until no violation is left.
     """
 
     harmonics: int
@@ -101,7 +100,7 @@ class FourierShape(_Priced):
 
     @property
     def checks(self) -> int:
-        """Some for a regular grid, as many for what is added."""
+        """Those of the regular grid, and as many for added ones."""
         return 2 * GRID * self.harmonics
 
     @property
@@ -116,7 +115,7 @@ class FourierShape(_Priced):
 
     @property
     def _terms(self) -> list[tuple[str, int, Any]]:
-        """Name, n, and the function that it multiplies."""
+        """Name, harmonic n, and basis function."""
         sines = [(f"sine{n}", n, ca.sin) for n in range(1, self.harmonics + 1)]
         return sines + [(f"cosine{n}", n, ca.cos) for n in range(2, self.harmonics + 1)]
 
@@ -150,14 +149,14 @@ class FourierShape(_Priced):
         return ()
 
     def given(self, added: Array) -> Array:
-        """The phases: a regular grid, and the last of the added ones. As long as few are, the grid
-        is twice as fine in part."""
+        """The phases: a regular grid, and the latest of the added ones. Unused places refine part
+        of the grid."""
         half = self.checks // 2
         grid = np.arange(half) / half
         return np.concatenate([grid, np.append(grid + 0.5 / half, added)[len(added) :]])
 
     def bounds(self, problem: Problem) -> tuple[dict[str, Interval], dict[str, Interval]]:
-        """The first harmonic is at least the least amplitude."""
+        """The first harmonic is bounded below by the least amplitude."""
         first = Interval(problem.gait.amplitude.low, math.inf)
         rows = {
             f"{name}{k}": interval
@@ -167,7 +166,7 @@ class FourierShape(_Priced):
         return {"offset": self.offset_bounds(problem), "sine1": first}, rows
 
     def start(self, gait: Gait, phases: Array) -> dict[str, Any]:
-        """Coefficients of a sine or of fewer harmonics."""
+        """Coefficients of a sine, or of a gait with fewer harmonics."""
         values = dict.fromkeys(self.decisions, 0.0)
         values["offset"] = gait.offset
         if isinstance(gait, FourierGait):
@@ -198,11 +197,11 @@ class FreeShape(_Priced):
     """The servo's acceleration is the control, constant on each interval. Unknowns at every node:
     phi, its derivative in theta, and the second one from there on.
 
-    phi is then a quadratic in theta on every interval. It is bounded at the node and at one more
-    place: where it is extreme, once that is known.
+    phi is then quadratic in theta on every interval. It is bounded at the node and at one more
+    point: where it is extreme, once that is known.
 
-    At which phase the first harmonic begins is open. The intervals are where they are, so a gait
-    moved along them by a part of one is another gait, and not one of these.
+    The phase of the first harmonic is free. The mesh is fixed, so a gait shifted by a fraction of
+    an interval is a different gait, and not in this family.
     """
 
     decisions = ("offset",)
@@ -219,18 +218,18 @@ class FreeShape(_Priced):
         return phi + since * (slope + since * bend / 2), slope + since * bend, bend
 
     def integrands(self, phi: Any, theta: Any) -> tuple[Any, ...]:
-        """phi, and what projects it on the first harmonic."""
+        """phi, and its projections onto the first harmonic."""
         return phi, 2 * phi * ca.sin(TURN * theta), 2 * phi * ca.cos(TURN * theta)
 
     def limit_rows(self, z: Symbols, means: Symbols, checks: tuple[Any, ...]) -> tuple[Any, ...]:
-        """The offset is the mean angle; the size of the first harmonic."""
+        """The offset as the mean angle; the size of the first harmonic."""
         first = ca.hypot(means["first_sine"], means["first_cosine"])
         return means["mean_angle"] - z["offset"], first
 
     def path_rows(
         self, z: Symbols, local: Symbols, theta: Any, width: Any, at: Any
     ) -> tuple[Any, ...]:
-        """dphi/dt at the node, phi and phi - phi0 there and at the place."""
+        """dphi/dt at the node, phi and phi - phi0 there and at the extra point."""
         both = [self.angle(z, local, theta, since)[0] for since in (0.0, at * width)]
         return local["slope"] / z["period"], *both, *(phi - z["offset"] for phi in both)
 
@@ -239,7 +238,7 @@ class FreeShape(_Priced):
         return np.zeros(0)
 
     def bounds(self, problem: Problem) -> tuple[dict[str, Interval], dict[str, Interval]]:
-        """The first harmonic is at least the least amplitude."""
+        """The first harmonic is bounded below by the least amplitude."""
         bounds, least = path_bounds(problem), problem.gait.amplitude.low
         rows = {name: bounds[name.rstrip("01")] for name in self.path}
         rows |= {"centred": Interval(0.0, 0.0), "first": Interval(least, math.inf)}
@@ -279,5 +278,5 @@ Shape = FourierShape | FreeShape
 
 
 def shape_of(gait: GaitBounds) -> Shape:
-    """The shape that a problem asks for, which is no sine."""
+    """The shape of a problem that does not ask for a sine."""
     return FourierShape(gait.harmonics) if gait.shape == "fourier" else FreeShape()

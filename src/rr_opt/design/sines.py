@@ -1,7 +1,7 @@
-"""The best sines: climbs from all over the box, each ended by sequential quadratic programming.
+"""The best sines: climbs from all over the box, each finished by sequential quadratic programming.
 
-A sine has four decisions, and its steady cycle is known as a function of them, so a program in the
-decisions alone is all it takes. Shapes with dozens of coefficients are left to multiple shooting.
+A sine has four decisions, and its steady cycle is a known function of them, so a program in the
+decisions alone suffices. Shapes with dozens of coefficients are left to multiple shooting.
 """
 
 import math
@@ -21,21 +21,21 @@ from rr_opt.sqp import DEAREST, FEASIBLE, Ascent, ascend
 WAYS = {"forward": 1, "backward": -1, "either": 0}
 
 FEWEST, _MOST = 96, 3072
-"""Phases of a cycle."""
+"""Phases per cycle, at least and at most."""
 _ORDER = 4
 _ERROR = {True: 1e-9, False: 1e-7}
-"""Wanted of speed and peak torque, relative; where friction is viscous (True) or not."""
+"""Relative tolerance of speed and peak torque, by whether friction is viscous."""
 _SENTENCES = {
     (True, True): "A local optimum within the solver's tolerance.",
     (True, False): "The solver stopped short of an optimum.",
     (False, True): "No gait near this start respects all limits.",
     (False, False): "The solver stopped short of gaits that keep the limits.",
 }
-"""By feasible, converged."""
+"""The outcome in words, by (feasible, converged)."""
 
 
 def climbed(terrain: Terrain, start: Array, nodes: int = FEWEST) -> tuple[Ascent, Array]:
-    """The end of a climb from a gait (4,): amplitude, period, offset, share; and that gait."""
+    """The local optimum from a gait (4,): amplitude, period, offset, share; and its gait."""
     program, x = terrain.program(start, nodes)
     ascent = ascend(program, x)
     return ascent, terrain.gait_at(start, ascent.x)
@@ -48,7 +48,7 @@ def solve_sine(setting: Setting, sign: int, start: Array) -> StartResult:
 
 
 def solve_from_kept(setting: Setting, sign: int, start: Array, nodes: int) -> StartResult:
-    """The same from a gait within all limits at this many phases; at fewer it may not be."""
+    """The same from a gait that is feasible at this many phases; at fewer it may not be."""
     terrain = Terrain(setting, decisions(setting.problem), sign)
     candidate = _candidate(terrain, start, FEWEST)
     if candidate.feasible and candidate.success:
@@ -57,7 +57,7 @@ def solve_from_kept(setting: Setting, sign: int, start: Array, nodes: int) -> St
 
 
 def refine_sine(setting: Setting, candidate: StartResult) -> StartResult:
-    """The same with more and more phases, until more of them change nothing."""
+    """The same with more and more phases, until the result converges."""
     terrain = Terrain(setting, decisions(setting.problem), candidate.sign)
     wanted, nodes = _ERROR[setting.landscape.linear], candidate.intervals
     iterations = candidate.iterations
@@ -74,7 +74,7 @@ def refine_sine(setting: Setting, candidate: StartResult) -> StartResult:
 
 
 def _settled(setting: Setting, candidate: StartResult) -> StartResult:
-    """Where friction is not viscous the lines by which a cycle is closed may agree on none."""
+    """For friction that is not viscous, where the linearised cycle may fail to converge."""
     if setting.landscape.linear:
         return candidate
     try:
@@ -88,8 +88,8 @@ def _candidate(terrain: Terrain, start: Array, nodes: int) -> StartResult:
     ascent, end = climbed(terrain, start, nodes)
     kept = ascent.violation <= FEASIBLE
     if not (kept and ascent.converged):
-        # Rows that leave hardly any room bend away from a step that may break them a little; and
-        # where breaking them gains a lot, the climb left the gaits that keep them for good.
+        # Near-degenerate rows bend away from a step that may violate them a little; and where
+        # violating them gains a lot, the climb has left the feasible gaits for good.
         near = end if kept else start
         program, x = terrain.program(near, nodes)
         ascent = ascend(program, x, DEAREST)

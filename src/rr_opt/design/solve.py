@@ -1,4 +1,4 @@
-"""One multiple-shooting solve: a start in, a candidate optimum or an honest failure out."""
+"""One multiple-shooting solve: from a start to a candidate optimum, or a reported failure."""
 
 import math
 from dataclasses import dataclass
@@ -28,13 +28,13 @@ _SENTENCES = {
     "Diverging_Iterates": "The iterates ran away.",
     "Search_Direction_Becomes_Too_Small": "The solver's steps became too small to go on.",
 }
-"""IPOPT's own word for how it ended; CasADi's unified status folds several of them together."""
+"""IPOPT's own return status; CasADi's unified status merges several of them."""
 
 _AHEAD = 1e-6
 # Least V . E in the wanted direction, m/s: at 0 a gait would go neither forward nor backward.
 
 FEASIBLE = 1e-6
-"""Largest violation of a row that still counts as kept."""
+"""Largest violation of a satisfied constraint."""
 
 
 def solve(setting: Setting, sign: int, gait: Gait, share: float, mesh: Mesh) -> StartResult:
@@ -158,7 +158,7 @@ def _bounds(
     if problem.turn:
         rows |= {name: getattr(problem.turn, name) for name in TURN}
     lbx, ubx = layout.bounds(unknowns)
-    # The heading is counted from platform 1's at phase 0.
+    # The heading is measured from platform 1's at phase 0.
     first = layout.first("chi")
     lbx[first], ubx[first] = ZERO.low, ZERO.high
     return lbx, ubx, *layout.row_bounds({**rows, **own_rows})
@@ -170,10 +170,10 @@ _NEAR_LIMIT = 0.97
 
 @dataclass(frozen=True)
 class Dense:
-    """What is seen.
+    """A gait evaluated on a fine grid.
 
     speed   m/s, signed
-    used    the largest share that it uses of a limit
+    used    largest utilisation of a limit
     peaks   phases in [0, 1) at which torque or grip peak near their limits
     checks  phases at which angle or rate do
     """
@@ -185,7 +185,7 @@ class Dense:
 
 
 def dense(setting: Setting, gait: Gait, share: float) -> Dense:
-    """Look at a gait finely."""
+    """Evaluate a gait on a fine grid."""
     smooth = gait.pieces == 1
     if setting.landscape.linear and smooth:
         cycle = cycle_along(setting.landscape, gait, share, _SAMPLES)
@@ -211,7 +211,7 @@ def dense(setting: Setting, gait: Gait, share: float) -> Dense:
 
 
 def _path_shares(setting: Setting, gait: Gait) -> list[Array]:
-    """Shares that phi, phi - phi0 and dphi/dt use of their bounds between the nodes."""
+    """Utilisation of the bounds on phi, phi - phi0 and dphi/dt between the nodes."""
     if gait.shape == "sine":
         return []
     t = np.arange(_SAMPLES) / _SAMPLES * gait.period
@@ -223,7 +223,7 @@ def _path_shares(setting: Setting, gait: Gait) -> list[Array]:
 
 
 def _peaks(size: Array, smooth: bool) -> tuple[float, Array]:
-    """The height of the largest peak, and the phases of those that come near a share of 1."""
+    """The height of the largest peak, and the phases of those near or above 1."""
     left, right = np.roll(size, 1), np.roll(size, -1)
     at = np.flatnonzero((size >= left) & (size > right))
     height, shift = size[at], np.zeros(len(at))

@@ -1,9 +1,9 @@
-"""What is climbed among sines: speed, torque, direction and turn of gaits, many at once.
+"""The objective and rows for sines: speed, torque, direction and turn of many gaits at once.
 
-Over the unit box of the decisions for the scan and the climbs, and as a program in amplitude,
-period, offset and ballast for the end of a climb. There each peak of the torque is a row of its
-own that follows the peak along the cycle: held at fixed phases instead, the torque would peak
-beside them, and along a limit the gaits are so alike that an optimum can slide far.
+On the unit box of the decisions for the scan and the climbs, and as a program in amplitude, period,
+offset and ballast for the final climb. There each torque peak is a row of its own that follows the
+peak along the cycle: if held at fixed phases, the torque would peak beside them, and along a limit
+the gaits are so similar that an optimum can drift far.
 """
 
 import math
@@ -21,36 +21,36 @@ from rr_opt.model.problem import CANCELLED, LEAST, Interval
 from rr_opt.sqp import Ascent, Program, Seen
 
 _UNSETTLED = 10.0
-"""What a gait uses of each limit that has no steady cycle."""
+"""Utilisation of each limit assigned to a gait without a steady cycle."""
 _SEEN_FROM = 0.5
-"""Share of the torque's limit from which a peak is a row."""
+"""Utilisation of the torque limit above which a peak is a row."""
 _DENSER, _WITHIN = 4, 12
-"""Factor of oversampling, by Fourier series, that shows a peak; phases to either side within which
-it is followed."""
+"""Oversampling factor, by Fourier series, that resolves a peak; phases on either side within which
+it is tracked."""
 _AS_BADLY = 0.9
 _LEAST_TORQUE = 1e-4
-"""N m; errors of a smaller one are relative to this."""
+"""N m; errors of smaller torques are relative to this."""
 _WIDE = 0.05
 """Smallest amplitude by which a stencil is scaled, rad."""
 STANDS = 1e-6
-"""m/s: 1 mm, what a capture system tells of a place, in a quarter of an hour. What goes round a
-circle more slowly stands."""
+"""m/s: 1 mm, the resolution of a capture system, in a quarter of an hour. Anything slower on a
+circle counts as standing still."""
 _ROUNDING = 1e-15
-"""Of a mean speed: of the largest along the cycle, times the root of the phases."""
+"""Rounding error of a mean speed: times the largest speed and the root of the phases."""
 _MARGIN = 0.05
-"""Of a stencil's reach in the robot's size, below which it shrinks with the singular margin."""
+"""Singularity margin, relative to the robot's size, below which stencils shrink with it."""
 
 
 _STEP = {True: 1e-4, False: 1e-3}
-"""Of a stencil; cycles with other friction than viscous are closed less exactly."""
+"""Step of a stencil, by whether friction is viscous; other friction is solved less exactly."""
 _ANY_WAY = Interval(-4 * math.pi, 4 * math.pi)
 _ANY_RADIUS = Interval(math.log(1e-9), math.log(1e9))
 _FORWARD = Interval(1e-6, math.inf)
-"""Of the forward speed, in sizes of the speed: at 0 a gait goes neither forward nor backward."""
+"""Bounds of the forward speed, in units of the speed's scale: 0 is neither forward nor backward."""
 
 
 _CIRCLE, _SIDE = ("circle x", "circle y"), "side"
-"""Rows of a circle: the mean velocity, and which way it turns."""
+"""Rows of a circle: the mean velocity, and the side of the turn."""
 
 LIMITS = ("rate", "angle", "singularity", "torque", "grip", "power", "cost_of_transport", "speed")
 Aim = Literal["speed", "rows", "turn"]
@@ -58,7 +58,7 @@ Aim = Literal["speed", "rows", "turn"]
 
 @dataclass(frozen=True)
 class Merit:
-    """What is climbed: the speed less a penalty for each row outside its interval.
+    """The penalised objective: the speed less a penalty for each row outside its interval.
 
     rows       the interval of each row
     penalties  for an excess of 1 of each row, m/s
@@ -91,9 +91,8 @@ class Terrain:
     """The gaits of a setting.
 
     way   +1 forward, -1 backward, 0 either
-    rows  which rows count, of torque, economy, direction and turn
-    aim   what is maximised: the speed; how nearly the rows are kept; or how near a gait comes to
-          the turn that is asked for
+    rows  the rows included, of torque, economy, direction and turn
+    aim   the objective: the speed, or least violation of the rows or of the requested turn
     """
 
     setting: Setting
@@ -104,13 +103,13 @@ class Terrain:
 
     @cached_property
     def _loads(self) -> dict[str, float]:
-        """Limits of what loads the robot along the cycle, by name."""
+        """Limits on the loads along the cycle, by name."""
         limits = {name: getattr(self.setting.problem.limits, name) for name in ("torque", "grip")}
         counted = "torque" in self.rows
         return {name: one for name, one in limits.items() if counted and math.isfinite(one)}
 
     def _used(self, cycles: Cycles, gaits: Array, denser: int = 1) -> list[tuple[str, Array]]:
-        """Shares that each load uses of its limit at the phases, and between them, (N', K)."""
+        """Utilisation of each load's limit at the phases and between them, (N', K)."""
         loads = [("torque", cycles.torque)] if "torque" in self._loads else []
         if "grip" in self._loads:
             loads += [("grip", one) for one in self.setting.landscape.grips(cycles, gaits)]
@@ -118,11 +117,11 @@ class Terrain:
 
     @cached_property
     def _economy(self) -> dict[str, float]:
-        """Limits on what a whole period comes to, by name."""
+        """Limits on quantities of a whole period, by name."""
         return self.setting.problem.limits.economy if "economy" in self.rows else {}
 
     def _shares(self, cycles: Cycles, gaits: Array, denser: int = 1) -> dict[str, Array]:
-        """What gaits use of those limits, (K,) each."""
+        """Utilisation of those limits, (K,) each."""
         if not self._economy:
             return {}
         limits, speed = self._economy, np.abs(cycles.speed)
@@ -143,13 +142,13 @@ class Terrain:
 
     @cached_property
     def kept(self) -> tuple[Interval, ...]:
-        """The interval of each row: torque over its limit, forward speed, those of the turn."""
+        """The interval of each row: utilisation of limits, forward speed, those of the turn."""
         torque = (Interval(-math.inf, 1.0),) if self._loads or self._economy else ()
         ahead = (_FORWARD,) if self._ahead else ()
         return (*torque, *ahead, *(self._turn.intervals if self._turn else ()))
 
     def merit(self, unit: float, torque: float, turn: float) -> Merit:
-        """The speed less penalties, in a unit (m/s), for what is off by 1."""
+        """The speed less penalties, in a unit (m/s), for a violation of 1."""
         heavy = (torque * unit,) if self._loads or self._economy else ()
         ahead = (torque,) if self._ahead else ()
         rest = len(self.kept) - len(heavy) - len(ahead)
@@ -165,7 +164,7 @@ class Terrain:
             used += [np.minimum(share, 1 + _UNSETTLED) for share in shares]
             torque = (np.max(used, axis=0),) if used else ()
             function = self._function(cycles, gaits)
-            # The forward speed in the function's unit, so that one weight does for both.
+            # The forward speed in the objective's unit, so that one weight serves both.
             unit = np.abs(cycles.speed) / function if self._cheap else 1.0
             values = self._values(cycles, gaits, unit)
             seen = np.array([function, *torque, *values])
@@ -182,9 +181,9 @@ class Terrain:
         return self.aim == "speed" and self.setting.problem.objective != "speed"
 
     def _function(self, cycles: Cycles, gaits: Array, denser: int = 1) -> Array:
-        """What is maximised. Of the speed it is the size, which is smooth where forward turns into
-        backward: a row knows the way. Of the cost of transport it is the inverse, which is 0 for a
-        robot that stands."""
+        """The objective. For speed, its magnitude, which is smooth between forward and backward; a
+        row sets the direction. For cost of transport, its inverse, which is 0 for a robot at
+        rest."""
         if self._cheap:
             return 1 / self.setting.landscape.costs(cycles, gaits, denser)[1]
         if self.aim == "speed":
@@ -206,8 +205,8 @@ class Terrain:
 
     @cached_property
     def _bounds(self) -> tuple[Array, Array]:
-        """Of amplitude, period, offset, share of the ballast, direction of V, logarithm of
-        the radius."""
+        """Bounds of amplitude, period, offset, ballast share, direction of V, logarithm of the
+        radius."""
         box, gait = self.box, self.setting.problem.gait
         share = 0.0 if box.ballast.fixed else self.setting.fixed_share
         boxes = (
@@ -229,7 +228,7 @@ class Terrain:
 
     @cached_property
     def _sides(self) -> list[_Side]:
-        """The rows but for the torque's, equations first."""
+        """All rows except the torque's, equations first."""
         rows = list(zip(self._named, self.kept[len(self.kept) - len(self._named) :], strict=True))
         if self._radius:
             rows = [(name, kept) for name, kept in rows if name != "curvature"]
@@ -315,9 +314,9 @@ class Terrain:
         return program, start[free]
 
     def _lifted(self, gait: Array, nodes: int) -> Array:
-        """The direction of V, rad, and the logarithm of the radius of a gait (4,). Of a gait that
-        drives the other way rather than sideways it is turned round: where V passes by zero the
-        two are neighbours."""
+        """The direction of V, rad, and the logarithm of the radius of a gait (4,). If the gait
+        drives the other way rather than sideways, the direction is reversed: near V = 0 the two are
+        neighbours."""
         cycle = self.setting.landscape.cycles(gait[:, None], nodes)
         V, E, omega = cycle.mean[:2, 0], cycle.mean[2:, 0], float(cycle.turn[0]) / gait[1]
         speed = max(float(np.hypot(*V)), STANDS)
@@ -326,7 +325,7 @@ class Terrain:
         return np.array([math.atan2(V[1], V[0]), math.log(speed / max(abs(omega), 1e-12))])
 
     def _circle_rows(self, mean: Array, along: Array, beta: Array, unit: float) -> dict[str, Array]:
-        """Rows of the circle; along: omega R, in a unit as all of them."""
+        """Rows of the circle; along: omega R; all in the given unit."""
         cos, sin = np.cos(beta), np.sin(beta)
         rows = {
             _CIRCLE[0]: mean[0] / unit - along * cos,
@@ -352,12 +351,12 @@ class Terrain:
 
     @cached_property
     def _radius(self) -> float:
-        """Of the circle that is asked for, signed, m; 0 if none is.
+        """Of the requested circle, signed, m; 0 if none.
 
-        The curvature turn/(T |V|) bends sharply where V passes by zero: a circle that is tight
-        lies in a narrow valley. With the direction beta of V as one variable more,
-        V = omega R (cos beta, sin beta) is two rows that hardly bend. Where the nearest circle is
-        sought the logarithm of R is another variable.
+        The curvature turn/(T |V|) is sharply curved near V = 0: a tight circle lies in a narrow
+        valley. With the direction beta of V as an extra variable, V = omega R (cos beta, sin beta)
+        gives two rows that are almost linear. When searching for the closest circle, the logarithm
+        of R is a further variable.
         """
         if not self.box.turn or not (self.aim == "turn" or self._turn):
             return 0.0
@@ -367,7 +366,7 @@ class Terrain:
 
     @property
     def _radii(self) -> Interval:
-        """Logarithms of the radii that are tried, m."""
+        """Bounds on the logarithm of the radius (m)."""
         if not self._radius:
             return Interval(0.0, 0.0)
         return _ANY_RADIUS if self.aim == "turn" else Interval(self._asked, self._asked)
@@ -387,7 +386,7 @@ class Terrain:
         return gait[:4]
 
     def clashing(self, gait: Array, nodes: int, excess: float) -> list[str]:
-        """The limits that a gait breaks, the worst by this much, about as badly as any."""
+        """The limits that a gait violates, the worst by this much, about equally."""
         gaits = gait[:, None]
         cycles = self.setting.landscape.cycles(gaits, nodes)
         used = [*self._used(cycles, gaits), *self._shares(cycles, gaits).items()]
@@ -398,7 +397,7 @@ class Terrain:
 
     def measured(self, gait: Array, nodes: int) -> Array:
         """Mean speed, m/s, peak torque, N m, and, if it counts, the cost of transport of a gait
-        (4,); and what errors of these are relative to."""
+        (4,); and the scales of their relative errors."""
         with np.errstate(all="ignore"):
             cycle = self.setting.landscape.cycles(gait[:, None], nodes)
         torque = np.abs(dense(cycle.torque, _DENSER))
@@ -419,8 +418,8 @@ class Terrain:
     def prices(
         self, gait: Array, speed: float, turn: float, ascent: Ascent
     ) -> tuple[dict[str, float], dict[str, float]]:
-        """What is gained per unit of each limit, and per unit by which an active bound moves up: of
-        the speed, m/s, or off the cost of transport.
+        """Gain per unit of each limit, and per unit by which an active bound moves up: in speed,
+        m/s, or as a reduction of the cost of transport.
 
         speed (m/s) and turn (rad per period) of the gait
         """
@@ -430,7 +429,7 @@ class Terrain:
         if limits.angle <= reach_before_singularity(robot, limits.singularity):
             found["angle"] = posture
         else:
-            # c1 cos(edge) + c2 = margin, so a wider margin brings the edge closer.
+            # c1 cos(edge) + c2 = margin, so a wider margin reduces the edge.
             found["singularity"] = -posture / (robot.platform1.c * math.sin(self.box.reach))
         sides, prices = self._sides, ascent.prices
         if math.isfinite(limits.rate):
@@ -451,7 +450,7 @@ class Terrain:
             bounds[names[i]] = float(up - down)
         bounds["amplitude"] += found.pop("command")
         if self._cheap:
-            # 1/cost is what gains: its cost falls by cost^2 times that.
+            # The objective is 1/cost: the cost falls by cost^2 times its gain.
             per = ascent.value**-2
             found = {name: per * price for name, price in found.items()}
             bounds = {name: per * price for name, price in bounds.items()}
@@ -459,9 +458,9 @@ class Terrain:
 
 
 def _followed(used: Array) -> list[Indices]:
-    """Where the peaks of the first gait are in each gait: nodes (K,) by peak.
+    """Nodes (K,) of each of the first gait's peaks in every gait.
 
-    used: share of the limit (N, K)
+    used: utilisation of the limit (N, K)
     """
     first, n = used[:, 0], len(used)
     peaks = np.flatnonzero(
@@ -472,9 +471,9 @@ def _followed(used: Array) -> list[Indices]:
 
 
 def _heights(used: Array, at: Indices) -> Array:
-    """Heights (K,) of peaks next to phases (K,): of the quartic through five of them.
+    """Heights (K,) of peaks near phases (K,): of the quartic through five of them.
 
-    A parabola jumps where a peak passes from one phase to the next, by enough to stop a climb.
+    A parabola jumps as a peak passes from one phase to the next, by enough to stall a climb.
     """
     k, n = np.arange(used.shape[1]), len(used)
     y = np.array([used[(at + i) % n, k] for i in (-2, -1, 0, 1, 2)])

@@ -1,9 +1,8 @@
-"""The program of multiple shooting: its mesh, its unknowns and rows, names in, names out.
+"""The multiple-shooting program: its mesh, its unknowns and rows, addressed by name.
 
-A limit that holds at every node can be broken between two, and where a shape has many
-coefficients the solver sees to it that its peaks lie there. So phases at which an answer breaks a
-limit are added to those at which it is held, and it is solved again, until its peaks have nowhere
-to go.
+A limit enforced at the nodes can be violated between them, and with many coefficients the solver
+moves the peaks there. So phases at which a solution violates a limit are added to those at which
+it is enforced, and the program is re-solved until there is no violation.
 
 Unknowns are the decisions, the means over the period, and then, node by node for each name, the
 local ones. Rows are the continuity of each state, the means, the rows of the period and, node by
@@ -23,28 +22,28 @@ from rr_opt.design.shapes import Shape
 from rr_opt.model.problem import Interval
 
 LADDER = (16, 20, 24, 30, 36, 48, 72, 96, 144, 192, 288, 384, 768)
-"""Numbers of intervals to choose from, so that few programs are ever built."""
+"""Numbers of intervals to choose from, so that few programs need building."""
 
 GRIPS = ("grip1", "grip2")
-"""Side forces of both axles over the loads on them."""
+"""Side force of each axle over the load on it."""
 
 LOOKS = np.array([2, 1, 3]) / 4
-"""Places of an interval at which the torque is held; the first one always."""
+"""Places in an interval at which the torque is limited; the first always."""
 _REGULAR = 1
 _ORDER = 6
 
 
 @dataclass(frozen=True)
 class Mesh:
-    """Where a program looks at the gait.
+    """Where a program evaluates the gait.
 
     phases    nodes, (N,), increasing over less than 1 from about 0
-    substeps  steps of the integrator in each interval
-    looks     (N, M) fractions of the intervals at which the torque is held beside the nodes: LOOKS
-              of them, or none
-    turns     (N,) fractions of the intervals at which the angle of a free gait is
-    checks    (K,) phases at which angle and rate of others are, beside the shape's regular grid
-    margin    kept from the torque's limit everywhere, relative
+    substeps  integrator steps in each interval
+    looks     (N, M) fractions of the intervals, beside the nodes, at which the torque is limited:
+              LOOKS of them, or none
+    turns     (N,) fractions of the intervals at which the angle of a free gait is limited
+    checks    (K,) phases at which angle and rate of others are, besides the shape's regular grid
+    margin    kept from the torque limit everywhere, relative
     """
 
     phases: Array
@@ -60,10 +59,10 @@ class Mesh:
         return len(self.phases)
 
     def with_torque_at(self, peaks: Array) -> Mesh:
-        """With the torque held at these phases of [0, 1) too.
+        """With the torque limited at these phases of [0, 1) too.
 
-        In each interval the look that is farthest from the peak gives way, of those that are not
-        regular: what is near keeps the peak from moving aside.
+        In each interval, the look farthest from the peak is replaced, except for the regular ones:
+        nearby looks keep the peak from moving aside.
         """
         if not len(peaks):
             return self
@@ -75,14 +74,14 @@ class Mesh:
         return replace(self, looks=looks)
 
     def with_checks_at(self, phases: Array) -> Mesh:
-        """With angle and rate held at these phases too."""
+        """With angle and rate limited at these phases too."""
         turns = self.turns.copy()
         for k, fraction in self._placed(phases):
             turns[k] = fraction
         return replace(self, turns=turns, checks=np.append(self.checks, phases))
 
     def _placed(self, phases: Array) -> Iterator[tuple[int, float]]:
-        """The interval of each phase, and which fraction of it."""
+        """The interval of each phase, and its fraction of it."""
         ends = np.append(self.phases, self.phases[0] + 1)
         for phase in ends[0] + (phases - ends[0]) % 1:
             k = int(np.searchsorted(ends, phase, side="right")) - 1
@@ -90,13 +89,13 @@ class Mesh:
 
 
 def regular(intervals: int) -> Mesh:
-    """Equal intervals, the torque held at nodes alone."""
+    """Equal intervals, the torque limited at nodes only."""
     phases = np.arange(intervals) / intervals
     return Mesh(phases, 1, np.zeros((intervals, 0)), np.full(intervals, 0.5), np.zeros(0))
 
 
 def intervals_for(intervals: int, error: float, wanted: float) -> int:
-    """How many intervals make the wanted error, given how many make this one."""
+    """The intervals needed for the wanted error, given the error with this many."""
     needed = intervals * (error / wanted) ** (1 / _ORDER)
     return at_least(needed)
 
@@ -115,7 +114,7 @@ DYNAMIC = ("v", "chi")
 """Speed of axle 1 (m/s), heading seen from that frame (rad)."""
 TURN = ("curvature", "yaw_rate", "heading")
 ROWS = ("direction", *TURN)
-"""Rows that hold once a period whatever the shape."""
+"""Rows that hold once per period for any shape."""
 
 FREE = Interval(-np.inf, np.inf)
 ZERO = Interval(0.0, 0.0)
@@ -123,8 +122,8 @@ ZERO = Interval(0.0, 0.0)
 
 @dataclass(frozen=True)
 class ProgramLayout:
-    """Unknowns and rows of the program of a shape with `intervals` intervals, in each of which
-    what loads the robot, as named, is held at `looks` places beside the node."""
+    """Unknowns and rows of the program of a shape with `intervals` intervals, each with the named
+    loads limited at `looks` points besides the node."""
 
     shape: Shape
     intervals: int
@@ -143,7 +142,7 @@ class ProgramLayout:
 
     @property
     def states(self) -> tuple[str, ...]:
-        """Local unknowns that an interval carries on."""
+        """Local unknowns that an interval propagates."""
         return DYNAMIC + self.shape.states
 
     @property
@@ -167,7 +166,7 @@ class ProgramLayout:
         return (load, *looks, f"{load}@end") if self.shape.controls else (load, *looks)
 
     def first(self, name: str) -> int:
-        """Where among the unknowns the first of a local one is."""
+        """Index of the first of a local unknown."""
         once = len(self.decisions) + len(self.means)
         return once + self.local.index(name) * self.intervals
 
@@ -176,7 +175,7 @@ class ProgramLayout:
         return self._named(x, self.decisions + self.means, self.local)
 
     def rows(self, g: Array) -> dict[str, Any]:
-        """Rows by name but for those that tie nodes and means together."""
+        """Rows by name, except those that link nodes and means."""
         tied = self.intervals * len(self.states) + len(self.means)
         return self._named(g[tied:], self.limits, self.path)
 
@@ -190,11 +189,11 @@ class ProgramLayout:
         )
 
     def bounds(self, unknowns: Mapping[str, Interval]) -> tuple[Array, Array]:
-        """Lower and upper bounds of the unknowns; what has no name is free."""
+        """Lower and upper bounds of the unknowns; those not named are free."""
         return self._bounds(unknowns, self.decisions + self.means, self.local, 0)
 
     def row_bounds(self, rows: Mapping[str, Interval]) -> tuple[Array, Array]:
-        """Lower and upper bounds of all rows; what ties nodes and means together is 0."""
+        """Lower and upper bounds of all rows; those that link nodes and means are 0."""
         tied = self.intervals * len(self.states) + len(self.means)
         return self._bounds(rows, self.limits, self.path, tied)
 

@@ -1,11 +1,11 @@
-"""The fastest turn: the gait that goes fastest along a circle or an arc that is asked for.
+"""The fastest turn: the gait that goes fastest along a requested circle or arc.
 
-A whole number of periods is found by branch and bound: solved for any number, and where the
-answer is no whole one, again for those below it and for those above it. A part that is slower
-than a whole number already found is left.
+A whole number of periods is found by branch and bound: solve for any number, and if the answer is
+not whole, branch into the numbers below it and those above it. A branch that is slower than a whole
+number already found is pruned.
 
-Left is positive, counter-clockwise seen from above, whichever way the robot drives. A heading
-change and the circle it is made on have one sign, so of the two the heading says it.
+Left is positive, counter-clockwise seen from above, whether the robot drives forward or backward.
+A heading change and its circle have the same sign; if both are given, the heading's sign counts.
 """
 
 import math
@@ -28,8 +28,8 @@ LARGEST_RADIUS = 1000.0
 class Target:
     """A circle, or an arc of one.
 
-    heading   change of heading, rad, positive to the left; None: round and round
-    radius    of the circle, m; positive to the left where no heading says the side
+    heading   change of heading, rad, positive to the left; None: a full circle
+    radius    of the circle, m; positive to the left if no heading sets the side
     within    longest time for the heading change, s
     length    longest path for the heading change, m, along the mean circle
     whole     the heading change has to take a whole number of periods
@@ -43,7 +43,7 @@ class Target:
 
     @property
     def turn(self) -> Turn:
-        """What the gait has to do."""
+        """The turn that the gait has to make."""
         if self.heading is None:
             curvature = 1 / (self.radius or math.inf)
             return Turn(curvature=Interval(curvature, curvature))
@@ -56,14 +56,14 @@ class Target:
 
 
 def _at_least(value: float) -> Interval:
-    """So much or more, on the same side."""
+    """This much or more, on the same side."""
     return Interval(value, math.inf) if value > 0 else Interval(-math.inf, value)
 
 
 def checked(target: Target) -> Target:
-    """The target, its radius positive where a heading says the side.
+    """The target, its radius positive where a heading sets the side.
 
-    Raises InputError for what is no target, or for two that contradict each other.
+    Raises InputError for an invalid or contradictory target.
     """
     given = [n for n in ("radius", "within", "length") if getattr(target, n) is not None]
     for name in ("heading", "radius", "within", "length"):
@@ -112,8 +112,8 @@ def _one_side(target: Target) -> Target:
 
 
 def posed(problem: Problem, target: Target) -> tuple[Problem, bool]:
-    """The problem with the turn, and whether its offset was fixed and is now open: as far as
-    the limits and the least amplitude allow, to either side."""
+    """The problem with the turn, and whether its fixed offset was freed: as far as the limits and
+    the least amplitude allow, on both sides."""
     problem = replace(problem, turn=target.turn)
     if not problem.gait.offset.fixed:
         return problem, False
@@ -126,12 +126,12 @@ def posed(problem: Problem, target: Target) -> tuple[Problem, bool]:
 
 
 _WHOLE = 1e-4
-"""A number of periods this near to a whole one is that."""
+"""A number of periods counts as whole within this distance of an integer."""
 
 
 @dataclass(frozen=True)
 class MeanMotion:
-    """What a gait does on the way round: signed speed (m/s), curvature (1/m) and yaw rate
+    """The mean motion of a gait along the turn: signed speed (m/s), curvature (1/m) and yaw rate
     (rad/s), positive to the left; heading (rad), length (m), time (s) and periods of the arc."""
 
     speed: float
@@ -147,9 +147,9 @@ class MeanMotion:
 class Turned:
     """The answer to a turn.
 
-    optimum   as of `maximize_speed`; its problem has the turn and the offset that was open
-    opened    the problem fixed the offset, and it was opened
-    arc       None if there is no gait; a full circle where no heading was asked for
+    optimum   as of `maximize_speed`; its problem has the turn and the free offset
+    opened    the problem fixed the offset, and it was freed
+    arc       None if there is no gait; a full circle where no heading was given
     """
 
     target: Target
@@ -161,7 +161,7 @@ class Turned:
 def fastest_turn(problem: Problem, target: Target, progress: Progress = lambda _: None) -> Turned:
     """Solve a turn; the outcomes are those of `maximize_speed`.
 
-    Raises InputError for a robot that has no steady cycle to find.
+    Raises InputError for a robot without a steady cycle.
     """
     asked, opened = posed(for_joint(problem), target)
     optimum = maximize_speed(asked, progress)
@@ -173,7 +173,7 @@ def fastest_turn(problem: Problem, target: Target, progress: Progress = lambda _
 
 
 def _sooner(problem: Problem, target: Target) -> str:
-    """What the nearest turn in reach says of the time or the length that was asked for."""
+    """How the closest reachable turn compares with the requested time or length."""
     box = decisions(problem)
     if target.heading is None or target.radius is not None or posture_clashes(problem, box):
         return ""
@@ -187,7 +187,7 @@ def _sooner(problem: Problem, target: Target) -> str:
 
 
 def arc_of(optimum: Optimum, heading: float | None) -> MeanMotion | None:
-    """The arc of this heading (rad), or a full circle, by an optimum's gait."""
+    """The arc of this heading (rad), or a full circle, driven with an optimum's gait."""
     if optimum.best is None or optimum.robot is None:
         return None
     cycle = steady_cycle(optimum.robot, optimum.best.gait).cycle
@@ -206,7 +206,7 @@ def arc_of(optimum: Optimum, heading: float | None) -> MeanMotion | None:
 
 
 def _whole(problem: Problem, heading: float, relaxed: Optimum, progress: Progress) -> Optimum:
-    """The fastest of the gaits that turn by heading/n a period, n = 1, 2, ..."""
+    """The fastest of the gaits that turn by heading/n per period, n = 1, 2, ..."""
     best: Optimum | None = None
     failed: Optimum | None = None
     parts: list[tuple[float, float, Optimum | None]] = [(0, math.inf, relaxed)]
@@ -227,20 +227,20 @@ def _whole(problem: Problem, heading: float, relaxed: Optimum, progress: Progres
             continue
         below = math.floor(arc.periods)
         sides = [(max(low, 1), min(below, high)), (max(below + 1, low), high)]
-        # A part that its own answer is not in would come again and again.
+        # A branch that does not contain its own relaxed answer would recur forever.
         parts += [(*side, None) for side in sides if side[0] <= side[1] and side != (low, high)]
     return best or _not_whole(heading, relaxed, failed)
 
 
 def _with_periods(problem: Problem, heading: float, low: float, high: float) -> Problem:
-    """The problem with the number of periods for the heading bounded."""
+    """The problem with bounds on the number of periods for the heading."""
     ends = sorted((heading / high, heading / low))
     turn = replace(problem.turn, heading=Interval(*ends)) if problem.turn else None
     return replace(problem, turn=turn)
 
 
 def _not_whole(heading: float, relaxed: Optimum, failed: Optimum | None) -> Optimum:
-    """No whole number of periods does it: the nearest heading that one does."""
+    """No whole number of periods reaches the heading; reports the closest that does."""
     arc = arc_of(relaxed, heading)
     if arc is None or (failed and failed.status is not Status.INFEASIBLE):
         return failed or relaxed

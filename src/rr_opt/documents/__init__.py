@@ -1,1 +1,1 @@
-"""How results are written down: the model of a document, and its text, page and files."""
+"""How results are written: the model of a document, and its text, page and files."""

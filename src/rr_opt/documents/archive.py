@@ -1,8 +1,8 @@
-"""Files that are either whole or not there, and JSON that every reader accepts.
+"""Files that are written whole or not at all, and JSON that every reader accepts.
 
-Each file is written beside its place under another name, flushed to the disk and then moved
-over it in one step; a run that is stopped leaves what was there before. Only regular files are
-replaced: a device, a pipe or a link in the place of a result is refused, and stays.
+Each file is written beside its place under another name, flushed to disk and then moved over it
+atomically; a run that is stopped leaves the previous file. Only regular files are replaced: a
+device, a pipe or a link in the place of a result is rejected and left alone.
 """
 
 import json
@@ -19,7 +19,7 @@ from rr_opt.outcome import InputError
 
 
 def folder_for_results(folder: Path) -> Path:
-    """The folder, which is made when the first file is written to it.
+    """The folder, created when the first file is written to it.
 
     Raises InputError if it cannot be written to.
     """
@@ -27,7 +27,7 @@ def folder_for_results(folder: Path) -> Path:
 
 
 def file_for_result(file: Path) -> Path:
-    """The file, whose folder is made when it is written. Raises InputError if it cannot be."""
+    """The file, whose folder is created when it is written. Raises InputError if it cannot be."""
     if file.is_dir() and not file.is_symlink():
         raise InputError(f"{file} is a folder. Expected a file. Name one in it with --out.")
     require_regular(file)
@@ -36,8 +36,8 @@ def file_for_result(file: Path) -> Path:
 
 
 def _writable(asked: Path, folder: Path) -> Path:
-    """`asked`, if files can be written to `folder`, or it can be made where it would be."""
-    # A link to nothing is there as well, and no folder can be made in its place.
+    """`asked`, if files can be written to `folder`, or it can be created."""
+    # A dangling link also exists, and no folder can be created in its place.
     existing = next(
         place for place in (folder, *folder.absolute().parents) if os.path.lexists(place)
     )
@@ -61,7 +61,7 @@ def _writable(asked: Path, folder: Path) -> Path:
 def whole(path: Path) -> Iterator[Path]:
     """A temporary path of the same suffix, in the same folder, that becomes `path` on success.
 
-    Missing folders are made, and removed again if nothing is written to them. Raises InputError
+    Missing folders are created, and removed again if nothing is written to them. Raises InputError
     if `path` is neither a regular file nor a new name.
     """
     require_regular(path)
@@ -87,26 +87,26 @@ def whole(path: Path) -> Iterator[Path]:
 
 
 def write_bytes(path: Path, content: bytes) -> Path:
-    """Write a file whole."""
+    """Write a file atomically."""
     with whole(path) as temporary:
         temporary.write_bytes(content)
     return path
 
 
 def write_text(path: Path, text: str) -> Path:
-    """Write a text file whole, in UTF-8 with newlines as given."""
+    """Write a text file atomically, in UTF-8 with newlines as given."""
     return write_bytes(path, text.encode())
 
 
 def strict_json(data: Mapping[str, Any]) -> str:
     """The data as JSON text with a newline at its end; raises ValueError for NaN or infinity."""
     text = json.dumps(data, indent=2, allow_nan=False, ensure_ascii=False) + "\n"
-    # A list of numbers takes one line. No string has a line break, so this changes none.
+    # Put each list of numbers on one line. No string has a line break, so this changes none.
     return re.sub(r'\[\n[^"{}\[\]]+\]', lambda row: f"[{' '.join(row[0][1:-1].split())}]", text)
 
 
 def write_json(path: Path, data: Mapping[str, Any]) -> Path:
-    """Write data as strict JSON, whole."""
+    """Write data as strict JSON, atomically."""
     return write_text(path, strict_json(data))
 
 
@@ -125,14 +125,14 @@ def netcdf_writer() -> Any:
 
 
 def write_dataset(path: Path, data: Any) -> Path:
-    """Write a dataset of xarray, whole."""
+    """Write an xarray dataset, atomically."""
     with whole(path) as temporary:
         data.to_netcdf(temporary, engine="h5netcdf")
     return path
 
 
 def remove(folder: Path, names: Iterable[str]) -> None:
-    """Remove the named files of an earlier run, so that none is taken for one of this run.
+    """Remove the named files of an earlier run, so that none is mistaken for one of this run.
 
     Raises InputError, before any is removed, if one is not a regular file.
     """

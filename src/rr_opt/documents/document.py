@@ -1,4 +1,4 @@
-"""The model of a document: what a report holds, whatever it is rendered as.
+"""The model of a document: the content of a report, independent of how it is rendered.
 
 A document has a verdict and sections; a section holds text, facts, tables, checks and figures.
 `rendering` renders it for a terminal, as Markdown, and as a page. Where a text holds
@@ -33,7 +33,7 @@ class Badge:
 
 @dataclass(frozen=True)
 class Link:
-    """A text that leads to a file beside the page."""
+    """A link to a file beside the page."""
 
     text: str
     target: str
@@ -91,7 +91,7 @@ def cell_text(cell: Cell) -> str:
 
 def csv_text(names: Sequence[str], rows: Iterable[Sequence[Any]], digits: int = 9) -> str:
     """Rows as CSV under a header row: numbers to `digits` digits, empty for None and NaN."""
-    # Every end of a line becomes "\n"; the writer's own, "\r\n", has a cell with either quoted.
+    # Every line end becomes "\n"; the CSV writer's own "\r\n" makes it quote cells with either.
     text = io.StringIO(newline=None)
     writer = csv.writer(text)
     writer.writerow(names)
@@ -105,8 +105,8 @@ def heading(name: str, unit: str) -> str:
 
 
 _FORMULA = tuple("=+-@\t\r\n＝＋－＠")
-"""Spreadsheets take a text that begins with one of these for a formula (OWASP, CSV injection): it
-gets an apostrophe."""
+"""Spreadsheets take a text that starts with one of these for a formula (OWASP, CSV injection): an
+apostrophe is put before it."""
 
 
 def _plain(cell: Any, digits: int) -> str:
@@ -142,7 +142,7 @@ class Fact:
 
 @dataclass(frozen=True)
 class Items:
-    """A block of items; one without any is left out."""
+    """A block of items; omitted if empty."""
 
     items: tuple[Any, ...]
 
@@ -152,7 +152,7 @@ class Items:
 
 @dataclass(frozen=True)
 class Facts(Items):
-    """Facts below one another; as large figures on a page if they are the key ones."""
+    """Facts one below another; large figures on a page if they are the key ones."""
 
     items: tuple[Fact, ...]
     key: bool = False
@@ -177,7 +177,7 @@ def warnings(sentences: Iterable[str]) -> Checks:
 
 @dataclass(frozen=True)
 class Step:
-    """A step of a chain; state names its look: `fault`, `clear`, or anything else."""
+    """A step of a chain; state sets its style: `fault`, `clear`, or anything else."""
 
     name: str
     state: str
@@ -197,7 +197,7 @@ class Figure:
     """A drawing.
 
     name     of its file, without the ending
-    alt      what it shows, for those who cannot see it; not the title again
+    alt      what it shows, for those who cannot see it; not a repeat of the title
     caption  how to read it
     """
 
@@ -245,11 +245,11 @@ class Section:
 class Document:
     """A report.
 
-    name    of what was asked: the problem, the experiment
+    name    of the input: the problem, the experiment
     kind    of report: `fastest gait`, `study`
     title   the outcome in a phrase
     lead    the outcome in a few sentences
-    good    False if there is something to worry about
+    good    False if there is a cause for concern
     footer  versions, fingerprints
     machine what it is about
     """
@@ -286,7 +286,7 @@ def gallery(figures: Iterable[Figure]) -> Section:
 
 
 def facts_alone(facts: Iterable[Fact], *blocks: Block) -> Document:
-    """A report for a terminal alone."""
+    """A report for a terminal only."""
     sections = (Section("", (Facts(tuple(facts)),)), *(Section("", (one,)) for one in blocks))
     return Document("", "", "", "", sections)
 
@@ -300,8 +300,8 @@ class Prose:
 
 
 def prose(package: str, name: str, **context: Any) -> dict[str, Prose]:
-    """The sections of `texts/NAME` in a package, by key. Raises UndefinedError for a value that the
-    context does not have."""
+    """The sections of `texts/NAME` in a package, by key. Raises UndefinedError for a value missing
+    from the context."""
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
     environment = Environment(
@@ -335,7 +335,7 @@ def _span(low: float, high: float, digits: int = 3) -> str:
 
 
 def captions(kind: str) -> Captions:
-    """Of the figures of a kind of result, by name; see the head of data/captions.md."""
+    """Captions of the figures of a kind of result, by name; see the head of data/captions.md."""
     text = (files("rr_opt") / "data" / "captions.md").read_text(encoding="utf-8")
     own = text.partition(f"\n# {kind}\n")[2].partition("\n# ")[0]
     found = {}

@@ -18,13 +18,13 @@ if TYPE_CHECKING:
 
 _WIDTH = 100
 _PLAIN = " !()*+,-./:;=?@[]_{|}"
-"""What an SVG keeps in a data URI; in base64 it would be a quarter longer."""
+"""Characters that an SVG keeps in a data URI; base64 would be a quarter longer."""
 
 
 def terminal(document: doc.Document) -> str:
     """The brief sections as text."""
     head = f"{document.name}: {document.title}" if document.name else document.title
-    # Why there is no result goes to stderr.
+    # The reason for a missing result goes to stderr.
     lead = f". {document.lead}" if document.lead and document.good else ""
     parts = [_wrapped(head + lead)] if head else []
     parts += [_section(section) for section in document.sections if section.brief]
@@ -110,7 +110,7 @@ def _marked(block: doc.Block) -> str:
 
 
 def _marked_table(block: doc.Table) -> str:
-    """Padded, so that it reads well as plain text too."""
+    """Padded, to be readable as plain text too."""
     head, *rows = _cells(block)
     for cells, row in zip(rows, block.rows, strict=True):
         for k, cell in enumerate(row):
@@ -134,13 +134,13 @@ _KINDS = {
 
 
 def page(document: doc.Document) -> str:
-    """The whole page; every text is escaped."""
+    """The whole page; all text is escaped."""
     return _template().render(document=document)
 
 
 @cache
 def _template() -> Template:
-    # Here and not above: without a page Jinja2 need not be loaded.
+    # Imported here as only a page needs Jinja2.
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
     environment = Environment(
@@ -167,7 +167,7 @@ def _template() -> Template:
 
 
 def _code(text: str) -> Markup:
-    """The text escaped with real signs, what stands in backticks as code, numbers in one line."""
+    """The text escaped, with typographic signs, backticks as code, and numbers kept on one line."""
     from markupsafe import Markup, escape
 
     signs = text.replace("->", "→").replace("+-", "±")

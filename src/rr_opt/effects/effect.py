@@ -52,7 +52,7 @@ class Parameter:
                       or multiples of that magnitude if neutral is not zero. Several where a fit
                       from the first may end in a local minimum or on a plateau
     guess_from_data   a place on the floor: only the recordings say where a fit should start
-    model_form_sigma  by which real machines differ in its value, 1 sigma, relative
+    model_form_sigma  relative spread of its value between real machines, 1 sigma
     fit_lower         a fit goes no lower: there the effect turns into another
     fit_upper         a fit goes no higher, for a given operating range
     """
@@ -104,12 +104,12 @@ class Effect:
     For predictions and fits:
     stiff               it lets the axles slip, which they stop doing within a step
     near_discontinuous  its force all but jumps with the speed, so predictions need short steps
-    differentiable      the prediction has derivatives by its parameters where the effect vanishes
+    differentiable      the prediction is differentiable in its parameters where it vanishes
     candidate           a diagnosis may propose it; not so a curve fit without a physical meaning,
                         nor what the experiment states of itself
     forms               which parameters are fitted together; without any, all of them
-    form_error          by how much, relative, what machines do differs from this model of it: more
-                        for contacts and stops, whose laws are many
+    form_error          relative deviation of real machines from this model of it: larger for
+                        contacts and stops, for which many laws exist
     """
 
     name: str

@@ -19,9 +19,9 @@ circle for e = 1), a lag of e u, and R(w) the resistance of the wheel at the rol
 e is `mu_ratio`; e = 0 leaves rolling as it is. Both wheels of an axle, which slide sideways
 together, have the same u.
 
-Contacts begin to slide more or less gradually, and engines that are given the same friction differ
-by about a tenth in the force that lets go. So sliding is fitted together with creep, which adds
-to s0 as a root of squares and stands for how gradual it is.
+Contacts begin to slide more or less gradually, and physics engines that are given the same friction
+differ by about a tenth in the breakaway force. So sliding is fitted together with creep, which adds
+to s0 as a root of squares and stands for how gradual the onset is.
 """
 
 from collections.abc import Mapping
@@ -35,7 +35,7 @@ from rr_opt.mechanics.kinematics import Force, Mechanism, wheel_loads
 SMOOTHING_SPEED = 1e-4
 """s0, m/s."""
 _ITERATIONS = 4
-"""Of Newton's method for u, from 0. They do not overshoot, and end within 1 % of u as long as a
+"""Newton iterations for u, from 0. They do not overshoot, and end within 1 % of u as long as a
 wheel's resistance is at most 0.9 of what its contact can hold."""
 
 

@@ -34,15 +34,15 @@ _STEPS = 240
 _PERIODS, _FROM_REST = 2, 30
 """Periods integrated for periodic motion, and from rest."""
 _EXTRAPOLATIONS, _CLOSED = 3, 1e-6
-"""Extrapolations to the periodic z at most, whose error falls like a power of the decay over a
-period; and the change of z over a period, m/s, that is none."""
+"""Most extrapolations to the periodic z, whose error falls like a power of the decay over a
+period; and the change of z over a period, m/s, that counts as none."""
 _INERTIA = 1e-3
-"""Of the joint of a robot of which nothing is known, kg m2."""
+"""Inertia of the joint of an unknown robot, kg m2."""
 _RIGID = 1e-9
-"""Compliance of a gear that does not give, rad/(N m): small, and not 0, as a stop that pulls has to
-be left for certain, whatever is rounded."""
+"""Compliance of a rigid gear, rad/(N m): small, but not 0, so that the joint leaves a stop that
+would pull, whatever the rounding."""
 _MISSED = 2.0
-"""As the fraction of a step at which a stop is hit: it is not."""
+"""Fraction of a step at which a stop is hit, where none is."""
 
 
 _Gear = tuple[float, float, float]
@@ -193,10 +193,10 @@ def _periodic(servos: Sequence[_Servo]) -> list[_Play]:
             break
         again = _integrated([servos[k] for k in begun], [*begun.values()])
         for k, path in zip(begun, again, strict=True):
-            # A robot that hardly loses speed may be extrapolated far beyond its own.
+            # With little friction the extrapolated speed may be far off.
             if abs(path[-1, 2] - path[_STEPS - 1, 2]) <= open_by[k]:
                 before[k], states[k] = begun[k], path
-    # The last period is closed: what is left to converge is spread over it.
+    # The last period is closed: its remaining gap is spread over it.
     out = []
     for servo, start, path in zip(servos, before, states, strict=True):
         play = servo.play(start, path)
@@ -227,7 +227,7 @@ def _integrated(servos: Sequence[_Servo], before: Sequence[Array]) -> list[Array
 
 @lru_cache
 def _coasting() -> ca.Function:
-    """The joint of a robot of which nothing is known: it keeps its rate."""
+    """The joint of an unknown robot: it keeps its rate."""
     inputs = [*(ca.SX.sym(name) for name in ("phi", "dphi", "z")), ca.SX.sym("p", 0)]
     return ca.Function("coasting", inputs, [ca.SX(0), ca.SX(0), ca.SX(1 / _INERTIA)])
 
@@ -262,8 +262,8 @@ def _stepper(swing: ca.Function) -> Recurrence:
     was_stopped = ca.fabs(a) >= (1 - 1e-9) * half
     impact = ca.logic_and(ca.fabs(phi - stop) >= half, ca.logic_not(was_stopped))
     hit = ca.if_else(impact, ca.fmin(fraction, 1.0), _MISSED)
-    # What the stop has to exert against where the joint is twists the gear by as much as it gives.
-    # Until then the joint swings on it, critically damped, for what is left of the step.
+    # The push of the stop twists the gear by its compliance. The joint approaches this twist,
+    # critically damped, in the rest of the step.
     outward = ca.sign(side)
     free, _, _ = swing(stop + side, rate, z, p)
     push = outward * ((free - (rate - servo_rate) / h) / mobility - friction * ca.sign(rate))

@@ -1,4 +1,4 @@
-"""An experiment file to a checked plan of what was done; no recording is read yet."""
+"""From an experiment file to a checked plan of its runs; no recording is read yet."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -36,7 +36,7 @@ from rr_opt.model.robot import Robot
 
 @dataclass(frozen=True)
 class PlannedRun:
-    """An entry of `recordings`, as Run has it; servo_log: the file of the servo's log."""
+    """An entry of `recordings`, with the fields of Run; servo_log: the file of the servo's log."""
 
     file: Path
     gait: Gait
@@ -47,7 +47,7 @@ class PlannedRun:
 
 @dataclass(frozen=True)
 class ExperimentPlan:
-    """What an experiment file says.
+    """The content of an experiment file.
 
     document  the file, for issues that only show when a recording is read
     paths     every file that makes up the experiment
@@ -125,7 +125,7 @@ def _gait(document: FileData, file: Path) -> tuple[Gait | None, list[Issue]]:
 
 
 def _twice(document: FileData, entries: list[object]) -> list[Issue]:
-    """A recording that is there twice would be fitted and held out, or count double."""
+    """A recording listed twice would be both fitted and held out, or count double."""
     issues: list[Issue] = []
     seen: dict[str, int] = {}
     for index, entry in enumerate(entries):
@@ -140,7 +140,7 @@ def _twice(document: FileData, entries: list[object]) -> list[Issue]:
 
 
 def _uses(document: FileData, runs: list[PlannedRun]) -> list[Issue]:
-    """What cannot be done with the recordings there are."""
+    """Requests that the recordings do not support."""
     uses = [run.use for run in runs]
     if "fit" not in uses:
         message = "No recording is to be fitted. Give at least one `use: fit`."
@@ -166,7 +166,7 @@ def read_plan(path: str | Path) -> tuple[ExperimentPlan, list[Issue]]:
 
 
 def named_files(path: Path) -> list[Path]:
-    """The recordings that an experiment file names and that are there, whatever is wrong in it."""
+    """The existing recordings that an experiment file names, even if the file has errors."""
     file = experiment_path(path)
     try:
         entries: Any = read_document(file).data.get("recordings")
@@ -233,7 +233,7 @@ def plan_from(document: FileData, file: Path) -> tuple[ExperimentPlan | None, li
 
 
 def layout_from(document: FileData) -> tuple[Layout | None, list[Issue]]:
-    """The places that the section `markers` gives (None if there are issues), and all issues."""
+    """The places in the section `markers` (None if there are issues), and all issues."""
     model, issues = validate(MarkersModel, document)
     given = [document.data.get(name) for name in ("platform1", "platform2")]
     first, second = (one if isinstance(one, dict) else {} for one in given)

@@ -103,7 +103,7 @@ def uncertainty_of(model: Any, robot: Robot) -> Mapping[str, Uncertainty]:
 
 
 def shares_of_nothing(model: Any, robot: Robot) -> Iterator[tuple[str, str]]:
-    """Key and message of every share, or factor, of a value that is 0: it says nothing."""
+    """Key and message of every relative uncertainty of a value that is 0, which means nothing."""
     values = parameters_of(robot)
     for key in model.model_fields_set:
         spread = getattr(model, key)

@@ -1,4 +1,4 @@
-"""The keys of files as pydantic models, made from the model's dataclasses, and their errors.
+"""The keys of files as pydantic models, built from the model's dataclasses, and their errors.
 
 A dataclass of `rr_opt.model` declares unit, range and description of its fields; `keys_of` makes
 the pydantic model of them, and `Keys` reads a mapping of a file as such an object.
@@ -35,7 +35,7 @@ class FileModel(BaseModel):
 
 @dataclass(frozen=True)
 class Key:
-    """Annotates a field with what reads its value and describes it in JSON Schema."""
+    """Annotates a field with the reader that parses its value and describes it in JSON Schema."""
 
     reader: Any
 
@@ -44,7 +44,7 @@ class Key:
             try:
                 return self.reader.read(value)
             except InputError as error:
-                # pydantic gathers ValueErrors and lets every other error out.
+                # pydantic collects ValueErrors and propagates every other error.
                 raise ValueError(str(error)) from None
 
         return core_schema.no_info_plain_validator_function(read)
@@ -57,10 +57,10 @@ class Key:
 
 @dataclass(frozen=True, eq=False)
 class Keys:
-    """Annotates a dataclass of the model, which a file gives as a mapping.
+    """Annotates a dataclass of the model that is given in a file as a mapping.
 
-    alone   the field that anything but a mapping stands for
-    schema  what its JSON Schema has beside the keys
+    alone   the field that a value other than a mapping stands for
+    schema  additions to its JSON Schema besides the keys
     """
 
     alone: str = ""
@@ -92,7 +92,7 @@ class Keys:
 
 @lru_cache
 def keys_of(cls: type) -> Any:
-    """The keys of a file that make an object of a dataclass with declared fields."""
+    """The keys of a file that define an object of a dataclass with declared fields."""
     hints = get_type_hints(cls)
     keys: dict[str, Any] = {}
     for one in dataclasses.fields(cls):
@@ -125,7 +125,7 @@ Model = TypeVar("Model", bound=BaseModel)
 
 
 def another_file(model: type[BaseModel], document: FileData) -> list[Issue]:
-    """An issue if a whole file has none of the model's keys: whatever it holds is not quoted."""
+    """An issue if a whole file has none of the model's keys; its content is not quoted."""
     known, keys = list(model.model_fields), document.data
     if document.prefix or len(keys) < 2 or any(nearest(key, known) for key in keys):
         return []
@@ -205,7 +205,7 @@ def schema_of(model: type[BaseModel], kind: str) -> dict[str, Any]:
 
 
 def _tidied(node: Any) -> Any:
-    """Without pydantic's titles, and without null as the default of a key that may be absent."""
+    """Without pydantic's titles, and without null defaults of optional keys."""
     if isinstance(node, list):
         return [_tidied(item) for item in node]
     if not isinstance(node, dict):

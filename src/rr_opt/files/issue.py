@@ -1,4 +1,4 @@
-"""What is wrong with a file, as data: one issue per problem, and the error that carries them."""
+"""Mistakes in a file, as data: one issue per problem, and the error that carries them."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -53,7 +53,7 @@ def has_errors(issues: Iterable[Issue]) -> bool:
 
 
 MOST_LISTED, MOST_COUNTED = 20, 10_000
-"""A file that is wrong in every row is described by its first ones."""
+"""Most mistakes listed, and counted, for a file that is wrong in every row."""
 
 
 def refuse(file: str, message: str, line: int | None = None) -> NoReturn:

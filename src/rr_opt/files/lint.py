@@ -1,4 +1,4 @@
-"""Input files of every kind: all that is wrong in one at once, and the JSON Schema of its keys."""
+"""Input files of every kind: all mistakes in one at once, and the JSON Schema of its keys."""
 
 from contextlib import suppress
 from pathlib import Path
@@ -18,8 +18,8 @@ def lint_file(path: str | Path) -> list[Issue]:
     """All issues of a robot, problem, study or experiment file, and of the files that it names.
 
     A folder stands for its problem.yaml, or else its experiment.yaml, whose recordings are not
-    read. The keys of a file show its kind, and only what reads that kind is loaded. Nothing is
-    raised: a file that cannot be read is an issue too.
+    read. The keys of a file determine its kind, and only the reader of that kind is imported.
+    Nothing is raised: a file that cannot be read is an issue too.
     """
     try:
         file = _file_of(Path(path))
@@ -47,7 +47,7 @@ def lint_file(path: str | Path) -> list[Issue]:
 
 
 def experiment_file(path: str | Path) -> Path | None:
-    """The experiment file that a path stands for; None if it is anything else."""
+    """The experiment file that a path stands for; None for anything else."""
     try:
         file = _file_of(Path(path))
         return file if kind_of(read_document(file)) == "experiment" else None
@@ -65,7 +65,7 @@ def _file_of(path: Path) -> Path:
 
 
 def _robot_issues(document: FileData) -> list[Issue]:
-    """Those of a robot that stands alone, without a problem to keep it from singular postures."""
+    """The issues of a robot on its own, without a problem to keep it from singular postures."""
     robot, issues = robot_from(document)
     notice = singular_posture(robot) if robot else None
     if notice:
@@ -76,7 +76,7 @@ def _robot_issues(document: FileData) -> list[Issue]:
 def schema(kind: str) -> dict[str, Any]:
     """The JSON Schema (2020-12) of a kind of file: robot, problem, study, experiment or route.
 
-    With it editors complete and check files. Every field carries a description with its unit; the
+    Editors use it to complete and check files. Every field carries a description with its unit; the
     SI unit alone is under `x-unit`. Raises InputError for any other kind.
     """
     from rr_opt.files.experiment_model import ExperimentModel

@@ -21,7 +21,7 @@ from rr_opt.units import Number
 
 @dataclass(frozen=True)
 class _Where:
-    """Reads where a channel is: a Column, or a number that it always is."""
+    """Reads the source of a channel: a Column, or a constant."""
 
     unit: str
 
@@ -130,7 +130,7 @@ class PlannedRecording:
 
 @dataclass(frozen=True)
 class MachinePlan:
-    """What an experiment file says; `experiment` has no runs yet."""
+    """The content of an experiment file; `experiment` has no runs yet."""
 
     experiment: MachineExperiment
     noise: Mapping[str, float]

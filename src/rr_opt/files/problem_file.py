@@ -1,4 +1,4 @@
-"""A problem file to a `Problem`, and the fingerprint of what was read."""
+"""From a problem file to a `Problem`, and the fingerprint of its sources."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -29,11 +29,11 @@ from rr_opt.model.robot import Robot
 from rr_opt.outcome import InputError
 
 OWN_SHAPE: dict[str, Shape] = {"harmonics": "fourier", "intervals": "free"}
-"""Keys of a gait that belong to one shape only."""
+"""Keys of a gait that are specific to one shape."""
 
 
 def _needs(key: str, shape: Shape) -> dict[str, Any]:
-    """JSON Schema: where the key stands, the shape is this one."""
+    """JSON Schema: if the key is present, the shape is this one."""
     then = {"properties": {"shape": {"const": shape}}, "required": ["shape"]}
     return {"if": {"required": [key]}, "then": then}
 
@@ -79,7 +79,7 @@ _STUDY = ("vary", "together", "problem", "routes")
 
 
 def kind_of(document: FileData) -> Kind:
-    """The kind whose keys the file has most of; misspelt keys count too, and a tie is a problem."""
+    """The kind whose keys the file has most of, misspelt ones included; a tie is a problem."""
     if is_result(document.data):
         return "result"
     if any(key in document.data for key in _EXPERIMENT):
@@ -95,7 +95,7 @@ def kind_of(document: FileData) -> Kind:
 
 
 def read_as(kind: Kind, file: Path, expected: str) -> FileData:
-    """The data of a file. Raises InvalidFileError with what was expected if it is another kind."""
+    """The data of a file. Raises InvalidFileError, naming the expected kind, if it is another."""
     document = read_document(file)
     if kind_of(document) != kind:
         raise InvalidFileError([document.error((), expected)])
@@ -106,7 +106,7 @@ _ROUNDING = 1e-9
 
 
 def ratio_findings(choice: RatioChoice, robot: Robot, document: FileData) -> Iterator[Issue]:
-    """What is wrong with a choice of ratios for this robot; the messages name a remedy."""
+    """Issues of a choice of ratios for this robot; the messages suggest a remedy."""
     loads = choice.loads
     if choice.by == "loads" and loads.distance == loads.spread == 0:
         message = (
@@ -131,11 +131,11 @@ def ratio_findings(choice: RatioChoice, robot: Robot, document: FileData) -> Ite
 
 
 LONGEST_PERIOD = 60.0
-"""Longer ones are taken for a slip of the unit, s."""
+"""Longer ones are assumed to be a wrong unit, s."""
 
 
 def gait_findings(gait: GaitBounds, document: FileData) -> Iterator[Issue]:
-    """Gaits that say nothing, or whose steady cycle nobody could compute or wait for."""
+    """Meaningless gaits, and gaits whose steady cycle is infeasible to compute."""
     for key, shape in OWN_SHAPE.items():
         if key in document.data.get("gait", {}) and gait.shape != shape:
             message = (
@@ -167,7 +167,7 @@ def gait_findings(gait: GaitBounds, document: FileData) -> Iterator[Issue]:
 
 @dataclass(frozen=True)
 class Sources:
-    """A problem as read, nothing of it checked but its YAML.
+    """A problem as read, unchecked apart from its YAML.
 
     paths   the files it is made of
     robot   None if it could not be read; `issues` say why
@@ -221,7 +221,7 @@ ROBOT = "the name of a robot file, or the robot itself"
 
 
 def with_robot(problem: FileData, file: Path, paths: tuple[Path, ...] = ()) -> Sources:
-    """The problem and the robot that it names, relative to `file`; without one, the shipped."""
+    """The problem and the robot that it names, relative to `file`; by default, the shipped one."""
     if "robot" not in problem.data:
         named = SHIPPED / "robot.yaml"
         return Sources((*paths, named), problem, read_document(named))
@@ -263,7 +263,7 @@ def read_problem(path: str | Path | None = None) -> Problem:
 
 
 def name_of(path: str | Path | None) -> str:
-    """What a problem is called: its folder if the file is a problem.yaml, else the file."""
+    """The name of a problem: its folder if the file is a problem.yaml, else the file."""
     if path is None:
         return "prototype"
     full = problem_path(Path(path).resolve())
@@ -299,7 +299,7 @@ def problem_from(sources: Sources) -> tuple[Problem | None, list[Issue]]:
 
 
 def _contradictions(model: ProblemModel, robot: Robot, document: FileData) -> Iterator[Issue]:
-    """What the problem asks for and its robot cannot do."""
+    """Requests of the problem that its robot cannot meet."""
     yield from gait_findings(model.gait, document)
     if robot.k1 == robot.k2 == 0 and not robot.physics:
         message = (

@@ -1,7 +1,7 @@
 """Robots, gaits and results as plain data, as JSON and YAML hold them; and gaits read back.
 
-Of a gait `shape`, `amplitude`, `period` and `offset` are always there; a fourier gait adds `sines`
-and `cosines`, a free gait `angle0`, `rate0` and `accelerations`.
+A gait always has `shape`, `amplitude`, `period` and `offset`; a fourier gait adds `sines` and
+`cosines`, a free gait `angle0`, `rate0` and `accelerations`.
 """
 
 import dataclasses
@@ -22,7 +22,7 @@ from rr_opt.model.robot import Robot
 
 
 def plain(value: Any) -> Any:
-    """A value as JSON has it: None for NaN and infinity, a list for an array, a mapping for a
+    """A value as plain JSON data: None for NaN and infinity, a list for an array, a mapping for a
     dataclass, and a gait as in result.json."""
     if hasattr(value, "tolist"):
         value = value.tolist()
@@ -41,7 +41,7 @@ def plain(value: Any) -> Any:
 
 
 def robot_record(robot: Robot) -> dict[str, Any]:
-    """The robot in SI under the keys of a robot file; a limit that does not exist is infinite."""
+    """The robot in SI under the keys of a robot file; infinity means no limit."""
     return {
         "name": robot.name,
         "platform1": dataclasses.asdict(robot.platform1),
@@ -54,7 +54,7 @@ def robot_record(robot: Robot) -> dict[str, Any]:
 
 
 def rounded(value: float) -> float:
-    """A fitted value as it is written: to more digits than any recording determines."""
+    """A fitted value rounded for writing, to more digits than any recording determines."""
     return float(f"{value:.7g}")
 
 
@@ -79,7 +79,7 @@ def yaml_text(content: Mapping[str, Any], title: str) -> str:
 
 
 def _nested(flat: dict[str, str]) -> dict[str, Any]:
-    """`{"servo.rate_limit": text}` as mappings in mappings."""
+    """`{"servo.rate_limit": text}` as nested mappings."""
     nested: dict[str, Any] = {}
     for path, text in flat.items():
         *sections, key = path.split(".")
@@ -130,11 +130,11 @@ _SHAPES: dict[str, tuple[type[FileModel], Any]] = {
 }
 
 _ROUNDING = 1e-6
-"""What a record that was written by a program may be off by, relative to the gait's size."""
+"""Rounding error allowed in a record written by a program, relative to the gait's size."""
 
 
 def gait_record(gait: Gait) -> dict[str, Any]:
-    """The gait in SI, complete: `gait_from` makes the same gait of it, to the last digit."""
+    """The gait in SI, complete: `gait_from` restores it to the last digit."""
     size = {name: getattr(gait, name) for name in ("shape", "amplitude", "period", "offset")}
     own: Any = gait
     values = {one.name: getattr(gait, one.name) for one in fields(own)}
@@ -171,7 +171,7 @@ def gait_from(document: FileData) -> tuple[Gait | None, list[Issue]]:
 
 
 def _open_ends(gait: FreeGait) -> Iterator[tuple[str, str]]:
-    """Key and message where a free gait does not come back to where it began."""
+    """Key and message if a free gait does not close after a period."""
     ends = zip(("angle", "rate"), gait.nodes, ("rad", "rad/s"), strict=True)
     for what, values, unit in ends:
         gap = float(values[-1] - values[0])
@@ -186,7 +186,7 @@ def _open_ends(gait: FreeGait) -> Iterator[tuple[str, str]]:
 def _disagreements(
     gait: FourierGait | FreeGait, given: dict[str, Any]
 ) -> Iterator[tuple[str, str]]:
-    """Key and message where a value is given that follows from the others, and differs."""
+    """Key and message where a redundant value is given that disagrees with the others."""
     if gait.amplitude == 0:
         yield (
             "amplitude",

@@ -1,4 +1,4 @@
-"""A robot file, or the robot inside another file, to a `Robot`."""
+"""From a robot file, or the robot inside another file, to a `Robot`."""
 
 import math
 from collections.abc import Iterator, Mapping
@@ -24,17 +24,17 @@ if TYPE_CHECKING:
     from rr_opt.effects.effect import Effect, Parameter
 
 _LARGEST_LENGTH = 5.0
-"""Longer platforms are taken for millimetres written as metres, m."""
+"""Longer platforms, m, are assumed to be millimetres written as metres."""
 
 _DENSITY = 8000.0
-"""Of steel, kg/m3."""
+"""Density of steel, kg/m3."""
 
 _LARGEST_FRICTION = 1000.0
-"""A robot of a kilogram then stops within a fraction of a millisecond, N s/m per wheel."""
+"""With more, a robot of a kilogram stops within a fraction of a millisecond, N s/m per wheel."""
 
 
 def doubts(robot: Robot) -> Iterator[tuple[tuple[str, ...], str]]:
-    """Key path and message of every value that looks like a slip of the pen."""
+    """Key path and message of every value that looks like a typing mistake."""
     for key, platform in (("platform1", robot.platform1), ("platform2", robot.platform2)):
         for name, message in _platform_doubts(platform):
             yield (key, name), message
@@ -55,7 +55,7 @@ def doubts(robot: Robot) -> Iterator[tuple[tuple[str, ...], str]]:
 
 
 def too_much_friction(robot: Robot) -> Iterator[tuple[tuple[str, ...], str]]:
-    """Key path and message of friction that would stop any robot at once."""
+    """Key path and message of friction that would stop any robot instantly."""
     for key, k in (("platform1", robot.k1), ("platform2", robot.k2)):
         if k > _LARGEST_FRICTION:
             yield (
@@ -67,7 +67,7 @@ def too_much_friction(robot: Robot) -> Iterator[tuple[tuple[str, ...], str]]:
 
 
 def singular_posture(robot: Robot) -> str | None:
-    """What to say if the servo can reach the posture where S1 = c1 cos phi + c2 vanishes."""
+    """A message if the servo can reach the posture where S1 = c1 cos phi + c2 vanishes."""
     limit, singular = robot.servo.angle_limit, robot.singular_angle
     if singular >= limit:
         return None
@@ -179,9 +179,9 @@ _KEYS: dict[str, tuple[str, ...]] = {
 
 
 def read_provenance(document: FileData) -> tuple[Mapping[str, str], list[Issue]]:
-    """Key path -> the sentence that says where the value comes from.
+    """Key path -> the sentence on where the value comes from.
 
-    A friction given as `k` is reported under `kappa`, the name by which the robot keeps it.
+    A friction given as `k` is reported under `kappa`, the robot's own name for it.
     """
     found: dict[str, str] = {}
     issues: list[Issue] = []
@@ -275,7 +275,7 @@ def _friction_and_radius(document: FileData) -> list[Issue]:
 
 
 def _catalogue() -> Mapping[str, "Effect"]:
-    """The effects that a robot file may name; loaded here and not above, as they load CasADi."""
+    """The effects that a robot file may name; imported here, as they load CasADi."""
     from rr_opt.effects import OF_ROBOTS
 
     return OF_ROBOTS

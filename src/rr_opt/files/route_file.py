@@ -1,4 +1,4 @@
-"""A route file to a `Route`: its problem, its pieces, and everything that is wrong with them."""
+"""From a route file to a `Route`: its problem, its pieces, and all their mistakes."""
 
 from collections import Counter
 from dataclasses import dataclass, field, replace
@@ -124,7 +124,7 @@ def _pieces(document: FileData) -> tuple[list[Piece], list[Issue]]:
 
 @dataclass(frozen=True)
 class RouteStudy:
-    """Routes that are driven each by itself; their names differ.
+    """Routes that are driven separately; their names differ.
 
     sha256  over the study file and every file of the routes, in hex
     """

@@ -1,7 +1,7 @@
-"""Where input files come from: the user's disk, the package, or a result that rr-opt wrote.
+"""Where input files come from: the user's disk, the package, or a result of rr-opt.
 
-Only regular files of bounded size are read: a pipe or a device may never end. Input may come by way
-of a link; output never replaces or follows one.
+Only regular files of bounded size are read: a pipe or a device may never end. Input may be a link;
+output never replaces or follows one.
 """
 
 import hashlib
@@ -19,7 +19,7 @@ from rr_opt.messages import shown
 from rr_opt.outcome import InputError
 
 _MARKS = ("status", "input_sha256")
-"""Keys that every result has and no input."""
+"""Keys that every result has and no input file has."""
 
 
 def is_result(data: object) -> bool:
@@ -34,7 +34,7 @@ SHIPPED = Path(str(files("rr_opt"))) / "data" / "prototype"
 def read_document(path: Path) -> FileData:
     """The data of a YAML file, or of a result. Raises InvalidFileError with all that is wrong.
 
-    A result may hold more numbers than an input file may, and no line of it is worth naming.
+    A result may be larger than an input file, and its lines are not tracked.
     """
     content = read_content(path)
     if content.lstrip().startswith(b"{"):
@@ -48,9 +48,9 @@ def read_document(path: Path) -> FileData:
 def linked(
     document: FileData, key: str, folder: Path, expected: str
 ) -> tuple[FileData | None, tuple[Path, ...], list[Issue]]:
-    """What stands under a key: a mapping, or the document in the file that it names.
+    """The value of a key: a mapping, or the document in the file that it names.
 
-    None where it cannot be read, with all issues; and the file that it is in, if it is another.
+    None if it cannot be read, with all issues; and the file that it is in, if it is another.
     expected: what the key should hold, for the message.
     """
     given = document.data[key]
@@ -63,7 +63,7 @@ def linked(
     try:
         return read_document(named), (named,), []
     except InvalidFileError as error:
-        # What is wrong with the name stands where it is written.
+        # Issues with the name are reported where it is written.
         message = f"Read {shown(given)}. {error.issues[0].message}"
         if error.issues[0].line is None:
             return None, (named,), [document.error((key,), message)]
@@ -73,7 +73,7 @@ def linked(
 def fingerprint(paths: Iterable[Path]) -> str:
     """SHA-256, in hex, over the bytes of files. Raises InvalidFileError if one is unreadable.
 
-    Each is preceded by its length, so that none can pass for two.
+    Each is preceded by its length, so that concatenations are unambiguous.
     """
     digest = hashlib.sha256()
     for path in paths:
@@ -121,10 +121,10 @@ _AT_ONCE = getattr(os, "O_NONBLOCK", 0)
 
 
 def read_content(path: Path, most: int = SHORT) -> bytes:
-    """The bytes of a regular file. Raises InvalidFileError if it is none, or larger than `most`."""
+    """The bytes of a regular file. Raises InvalidFileError if it is not one, or exceeds `most`."""
     file = str(path)
     try:
-        # Opened without waiting: a pipe without a writer would be waited for without end.
+        # Opened in non-blocking mode: a pipe without a writer would block forever.
         with open(file, "rb", opener=lambda name, flags: os.open(name, flags | _AT_ONCE)) as opened:
             why = _not_regular(os.fstat(opened.fileno()).st_mode)
             content = b"" if why else opened.read(most + 1)
@@ -142,7 +142,7 @@ def read_content(path: Path, most: int = SHORT) -> bytes:
 
 
 def unreadable(path: Path) -> str:
-    """Why the file at a path cannot be read, as far as it shows without opening it; else empty."""
+    """Why the file at a path cannot be read, as far as visible without opening it; else empty."""
     try:
         return _not_regular(path.stat().st_mode)
     except (OSError, ValueError) as error:
@@ -163,7 +163,7 @@ def _not_regular(mode: int) -> str:
 
 
 def kind_of(mode: int) -> str:
-    """What a file that is not regular is, by its mode."""
+    """The kind of a file that is not regular, by its mode."""
     kinds = {
         stat.S_IFLNK: "a symbolic link",
         stat.S_IFDIR: "a folder",
@@ -174,7 +174,7 @@ def kind_of(mode: int) -> str:
 
 
 def require_regular(path: Path) -> None:
-    """Raise InputError for what exists and is not a regular file, before it is written to."""
+    """Raise InputError for an existing path that is not a regular file, before writing to it."""
     try:
         mode = path.lstat().st_mode
     except OSError:

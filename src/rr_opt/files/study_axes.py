@@ -1,4 +1,4 @@
-"""What a study varies: keys of a problem, in axes whose values are combined with every other's."""
+"""What a study varies: keys of a problem, in axes whose values are combined as a product."""
 
 import math
 import re
@@ -27,7 +27,7 @@ def _number(description: str, **default: Any) -> Any:
     return Field(description=description, json_schema_extra={"anyOf": kinds}, **default)
 
 
-# `from` is no name that a class body can hold.
+# `from` cannot be a name in a class body.
 RangeModel: Any = create_model(
     "RangeModel",
     __base__=FileModel,
@@ -147,7 +147,7 @@ def _split(name: str) -> KeyPath:
 
 
 def _unfolded(nodes: list[dict[str, Any]], whole: dict[str, Any]) -> list[dict[str, Any]]:
-    """The nodes, with references followed and every alternative beside them."""
+    """The nodes, with references resolved and every alternative beside them."""
     seen: list[dict[str, Any]] = []
     todo = list(nodes)
     while todo:
@@ -162,7 +162,7 @@ def _unfolded(nodes: list[dict[str, Any]], whole: dict[str, Any]) -> list[dict[s
 def _below(
     node: dict[str, Any], part: str | int, whole: dict[str, Any]
 ) -> tuple[list[dict[str, Any]], list[str]]:
-    """What stands under a key or an index of a node, and the keys that could."""
+    """The schema under a key or an index of a node, and the possible keys."""
     found: list[dict[str, Any]] = []
     known: list[str] = []
     for one in _unfolded([node], whole):
@@ -186,10 +186,10 @@ def _unknown(before: KeyPath, part: str | int, known: list[str]) -> str:
 def refuse_conflict(
     key: ProblemKey, values: object, seen: Mapping[KeyPath, tuple[ProblemKey, object]]
 ) -> None:
-    """Raise InputError if one of the keys before is this one, holds it, or is held by it.
+    """Raise InputError if an earlier key is the same as this one, contains it, or is part of it.
 
-    seen: each key before and its values, by its path. Robots that are named by their files may be
-    varied together with what is within a robot.
+    seen: each earlier key and its values, by its path. Robots that are named by their files may be
+    varied together with keys within a robot.
     """
     for path, (other, others) in seen.items():
         if path == key.path:
@@ -230,7 +230,7 @@ def _names(values: object) -> bool:
 
 
 def _digits(value: Any) -> str:
-    """A value as text, the same for numbers that differ by rounding."""
+    """A value as text, equal for numbers that differ by rounding."""
     return f"{value:.11e}" if isinstance(value, float) else repr(value)
 
 
@@ -279,7 +279,7 @@ def range_values(given: Any, key: ProblemKey) -> tuple[float, ...]:
 
 
 def doubt_about_units(given: Any, key: ProblemKey) -> str | None:
-    """A sentence on a range in which a number without a unit stands beside one with a unit.
+    """A warning on a range that mixes a number without a unit and one with a unit.
 
     Zero is the same in every unit.
     """
@@ -314,8 +314,8 @@ class Line:
 
     values   as a problem file would hold them
     numbers  the same in SI; None if not all of them are numbers
-    unit     in which they were asked for, if in one; else the key's, SI
-    place    where in the study file they stand
+    unit     in which they were given, if it is a single one; else the key's, SI
+    place    their place in the study file
     """
 
     key: ProblemKey
@@ -338,9 +338,9 @@ def line_at(
     seen: dict[KeyPath, tuple[ProblemKey, object]],
     issues: list[Issue],
 ) -> Line | None:
-    """The values of the key at a place; None, and issues added, where something is wrong.
+    """The values of the key at a place; None, with issues added, if something is wrong.
 
-    seen: each key before and its values as written, by its path; this one is added.
+    seen: each earlier key and its values as written, by its path; this one is added.
     """
     data: Any = document.data
     for part in place:
@@ -365,7 +365,7 @@ def line_at(
 def _ranged(
     document: FileData, place: KeyPath, key: ProblemKey, data: dict[str, Any], issues: list[Issue]
 ) -> Line | None:
-    """The line of a range; None where a key of the range is wrong. Raises InputError as ranges."""
+    """The line of a range; None if a key of the range is wrong. Raises InputError."""
     inner = FileData(document.file, data, document.lines, place)
     model, found = validate(RangeModel, inner)
     if model is None:
@@ -382,7 +382,7 @@ def _ranged(
 
 
 def _unit(values: list[Any], key: ProblemKey) -> str:
-    """The unit that all values but those that are 0 or infinite have; else the key's, SI."""
+    """The unit shared by all values except 0 and infinity; else the key's, SI."""
     units = {
         unit_written(value) if isinstance(value, str) else ""
         for value in values
@@ -393,7 +393,7 @@ def _unit(values: list[Any], key: ProblemKey) -> str:
 
 
 def _numbers(values: list[Any], key: ProblemKey) -> tuple[float, ...] | None:
-    """The values in SI, if they are numbers. A wrong value is reported by its case."""
+    """The values in SI, if they are numbers. Wrong values are reported by their cases."""
     if key.unit is None:
         return None
     try:
@@ -404,7 +404,7 @@ def _numbers(values: list[Any], key: ProblemKey) -> tuple[float, ...] | None:
 
 @dataclass(frozen=True)
 class Axis:
-    """Lines whose values are taken in step."""
+    """Lines whose values are varied together."""
 
     lines: tuple[Line, ...]
 
@@ -413,12 +413,12 @@ class Axis:
 
     @property
     def numbers(self) -> tuple[float, ...] | None:
-        """Where its steps lie, in SI of its first key that is a number; None if none is."""
+        """The values of its steps, in SI of its first numeric key; None if there is none."""
         return next((line.numbers for line in self.lines if line.numbers is not None), None)
 
     @property
     def steps(self) -> list[tuple[Any, ...]]:
-        """The values of each step, those that are numbers in SI."""
+        """The values of each step, numbers in SI."""
         columns = [line.values if line.numbers is None else line.numbers for line in self.lines]
         return list(zip(*columns, strict=True))
 
@@ -429,7 +429,7 @@ class Axis:
 
 
 def axes_of(document: FileData) -> tuple[list[Axis], list[Issue]]:
-    """The axes of a study file that can be used, and what is wrong with the others."""
+    """The usable axes of a study file, and the issues of the others."""
     issues: list[Issue] = []
 
     def note(place: KeyPath, message: str) -> None:
@@ -464,7 +464,7 @@ def axes_of(document: FileData) -> tuple[list[Axis], list[Issue]]:
 def _groups(
     document: FileData, note: Callable[[KeyPath, str], None]
 ) -> list[tuple[KeyPath, dict[str, Any]]]:
-    """The keys of each axis or axes, and where they stand."""
+    """The keys of each axis or axes, and their places."""
     groups: list[tuple[KeyPath, dict[str, Any]]] = []
     varied = document.data.get("vary", {})
     if isinstance(varied, dict):

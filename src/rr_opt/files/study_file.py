@@ -1,4 +1,4 @@
-"""A study file to its cases, each a problem of its own that was checked like any other."""
+"""From a study file to its cases, each a problem checked like any other."""
 
 import copy
 import itertools
@@ -23,7 +23,7 @@ from rr_opt.model.problem import Problem
 from rr_opt.outcome import InputError
 
 Setting = tuple[KeyPath, Any]
-"""Where a value goes in the problem, and the value as a file would hold it."""
+"""The place of a value in the problem, and the value as in a file."""
 
 
 def with_values(
@@ -37,7 +37,7 @@ def with_values(
     problem = replace(problem, data=copy.deepcopy(problem.data))
     paths, issues = base.paths, base.issues
     misplaced: list[Issue] = []
-    # A robot that is named goes first: other settings may change it.
+    # A named robot is set first: other settings may change it.
     for keys, value in sorted(settings, key=lambda setting: len(setting[0])):
         if keys == ("robot",):
             changed = replace(problem, data={**problem.data, "robot": value})
@@ -59,7 +59,7 @@ def with_values(
 
 
 def _set(data: Any, keys: KeyPath, value: Any) -> None:
-    """Set a value in nested data; sections that are missing are made."""
+    """Set a value in nested data, creating missing sections."""
     for depth, key in enumerate(keys[:-1]):
         if isinstance(key, str) and isinstance(data, dict):
             missing: Any = {} if isinstance(keys[depth + 1], str) else []
@@ -75,7 +75,7 @@ def _set(data: Any, keys: KeyPath, value: Any) -> None:
 
 
 def _entry(data: Any, keys: KeyPath) -> Any:
-    """What stands at an index that exists."""
+    """The entry at an existing index."""
     at = keys[-1]
     if isinstance(at, int) and isinstance(data, list) and at < len(data):
         return data[at]
@@ -98,8 +98,8 @@ def _issues_of_cases(
 ) -> Iterator[Issue]:
     """The issues of `count` cases, given with the steps of the axes that have them.
 
-    An issue that a varied value is the reason of stands at that value in the study file and says
-    which case has it first; one of the problem itself, which every case has, stands where it is.
+    An issue caused by a varied value is reported at that value in the study file, with the first
+    case that has it; one of the problem itself, common to all cases, is reported in its own place.
     """
     warned: set[tuple[KeyPath, str]] = set()
     for issue, cases in found.items():
@@ -108,7 +108,7 @@ def _issues_of_cases(
             yield issue
             continue
         place: KeyPath = line.place if line else ()
-        # A warning about one value says what it would say about the next.
+        # A warning about one value would be repeated for the next.
         alike = place, _NUMBERS.sub("", issue.message)
         if issue.level == "warning" and alike in warned:
             continue
@@ -119,8 +119,8 @@ def _issues_of_cases(
 
 
 def _is_about(issue: Issue, line: Line) -> bool:
-    # A robot's own file has its keys without `robot.`, a study those of its problem with `problem.`
-    # before them.
+    # Keys lack the prefix `robot.` in a robot's own file, and have the prefix `problem.` in a
+    # study.
     name = line.key.name
     return any(
         issue.path == varied or issue.path.startswith((f"{varied}.", f"{varied}["))
@@ -141,9 +141,9 @@ def _cases_text(axes: Sequence[Axis], cases: Sequence[tuple[int, ...]]) -> str:
 
 @dataclass(frozen=True)
 class Study:
-    """A study as asked: the product of its axes, a case a combination, the last axis fastest.
+    """A study as given: the product of its axes, one case per combination, the last axis fastest.
 
-    problems  one a case
+    problems  one per case
     sha256    over the study file and every file that it names, in hex
     """
 
@@ -154,15 +154,15 @@ class Study:
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """How many steps each axis has."""
+        """Number of steps of each axis."""
         return tuple(len(axis) for axis in self.axes)
 
     def steps(self, case: int) -> tuple[int, ...]:
-        """Which step of each axis a case is."""
+        """The step of each axis in a case."""
         return tuple(map(int, np.unravel_index(case, self.shape)))
 
     def inputs(self, case: int) -> dict[str, Any]:
-        """The varied keys of a case: SI where they are numbers, as written elsewhere."""
+        """The varied keys of a case: numbers in SI, anything else as written."""
         return {
             line.key.name: line.given(step)
             for axis, step in zip(self.axes, self.steps(case), strict=True)
@@ -195,7 +195,7 @@ def study_from(document: FileData, file: Path) -> tuple[Study | None, list[Issue
     except InvalidFileError as error:
         return None, [*issues, *error.issues]
     if has_errors(issues):
-        # Mistakes in the problem itself are reported together with those in what is varied.
+        # Mistakes in the problem itself are reported together with those in the varied values.
         return None, list(dict.fromkeys([*issues, *problem_from(base)[1]]))
     problems: list[Problem] = []
     paths = [file, *base.paths]

@@ -1,7 +1,7 @@
-"""YAML text to plain data, refusing whatever could mean something else than it says.
+"""YAML text to plain data, rejecting whatever could mean something other than it says.
 
-Refused: repeated keys, anchors and aliases (a few lines can expand to gigabytes), tags,
-several documents, deep nesting, other encodings than UTF-8. Plain words follow YAML 1.2:
+Rejected: repeated keys, anchors and aliases (a few lines can expand to gigabytes), tags,
+several documents, deep nesting, encodings other than UTF-8. Plain words follow YAML 1.2:
 `1e-5` is a number, `on` and `12:30` are texts.
 """
 
@@ -57,7 +57,7 @@ class FileData:
         return replace(self, data=self.data[key], prefix=(*self.prefix, key))
 
     def entries(self, key: str, whole: str, each: str) -> tuple[list[FileData], list[Issue]]:
-        """The mappings of a list that is not empty, and an issue for whatever is something else.
+        """The mappings of a non-empty list, and an issue for every other entry.
 
         whole, each  what the list and an entry should be, for the messages
         """
@@ -74,13 +74,13 @@ class FileData:
         return sections, issues
 
     def without(self, *keys: str) -> FileData:
-        """The same without some keys."""
+        """The same mapping without some keys."""
         return replace(self, data={k: v for k, v in self.data.items() if k not in keys})
 
     def issue(self, level: Level, path: KeyPath, message: str) -> Issue:
         """An issue at a path below this mapping, with the line of the nearest key written.
 
-        Where no lines are known it has none.
+        It has no line if none are known.
         """
         whole = (*self.prefix, *path)
         steps = (whole[:n] for n in range(len(whole), 0, -1))
@@ -124,7 +124,7 @@ def parse_yaml(content: bytes, file: str) -> FileData:
 
 
 class _Reading:
-    """One pass over the events of a text; `issues` gathers what does not stop it."""
+    """One pass over the events of a text; `issues` collects non-fatal ones."""
 
     def __init__(self, text: str, file: str):
         self.file = file
@@ -151,7 +151,7 @@ class _Reading:
         except (yaml.YAMLError, ValueError, OverflowError) as error:
             self._stop(f"The text is not YAML: {shown(str(error))}. Correct it.")
         if not isinstance(data, dict) or not data:
-            # Not what it says: the file may be any file.
+            # Its content is not quoted: it may be any file.
             kind = (
                 "text" if isinstance(data, str) else "list" if isinstance(data, list) else "value"
             )

@@ -1,4 +1,4 @@
-"""What drives a machine: its recorded inputs, straight between samples, as effects change them."""
+"""The drive of a machine: recorded inputs, linear between samples, as effects change them."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from rr_opt.sysid.sensitivities import DriveSlopes
 from rr_opt.sysid.shooting import DrivePath
 
 _KEPT = 8
-"""Sets of constants of which the drives are kept."""
+"""Sets of constants whose drives are cached."""
 
 
 @dataclass(frozen=True)
 class Piece:
-    """A part of a recording that is predicted by itself: samples first <= k < until."""
+    """A part of a recording that is predicted separately: samples first <= k < until."""
 
     recording: int
     first: int
@@ -28,7 +28,7 @@ class Piece:
 
 @dataclass
 class MeasuredDrives:
-    """Of all recordings."""
+    """The drives of all recordings."""
 
     machine: Machine
     recordings: Sequence[MachineRun]
@@ -36,7 +36,7 @@ class MeasuredDrives:
     _kept: dict[tuple, dict] = field(default_factory=dict)
 
     def with_inputs(self, inputs: Mapping[int, Signals]) -> MeasuredDrives:
-        """The same with some inputs of some recordings in place of what was recorded."""
+        """The same with some inputs of some recordings replaced."""
         runs = [
             replace(run, inputs={**run.inputs, **inputs.get(k, {})})
             for k, run in enumerate(self.recordings)
@@ -46,7 +46,7 @@ class MeasuredDrives:
     def path(
         self, piece: Piece, signals: Sequence[MachineEffect], values: Mapping[str, float]
     ) -> DrivePath:
-        """Over a piece.
+        """The drive over a piece.
 
         signals  effects on the inputs, with constants in values, 0 unless given
         """
@@ -70,7 +70,7 @@ class MeasuredDrives:
         values: Mapping[str, float],
         wanted: Sequence[str],
     ) -> DriveSlopes | None:
-        """How the inputs move with the signals' constants, by differences; None if none is
+        """Derivatives of the inputs by the signals' constants, by differences; None if none is
         wanted."""
         own = [(e, c) for e in signals for c in e.constants if e.quantity(c.name) in wanted]
         if not own:
@@ -101,7 +101,7 @@ class MeasuredDrives:
 
 
 def straight(t: Array, inputs: Sequence[Array], unknown: int, step: float) -> DrivePath:
-    """Inputs that are straight between samples, and unknown ones that are 0."""
+    """Inputs that are linear between samples, followed by unknown ones that are 0."""
     usual = float(np.median(np.diff(t)))
     each = 1 << max(int(np.ceil(np.log2(usual / step))), 0)
     inner = np.arange(each) / each
@@ -113,7 +113,7 @@ def straight(t: Array, inputs: Sequence[Array], unknown: int, step: float) -> Dr
 
 
 def beside(moved: DriveSlopes | None, more: DriveSlopes, wanted: int) -> DriveSlopes:
-    """Slopes by what is wanted, and by more behind it."""
+    """Slopes by the wanted quantities, with further columns appended."""
     if moved is None:
         return replace(more, columns=wanted + more.columns)
     return DriveSlopes(

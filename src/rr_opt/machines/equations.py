@@ -1,5 +1,5 @@
-"""A machine's equations as a system to be stepped, its numbers as quantities to be fitted, and
-what may push it that the model lacks: at each port a function of a state or an input."""
+"""A machine's equations as a system to be stepped, its numbers as quantities to be fitted, and its
+unknown inputs: at each port a function of a state or a recorded input."""
 
 import itertools
 from collections.abc import Iterator, Mapping, Sequence
@@ -19,12 +19,12 @@ from rr_opt.sysid.sensitivities import DriveSlopes
 from rr_opt.sysid.shooting import DrivePath, Path, System
 
 _EVERY = 0.05
-"""s, over which a rate is a mean rate, so that noise does not count."""
+"""s, over which rates are averaged to suppress noise."""
 
 
 @lru_cache
 def system_of(machine: Machine, effects: tuple[str, ...]) -> tuple[System, tuple[str, ...]]:
-    """The motion with some effects in it, and the names of its parameters."""
+    """The equations of motion with some effects, and the names of their parameters."""
     inside = [one for one in map(machine.effect, effects) if one.port != "signal"]
     x = {name: ca.SX.sym(name) for name in machine.states}
     u = {one.name: ca.SX.sym(one.name) for one in machine.inputs}
@@ -69,13 +69,13 @@ def parameter_quantity(machine: Machine, name: str, value: float, known: Uncerta
     assert own is not None
     if known.factor:
         low, high = sorted((value / known.factor, value * known.factor))
-        low = low if own.low > 0 else own.low  # friction may be none
+        low = low if own.low > 0 else own.low  # friction may be zero
         return Quantity(name, own.unit, value, abs(value), True, low, high, value, free=True)
     return Quantity(name, own.unit, value, known.sigma, True, own.low, own.high, value)
 
 
 def effect_info(effect: MachineEffect, scales: Scales) -> EffectInfo:
-    """An effect as one that may be missing."""
+    """An effect as a candidate for what is missing."""
 
     def form(names: Sequence[str]) -> Form:
         own = [(effect.quantity(c.name), c) for c in effect.constants if c.name in names]
@@ -103,13 +103,13 @@ def _rates(t: Array, y: Array) -> Array:
 
 
 _SHAPES = 7
-"""Points between which an unknown input is straight."""
+"""Knots between which an unknown input is linear."""
 
 
 def unknown_inputs(
     machine: Machine, made: Sequence[tuple[Request, DrivePath, Path]]
 ) -> tuple[list[Term], Iterator[DriveSlopes]]:
-    """The terms, and how they move the drive of each segment."""
+    """The terms, and the derivatives of each segment's drive by them."""
     terms, shapes, column = [], [], 0
     known = (*machine.states, *(one.name for one in machine.inputs))
     for channel, name in itertools.product(machine.ports, (CONSTANT, *machine.variables)):
@@ -147,13 +147,13 @@ def _along(k: int, path: DrivePath, made: Path) -> Array:
 
 
 def _knots(values: Array) -> Array:
-    """Where an unknown input is shown: as many values between each two."""
+    """Knots of an unknown input, with equally many values between neighbours."""
     at = np.unique(np.quantile(values, np.linspace(0.01, 0.99, _SHAPES)))
     return at[np.append(True, np.diff(at) > 1e-3 * np.ptp(at))] if at.size > 1 else at
 
 
 def _hats(values: Array, at: Array) -> Array:
-    """Functions that are 1 at one of the knots and 0 at the others (..., knots)."""
+    """Hat functions: 1 at one of the knots and 0 at the others (..., knots)."""
     if at.size == 1:
         return np.ones((*values.shape, 1))
     unit = np.eye(at.size)

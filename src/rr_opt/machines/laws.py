@@ -1,8 +1,8 @@
-"""Effects that machines share: friction of a joint, and what may be wrong with its drive.
+"""Effects that machines share: friction of a joint, and faults of its drive.
 
-A law sees the state and input names of its machine and, of a joint, `w` (rad/s), `drive` and `load`
-(N m), the torques of the motor and of gravity, and `gravity`, the latter as a function of the angle
-q; a signal sees times and inputs.
+A law sees the states and inputs of its machine by name and, for a joint, `w` (rad/s), the torques
+`drive` of the motor and `load` of gravity (N m), and `gravity`, the latter as a function of the
+angle q; a signal sees times and inputs.
 """
 
 from typing import Any
@@ -17,27 +17,27 @@ G = 9.81
 """m/s2."""
 
 STICKING = 0.005
-"""sign(w) is smoothed to tanh(w/w0), w0 in rad/s: a joint spends next to no time so slow."""
+"""sign(w) is smoothed to tanh(w/w0), w0 in rad/s: a joint spends hardly any time below it."""
 
 STRIBECK = 0.5
-"""rad/s, at which the friction of a slow joint has fallen to 1/e."""
+"""rad/s, at which the additional friction of a slow joint has fallen to 1/e."""
 
 _SHARE = 0.1
-"""A torque that is left out is usually such a share of the motor's."""
+"""Usual size of a missing torque, as a share of the motor's."""
 
 FRICTION_FORM_ERROR = 0.15
-"""Of laws of friction. The best of six for geared servos is said to halve the error of viscous and
-Coulomb friction (Duclusaud et al., ICRA 2025): as much is left as it explains. Chosen with the
+"""Of friction laws. The best of six for geared servos is reported to halve the error of viscous and
+Coulomb friction (Duclusaud et al., ICRA 2025): as much remains as it explains. Chosen with the
 public recordings of a servo in view."""
 
 
 def sign(w: Any) -> Any:
-    """Of a speed, smooth."""
+    """Smoothed sign of a speed."""
     return ca.tanh(w / STICKING)
 
 
 def size(x: Any, small: float = 1e-3) -> Any:
-    """|x|, smooth."""
+    """Smoothed |x|."""
     return ca.sqrt(x**2 + small**2)
 
 
@@ -48,7 +48,7 @@ JOINT: dict[str, Any] = {
     "start": lambda seen: {"q": seen["q"], "w": seen["q_rate"]},
     "ports": {"friction": ("torque", "N m", "a torque")},
 }
-"""What machines with one joint have in common: its angle q is seen, its speed is w."""
+"""Common to machines with one joint: its angle q is measured, its speed is w."""
 
 
 def _torque(name: str = "torque", low: float = 0.0) -> Constant:
@@ -128,12 +128,12 @@ ANGLE_OFFSET = MachineEffect(
 
 
 def delayed(t: Array, u: Array, late: float) -> Array:
-    """A signal, late by so much, s."""
+    """A signal delayed by `late`, s."""
     return np.interp(t - late, t, u)
 
 
 def lagged(t: Array, u: Array, tau: float) -> Array:
-    """A signal through a first-order lag, straight between samples, exactly."""
+    """A signal through a first-order lag, exact for a signal that is linear between samples."""
     if tau <= 0:
         return u
     h = np.diff(t)

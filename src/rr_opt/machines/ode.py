@@ -1,7 +1,7 @@
 """Any machine of `model.machine`, driven by measured inputs, as a model that can be identified.
 
-Recordings are predicted in windows, as long as errors take to grow (`windows`). What the noise of
-the inputs makes of a prediction is part of what no model can do better (`form_error`).
+Recordings are predicted in windows that are short enough for errors not to grow much (`windows`).
+The error that noise of the inputs causes is one that no model can avoid (`form_error`).
 """
 
 from __future__ import annotations
@@ -43,14 +43,14 @@ from rr_opt.sysid.settings import SETTINGS
 from rr_opt.sysid.shooting import DrivePath, Path, System, predict_all
 
 _EARLY = 0.05
-"""s, from which the state at the beginning of a segment is seen."""
+"""s, from which the state at the beginning of a segment is estimated."""
 
 Made = tuple[Request, DrivePath, Path]
-"""What was asked for, what drove it, and how it went."""
+"""A request, its drive, and its predicted path."""
 
 
 class OdeModel:
-    """Recordings of a machine; answers `sysid.machine.Machine`."""
+    """Recordings of a machine; implements `sysid.machine.MachineModel`."""
 
     def __init__(self, experiment: MachineExperiment, *, parted: bool = False) -> None:
         """parted: recordings are to be predicted whole."""
@@ -84,7 +84,7 @@ class OdeModel:
             self._part([p for one in self._pieces for p in self._parts(one, length)])
 
     def _part(self, pieces: Sequence[Piece]) -> None:
-        """Into runs."""
+        """Make the pieces the runs."""
         self._pieces = pieces
         self.runs: Sequence[Data] = [self._data(one) for one in pieces]
         self._recordeds: dict[Segment, Recorded] = {}
@@ -109,7 +109,7 @@ class OdeModel:
 
     @property
     def form_error(self) -> float:
-        """RMS in sigma that the inputs' own noise leaves in a prediction, its start refitted."""
+        """RMS in sigma that noise of the inputs causes in a prediction, its start refitted."""
         return self._form_error
 
     @cached_property
@@ -119,13 +119,13 @@ class OdeModel:
     # ---- the machine
 
     def upstream(self) -> Sequence[tuple[tuple[Choice, ...], Mapping[str, float]]]:
-        """Nothing: what drives it is taken as it was measured."""
+        """No effects: the drive is taken as it was measured."""
         return [((), {})]
 
     def proposals(
         self, fit: Fit, complete: Sequence[str]
     ) -> Sequence[tuple[Choice, Mapping[str, float]]]:
-        """Where the forms of effects without derivatives say."""
+        """The guesses that come with the forms of non-smooth effects."""
         return [
             (Choice(name), guess)
             for name, info in self.catalogue.items()
@@ -134,13 +134,13 @@ class OdeModel:
         ]
 
     def next_experiment(self, best: Fit, rival: tuple[str, Fit] | None) -> None:
-        """Not looked for."""
+        """None: not planned for these machines."""
 
     def equivalent(self, values: Mapping[str, float]) -> None:
-        """None: no two sets of values are alike."""
+        """None: no two sets of values predict the same."""
 
     def worth(self, before: Sequence[Misfit], after: Sequence[Misfit]) -> str:
-        """By how much the outputs are off, in their own units."""
+        """Errors of the outputs, in their own units."""
         pairs = zip(self._off(before), self._off(after), strict=True)
         listed = ", ".join(f"{b[0]} was {b[1]:.3g} {b[2]} off and is {a[1]:.3g} {a[2]} off now"
                            for b, a in pairs)  # fmt: skip
@@ -152,7 +152,7 @@ class OdeModel:
         return f"Over {self.horizon:.3g} s the corrected model predicts {listed} (RMS)."
 
     def unknown_inputs(self, fit: Fit) -> tuple[Sequence[Term], Mapping[Segment, Linearisation]]:
-        """At each port something that depends on a state or an input."""
+        """At each port an input that depends on a state or a recorded input."""
         requests = fit.problem.requests(fit.values, fit.states)
         made = self.made(requests, fit.effects)
         terms, slopes = unknown_inputs(self.machine, made)
@@ -166,7 +166,7 @@ class OdeModel:
     def initial_state(
         self, segment: Segment, effects: tuple[str, ...], values: Mapping[str, float]
     ) -> Array:
-        """From straight lines through the first moments of the outputs."""
+        """From lines fitted to the first samples of the outputs."""
         data, piece = self.runs[segment.run], self._pieces[segment.run]
         inputs = self.experiment.runs[piece.recording].inputs
         t = data.t[segment.first :]
@@ -186,12 +186,12 @@ class OdeModel:
     def converted(
         self, request: Request, before: tuple[str, ...], effects: tuple[str, ...]
     ) -> Array:
-        """The same: no effect has a state of its own."""
+        """The state unchanged: no effect has a state of its own."""
         return request.state
 
     @cached_property
     def _state_scale(self) -> Array:
-        """As much as noise; of a rate as much as makes that in a window, as a force pushes both."""
+        """The noise; for a rate, the change that adds up to as much over a window."""
         sigma = {c: float(np.nanmedian(self.runs[0].sigma[:, k]))
                  for k, c in enumerate(self.channels)}  # fmt: skip
         rest = float(np.sqrt(np.mean(np.square(list(sigma.values())))))
@@ -203,11 +203,11 @@ class OdeModel:
         return self._state_scale
 
     def least_process_noise(self, run: int, effects: tuple[str, ...]) -> Array:
-        """None is known."""
+        """Zero: none is known."""
         return np.zeros(self._state_scale.size)
 
     def state_prior(self, effects: tuple[str, ...]) -> Array:
-        """Nothing is known."""
+        """Infinite: nothing is known."""
         return np.full(self._state_scale.size, np.inf)
 
     # ---- prediction
@@ -228,7 +228,7 @@ class OdeModel:
         return self._linearised(requests, effects, wanted)
 
     def predicted(self, request: Request, effects: tuple[str, ...]) -> Array:
-        """What would be recorded of a segment (n, channels)."""
+        """The predicted recording of a segment (n, channels)."""
         return self.made([request], effects)[0][2].seen
 
     def made(
@@ -237,7 +237,7 @@ class OdeModel:
         effects: tuple[str, ...],
         inputs: Mapping[int, Signals] | None = None,
     ) -> list[Made]:
-        """Segments, simulated; inputs: of some recordings, in place of what was recorded."""
+        """Simulated segments; inputs: replace those recorded in some recordings."""
         system, names = self._system(effects)
         signals = self._signals(effects)
         drives = self._drives.with_inputs(inputs) if inputs else self._drives
@@ -282,7 +282,7 @@ class OdeModel:
         return Piece(piece.recording, piece.first + segment.first, piece.first + segment.last + 1)
 
     def recorded(self, segment: Segment) -> Recorded:
-        """What was recorded while a segment is simulated, without what is the next one's."""
+        """The data of a simulated segment, without those of the next one."""
         if segment not in self._recordeds:
             data = self.runs[segment.run]
             values = data.values[segment.span].copy()
@@ -316,7 +316,7 @@ class OdeModel:
         return Data(name, t, values, wide, run.held_out, correlation=correlation)
 
     def recording(self, run: int) -> int:
-        """Of which a run is a part."""
+        """Index of the recording that a run is part of."""
         return self._pieces[run].recording
 
     def _off(self, misfits: Sequence[Misfit]) -> list[tuple[str, float, str]]:

@@ -1,7 +1,7 @@
 """How long a machine can be predicted, from the machine and its recordings.
 
-An unstable posture multiplies every error, and noise of the inputs pushes a machine about. A window
-is no longer than either takes to spoil its prediction.
+An unstable posture multiplies every error, and noise of the inputs perturbs a machine. A window is
+short enough that neither spoils its prediction.
 """
 
 from collections.abc import Mapping, Sequence
@@ -18,16 +18,16 @@ from rr_opt.sysid.settings import SETTINGS
 from rr_opt.sysid.shooting import DrivePath, Path
 
 _LENGTHS = (0.125, 0.25, 0.5, 1.0, 2.0)
-"""Of windows, s."""
+"""Lengths of windows, s."""
 
 SHORTEST = _LENGTHS[0]
 
 _DRAWS = 3
-"""Of the inputs' noise."""
+"""Draws of the inputs' noise."""
 
 
 class Predictable(Protocol):
-    """What is asked of a model."""
+    """What is needed of a model here."""
 
     experiment: MachineExperiment
     nominal: dict[str, float]
@@ -52,9 +52,9 @@ class Predictable(Protocol):
 
 
 def prediction_window(model: Predictable) -> float:
-    """The longest over which errors neither grow too much anywhere nor are made by the inputs, s.
+    """The longest, s, in which errors neither grow too much nor come mainly from input noise.
 
-    Growth is the spectral radius of the linearised motion, which has no units to choose.
+    Growth is the spectral radius of the linearised motion, which does not depend on units.
     """
     cut = segments({k: one for k, one in enumerate(model.runs) if not one.held_out}, SHORTEST)
     steps: dict[int, list[Array]] = {}
@@ -72,7 +72,7 @@ def prediction_window(model: Predictable) -> float:
 
 
 def _growth(steps: Sequence[Array], count: int) -> float:
-    """The most over as many successive steps."""
+    """The largest growth over `count` successive steps."""
     worst = 0.0
     for k in range(max(len(steps) - count + 1, 1)):
         across = np.eye(len(steps[0]))
@@ -85,7 +85,7 @@ def _growth(steps: Sequence[Array], count: int) -> float:
 
 
 def _motion(model: Predictable) -> float:
-    """RMS in sigma of what is recorded in the longest windows, about their means."""
+    """RMS in sigma of the recorded motion in the longest windows, about their means."""
     parts = []
     for k, run in enumerate(model.runs):
         for one in segments({k: run}, _LENGTHS[-1]):
@@ -95,7 +95,7 @@ def _motion(model: Predictable) -> float:
 
 
 def stirred(model: Predictable, length: float) -> float:
-    """RMS in sigma that the inputs' own noise leaves in windows of a length, s, their starts
+    """RMS in sigma that noise of the inputs causes in windows of a length, s, their initial states
     refitted."""
     rng, left, count = np.random.default_rng(0), 0.0, 0
     for k in range(len(model.runs)):
@@ -115,7 +115,7 @@ def stirred(model: Predictable, length: float) -> float:
 
 
 def _drawn(run: MachineRun, rng: np.random.Generator) -> dict[str, Array]:
-    """Noisy inputs once more, wrong for as long as they are held."""
+    """Noisy inputs with noise added once more, constant while they are held."""
     blocks = -(-len(run) // run.held)
 
     def noise() -> Array:
@@ -126,7 +126,7 @@ def _drawn(run: MachineRun, rng: np.random.Generator) -> dict[str, Array]:
 
 
 def _starts(model: Predictable, requests: Sequence[Request]) -> list[Array]:
-    """Residuals' derivatives by the start (n channels, size), by differences."""
+    """Derivatives of the residuals by the initial state (n channels, size), by differences."""
     base = [made.seen for _, _, made in model.made(requests, ())]
     columns: list[list[Array]] = [[] for _ in requests]
     for k, step in enumerate(1e-4 * model.state_scale(())):

@@ -52,7 +52,7 @@ _UNARY = {
     ca.OP_NOT: (np.logical_not, "pick({} == all(0.0), all(1.0), all(0.0))"),
     ca.OP_TWICE: (lambda x: x + x, "{0} + {0}"),
 }
-"""What an operation is over arrays, and in C."""
+"""Each operation over arrays, and in C."""
 
 
 @dataclass

@@ -98,8 +98,8 @@ class Wheel:
     """A wheel of platform 1 or 2, on its left (+1) or right (-1), at a point (2, m) of it.
 
     direction   unit vector (2,) along which it rolls, in the platform's axes
-    resistances forces that come of rolling on this floor, and scale with it; drag of the air does
-                not, and is not among them
+    resistances forces that come from rolling on this floor, and scale with it; air drag does not,
+                and is not among them
     """
 
     platform: int
@@ -226,7 +226,7 @@ def _assembled(
 
 
 def with_resistance(mechanism: Mechanism, law: Law) -> Mechanism:
-    """Add at every wheel a rolling force that comes of the floor."""
+    """Add at every wheel a rolling force that comes from the floor."""
     wheels = tuple(
         replace(wheel, resistances=(*wheel.resistances, law)) for wheel in mechanism.wheels
     )
@@ -234,7 +234,7 @@ def with_resistance(mechanism: Mechanism, law: Law) -> Mechanism:
 
 
 def with_wheel_forces(mechanism: Mechanism, law: Law) -> Mechanism:
-    """Add at every wheel a rolling force that does not come of the floor."""
+    """Add at every wheel a rolling force that does not come from the floor."""
     added = tuple(
         Force(
             wheel.platform,

@@ -28,7 +28,7 @@ class Course:
 
 
 class _RecurrenceRun(ctypes.Structure):
-    """`Run` of the C."""
+    """The struct `Run` of the C code."""
 
     _fields_ = (
         ("steps", ctypes.c_longlong),

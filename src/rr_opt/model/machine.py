@@ -1,7 +1,7 @@
-"""A machine that can be diagnosed: its equations, and in words and units all that is in them.
+"""A machine that can be diagnosed: its equations, with units and words for all they contain.
 
 A machine is data. Its equations are functions of names: states, inputs, parameters. Effects enter
-them by ports, each a place where something may be left out.
+through ports, each a place where something may be missing.
 """
 
 from collections.abc import Callable, Mapping
@@ -18,7 +18,7 @@ Names = SimpleNamespace
 """States, inputs, parameters or constants by name: CasADi's, or arrays."""
 
 Add = Callable[..., Any]
-"""add(port, ...) is what the effects add at a port, where they see the names given beside all."""
+"""add(port, ...) is what the effects add at a port; they also see the names given as arguments."""
 
 Signals = Mapping[str, Array]
 """Inputs (n,) by name."""
@@ -32,8 +32,8 @@ class MachineParameter:
     """A number of the nominal model.
 
     spread     how well it is usually known
-    low, high  it lies between, SI
-    default    of a file that does not give it; None: it has to
+    low, high  bounds, SI
+    default    if a file does not give it; None: required
     """
 
     name: str
@@ -50,9 +50,9 @@ class MachineParameter:
 class Channel:
     """What is recorded: an output that is predicted, or an input that drives the machine.
 
-    default  of an input that is not recorded; None: it has to be
-    angle    a whole turn is nothing
-    steady   moves on between two updates, as what is measured does; a command stands still
+    default  value of an input that is not recorded; None: required
+    angle    whole turns do not count
+    steady   changes between two updates, as measured inputs do; a command is held
     """
 
     name: str
@@ -67,8 +67,8 @@ class Channel:
 class Constant:
     """A number of an effect, which vanishes at 0.
 
-    size   its usual size, of the usual sizes of a machine
-    begin  where to look for it first, in usual sizes
+    size   its usual size, as a function of the machine's usual sizes
+    begin  initial guess, in usual sizes
     """
 
     name: str
@@ -81,16 +81,16 @@ class Constant:
 
 @dataclass(frozen=True)
 class MachineEffect:
-    """What may be left out of a machine.
+    """An effect that may be missing from a machine's model.
 
-    port        where it enters: a port of the equations; "signal", before the inputs drive
+    port        where it enters: a port of the equations, or "signal", which changes the inputs
     law         (names, constants) -> what it adds at its port; of a signal
                 (t, inputs, constants) -> the inputs that it changes
     words       as the object of a sentence
     forms       names of the constants that each of its forms has, the simplest first; none
                 given, it has one form with all of them
-    smooth      whether it has a derivative by its constants where it vanishes
-    form_error  by what share machines differ from this law
+    smooth      whether it is differentiable in its constants where it vanishes
+    form_error  relative deviation of machines from this law
     """
 
     name: str
@@ -106,7 +106,7 @@ class MachineEffect:
     form_error: float = 0.1
 
     def quantity(self, constant: str) -> str:
-        """The full name of a constant; of what has no name, that of a parameter."""
+        """The full name of a constant; if the effect has no name, that of a parameter."""
         return f"{self.name}.{constant}" if self.name else constant
 
 
@@ -114,7 +114,7 @@ class MachineEffect:
 class Machine:
     """A kind of machine.
 
-    states    in order; the last `stiff` of them may settle at once
+    states    in order; the last `stiff` of them may be stiff
     rates     (names, add) -> d(state)/dt by name
     seen      (names, add) -> outputs by name
     start     (outputs and their slopes, `q` and `q_rate`, and inputs) -> states where a run begins
@@ -122,8 +122,8 @@ class Machine:
     scales    (parameters, inputs, outputs' rates; RMS each) -> usual sizes for the effects
     ports     by channel of a fault: port, unit and words of an unknown input there
     variables what an unknown input may depend on: name of a state or input -> words and unit
-    step      s, of the integration, at most
-    bandwidth Hz; what is faster is noise
+    step      longest integration step, s
+    bandwidth Hz; anything faster is noise
     """
 
     name: str

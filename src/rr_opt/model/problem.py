@@ -66,22 +66,22 @@ class RatioChoice:
 
 
 LARGEST_EXCESS = 1e-4
-"""By so much, relative to it, a gait may go over a limit and still counts as keeping it."""
+"""Relative excess over a limit up to which a gait still counts as keeping it."""
 
 CANCELLED = 1e-3
-"""Share of the largest speed along a cycle below which the way to and fro nearly cancels. An error
-of the mean speed is then relative to that share. CVODES keeps 1e-12 of the largest speed in each of
-up to a thousand steps: a mean is known to 1e-9 of it, so 1e-6 of the mean can be asked for down to
-here. The sweep's C code has the same number."""
+"""Share of the largest speed along a cycle below which back and forth motion nearly cancels. An
+error of the mean speed is then relative to that share. CVODES keeps 1e-12 of the largest speed in
+each of up to a thousand steps: a mean is known to 1e-9 of it, so 1e-6 of the mean can be requested
+down to here. The sweep's C code has the same number."""
 
 
 LEAST = ("singularity", "speed")
-"""Limits below which something must not fall; of the others, above which it must not rise."""
+"""Limits that are lower bounds; all others are upper bounds."""
 
 GRIP_LIMIT = Number("", "0.5", above=0, endless=True)
 
 NEEDS_GRIP = 0.5
-"""Side force over load above which a gait is warned of: rubber on a dry floor has 0.6 to 1, hard
+"""Side force over load above which a warning is given: rubber on a dry floor has 0.6 to 1, hard
 wheels or dust less."""
 
 
@@ -130,7 +130,7 @@ class Limits:
 
     @property
     def economy(self) -> dict[str, float]:
-        """The limits on what a whole period comes to that are set, by name."""
+        """The limits that are set on totals over a whole period, by name."""
         names = ("power", "cost_of_transport", "speed")
         given = {name: getattr(self, name) for name in names}
         return {name: limit for name, limit in given.items() if 0 < limit < math.inf}

@@ -20,7 +20,7 @@ from rr_opt.model.fields import Interval
 from rr_opt.model.gait import FourierGait, FreeGait, Gait, SineGait
 
 _HARMONICS, _SAMPLES = 64, 4096
-"""Of the command for a gait whose acceleration jumps: those of phi fall as 1/n^3."""
+"""Harmonics of the command for a gait whose acceleration jumps: those of phi fall as 1/n^3."""
 
 
 @dataclass(frozen=True)
@@ -72,9 +72,9 @@ class LinearServo:
 class CommandBounds:
     """Bounds of the command's amplitude, rad, and the servo that follows it.
 
-    A problem that has one is about what the joint does. Its own bounds of the amplitude enclose all
-    that the servo makes of these; where it lags, that depends on the period. They are the same for
-    a gait that is no sine: the swing of the joint is then bounded, and not that of the command.
+    A problem that has these is posed for the joint. Its own amplitude bounds enclose all that the
+    servo makes of these; with a lag, that depends on the period. They are unchanged for a gait that
+    is no sine: then the swing of the joint is bounded, not that of the command.
     """
 
     amplitude: Interval

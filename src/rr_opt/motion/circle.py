@@ -1,4 +1,4 @@
-"""The circle of a gait, and the transient by which a start from rest comes to it.
+"""The circle of a gait, and the transient by which a start from rest approaches it.
 
 A small deviation dv from the steady cycle obeys d(dv)/dt = (d vdot/dv) dv, so each period
 multiplies it by the same factor dv(T)/dv(0); with viscous friction a large one too.
@@ -104,7 +104,7 @@ _MOST_PERIODS = 1000
 
 @dataclass(frozen=True)
 class Transient:
-    """How a start from rest, with the command beginning at phase 0, comes to the steady cycle.
+    """How a start from rest, with the command beginning at phase 0, approaches the steady cycle.
 
     factor    by which a period multiplies a small deviation; 0 < factor < 1
     constant  time in which it falls to 1/e, s
@@ -126,7 +126,7 @@ def transient(robot: Robot, steady: SteadyCycle) -> Transient:
     """The transient from rest to a known steady cycle."""
     period = steady.gait.period
     path = fixed_steps(robot, steady.gait, float(steady.v[0]), steps=_STEPS)
-    # Friction that stops the robot within a small part of a period leaves too little to measure.
+    # Friction that stops the robot within a small part of a period makes the factor underflow.
     factor = max(float(path[4, -1]), sys.float_info.min)
     path = fixed_steps(robot, steady.gait, float(steady.v[0]), steps=_FEWER)
     V = _mean_velocity(path, period)

@@ -45,7 +45,7 @@ class FloorMotion:
     rates     (state, drive, p) -> d(state)/dt
     observed  (state, drive, p) -> x, y, psi, phi as a capture system records them (4,)
     speeds    (state, drive, p) -> v, s1, s2 (m/s): of axle 1, and side speeds; psi-dot (rad/s)
-    torque    (state, drive, ddphi, p) -> of the servo, N m; ddphi is an input of its own
+    torque    (state, drive, ddphi, p) -> servo torque, N m; ddphi is an input of its own
     """
 
     effects: tuple[str, ...]

@@ -29,8 +29,8 @@ _SNAP = 1e-9
 """A time this near to the end of a piece, relative to its length, is that end."""
 
 _STABLE, _LOOKED_AT = 2.0, 33
-"""Decay over a step that steps of order 6 follow without running away, with a margin; and times
-of a period at which it is looked at."""
+"""Decay over a step up to which steps of order 6 are stable, with a margin; and times of a period
+at which it is checked."""
 
 _TIGHT, TIGHTEST = 1e-12, 1e-14
 """Tolerances of CVODES, relative."""
@@ -96,8 +96,8 @@ def whole_steps(gait: Gait, steps: int) -> int:
 def fixed_steps(
     robot: Robot, gait: Gait, v0: float, *, steps: int, method: Tableau = BUTCHER6
 ) -> Array:
-    """States (5, n + 1) over one period from v(0) = v0, at n = whole_steps(gait, steps), or at so
-    many times as many that they do not run away."""
+    """States (5, n + 1) over one period from v(0) = v0, at n = whole_steps(gait, steps), or a
+    multiple of it that is stable."""
     dynamics = dynamics_of(robot)
     form, coefficients = _pieces(gait)
     n = whole_steps(gait, steps)
@@ -112,8 +112,8 @@ def fixed_steps(
 
 
 def _fastest_decay(robot: Robot, gait: Gait) -> float:
-    """The largest rate at which viscous friction takes a deviation of v back, 1/s; 0 where friction
-    is of another kind, whose rate depends on v."""
+    """The largest rate at which viscous friction damps a deviation of v, 1/s; 0 for other kinds of
+    friction, whose rate depends on v."""
     dynamics = dynamics_of(robot)
     if not dynamics.linear:
         return 0.0

@@ -52,7 +52,7 @@ def rollout(robot: Robot, gait: Gait, seconds: float, start: Start, rate: float)
 def repeated(steady: SteadyCycle, cycles: int, every: int = 1) -> Trajectory:
     """The steady cycle driven `cycles` times: each period is the last, moved rigidly.
 
-    every: of so many samples of a period one is kept; the first and the last always are.
+    every: one in this many samples of a period is kept; the first and the last always are.
     """
     kept = np.arange(0, len(steady.t) - 1, every)
     P, psi = steady.x + 1j * steady.y, steady.psi

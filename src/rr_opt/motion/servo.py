@@ -1,7 +1,7 @@
-"""What the servo of a robot makes of its command, and a problem as one about what the joint does.
+"""The joint motion that a servo makes of its command, and problems posed for the joint.
 
-Gaits are optimised as the angle of the joint, in which lag, zero and rate limit of the servo are
-bounds and no physics. Only play is more: where its stops are depends on how the robot moves.
+Gaits are optimised as the angle of the joint, for which lag, zero and rate limit of the servo are
+bounds, not physics. Only play is more: its effect depends on how the robot moves.
 """
 
 from dataclasses import replace
@@ -18,13 +18,13 @@ from rr_opt.model.servo_command import CommandBounds, LinearServo
 from rr_opt.motion.floor_motion import free_joint
 
 _PERIODS = 257
-"""Of a range of periods at which its least and largest gain are looked for."""
+"""Periods of a range at which the least and largest gain are sought."""
 _ROOM = 1e-3
-"""By which the bounds of the joint enclose what the servo makes, so that only its own are met."""
+"""Relative margin of the joint's bounds, so that only the command's own bounds are active."""
 
 
 def linear_servo(robot: Robot) -> LinearServo:
-    """The robot's servo but for its play."""
+    """The robot's servo without its play."""
     uses = [(CATALOGUE[use.name].linear, use.values) for use in robot.physics]
     parts = (linear(values) for linear, values in uses if linear)
     return reduce(_in_series, parts, LinearServo())
@@ -64,15 +64,15 @@ def for_joint(problem: Problem) -> Problem:
 
 
 _HARMONICS = 24
-"""The n-th of an angle whose rate jumps falls as 1/n^2: what is left out moves the speed by less
-than a thousandth."""
+"""The n-th harmonic of an angle whose rate jumps falls as 1/n^2: truncation changes the speed by
+less than a thousandth."""
 _SAMPLES = 2048
 _SETTLED = 20
-"""Periods after which what the servo makes repeats."""
+"""Periods after which the servo's motion repeats."""
 
 
 def servo_drive(robot: Robot, gait: Gait) -> Drive:
-    """phi(t) as the servo makes it of a gait, each effect in its turn."""
+    """phi(t) that the servo makes of a gait, its effects applied one after the other."""
     drive, joint = commanded(gait, False), free_joint(robot)
     for use in robot.physics:
         actuate = CATALOGUE[use.name].actuate
@@ -81,8 +81,8 @@ def servo_drive(robot: Robot, gait: Gait) -> Drive:
 
 
 def servo_made(robot: Robot, gait: Gait) -> Gait:
-    """What the servo makes of a gait once that repeats: the gait itself of a servo without effects,
-    a gait of the same shape of one that is linear, else a sum of harmonics."""
+    """The periodic motion that the servo makes of a gait: the gait itself without effects, one of
+    the same shape if the servo is linear, else a sum of harmonics."""
     uses = [use for use in robot.physics if CATALOGUE[use.name].actuate]
     servo = linear_servo(robot)
     if all(CATALOGUE[use.name].linear for use in uses):

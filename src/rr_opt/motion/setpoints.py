@@ -5,8 +5,8 @@ move at constant speed from each set point to the next, and to be there when the
 a set point its speed changes at a constant acceleration, over an eighth of the time between two
 (straight lines with parabolic blends, as trajectory generators of servos use). A longer or shorter
 blend changes little while each step is a few counts of the servo; many set points per count make
-jerks that no servo follows, as the rate they need shows. What the servo of the robot makes of this
-motion counts if `physics` lists it, such as a lag.
+jerks that no servo follows, as the rate they need shows. Effects of the servo on this motion, such
+as a lag, count if `physics` lists them.
 """
 
 import math

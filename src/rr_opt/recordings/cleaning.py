@@ -35,7 +35,7 @@ def _turns_taken(angle: Array) -> int:
 
 
 LARGEST = 1e12
-"""What is beyond is no measurement in any unit, and would overflow where it is squared."""
+"""Anything larger is no measurement in any unit, and its square would overflow."""
 
 
 @dataclass(frozen=True)
@@ -77,7 +77,7 @@ def clean(recording: Recording) -> Cleaned:
         sigma[channel] = np.full(len(y), seen.sigma) if unsaid else stated
         good = np.where(seen.outlier, np.nan, y)
         all_jumps = jumps(good, max(seen.noise.sigma, 0.5 * float(np.median(allowed))))
-        # Where rows are lacking, the motion went on unseen.
+        # Where rows are missing, the motion went on unseen.
         found[channel] = tuple(jump for jump in all_jumps if not lacking[jump.row])
     made = replace(recording, sigma=MappingProxyType(sigma), flags=MappingProxyType(flags))
     holes = gaps(made)
@@ -88,7 +88,7 @@ def clean(recording: Recording) -> Cleaned:
 
 
 def _of_numbers(recording: Recording) -> Recording:
-    """The same with what is no measurement in any unit flagged."""
+    """The same, with values flagged that are no measurement in any unit."""
     flags = {
         channel: np.where(np.abs(recording.data(channel)) > LARGEST, flag | Flag.OUTLIER, flag)
         for channel, flag in recording.flags.items()
@@ -113,7 +113,7 @@ _KEYS = {
     "torque": "noise.torque",
 }
 _MANY, _FEW = 1.25, 0.8
-"""Times the stated noise from which on the estimate contradicts it."""
+"""Ratios of estimated to stated noise beyond which the two contradict each other."""
 _COLOURED, _ALTERNATING, _CHANCE = 1.2, 0.85, 1e-4
 _LONG = 0.1
 """Gaps longer than this are listed one by one, s."""
@@ -128,9 +128,9 @@ def channel_notices(
     found: Mapping[str, Sequence[Jump]],
     stated: Mapping[str, Array],
 ) -> Iterator[Notice]:
-    """Of the channels one by one, the jumps and the gaps.
+    """Notices on each channel, the jumps and the gaps.
 
-    steps: in which the values of a channel come, in its unit; stated: sigma as the file has it.
+    steps: resolution of each channel's values, in its unit; stated: sigma as the file has it.
     """
     usual = {channel: float(np.median(stated[channel])) for channel in recording.channels}
     for channel, step in steps.items():
@@ -148,7 +148,7 @@ def channel_notices(
 def _of_noise(
     channel: str, noise: NoiseEstimate, stated: float, *, by_fit: bool
 ) -> Iterator[Notice]:
-    """by_fit: what is stated follows from the markers' noise."""
+    """by_fit: the stated noise follows from that of the markers."""
     if not noise.sigma > 0:
         yield notice("noise.zero" if noise.sigma == 0 else "noise.few", channel=channel)
         return
@@ -191,7 +191,7 @@ _TOGETHER = 2
 
 
 def _of_jumps(recording: Recording, found: Mapping[str, Sequence[Jump]]) -> Iterator[Notice]:
-    """One for each instant at which channels jump, the first ones."""
+    """One for each instant at which channels jump; only the first few."""
     events: list[tuple[int, dict[str, float]]] = []
     every = sorted((jump.row, channel, jump.size) for channel in found for jump in found[channel])
     for row, channel, size in every:

@@ -1,16 +1,16 @@
-"""The angle's clock against that of the command: by how much it is off, how fast it drifts.
+"""Offset and drift of the angle's clock against that of the command.
 
-A pure delay of the servo and a clock that is late are one thing in a recording: both shift phi
-against its command by the same time at every instant. Only a start from rest, or a delay that is
-not pure (a lag, which also makes the angle smaller), can distinguish them.
+A pure delay of the servo and a late clock are the same in a recording: both shift phi against its
+command by the same time at every instant. Only a start from rest, or a delay that is not pure (a
+lag, which also makes the angle smaller), can distinguish them.
 
-phi as seen at t is matched with a reference, the command or the servo's log, at the time
+phi recorded at t is matched with a reference, the command or the servo's log, at the time
 
     u = t + offset + drift (t - t_mid),   phi = bias + scale (g(u) - mean g)
 
 by nonlinear least squares. Scale and bias are free, as a servo that lags also moves less. The
-covariance is the sandwich with Bartlett's weights over lags (W. K. Newey and K. D. West,
-Econometrica 55, 1987, pp. 703-708), so that what is left may be coloured.
+covariance is the sandwich estimator with Bartlett's weights over lags (W. K. Newey and K. D. West,
+Econometrica 55, 1987, pp. 703-708), so that the residual may be coloured.
 """
 
 import math
@@ -38,7 +38,7 @@ class ClockShift:
     """Another clock's time is t + offset + drift (t - t_mid).
 
     offset, drift  s, and s per s
-    sigma          their standard deviations, and of others that a kind of shift has
+    sigma          their standard deviations, and those of further unknowns of a subclass
     t_mid          the middle of the samples that were used, s
     """
 
@@ -59,7 +59,7 @@ class ClockFit(ClockShift):
     """The shift to the reference's clock; its sigma has scale and bias, too.
 
     scale, bias  of phi against the reference; 1, and rad
-    residual     root mean square of what is left, rad
+    residual     root mean square of the residual, rad
     samples      how many were used
     """
 
@@ -108,7 +108,7 @@ def clock_fit(t: Array, phi: Array, reference: Reference, offset: float) -> Cloc
 
 
 def _variances(J: Array, left: Array) -> Array | None:
-    """Of the unknowns: the sandwich's, and not below those for white noise."""
+    """Variances of the unknowns by the sandwich estimator, but no less than for white noise."""
     scale = np.linalg.norm(J, axis=0)
     if not (scale > 0).all():
         return None
@@ -168,16 +168,16 @@ def against_command(
 
 
 RUNS_OFF = 1e-5
-"""A drift smaller than this matters to nobody, s per s."""
+"""A smaller drift is negligible, s per s."""
 _CERTAIN = 5.0
-"""Standard errors of the drift, over recordings too, from which on times are corrected."""
+"""Standard errors of the drift, also over recordings, beyond which times are corrected."""
 
 
 def at_commanded_rate(experiment: Experiment) -> Experiment:
     """The experiment with its recordings' times multiplied so that phi has the command's period.
 
-    A servo, however it errs, keeps its command's period, so that a recorder's clock which runs
-    fast or slow shows, to some millionths. One recorder is assumed for all runs.
+    Whatever its errors, a servo keeps its command's period, so a recorder's clock that runs fast or
+    slow shows, to a few millionths. One recorder is assumed for all runs.
     """
     drifts, sigmas = [], []
     for run in experiment.runs:

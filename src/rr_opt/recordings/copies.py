@@ -1,4 +1,4 @@
-"""Whether two recordings are one motion: a copy is no evidence."""
+"""Whether two recordings are of the same motion: a copy is no further evidence."""
 
 from collections.abc import Iterable, Sequence
 
@@ -10,21 +10,21 @@ from rr_opt.model.machine import MachineRun
 from rr_opt.recordings.noise import spread_at
 
 _ALIKE = 0.2
-"""Rows are the same whose values are equal to this part of their noise."""
+"""Rows are the same if their values agree to this fraction of their noise."""
 _SHARE = 0.5
-"""Of its rows that another recording has too: independent noise makes next to none."""
+"""Share of rows in common that makes a copy: with independent noise there are next to none."""
 _EXACT = 1e-6
-"""SI; for the noise of a signal without any."""
+"""SI; noise assumed for a signal without any."""
 
 Rows = tuple[set[bytes], ...]
-"""What a copy shares with its original, in one or several ways of looking at it."""
+"""What a copy shares with its original, in one or several representations."""
 
 
 def rows_of(recording: Recording) -> Rows:
     """The rows; and, however a copy was moved or turned, phi with the step to the next row, seen
     from the robot.
 
-    There are no steps where a cell is wider than the noise: whatever drives steadily shares them.
+    No steps if a cell is wider than the noise: all steady motions would share them.
     """
     y, sigma = recording.data, recording.sigma
     rows = _cells((y(name), sigma[name]) for name in CHANNELS)
@@ -37,8 +37,8 @@ def rows_of(recording: Recording) -> Rows:
 
 
 def machine_rows_of(run: MachineRun) -> Rows:
-    """The rows of a machine's recording, by its noise, exact inputs as they are; and all as they
-    are, since a part of a recording is taken to have another noise."""
+    """The rows of a machine's recording, in cells of its noise, exact inputs as they are; and all
+    values as they are, since the noise estimated for an excerpt may differ."""
     signals = {**run.inputs, **run.outputs}
     rows = _cells((y, run.sigma[name] or _EXACT) for name, y in signals.items())
     return rows, _cells((y, _EXACT) for y in signals.values())
@@ -50,7 +50,7 @@ def copied(rows: Rows, others: Iterable[tuple[str, Rows]]) -> str | None:
 
 
 def _cells(columns: Iterable[tuple[Array, Array | float]]) -> set[bytes]:
-    """Each row of values and their noise, to the cell of width _ALIKE that it is in."""
+    """The cells, _ALIKE times the noise wide, that the rows of values fall into."""
     table = np.round(np.column_stack([y / (_ALIKE * sigma) for y, sigma in columns]))
     known = np.isfinite(table).all(axis=1)
     return {row.tobytes() for row in table[known] + 0.0}

@@ -1,6 +1,6 @@
 """A folder with an experiment file and its recordings, to an Experiment that can be diagnosed.
 
-Nothing is put right: the experimenter has to say. A fault of the robot is no reason to refuse.
+Nothing is corrected: the experimenter has to do that. A fault of the robot is no reason to refuse.
 """
 
 import math
@@ -81,8 +81,8 @@ def experiment_of(folder: str | Path) -> tuple[Experiment | None, list[Issue]]:
 
 
 _AXES = Uncertainty(0.1)
-"""Of the zeros of psi and phi, rad, where they were learnt from the recordings: as free as a robot
-whose axles toe in leaves them, since the recordings are to say everything once only."""
+"""Of the zeros of psi and phi, rad, where they were learnt from the recordings: as wide as axles
+that toe in may shift them, so that the recordings do not count twice."""
 
 
 def _with_learnt(
@@ -90,7 +90,7 @@ def _with_learnt(
 ) -> Mapping[str, Uncertainty]:
     """The uncertainty of an experiment whose markers' places were learnt from its recordings.
 
-    A servo that swings little leaves P unknown along the robot. To the recordings that is another
+    A servo that swings little leaves P undetermined along the robot, which amounts to another
     distance from P to both axles.
     """
     known = {"psi_zero": _AXES, "phi_zero": _AXES, **stated}
@@ -114,7 +114,7 @@ def inspect_experiment(path: Path, progress: Progress) -> list[Inspection]:
 def _inspections(
     plan: ExperimentPlan, progress: Progress = lambda _: None
 ) -> tuple[Calibration | None, list[tuple[PlannedRun, Inspection]], list[Issue]]:
-    """What was learnt of markers' places, the recordings without an error, and all issues."""
+    """The calibration of the markers, the recordings without an error, and all issues."""
     issues: list[Issue] = []
     contents: list[tuple[int, PlannedRun, Circumstances, Any]] = []
     for number, planned in enumerate(plan.runs):
@@ -153,7 +153,7 @@ def _inspections(
 
 @contextmanager
 def _collected(plan: ExperimentPlan, number: int, issues: list[Issue]) -> Iterator[None]:
-    """Adds what is wrong with a recording to the issues; nothing is raised."""
+    """Add errors of a recording to the issues; nothing is raised."""
     try:
         yield
     except InvalidFileError as error:
@@ -165,7 +165,7 @@ def _collected(plan: ExperimentPlan, number: int, issues: list[Issue]) -> Iterat
 def _learnt(
     plan: ExperimentPlan, contents: Sequence[tuple[int, MarkerData]]
 ) -> tuple[Calibration | None, list[Issue]]:
-    """Where the markers of all recordings together sit (None if there are none), and issues."""
+    """The markers' places from all recordings together (None if there are none), and issues."""
     if not contents:
         return None, []
     gaits = [plan.runs[number].gait for number, _ in contents]
@@ -191,9 +191,9 @@ def _learnt(
 
 
 def _other_command(plan: ExperimentPlan, number: int, planned: PlannedRun, t: Array) -> list[Issue]:
-    """A warning where a file that says what was commanded says something else.
+    """A warning if a file that states its command states another one.
 
-    Raises InputError if what it says cannot be read.
+    Raises InputError if that command cannot be read.
     """
     said = commanded_gait(planned.file)
     if said is None or np.allclose(said.angle(t), planned.gait.angle(t)):
@@ -203,7 +203,7 @@ def _other_command(plan: ExperimentPlan, number: int, planned: PlannedRun, t: Ar
 
 
 def _in_files(folder: Path) -> list[Issue]:
-    """What is wrong in the recordings of an experiment file that is wrong itself."""
+    """Errors in the recordings of an experiment file that has errors itself."""
     issues: list[Issue] = []
     for file in named_files(folder):
         try:
@@ -215,8 +215,8 @@ def _in_files(folder: Path) -> list[Issue]:
 
 def checked(experiment: Experiment) -> tuple[dict[str, str], list[str]]:
     """Why recordings cannot be diagnosed, in sentences: by name, each uninformative recording; and
-    what cannot be as the experiment says, units, signs, clocks, the gait, or that no recording is
-    left to fit."""
+    contradictions of the experiment file, in units, signs, clocks, the gait, or no recording left
+    to fit."""
     left_out = dict(_left_out(experiment))
     wrong = [
         f"{run.name}: {one}"
@@ -253,7 +253,7 @@ def stops(warning: str) -> bool:
 def usable(experiment: Experiment) -> tuple[Experiment, tuple[str, ...]]:
     """The experiment without uninformative recordings, and a sentence on each of those.
 
-    Raises InputError for recordings that are not as the experiment says, and where no recording is
+    Raises InputError for recordings that contradict the experiment file, and if no recording is
     left to fit.
     """
     left_out, wrong = checked(experiment)

@@ -20,14 +20,14 @@ from rr_opt.recordings.time_axis import LACKING, time_step
 from rr_opt.recordings.warnings import Notice, notice
 
 SHORT = 0.1
-"""A gap of a drawing that is bridged, s."""
+"""Longest gap that is bridged in drawings, s."""
 
 
 @dataclass(frozen=True)
 class Gap:
     """A stretch without data.
 
-    channels  those that have none; empty where whole rows are missing from the file
+    channels  those without data; empty where whole rows are missing from the file
     start     the last time with data before it (or the first of the recording), s
     end       the first time with data after it (or the last of the recording), s
     samples   how many are missing
@@ -65,7 +65,7 @@ def gaps(recording: Recording) -> tuple[Gap, ...]:
 
 
 def runs(member: NDArray[np.bool_]) -> list[tuple[int, int]]:
-    """First index and the one after the last of every run of True."""
+    """The first index, and the one after the last, of every run of True."""
     edges = np.diff(np.concatenate([[0], member.astype(np.int8), [0]]))
     starts, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
     return [(int(a), int(b)) for a, b in zip(starts, ends, strict=True)]
@@ -85,21 +85,21 @@ def bridged(t: Array, y: Array, longest: float = SHORT) -> Array:
 
 
 _COPIES = 3
-"""Copies in a row, in every channel, that noise does not make."""
+"""Copies in a row, in every channel, that noise does not produce."""
 _ORDER = 4
-"""Of the differences that a curve drawn through a gap does not have, but noise does."""
+"""Order of the differences, which vanish for an interpolated curve but not for noise."""
 _VANISHING = 0.02
-"""Of the usual differences: less in every channel, for as many rows, is no chance."""
+"""Share of the usual differences: less in every channel, over several rows, is no chance."""
 _ROWS = 8
 _COMMON = 0.2
-"""A recording of which a larger part is so has no noise: it is computed."""
+"""A recording with a larger share of such rows has no noise: it is computed."""
 
 
 def without_inventions(recording: Recording) -> tuple[Recording, tuple[Notice, ...]]:
     """The recording with samples that were not measured flagged OUTLIER, and what was found.
 
-    A capture that hangs writes its last values again; gaps are filled by a smooth curve. Neither
-    has noise.
+    A capture system that hangs repeats its last values; others fill gaps with a smooth curve.
+    Neither has noise.
     """
     steps = np.stack([np.diff(recording.data(channel)) for channel in CHANNELS])
     copied = np.append(False, (steps == 0).all(axis=0))
@@ -133,7 +133,7 @@ def _smooth(steps: Array) -> NDArray[np.bool_]:
 
 
 def _long(member: NDArray[np.bool_], fewest: int) -> NDArray[np.bool_]:
-    """Without the shorter stretches."""
+    """The same without stretches shorter than `fewest`."""
     kept = np.zeros_like(member)
     for first, last in runs(member):
         kept[first:last] = last - first >= fewest
@@ -143,9 +143,9 @@ def _long(member: NDArray[np.bool_], fewest: int) -> NDArray[np.bool_]:
 _SIDES = (7, 5, 3)
 """Samples to either side: few where there is little noise."""
 _SURE = 8.0
-"""Standard deviations; a kink between two samples can make a few."""
+"""Standard deviations; a kink between two samples can cause a few."""
 _KINK = 1.0
-"""Steps of time from half way at which a kink may be."""
+"""Farthest distance of a kink from half way, in steps of time."""
 _APART = 15
 
 
@@ -158,10 +158,10 @@ class Jump:
 
 
 def _between(y: Array, side: int) -> tuple[Array, Array, float]:
-    """What parabolas through some samples to either side make of the places half way.
+    """Differences half way between samples of the parabolas through `side` samples to either side.
 
-    The sizes of the jumps there (m,), the changes of slope (m,), per step of time; and the standard
-    deviation of a size, in that of a sample.
+    The sizes of the jumps (m,), the changes of slope (m,), per step of time; and the standard
+    deviation of a size, in units of that of a sample.
     """
     since = -(np.arange(side) + 0.5)
     level, slope, _ = np.linalg.pinv(np.vander(since, 3, increasing=True))
@@ -185,12 +185,12 @@ def jumps(y: Array, sigma: float) -> tuple[Jump, ...]:
     """
     if len(y) < 2 * _SIDES[0] or not sigma > 0:
         return ()
-    # Beside next to no noise, parabolas miss what the motion bends more: the shorter the less.
+    # With little noise, the curvature that parabolas miss counts more: less for shorter ones.
     found = [_between(y, side) for side in _SIDES]
     scales = [max(sigma * noise, _bulk(size)) for size, _, noise in found]
     k = int(np.argmin(scales))
     size, bend, _ = found[k]
-    # A kink that is not half way leaves the levels apart by a part of its change of slope.
+    # A kink that is not half way separates the levels by a fraction of its change of slope.
     beyond = np.maximum(np.abs(size) - _KINK * np.abs(bend), 0.0)
     off = np.nan_to_num(beyond / scales[k])
     peak = (off > _SURE) & (off >= maximum_filter1d(off, _APART))

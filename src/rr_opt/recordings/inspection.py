@@ -1,4 +1,4 @@
-"""The one way in: a recording read, put on the command's clock, cleaned and looked at."""
+"""The single entry point: a recording is read, put on the command's clock, cleaned and examined."""
 
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -28,7 +28,7 @@ from rr_opt.recordings.servo_clock import Synchrony, synchronised
 
 @dataclass(frozen=True, kw_only=True)
 class Circumstances:
-    """What is known of a recording beside its file; all of it may be unknown.
+    """What is known about a recording besides its file; all of it may be unknown.
 
     robot    as its builder believes it to be
     layout   of the markers, or as recordings of the robot show it; None: as this one shows it
@@ -45,12 +45,12 @@ class Circumstances:
 
 @dataclass(frozen=True)
 class Inspection:
-    """What was found of one recording.
+    """The findings on one recording.
 
     markers    the rigid fit, of marker files
     gait       the command, where it is known
     command    phi against it
-    synchrony  what the servo's log says of the clocks, where there is one
+    synchrony  what the servo's log says about the clocks, where there is one
     doubts     all of them: of reading, of the log, of cleaning, and of phi against its command
     """
 
@@ -91,8 +91,8 @@ def inspect_file(path: Path, known: Circumstances, *, layout: Path | None = None
 def inspected(file: Path, known: Circumstances) -> Inspection:
     """The content of a file, with all that is known of it.
 
-    Raises InvalidFileError with all that is wrong in the file and in the servo's log, and
-    InputError, naming the file, if it is another kind of file.
+    Raises InvalidFileError with all errors in the file and in the servo's log, and InputError,
+    naming the file, if it is another kind of file.
     """
     return in_file(file, *read_both(file, known), known)
 
@@ -110,8 +110,8 @@ def in_file(
 def read_both(file: Path, known: Circumstances) -> tuple[Recording | MarkerData, ServoLog | None]:
     """What a file and its servo's log hold.
 
-    Raises InvalidFileError with all that is wrong in both, and InputError, naming the file, if one
-    is another kind of file.
+    Raises InvalidFileError with all errors in both, and InputError, naming the file, if one is
+    another kind of file.
     """
     found: list[Any] = []
     issues: list[Issue] = []

@@ -20,22 +20,22 @@ from rr_opt.recordings.copies import Rows, copied, machine_rows_of
 from rr_opt.recordings.readers.text import decode, find_header, read_table
 
 _WILD = 8.0
-"""Times its usual distance from its neighbours' median, from which a sample is wild."""
+"""Times the usual distance from the neighbours' median beyond which a sample is wild."""
 
 _MANY = 100
 """Samples from which a function can be distinguished from a measurement."""
 
 _CROSSED = 5.0
-"""Times its range a function of the angle goes up and down along it, at most."""
+"""Largest total variation of a function of the angle along it, in units of its range."""
 
 _STILL, _JUMP = 5, 3.0
-"""Samples that repeat, and the step after them over usual large ones, where a sensor was stuck."""
+"""Of a stuck sensor: repeated samples, and the step after them relative to usual large ones."""
 
 _FEWEST = 50
-"""Numbers of a channel that say anything."""
+"""Fewest values of a usable channel."""
 
 _UPDATES = 50
-"""Of the inputs, from which their clock is seen."""
+"""Updates of the inputs from which their clock can be determined."""
 
 
 def machine_experiment(plan: MachinePlan) -> tuple[MachineExperiment, list[Issue]]:
@@ -125,7 +125,7 @@ def held_for(inputs: Sequence[Array]) -> int:
 
 
 def between_updates(y: Array, held: int) -> Array:
-    """What was sampled and held, straight from update to update."""
+    """A sampled and held signal, made linear from update to update."""
     changes = np.flatnonzero(np.diff(y) != 0) + 1
     still = changes[np.diff(changes, prepend=0) > 1.5 * held] - held
     knots = np.union1d(np.append(changes, 0), still[still >= 0])
@@ -135,9 +135,8 @@ def between_updates(y: Array, held: int) -> Array:
 def input_noise(y: Array, held: int) -> float:
     """One sigma of an input.
 
-    One that is sampled and held may be anything between two updates (uniformly distributed). One
-    that changes its direction with most samples is noisy, by its third differences. Any other is
-    taken to be exact.
+    One that is sampled and held is uniformly distributed between two updates. One that changes
+    direction at most samples is noisy, by its third differences. Any other is taken as exact.
     """
     if held > 1:
         return float(np.sqrt(np.mean(np.diff(y[::held]) ** 2) / 12))
@@ -170,7 +169,7 @@ def _without_wild(y: Array) -> tuple[Array, int]:
 def _impossible(
     inputs: tuple[Channel, ...], outputs: tuple[Channel, ...], data: Mapping[str, Array]
 ) -> list[str]:
-    """What cannot be as the file says."""
+    """What contradicts the file's statements."""
     said = []
     for c in outputs:
         y = data[c.name]

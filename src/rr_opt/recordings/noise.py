@@ -1,10 +1,10 @@
 """How noisy a channel is, from the channel alone, and whether its noise is white.
 
-The sixth difference of a smooth motion is next to nothing, that of white noise is sqrt(924) of its
-standard deviation. Differences over two samples see the noise at half the frequency: with white
-noise both agree, and where a filter has taken the quickest noise away the first is smaller.
-Extreme differences are cut off, at three standard deviations, so that a kink or a jump does not
-count. The uncertainties are those of the mean over pieces of the recording.
+The sixth difference of a smooth motion is next to nothing, that of white noise is sqrt(924) times
+its standard deviation. Differences over two samples see the noise at half the frequency: with
+white noise both agree; if a filter removed the fastest noise, the first is smaller. Extreme
+differences are cut off at three standard deviations, so that a kink or a jump does not count.
+The uncertainties are those of the mean over pieces of the recording.
 """
 
 import math
@@ -23,10 +23,10 @@ _KEPT = erf(_CUT / math.sqrt(2)) - _CUT * math.sqrt(2 / math.pi) * math.exp(-(_C
 _KEPT /= erf(_CUT / math.sqrt(2))
 """Variance of a normal that is cut off at three standard deviations."""
 _OVERLAP = math.comb(4 * _ORDER, 2 * _ORDER) / math.comb(2 * _ORDER, _ORDER) ** 2
-"""How many differences are worth one independent one."""
+"""Number of differences worth one independent one."""
 _PIECES, _SHORTEST = 20, 60
 _SURE = 4.0
-"""Standard deviations of the estimate from which on it is surely another noise."""
+"""Standard deviations of the estimate beyond which the noise certainly differs."""
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class NoiseEstimate:
     sigma    standard deviation of the noise at the highest frequencies
     error    of sigma, one standard deviation
     slower   standard deviation of the noise at half those frequencies; white noise has the same
-    p_white  how likely white noise makes sigma and slower differ as much
+    p_white  probability that sigma and slower of white noise differ by as much
     """
 
     sigma: float
@@ -50,7 +50,7 @@ class NoiseEstimate:
         return self.slower / self.sigma if self.sigma > 0 else math.nan
 
     def times(self, stated: float) -> float:
-        """How many times the stated noise it is; 1 where it may well be that one."""
+        """Its ratio to the stated noise; 1 where the difference may be chance."""
         if not abs(self.sigma - stated) > _SURE * self.error:
             return 1.0
         return self.sigma / stated if stated > 0 else math.nan
@@ -79,7 +79,7 @@ def noise_of(y: Array) -> NoiseEstimate:
 
 
 def _in_pieces(d: Array, n: int, pieces: int) -> Array:
-    """d (m,), the first of n places, in rows that are as long as each other but for a NaN."""
+    """d (m,), the first of n places, in rows of equal length, padded with NaN."""
     width = -(-n // pieces)
     whole = np.concatenate([d, np.full(n - len(d), np.nan)])
     ends = n - (width - 1) * np.arange(width * pieces - n)
@@ -87,7 +87,7 @@ def _in_pieces(d: Array, n: int, pieces: int) -> Array:
 
 
 def spread_at(y: Array, stride: int) -> float:
-    """The noise of y (n,) as differences over `stride` samples have it; NaN where it cannot."""
+    """The noise of y (n,) by differences over `stride` samples; NaN if there are too few."""
     return float(_spread(_differences(y, stride)))
 
 
@@ -104,7 +104,7 @@ def _differences(y: Array, stride: int) -> Array:
 
 
 def _spread(d: Array) -> Array:
-    """Standard deviation of the bulk of d (..., n), whatever the rest is; NaN for fewer than 10."""
+    """Robust standard deviation of the bulk of d (..., n); NaN for fewer than 10."""
     d = np.sort(np.where(np.isfinite(d), np.abs(d), np.nan))  # NaN last
     known = np.isfinite(d).sum(axis=-1, keepdims=True)
     middle = np.concatenate([(known - 1) // 2, known // 2], axis=-1)

@@ -1,8 +1,8 @@
-"""Samples that the motion does not explain: found, and never those of a kink.
+"""Outliers: samples that the motion does not explain, but never those at a kink.
 
 A sample is suspected if it is off the smooth curve through all others by more than Gaussian noise
-is once in a million. The worst of its surroundings is taken out, the curve is drawn again, and so
-on until none is left; then each that was taken out is tried again. Where the motion has a kink (a
+is once in a million. The worst in its neighbourhood is removed, the curve is fitted again, and so
+on until none is left; then each removed sample is tried again. Where the motion has a kink (a
 start, a servo at its rate limit) a smooth curve through both sides misses good samples, but one
 side alone predicts them: a sample is an outlier only if neither side does.
 """
@@ -29,8 +29,8 @@ _LEVELS = 4
 def usual_noise(y: Array) -> Array:
     """The noise of a channel of which none is stated, (n,); never zero.
 
-    Behind a filter the quickest differences are too small. The largest over slower ones is then
-    taken; if part of it is motion, fewer outliers are found, and no good sample is flagged.
+    After a filter the fastest differences are too small. The largest over slower ones is then
+    used; if part of it is motion, fewer outliers are found, and no good sample is flagged.
     """
     noise = noise_of(y)
     sigma = noise.sigma
@@ -42,7 +42,7 @@ def usual_noise(y: Array) -> Array:
 
 
 def step_of(y: Array) -> float:
-    """The step in which the values y (n,) come, in their unit; 0 if they are not rounded."""
+    """The resolution of the values y (n,), in their unit; 0 if they are not rounded."""
     known = y[np.isfinite(y)]
     levels = np.unique(np.round(known, 12))
     if len(levels) < 3 or len(levels) * _LEVELS > len(known):
@@ -55,13 +55,13 @@ def step_of(y: Array) -> float:
 
 _NEIGHBOURS = 9
 _REACH = 21.0
-"""Steps of time within which they have to be."""
+"""Steps of time within which these neighbours have to be."""
 
 
 def misses(
     u: Array, y: Array, good: NDArray[np.bool_], rows: NDArray[np.int_], noise: Array
 ) -> tuple[Array, Array]:
-    """By how many standard deviations y[rows] is off a parabola through its neighbours.
+    """Deviation of y[rows] from a parabola through its neighbours, in standard deviations.
 
     u: (n,), times in steps; good: (n,), what may be a neighbour; noise: (n,), standard deviations.
     Two arrays (m,): from the nine before and the nine after; infinite where they are not there.
@@ -99,21 +99,21 @@ FALSE_ALARM = 1e-6
 """The share of good samples, with Gaussian noise, that the smooth curve suspects."""
 _SUSPECT = float(-ndtri(FALSE_ALARM / 2))
 _ONE_SIDE = 3.5
-"""A parabola through one side misses a good sample by less; it has its own curvature to miss."""
+"""Largest deviation of a good sample from a parabola through one side, which misses curvature."""
 _ROUNDS = 12
 _NEAR = 40
-"""Samples to either side that a round looks at again."""
+"""Samples to either side that each round examines again."""
 _LEAST = 0.5
-"""Of the stated noise; what is finer is not looked for."""
+"""Share of the stated noise; anything finer is not sought."""
 
 
 @dataclass(frozen=True)
 class Outliers:
-    """What a channel's samples are.
+    """The outliers of a channel.
 
     outlier  (n,)
     noise    of the others
-    sigma    standard deviation that a sample was allowed, the usual one
+    sigma    usual standard deviation that samples were allowed
     """
 
     outlier: NDArray[np.bool_]
@@ -149,7 +149,7 @@ def _suspects(t: Array, y: Array, sigma: Array, ratio: float) -> NDArray[np.bool
         rows = np.flatnonzero(look)
         off = np.zeros(len(y))
         off[rows] = _outliers_off(t[rows], y[rows], out[rows], sigma[rows], ratio)
-        # Among neighbours that all are off, only the worst is known to be at fault.
+        # Of neighbours that are all off, only the worst is known to be at fault.
         inside = np.where(out, 0.0, off)
         highest = np.asarray(maximum_filter1d(inside, 5), float)
         worst = (inside > _SUSPECT) & (inside >= highest)
@@ -165,7 +165,7 @@ def _suspects(t: Array, y: Array, sigma: Array, ratio: float) -> NDArray[np.bool
 def _outliers_off(t: Array, y: Array, out: NDArray[np.bool_], sigma: Array, ratio: float) -> Array:
     """How far each sample is off the curve through the others, in standard deviations."""
     curve = smoothed(t, np.where(out, np.nan, y), sigma, ratio)
-    # A sample pulls the curve: what it is off the curve through the others is larger by its part.
+    # A sample pulls the curve: its distance from the curve through the others is larger.
     rest = np.maximum(1 - curve.leverage, 1e-6)
     scale = np.where(out, np.hypot(sigma, curve.sigma), sigma * np.sqrt(rest))
     return np.nan_to_num(np.abs(y - curve.value) / scale, nan=0.0)
@@ -177,7 +177,7 @@ def _foretold(t: Array, y: Array, suspect: NDArray[np.bool_], sigma: Array) -> N
         return suspect
     before, after = misses(in_steps(t), y, np.isfinite(y) & ~suspect, rows, sigma)
     kept = np.minimum(before, after) > _ONE_SIDE
-    # With nothing on either side nothing is known.
+    # Without neighbours on either side nothing is known.
     kept &= np.isfinite(before) | np.isfinite(after)
     outlier = suspect.copy()
     outlier[rows[~kept]] = False

@@ -1,8 +1,8 @@
 """A recording put on the command's clock by way of the servo's log.
 
 Two steps lead from the capture's time to the command's: phi against the log's present position
-gives the log's time, and the log's goal against the gait the command's. What the servo is
-late by lies between goal and present, so it stays in the recording; the clocks' part is taken out.
+gives the log's time, and the log's goal against the gait the command's. The servo's lag is between
+goal and present, so it stays in the recording; only the offset of the clocks is removed.
 """
 
 import math
@@ -29,21 +29,21 @@ from rr_opt.recordings.smoothing import derivatives
 from rr_opt.recordings.warnings import Notice, notice
 
 _STEP = 0.02
-"""Step at which two recordings are compared all along, s."""
+"""Time step at which two recordings are compared, s."""
 _OVERLAP = 0.2
-"""The part of the shorter recording that has to overlap."""
+"""The fraction of the shorter recording that has to overlap."""
 _PEAK = 0.9
-"""Peaks that are likely: so high relative to the best."""
+"""Height relative to the best from which a peak is likely."""
 _LONGEST = 20_000.0
-"""Recordings of more than this are not compared, s."""
+"""Longer recordings are not compared, s."""
 
 
 _TRIED = 6
 """Offsets of each kind from which a fit is tried."""
 _APART = 0.02
-"""Offsets that are closer are one, s."""
+"""Offsets closer than this are the same, s."""
 _AS_GOOD = 1.25
-"""Times the residual of the best offset with which another is as likely."""
+"""Ratio to the best offset's residual up to which another is as likely."""
 
 
 def offsets_alike(
@@ -51,8 +51,8 @@ def offsets_alike(
 ) -> list[float]:
     """Offsets from t to s, s, worth a fit, where `one` is seen at t (n,) and `two` at s (m,).
 
-    Those at which the signals are most alike, those of the longest overlap, and the nearest to some
-    offsets; a periodic motion has one a period. NaN is no sample.
+    Those at which the signals are most alike, those of the longest overlap, and those nearest to
+    `near`; a periodic motion has one per period. NaN is no sample.
     """
     # Here and not above: it takes half a second to load, and only servo logs need it.
     from scipy.signal import correlate
@@ -91,7 +91,7 @@ def _resampled(t: Array, y: Array) -> Array | None:
 def against_log(
     t: Array, phi: Array, log: ServoLog, near: tuple[float, ...] = ()
 ) -> tuple[ClockFit, ...]:
-    """phi as the capture saw it against the servo's log, on the log's clock: all likely fits.
+    """The captured phi against the servo's log, on the log's clock: all likely fits.
 
     Against `present` if the log has it, else against `goal`. A motion that only repeats itself
     leaves whole periods open, so there may be many; the longest overlap is first. near: offsets, s,
@@ -131,9 +131,9 @@ def likely_fits(
 
 
 _IN_PERIOD = 16
-"""Starts of the fit in a period of the command."""
+"""Initial offsets of the fit per period of the command."""
 _LOOKED_AT = 400
-"""Samples that the starts are compared on."""
+"""Samples on which these are compared."""
 
 
 def goal_fits(log: ServoLog, gait: Gait, *, from_rest: bool) -> tuple[ClockFit, ...]:
@@ -157,7 +157,7 @@ def goal_fits(log: ServoLog, gait: Gait, *, from_rest: bool) -> tuple[ClockFit, 
     span = t[-1] - t[0] if from_rest else 0.0
     shifts = np.arange(-t[0] - span, -t[0] + gait.period, gait.period / _IN_PERIOD)
     look = np.linspace(0, len(t) - 1, min(_LOOKED_AT, len(t))).astype(int)
-    # The constant of the difference is phi's zero, and not the clock's affair.
+    # A constant difference is phi's zero, not the clock's offset.
     off = np.array([np.std(goal[look] - reference(t[look] + one)[0]) for one in shifts])
     walled = np.concatenate([[np.inf], off, [np.inf]])
     lowest = np.flatnonzero((off <= walled[:-2]) & (off <= walled[2:]))
@@ -166,23 +166,23 @@ def goal_fits(log: ServoLog, gait: Gait, *, from_rest: bool) -> tuple[ClockFit, 
 
 
 _LOSS = 1e-3
-"""phi may move by so much less than the servo's shaft before play is suspected."""
+"""Share by which phi may move less than the servo's shaft before play is suspected."""
 
 
 @dataclass(frozen=True)
 class Shift(ClockShift):
     """The shift to the command's clock.
 
-    play     by how much of the offset phi may be late behind the servo's shaft, s, as what gives
+    play     part of the offset, s, by which phi may lag the servo's shaft, as play or compliance
              between them makes phi move less
-    applied  whether the recording was moved: only if the offset or the drift is surely there
+    applied  whether the recording was shifted: only if the offset or the drift is certain
     """
 
     play: float
     applied: bool
 
     def of(self, t: Array) -> Array:
-        """The command's times of the recording's times t (n,), s."""
+        """The recording's times t (n,) on the command's clock, s."""
         return t + self.offset + self.drift * (t - self.t_mid)
 
     def __str__(self) -> str:
@@ -218,9 +218,9 @@ def shift_of(log: ClockFit, goal: ClockFit, period: float, *, rest: bool) -> Shi
 
 _LESS, _SURE = 0.01, 3.0
 _LEFT = 0.5
-"""The part of phi's motion that may be left, before it is another motion than the log's."""
+"""Residual share of phi's motion beyond which it is another motion than the log's."""
 _ANOTHER = 0.05
-"""By how much the goal's amplitude may differ from the gait's."""
+"""Relative difference allowed between the goal's amplitude and the gait's."""
 
 
 def unlike(fit: ClockFit, phi: Array) -> bool:
@@ -287,12 +287,12 @@ def synchronised(
 ) -> Synchrony:
     """The recording on the command's clock, as far as the log determines it; it is not cleaned yet.
 
-    gait: what was commanded; without it the clocks are compared, and nothing is shifted. Of offsets
-    that are as likely the one is taken that shifts the recording least, and of those the one
-    that rests on most samples.
+    gait: what was commanded; without it the clocks are compared, and nothing is shifted. Of equally
+    likely offsets the one is taken that shifts the recording least, and of those the one that
+    rests on most samples.
     """
     t, phi = recording.t, _phi(recording)
-    # Against its goal alone phi's clock has the servo's lag in it.
+    # Compared with the goal alone, phi's offset would include the servo's lag.
     goals = (
         goal_fits(log, gait, from_rest=start == "rest")
         if gait is not None and log.present_angle is not None
@@ -313,7 +313,7 @@ def synchronised(
     (fit, goal), shift = pairs[best], shifts[best]
     others = tuple(one.offset for one in fits if one is not fit)
     if shift is not None:
-        # A shift by less than half a period is the one that was meant.
+        # Only a shift of less than half a period is plausible.
         far = start == "rest" and abs(shift.offset) > period / 2
         others = _apart([one.offset for one in shifts if one], shift.offset) if far else ()
     if shift is not None and shift.applied:
@@ -323,13 +323,13 @@ def synchronised(
 
 
 def _apart(offsets: list[float], taken: float) -> tuple[float, ...]:
-    """Those that are not the one taken, nearest to it first, s."""
+    """Offsets other than the one taken, nearest to it first, s."""
     apart = {round(one, 2): one for one in offsets if abs(one - taken) > _APART}
     return tuple(sorted(apart.values(), key=lambda one: abs(one - taken)))
 
 
 def _phi(recording: Recording) -> Array:
-    """phi without outliers, which would pull at the clock."""
+    """phi without outliers, which would bias the clock fit."""
     phi, sigma = recording.data("phi"), recording.sigma["phi"]
     if not (np.isfinite(sigma) & (sigma > 0)).all():
         return phi

@@ -1,10 +1,10 @@
 """A recorded channel smoothed: signal, its sigma, and derivative at every sample.
 
-The signal is taken for one whose third derivative is white noise, seen with the sensor's white
-noise. Smoothing with this prior is the quintic smoothing spline, the strength of the first noise is
-its smoothing parameter (G. Wahba, J. R. Stat. Soc. B 40, 1978, pp. 364-372): the likeliest for the
-data, with no window to choose. Where the motion has a kink, as at a start from rest, the true
-derivative jumps and the error is larger than its sigma.
+The signal is modelled as one whose third derivative is white noise, measured with the sensor's
+white noise. Smoothing with this prior is the quintic smoothing spline, and the strength of the
+process noise its smoothing parameter (G. Wahba, J. R. Stat. Soc. B 40, 1978, pp. 364-372), set by
+maximum likelihood, with no window to choose. Where the motion has a kink, as at a start from rest,
+the true derivative jumps and the error is larger than its sigma.
 
 The states (signal, first and second derivative, in steps of time) are Gaussian with a
 block-tridiagonal precision. Their mean is one banded Cholesky solve. Their covariances come from
@@ -29,7 +29,7 @@ ORDER = 3
 
 
 def transition(step: Array) -> Array:
-    """A (m, 3, 3): how the state moves on by `step` (m,), in units of the time step."""
+    """A (m, 3, 3): transition of the state over `step` (m,), in units of the time step."""
     A = np.zeros((len(step), ORDER, ORDER))
     for i in range(ORDER):
         for j in range(i, ORDER):
@@ -38,7 +38,7 @@ def transition(step: Array) -> Array:
 
 
 def diffusion(step: Array) -> Array:
-    """Q (m, 3, 3): covariance of what is added within `step` (m,), for q = 1."""
+    """Q (m, 3, 3): covariance of the process noise over `step` (m,), for q = 1."""
     Q = np.zeros((len(step), ORDER, ORDER))
     for i in range(ORDER):
         for j in range(ORDER):
@@ -48,7 +48,7 @@ def diffusion(step: Array) -> Array:
 
 
 def innovations(y: Array, ratio: float) -> tuple[Array, float]:
-    """What each sample (n,) adds to what those before it foretell, and its variance.
+    """The innovation of each sample (n,), given those before it, and its variance.
 
     ratio: q over the variance of a sample, in steps of time. The variance is in units of that of
     a sample. From equal steps, with the filter's gain at its limit: the third difference of y has
@@ -61,7 +61,7 @@ def innovations(y: Array, ratio: float) -> tuple[Array, float]:
 
 @lru_cache(maxsize=64)
 def _spectral_factor(ratio: float) -> tuple[Array, float]:
-    """What whitens a third difference (4,), and the variance of the innovations; see above."""
+    """The filter (4,) that whitens a third difference, and the innovations' variance; see above."""
     covariances = np.zeros(2 * ORDER + 1)
     covariances[1:-1] = ratio * np.array([1.0, 26.0, 66.0, 26.0, 1.0]) / 120
     covariances += np.array([-1.0, 6.0, -15.0, 20.0, -15.0, 6.0, -1.0])
@@ -72,7 +72,7 @@ def _spectral_factor(ratio: float) -> tuple[Array, float]:
 
 
 def _whitened(y: Array, factor: Array) -> Array:
-    """The third difference of y (n,), from rest, with the filter `factor` (4,) taken off."""
+    """The third difference of y (n,), from rest, with the filter `factor` (4,) inverted."""
     third = y.copy()
     for lag, share in ((1, -3.0), (2, 3.0), (3, -1.0)):
         third[lag:] += share * y[:-lag]
@@ -84,16 +84,16 @@ def _whitened(y: Array, factor: Array) -> Array:
 
 
 _VAGUE = (1e-9, 1e-6, 1e-3, 1.0)
-"""Precision of the signal and its derivatives before any sample, relative to a sample's. Only where
-few samples are left, at most uneven times, rounding takes more than the first. The last is more
-than rounding can take: no entry of the precision is larger than 1e13."""
+"""Prior precision of the signal and its derivatives, relative to a sample's. Only few samples at
+very uneven times need more than the first against rounding. The last always suffices: no entry of
+the precision is larger than 1e13."""
 
 
 def precision(step: Array, ratio: float, seen: Array, vague: float) -> tuple[Array, Array]:
-    """That of the states at n nodes: blocks on its diagonal (n, 3, 3), and above it (n - 1, 3, 3).
+    """Precision of the states at n nodes: diagonal blocks (n, 3, 3), and above them (n - 1, 3, 3).
 
-    step: (n - 1,), between nodes; ratio: q over a sample's variance; seen: (n, 3, 3), what the
-    samples at a node say of its state, in units of one over that variance.
+    step: (n - 1,), between nodes; ratio: q over a sample's variance; seen: (n, 3, 3), information
+    of the samples at a node on its state, in units of one over that variance.
     """
     A = transition(step)
     # Q(step) is Q(1) between two diagonal scalings, which are inverted without loss.
@@ -107,8 +107,8 @@ def precision(step: Array, ratio: float, seen: Array, vague: float) -> tuple[Arr
 
 
 def mean(D: Array, B: Array, pull: Array) -> Array:
-    """Of a precision with these blocks: the states' means (n, 3); pull: (n, 3), what the samples
-    make of each."""
+    """The states' means (n, 3) for a precision with these blocks; pull: (n, 3), information vector
+    of the samples."""
     n = len(pull)
     size = ORDER * n
     band = np.zeros((2 * ORDER, size))
@@ -123,7 +123,7 @@ def mean(D: Array, B: Array, pull: Array) -> Array:
 
 
 def covariance(D: Array, B: Array) -> tuple[Array, Array]:
-    """Of a precision with these blocks: the states' covariances (n, 3, 3), and the blocks above."""
+    """The states' covariances (n, 3, 3) for a precision with these blocks, and blocks above."""
     if len(D) == 1:
         return np.asarray(np.linalg.inv(D), float), B
     odd, even = D[1::2], D[::2]
@@ -152,13 +152,13 @@ def covariance(D: Array, B: Array) -> tuple[Array, Array]:
 
 
 RATIOS = (1e-7, 1e5)
-"""Bounds of q over the variance of a sample, in steps of time. Below the first, arithmetic suffers;
-a spline of that strength still takes up 1 Hz at 100 samples a second. At the second the noise is
-next to none beside the motion."""
+"""Bounds of q over the variance of a sample, in steps of time. Below the first, accuracy suffers; a
+spline of that strength still follows 1 Hz at 100 samples a second. At the second the noise is
+negligible beside the motion."""
 
 _FEWEST, _WARM = 90, 300
-"""Samples needed, and those after which the filter's start from rest is forgotten at the first
-bound; of a short recording a quarter is left out."""
+"""Fewest samples needed, and samples after which the filter's initial transient has decayed at the
+first bound; of a short recording a quarter is left out."""
 _MOST = 20_000
 _OUTLYING = 9.0
 """Three standard deviations, squared."""
@@ -167,9 +167,9 @@ _OUTLYING = 9.0
 def strength(y: Array, sigma: float) -> float:
     """q over sigma^2, in steps of time, by maximum likelihood.
 
-    y: (n,), equal steps, NaN where there is nothing; sigma: its noise's standard deviation. What
-    is missing is bridged by a line. Beyond three standard deviations innovations have the tails of
-    a Cauchy distribution, so that what outliers are left do not count as bends.
+    y: (n,), equal steps, NaN where there is nothing; sigma: its noise's standard deviation. Gaps
+    are bridged by a line. Beyond three standard deviations innovations have the tails of a Cauchy
+    distribution, so that remaining outliers do not count as curvature.
     """
     known = np.isfinite(y)
     if known.sum() < _FEWEST or not sigma > 0:
@@ -195,13 +195,13 @@ def strength(y: Array, sigma: float) -> float:
 
 
 _CLOSEST = 0.3
-"""Samples within this number of steps of the first of them share a node: the noise that drives the
-signal adds nothing between them that a sample would show, and much smaller steps would suffer in
-the arithmetic, which has their fifth power."""
+"""Samples within this number of steps of the first of them share a node: the process noise between
+them is too small to matter, and much smaller steps would lose accuracy, as the arithmetic has their
+fifth power."""
 _SMOOTH_FEWEST = 4
 _FINEST, _APART = 1e-12, 1e3
-"""A sigma below the first, relative to the signal, is lost in rounding. One that is farther from
-the usual one than the second, as a factor, is no sigma."""
+"""A sigma below the first, relative to the signal, is lost in rounding. One that differs from the
+usual one by more than the second, as a factor, is invalid."""
 
 
 def bounded(y: Array, sigma: Array | float) -> Array:
@@ -244,7 +244,7 @@ def smoothed(t: Array, y: Array, sigma: Array | float, ratio: float) -> Smooth:
     sigma = bounded(y, sigma)
     usual = float(np.median(sigma[known]))
     weight = np.where(known, (usual / sigma) ** 2, 0.0)
-    # A parabola off, and the noise as unit: what is left is small, and the arithmetic exact.
+    # Less a parabola, in units of the noise: the rest is small, and the arithmetic accurate.
     trend = np.polynomial.Polynomial.fit(u[known], y[known], 2)
     left = np.where(known, y - trend(u), 0.0) / usual
     node = _nodes(u)
@@ -266,7 +266,7 @@ def smoothed(t: Array, y: Array, sigma: Array | float, ratio: float) -> Smooth:
 
 
 def _solved(step: Array, ratio: float, seen: Array, pull: Array) -> tuple[Array, Array]:
-    """Means (n, 3) and covariances (n, 3, 3), with as vague a prior as rounding allows."""
+    """Means (n, 3) and covariances (n, 3, 3), with the vaguest prior that rounding allows."""
     for vague in _VAGUE[:-1]:
         with suppress(np.linalg.LinAlgError):
             return _posterior(*precision(step, ratio, seen, vague), pull)

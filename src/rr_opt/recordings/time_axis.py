@@ -20,8 +20,8 @@ def time_step(t: Array) -> float:
 
 
 _FARTHEST = 1e3
-"""Neighbours are taken to be at most this many steps apart: across more they say nothing of each
-other, and arithmetic would suffer."""
+"""Neighbours count as at most this many steps apart: farther ones say nothing about each other, and
+accuracy would suffer."""
 
 
 def in_steps(t: Array) -> Array:
@@ -32,9 +32,9 @@ def in_steps(t: Array) -> Array:
 _LATEST = 1e12
 """Larger times belong to no clock, in any unit, s."""
 _TOGETHER = 1e-9
-"""Times that no clock tells apart, s."""
+"""Times closer than this are the same for any clock, s."""
 _RESTARTS = 5
-"""A file whose time falls back less often, and by more rows than this at once, was joined."""
+"""A file whose time falls back fewer times than this, each by more rows than this, was joined."""
 
 
 @dataclass(frozen=True)
@@ -42,8 +42,8 @@ class Order:
     """Rows in the order of their times.
 
     rows    (m,) indices of the rows that are kept
-    moved   (m,) of those, which stood in another place
-    unsure  (m,) of those, which share their time with a row that says something else
+    moved   (m,) which of these stood in another place
+    unsure  (m,) which of these share their time with a row of other values
     """
 
     rows: NDArray[np.int64]
@@ -55,8 +55,8 @@ class Order:
 def in_order(t: Array, values: Array, lines: Sequence[int] | NDArray[np.int64]) -> Order:
     """The order of rows with the times t (n,) and values (n, ...), which stand at some lines.
 
-    A row without a time, or with one that no clock shows, has no place. Of rows whose times no
-    clock tells apart the first is kept.
+    A row without a time, or with one that no clock shows, is dropped. Of rows with the same time
+    the first is kept.
     """
     doubts: list[Notice] = []
     lines = np.asarray(lines)
@@ -99,7 +99,7 @@ def _rows(lines: NDArray[np.int64]) -> str:
 
 
 def _longest_rising(t: Array) -> NDArray[np.bool_]:
-    """Members of a longest sequence that does not fall: the fewest others came out of order."""
+    """Members of a longest non-decreasing sequence; the others came out of order."""
     tails: list[float] = []
     ends: list[int] = []
     before = np.full(len(t), -1)
@@ -117,18 +117,18 @@ def _longest_rising(t: Array) -> NDArray[np.bool_]:
 
 
 LACKING = 1.5
-"""Steps longer than this, in usual steps, lack a row."""
+"""Steps longer than this, in usual steps, are missing a row."""
 _UNEVEN = 0.2
 """Steps that differ by more from the usual one, relative to it, are reported."""
 _OTHER_RATE = 2e-3
 """A rate that differs by more from the one stated, relative to it, is reported."""
 _LISTED = 3
 SLOWEST, FASTEST = 1e-3, 1e6
-"""Rates beyond these are taken for a slip of the unit, or for damage, Hz."""
+"""Rates beyond these are taken for a wrong unit, or for damage, Hz."""
 
 
 def rate_of(t: Array, file: str, line: int | None = None) -> float:
-    """Rows per second, Hz, of increasing times: by the steps that lack no row.
+    """Rows per second, Hz, of increasing times, from steps without missing rows.
 
     Raises InvalidFileError, naming the file and a line, for fewer than two rows and for a rate that
     no recording has.
@@ -142,7 +142,7 @@ def rate_of(t: Array, file: str, line: int | None = None) -> float:
             line,
         )
     steps = np.diff(t)
-    # As far below the usual step as above it, so that times that jitter have their mean rate.
+    # Cut off symmetrically about the usual step, so that jittering times have their mean rate.
     middle = np.median(steps)
     usual = steps[np.abs(steps / middle - 1) <= LACKING - 0.99]
     usual = usual if len(usual) else steps[steps <= middle]
@@ -166,7 +166,7 @@ def check_rate(rate: float, file: str, line: int | None = None) -> None:
 def time_notices(t: Array, rate: float, stated: float | None = None) -> Iterator[Notice]:
     """What is odd about increasing times (n >= 2) that come at a rate, Hz; stated: by a header."""
     steps = np.diff(t) * rate
-    # Where a row is lacking the steps about it do not make up for it, as they do for a late one.
+    # The steps about a late row compensate for it; those about a missing one do not.
     around = np.convolve(np.concatenate([[1.0], steps, [1.0]]), np.ones(3), "valid")
     jumps = np.flatnonzero((steps > LACKING) & (around > LACKING + 2))
     if len(jumps):

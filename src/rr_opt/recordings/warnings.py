@@ -1,7 +1,7 @@
 """Everything that can be odd about a recording: one table of code, level, sentence and remedy.
 
-The table is `data/warnings.txt`. A code is a kind, a dot and what is the matter. Sentences are
-format strings; the caller gives the values, with lists and sizes as text.
+The table is `data/warnings.txt`. A code is a kind, a dot and the problem. Sentences are format
+strings; the caller gives the values, with lists and sizes as text.
 """
 
 from __future__ import annotations

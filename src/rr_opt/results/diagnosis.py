@@ -30,7 +30,7 @@ from rr_opt.sysid.diagnosis import Finding, Stage
 from rr_opt.version import __version__
 
 _PREDICTS = 1.2
-"""An empirical term accounts for what is missing if it leaves no more than this, in sigma."""
+"""An empirical term accounts for the mismatch if the misfit left is at most this, in sigma."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -42,10 +42,10 @@ class ExplainedExperiment(Explained[Experiment]):
     effects          accepted, strongest first, each with `name`, `confidence` and `parameters`,
                      whose `value`, `low` and `high` (95 %) are in SI; for the verdict `parameters`
                      those
-    corrected_robot  the nominal robot with all of them, which any other function takes
+    corrected_robot  the nominal robot with all of them, for use with any other function
     loss             what the best gait of the nominal robot would lose, or why that is unknown
     found            the whole diagnosis
-    left_out         sentences on the recordings that could not be used
+    left_out         sentences on unusable recordings
     """
 
     OTHERS = ("robot-corrected.yaml",)
@@ -61,7 +61,7 @@ class ExplainedExperiment(Explained[Experiment]):
 
     @cached_property
     def loss(self) -> Loss | LossUnknown | None:
-        """What the nominal robot's best gait loses; None where the nominal model is right."""
+        """The speed lost with the nominal robot's best gait; None if the nominal model is right."""
         if self.verdict == "consistent":
             return None
         empirical = any(not CATALOGUE[use.name].candidate for use in self.corrected_robot.physics)
@@ -71,7 +71,7 @@ class ExplainedExperiment(Explained[Experiment]):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Sentences on the recordings that could not be used, then on those that were."""
+        """Sentences on unusable recordings, then on those that were used."""
         return (*self.left_out, *self.doubts)
 
     @property
@@ -86,12 +86,12 @@ class ExplainedExperiment(Explained[Experiment]):
 
     @property
     def marked(self) -> bool:
-        """Whether the experiment holds out a recording."""
+        """Whether the experiment has a held-out recording."""
         return any(one.held_out for one in self.found.final)
 
     @property
     def proven_on(self) -> str:
-        """Which recordings the misfits before and after refer to."""
+        """The recordings that the misfits before and after refer to."""
         if self.marked:
             return "held-out recordings"
         several = len(self.found.final) > 1
@@ -99,7 +99,7 @@ class ExplainedExperiment(Explained[Experiment]):
 
     @property
     def proof(self) -> tuple[int, ...]:
-        """Places of the recordings that prove the fit: the held-out ones; all, if there are none.
+        """Indices of the recordings that prove the fit: the held-out ones; all, if there are none.
 
         The worst explained by the nominal model come first.
         """
@@ -149,11 +149,11 @@ class ExplainedExperiment(Explained[Experiment]):
         )
 
     def summary(self) -> str:
-        """The verdict, what was found with its intervals, before and after, and what to do next."""
+        """The verdict, findings with their intervals, misfits before and after, and next steps."""
         return terminal(doc.facts_alone(_summary_facts(self), self.found.summary))
 
     def drawn(self, progress: Progress = quiet) -> tuple[doc.Figure, ...]:
-        """The figures, each with the caption that was drawn for it."""
+        """The figures with their captions."""
         progress("figures")
         drawn = self._draw(self)
         return tuple(
@@ -207,7 +207,7 @@ def chain(one: ExplainedExperiment) -> doc.Chain:
 
 
 def chain_note(one: ExplainedExperiment) -> str:
-    """What is lit in the chain, and where the fault shows."""
+    """What the chain highlights, and where the fault shows."""
     if not one.found.stages:
         lit = "" if one.found.channel == "none" else " Lit: where the accepted effect acts."
         return f"The stages were not tested one by one.{lit}"

@@ -40,7 +40,7 @@ _COMMON = {
     "kg m^2": ("kg m²", 1.0, math.inf),
     "dimensionless": ("", 1.0, math.inf),
 }
-"""SI unit to the one that people think in, and below what size they do."""
+"""SI unit to the customary unit, and the size below which it is used."""
 
 
 def effect_words(name: str) -> str:
@@ -49,7 +49,7 @@ def effect_words(name: str) -> str:
 
 
 def parameter_words(name: str) -> str:
-    """`kappa1` as `viscous wheel friction of platform 1`; anything else as it is."""
+    """`kappa1` as `viscous wheel friction of platform 1`; other names unchanged."""
     return PARAMETERS[name].full_words if name in PARAMETERS else name.replace("_", " ")
 
 
@@ -63,7 +63,7 @@ def headline(
     effect: Callable[[str], str] = effect_words,
     parameter: Callable[[str], str] = parameter_words,
 ) -> str:
-    """The verdict in a sentence; effect, parameter: their words, by name."""
+    """The verdict in a sentence; effect, parameter: functions from names to words."""
     names = [one.name for one in found.findings]
     if found.verdict == "consistent":
         return "The model explains the recordings"
@@ -76,7 +76,7 @@ def headline(
 
 
 def value_text(one: Estimate) -> str:
-    """`15.2 mN [14.1, 16.3]`, with digits as its interval allows."""
+    """`15.2 mN [14.1, 16.3]`, to the digits that its interval supports."""
     unit, value, ends = _people(one)
     return f"{value} {unit}".strip() + f" [{ends[0]}, {ends[1]}]"
 
@@ -119,7 +119,7 @@ def _fixed(value: float, digits: int | None) -> str:
 
 
 def total(beyond: float) -> float:
-    """A misfit of which `beyond` is beyond the noise, both RMS in sigma: 1 is the noise alone."""
+    """The misfit with an excess `beyond` over the noise, both RMS in sigma: 1 is noise alone."""
     return math.hypot(1.0, beyond)
 
 
@@ -138,7 +138,7 @@ def share_text(finding: Finding) -> str:
 
 
 def stage_words(stages: Sequence[Stage]) -> list[str]:
-    """Of each channel `fault`, where an unknown input would explain most; `affected`, where one
+    """For each channel `fault` where an unknown input would explain most; `affected` where one
     would explain some of the misfit too; or `clear`."""
     words = []
     for stage in stages:
@@ -156,10 +156,10 @@ _STAGES = {"constraint_axle1": "axle 1, sideways", "constraint_axle2": "axle 2, 
 
 
 def stage_text(stage: Stage, found: Diagnosis) -> str:
-    """What an unknown input there would explain, and the chance of it: `explains 55 %, p < 1e-12`.
+    """How much an unknown input there would explain, and its p-value: `explains 55 %, p < 1e-12`.
 
     The share is of the misfit beyond the noise with the robot's values re-fitted, in mean square;
-    none is given where that is negligible.
+    omitted where that is negligible.
     """
     beyond, p, parts = max(found.mismatch.rms, stage.size), stage.p_value, []
     if beyond > SETTINGS.negligible:
@@ -172,11 +172,11 @@ def stage_text(stage: Stage, found: Diagnosis) -> str:
 
 
 _MOST = 30
-"""Rows of candidates; diagnosis.json has all."""
+"""Most rows of candidates; diagnosis.json has all."""
 
 
 def effects_table(found: Diagnosis) -> doc.Table:
-    """What was accepted, with its values; nothing for a verdict without effects."""
+    """The accepted effects with their values; nothing for a verdict without effects."""
     rows: list[list[doc.Cell]] = []
     for finding in found.findings if found.verdict != "parameters" else ():
         removes = share_text(finding) + (", minor" if finding.minor else "")
@@ -211,7 +211,7 @@ def candidates_table(found: Diagnosis) -> doc.Table:
 
 
 def _candidate(one: Tried, tried: Sequence[Tried]) -> str:
-    """The effects; of sets with the same effects in other forms also which parameters they have."""
+    """The effects; for sets of the same effects in different forms, also their parameters."""
     same = [set(each.values) for each in tried if each.effects == one.effects]
     own = [name.partition(".")[2] for name in one.values if name not in set.intersection(*same)]
     form = f" ({', '.join(own).replace('_', ' ')})" if own else ""

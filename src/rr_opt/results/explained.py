@@ -1,4 +1,4 @@
-"""What every diagnosis has, whatever the machine: verdict, effects, message, diagnosis.json."""
+"""Common to all diagnoses, for any machine: verdict, effects, message, diagnosis.json."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -51,7 +51,7 @@ class Explained(Result, Generic[Diagnosed]):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What looked wrong in the recordings."""
+        """Suspicious features of the recordings."""
         return self.doubts
 
     @property
@@ -108,9 +108,9 @@ class Explained(Result, Generic[Diagnosed]):
 
 
 def _fit(found: Diagnosis) -> dict[str, Any]:
-    """Everything in units of the noise sigma.
+    """Misfits in units of the noise sigma.
 
-    Where none is held out, the `heldout` ones are of the fitted recordings.
+    Without held-out recordings, `heldout` refers to the fitted ones.
     """
     levels = {"before": found.nominal, "parameters": found.refitted, "after": found.final}
     fitted = {name: [m for m in level if not m.held_out] for name, level in levels.items()}

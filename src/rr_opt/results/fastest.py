@@ -1,4 +1,4 @@
-"""The fastest gait of a problem, with the evidence that it is one."""
+"""The fastest gait of a problem, with the evidence for it."""
 
 from __future__ import annotations
 
@@ -40,19 +40,19 @@ from rr_opt.verify.replay import Replay
 from rr_opt.verify.sweep import SweepCheck
 
 if TYPE_CHECKING:
-    # Heavy, and needed by few results.
+    # Slow to import, and needed by few results.
     from rr_opt.machines.racer.driven import DrivenOptimum
     from rr_opt.results.robust import Robust
 
 LARGEST_REPLAY_ERROR = 1e-6
-"""Of the replayed speed, relative: the optimiser's mesh is refined until it is well below this."""
+"""Largest relative error of the replayed speed: the optimiser's mesh is refined well below it."""
 
 LARGEST_COST_ERROR = 1e-4
-"""Of the cost of transport, where that is the objective, relative: it is added up from samples."""
+"""Largest relative error of the cost of transport as objective: it is a sum over samples."""
 
 LARGEST_SLACK = {True: 1e-5, False: 1e-4}
-"""Of the speed, what prices times distances may be: of sines (True), which are solved as functions
-of their decisions, and of other shapes, of which a limit is held at some phases."""
+"""Largest violation of complementary slackness, relative to the speed: for sines (True), and for
+other shapes, whose limits are held at some phases only."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -63,12 +63,12 @@ class FastestGait(Result):
     optimum        as the optimiser left it
     replay, sweep  the motion simulated by CVODES, and the comparison with a plain sweep; None
                    where there is no optimum to check
-    driven         the gait driven with all effects of the robot, and climbed on where the optimiser
-                   does not know them all; None where the optimum has them all
-    robust         the gait that is fast on most of the robots that the file may mean; None where
-                   the problem asks for none, and where none was found
-    as_built       speed of the fastest gait of the robot as it is, m/s, where the optimum has
-                   another inertia ratio; None elsewhere, and if that robot has no such gait
+    driven         the gait driven with all effects of the robot, and improved further if the
+                   optimiser lacks some; None if the optimum includes them all
+    robust         the gait that is fast across the robot's uncertainty; None if not requested
+                   or not found
+    as_built       speed of the fastest gait of the robot as it is, m/s, if the optimum has another
+                   inertia ratio; None otherwise, and if that robot has no such gait
     """
 
     FILE = "result.json"
@@ -99,14 +99,14 @@ class FastestGait(Result):
 
     @property
     def joint(self) -> Gait | None:
-        """What the joint makes of the gait, but for play; None if there is none."""
+        """The joint motion that results, ignoring backlash; None if there is no gait."""
         if self.gait is None:
             return None
         command = self.problem.command
         return command.servo.response_to(self.gait) if command else self.gait
 
     def command_for(self, gait: Gait) -> Gait:
-        """The command of which the servo makes a gait of the joint, such as those of `optimum`."""
+        """The command for which the servo makes a joint motion, such as those of `optimum`."""
         command = self.problem.command
         return command.servo.command_for(gait) if command else gait
 
@@ -119,7 +119,7 @@ class FastestGait(Result):
 
     @property
     def robot(self) -> Robot:
-        """The robot, with the optimum's inertia ratio where that was to be chosen."""
+        """The robot, with the optimum's inertia ratio if that was a decision."""
         if self.driven:
             return self.driven.robot
         return self.optimum.robot or self.problem.robot
@@ -131,22 +131,22 @@ class FastestGait(Result):
 
     @property
     def rebuilt(self) -> bool:
-        """Whether the optimum has another inertia ratio than the robot as it is."""
+        """Whether the optimum's inertia ratio differs from the robot's own."""
         return self.robot.platform2 != self.problem.robot.platform2
 
     @property
     def climbed(self) -> DrivenOptimum | None:
-        """The gait driven with effects that the optimiser does not know; None if it knows all."""
+        """The gait driven with effects that the optimiser lacks; None if it lacks none."""
         return self.driven if self.driven and self.driven.beyond else None
 
     @property
     def cost(self) -> float | None:
-        """Its cost of transport where that is the objective; None elsewhere."""
+        """Its cost of transport if that is the objective, else None."""
         return self.optimum.best.cost if self.optimum.best else None
 
     @property
     def _aim(self) -> str:
-        """What the prices are compared with."""
+        """The quantity that the prices refer to."""
         return "cost of transport" if self.cost else "speed"
 
     @property
@@ -158,21 +158,21 @@ class FastestGait(Result):
 
     @cached_property
     def energy(self) -> Energy | None:
-        """Of the servo per metre of path: the work that it does, without what it could recover
-        where it brakes, the net work, and the cost of transport; None without a gait, and where
-        the motion is not that of the optimiser."""
+        """Energy of the servo per metre of path: positive work, without recuperation, net work, and
+        the cost of transport; None without a gait, and where the motion differs from the
+        optimiser's."""
         if self.replay is None or self.climbed:
             return None
         return energy(self.robot, self.replay.steady)
 
     @property
     def turns(self) -> bool:
-        """Whether the robot goes round a circle: a radius of many kilometres is a straight line."""
+        """Whether the robot drives a circle; a radius of many kilometres counts as straight."""
         return self.cycle is not None and abs(self.cycle.dpsi) > 1e-7
 
     @cached_property
     def limits(self) -> dict[str, LimitRow]:
-        """By name (angle, rate, torque, singularity, grip, and what else is limited), each with
+        """By name (angle, rate, torque, singularity, grip, and any other limits), each with
         `limit`, `value`, `active` and `shadow_price`, SI."""
         reached = self.replay.reached if self.replay else {}
         if self.climbed:
@@ -182,7 +182,7 @@ class FastestGait(Result):
 
     @cached_property
     def bounds(self) -> dict[str, BoundRow]:
-        """The same of amplitude, period, offset, and the inertia ratio if it is a decision; empty
+        """The same for amplitude, period, offset, and the inertia ratio if it is a decision; empty
         without a gait."""
         if self.gait is None or self.inertia_ratio is None:
             return {}
@@ -246,7 +246,7 @@ class FastestGait(Result):
 
     @property
     def status(self) -> Status:
-        """As the optimiser ended, unless a check failed."""
+        """The optimiser's status, unless a check failed."""
         if all(check.passed for check in self.checks):
             return self.optimum.status
         return Status.NOT_CONVERGED
@@ -281,7 +281,7 @@ class FastestGait(Result):
 
     @property
     def remarks(self) -> list[str]:
-        """What else there is to know of the gait, in sentences."""
+        """Further remarks on the gait, in sentences."""
         best = self.optimum.best
         if best is None:
             return []
@@ -323,13 +323,13 @@ class FastestGait(Result):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What the robot does with effects that the optimiser does not know, and grip that wheels
-        may not have."""
+        """What the robot does with effects that the optimiser lacks, and grip that wheels may not
+        have."""
         climbed = (_climbed(self.climbed, self.optimum),) if self.climbed else ()
         return (*climbed, *slippery(self.limits["grip"].value))
 
     def _record(self) -> dict[str, Any]:
-        """The content of result.json; the same keys whatever the outcome."""
+        """The content of result.json; its keys do not depend on the outcome."""
         optimum, replay, sweep = self.optimum, self.replay, self.sweep
         cycle, driven = self.cycle, self.driven
         return {
@@ -424,7 +424,7 @@ class FastestGait(Result):
         )
 
     def _lead(self) -> doc.Section:
-        """What comes before the checks."""
+        """The content before the checks."""
         return doc.Section("", ())
 
     def _tables(self) -> dict[str, str]:
@@ -439,8 +439,8 @@ def _within(what: str, error: float, allowed: float) -> Check:
 
 
 LARGEST_DRIVEN_ERROR = 0.01
-"""Of the speed with all effects against the optimiser's, relative, where that has them too or
-nothing was climbed."""
+"""Largest relative difference of the speed with all effects from the optimiser's, if that has them
+too or the gait was not improved further."""
 
 
 def _driven_checks(found: DrivenOptimum, optimum: Optimum) -> list[Check]:
@@ -463,7 +463,7 @@ def _driven_checks(found: DrivenOptimum, optimum: Optimum) -> list[Check]:
 
 
 def _climbed(found: DrivenOptimum, optimum: Optimum) -> str:
-    """What the effects that the optimiser does not know do to the optimum."""
+    """How the effects that the optimiser lacks change the optimum."""
     names, speed = listed(found.beyond), found.driven.speed
     without = optimum.best.speed if optimum.best else math.nan
     change, gain = speed / without - 1, abs(speed / found.start.speed) - 1
@@ -539,7 +539,7 @@ def _ratio(result: FastestGait) -> doc.Fact:
 
 
 def _cycle(cycle: Cycle, *, turning: bool) -> doc.Fact:
-    """What one period does: a step along a line or round a circle."""
+    """The rigid motion of one period: a step along a line or round a circle."""
     step = f"{1e3 * math.hypot(cycle.dx, cycle.dy):.1f} mm a period"
     if not turning:
         return doc.Fact("cycle", step, "straight")
@@ -552,7 +552,7 @@ def _cycle(cycle: Cycle, *, turning: bool) -> doc.Fact:
 
 
 def _optima(result: FastestGait) -> doc.Table:
-    """All local optima; nothing if there is one only."""
+    """All local optima; nothing if there is only one."""
     optimum = result.optimum
     ties = {id(one) for one in optimum.ties}
     rows = [

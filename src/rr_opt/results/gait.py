@@ -63,7 +63,7 @@ def signed_fact(label: str, speed: float, detail: str) -> doc.Fact:
 
 
 def ignored_effects(robot: Robot, *, commanded: bool = False) -> tuple[str, ...]:
-    """One sentence that names the robot's effects which steady motion ignores; empty if none.
+    """One sentence naming the robot's effects that steady motion ignores; empty if none.
 
     commanded  gaits are the servo's commands, so its effects count
     """

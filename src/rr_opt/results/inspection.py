@@ -1,4 +1,4 @@
-"""Recordings as they were found: what was read of each, and everything that looks wrong."""
+"""Recordings as read: the data, and everything that looks wrong."""
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -25,7 +25,7 @@ from rr_opt.results.result import Progress, Result, picked, quiet
 
 @dataclass(frozen=True, repr=False)
 class InspectedRecordings(Result):
-    """Recordings as they were found.
+    """Recordings as read.
 
     recordings  one each, with `recording` (values, sigma and flags by channel), `doubts`, the
                 markers' fit and the clock against the command
@@ -34,7 +34,7 @@ class InspectedRecordings(Result):
     FILE = "inspection.json"
     DRAW = "rr_opt.results.figures.inspection.draw"
     CAPTIONS = doc.captions("inspection")
-    # They are in the page alone: there may be dozens.
+    # They are in the page only: there may be dozens.
     SVGS = False
 
     name: str
@@ -57,7 +57,7 @@ class InspectedRecordings(Result):
         return [*written, _netcdf(Path(netcdf), self.recordings[0])]
 
     def drawn(self, progress: Progress = quiet) -> tuple[doc.Figure, ...]:
-        """Of several recordings each name begins with the file's."""
+        """Figures; for several recordings, each name begins with the file's."""
         several, figures = len(self.recordings) > 1, []
         for place, one in enumerate(self.recordings, 1):
             progress(f"figures {place} of {len(self.recordings)}" if several else "figures")
@@ -85,7 +85,7 @@ class InspectedRecordings(Result):
 
 
 def _named(figures: Iterable[doc.Figure], recording: str) -> list[doc.Figure]:
-    """Figures of one of several recordings: their names begin with its file's."""
+    """Figures of one of several recordings: their names begin with its file's name."""
     stem = PurePath(recording).stem
     return [
         replace(one, name=f"{stem}-{one.name}", title=f"{recording}: {one.title}")
@@ -96,7 +96,7 @@ def _named(figures: Iterable[doc.Figure], recording: str) -> list[doc.Figure]:
 def _report(
     name: str, sha256: str, what: str, count: int, dropped: str, sections: Iterable[doc.Section]
 ) -> doc.Document:
-    """count: of warnings; dropped: what was done with samples."""
+    """count: number of warnings; dropped: treatment of samples."""
     return doc.Document(
         name=name,
         kind="recordings",
@@ -149,7 +149,7 @@ def _facts(found: Inspection) -> Iterator[doc.Fact]:
 
 
 def _path_text(found: Inspection) -> str:
-    """How far, how fast, and how much it turned."""
+    """Distance, speed and turn."""
     path = travelled(found.recording)
     if path["net"] is None:
         return "no data"
@@ -173,7 +173,7 @@ def _noise_text(found: Inspection, channel: str) -> str:
 
 
 def _flagged_text(found: Inspection) -> str:
-    """How many samples of which channels are not taken as data, and why."""
+    """How many samples of which channels are excluded, and why."""
     recording = found.recording
     texts = []
     for channel in recording.channels:
@@ -207,7 +207,7 @@ def _table(found: Sequence[Inspection]) -> doc.Table:
 
 
 def _netcdf(path: Path, found: Inspection) -> Path:
-    """Write the cleaned recording, whole. Raises InputError without the extra."""
+    """Write the cleaned recording, atomically. Raises InputError without the extra."""
     from rr_opt.recordings.readers.netcdf import write_netcdf
 
     with whole(path) as temporary:
@@ -216,7 +216,7 @@ def _netcdf(path: Path, found: Inspection) -> Path:
 
 
 def travelled(recording: Recording) -> dict[str, float | None]:
-    """How far and how fast the joint went: net, m, m/s, and the turn of platform 1, rad."""
+    """Displacement and speed of the joint: net, m, m/s, and the turn of platform 1, rad."""
     x, y, psi = (recording.data(channel) for channel in ("x", "y", "psi"))
     both = np.flatnonzero(np.isfinite(x) & np.isfinite(y))
     headed = np.flatnonzero(np.isfinite(psi))
@@ -285,7 +285,7 @@ def _clock(fit: ClockFit | None) -> dict[str, Any] | None:
 
 
 def _servo_log(found: Synchrony | None) -> dict[str, Any] | None:
-    """phi against the log, the log's goal against the gait, and what the two make together."""
+    """phi against the log, the log's goal against the gait, and both combined."""
     if found is None:
         return None
     shift = found.shift
@@ -342,7 +342,7 @@ class InspectedMachine(Result):
 
     @property
     def sha256(self) -> str:
-        """Of the experiment's file and its recordings."""
+        """The fingerprint of the experiment's file and its recordings."""
         return self.experiment.sha256
 
     @property

@@ -1,4 +1,4 @@
-"""How near an optimum comes to each limit and bound, and what it would gain by more."""
+"""How close an optimum is to each limit and bound, and the gain from relaxing it."""
 
 import math
 from collections.abc import Iterable, Mapping
@@ -14,10 +14,10 @@ from rr_opt.model.gait import Gait
 from rr_opt.model.problem import LEAST, NEEDS_GRIP, Interval
 
 ACTIVE = 1e-4
-"""A limit is active when the gait comes this near to it, relative to the limit."""
+"""A limit is active when the gait is within this distance of it, relative to the limit."""
 
 LIMIT_NAMES = ("angle", "rate", "torque", "singularity", "grip")
-"""Of every problem; those on the economy of a gait are shown where they are set."""
+"""Limits of every problem; those on a gait's economy are shown if set."""
 
 _WORDS = {
     "angle": "the joint angle",
@@ -33,13 +33,13 @@ _WORDS = {
 
 @dataclass(frozen=True)
 class LimitRow:
-    """A limit, and how near the gait comes to it.
+    """A limit, and how close the gait comes to it.
 
     limit         SI; inf if there is none
     value         the extreme over the replayed cycle, SI; NaN if there is no gait
     active        whether the limit constrains the optimum
-    shadow_price  m/s of |speed| gained per SI unit by which the limit is raised, or how much the
-                  cost of transport falls; 0 if inactive, NaN if there is no gait
+    shadow_price  m/s of |speed| gained per SI unit by which the limit is raised, or the decrease of
+                  the cost of transport; 0 if inactive, NaN if there is no gait
     """
 
     name: str
@@ -53,7 +53,7 @@ class LimitRow:
 class BoundRow:
     """A decision of the problem within its bounds.
 
-    active        which bound constrains it, if one does
+    active        the active bound, if any
     shadow_price  m/s of |speed| per unit by which that bound moves up, 0 if neither is active;
                   None where no price exists: a fixed decision, or a whole number of loads
     """
@@ -75,7 +75,7 @@ def limit_row(name: str, optimum: Optimum, reached: Mapping[str, float]) -> Limi
     slack = value - limit if name in LEAST else limit - value
     active = bool(math.isfinite(limit) and slack <= ACTIVE * abs(limit))
     if optimum.problem.gait.shape != "sine":
-        # Its peaks may stay short of the limit, which the optimiser tightens somewhat.
+        # Its peaks may stay short of the limit, which the optimiser tightens slightly.
         active |= _matters(price, limit, best.speed)
     return LimitRow(name, limit, value, active, price if active else 0.0)
 
@@ -106,7 +106,7 @@ def bound_rows(optimum: Optimum, commanded: Gait, ratio: float) -> dict[str, Bou
 
 
 def slippery(grip: float) -> tuple[str, ...]:
-    """A warning of side forces over loads that wheels rarely bear."""
+    """A warning of side forces, relative to loads, that wheels rarely sustain."""
     if not grip > NEEDS_GRIP:
         return ()
     return (
@@ -116,9 +116,9 @@ def slippery(grip: float) -> tuple[str, ...]:
 
 
 def worst_slack(optimum: Optimum, command: Gait, reached: Mapping[str, float]) -> tuple[str, float]:
-    """Complementary slackness: at an optimum what has a price is at its limit, and no price has the
-    wrong sign. The limit or bound that fails it most, and how: its price times its distance, or
-    times itself where the sign is wrong, relative to the speed or the cost of transport.
+    """Complementary slackness: at an optimum a limit with a nonzero price is active, and no price
+    has the wrong sign. The worst violation: its limit or bound, and price times slack, or times the
+    limit if the sign is wrong, relative to the speed or the cost of transport.
     """
     best, problem = optimum.best, optimum.problem
     if best is None:
@@ -156,7 +156,7 @@ def _bound(name: str, value: float, box: Interval, price: float | None) -> Bound
 
 
 def _matters(price: float, limit: float, speed: float) -> bool:
-    """Whether dropping the limit would change the speed by more than solvers leave behind."""
+    """Whether dropping the limit would change the speed by more than the solver's residual."""
     return math.isfinite(limit) and abs(price * limit) > ACTIVE * abs(speed)
 
 
@@ -192,7 +192,7 @@ def limits_table(
     objective: str = "speed",
     where: Mapping[str, str] | None = None,
 ) -> doc.Table:
-    """Each limit: what is reached, where if it is known, what is allowed, and its shadow price."""
+    """Each limit: the value reached, where (if known), the allowed value, and its shadow price."""
     kinds = [(QUANTITIES[row.name], row) for row in rows]
     if not reached:
         return doc.table(["Limit", "Allowed"], [[k.words, k.both(row.limit)] for k, row in kinds])

@@ -32,10 +32,10 @@ from rr_opt.verify.sweep import check_optimum
 
 
 def corrected_robot(experiment: Experiment, found: Diagnosis) -> Robot:
-    """The nominal robot with the re-estimated values, the accepted effects, and where from."""
+    """The nominal robot with re-estimated values, accepted effects, and their provenance."""
     robot = experiment.robot
     fitted = {name: rounded(value) for name, value in found.values.items()}
-    # A servo no faster than it was seen to be: gaits are then sought that it can make.
+    # A servo no faster than observed, so that the gaits found are ones it can make.
     seen = fitted.get("servo_rate_limit.rate_limit", math.inf)
     return replace(
         with_parameters(robot, {name: v for name, v in fitted.items() if name in PARAMETERS}),
@@ -72,8 +72,8 @@ def _provenance(experiment: Experiment, found: Diagnosis) -> dict[str, str]:
 
 
 def _key(name: str) -> str | None:
-    """Where a robot file keeps a quantity: `kappa1` under `platform1.kappa`; None of the capture's
-    zeros, which are not the robot's."""
+    """The key of a quantity in a robot file: `kappa1` under `platform1.kappa`; None for the capture
+    system's zeros, which are not the robot's."""
     if name in PARAMETERS:
         return ".".join(PARAMETERS[name].key)
     return f"physics.{name}" if "." in name else None
@@ -81,13 +81,13 @@ def _key(name: str) -> str | None:
 
 @dataclass(frozen=True)
 class Loss:
-    """What the nominal model costs; speeds in m/s, signed.
+    """The speed lost by relying on the nominal model; speeds in m/s, signed.
 
     believed, promised  the best gait of the nominal robot, and the speed that its model predicts
     reached             the corrected robot's speed with that gait
-    best, speed         the corrected robot's own best gait; where its servo has a fault, the angle
-                        that the servo has to be brought to make
-    unseen              whether either gait demands more than was recorded
+    best, speed         the corrected robot's own best gait; if its servo has a fault, the
+                        joint angle that the servo would have to make
+    unseen              whether either gait goes beyond the recorded range
     """
 
     believed: Gait
@@ -112,7 +112,7 @@ class LossUnknown:
 
 
 def loss_of(experiment: Experiment, corrected: Robot) -> Loss | LossUnknown:
-    """The loss, where the effects of the corrected robot have a place in steady motion.
+    """The loss, if steady motion can include the effects of the corrected robot.
 
     Takes a second or two.
     """
@@ -164,8 +164,8 @@ _NONE = 5e-4
 
 
 def share_lost(one: Loss) -> str:
-    """`12 %`; `less than 0.05 %`; `more than all` where the robot goes the other way; none where
-    its own best gait, which keeps the limits, is slower."""
+    """`12 %`; `less than 0.05 %`; `more than all` if the robot drives the other way; none if its
+    own best gait, which respects the limits, is slower."""
     if one.share > 1:
         return "more than all"
     if one.share < -_NONE:
@@ -187,7 +187,7 @@ def pace(speed: float) -> str:
 
 
 def loss_sentences(one: Loss | LossUnknown | None) -> str:
-    """A few sentences; nothing where the nominal robot is right."""
+    """A few sentences; nothing if the nominal robot is right."""
     if one is None:
         return ""
     if isinstance(one, LossUnknown):
@@ -220,7 +220,7 @@ def gait_words(gait: Gait) -> str:
 
 
 def loss_record(one: Loss | LossUnknown | None) -> dict[str, Any] | None:
-    """diagnosis.json's `loss`: null where the nominal robot is right; SI."""
+    """diagnosis.json's `loss`: null if the nominal robot is right; SI."""
     if one is None:
         return None
     if isinstance(one, LossUnknown):

@@ -141,7 +141,7 @@ class ExplainedMachine(Explained[MachineExperiment]):
         )
 
     def _tables(self) -> dict[str, str]:
-        """The machine's corrected values, as the keys of an experiment file, and its effects."""
+        """The machine's corrected values, as keys of an experiment file, and its effects."""
         machine, values = self.experiment.machine, self.found.values
         nominal = self.experiment.nominal
         own = {p.name: rounded(values.get(p.name, nominal[p.name])) for p in machine.parameters}

@@ -1,4 +1,4 @@
-"""What driving a gait gives: a simulated motion and its files, and the circle of the gait."""
+"""The results of driving a gait: a simulated motion and its files, and the circle of the gait."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -34,7 +34,7 @@ Film = Literal["gif", "mp4"]
 
 @dataclass(frozen=True, repr=False)
 class GaitResult(Result):
-    """What comes of driving a gait.
+    """The result of driving a gait.
 
     source_status  of the result that the gait was taken from; None if it was not taken from one
     """
@@ -45,7 +45,7 @@ class GaitResult(Result):
 
     @cached_property
     def joint(self) -> Gait:
-        """What the servo makes of the gait."""
+        """The joint motion that the servo makes of the gait."""
         return servo_made(self.robot, self.gait)
 
     @property
@@ -55,14 +55,14 @@ class GaitResult(Result):
 
     @property
     def beyond_servo(self) -> tuple[str, ...]:
-        """A sentence on each limit of the servo that the gait exceeds."""
+        """A sentence on each servo limit that the gait exceeds."""
         return ()
 
 
 def beyond_servo(
     servo: Servo, angle: float, rate: float, torque: float
 ) -> list[tuple[str, float, float]]:
-    """Name, value and limit, SI, of the peaks of a motion that the servo cannot do."""
+    """Name, value and limit, SI, of the peaks of a motion that exceed the servo's limits."""
     needed = {"angle": angle, "rate": rate, "torque": torque}
     able = {name: getattr(servo, f"{name}_limit") for name in needed}
     return [
@@ -90,7 +90,7 @@ class SimulatedMotion(GaitResult):
 
     @property
     def beyond_servo(self) -> tuple[str, ...]:
-        """A sentence on each limit of the servo that the motion exceeds; it is simulated anyway."""
+        """A sentence on each servo limit that the motion exceeds; it is simulated anyway."""
         joint, torque = self.joint, self.measured.peak_torque
         beyond = beyond_servo(self.robot.servo, joint.peak_angle, joint.peak_rate, torque)
         return tuple(
@@ -100,8 +100,8 @@ class SimulatedMotion(GaitResult):
         )
 
     def record(self, files: Sequence[Path] = ()) -> dict[str, Any]:
-        """Distance, turn, speed and torque, SI. Of the last period `last_speed` is the mean of v,
-        and `last_circle_speed` the speed along its mean circle, null of a shorter motion."""
+        """Distance, turn, speed and torque, SI. For the last period, `last_speed` is the mean of v,
+        and `last_circle_speed` the speed along its mean circle, null if the motion is shorter."""
         return super().record() | {"files": [str(file) for file in files]}
 
     def save(
@@ -160,7 +160,7 @@ class DrivenCircle(GaitResult):
     transient: Transient
 
     def _record(self) -> dict[str, Any]:
-        """Radius, centre, speed and the transient, SI; null for what a straight gait lacks."""
+        """Radius, centre, speed and the transient, SI; null where a straight gait has none."""
         circle, start = self.circle, self.transient
         return {
             "gait": self.gait,

@@ -1,4 +1,4 @@
-"""What every result can do: say how it ended, and be printed, drawn and saved."""
+"""What every result can do: report its status, and be printed, drawn and saved."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ from rr_opt.outcome import Status
 from rr_opt.version import __version__
 
 Progress = Callable[[str], None]
-"""Called with every step, such as `start 3 of 8`."""
+"""Called at every step, with text such as `start 3 of 8`."""
 
 
 def quiet(_: str) -> None:
@@ -48,7 +48,7 @@ class Plots(dict[str, Svg]):
 
 
 def picked(source: Any, names: str) -> dict[str, Any]:
-    """Attributes by their names, which blanks part, for a record."""
+    """Attributes by name (space-separated), for a record."""
     return {name: getattr(source, name) for name in names.split()}
 
 
@@ -61,17 +61,17 @@ class Check:
 
 
 class Result:
-    """What was found, with the evidence for it.
+    """The base of all results.
 
     status    how the work ended: `OPTIMAL`, `INFEASIBLE` or `NOT_CONVERGED`
     message   the outcome in a sentence or two
     checks    the independent checks, each with `passed` and a `sentence`
-    warnings  sentences on what the result leaves out, or what to beware of
+    warnings  sentences on what the result ignores, and other caveats
     """
 
-    # What a kind of result overrides, if it has it: the name of its record's file, of the report as
-    # Markdown, and of all other files; what draws its figures, their captions, and whether they are
-    # files too, beside the page.
+    # Overridden by each kind of result as needed: the names of its record's file, of the Markdown
+    # report, and of all other files; the drawing function of its figures, their captions, and
+    # whether they are also written as files.
     FILE: ClassVar[str] = ""
     MARKDOWN: ClassVar[str] = ""
     OTHERS: ClassVar[tuple[str, ...]] = ()
@@ -81,22 +81,22 @@ class Result:
 
     @property
     def status(self) -> Status:
-        """OPTIMAL, unless the kind of result has another way to end."""
+        """OPTIMAL, unless the kind of result defines another."""
         return Status.OPTIMAL
 
     @property
     def message(self) -> str:
-        """Empty for a result that is all numbers."""
+        """Empty for a purely numerical result."""
         return ""
 
     @property
     def checks(self) -> list[Check]:
-        """Empty where there is nothing to check."""
+        """Empty if there is nothing to check."""
         return []
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Empty where there is nothing to beware of."""
+        """Empty if there are no caveats."""
         return ()
 
     def record(self, files: Sequence[Path] = ()) -> dict[str, Any]:
@@ -113,7 +113,7 @@ class Result:
         return Document("", "", "", "", ())
 
     def _page(self, document: Document) -> Document:
-        """What the page shows, if it is not the document itself."""
+        """The content of the page, if it is not the document itself."""
         return document
 
     def _tables(self) -> Mapping[str, str]:
@@ -125,7 +125,7 @@ class Result:
         return terminal(self.document())
 
     def _draw(self, what: Any) -> Mapping[str, Any]:
-        """SVG texts by name, in the style of all figures; matplotlib is loaded only now."""
+        """SVG texts by name, in the common style; imports matplotlib."""
         from rr_opt.results.figures.style import styled
 
         module, _, function = self.DRAW.rpartition(".")

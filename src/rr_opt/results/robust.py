@@ -1,4 +1,4 @@
-"""The gait that is fast on most of the robots that a file may mean, beside the nominal optimum."""
+"""The gait that is fast across the robot's uncertainty, beside the nominal optimum."""
 
 from dataclasses import dataclass, replace
 from typing import Any
@@ -19,21 +19,21 @@ from rr_opt.verify.speeds import DRAWN, drawn
 
 _ALIKE = 1e-6
 SHORT = 0.01
-"""By so much the share of other robots that reach the speed and keep the limit on torque may fall
-short of what is reported; four standard deviations of it."""
+"""Tolerated shortfall of the share of validation robots that reach the speed and keep the torque
+limit; four standard deviations of it."""
 
 
 @dataclass(frozen=True)
 class Robust:
-    """The robust gait, as commanded, and what it and the nominal optimum do.
+    """The robust gait, as commanded, and its performance beside that of the nominal optimum.
 
-    speed      that 95 % of the robots reach with the robust gait, m/s, negative backward
-    nominal    its speed on the robot as it is given
-    without    what 95 % reach with the nominal optimum; certainty costs nominal's speed for this
-    kept       the share of the robots that keep the limit on torque with the nominal optimum
-    reaching   the share of other robots that reach the speed with the robust gait, and `keeping`
-               that of those that keep the limit on torque
-    scales, curves  what 95 % reach with the robust gait and with the nominal optimum where all
+    speed      reached by 95 % of the robots with the robust gait, m/s, negative backward
+    nominal    its speed on the nominal robot
+    without    reached by 95 % with the nominal optimum; certainty gives up nominal speed for this
+    kept       the share of the robots that keep the torque limit with the nominal optimum
+    reaching   the share of validation robots that reach the speed with the robust gait;
+               `keeping`: that keep the torque limit
+    scales, curves  speeds reached by 95 % with the robust gait and with the nominal optimum if all
                spreads are scaled by these factors
     """
 
@@ -50,7 +50,7 @@ class Robust:
 
     @property
     def checks(self) -> list[Check]:
-        """Other robots than those that the speed was read from."""
+        """Checks on robots other than those that the speed was computed from."""
         share = f"{100 * RELIABLE:g} %"
         return [
             Check(
@@ -62,7 +62,7 @@ class Robust:
         ]
 
     def sentence(self, best: float) -> str:
-        """What certainty costs, best: the speed of the nominal optimum, m/s."""
+        """The price of certainty; best: the speed of the nominal optimum, m/s."""
         speed, without = (1e3 * abs(one) for one in (self.speed, self.without))
         slower = 1 - abs(self.nominal / best)
         first = f"95 % of the robots that this one may be reach {speed:.1f} mm/s with "
@@ -75,7 +75,7 @@ class Robust:
         )
 
     def section(self) -> doc.Section:
-        """Of the report."""
+        """The section of the report."""
         rows = [
             ("amplitude", with_unit(self.gait.amplitude, "rad")),
             ("period", with_unit(self.gait.period, "s")),
@@ -102,12 +102,12 @@ class Robust:
 
 
 _MARGIN, _TIGHTENED = 1e-3, 6
-"""By so much more than enough robots shall keep the limit, so that the next try does; tries."""
+"""Margin on the share of robots that keep the limit, so that the next try succeeds; most tries."""
 _SCALES = tuple(np.linspace(0.0, 2.0, 9).tolist())
 
 
 def robust_answer(best: FastestGait, spreads: Spreads) -> Robust | None:
-    """The robust gait beside the nominal optimum, and what robots drawn at random make of both."""
+    """The robust gait beside the nominal optimum, both evaluated on robots drawn at random."""
     torque, choice = best.problem.limits.torque, best.problem.inertia_ratio
     nominal = best.optimum.best.gait if best.optimum.best else None
     if not isinstance(nominal, SineGait):
@@ -136,7 +136,7 @@ def robust_answer(best: FastestGait, spreads: Spreads) -> Robust | None:
 
 
 def _kept_by_most(optimum: Optimum, spreads: Spreads) -> RobustGait | None:
-    """The robust gait, the limit on torque tightened until enough of the robots drawn keep it."""
+    """The robust gait, with the torque limit tightened until enough of the drawn robots keep it."""
     problem, torque = optimum.problem, optimum.problem.limits.torque
     tightened = torque
     for _ in range(_TIGHTENED):

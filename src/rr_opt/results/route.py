@@ -30,17 +30,17 @@ from rr_opt.routing.replay import RouteReplay
 from rr_opt.version import __version__
 
 _RATE = 125.0
-"""Set points a second."""
+"""Set points per second."""
 _OPTIMAL = 1e-2
-"""The stationarity up to which prices are shown without a warning: converged drives leave less than
-a tenth of it, those that stopped short ten times as much and more."""
+"""Largest stationarity residual for which prices are shown without a warning: converged drives
+leave less than a tenth of it, prematurely stopped ones ten times as much and more."""
 _WIDTH = 100
-"""Of lines of C."""
+"""Line width of the C code."""
 
 
 @dataclass(frozen=True)
 class RouteLimit(LimitRow):
-    """A limit, and how near a drive comes to it, on which piece (from 1) and when, s. Its price is
+    """A limit, and how close a drive comes to it, on which piece (from 1) and when, s. Its price is
     the time saved, s, per SI unit by which it is raised."""
 
     piece: int = 0
@@ -53,7 +53,7 @@ class DrivenRoute(Result):
 
     plan    path, gaits and drive; `plan.drive.command` is the servo's angle over time
     replay  the drive by CVODES from rest; None if there is no drive
-    feedback  the controller that keeps the robot on it, if it was asked for
+    feedback  the controller that keeps the robot on it, if requested
     """
 
     FILE = "route.json"
@@ -108,7 +108,7 @@ class DrivenRoute(Result):
 
     @property
     def checks(self) -> list[Check]:
-        """Of the replay: the end, the way, and the limits."""
+        """Checks of the replay: the end, the path, and the limits."""
         replay, asked = self.replay, self.plan.route.tolerance
         if replay is None:
             return []
@@ -150,7 +150,7 @@ class DrivenRoute(Result):
         """By name (angle, rate, torque, singularity, grip): the peak of the drive, where, and the
         shadow price."""
         drive, replay, rows = self.plan.drive, self.replay, dict[str, RouteLimit]()
-        good = self.status is Status.OPTIMAL  # what was not found has no price
+        good = self.status is Status.OPTIMAL  # without an optimum there are no prices
         if drive is None or replay is None:
             return rows
         for name in LIMIT_NAMES:
@@ -166,8 +166,8 @@ class DrivenRoute(Result):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Which effects of the robot the drive ignores, grip that wheels rarely have, and shadow
-        prices that are not to be relied on."""
+        """Which effects of the robot the drive ignores, grip that wheels rarely have, and
+        unreliable shadow prices."""
         drive, grip = self.plan.drive, self.replay.reached["grip"] if self.replay else 0.0
         short = drive is not None and drive.stationarity > _OPTIMAL
         prices = "The solver stopped short of an optimum: shadow prices are not to be relied on."
@@ -247,7 +247,7 @@ class DrivenRoute(Result):
         return written
 
     def _tables(self) -> Mapping[str, str]:
-        """trajectory.csv, and set points of a drive that passes every check."""
+        """trajectory.csv, and the set points of a drive that passes every check."""
         command = self.command
         if self.replay is None or command is None:
             return {}
@@ -268,7 +268,7 @@ class DrivenRoute(Result):
 
 
 def c_text(control: Feedback) -> str:
-    """The controller as C, to be included."""
+    """The controller as a C header."""
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
     def array(values: Any) -> str:
@@ -284,7 +284,7 @@ def c_text(control: Feedback) -> str:
     )
     lines = list[str]()
     for row in text.splitlines():
-        # An array in lines of a width that compilers and people can read.
+        # An array in lines of a readable width.
         long = len(row) > _WIDTH
         lines += textwrap.wrap(row, _WIDTH, subsequent_indent="    ") if long else [row]
     return "\n".join(lines) + "\n"

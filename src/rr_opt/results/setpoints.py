@@ -1,4 +1,4 @@
-"""A gait as set points for a controller, their file, and what they cost in speed."""
+"""A gait as set points for a controller, their file, and the speed they lose."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -22,7 +22,7 @@ Format = Literal["csv", "c-header", "servo"]
 
 
 ENDINGS: dict[Format, str] = {"csv": "-angles.csv", "c-header": ".h", "servo": "-counts.csv"}
-"""What the name of a file ends with, unless the user gives another name."""
+"""Endings of the file name, unless the user gives a name."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -89,7 +89,7 @@ class ExportedGait(GaitResult):
 
 def text_of(points: SetPoints, format: Format) -> str:
     """The content of the file: a row for each set point, t (s) with phi (rad), phi_deg (degrees) or
-    the count, 512 where phi is 0; or an array for C.
+    the count (512 is phi = 0); or a C array.
 
     Raises InputError for an angle beyond the servo's counts.
     """
@@ -131,7 +131,7 @@ static const float rr_gait_angle[RR_GAIT_POINTS] = {{
 
 
 def _c_float(value: float) -> str:
-    """A float literal of C; rounding to nothing has no sign."""
+    """A C float literal; a value rounded to zero has no sign."""
     text = f"{0.0 if math.isclose(value, 0.0, abs_tol=1e-12) else value:.9g}"
     return (text if any(mark in text for mark in ".e") else f"{text}.0") + "f"
 

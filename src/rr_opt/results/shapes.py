@@ -1,4 +1,4 @@
-"""What waveforms are worth: the fastest gait of each family, side by side."""
+"""The benefit of other waveforms: the fastest gait of each family, side by side."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -15,8 +15,8 @@ from rr_opt.results.fastest import FastestGait
 from rr_opt.results.result import Check, Result
 
 MISSED = 1e-4
-"""A family that contains another and comes out slower by more than this, relative, missed an
-optimum; less is what solvers leave."""
+"""A family that is slower than one it contains by more than this, relative, missed an optimum;
+smaller differences are solver tolerance."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -43,18 +43,18 @@ class FastestShapes(Result):
 
     @property
     def status(self) -> Status:
-        """The worst of them all."""
+        """The worst status of all."""
         order = [Status.NOT_CONVERGED, Status.INFEASIBLE, Status.OPTIMAL]
         return min((one.status for one in self.answers), key=order.index)
 
     @property
     def checks(self) -> list[Check]:
-        """Those of all families."""
+        """The checks of all families."""
         return [check for one in self.answers for check in one.checks]
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Those of any family: all have one robot."""
+        """The warnings of any family, as all share one robot."""
         return self.answers[0].warnings
 
     def gain(self, answer: FastestGait) -> float | None:

@@ -1,4 +1,4 @@
-"""A study that was solved, and one of routes that were driven."""
+"""The results of a study: solved cases, or driven routes."""
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -34,11 +34,11 @@ from rr_opt.results.study_table import (
 )
 
 _SAME_SPEED = 1e-8
-"""Cases whose speeds differ by less, relative, are equally fast."""
+"""Cases whose speeds differ by less, relative, count as equally fast."""
 
 
 class _Study(Result):
-    """What came of each case of a study: a row, and how it ended."""
+    """The result of each case of a study: a row, and its status."""
 
     FILE = "study.json"
 
@@ -46,7 +46,7 @@ class _Study(Result):
 
     @property
     def name(self) -> str:
-        """Of the study."""
+        """Name of the study."""
         return self.study.name
 
     @property
@@ -56,12 +56,12 @@ class _Study(Result):
 
     @property
     def _statuses(self) -> list[Status]:
-        """Of each row."""
+        """Status of each row."""
         raise NotImplementedError
 
     @property
     def counts(self) -> dict[Status, int]:
-        """How many rows ended in each way."""
+        """Number of rows by status."""
         counted = Counter(self._statuses)
         return {status: counted[status] for status in Status}
 
@@ -83,7 +83,7 @@ class _Study(Result):
 class SolvedStudy(_Study):
     """A study with all its rows.
 
-    rows  one for each case, in the order of `study.problems`; `row.optimum` is None where there is
+    rows  one for each case, in the order of `study.problems`; `row.optimum` is None if there is
           none, and `row.message` says why
     """
 
@@ -105,7 +105,7 @@ class SolvedStudy(_Study):
         return tuple(branches(self.rows, adjacent))
 
     def values(self, name: str) -> Array:
-        """A number of every optimum by its name in `row.optimum`, nan where there is none."""
+        """A quantity of every optimum by its name in `row.optimum`, nan if there is none."""
         return np.array(
             [np.nan if row.optimum is None else getattr(row.optimum, name) for row in self.rows],
             float,
@@ -118,16 +118,16 @@ class SolvedStudy(_Study):
 
     @property
     def fastest(self) -> int | None:
-        """The number of the case with the fastest optimum; of equally fast ones the first."""
+        """The index of the case with the fastest optimum; of equally fast ones the first."""
         speed = self.speed
         if np.isnan(speed).all():
             return None
         return int(np.flatnonzero(speed >= np.nanmax(speed) * (1 - _SAME_SPEED))[0])
 
     def front(self, cost: str) -> list[int]:
-        """The cases that no other one beats in both: less cost and more speed; cheapest first.
+        """The Pareto-optimal cases in cost and speed, cheapest first.
 
-        cost: name of the number in `row.optimum`
+        cost: name of the quantity in `row.optimum`
         """
         costs, speed = self.values(cost), self.speed
         best, kept = -np.inf, []
@@ -165,8 +165,8 @@ class SolvedStudy(_Study):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Which effects of the robot the study ignores, what the fastest case asks of servo and
-        floor, and how many cases have no optimum."""
+        """Which effects of the robot the study ignores, the demands of the fastest case on servo
+        and floor, and how many cases have no optimum."""
         words = {
             Status.INFEASIBLE: "no gait that respects all limits",
             Status.NOT_CONVERGED: "no optimum that the solver could confirm",
@@ -204,7 +204,7 @@ class SolvedStudy(_Study):
     ) -> list[Path]:
         """Write study.csv, study.json and, if asked for, study.nc, with figures and page."""
         if netcdf:
-            netcdf_writer()  # which may not be there
+            netcdf_writer()  # fails early if not installed
         written = super().save(path, figures=figures, progress=progress)
         if netcdf:
             written.append(write_netcdf(Path(path) / "study.nc", self.study, self._columns))
@@ -240,7 +240,7 @@ class SolvedStudy(_Study):
         }
 
     def document(self, figures: Sequence[doc.Figure] = ()) -> doc.Document:
-        """What was found, in figures and tables."""
+        """The results, in figures and tables."""
         speed, cases = 1e3 * self.speed, len(self.rows)
         good = self.fastest is not None
         title = f"None of {cases} cases has an optimum"
@@ -322,7 +322,7 @@ def _key_facts(result: SolvedStudy) -> tuple[doc.Fact, ...]:
 
 
 def _front_table(result: SolvedStudy) -> doc.Table:
-    """The cases that are on a front, the fastest first."""
+    """The Pareto-optimal cases, the fastest first."""
     fronts = [result.front(name) for name in COSTS]
     cases = sorted({case for found in fronts for case in found}, key=lambda k: -result.speed[k])
     return _cases_table(result, cases[:20])
@@ -366,8 +366,8 @@ def _cases_table(result: SolvedStudy, cases: Iterable[int]) -> doc.Table:
 class DrivenRoutes(_Study):
     """The routes of a study, driven.
 
-    rows  one for each route, in their order: what `DrivenRoute.record` has, and `cpu_seconds`. Of a
-          route that ended in an error there are `status` and `message` only
+    rows  one for each route, in their order: `DrivenRoute.record` and `cpu_seconds`. A route that
+          ended in an error has only `status` and `message`
     """
 
     OTHERS = ("study.csv",)
@@ -386,7 +386,7 @@ class DrivenRoutes(_Study):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Of each route that is not driven, why."""
+        """For each route that could not be driven, why."""
         return tuple(
             f"{route.name}: {row['message']}"
             for route, row in zip(self.study.routes, self.rows, strict=True)
@@ -398,7 +398,7 @@ class DrivenRoutes(_Study):
         return super()._record() | {"routes": [{"name": route.name, **row} for route, row in named]}
 
     def _tables(self) -> Mapping[str, str]:
-        """study.csv, and of each route that is driven NAME.json, as route.json."""
+        """study.csv, and NAME.json for each driven route, in the format of route.json."""
         named = list(zip(self.study.routes, self.rows, strict=True))
         cells = ((route.name, *_cells(row)) for route, row in named)
         tables = {"study.csv": doc.csv_text(("route", *_HEADINGS), cells)}

@@ -1,4 +1,4 @@
-"""What a study varies, in words: its keys, and their values in the unit that people think in."""
+"""What a study varies, in words: its keys, and their values in customary units."""
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -33,7 +33,7 @@ def unit_of(key: ProblemKey) -> tuple[str, float]:
 
 
 def value_text(key: ProblemKey, value: Any, digits: int = 4) -> str:
-    """A value of a key for people: a float, SI, in their unit; infinity is `no limit`."""
+    """A value of a key for people: a float, SI, in customary units; infinity is `no limit`."""
     if not isinstance(value, float):
         return str(value)
     unit, factor = unit_of(key)
@@ -106,10 +106,10 @@ _BOUNDS = (("amplitude", "rad"), ("period", "s"), ("offset", "rad"), ("inertia_r
 
 @dataclass(frozen=True)
 class StudyColumn:
-    """A quantity of every case: its SI unit ("1" for plain numbers, empty for text), a phrase that
-    says what it is, and a cell for each case, None where the case has no such thing.
+    """A quantity of every case: its SI unit ("1" for plain numbers, empty for text), a phrase
+    describing it, and a cell for each case, None if not applicable.
 
-    asked  the unit in which what is varied was asked for; empty: the SI unit
+    asked  the requested unit of a varied key; empty: the SI unit
     """
 
     name: str
@@ -120,12 +120,12 @@ class StudyColumn:
 
     @property
     def heading(self) -> str:
-        """Of the column in a table: the name, and the unit."""
+        """The column's heading in a table: name and unit."""
         return heading(self.name, self.asked or self.unit)
 
     @property
     def in_table(self) -> Sequence[Any]:
-        """The cells in the unit that was asked for."""
+        """The cells in the requested unit."""
         if not self.asked or self.asked == self.unit:
             return self.cells
         worth = to_si(f"1 {self.asked}", self.unit)
@@ -138,8 +138,8 @@ def study_columns(
     branches: Sequence[int | None],
     fronts: Mapping[str, Sequence[int]],
 ) -> list[StudyColumn]:
-    """All of them, in order; branches: the number of each case's branch of optima; fronts: by cost
-    the cases that no other one beats in both speed and cost."""
+    """All of them, in order; branches: the number of each case's branch of optima; fronts: by cost,
+    the Pareto-optimal cases in speed and cost."""
     inputs = [study.inputs(case) for case in range(len(rows))]
 
     def of_rows(name: str, unit: str, meaning: str, cell: Callable[[Row], Any]) -> StudyColumn:
@@ -152,7 +152,7 @@ def study_columns(
 
     def price(name: str, unit: str, what: str, prices: Callable[[CaseOptimum], Any]) -> StudyColumn:
         per, meaning = f"m/s per {unit}" if unit else "m/s", f"speed gained per unit of the {what}"
-        # What is not active costs nothing.
+        # An inactive limit has zero price.
         return of_optima(f"price_{name}", per, meaning, lambda one: prices(one).get(name, 0.0))
 
     def expected(end: int, word: str) -> StudyColumn:

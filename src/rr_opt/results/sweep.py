@@ -1,4 +1,4 @@
-"""A plain sweep: every gait tried, the best of them, and a row for each as CSV."""
+"""A plain sweep: a grid of gaits, the best of them, and a row for each as CSV."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -20,7 +20,7 @@ _COLUMNS = (
 
 @dataclass(frozen=True, repr=False)
 class Sweep(Result):
-    """Gaits all over the bounds: `found` has all of them as arrays, `best` the fastest."""
+    """Gaits over the whole bounds: `found` has all of them as arrays, `best` the fastest."""
 
     FILE = "sweep.json"
     OTHERS = ("sweep.csv",)
@@ -75,8 +75,8 @@ class Sweep(Result):
     def _tables(self) -> dict[str, str]:
         """A row for each gait of the grid, SI; 1 in the column of a limit that it respects.
 
-        An empty ratio is the robot as it is; an empty speed, a gait at or past the limits on
-        the angle.
+        An empty ratio is the robot as it is; an empty speed means that the gait is at or beyond the
+        limits on the angle.
         """
         found = self.found.found
         names = (*_COLUMNS, *(f"keeps_{name}" for name in LIMITS))

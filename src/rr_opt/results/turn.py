@@ -25,10 +25,10 @@ from rr_opt.verify.turn_chart import RadiusClaim, SignClaim, Tightest, TurnMap
 class FastestTurn(FastestGait):
     """The fastest gait that makes a turn: as FastestGait, and
 
-    target   what was asked
-    opened   whether the problem fixed the offset, which a turn needs, and it was freed
+    target   the request
+    opened   whether the problem fixed the offset, and it was freed for the turn
     arc      heading, curvature, time and length of the turn; None where there is no gait
-    circle   whether the robot stays on the circle, and comes to it from rest; None likewise
+    circle   whether the robot stays on the circle, and converges to it from rest; None likewise
     """
 
     DRAW = "rr_opt.results.figures.turn.draw_turn"
@@ -41,14 +41,14 @@ class FastestTurn(FastestGait):
 
     @property
     def radius(self) -> float | None:
-        """Of the circle, m, positive, inf for a straight line; None if there is no gait."""
+        """Radius of the circle, m, positive, inf for a straight line; None if there is no gait."""
         if self.arc is None:
             return None
         return abs(1 / self.arc.curvature) if self.arc.curvature else math.inf
 
     @property
     def turn_prices(self) -> dict[str, float]:
-        """Shadow prices of what was asked of the turn, m/s of |speed| per SI unit."""
+        """Shadow prices of the requested turn, m/s of |speed| per SI unit."""
         best, turn = self.optimum.best, self.problem.turn
         if best is None or turn is None:
             return {}
@@ -57,7 +57,7 @@ class FastestTurn(FastestGait):
 
     @property
     def checks(self) -> list[Check]:
-        """Those of any fastest gait, and the circle's."""
+        """The checks of any fastest gait, and of the circle."""
         return super().checks + (_circle_checks(self.circle) if self.circle else [])
 
     @property
@@ -84,7 +84,7 @@ class FastestTurn(FastestGait):
 
     @property
     def remarks(self) -> list[str]:
-        """What else there is to know of the gait, in sentences."""
+        """Further remarks on the gait, in sentences."""
         if not self.opened or self.arc is None:
             return super().remarks
         bounds = self.problem.gait.offset
@@ -95,7 +95,7 @@ class FastestTurn(FastestGait):
         ]
 
     def _record(self) -> dict[str, Any]:
-        """The content of result.json: that of any fastest gait, and `turn`."""
+        """The content of result.json: that of any fastest gait, plus `turn`."""
         record, target, circle = super()._record(), self.target, self.circle
         own = {
             "asked": {
@@ -159,7 +159,7 @@ UNITS = {
 
 
 def _facts(turn: FastestTurn, arc: MeanMotion) -> Iterator[doc.Fact]:
-    """The arc, or the full circle, and what a slightly easier turn would gain."""
+    """The arc, or the full circle, and the gain from a slightly easier turn."""
     name = "circle" if turn.target.heading is None else "arc"
     degrees = abs(math.degrees(arc.heading))
     yield doc.Fact(name, f"{number(degrees)} deg to the {side_text(arc.heading)}")
@@ -182,11 +182,11 @@ def _facts(turn: FastestTurn, arc: MeanMotion) -> Iterator[doc.Fact]:
 
 
 _SPIN = 1e-4
-"""A smaller radius, m, is that of a robot that turns on the spot."""
+"""A robot with a smaller radius, m, turns on the spot."""
 
 
 _AGREED = 1e-3
-"""Two searches agree if they differ by no more, relative."""
+"""Largest relative difference at which two searches agree."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -257,13 +257,13 @@ class TurnChart(Result):
     def _tables(self) -> dict[str, str]:
         """A row for each gait, SI; offsets of both signs, or of one if the two sides differ.
 
-        Cells are empty where there is no steady cycle within the limits on the angle.
+        Cells are empty if there is no steady cycle within the limits on the angle.
         """
         seen = self.seen
         alpha, T, phi0 = np.meshgrid(seen.amplitude, seen.period, seen.offset, indexing="ij")
         arrays = (alpha, T, phi0, seen.curvature, seen.speed, seen.heading, seen.peak_torque)
         parts = [*arrays, seen.keeps.astype(int)]
-        # phi0 and -phi0 are mirror images: what turns has the other sign there.
+        # phi0 and -phi0 are mirror images: turning quantities change sign.
         left = slice(None, 0, -1) if seen.two_sided else slice(0, 0)
         mirror = [-part if i in (2, 3, 5) else part for i, part in enumerate(parts)]
         both = [

@@ -1,21 +1,21 @@
-"""A controller that keeps the robot on its drive, once a period, from the pose that a camera gives.
+"""A controller that keeps the robot on its drive, updated once per period from a camera pose.
 
-The drive is cut into periods. About it the state at the beginning of a period is linear,
+The drive is cut into periods. The state at the start of a period is linearised about the drive,
 
     z' = F (z, v lack) + B u,      y = H (z, v lack) + G u
 
-but for a product, with z = (x, y, psi, v, lack, bias, A, o): the pose and speed against the planned
-ones, in the frame of platform 1 as planned; two constants that are learnt, the share of the
-friction that is lacking and an error of the offset; and the corrections of amplitude and offset in
-force. u are those at the period's end, y the pose as it was seen, `delay` before that. What
-friction takes from the speed is in proportion to both, and speeds are far from the planned ones if
-friction is: their product is the one that counts.
+except for one product, with z = (x, y, psi, v, lack, bias, A, o): the deviations of pose and speed
+from the plan, in the planned frame of platform 1; two constants to be estimated, the missing
+fraction of the friction and an offset error; and the corrections of amplitude and offset in force.
+u are those at the period's end, y the pose observed `delay` before it. The speed lost to friction
+is proportional to both, and if the friction is far from nominal, so is the speed: hence the
+product.
 
-A Kalman filter estimates z, a linear-quadratic regulator of finite horizon gives u, and its cost to
-go tells whether periods of a stage are to be repeated or left out. Corrections end where the
-servo's limits do. The drive ends by coasting for as long as the robot is seen to move; its end is
-where it comes to rest. What a robot coasts is in proportion to its speed over its friction: v and
-what friction lacks are divided by 1 - lack where corrections are chosen.
+A Kalman filter estimates z, a finite-horizon linear-quadratic regulator gives u, and its cost-to-go
+tells whether to repeat or skip periods of a stage. Corrections saturate at the servo's limits.
+The drive ends by coasting for as long as the robot is seen to move; its end is where it comes to
+rest. The coasting distance is proportional to speed over friction, so v and the lack of friction
+are divided by 1 - lack when corrections are chosen.
 """
 
 import math
@@ -34,52 +34,52 @@ from rr_opt.routing.rollout import stepped
 from rr_opt.verify.grid import reach
 
 DELAY, NOISE = 0.05, (1e-3, 1e-3, 3e-3)
-"""s; m, m and rad, 1 sigma: of the capture system."""
+"""Delay, s, and noise (m, m, rad; 1 sigma) of the capture system."""
 _LACK, _BIAS = 0.2, 0.02
-"""What is unknown of them at the start, relative and in rad, 1 sigma."""
+"""Initial uncertainty of the lack of friction (relative) and of the offset error (rad), 1 sigma."""
 _UNMODELLED = np.array([1e-3, 1e-3, 3e-3, 6e-3, 0.01, 1e-3])
-"""1 sigma of what a period adds to the first six of z beside the linear map."""
+"""Process noise: 1 sigma per period in the first six of z."""
 _ACCURATE, _ON_THE_WAY = 3.0, 0.3
-"""An error of cost 1 is a tolerance divided by this: a third of it at the end, three of the way."""
+"""Tolerance over the error of cost 1: a third of it at the end, three times it on the way."""
 _AMPLITUDE, _LEAST, _OFFSET, PERIOD = 0.07, 1e-3, 0.1, 0.2
-"""Corrections of cost 1: of the amplitude, relative and in rad, as none is below 0 or beyond the
-limit of the rate; of the offset, rad. And the cost of a period's time."""
+"""Corrections of cost 1: of the amplitude, relative and in rad, as it stays between 0 and the rate
+limit; of the offset, rad. And the cost of a period's time."""
 _STEPS, _LATE = 13, 3
-"""Of a period: until its pose is seen, and then."""
+"""Integration steps in a period: until its pose is observed, and after."""
 LOOKS, MARGIN = 96, 0.998
-"""Places in a period where the limits are kept, and to what share: between them lies the peak."""
+"""Places per period where limits are checked; and their share, as peaks lie in between."""
 WAYS_BACK = 8
-"""Parts of the way back to the offset in force that are tried for a correction within limits."""
+"""Steps back towards the offset in force that are tried to find a correction within limits."""
 _RATE, _PLACE = 0.95, 0.5
-"""Of the limit on the rate and of the tolerance of the end, so much is planned with."""
+"""Shares of the rate limit and of the end tolerance that the plan may use."""
 _SHORT = 0.25
-"""Of the tolerance, so much before the end is aimed at: what is missing can be driven, but what is
-too much not be braked."""
+"""Aim point, as a share of the tolerance before the end: the robot can drive further, but cannot
+brake."""
 _COAST, _REST = 6, 4.0
-"""Cycles of coasting after the robot is seen to be at rest, as it is seen with some error; and the
-time, over that of coasting from the speed of the drive, in which every robot comes to rest."""
+"""Cycles of coasting after the robot is observed at rest, given the noise; and the time, relative
+to coasting from the drive's speed, in which every robot comes to rest."""
 LONGEST = 1.5
-"""Periods that may be driven over those planned, before the drive goes on to its end."""
+"""Most periods driven, relative to those planned, before the drive proceeds to its end."""
 _STATES = 8
 SLIPPERY = 0.2
-"""The least friction, relative, that is believed."""
+"""Lowest credible friction, relative to nominal."""
 _CHANGE = 1e-4
-"""Of the masses, for derivatives."""
+"""Relative change of the masses for finite differences."""
 
 
 @dataclass(frozen=True)
 class Feedback:
     """The controller of a drive of K periods.
 
-    delay     s, from when a pose was true to when a period begins with it
-    rest      m/s, below which it is at rest;  hold  the period that is repeated until it is
+    delay     s, from the time of a pose to the start of the period that uses it
+    rest      m/s, below which the robot is at rest;  hold  the period repeated until it is
     limits    (3,): |phi| (rad), |dphi/dt| (rad/s), |d2phi/dt2| (rad/s2), the last for the torque
     command   the drive, a segment for each period
-    group     (K + 1,): periods of a number above 0 that they share are alike
+    group     (K + 1,): periods with the same number above 0 are interchangeable
     place     (K + 1, 3): x (m), y (m), psi (rad) where periods begin; speed (K + 1,), m/s, there
-    seen      (K, 3): where the robot is seen, `delay` before the end of a period
+    seen      (K, 3): the planned pose, `delay` before the end of a period
     F, B, H, G    (K, 4, 9), (K, 4, 2), (K, 3, 9), (K, 3, 2); L (K, 6, 3) of the filter
-    gain      (K, 2, 9): u = -gain (z, 1);  value (K + 1, 9, 9): its square form is the cost to go
+    gain      (K, 2, 9): u = -gain (z, 1);  value (K + 1, 9, 9): matrix of the cost-to-go
     """
 
     delay: float
@@ -101,7 +101,7 @@ class Feedback:
 
 
 def controller(plan: RoutePlan, problem: Problem, delay: float = DELAY) -> Feedback:
-    """The controller of a plan's drive. problem: with the limits that corrections are to keep.
+    """The controller of a plan's drive. problem: with the limits on the corrections.
 
     Raises ValueError if the plan has no drive.
     """
@@ -128,10 +128,10 @@ def controller(plan: RoutePlan, problem: Problem, delay: float = DELAY) -> Feedb
             stepped(dynamics.effects, np.where(inert, p * (1 + e), p), v, u, grid)
             for e in (0.0, _CHANGE, -_CHANGE)
         )
-        # More mass is less friction, of whatever law.
+        # More mass acts like less friction, for any friction law.
         by_lack = (heavy[:2] - light[:2]) / (2 * _CHANGE)
         (H, G), ends = (_map(out[:, :, k], by_lack[:, :, k]) for k in (steps - 2, -1))
-        # A pose from before the period tells nothing of it.
+        # A pose from before the period carries no information on it.
         maps.append((*ends, H[:3] * (late > 0), G[:3] * (late > 0)))
         seen.append(moved(pose, out[0, :, steps - 2]))
         pose, v = moved(pose, out[0, :, -1]), float(out[0, 0, -1])
@@ -154,7 +154,7 @@ def controller(plan: RoutePlan, problem: Problem, delay: float = DELAY) -> Feedb
 
 
 def with_reserve(route: Route) -> Route:
-    """The route to plan for, so that corrections have room: some of the rate, and of the place."""
+    """The route to plan for, with reserves in rate and position for the corrections."""
     limits, tolerance = route.problem.limits, route.tolerance
     limits = replace(limits, rate=_RATE * limits.rate)
     tolerance = replace(tolerance, position=_PLACE * tolerance.position)
@@ -162,8 +162,8 @@ def with_reserve(route: Route) -> Route:
 
 
 def _periods(command: Command, *, rests: bool) -> tuple[Command, Array]:
-    """The same drive cut into cycles, and which of their beginnings are alike. rests: coasting at
-    its end lasts some cycles more, all of them whole, and none is left out."""
+    """The same drive cut into cycles, and which cycles are interchangeable. rests: the final
+    coasting lasts some cycles more, all of them whole, and none may be skipped."""
     durations, knots, group = list[float](), [command.knots[:, 0]], [0]
     for number, u in enumerate(command.segments.T, 1):
         level = np.allclose(u[:3], u[3:6], rtol=0, atol=1e-12)
@@ -197,10 +197,10 @@ def apart(pose: Array, planned: Array) -> Array:
 
 def _map(out: Array, by_lack: Array) -> tuple[Array, Array]:
     """Rows x, y, psi, v of F and B from a motion (1 + 9, 4) in the frame of its start, and the
-    derivatives (2, 4) of it and of those by v."""
+    derivatives (2, 4) of it and of its derivatives in v."""
     local, S = out[0], out[1:]
     d = np.zeros((11, 4))
-    # A turn at the start turns the whole way.
+    # A rotation at the start rotates the whole motion.
     d[0, 2], d[1, 3] = 1, 1
     d[2] = 0, 1, -local[3], local[2]
     d[3:] = S[0], by_lack[0], S[2] + S[5], S[1], S[2], by_lack[1], S[4], S[5]
@@ -213,8 +213,8 @@ def _map(out: Array, by_lack: Array) -> tuple[Array, Array]:
 def _regulator(
     F: Array, B: Array, amplitude: Array, miss: Array, asked: Tolerance
 ) -> tuple[Array, Array]:
-    """Gains and costs to go, by Riccati's recursion from the end. miss: rows x, y, psi of the
-    planned end against the one asked for. To be ahead or behind on the way costs nothing."""
+    """Gains and cost-to-go, by the Riccati recursion from the end. miss: rows x, y, psi of the
+    planned end relative to the requested one. Along-track errors on the way cost nothing."""
     way, end = np.zeros((3, _STATES + 1)), np.zeros((3, _STATES + 1))
     np.fill_diagonal(way, [0.0, _ON_THE_WAY / asked.path, _ON_THE_WAY / asked.heading])
     np.fill_diagonal(end, 1.0)
@@ -224,7 +224,7 @@ def _regulator(
     P = end.T @ end
     gains, values = [], [P]
     for k in reversed(range(len(F))):
-        # Beside the rows of the map, what is constant and the corrections that come into force.
+        # Besides the map's rows: the constants, and the corrections coming into force.
         A, b = np.diag([1.0] * 6 + [0.0] * 2 + [1.0]), np.zeros((_STATES + 1, 2))
         A[:4, :_STATES], b[:4], b[6, 0], b[7, 1] = F[k, :, :_STATES], B[k], 1, 1
         # The joint ends as planned.
@@ -252,8 +252,8 @@ def _filter(F: Array, H: Array) -> Array:
 
 
 def _bend(problem: Problem, command: Command, v: float) -> float:
-    """The largest |d2phi/dt2|, rad/s2, at which the torque is within its limit at all angles and
-    rates and up to half more than a speed, m/s; no less than what the drive makes."""
+    """The largest |d2phi/dt2|, rad/s2, for which the torque is within its limit at all angles and
+    rates and at speeds up to half more than v, m/s; at least that of the drive."""
     most = float(np.abs(command.at(np.linspace(0, command.seconds, 20_000))[2]).max())
     dynamics = dynamics_of(problem.robot)
     p = dynamics.values(problem.robot)
@@ -275,10 +275,10 @@ def _bend(problem: Problem, command: Command, v: float) -> float:
 
 @dataclass
 class Follower:
-    """A drive under way with its controller: `first` and then, at the end of every period, `next`
-    give the segment (A0, o0, omega0, A1, o1, omega1, theta0, D) that the joint makes now.
+    """A drive in progress with its controller: `first` and then, at the end of every period, `next`
+    give the segment (A0, o0, omega0, A1, o1, omega1, theta0, D) for the joint to follow.
 
-    period  the one under way, from 0;  z  the estimate at its beginning
+    period  the current one, from 0;  z  the estimate at its start
     """
 
     control: Feedback
@@ -292,8 +292,8 @@ class Follower:
         return self._segment()
 
     def next(self, pose: Array) -> Array | None:
-        """The segment after a pose x (m), y (m), psi (rad) seen `delay` before the end of the one
-        under way; None at the end of the drive."""
+        """The segment after a pose x (m), y (m), psi (rad) observed `delay` before the end of the
+        current one; None at the end of the drive."""
         c, k, z, u = self.control, self.period, self.z, self.u
         surprise = apart(pose, c.seen[k]) - c.H[k] @ _with_product(z) - c.G[k] @ u
         z[:6] += c.L[k] @ surprise
@@ -304,7 +304,7 @@ class Follower:
         return None if self.period == len(c.F) else self._segment()
 
     def _go_to(self, begin: int) -> None:
-        """Go on with a period, or with one that is alike and better; coast on until at rest."""
+        """Proceed to a period or a cheaper interchangeable one; coast on until at rest."""
         c, here, K = self.control, self.z, len(self.control.F)
         late = self.made >= LONGEST * K
         moves = abs(c.speed[begin] + here[3]) > c.rest
@@ -341,16 +341,16 @@ def _with_product(z: Array) -> Array:
 
 
 def _coasted(z: Array) -> Array:
-    """(z, 1) with the speed as one with which the planned robot would coast as far: that is in
-    proportion to 1/friction, and so is what the lack of it adds to the planned one."""
+    """(z, 1) with the speed replaced by that from which the nominal robot would coast as far:
+    coasting distance goes as 1/friction, and so does the effect of the lack of friction."""
     far = 1 / max(1 - z[4], SLIPPERY)
     return np.array([*z[:3], z[3] * far, far - 1, *z[5:], 1.0])
 
 
 def within(u: Array, wanted: Array, limits: Array) -> Array:
-    """The amplitude and offset nearest to those wanted at the end of a segment with which angle,
-    rate and acceleration are within limits all along it: the offset as far as there is such an
-    amplitude, then the amplitude."""
+    """The amplitude and offset at the end of a segment, closest to those wanted, for which angle,
+    rate and acceleration are within limits all along it: first the offset, as far as an amplitude
+    exists for it, then the amplitude."""
     s = np.arange(LOOKS + 1) / LOOKS
     most = MARGIN * np.repeat(limits, LOOKS + 1)
 

@@ -1,4 +1,4 @@
-"""Which gait goes round a circle fastest: a chart of steady gaits, and what coasting does."""
+"""The fastest gait for each curvature: a chart of steady gaits, and the effect of coasting."""
 
 import math
 from dataclasses import dataclass, replace
@@ -23,9 +23,9 @@ _TRIES, _NEAR = 20, 0.05
 
 @dataclass(frozen=True)
 class Chart:
-    """Steady gaits that keep all limits and drive one way: rows of gaits that differ in their
-    offset alone. All (rows, offsets): gaits (3, ...) with amplitude (rad), offset (rad) and period
-    (s); speed (m/s, above 0); curvature (1/m, positive to the left); NaN where there is no gait."""
+    """Feasible steady gaits in one direction: rows of gaits that differ in their offset alone. All
+    (rows, offsets): gaits (3, ...) with amplitude (rad), offset (rad) and period (s); speed (m/s,
+    above 0); curvature (1/m, positive to the left); NaN where there is no gait."""
 
     problem: Problem
     way: Way
@@ -34,7 +34,7 @@ class Chart:
     curvature: Array
 
     def fastest(self, curvature: float) -> tuple[SineGait, float] | None:
-        """The fastest gait on a circle, between those of the chart, and its speed, m/s."""
+        """The fastest gait on a circle, interpolated in the chart, and its speed, m/s."""
         below = self.curvature - curvature
         before, after = below[:, :-1], below[:, 1:]
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -62,13 +62,13 @@ class Chart:
         return 1 / (robot.platform1.c + robot.platform2.c)
 
     def cost(self, curvature: float) -> float:
-        """Time per metre, s/m, at a curvature; inf where no gait goes so."""
+        """Time per metre, s/m, at a curvature; inf where no gait reaches it."""
         found = self.fastest(curvature)
         return 1 / found[1] if found else math.inf
 
     @property
     def tightest(self) -> tuple[float, float]:
-        """The curvatures between which there are gaits, 1/m."""
+        """The range of curvatures for which there are gaits, 1/m."""
         if not np.isfinite(self.curvature).any():
             return 0.0, 0.0
         return float(np.nanmin(self.curvature)), float(np.nanmax(self.curvature))
@@ -112,7 +112,7 @@ def chart(problem: Problem, way: Way) -> Chart:
 
 @dataclass(frozen=True)
 class Coasting:
-    """The joint held straight: time, s, and way, m, until the robot is slower than at rest."""
+    """The joint held straight: time, s, and distance, m, until the speed counts as rest."""
 
     seconds: float
     distance: float
@@ -143,7 +143,7 @@ _RELAXED = 1.5
 
 
 def binding_limits(problem: Problem, way: Way, curvature: float) -> list[str]:
-    """The limits of which any one, relaxed by half, lets the robot go round a circle."""
+    """The limits of which any one, relaxed by half, makes a circle drivable."""
     limits, box = problem.limits, problem.gait
     wider = {
         name: replace(problem, limits=replace(limits, **{name: getattr(limits, name) * _RELAXED}))

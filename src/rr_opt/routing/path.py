@@ -1,8 +1,8 @@
-"""The path of a route: arcs of constant curvature, one after another.
+"""The path of a route: a sequence of arcs of constant curvature.
 
-A waypoint is reached by a Dubins path: with a bounded curvature the shortest one is an arc, a
-straight line and an arc, or three arcs (Dubins, 1957). The six kinds are solved in the frame in
-which the start is the origin and lengths are in radii.
+A waypoint is reached by a Dubins path: the shortest path of bounded curvature is an arc, a
+straight line and an arc, or three arcs (Dubins, 1957). The six kinds are solved in the frame of
+the start, with lengths in units of the radius.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ def legs_of(route: Route, cost: Callable[[float], float], radii: Array) -> list[
     """The path of a route.
 
     cost   time per metre, s/m, at a curvature, 1/m
-    radii  m, among which those of waypoints' arcs are chosen so that they take the least time
+    radii  m, candidates for waypoints' arcs; the fastest are chosen
     """
     pose, legs = route.start, list[Leg]()
     for number, piece in enumerate(route.pieces):
@@ -85,7 +85,7 @@ def legs_of(route: Route, cost: Callable[[float], float], radii: Array) -> list[
 
 
 def _dubins(piece: int, start: Pose, end: Pose, radius: float) -> Iterator[list[Leg]]:
-    """The Dubins paths of a radius, m, of all kinds that exist."""
+    """The Dubins paths with a radius, m, of every kind that exists."""
     dx, dy = (end.x - start.x) / radius, (end.y - start.y) / radius
     cos, sin = math.cos(start.heading), math.sin(start.heading)
     ahead, left, turn = cos * dx + sin * dy, cos * dy - sin * dx, end.heading - start.heading
@@ -102,7 +102,7 @@ def _dubins(piece: int, start: Pose, end: Pose, radius: float) -> Iterator[list[
             headings = []
         if first == last and 0 < apart <= 4:
             bend = math.acos(apart / 4)
-            # The middle circle touches both; two places for it.
+            # The middle circle touches both; there are two positions for it.
             headings += [
                 (first, towards + side * bend + first * math.pi / 2, -first) for side in (1, -1)
             ]
@@ -119,7 +119,7 @@ def _joined(piece: int, start: Pose, radius: float, path: tuple) -> Iterator[lis
         length = math.sqrt(max(abs(b - a) ** 2 - (0 if first == last else 4), 0.0))
         parts = [(first * k, arc), (0.0, length), (last * k, (last * (turn - heading)) % around)]
     else:
-        # At the first tangent point the heading is across the line between the centres.
+        # At the first tangent point the heading is perpendicular to the line of centres.
         arc = (first * heading) % around
         centre = a + 2 * complex(
             math.cos(heading - first * math.pi / 2), math.sin(heading - first * math.pi / 2)
@@ -133,7 +133,7 @@ def _joined(piece: int, start: Pose, radius: float, path: tuple) -> Iterator[lis
         ]
     legs, pose = list[Leg](), start
     for curvature, radii in parts:
-        # A whole turn that rounding made of none.
+        # A full turn that rounding made of zero.
         length = 0.0 if curvature and around - radii < 1e-9 else radii
         legs.append(Leg(piece, pose, length * radius, curvature))
         pose = legs[-1].end

@@ -1,4 +1,4 @@
-"""From a route to the fastest drive found: path, gaits of its legs, then one program of all."""
+"""From a route to the fastest drive found: path, gaits of its legs, then one program for it all."""
 
 import itertools
 import math
@@ -19,45 +19,45 @@ from rr_opt.routing.path import Leg, legs_of
 from rr_opt.routing.program import BROKEN, DriveProgram, DriveStage, FoundDrive, SolvedDrive, slip
 
 _RADII = 8
-"""Radii that are tried for the arcs to a waypoint."""
+"""Radii tried for the arcs to a waypoint."""
 _SLOWEST, _SLEWED = 0.9, 0.35
-"""A waypoint's circles are driven at no less than this share of the speed straight ahead, and with
+"""A waypoint's circles are driven at no less than this share of the straight-line speed, and with
 platform 1 at no more than 20 deg to the path."""
 _NEAR = 0.03
-"""A drive that breaks a bound of the program by no more may yet be within the tolerance, which is
-wider: the replay decides."""
+"""A drive that violates the program by no more than this may still be within the wider tolerance,
+which the replay decides."""
 _SWING = 0.4
-"""Of the tolerance of the way, so much is for the swing of P with each period."""
+"""Share of the path tolerance reserved for the swing of P within each period."""
 _LATE, _TURNED = (0.0, 0.0), (math.exp(-1), 1 - math.exp(-1))
-"""Of the turn from one curvature to the next, what the guess does before, and on, the last bit of a
-leg, which is as long as the axle that leads is ahead of P. With the latter P keeps to the path."""
+"""Share of a change of curvature that the initial guess makes before, and on, the last part of a
+leg, which is as long as the leading axle is ahead of P. The second choice keeps P on the path."""
 _STARTS = (
     (True, (4.0, 2.0), _LATE),
     (True, (4.0, 2.0, 1.4, 1.0), _TURNED),
     (True, (3.0, 1.0), _TURNED),
     (False, (4.0, 2.0), _LATE),
 )
-"""Different starts lead to different optima: whether a stage brakes, and times the tolerances for
-which drives are found one after another. Of a route with bends two are tried, of a straight one the
-last, and more until there is a drive."""
+"""Different starts lead to different local optima: whether a stage brakes, and the successive
+factors on the tolerances. A route with bends tries two, a straight one the last, and more until
+there is a drive."""
 _ENTRY = 0.1
-"""m: a transition between curvatures has unknowns of its own for about so long."""
+"""m: length of a transition between curvatures, which has unknowns of its own."""
 _LONGEST = 1.2
-"""m: longer parts of a leg get an offset of their own, with which the drive is steered."""
+"""m: longer legs are split into parts with an offset of their own, for steering."""
 
 _CREEP, _CREPT = 0.4, 8.0
-"""Of the gait's amplitude, with which the robot comes to its end if it is to be steered there, as
-what is left is driven at little more than 1/6 of the speed; and cycles of it."""
+"""Fraction of the gait's amplitude for creeping to the end where position matters, at little more
+than 1/6 of the speed; and cycles of it."""
 
 
 @dataclass(frozen=True)
 class RoutePlan:
     """The answer to a route.
 
-    problem   the route's, with the robot that drives: of a free inertia ratio the fastest
+    problem   the route's, with the robot that drives: a free inertia ratio is set to the fastest
     legs      the path, as driven
-    gaits     of each leg, as the drive begins from them; speeds in m/s, above 0
-    coasting  what coasting alone takes, from the speed on the last leg
+    gaits     of each leg, for the initial guess of the drive; speeds in m/s, above 0
+    coasting  coasting from the speed on the last leg
     """
 
     status: Status
@@ -73,12 +73,12 @@ class RoutePlan:
 
     @property
     def turned(self) -> float:
-        """Heading of platform 1 against that of the path, rad."""
+        """Heading of platform 1 relative to the path, rad."""
         return 0.0 if self.way == "forward" else math.pi
 
     @property
     def heading(self) -> float:
-        """Of platform 1 at the end, rad: along the path, or as it is in steady motion."""
+        """Heading of platform 1 at the end, rad: along the path, or that of steady motion."""
         along = self.legs[-1].end.heading + self.turned
         running = self.route.end == "running"
         beta = slip(self.problem, self.legs[-1].curvature, self.turned)
@@ -88,7 +88,7 @@ class RoutePlan:
 def plan_route(
     route: Route, progress: Progress = lambda _: None, *, creeps: bool = False
 ) -> RoutePlan:
-    """The fastest drive found along a route. creeps: that comes to its end slowly.
+    """The fastest drive found along a route. creeps: approaching its end slowly.
 
     The status is OPTIMAL, INFEASIBLE (the message names piece, limit and what can be driven) or
     NOT_CONVERGED. Raises InputError for a robot without friction, and for a route without pieces.
@@ -151,7 +151,7 @@ def plan_route(
 
 
 def _not_found(plan: RoutePlan, drive: SolvedDrive) -> RoutePlan:
-    """The plan with a drive that breaks bounds: why there is none, and what it keeps to instead."""
+    """The plan with a drive that violates bounds: why there is none, and what it would satisfy."""
     told = ""
     if drive.violation <= drive.ease - 1 + BROKEN:
         told = (
@@ -183,21 +183,21 @@ def _swings_out(plan: RoutePlan) -> float:
 
 
 def swing_out(leg: Leg, c1: float) -> float:
-    """The least distance, m, from the path that P comes to on a leg from rest, driven forward
-    without backing up or turning round, whatever the joint does.
+    """The least distance, m, by which P leaves the path on a leg driven forward from rest, without
+    reversing or turning on the spot, for any joint motion.
 
-    Axle 1, c1 ahead of P, begins at rho = sqrt(R^2 + c1^2) from the centre of an arc. It moves
+    Axle 1, c1 ahead of P, starts at rho = sqrt(R^2 + c1^2) from the centre of an arc. It moves
     along platform 1's axis, at an angle alpha outwards: d rho/ds = sin alpha. P is within B = R + w
-    of the centre if sin alpha >= (rho^2 + c1^2 - B^2)/(2 c1 rho). If that is above 0 at the start
-    the axle moves out ever faster, up to rho = B + c1, which it comes to on a way of
-    c1 log(2 c1 (B + c1)/(R^2 + 2 c1^2 - B^2)) at most: before that it has to be round the arc.
+    of the centre if sin alpha >= (rho^2 + c1^2 - B^2)/(2 c1 rho). If that is positive at the start,
+    the axle moves out ever faster, up to rho = B + c1, which it reaches within
+    c1 log(2 c1 (B + c1)/(R^2 + 2 c1^2 - B^2)): the arc has to be completed before that.
     """
     if not leg.curvature:
         return 0.0
     R = 1 / abs(leg.curvature)
 
     def missing(w: float) -> float:
-        """Of the way round the arc, m."""
+        """Remaining length of the arc, m."""
         B, around = R + w, leg.length / R - math.asin(min(w / R, 1.0)) - math.atan(c1 / R)
         ratio = 2 * c1 * (B + c1) / (R**2 + 2 * c1**2 - B**2)
         return math.hypot(R, c1) * around - c1 * math.log(ratio)
@@ -209,10 +209,10 @@ def swing_out(leg: Leg, c1: float) -> float:
 
 
 def _near_the_path(problem: Problem, width: float) -> Problem:
-    """The problem with amplitudes at which P swings by no more than its share of the tolerance.
+    """The problem with amplitudes for which the swing of P is within its share of the tolerance.
 
-    Where phi swings fast, platform 1 turns against it by c2/(c1 + c2) of it about its axle, which
-    swings P by c1 of that.
+    When phi swings fast, platform 1 counter-rotates about its axle by c2/(c1 + c2) of it, which
+    moves P sideways by c1 times that.
     """
     c1, c2 = problem.robot.platform1.c, problem.robot.platform2.c
     box = problem.gait.amplitude
@@ -222,7 +222,7 @@ def _near_the_path(problem: Problem, width: float) -> Problem:
 
 
 def _path(route: Route, gaits: Chart) -> list[Leg]:
-    """The path; waypoints by circles that the robot drives at a useful speed."""
+    """The path; waypoints are reached by circles that the robot drives at a useful speed."""
     low, high = gaits.tightest
     most = min(-low, high)
     if most <= 0:
@@ -243,8 +243,8 @@ def _stages(
     brakes: bool,
     creeps: bool,
 ) -> list[DriveStage]:
-    """A guess: each part of a leg with its gait, then stages to brake, to creep, and to coast.
-    turned: of the turn to the next curvature, what is done before and on the last bit of a leg."""
+    """The initial guess: each part of a leg with its gait, then stages to brake, creep and coast.
+    turned: share of the change of curvature made before, and on, the last part of a leg."""
     stages = list[DriveStage]()
     left = coast.distance if coast else 0.0
     parts = [
@@ -271,13 +271,13 @@ def _stages(
         entry = leave = 0.0
         after = parts[k + 1][0].curvature if k + 1 < len(parts) else 0.0
         if part.curvature != before:
-            # The launch, or a transition: until P moves at another angle to platform 1.
+            # Launch or transition: until the angle between P's motion and platform 1 has settled.
             entry = min(0.3 * length, _ENTRY)
         if k + 1 < len(parts) and after != part.curvature:
-            # The axle that leads comes to the change of curvature before P does.
+            # The leading axle reaches the change of curvature before P does.
             leave = min(0.3 * length, lead)
         elif k + 1 == len(parts) and part.curvature and coast:
-            # Platform 1 has to turn into the path before the robot stops.
+            # Platform 1 has to align with the path before the robot stops.
             leave = min(0.3 * length, lead + _ENTRY)
         stages += driving(gait, speed, part, entry, length - entry - leave)
         if leave:
@@ -294,7 +294,7 @@ def _stages(
         part, gait, _ = parts[-1]
         last = replace(stages.pop(), ends=False)
         if part.curvature:
-            # Half as bent, in two stages.
+            # Half the offset, in two stages.
             last = replace(last, cycles=max((last.cycles - 1) / 2, 0.1), way=last.way / 2)
             last = replace(last, offset=0.5 * gait.offset)
             stages.append(last)
@@ -316,14 +316,14 @@ def _stopping(
     cycles = 0.7 * coast.seconds / gait.period
     last = DriveStage(cycles, 0.0, 0.0, omega, part, fixed=True, straight=creeps)
     if part.curvature and not creeps:
-        # Bent, the joint leads along an arc; bent anew, it turns platform 1.
+        # A bent joint steers along an arc; bending it again rotates platform 1.
         stages.append(replace(last, cycles=max(0.5 * cycles, 0.1)))
         last = replace(last, cycles=max(0.5 * cycles - 1, 0.1))
     return [*stages, replace(last, ends=True)]
 
 
 def _why_not(route: Route, charts: dict[Way, Chart], paths: dict[Way, list[Leg]]) -> str:
-    """Which piece cannot be driven, by which limit, and the nearest that can."""
+    """Which piece cannot be driven, because of which limit, and the closest that can."""
     reasons = []
     for way, gaits in charts.items():
         bad = [leg for leg in paths[way] if not math.isfinite(gaits.cost(leg.curvature))]
@@ -342,7 +342,7 @@ def _why_not(route: Route, charts: dict[Way, Chart], paths: dict[Way, list[Leg]]
 
 
 def _nearest(gaits: Chart, curvature: float) -> str:
-    """The circle nearest to one that cannot be driven."""
+    """The drivable circle closest to one that is not."""
     same = np.sort(gaits.curvature[np.isfinite(gaits.curvature)])
     for k in same[np.argsort(np.abs(same - curvature))[:2000:20]]:
         if gaits.fastest(float(k)):

@@ -1,16 +1,16 @@
 """A whole drive as one nonlinear program in a few unknowns.
 
 The drive is a sequence of stages. A stage first blends amplitude, offset and frequency from those
-of the stage before, over one cycle, and then goes on with them: its unknowns are for how many
-cycles, and the three. The first begins from the joint at rest; in the last the joint stands still
-and the robot coasts. Minimised is the time of the drive. Bounded are
+of the previous stage, over one cycle, and then holds them: its unknowns are these three and the
+number of cycles. The first begins with the joint at rest; in the last the joint is held still and
+the robot coasts. The objective is the time of the drive. The constraints are on
 
     angle, rate, torque      of the servo, and the grip of the wheels, at their peaks
     the way                  P's distance from the path, and from the end of each leg when it is due
     the end                  place, heading, speed
 
-The motion and all derivatives are those of `rollout`. Levenberg-Marquardt steps lead to a drive,
-and sequential quadratic programming (SLSQP) to the fastest near it.
+The motion and all derivatives are those of `rollout`. Levenberg-Marquardt steps find a feasible
+drive, and sequential quadratic programming (SLSQP) the local optimum near it.
 """
 
 import itertools
@@ -35,65 +35,65 @@ from rr_opt.routing.rollout import LOADS, STEPS, Samples, rollout, stepped, step
 from rr_opt.verify.grid import reach
 
 _UNKNOWNS = 4
-"""Of a stage: cycles after the blend, amplitude (rad), offset (rad), frequency (rad/s). Counted in
-cycles, the phases at which blends begin do not depend on the frequencies, and the program is nearly
-linear."""
+"""Unknowns of a stage: cycles after the blend, amplitude (rad), offset (rad), frequency (rad/s). In
+units of cycles, the phases at which blends begin do not depend on the frequencies, and the program
+is nearly linear."""
 _LOOKS, _CLOSE = 12, 1e-4
-"""Parts of a blend in each of which the largest rate is bounded."""
+"""Parts of a blend, in each of which the largest rate is bounded."""
 _INSIDE, _ROOM = 0.97, 0.01
-"""The program aims at this share of each tolerance and may miss it by so much: steps are finite."""
+"""The share of each tolerance that the program uses, and the slack allowed: steps are finite."""
 _TIGHT = 0.999
-"""The program keeps to this share of each limit: its bounds are good to `BROKEN`."""
+"""The share of each limit that the program uses, as bounds are satisfied only to `BROKEN`."""
 BROKEN = 1e-3
-"""By so much, relative, a bound may be broken, and the drive counts as keeping it."""
+"""Relative violation of a bound that still counts as satisfied."""
 _SOFT = ("path", "position", "heading")
-"""Bounds whose tolerances are wider on the way to a drive."""
+"""Bounds whose tolerances are relaxed while searching for a feasible drive."""
 _MOST, _AIMED, _CREEPING = 3, 4, 1e-4
-"""Of a stage's cycles, the most over those of steady speed and five more; times that the guess
-corrects them; and the least way of a cycle, m."""
+"""Most cycles of a stage, relative to those of steady speed plus five; corrections of them in the
+initial guess; and shortest distance per cycle, m."""
 _SPEED = 0.05
-"""m/s: a gap of the speed between stages that counts as much as the tolerances."""
+"""m/s: a speed gap between stages that weighs as much as the tolerances."""
 _RESTORED, _DAMPED, _SOFTEST, _STIFFEST = 60, 1e-2, 1e-6, 1e6
-"""Most Levenberg-Marquardt steps, and their damping: at first, at least, at most."""
+"""Most Levenberg-Marquardt steps, and their damping: initial, least, largest."""
 _MOVES = (1.0, 0.3, 1.0, 0.1)
-"""Changes of a stage's scaled unknowns that are damped alike: steering is preferred to slowing."""
+"""Equally damped changes of a stage's scaled unknowns: steering is preferred to slowing."""
 _HARD, _SPARE = 10.0, 2e-3
-"""So many times more a limit's excess counts than that of a tolerance; and what steps aim at."""
+"""Weight of a violated limit relative to a violated tolerance; and the margin that steps aim at."""
 _NEWTON, _SHORT = 30, 1e-4
-"""Most steps of Newton's method within one of those, and the shortest."""
+"""Most Newton iterations within one of those steps, and the smallest step length."""
 _ROUNDS, _QUADRATIC, _SETTLED = 5, 100, 1e-8
-"""Of sequential quadratic programming: rounds, steps in each, gain of time, s, of the last step."""
+"""Sequential quadratic programming: rounds, iterations in each, and tolerance of the time, s."""
 _HASTY, _GAIN, _WORTH, _STATIONARY = 12, 3e-5, 1e-4, 1e-3
-"""To tell which drive is the fastest, steps in which a round has to gain something; to come to the
-optimum near it, they are as many as the unknowns. What that something is, and what a round has to
-gain for another one, relative; and what is left of derivatives at an optimum."""
+"""Iterations in which a round must gain something while drives are compared (for the final optimum,
+as many as there are unknowns); that gain; the gain of a round that warrants another, relative; and
+the stationarity residual at an optimum."""
 _JOINED = 1e-6
-"""Gaps that are none, over what counts as much as the tolerances."""
+"""Gaps that count as closed, in units that weigh as much as the tolerances."""
 _COST, _PENALTY = 12.0, 10.0
-"""The time of the drive as the program counts it, so that first steps are neither far nor short,
-and over it the price of tolerances twice as wide."""
+"""Scaled cost of the drive's time, for well-sized first steps; and, relative to it, the price of
+doubling the tolerances."""
 _FAR = 0.7
-"""Loads with so much to spare are left out of a round."""
+"""Loads with a larger relative margin are left out of a round."""
 _ACTIVE = 1e-4
-"""Of bounds that take part in the prices, what is left at most, relative."""
+"""Largest relative margin of an active constraint."""
 _NUDGE = 1e-6
-"""A change of the limit on singularity, relative."""
+"""Relative perturbation of the singularity limit."""
 _LOST = 1e3
-"""What counts as the excess where there is no motion."""
+"""The violation assigned where there is no motion."""
 _PLACES = 100
-"""About how many parts of the way have a bound on the largest distance from it."""
+"""Approximate number of path sections, each with a bound on its largest distance."""
 
 
 @dataclass(frozen=True)
 class DriveStage:
-    """A stage of the drive, with guesses of its unknowns.
+    """A stage of the drive, with initial guesses of its unknowns.
 
-    leg       on which it is
+    leg       the leg it is on
     slip      angle of P's motion to platform 1 at its end, rad
-    way       how much of the leg the guess drives, m
-    ends      whether its end is that of the leg
-    fixed     whether its amplitude and frequency are as guessed
-    fewest    cycles that it takes
+    way       length of the leg driven in the guess, m
+    ends      whether it ends with the leg
+    fixed     whether amplitude and frequency are fixed to the guess
+    fewest    fewest cycles
     straight  whether it ends with the joint straight
     """
 
@@ -117,15 +117,15 @@ class DriveStage:
 
 @dataclass(frozen=True)
 class SolvedDrive:
-    """An answer of the solver.
+    """A solution of the program.
 
-    violation   largest share by which a bound is broken; where says which
-    pieces      of the route, of every segment of the command
+    violation   largest relative violation of a bound; where says which
+    pieces      the route's piece of every segment of the command
     prices      time saved per unit of each limit by which it is raised, s: rate, angle, torque,
                 grip, singularity
-    ease        times the tolerances of place, heading and way that it keeps to; 1: as asked
-    stationarity  what is left of the derivatives of the time, relative, when those of active bounds
-                are taken off times their prices: 0 at an optimum
+    ease        factor on the tolerances of place, heading and way that it satisfies; 1: as asked
+    stationarity  relative residual of the gradient of the time, less those of active constraints
+                times their prices: 0 at an optimum
     """
 
     command: Command
@@ -141,11 +141,11 @@ class SolvedDrive:
 
 @dataclass(frozen=True)
 class Look:
-    """A drive with its time, s, and everything that has to be at least 0, relative; with their
-    derivatives by the unknowns, and which bound of which piece it is.
+    """A drive with its time, s, and all inequality constraints, >= 0, relative; with their
+    derivatives by the unknowns, and the bound and piece of each.
 
-    closing  what is added to the values, to first order, as gaps between stages are closed
-    gaps     between stages: (v, psi, x, y) over what counts as much
+    closing  first-order change of the values as gaps between stages are closed
+    gaps     between stages: (v, psi, x, y), scaled to weigh as much as the tolerances
     """
 
     command: Command
@@ -164,20 +164,20 @@ class Look:
         return np.array([float(name in _SOFT) for name, _ in self.names])
 
     def spare(self, ease: float) -> Array:
-        """The values if those tolerances are so many times as wide."""
+        """The values with those tolerances widened by this factor."""
         return self.values + (ease - 1) * self.soft
 
     @cached_property
     def violation(self) -> float:
-        """The largest share by which a bound is broken, beyond what the program keeps inside of
-        tolerances for rounding."""
+        """The largest relative violation of a bound, beyond the slack kept inside the
+        tolerances."""
         room = np.array([_ROOM * (name in (*_SOFT, "speed")) for name, _ in self.names])
         return max(0.0, -float((self.values + room).min()))
 
 
 @dataclass(frozen=True)
 class FoundDrive:
-    """Scaled unknowns, their drive, and times the tolerances that it keeps to."""
+    """Scaled unknowns, their drive, and the factor on the tolerances that it satisfies."""
 
     x: Array
     look: Look
@@ -185,21 +185,21 @@ class FoundDrive:
 
     @property
     def cost(self) -> float:
-        """The time, or if bounds are broken by how much."""
+        """The time, or the violation if bounds are violated."""
         broken = self.look.violation > BROKEN
         return self.look.violation if broken else self.look.seconds
 
     def rank(self) -> tuple[bool, float]:
-        """Drives that keep all bounds go first, the fastest of them in front."""
+        """Sort key: feasible drives first, by time."""
         return self.look.violation > BROKEN, self.cost
 
 
 class _StalledError(Exception):
-    """A round of programming gains nothing any more."""
+    """A round of SQP no longer makes progress."""
 
 
 class _Rows:
-    """Gathers what has to be at least 0, its derivatives, and its names with pieces."""
+    """Collects inequality constraints, >= 0, with derivatives, names and pieces."""
 
     def __init__(self) -> None:
         self.values: list[Array] = []
@@ -222,8 +222,8 @@ class _Rows:
         self.at_most(name, pieces, -value, -slopes, limit)
 
     def near(self, name: str, leg: Leg, samples: Samples, at: int, within: float) -> None:
-        """P at a sample lies in an octagon about the end of a leg, within a circle: that is linear
-        in the place."""
+        """P at a sample lies in an octagon, inscribed in a circle, around the end of a leg: a
+        linear constraint on its position."""
         end = leg.end
         angles = end.heading + np.arange(8) * math.pi / 4
         normals = np.stack([np.cos(angles), np.sin(angles)], axis=1)
@@ -244,7 +244,7 @@ class DriveProgram:
         turned: float,
         rest: bool,
     ):
-        """turned: heading of platform 1 against the path's; rest: whether it has to stop."""
+        """turned: heading of platform 1 relative to the path; rest: whether it has to stop."""
         self.problem, self.stages, self.tolerance = problem, stages, tolerance
         self.start = (pose.x, pose.y, pose.heading + turned)
         self.turned, self.rest = turned, rest
@@ -258,7 +258,7 @@ class DriveProgram:
         self.discretise(self.x0)
 
     def discretise(self, x: Array) -> None:
-        """Take as many steps of integration as the unknowns ask for."""
+        """Choose the number of integration steps for these unknowns."""
         self.steps = steps_for(self.command(x * self.scale))
         self.joints = np.cumsum(self.steps)[1:-1:2] - 1
 
@@ -291,8 +291,8 @@ class DriveProgram:
 
     @np.errstate(over="ignore", invalid="ignore")
     def look(self, x: Array, starts: Array | None = None) -> Look:
-        """The drive of the scaled unknowns and everything that has to be at least 0. starts: v,
-        psi, x, y of all stages but the first, if they do not begin as the one before ends."""
+        """The drive of the scaled unknowns with all constraints. starts: v, psi, x, y of all stages
+        but the first, if these do not continue the previous ones."""
         z = x * self.scale
         command = self.command(z)
         slopes = np.pad(self.slopes(command), ((0, 0), (0, 0), (0, 1)))
@@ -343,7 +343,7 @@ class DriveProgram:
         rows.within("heading", piece, psi, samples.slopes[1, -1:], tolerance.heading * _INSIDE)
         if self.rest:
             rows.within("speed", piece, end[0], samples.slopes[0, -1:], tolerance.speed * _INSIDE)
-        # A step too far may lead through the singular posture, where there is no motion.
+        # Too long a step may pass through the singular posture, where there is no motion.
         values = np.nan_to_num(
             np.concatenate(rows.values), nan=-_LOST, posinf=-_LOST, neginf=-_LOST
         )
@@ -374,8 +374,8 @@ class DriveProgram:
             rows.at_most("rate", of, rates.T.ravel(), gradient.reshape(len(of), -1), rate)
 
     def distance(self, k: int, x: Array, y: Array) -> Array:
-        """`signed_distance` of places of a stage: from its leg, or from the one before or after it
-        where P is not yet or no longer beside it. (3, n)"""
+        """`signed_distance` of points of a stage: from its leg, or from the previous or next one
+        where P is before or beyond it. (3, n)"""
         leg = self.stages[k].leg
         found = np.array(signed_distance(leg, x, y))
         legs = [one.leg for one in self.stages]
@@ -390,7 +390,7 @@ class DriveProgram:
 
     @property
     def bounds(self) -> list[tuple[float, float]]:
-        """Of the unknowns."""
+        """Bounds of the unknowns."""
         box = self.problem.gait
         room = reach(self.problem)
         found = []
@@ -405,8 +405,8 @@ class DriveProgram:
         return [(low / s, high / s) for (low, high), s in zip(found, self.scale, strict=True)]
 
     def find(self, step: Callable[[], None], eases: Sequence[float]) -> FoundDrive:
-        """A drive near the guess: drives that keep to these times the tolerances one after another,
-        then sequential quadratic programming, which narrows them at a price."""
+        """A drive near the initial guess: first feasible for a sequence of factors on the
+        tolerances, then by sequential quadratic programming, which tightens them at a price."""
         x, starts = self.guess()
         for ease in eases:
             x, starts = self._restored(x, starts, ease, step)
@@ -415,7 +415,7 @@ class DriveProgram:
     def hurried(
         self, found: FoundDrive, step: Callable[[], None], patience: int = _HASTY
     ) -> FoundDrive:
-        """A drive after rounds of programming, until they gain little or it is an optimum."""
+        """A drive after rounds of SQP, until they gain little or it is an optimum."""
         for _ in range(_ROUNDS):
             if found.ease == 1 and self._prices(found)[1] < _STATIONARY:
                 break
@@ -427,7 +427,7 @@ class DriveProgram:
         return found
 
     def solve(self, found: FoundDrive, step: Callable[[], None]) -> SolvedDrive:
-        """The fastest drive near one that was found."""
+        """The local optimum from a feasible drive."""
         found = self.hurried(found, step, len(found.x))
         look = found.look
         worst = int(np.argmin(look.values))
@@ -443,8 +443,8 @@ class DriveProgram:
         )
 
     def _prices(self, found: FoundDrive) -> tuple[dict[str, float], float]:
-        """The prices of limits at an answer, by non-negative least squares over active bounds, and
-        its stationarity."""
+        """The shadow prices at a solution, by non-negative least squares over active constraints,
+        and its stationarity residual."""
         low, high = np.array(self.bounds).T
         x, look = found.x, found.look
         active, unit = look.values < _ACTIVE, np.eye(len(x))
@@ -458,7 +458,7 @@ class DriveProgram:
                 total[name] += float(one)
         limits, room = self.problem.limits, reach(self.problem)
         prices = {name: one / getattr(limits, name) for name, one in total.items()}
-        # The room of the angle ends at one limit or the other.
+        # The margin of the angle is bounded by one limit or the other.
         prices["angle"] = total["angle"] / room if room == limits.angle else 0.0
         S = limits.singularity
         less = replace(self.problem, limits=replace(limits, singularity=S * (1 - _NUDGE)))
@@ -466,9 +466,9 @@ class DriveProgram:
         return prices, left / float(np.linalg.norm(gradient))
 
     def guess(self) -> tuple[Array, Array]:
-        """The unknowns and starts of stages, one stage after another simulated. Each begins on
-        the path with the speed that the one before ends with, platform 1 as in steady motion, and
-        takes as many cycles as its way asks for."""
+        """Initial unknowns and starts of stages, simulated one after another. Each begins on the
+        path at the final speed of the previous one, platform 1 as in steady motion, with as many
+        cycles as its length requires."""
         low, high = np.array(self.bounds).T
         z, starts = np.clip(self.x0, low, high) * self.scale, list[tuple[float, ...]]()
         v, driven, planned = 0.0, 0.0, 0.0
@@ -490,7 +490,7 @@ class DriveProgram:
         return z / self.scale, np.array(starts[:-1]).reshape(-1, 4)
 
     def _driven(self, k: int, z: Array, v: float, beta: float) -> tuple[float, float]:
-        """The speed, m/s, after a stage that begins with v, and the way of P, m."""
+        """Final speed, m/s, of a stage that begins with v, and distance driven by P, m."""
         dynamics, way = dynamics_of(self.problem.robot), 0.0
         p = dynamics.values(self.problem.robot)
         for u in self.command(z).segments[:, 2 * k : 2 * k + 2].T:
@@ -503,9 +503,9 @@ class DriveProgram:
     def _restored(
         self, x: Array, starts: Array | None, ease: float, step: Callable[[], None]
     ) -> tuple[Array, Array | None]:
-        """Levenberg-Marquardt steps on broken bounds and gaps between stages, until there are none.
-        Stages begin where the linear model takes them, or, if that is the better, as the ones
-        before end."""
+        """Levenberg-Marquardt steps on violated bounds and gaps between stages, until there are
+        none. Stages start from the linear model's prediction or, if better, continue the previous
+        ones."""
         low, high = np.array(self.bounds).T
 
         def merit(look: Look) -> float:
@@ -548,7 +548,7 @@ class DriveProgram:
         return x, starts
 
     def _fastest(self, x: Array, step: Callable[[], None], patience: int) -> FoundDrive:
-        """Sequential quadratic programming on the time with a price on the ease of tolerances."""
+        """SLSQP on the time, with a price on widened tolerances."""
         low, high = np.array(self.bounds).T
         self.discretise(x)
         seen: dict[bytes, Look] = {}
@@ -567,7 +567,7 @@ class DriveProgram:
             cost = look(y).seconds / unit + price * (y[-1] + broken)
             if cost < best:
                 best, at, driven = cost, y.copy(), y[-1] + broken <= 1 + BROKEN
-            # What is no drive yet may take its time.
+            # An infeasible drive is given more iterations.
             history.append(best if driven else math.inf)
             if len(history) > patience and history[-1 - patience] - best < _GAIN * _COST:
                 raise _StalledError
@@ -607,8 +607,8 @@ class DriveProgram:
 
 
 def _least(J: Array, values: Array, damping: float, low: Array, high: Array) -> tuple[Array, float]:
-    """The step that minimises half the sum of squares of what is below 0 of values + J step, and of
-    the damped step, within bounds; and the first of both. By Newton's method."""
+    """The step that minimises half the sum of squares of the negative parts of values + J step and
+    of the damped step, within bounds; and the first of both. By Newton's method."""
 
     def broken(step: Array) -> Array:
         return np.minimum(values + J @ step, 0.0)
@@ -634,7 +634,7 @@ def _least(J: Array, values: Array, damping: float, low: Array, high: Array) -> 
 
 
 def slip(problem: Problem, curvature: float, turned: float) -> float:
-    """beta of steady motion, rad: on a circle P moves at sin(beta) = c1 kappa to the axis of
+    """beta in steady motion, rad: on a circle P moves at sin(beta) = c1 kappa to the axis of
     platform 1. turned: 0 if platform 1 leads, else pi."""
     beta = math.asin(max(-0.9, min(0.9, problem.robot.platform1.c * curvature)))
     return beta if turned == 0 else -beta
@@ -644,9 +644,9 @@ def _fastest(blends: Array, sign: int) -> Array:
     """Where the rate times a sign is largest in each of `_LOOKS` equal parts of blends (8, K):
     (_LOOKS, K).
 
-    A parabola through the ends and the middle of a part has its vertex near the peak, which a step
-    of Newton's method comes to. The rate is level there, so that its derivatives at a fixed place
-    are those of the peak.
+    The vertex of the parabola through the ends and the middle of a part is close to the peak, and
+    is refined by a Newton step. The rate is stationary there, so derivatives at a fixed place are
+    those of the peak.
     """
     half = 0.5 / _LOOKS
     s = np.linspace(0, 1, 2 * _LOOKS + 1)[:, None]
@@ -664,8 +664,8 @@ def _fastest(blends: Array, sign: int) -> Array:
 
 
 def _peaks_of(values: Array, window: int) -> tuple[NDArray[np.int_], Array]:
-    """Of samples, in windows of about this many: three places (K, 3) about the largest, and
-    their weights (K, 3) in the vertex of the parabola through them, which is level there."""
+    """Peaks of samples, in windows of about this many: three indices (K, 3) around the largest, and
+    their weights (K, 3) at the vertex of the parabola through them, where it is stationary."""
     count = max(1, len(values) // window)
     edges = len(values) * np.arange(count + 1) // count
     at = np.array([low + values[low:high].argmax() for low, high in itertools.pairwise(edges)])

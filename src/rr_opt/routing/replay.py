@@ -1,4 +1,4 @@
-"""A drive simulated by CVODES from rest, as if nothing were known of it but its command."""
+"""A drive simulated by CVODES from rest, independently of the optimiser, from its command."""
 
 import math
 from dataclasses import dataclass
@@ -19,23 +19,23 @@ _CVODES = {"reltol": 1e-10, "abstol": 1e-12, "max_num_steps": 1_000_000}
 _RATE = 200.0
 """Samples a second."""
 _SAME = 1e-9
-"""s: times that differ by no more are one."""
+"""s: times closer than this count as one."""
 _APART = 2e-3
-"""m: points of the path from which distances are measured."""
+"""m: spacing of the path points from which distances are measured."""
 
 
 @dataclass(frozen=True)
 class RouteReplay:
-    """What the simulation says.
+    """The result of the simulation.
 
     position   distance of P from the end of the route, m
-    heading    of platform 1 against the one asked for, rad
+    heading    of platform 1 relative to the requested one, rad
     speed      of axle 1 at the end, m/s
     path       largest distance of P from the path, m
     reached    extreme of each limited quantity: rate (rad/s), angle (rad), torque (N m),
                singularity (least S1, m), grip (largest side force of an axle over the load on it)
     when       it is reached, s
-    excess     by how much the worst limit is exceeded, relative to it; negative if all are kept
+    excess     largest relative violation of a limit; negative if all are satisfied
     """
 
     trajectory: Trajectory
@@ -56,8 +56,8 @@ def replay(
     turned: float,
     heading: float,
 ) -> RouteReplay:
-    """Simulate a command; turned: heading of platform 1 at the start against that of the path, rad;
-    heading: the one it is to have at the end, rad."""
+    """Simulate a command; turned: heading of platform 1 at the start relative to the path, rad;
+    heading: the requested one at the end, rad."""
     driven = simulate(problem, command, start, turned)
     end = legs[-1].end
     found = peaks(problem, command, driven)
@@ -75,8 +75,8 @@ def replay(
 
 
 def peaks(problem: Problem, command: Command, driven: Trajectory) -> dict[str, tuple[float, float]]:
-    """The extreme of each limited quantity and when it is reached, s: between samples at the vertex
-    of a parabola, and on either side of a knot, where the acceleration jumps."""
+    """The extreme of each limited quantity and its time, s: between samples, at the vertex of a
+    parabola, and on either side of a knot, where the acceleration jumps."""
     robot, dynamics = problem.robot, dynamics_of(problem.robot)
     p = dynamics.values(robot)
     found: dict[str, tuple[float, float]] = {}
@@ -115,7 +115,7 @@ def distances(legs: tuple[Leg, ...], x: Array, y: Array) -> Array:
 
 
 def simulate(problem: Problem, command: Command, start: Pose, turned: float) -> Trajectory:
-    """The motion from rest, at least `rate` samples a second, and at every knot."""
+    """The motion from rest, with at least `rate` samples a second, and one at every knot."""
     dynamics = dynamics_of(problem.robot)
     p = dynamics.values(problem.robot)
     state = np.array([0.0, start.heading + turned, start.x, start.y])

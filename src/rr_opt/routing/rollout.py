@@ -1,13 +1,13 @@
-"""The motion that a command makes from rest, and its derivatives by everything in the command.
+"""The motion of a command from rest, and its derivatives by everything in the command.
 
-Within a segment the motion is integrated in the frame of its start, together with its derivatives S
-by the speed at the start and by the eight numbers u of the segment: with z = (v, phi, dphi, ddphi)
+Within a segment the motion is integrated in the frame of its start, together with its sensitivities
+S to the initial speed and to the eight numbers u of the segment: with z = (v, phi, dphi, ddphi)
 and f the rates of (v, psi, x, y), multiplied by the duration,
 
     dS/ds = f_y S + f_z z_u,        z_u from the formula of the command
 
-whose Jacobians are small. Segments are then chained: each depends on those before it through v,
-the phase and its frame alone.
+whose Jacobians are small. Segments are then chained: each depends on those before it only through
+v, the phase and its frame.
 """
 
 import itertools
@@ -28,26 +28,26 @@ from rr_opt.model.robot import Robot
 from rr_opt.motion.dynamics import derive, dynamics_of
 
 STEPS = 16
-"""Steps of order 6 in a period: a drive of 100 periods ends within some 10 um of the truth."""
+"""Steps of order 6 per period: the end of a drive of 100 periods is accurate to some 10 um."""
 _INPUTS = 9
 """v at the start of a segment, and the eight numbers of the segment."""
 LOADS = ("torque", "grip", "grip")
-"""What loads the robot: the torque, N m, and the side force of each axle over the load on it."""
+"""Loads on the robot: the torque, N m, and the side force of each axle over the load on it."""
 _FINER, _PARTS = 4, 4
-"""Parts of a step in which loads are looked at, and parts of a segment in each of which the largest
-of either sign is found."""
+"""Parts of a step in which loads are evaluated, and parts of a segment, in each of which the
+largest of either sign is found."""
 _STENCILS = np.array(
     [[1, -8, 0, 8, -1], [-1, 16, -30, 16, -1], [-6, 12, 0, -12, 6], [12, -48, 72, -48, 12]]
 ).T / 12  # fmt: skip
 _NEWTON = 3
-"""Derivatives from five places, a unit apart; and steps."""
+"""Derivatives from five samples at unit spacing; and Newton steps."""
 
 
 @lru_cache
 def _functions(effects: tuple[str, ...]) -> tuple[ca.Function, ...]:
     """Of (.., s, h, u, p), with a step from s to s + h of a segment:
 
-    step   state -> the one after it: (v, psi, x, y), and S, by columns
+    step   state -> the next: (v, psi, x, y), and S, by columns
     scan   v at both ends -> loads at `_FINER` + 1 places, v by a cubic
     loads  state -> loads at s, and their derivatives by v and u at the segment's start
     """
@@ -100,15 +100,15 @@ def _functions(effects: tuple[str, ...]) -> tuple[ca.Function, ...]:
 
 @lru_cache
 def _compiled(effects: tuple[str, ...]) -> tuple[ca.Function, ...]:
-    """The functions as machine code, if there is a compiler."""
+    """The functions as machine code, if a compiler is available."""
     functions = _functions(effects)
     flags = ("-O1", "-fPIC", "-shared")
     return externals("route", functions, flags, make=True) or functions
 
 
 class _OnArrays:
-    """A CasADi function over arrays, called through buffers: converting them takes longer than most
-    calls. Its arguments are broadcast to what it takes."""
+    """A CasADi function over arrays, called through buffers, as conversion takes longer than most
+    calls. Its arguments are broadcast as needed."""
 
     def __init__(self, function: ca.Function):
         self._buffer, self._trigger = function.buffer()
@@ -137,11 +137,11 @@ def _mapped(effects: tuple[str, ...], which: int, count: int) -> _OnArrays:
 
 @dataclass(frozen=True)
 class Samples:
-    """The motion at the end of every step: t (n,), segment (n,) to which it belongs, path (4, n)
-    with v (m/s), psi (rad), x, y (m), and its derivatives (4, n, z).
+    """The motion at the end of every step: t (n,), the step's segment (n,), path (4, n) with v
+    (m/s), psi (rad), x, y (m), and its derivatives (4, n, z).
 
-    peaks  of the loads asked for, in every part of a segment the largest, and the least with its
-           sign changed: (loads, segments, parts, 2), and its derivatives (.., z)
+    peaks  of the requested loads, in every part of a segment the largest, and minus the least:
+           (loads, segments, parts, 2), and its derivatives (.., z)
     """
 
     segment: Array
@@ -175,8 +175,8 @@ def _peaks(
     """The peaks of loads in segments (8, N): values (loads, N, parts, 2), derivatives (9, ..) by
     the speed and the segment. states: (1 + 9, 4, n + 1) at the ends of each segment's steps.
 
-    Where a load peaks, by Newton's method on a quartic through finer places, it is level, so that
-    its derivatives at a fixed place are those of the peak.
+    A peak is located by Newton's method on a quartic through finer samples. The load is stationary
+    there, so derivatives at a fixed place are those of the peak.
     """
     counts = np.array([state.shape[2] - 1 for state in states])
     of = np.repeat(np.arange(len(counts)), counts)
@@ -186,7 +186,7 @@ def _peaks(
     seen = _mapped(effects, 1, len(of))(v, begin, step, segments[:, of], p[:, None])
     seen = seen.reshape(len(LOADS), len(of), -1)[list(loads)]
     last = np.cumsum(counts) - 1
-    # Every segment's places, its two ends included, one after another.
+    # The places of every segment, both ends included, in sequence.
     fine = np.insert(
         seen[:, :, :-1].reshape(len(loads), -1), (last + 1) * _FINER, seen[:, last, -1], axis=1
     )
@@ -246,9 +246,9 @@ def rollout(
 
     slopes  (8, N, z): derivatives of `command.segments` by the unknowns
     steps   of each segment
-    loads   of which of LOADS peaks are wanted
-    starts  v, psi, x, y with which segments begin anew. The last of the unknowns is then what is
-            left of the gaps: at 1 closed, to first order.
+    loads   indices into LOADS, whose peaks are wanted
+    starts  v, psi, x, y with which segments restart. The last unknown then closes the gaps: at 1
+            to first order.
     """
     dynamics = dynamics_of(robot)
     p = dynamics.values(robot)

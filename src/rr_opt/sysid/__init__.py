@@ -1,1 +1,1 @@
-"""System identification of a machine that is known by its protocol alone."""
+"""System identification of any machine that implements the protocol."""

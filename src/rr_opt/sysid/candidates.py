@@ -1,4 +1,4 @@
-"""Candidate models: sets of effects, each with its fit and with how well it predicts."""
+"""Candidate models: sets of effects, each with its fit and its predictive score."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ from rr_opt.sysid.settings import SETTINGS
 
 @dataclass(frozen=True, eq=False)
 class Candidate:
-    """The nominal model with some effects beside it, fitted.
+    """The nominal model with some added effects, fitted.
 
-    given_up  its fit was not taken to its end, as it would not have come to that of another
+    given_up  its fit was stopped early, as it would not have caught up with another one
     """
 
     choices: tuple[Choice, ...]
@@ -34,43 +34,42 @@ class Candidate:
 
     @property
     def predictive(self) -> Mapping[int, float]:
-        """Log density of each run as predicted from the others."""
+        """Log predictive density of each run given the others."""
         return self.fit.predictive
 
     @property
     def elpd(self) -> float:
-        """Sum of the log predictive densities (Vehtari, Gelman and Gabry 2017), runs left out."""
+        """Sum of the log predictive densities of left-out runs (Vehtari, Gelman, Gabry 2017)."""
         return sum(self.predictive.values())
 
     @cached_property
     def simulated(self) -> Fit:
-        """The quantities fitted by least squares over whole runs."""
+        """The same quantities fitted by least squares over whole runs."""
         return estimation.whole_runs(self.fit)
 
     @property
     def excess(self) -> float:
-        """What simulation of whole runs leaves beyond the noise, RMS in sigma."""
+        """Misfit of whole-run simulations beyond the noise, RMS in sigma."""
         return self.simulated.excess
 
     def advantage(self, other: Candidate) -> tuple[float, float]:
-        """By how many nats it predicts the recordings better, and the standard error of that."""
+        """Gain in log predictive density over another candidate, nats, and its standard error."""
         gains = np.array([p - other.predictive[run] for run, p in self.predictive.items()])
         spread = float(np.std(gains, ddof=1)) if gains.size > 1 else math.inf
         return float(gains.sum()), math.sqrt(gains.size) * spread
 
     def accounts(self, other: Candidate) -> float:
-        """The share that it accounts for of what simulation of whole runs with another one leaves
-        beyond the noise (mean square)."""
+        """Share of the other's excess misfit over whole runs (mean square) that it removes."""
         return 1 - self.excess**2 / max(other.excess**2, 1e-12)
 
     def advances(self, other: Candidate) -> bool:
-        """Whether it accounts for a good share of that; or of what is left in segments, where what
-        it still lacks adds up less. What does neither only bends to what it cannot explain."""
+        """Whether it removes a good share of that misfit, or of the misfit in segments, where the
+        errors it still has accumulate less. If neither, it only absorbs errors of another kind."""
         in_segments = 1 - self.fit.excess**2 / max(other.fit.excess**2, 1e-12)
         return in_segments > SETTINGS.accounted or self.accounts(other) > SETTINGS.accounted
 
     def predicts_better(self, other: Candidate) -> bool:
-        """Whether the evidence from prediction is enough to prefer it."""
+        """Whether the predictive evidence is enough to prefer it."""
         if self.given_up:
             return False
         gain, error = self.advantage(other)
@@ -97,12 +96,12 @@ def fitted(
     guesses: Sequence[Mapping[str, float]],
     rival: Fit | None = None,
 ) -> Candidate:
-    """A set of effects, fitted beside a fit without them.
+    """Fit a set of effects, starting from a fit without them.
 
-    guesses  of the new quantities. The parameters begin as in the parent's fit or, as what is
-             missing may have bent them, as believed, whichever is better after a step. The best is
-             taken on
-    rival    a fit that will not be beaten need not be taken to its end
+    guesses  initial values of the new quantities. The parameters start from the parent's fit or,
+             as a missing effect may have biased that, from their nominal values, whichever is
+             better after one step. The best start is continued
+    rival    the fit to beat: one that will not beat it is stopped early
     """
     ordered = tuple(sorted(choices))
     names = tuple(one.name for one in ordered)
@@ -144,7 +143,7 @@ def fitted(
 
 
 def refitted(candidate: Candidate, runs: Iterable[int]) -> Candidate:
-    """The candidate fitted to other runs; the states of those that are new are fitted first."""
+    """The candidate refitted to other runs; initial states of new runs are fitted first."""
     fit = candidate.fit
     problem, states = estimation.initial(
         fit.problem.model, fit.effects, fit.problem.quantities, fit.values, runs
@@ -158,20 +157,19 @@ def refitted(candidate: Candidate, runs: Iterable[int]) -> Candidate:
 
 
 def settled(fit: Fit) -> Fit:
-    """A fit of the search, taken to its very end."""
+    """A fit of the search, iterated to full convergence."""
     return estimation.solve(fit.problem, fit.values, fit.states, known=fit.linear)
 
 
 def polished(candidate: Candidate) -> Candidate:
-    """The candidate fitted again with least process noise from where whole runs are simulated
-    best."""
+    """The candidate refitted with the least process noise, starting from its whole-run fit."""
     fit, whole = candidate.fit, candidate.simulated
     problem = replace(fit.problem, q=SETTINGS.least_process_noise)
     return Candidate(candidate.choices, estimation.fitted(problem, whole.values, fit.states))
 
 
 def _tested(problem: FitProblem, parent: Fit) -> FitProblem:
-    """The problem of the few runs that the parent explains worst."""
+    """The problem restricted to the few runs that the parent explains worst."""
     worst = sorted(problem.by_run, key=lambda run: -parent.evidences[run].excess)
     runs = worst[: SETTINGS.trial_runs]
     return replace(problem, segments=tuple(s for s in problem.segments if s.run in runs))
@@ -187,7 +185,7 @@ def _converted(
 
 
 def _unlike(values: Iterable[Mapping[str, float]]) -> list[Mapping[str, float]]:
-    """Each once."""
+    """The distinct ones, in order."""
     out: list[Mapping[str, float]] = []
     for one in values:
         if one not in out:
@@ -196,8 +194,8 @@ def _unlike(values: Iterable[Mapping[str, float]]) -> list[Mapping[str, float]]:
 
 
 def weights(candidates: Sequence[Candidate], draws: int = 2000) -> Array:
-    """Pseudo-BMA+ weights (Yao, Vehtari, Simpson and Gelman 2018): how often each would predict
-    best if other recordings like these had been made, by the Bayesian bootstrap over them."""
+    """Pseudo-BMA+ weights (Yao, Vehtari, Simpson and Gelman 2018): the softmax of the log
+    predictive densities, averaged over a Bayesian bootstrap of the recordings."""
     runs = list(candidates[0].predictive)
     densities = np.array([[one.predictive[run] for run in runs] for one in candidates])
     shares = np.random.default_rng(0).dirichlet(np.ones(len(runs)), draws) * len(runs)

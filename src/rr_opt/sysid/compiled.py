@@ -27,14 +27,14 @@ _FLAGS = (
 )
 
 FINE = 4
-"""Of so many steps between two samples, the slope in the middle is enough for derivatives."""
+"""From this many steps between two samples, the midpoint slope is enough for derivatives."""
 
 _WORTH = 1000
-"""Steps; what has fewer is done before a thread has begun."""
+"""Steps below which starting a thread takes longer than the work itself."""
 
 
 class _CompiledRun(ctypes.Structure):
-    """`Run` of the C."""
+    """The struct `Run` of the C code."""
 
     _fields_ = (
         ("steps", ctypes.c_longlong),
@@ -50,7 +50,7 @@ class _CompiledRun(ctypes.Structure):
 
 @dataclass(frozen=True)
 class Rows:
-    """What derivatives are summed up for, of one run, each array row by row.
+    """Input to the sums over derivatives, of one run; arrays are row-major.
 
     inputs, at, each, p, states  as `Compiled.predict` takes and gives them
     wanted  (np, nq) dp/dq
@@ -89,7 +89,7 @@ class Compiled:
     def predict(
         self, runs: Sequence[tuple[Array, Array, Array, int, Array]]
     ) -> list[tuple[Array, Array]]:
-        """States (size, steps + 1) and what is seen (samples, channels) of each run.
+        """States (size, steps + 1) and outputs (samples, channels) of each run.
 
         runs  (start, inputs (steps, 1 + 3 drive) of each step, at (drive, samples), steps between
               two samples, p)
@@ -114,7 +114,7 @@ class Compiled:
         """J'J of each run, (n, n), with J = [d/dstart | d/dq | more | predicted - recorded] in
         sigmas; and the derivatives of its last state (size, size + nq) by start and q.
 
-        Raises ValueError if not all have as many q and further columns.
+        Raises ValueError if the runs differ in their number of q or further columns.
         """
         first = runs[0]
         shapes = {(run.wanted.shape, run.more is None or run.more.shape[2]) for run in runs}
@@ -172,8 +172,8 @@ class Compiled:
     def _at_once(
         self, work: Callable[[_Few], None], held: Sequence[_Held], each: Sequence[int]
     ) -> None:
-        """As many runs at a time as there are lanes, with as many steps between two samples and
-        about as long; in threads where these are worth it."""
+        """One run per lane at a time, grouped by equal steps per sample and similar length; in
+        threads where that pays."""
         ordered = sorted(zip(each, held, strict=True), key=lambda one: (one[0], one[1].run.steps))
         groups = []
         for count, alike in itertools.groupby(ordered, lambda one: one[0]):
@@ -200,7 +200,7 @@ class _Held:
         if steps < 1:
             raise ValueError(f"Read a run of {steps} steps. Expected 1 or more.")
         self.arrays = {name: np.ascontiguousarray(one, float) for name, one in arrays.items()}
-        # What is written to has to be the caller's own.
+        # Output arrays must be the caller's own, not copies.
         assert all(
             self.arrays[name] is arrays[name] for name in ("seen", "gram", "end") if name in arrays
         )
@@ -210,7 +210,7 @@ class _Held:
 
 
 class _Few(NamedTuple):
-    """Runs that go side by side, and their steps between two samples."""
+    """Runs processed side by side, and their steps between two samples."""
 
     each: int
     held: Sequence[_Held]
@@ -221,7 +221,7 @@ def _array(held: Sequence[_Held]) -> ctypes.Array:
 
 
 def found(source: str, size: int, channels: int, *, make: bool) -> Compiled | None:
-    """A system that was compiled before, or is now; None where that cannot be."""
+    """The compiled system, from the cache or compiled now; None if neither is possible."""
     made = library(source, _FLAGS, make=make)
     return None if made is None else Compiled(made, size, channels)
 
@@ -230,7 +230,7 @@ def source_of(step: ca.Function, rates: ca.Function, seen: ca.Function, *, stiff
     """A system in C.
 
     step(state, inputs, p) is the end of a step; rates and seen(state, drive, p)
-    Raises NotImplementedError for an operation that has no C.
+    Raises NotImplementedError for an operation without a C equivalent.
     """
     state, drive, p = (rates.numel_in(i) for i in range(3))
     head = {"NX": state, "ND": drive, "NP": p, "NY": seen.numel_out(0)}

@@ -1,22 +1,22 @@
 r"""Whether the recordings agree on a fit's values (parameter constancy, Chow 1960).
 
-What is really there has the same values in every recording. An imitation of something else fits
-each with values of its own, and none may leave more than noise. So each run r is held against the
-others. With g, B the gradient and curvature of its loss, A and G those of the rest, the prior
-among them, its score where the others have their optimum is
+A real effect has the same values in every recording. An imitation of something else may fit each
+recording down to the noise, but with different values. So each run r is tested against the others.
+With B, g the curvature and gradient of its loss, and A, G those of the rest and the prior, its
+score at the optimum of the others is
 
     s = g - B A^-1 G,    Var s = phi B + B (A^-1 C A^-1 + F) B.
 
-No machine is its model, though. F is the variance by which machines differ from the model of an
-effect in its values; and in the motion they differ by that share, e, of what the effect explains
-of the run, m (RMS in sigma), or, without an effect, by f, the part of what is left by which
-machines of the kind differ from any model, for about a correlation time:
-phi = 1 + ((e m)^2 + f^2) n/K with the samples n and correlation times K of the run. C is A with
-each of the other runs weighed by its own phi. Values at a bound are taken to be known.
+No machine matches its model exactly, though. F is the variance of an effect's values due to its
+form error e. The motion deviates, over about a correlation time, by the share e of what the effect
+explains of the run, m (RMS in sigma), or, without an effect, by f, the misfit as far as machines
+of this kind differ from any model: phi = 1 + ((e m)^2 + f^2) n/K with the samples n and
+correlation times K of the run. C is A with each of the other runs weighted by its own phi. Values
+at a bound are taken as known.
 
-T, the sum of s' Var^-1 s over all runs, is k on average, the number of values that each run shows,
-added up. If the values are not constant it is larger by an unknown factor, which is given a
-log-uniform prior from 1 to `inconstant`. By Laplace's approximation the odds of constant values are
+T, the sum of s' Var^-1 s over all runs, has expectation k, the number of values that each run
+determines, summed over runs. If the values are not constant, T is larger by an unknown factor with
+a log-uniform prior from 1 to `inconstant`. By Laplace's approximation the odds of constancy are
 
     (T/k)^(k/2) exp(-(T - k)/2) sqrt(k/(4 pi)) ln(inconstant)    where T > k.
 """
@@ -35,14 +35,14 @@ from rr_opt.sysid.settings import SETTINGS
 
 @dataclass(frozen=True)
 class Constancy:
-    """T and k, of all runs."""
+    """T and k over all runs."""
 
     statistic: float
     degrees: int
 
     @property
     def odds(self) -> float:
-        """That the values are constant, to that they are not; 1 if nothing is known of that."""
+        """Odds that the values are constant; 1 if the runs say nothing about it."""
         k = self.degrees
         if not k:
             return 1.0
@@ -52,7 +52,7 @@ class Constancy:
 
     @property
     def probability(self) -> float:
-        """That the values are constant."""
+        """Probability that the values are constant."""
         return self.odds / (1 + self.odds)
 
 
@@ -65,11 +65,11 @@ def constancy(
     explained: Mapping[int, float] = _NONE,
     form_errors: Mapping[str, float] = _NONE,
 ) -> Constancy:
-    """Of a fit to all runs.
+    """Test a fit to all runs.
 
-    left         RMS in sigma beyond the noise in simulations of whole runs
-    explained    of each run, the mean square in sigma that the effects explain; 0 if left out
-    form_errors  by how much, relative, machines differ from the model of an effect, by its name
+    left         misfit of whole-run simulations beyond the noise, RMS in sigma
+    explained    by run, the mean square in sigma that the effects explain; 0 if not given
+    form_errors  by effect name, the relative deviation of machines from its model
     """
     problem = fit.problem
     if not problem.names:
@@ -80,7 +80,7 @@ def constancy(
     form = np.array([form_errors.get(name.split(".")[0], 0.0) for name in problem.names])
     H, g, _ = summed(problem, fit.evidences, fit.u)
     H, g = H[free][:, free], g[free]
-    # In units in which all that is known of the values is the unit matrix.
+    # In units in which the information matrix is the identity.
     units = np.sqrt(np.diag(H))
     L = root(H / units / units[:, None])
 

@@ -1,4 +1,4 @@
-"""From recordings to a diagnosis: search, evaluate, weigh, locate, and say how sure that is.
+"""From recordings to a diagnosis: search, evaluate, weigh, locate, and state the confidence.
 
 segments -> estimation -> selection -> intervals, remainder -> verdict
 """
@@ -33,7 +33,7 @@ from rr_opt.sysid.verdict import (
 
 @dataclass
 class Stopwatch:
-    """Tells what is being done, and remembers how long each step took, s."""
+    """Reports progress, and records how long each step took, s."""
 
     progress: Callable[[str], None] = lambda _: None
     seconds: dict[str, float] = field(default_factory=dict)
@@ -85,7 +85,7 @@ def _answer(result: Identification) -> Diagnosis:
     levels = (result.nominal, result.refitted, result.final)
     fit, last = best.fit, result.final
     if verdict == "unexplained":
-        # What predicts best, though what it lacks has no name.
+        # The best predictor, though what it still lacks cannot be named.
         last = min(levels, key=lambda one: one.rms)
         fit = best.fit if last is result.final else base.fit
     remainder = remainder_of(result)
@@ -120,14 +120,14 @@ def _answer(result: Identification) -> Diagnosis:
 
 
 def _quieter(selection: Selection) -> list[ChannelNoise] | None:
-    """The noise, if a search shows less than was assumed."""
+    """The noise estimate, if the search shows less noise than was assumed."""
     noise = noise_in(selection.best.simulated)
     return noise if noise and any(one.quieter for one in noise) else None
 
 
 def identified(model: MachineModel, watch: Stopwatch) -> Identification:
-    """Search for what is missing, with the noise that the nominal model shows; once more if the
-    answer shows less."""
+    """Search for what is missing, with the noise estimated from the nominal model's residuals; once
+    more if the answer shows less noise."""
     runs = [k for k, run in enumerate(model.runs) if not run.held_out]
     with watch("fitting the parameters"):
         base = first(model, runs)
@@ -154,8 +154,8 @@ def identified(model: MachineModel, watch: Stopwatch) -> Identification:
 
 
 def chosen(selection: Selection, watch: Stopwatch) -> Identification:
-    """What a search chose; of forms that predict about as well, if recordings disagree on its
-    values, the one on whose values they agree best."""
+    """The answer of a search. If recordings disagree on its values: of the forms that predict about
+    as well, the one on whose values they agree best."""
     result = weighed(selection, selection.best, watch)
     if result.constancy.probability > SETTINGS.named:
         return result
@@ -167,7 +167,7 @@ def chosen(selection: Selection, watch: Stopwatch) -> Identification:
 
 
 def weighed(selection: Selection, best: Candidate, watch: Stopwatch) -> Identification:
-    """A candidate as the answer of a search, with what speaks for it and against it."""
+    """A candidate as the answer of a search, with the evidence for and against it."""
     model, runs = selection.model, list(selection.base.fit.problem.by_run)
     best = turned(model, best)
     with watch("looking for wrong values"):

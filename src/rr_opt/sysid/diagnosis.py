@@ -36,10 +36,10 @@ class Estimate:
 
 @dataclass(frozen=True)
 class Finding:
-    """An accepted effect, or a parameter that is not what it was believed to be.
+    """An accepted effect, or a parameter whose nominal value is wrong.
 
     confidence  0 to 1, against the best explanation without it
-    removes     share of the held-out mismatch that goes with it, 0 to 1
+    removes     share of the held-out misfit that it removes, 0 to 1
     minor       it is real, but removes little
     """
 
@@ -54,8 +54,8 @@ class Finding:
 class Tried:
     """A set of effects that was fitted.
 
-    fit    what its simulation leaves beyond the noise, RMS in sigma
-    score  -2 log predictive density of the recordings, each left out once; less is better
+    fit    misfit of its simulation beyond the noise, RMS in sigma
+    score  -2 log predictive density, leave-one-recording-out; lower is better
     """
 
     effects: tuple[str, ...]
@@ -67,7 +67,7 @@ class Tried:
 
 @dataclass(frozen=True)
 class Curve:
-    """A residual against what it may depend on: mean and standard error in bins, in sigma."""
+    """A residual as a function of one variable: mean and standard error in bins, in sigma."""
 
     variable: str
     unit: str
@@ -80,7 +80,7 @@ class Curve:
 class Stage:
     """One step from the recording to the motion, tested on its own.
 
-    statistic, p_value  of no fault in this stage
+    statistic, p_value  of the null hypothesis: no fault in this stage
     size                how large the fault would be, RMS in sigma beyond the noise
     where               in words: phase, speed, heading, place, recordings
     """
@@ -97,11 +97,11 @@ class Stage:
 
 @dataclass(frozen=True)
 class Mismatch:
-    """Whether the model with its values re-fitted is off at all, on the recordings it is fitted to.
+    """Whether the model, its values refitted, misfits the recordings it is fitted to at all.
 
     rms      in sigma, beyond the noise
-    p_value  chance that noise alone leaves as much, by chi-square: the residuals of a model that
-             is right are as white as the noise
+    p_value  chance that noise alone leaves as much, by chi-square: the residuals of a correct
+             model are as white as the noise
     """
 
     rms: float
@@ -132,9 +132,9 @@ class Misfit:
 
 @dataclass(frozen=True)
 class NextExperiment:
-    """The recording that would tell best between what is still open.
+    """The recording that would best discriminate between the remaining explanations.
 
-    separation  RMS difference of the two explanations in it after re-fitting, in sigma
+    separation  RMS difference between the two explanations after refitting, in sigma
     """
 
     amplitude: float
@@ -150,10 +150,10 @@ class NextExperiment:
 
 @dataclass(frozen=True)
 class Residue:
-    """What is left when no name fits: a force that the model lacks, as a function.
+    """The residual where no effect fits: a missing force as a function of one variable.
 
     variable  what it depends on most; at, mean, error as in Curve, force in N
-    share     of the remaining mismatch that the function removes
+    share     of the remaining misfit that the function removes
     """
 
     kind: str
@@ -168,12 +168,12 @@ class Residue:
 
 @dataclass(frozen=True)
 class Remainder:
-    """What is left with the effects that were named.
+    """The misfit that remains with the named effects.
 
     rms         in sigma beyond the noise, of held-out recordings where there are any
-    share       of the first misfit beyond the noise (mean square), 0 to 1
-    depends_on  the channel it enters by and the variable it follows most, in words, if any
-    matters     what it is worth, in a sentence
+    share       of the initial misfit beyond the noise (mean square), 0 to 1
+    depends_on  the channel it enters through and the variable it follows most, in words, if any
+    matters     how well the corrected model predicts, in a sentence
     """
 
     size: Literal["none", "small", "large"]
@@ -187,11 +187,11 @@ class Remainder:
 class Diagnosis:
     """The answer and what it rests on.
 
-    nominal, refitted, final   misfit of each recording: as believed, with parameters re-estimated
-                               within what is known, with the accepted effects
+    nominal, refitted, final   misfit of each recording: nominal, with parameters refitted within
+                               their uncertainties, with the accepted effects
     before, after              RMS over the held-out recordings in sigma, 1 is the noise
-    values                     of all parameters and effects that the corrected robot has, SI
-    remainder                  what is left with the accepted effects
+    values                     of all parameters and effects of the corrected robot, SI
+    remainder                  the misfit that remains with the accepted effects
     """
 
     verdict: Verdict
@@ -221,7 +221,7 @@ def summary_of(found: Diagnosis, worth: str = "", doubt: str = "") -> str:
     """What was found, how sure, what it is worth, what remains, what to record next.
 
     worth  what it is worth in the machine's own terms: `the place was 8 mm off and is 1 mm off; `
-    doubt  why nothing is named, where something is left out
+    doubt  why nothing is named although something is missing
     """
     names = (words_of(one.name) for one in found.findings)
     listed = " and ".join(names)

@@ -1,24 +1,24 @@
 r"""Estimation by multiple shooting, with process noise.
 
-A run is cut into segments, each with an initial state of its own. Where one segment ends and the
-next begins the states may differ by process noise of strength q (in units of `Model.state_scale`):
+A run is cut into segments, each with an initial state of its own. Between the end of one segment
+and the start of the next, states may differ by process noise of strength q (times `state_scale`):
 
     E_r = sum of squared residuals of run r
           + sum over gaps |end_k - start_k+1|^2/((q scale)^2 + least^2)
 
-`least` is what machines of this kind differ by from any model (`Model.least_process_noise`). With
-q = 0 and least = 0 this is single shooting; with q large the segments are independent. A model that
-is right is best with next to none; one that lacks something needs as much as what it lacks. q is
-estimated by the marginal likelihood (Laplace's approximation), so that a wrong model is not asked
-to predict for longer than it can, and the parameters of a run are not bent by it.
+`least` is how far machines of this kind deviate from any model (`Model.least_process_noise`). With
+q = 0 and least = 0 this is single shooting; with q large the segments are independent. A correct
+model needs next to no process noise, an incomplete one as much as it lacks. q is estimated by
+marginal likelihood (Laplace's approximation), so that a wrong model is not asked to predict for
+longer than it can, and does not bias the parameters.
 
-The initial states are eliminated by a Schur complement, run by run. What a model lacks is not
-independent from sample to sample: a run's misfit beyond its noise counts as
+The initial states are eliminated by a Schur complement, run by run. Model error is correlated from
+sample to sample, so a run's misfit beyond the noise counts as
 
     loss = n + K log(1 + (E - n)/K),
 
-K the number of correlation times in the run's channels, n its degrees of freedom: the marginal of
-a variance of model error that is estimated from the run itself. Where the fit is good this is E.
+K the number of correlation times in the run's channels, n its degrees of freedom: the marginal
+likelihood with a model-error variance estimated from the run itself. For a good fit this is E.
 
 References: Bock (1983) for multiple shooting; Kristensen, Madsen, Jorgensen (2004) for process
 noise in grey-box models; Kennedy and O'Hagan (2001) for model error.
@@ -43,19 +43,19 @@ from rr_opt.sysid.settings import SETTINGS
 States = Mapping[Segment, Array]
 
 _ATTEMPTS = 8
-"""At a step, each less than a third of the one before."""
+"""Tries per step, each less than a third as long as the one before."""
 
 
 @dataclass(frozen=True)
 class Evidence:
-    """-2 log of a run's marginal likelihood, about where it was linearised.
+    """-2 log of a run's marginal likelihood, about the linearisation point.
 
     loss(d) = value + 2 g'd + d'Hd in the scaled quantities, the states eliminated
 
-    samples   independent ones with data, less the states
+    samples   effective number of independent samples, less the number of states
     excess    E - samples
-    log       of the states' determinants and the process noise's densities
-    shift     of the stacked initial states to their best;  follow  how that moves with d
+    log       log determinants of the states and of the process noise
+    shift     of the stacked initial states to their optimum;  follow  its derivative by d
     """
 
     samples: float
@@ -69,7 +69,7 @@ class Evidence:
 
     @classmethod
     def diverged(cls, samples: float, states: int, quantities: int) -> Evidence:
-        """Of a run that cannot be simulated there, or close by."""
+        """Of a run that cannot be simulated at or near this point."""
         g, H = np.zeros(quantities), np.zeros((quantities, quantities))
         shift, follow = np.zeros(states), np.zeros((states, quantities))
         return cls(samples, math.inf, math.inf, 0.0, g, H, shift, follow)
@@ -79,14 +79,14 @@ class Evidence:
         return float(self.value + 2 * self.g @ d + d @ self.H @ d)
 
     def spread(self, sigma: Array) -> Evidence:
-        """That of a run whose scaled quantities differ from the others' by as much (one sigma)."""
+        """The evidence if the run's scaled quantities deviate from the common ones by one sigma."""
         if not sigma.any() or math.isinf(self.value):
             return self
         H = self.H
         try:
             factor = cholesky(np.eye(sigma.size) + sigma[:, None] * H * sigma, lower=True)
         except LinAlgError:
-            # What elimination left negative says nothing.
+            # Negative curvature left by elimination carries no information.
             w, V = np.linalg.eigh(H)
             H = (V * np.maximum(w, 0)) @ V.T
             factor = cholesky(np.eye(sigma.size) + sigma[:, None] * H * sigma, lower=True)
@@ -103,15 +103,15 @@ class Evidence:
 
 
 def robust(excess: float, correlation_times: float) -> float:
-    """The part of a run's loss that is beyond its degrees of freedom."""
+    """A run's loss beyond its degrees of freedom."""
     if excess <= 0:
         return excess
     return correlation_times * math.log1p(excess / correlation_times)
 
 
 def root(H: Array) -> Array:
-    """The Cholesky factor (lower) of an information matrix, which elimination may have left a
-    little indefinite by rounding where the motion is unstable."""
+    """The Cholesky factor (lower) of an information matrix, which rounding in the elimination may
+    leave slightly indefinite where the motion is unstable."""
     for ridge in (0.0, 1e-12, 1e-9, 1e-6):
         try:
             return cholesky(H + ridge * np.diag(np.abs(np.diag(H))), lower=True)
@@ -154,29 +154,29 @@ class FitProblem:
 
     @cached_property
     def names(self) -> tuple[str, ...]:
-        """Of the quantities."""
+        """Names of the quantities."""
         return tuple(q.name for q in self.quantities)
 
     @cached_property
     def scale(self) -> Array:
-        """Of the quantities."""
+        """Scales of the quantities."""
         return np.array([q.scale for q in self.quantities])
 
     @cached_property
     def centre(self) -> Array:
-        """Of the quantities' prior."""
+        """Prior means of the quantities."""
         return np.array([q.centre for q in self.quantities])
 
     @cached_property
     def prior(self) -> Array:
-        """Precision of the scaled quantities."""
+        """Prior precisions of the scaled quantities."""
         wide = SETTINGS.effect_prior**-2
         return np.array([1.0 if q.known else wide for q in self.quantities])
 
     @cached_property
     def form(self) -> Array:
-        """By what share of its value each quantity of an effect differs between recordings, as
-        machines differ from the effect's model: one sigma."""
+        """Relative deviation of each effect's quantities between recordings, one sigma: its form
+        error."""
         catalogue = self.model.catalogue
         effects = [name.partition(".") for name in self.names]
         return np.array([catalogue[one].form_error if dot else 0.0 for one, dot, _ in effects])
@@ -198,27 +198,27 @@ class FitProblem:
         return out
 
     def scaled(self, values: Mapping[str, float]) -> Array:
-        """The quantities as multiples of their scales from the prior's centre."""
+        """The quantities relative to the prior's centre, in units of their scales."""
         own = np.array([values[name] for name in self.names])
         return (own - self.centre) / self.scale if own.size else np.zeros(0)
 
     def valued(self, u: Array) -> dict[str, float]:
-        """Every value."""
+        """All values, the scaled quantities converted back."""
         own = self.centre + self.scale * u
         return {**self.values, **dict(zip(self.names, own.tolist(), strict=True))}
 
     def requests(self, values: Mapping[str, float], states: States) -> list[Request]:
-        """All segments."""
+        """A request for every segment."""
         return [Request(one, values, states[one]) for one in self.segments]
 
     def correlation_times(self, run: int) -> float:
-        """In all channels of a run."""
+        """Number of correlation times in all channels of a run."""
         data = self.model.runs[run]
         return len(self.model.channels) * max(data.duration / self.model.correlation_time, 1.0)
 
     @cached_property
     def samples(self) -> Mapping[int, float]:
-        """Independent ones with data, of each run's segments."""
+        """Effective number of independent samples in each run's segments."""
         worth = {run: self.model.runs[run].worth for run in self.by_run}
         return {
             run: sum(worth[run](slice(s.first, s.until)) for s in parts)
@@ -227,7 +227,7 @@ class FitProblem:
 
     @cached_property
     def degrees(self) -> Mapping[int, float]:
-        """Of freedom: each run's samples less what its initial states take."""
+        """Degrees of freedom: each run's samples less its initial states."""
         states = self.model.state_scale(self.effects).size
         return {
             run: max(self.samples[run] - states * len(parts), 1.0)
@@ -235,14 +235,14 @@ class FitProblem:
         }
 
     def loss(self, run: int, misfit: float) -> float:
-        """Of a run with misfit E."""
+        """Loss of a run with misfit E."""
         if not self.robust or not np.isfinite(misfit):
             return misfit
         n = self.degrees[run]
         return n + robust(misfit - n, self.correlation_times(run))
 
     def process_noise(self, run: int, q: float) -> Array:
-        """Of each state over a segment of a run, with strength q: one sigma."""
+        """Process noise of each state over a segment of a run, with strength q: one sigma."""
         least = self.model.least_process_noise(run, self.effects)
         return np.hypot(q * self.model.state_scale(self.effects), least)
 
@@ -262,7 +262,7 @@ class FitProblem:
 
 @dataclass(frozen=True)
 class Linear:
-    """Segments' linearisations, so that other strengths of process noise cost nothing."""
+    """Linearised segments, so that trying other strengths of process noise is cheap."""
 
     problem: FitProblem
     made: Mapping[Segment, Simulation]
@@ -271,7 +271,7 @@ class Linear:
 
     @classmethod
     def of(cls, problem: FitProblem, values: Mapping[str, float], states: States, made) -> Linear:
-        """At a point that was simulated."""
+        """Linearise at a point that was simulated."""
         requests = problem.requests(values, states)
         every = problem.model.linearise(requests, problem.effects, problem.names)
         size = requests[0].state.size
@@ -284,21 +284,21 @@ class Linear:
         return cls(problem, made, parts, states)
 
     def evidence(self, run: int, q: float) -> Evidence:
-        """A run's, with process noise of strength q."""
+        """Evidence of a run with process noise of strength q."""
         problem, parts = self.problem, self.problem.by_run[run]
         model = problem.model
         scale, known = model.state_scale(problem.effects), model.state_prior(problem.effects)
         noise = problem.process_noise(run, q)
         size, count, prior = scale.size, len(parts), 1 / known**2
         grams, by, states, gaps = self._stacked[run]
-        # Of the states, of the quantities or whatever else was linearised in, and across.
+        # Blocks of the states (S), of the quantities or other columns (H), and between (across).
         nq, each, own = by.shape[2] - size, np.arange(count), size * count
         S, g = np.zeros((count, size, count, size)), grams[:, :size, -1] + prior * states
         S[each, :, each, :] = grams[:, :size, :size] + np.diag(prior)
         across, H = grams[:, :size, size:-1].copy(), grams[:, size:-1, size:-1].sum(axis=0)
         g_shared = grams[:, size:-1, -1].sum(axis=0)
         value = float(grams[:, -1, -1].sum() + np.sum(prior * states**2))
-        # Where one segment ends and the next begins.
+        # Gaps between segments.
         tight = noise**-2
         pull = by.transpose(0, 2, 1) * tight
         both, towards = pull @ by, (pull @ gaps[..., None])[..., 0]
@@ -317,7 +317,7 @@ class Linear:
         n = problem.degrees[run]
         if not (np.isfinite(S).all() and np.isfinite(H).all() and np.isfinite(value)):
             return Evidence.diverged(n, own, nq)
-        # In the states' own scales, as their units differ.
+        # Scaled, as the states' units differ.
         units = np.tile(scale, count)
         S = S.reshape(own, own) * units * units[:, None]
         S[np.diag_indices(own)] += 1e-12 * np.trace(S) / own
@@ -344,8 +344,8 @@ class Linear:
 
     @cached_property
     def _stacked(self) -> Mapping[int, tuple[Array, Array, Array, Array]]:
-        """Of each run's segments: the grams; of all but the last how their ends move; the initial
-        states; and the gaps between the ends and what begins there."""
+        """By run, stacked over its segments: grams; derivatives of all ends but the last; initial
+        states; gaps between each end and the next initial state."""
         out = {}
         for run, parts in self.problem.by_run.items():
             states = np.array([self.states[one] for one in parts])
@@ -359,14 +359,14 @@ class Linear:
         return out
 
     def evidences(self, q: float) -> dict[int, Evidence]:
-        """Those of all runs."""
+        """Evidences of all runs."""
         return {run: self.evidence(run, q) for run in self.problem.by_run}
 
     def moved(
         self, evidences: Mapping[int, Evidence], d: Array, shares: Mapping[int, float] | None = None
     ) -> dict[Segment, Array]:
-        """The states after a change d of the quantities, all the way to their best, or in each
-        run a share of it."""
+        """The states after a change d of the quantities, shifted to their optimum, or in each run
+        by a share of that shift."""
         out = {}
         for run, parts in self.problem.by_run.items():
             e = evidences[run]
@@ -393,7 +393,7 @@ class Fit:
 
     @property
     def effects(self) -> tuple[str, ...]:
-        """That were fitted."""
+        """Names of the fitted effects."""
         return self.problem.effects
 
     @cached_property
@@ -407,17 +407,17 @@ class Fit:
         return _deviance(self.problem, self.evidences, self.u)
 
     def deviance_of(self, runs: Iterable[int]) -> float:
-        """That of some runs alone, at these values."""
+        """The deviance of some runs alone, at these values."""
         return _deviance(self.problem, {run: self.evidences[run] for run in runs}, self.u)
 
     @cached_property
     def marginal(self) -> Mapping[int, Evidence]:
-        """The evidences, where each run may have values of its own, about the common ones."""
+        """Evidences if each run's values may deviate from the common ones by the form error."""
         sigma = np.abs(self.problem.form * (self.u + self.problem.centre / self.problem.scale))
         return {run: e.spread(sigma) for run, e in self.evidences.items()}
 
     def _least(self, evidences: Mapping[int, Evidence]) -> float:
-        """The deviance of runs, at their own best."""
+        """Deviance of runs at their own optimum."""
         problem = self.problem
         H, g, value = summed(problem, evidences, self.u)
         if not self.u.size:
@@ -432,13 +432,13 @@ class Fit:
 
     @cached_property
     def predictive(self) -> Mapping[int, float]:
-        """Log density of each run as the others predict it."""
+        """Log predictive density of each run given the others."""
         every = self._least(self.marginal)
         return {run: (self._least(_but(self.marginal, run)) - every) / 2 for run in self.marginal}
 
     @property
     def samples(self) -> float:
-        """Independent ones with data, less the states."""
+        """Effective number of independent samples, less the number of states."""
         return sum(e.samples for e in self.evidences.values())
 
     @property
@@ -459,7 +459,7 @@ def _deviance(problem: FitProblem, evidences: Mapping[int, Evidence], u: Array) 
 
 
 def _volume(problem: FitProblem, H: Array) -> float:
-    """Of the prior over that of the posterior, -2 log of their ratio."""
+    """-2 log of the posterior's volume over the prior's (Occam factor)."""
     if not problem.quantities:
         return 0.0
     return 2 * float(np.sum(np.log(np.diag(root(H))))) - float(np.sum(np.log(problem.prior)))
@@ -479,15 +479,15 @@ def solve(
     trust region.
 
     tolerance  expected gain, in nats, below which a fit has converged
-    relative   the same as a share of what is left beyond the noise
-    enough     deviance that is of interest; a fit that would not come there at its pace is given up
-    known      the linearisation there, of this problem or of one with other process noise
+    relative   the same, as a share of the misfit beyond the noise
+    enough     deviance to reach; a fit that is too slow to get there is given up
+    known      linearisation at the start, of this problem or of one with other process noise
     """
     low, high = problem.box
     u = np.clip(problem.scaled(values), low, high)
     here = _Point.of(problem, u, states, known and known.made)
     if known is None:
-        # States that went astray with other values would not come back.
+        # States that went astray with other values may not recover: try fresh ones too.
         own = {one: problem.model.initial_state(one, problem.effects, problem.valued(u))
                for one in problem.segments}  # fmt: skip
         if any(not np.array_equal(own[one], states[one]) for one in own):
@@ -563,7 +563,7 @@ class _Point:
         return cls(problem, u, states, made, losses)
 
     def joined(self, other: _Point) -> _Point:
-        """Of each run the better; the other may lack some."""
+        """The better of both, run by run; the other may lack some runs."""
         runs = [
             run
             for run, loss in other.losses.items()
@@ -586,7 +586,7 @@ class _Trust:
     """How far the linearisation is trusted.
 
     radius   longest step, in scaled quantities
-    stretch  of a step: robust losses bend less than their linearisation, so it may be twice as long
+    stretch  factor on a step, up to 2: robust losses are less curved than their quadratic model
     """
 
     radius: float = SETTINGS.stride
@@ -596,8 +596,8 @@ class _Trust:
 def _stepped(
     linear: Linear, evidences: Mapping[int, Evidence], here: _Point, trust: _Trust, least: float
 ) -> tuple[_Point | None, float]:
-    """A better point, and the gain expected of the step to it; None where less than `least` is
-    expected, or nothing gains. The states of runs that a step makes worse go a share of it."""
+    """A better point, and the gain expected of the step to it; None if that is below `least` or no
+    step gains. In runs that a step makes worse, the states take only a share of it."""
     problem, expected = linear.problem, 0.0
     low, high = problem.box
     shares = dict.fromkeys(problem.by_run, 1.0)
@@ -657,7 +657,7 @@ def _cost(problem: FitProblem, u: Array, losses: Mapping[int, float]) -> float:
 
 
 def grid() -> list[float]:
-    """Strengths of process noise, half decades."""
+    """Strengths of process noise to try, in half decades."""
     first, last = SETTINGS.least_process_noise, SETTINGS.most_process_noise
     count = round(2 * math.log10(last / first))
     return [first * 10 ** (k / 2) for k in range(count + 1)]
@@ -682,9 +682,9 @@ def fitted(
 ) -> Fit:
     """The problem's solution with the most likely process noise.
 
-    First with that of the guess, then as long as less of it makes the recordings likelier.
+    Starting from the initial strength; then with less, as long as the likelihood rises.
 
-    enough  deviance; a fit that will not come there need not be taken to its end
+    enough  deviance to reach; a fit that will not get there is stopped early
     """
     if all(len(parts) == 1 for parts in problem.by_run.values()):
         return solve(problem, values, states, steps, tolerance)
@@ -714,23 +714,23 @@ def initial(
     runs: Iterable[int],
     length: float | None = None,
 ) -> tuple[FitProblem, dict[Segment, Array]]:
-    """The problem of some runs, and states to begin with."""
+    """The problem for some runs, and initial guesses of its states."""
     cut = segments({r: model.runs[r] for r in runs}, length or model.segment_length)
     problem = FitProblem(model, effects, quantities, cut, values)
     return problem, {one: model.initial_state(one, effects, values) for one in cut}
 
 
 def whole_runs(fit: Fit) -> Fit:
-    """The same quantities by least squares over whole runs, or windows as long as the machine can
-    be predicted: what the model predicts unaided."""
+    """The same quantities fitted by least squares over whole runs, or over windows as long as the
+    machine can be predicted: how well the model predicts unaided."""
     single, states = _whole(fit, fit.problem.by_run, fit.values)
-    # What is left has to be known to a fraction of what would be negligible, or of itself.
+    # The misfit has to be known to a fraction of the negligible level, or of itself.
     enough = SETTINGS.known * SETTINGS.negligible**2 * fit.samples
     return solve(single, fit.values, states, tolerance=enough, relative=SETTINGS.known_share)
 
 
 def predicted(fit: Fit, runs: Iterable[int], values: Mapping[str, float]) -> Fit:
-    """Any runs, whole or in such windows, with these values: initial states alone are fitted."""
+    """Any runs, whole or in such windows, with these values; only initial states are fitted."""
     single, states = _whole(fit, runs, values)
     return solve(replace(single, quantities=(), values=dict(values)), values, states)
 
@@ -738,7 +738,7 @@ def predicted(fit: Fit, runs: Iterable[int], values: Mapping[str, float]) -> Fit
 def _whole(
     fit: Fit, runs: Iterable[int], values: Mapping[str, float]
 ) -> tuple[FitProblem, dict[Segment, Array]]:
-    """Least squares over whole runs, and states to begin with: the fit's own where it has them."""
+    """Least squares over whole runs, and initial states: the fit's own where it has them."""
     problem = fit.problem
     cut = segments({r: problem.model.runs[r] for r in runs}, problem.model.horizon)
     begun = {(s.run, s.first): state for s, state in fit.states.items()}

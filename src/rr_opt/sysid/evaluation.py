@@ -1,4 +1,4 @@
-"""What a model with its values leaves of every recording, also of those it was not fitted to."""
+"""Residuals of a model with given values on every recording, including held-out ones."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -16,14 +16,14 @@ from rr_opt.sysid.model import Request
 @dataclass(frozen=True)
 class Evaluation:
     """Recordings simulated with given values, whole or in windows as long as the machine can be
-    predicted; initial states alone are fitted."""
+    predicted; only initial states are fitted."""
 
     values: Mapping[str, float]
     misfits: tuple[Misfit, ...]
 
     @property
     def rms(self) -> float:
-        """In sigma over the held-out recordings; over all of them where none is held out."""
+        """RMS in sigma over the held-out recordings; over all of them where none is held out."""
         held = [one for one in self.misfits if one.held_out] or list(self.misfits)
         return rms(held)
 
@@ -34,13 +34,13 @@ class Evaluation:
 
 
 def rms(misfits: Sequence[Misfit]) -> float:
-    """In sigma, of all values."""
+    """RMS in sigma over all values."""
     every = np.concatenate([one.residuals.ravel() for one in misfits])
     return float(np.sqrt(np.nanmean(every**2)))
 
 
 def mismatch(base: Candidate) -> Mismatch:
-    """Whether the nominal model with its parameters fitted leaves more than noise."""
+    """Whether the nominal model, its parameters fitted, leaves more than noise."""
     fit = base.fit
     misfit = fit.samples + sum(e.excess for e in fit.evidences.values())
     degrees = max(fit.samples - len(fit.problem.names), 1)
@@ -48,7 +48,7 @@ def mismatch(base: Candidate) -> Mismatch:
 
 
 def evaluation(fit: Fit, values: Mapping[str, float]) -> Evaluation:
-    """Of all runs of the fit's model, with its effects and with these values."""
+    """Evaluate all runs of the fit's model, with its effects and these values."""
     model = fit.problem.model
     single = predicted(fit, range(len(model.runs)), values)
     return Evaluation(values, tuple(_misfit(single, k) for k in range(len(model.runs))))

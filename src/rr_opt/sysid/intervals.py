@@ -1,9 +1,8 @@
-"""How sure fitted values are, and which of the believed ones are wrong.
+"""Confidence intervals of fitted values, and which nominal values are wrong.
 
-The information H that the likelihood has is one estimate of the scores' covariance; how the scores
-of recordings scatter is another, which does not rest on the model being right (Huber 1967, White
-1982). With few recordings the second is uncertain itself, so that both are averaged, each counted
-as many times as there are recordings:
+The likelihood's information H is one estimate of the covariance of the scores; their scatter over
+recordings is another, which does not rest on the model being right (Huber 1967, White 1982). With
+few recordings the second is itself uncertain, so both are averaged with equal weight:
 
     V = H^-1 (P + (B_model + B_recordings)/2) H^-1,    P the prior's precision.
 """
@@ -25,7 +24,7 @@ _Z = -float(ndtri(0.025))
 
 
 def covariance(fit: Fit) -> Array:
-    """Of the scaled quantities (nq, nq); see above."""
+    """Covariance of the scaled quantities (nq, nq); see above."""
     every = list(fit.marginal.values())
     prior = np.diag(fit.problem.prior)
     model = sum((e.H for e in every), np.zeros_like(prior))
@@ -50,11 +49,11 @@ def estimates(fit: Fit) -> dict[str, Estimate]:
 
 
 def surprises(fit: Fit) -> Array:
-    """How far each quantity is from what was believed, as a standard normal if all is well.
+    """How far each quantity is from its nominal value: a standard normal if that is right.
 
-    The rest says u/(1 - s^2) of a parameter with u, s its value and standard deviation in prior
-    standard deviations; of that u/sqrt(1 - s^2) is the deleted residual. Of a value that was known
-    only to within a factor it is the distance in its own standard deviations.
+    With u, s a parameter's value and standard deviation in prior standard deviations, the data
+    alone put it at u/(1 - s^2); u/sqrt(1 - s^2) is the deleted residual. For a value known only to
+    within a factor it is the distance in its own standard deviations.
     """
     quantities = fit.problem.quantities
     if not quantities:
@@ -71,20 +70,20 @@ def surprises(fit: Fit) -> Array:
 
 
 def limit(fit: Fit) -> float:
-    """Beyond which a surprise is one, all of them looked at together."""
+    """Threshold of |surprise|, corrected for testing all values at once."""
     known = sum(q.known for q in fit.problem.quantities)
     return -float(ndtri(SETTINGS.false_alarm / (2 * max(known, 1))))
 
 
 def wrong(fit: Fit) -> list[Quantity]:
-    """The parameters whose values are not what was believed."""
+    """The parameters whose nominal values are wrong."""
     over = np.abs(surprises(fit)) > limit(fit)
     return [q for q, off in zip(fit.problem.quantities, over, strict=True) if off]
 
 
 def released(fit: Fit) -> Fit:
-    """With nothing believed any more of the values that are certainly wrong, one after the other:
-    many small surprises are likelier than a large one, so each draws others with it."""
+    """The fit without the priors of values that are certainly wrong, released one at a time: priors
+    spread one large deviation over several values, so each wrong value biases others."""
     for _ in range(SETTINGS.most_effects):
         held = np.array([not q.free for q in fit.problem.quantities], bool)
         size = np.abs(surprises(fit)) * held
@@ -101,7 +100,7 @@ def released(fit: Fit) -> Fit:
 
 
 def named(fit: Fit, prefix: str) -> Mapping[str, Estimate]:
-    """The estimates of an effect's quantities, by their own names."""
+    """The estimates of an effect's quantities, by name without the effect's prefix."""
     start = f"{prefix}."
     return {
         name.removeprefix(start): one

@@ -1,4 +1,4 @@
-"""A machine: a model that also knows where to look for what it lacks, and what that is worth."""
+"""A machine: a model that also proposes what it may lack, and says what an answer is worth."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ CONSTANT = "nothing"
 class Term:
     """An unknown input in a channel as functions of a variable.
 
-    columns  of the linearisation that are its own, counted behind the quantities
-    unit     of the variable;  at (k,) where the input is shown;  shapes (k, columns) there, so that
-             amounts times shapes is the input
+    columns  its columns of the linearisation, counted after the quantities
+    unit     of the variable;  at (k,) points where the input is evaluated;  shapes (k, columns) its
+             basis functions there
     """
 
     channel: str
@@ -35,39 +35,39 @@ class Term:
 class MachineModel(Model, Protocol):
     """A model with ways to propose what is missing from it.
 
-    inputs          channels by which an unknown input may enter, and each input in words
+    inputs          channels through which an unknown input may enter, and each input in words
     """
 
     @property
     def inputs(self) -> Mapping[str, str]: ...  # noqa: D102
 
     def upstream(self) -> Sequence[tuple[tuple[Choice, ...], Mapping[str, float]]]:
-        """Sets of effects of the drive, and their values, that explain its own recording; the
-        simplest first among equals. One empty set where the nominal drive does."""
+        """Sets of drive effects, with values, that explain the drive's own recording; the simplest
+        first among equals. One empty set if the nominal drive explains it."""
         ...
 
     def proposals(
         self, fit: Fit, complete: Sequence[str]
     ) -> Sequence[tuple[Choice, Mapping[str, float]]]:
-        """Initial guesses of effects that a score test cannot see, beside a fit without them."""
+        """Initial guesses of effects that a score test cannot detect, given a fit without them."""
         ...
 
     def with_noise(self, noise: Sequence[ChannelNoise]) -> MachineModel:
-        """The same machine and runs with other noise in each channel, in units of that here."""
+        """The same machine and runs with other noise in each channel, relative to the present."""
         ...
 
     def unknown_inputs(self, fit: Fit) -> tuple[Sequence[Term], Mapping[Segment, Linearisation]]:
-        """What may push the machine that a fit lacks, as functions of what it may depend on; and
-        the fit's segments linearised in the quantities and in these functions."""
+        """Unknown inputs that a fit may lack, as functions of what they may depend on; and the
+        fit's segments linearised in the quantities and in these functions."""
         ...
 
     def equivalent(self, values: Mapping[str, float]) -> Mapping[str, float] | None:
-        """Values that predict the same and are nearer to what was believed, if there are any."""
+        """Values that predict the same and are nearer to the nominal ones, if there are any."""
         ...
 
     def next_experiment(self, best: Fit, rival: tuple[str, Fit] | None) -> NextExperiment | None:
-        """The recording that would tell the answer from its rival, the candidate that comes next,
-        with its name; or that would narrow most the value known worst."""
+        """The recording that would best discriminate between the answer and its rival, the
+        runner-up with its name; or that would most narrow the least certain value."""
         ...
 
     def worth(self, before: Sequence[Misfit], after: Sequence[Misfit]) -> str:

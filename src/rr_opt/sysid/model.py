@@ -1,4 +1,4 @@
-"""What system identification needs of a machine: the protocol that a model answers.
+"""What system identification needs of a machine: the protocol that a model implements.
 
 A model has runs that were recorded, quantities (the parameters it always has, and those of its
 effects), and a state that it steps. Runs are cut into segments, each with an initial state of its
@@ -23,11 +23,11 @@ class Quantity:
 
     value       its nominal value; an effect's neutral one
     scale       one standard deviation of what was known before, or the usual size of an effect
-    known       whether `scale` is knowledge (a prior) or only a size
+    known       whether `scale` is prior knowledge or only a typical size
     low, high   bounds
     neutral     where an effect vanishes; for a parameter its nominal value
     free        known only to within a factor: another value is no surprise, but a finding
-    form_error  by what share of its value models of the effect differ in it, one sigma
+    form_error  relative deviation between models of the effect in this value, one sigma
     """
 
     name: str
@@ -43,7 +43,7 @@ class Quantity:
 
     @property
     def centre(self) -> float:
-        """The mean of its prior; an effect that vanishes at infinity is about its usual size."""
+        """The mean of its prior; for an effect that vanishes at infinity, its usual size."""
         if self.known:
             return self.value
         return (
@@ -64,10 +64,10 @@ class EffectInfo:
     """An effect that may be missing from the nominal model.
 
     channel     where it would show
-    smooth      the prediction has derivatives by its quantities where it vanishes, so that a score
-                test can see it
-    upstream    it changes what drives the machine, which is recorded by itself
-    form_error  by how much, relative, machines differ from this model of the effect
+    smooth      the prediction is differentiable in its quantities where it vanishes, so that a
+                score test can detect it
+    upstream    it changes the machine's drive, which is recorded separately
+    form_error  relative deviation of machines from this model of the effect
     """
 
     name: str
@@ -92,9 +92,9 @@ class Choice:
 class ChannelNoise:
     """The noise of a channel.
 
-    level        standard deviation, in units of that assumed
-    correlation  its power at low frequencies over that of white noise of this level: as many
-                 samples are worth one independent one
+    level        standard deviation, relative to that assumed
+    correlation  its power at low frequencies over that of white noise of this level: the number of
+                 samples worth one independent one
     """
 
     level: float = 1.0
@@ -102,11 +102,11 @@ class ChannelNoise:
 
     @property
     def quieter(self) -> bool:
-        """Whether its level is surely less than that assumed."""
+        """Whether its level is certainly below that assumed."""
         return math.log(self.level) < -SETTINGS.misstated
 
     def differs(self, correlation: float = 1.0) -> bool:
-        """Whether it surely differs from noise of the level and with the correlation assumed."""
+        """Whether it certainly differs from the assumed level and correlation."""
         longer = abs(math.log(self.correlation / correlation))
         return abs(math.log(self.level)) > SETTINGS.misstated or longer > math.log(
             SETTINGS.correlated
@@ -117,7 +117,7 @@ class ChannelNoise:
 class Data:
     """One recorded run: t (n,) s; values, sigma (n, channels), NaN where there are no data.
 
-    correlation  (channels,) samples that are worth one with independent noise
+    correlation  (channels,) number of samples worth one with independent noise
     """
 
     name: str
@@ -129,16 +129,16 @@ class Data:
 
     @property
     def weighted_sigma(self) -> Array:
-        """(n, channels) with which the samples, taken as independent, weigh what they are worth."""
+        """Sigma (n, channels) raised so that correlated samples may be treated as independent."""
         return self.sigma * np.sqrt(self.correlation)
 
     def worth(self, span: slice) -> float:
-        """Of the samples with data: as many independent ones."""
+        """Effective number of independent samples in a span."""
         return float(np.sum(np.isfinite(self.values[span]).sum(axis=0) / self.correlation))
 
     @property
     def duration(self) -> float:
-        """Of the recording, s."""
+        """Length of the recording, s."""
         return float(self.t[-1] - self.t[0])
 
 
@@ -164,7 +164,7 @@ def segments(runs: Mapping[int, Data], length: float = np.inf) -> tuple[Segment,
     for run, data in runs.items():
         parts = max(round(data.duration / length), 1)
         begun = np.searchsorted(data.t, np.linspace(data.t[0], data.t[-1], parts + 1)[:-1])
-        # In a hole nothing begins, nor at the last sample, after which there is no step.
+        # No segment begins in a gap, nor at the last sample, which no step follows.
         inner = np.unique(begun[(begun > 0) & (begun < data.t.size - 1)])
         for first, until in itertools.pairwise([0, *inner.tolist(), data.t.size]):
             out.append(Segment(run, first, until, min(until, data.t.size - 1)))
@@ -182,8 +182,8 @@ class Request:
 
 @dataclass(frozen=True)
 class Simulation:
-    """What a segment's simulation leaves: residuals (n, channels) in sigma, 0 where there are no
-    data; the state at its end."""
+    """A simulated segment: residuals (n, channels) in sigma, 0 where there are no data; the state
+    at its end."""
 
     residuals: Array
     end: Array
@@ -198,7 +198,7 @@ class Simulation:
 @dataclass(frozen=True)
 class Linearisation:
     """gram  J'J with J = [by the state | by the quantities | residual], in sigmas
-    end   (size, size + quantities) of the state at the end, by the initial state and quantities"""
+    end   (size, size + quantities) derivatives of the final state by initial state, quantities"""
 
     gram: Array
     end: Array
@@ -210,14 +210,14 @@ class Model(Protocol):
     channels        what is recorded, in order
     runs            recorded
     segment_length  s, over which the machine is simulated as well as it is known
-    horizon         s, over which its simulation says anything: recordings are predicted in windows
+    horizon         s, beyond which a simulation says nothing: recordings are predicted in windows
                     of this length, each with its own initial state; inf: whole
-    bandwidth       Hz; what moves slower may be the machine, what is faster is noise
+    bandwidth       Hz; slower motion may be the machine's, anything faster is noise
     correlation_time  s, after which errors of the model are independent
     parameters      of the nominal model, with what is known of each
     catalogue       the effects it knows, by name
-    form_error      RMS in sigma by which machines of this kind differ from any model of them, and
-                    by which noise of their inputs moves them
+    form_error      RMS in sigma by which machines of this kind deviate from any model of them,
+                    noise of their inputs included
     """
 
     @property
@@ -242,7 +242,7 @@ class Model(Protocol):
     def initial_state(
         self, segment: Segment, effects: tuple[str, ...], values: Mapping[str, float]
     ) -> Array:
-        """A first guess of the state in which a segment begins."""
+        """An initial guess of the state at the start of a segment."""
         ...
 
     def converted(
@@ -252,16 +252,16 @@ class Model(Protocol):
         ...
 
     def state_scale(self, effects: tuple[str, ...]) -> Array:
-        """By how much process noise of strength 1 moves each state over a segment."""
+        """Standard deviation of each state's process noise over a segment, at strength 1."""
         ...
 
     def least_process_noise(self, run: int, effects: tuple[str, ...]) -> Array:
-        """By how much machines of this kind move each state over a segment of a run, whatever the
-        model."""
+        """Process noise of each state over a segment of a run that machines of this kind have under
+        any model, one sigma."""
         ...
 
     def state_prior(self, effects: tuple[str, ...]) -> Array:
-        """One sigma of each state that is known to be about 0; else inf."""
+        """Prior standard deviation of each state that is known to be about 0; else inf."""
         ...
 
     def simulate(
@@ -277,5 +277,5 @@ class Model(Protocol):
         ...
 
     def predicted(self, request: Request, effects: tuple[str, ...]) -> Array:
-        """What would be recorded of a segment (n, channels)."""
+        """The predicted recording of a segment (n, channels)."""
         ...

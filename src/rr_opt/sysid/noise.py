@@ -1,13 +1,13 @@
-"""The noise of recordings, as the data show it: its level, and how it is correlated in time.
+"""The noise of recordings, estimated from the data: its level and its correlation in time.
 
-What a capture system states is the level of white noise. Filters, markers that are tracked from
-frame to frame and wrong data sheets make it another one, and what counts for slow motion is the
-spectrum at low frequencies: samples that repeat one another say less.
+Capture systems state the level of white noise. Filters, frame-to-frame tracking of markers and
+wrong data sheets change it, and what counts for slow motion is the spectrum at low frequencies:
+correlated samples carry less information.
 
-The residuals of a fit hold the noise and what the model lacks. The latter is slow, or repeats with
-the gait, and so stands in a few lines of the spectrum. The noise's spectrum is therefore estimated
-by medians over neighbouring frequencies and over runs, which lines do not move, and extrapolated
-to low frequencies as that of an exponentially correlated process, 1/S = (1 + f^2/f0^2)/S0.
+The residuals of a fit contain noise and model error. Model error is slow or repeats with the gait,
+and so occupies a few lines of the spectrum. The noise spectrum is therefore estimated by medians
+over neighbouring frequencies and over runs, which lines do not affect, and extrapolated to low
+frequencies as that of an exponentially correlated process, 1/S = (1 + f^2/f0^2)/S0.
 """
 
 import math
@@ -22,18 +22,18 @@ from rr_opt.sysid.model import ChannelNoise
 from rr_opt.sysid.settings import SETTINGS
 
 _BINS = 48
-"""Of the spectrum above the slow band, as wide as their frequency is high."""
+"""Frequency bins above the slow band, logarithmically spaced."""
 
 _NEAR = 3.0
-"""Times the slow band's edge, up to which the spectrum is extrapolated from."""
+"""The spectrum is extrapolated from frequencies up to this many times the slow band's edge."""
 
 
 def noise_in(fit: Fit) -> list[ChannelNoise] | None:
-    """That of each channel, from what a fit of whole runs leaves, as seams of segments would look
-    like noise; None if it is as assumed."""
+    """Noise of each channel, from the residuals of a fit of whole runs, as seams between segments
+    would look like noise; None if it is as assumed."""
     problem = fit.problem
     channels = len(problem.model.channels)
-    # How runs are correlated is a property of the channels.
+    # Correlation is a property of the channels, the same in every run.
     assumed = np.broadcast_to(next(iter(problem.model.runs)).correlation, channels)
     runs = {
         run: np.concatenate(
@@ -52,7 +52,7 @@ def noise_in(fit: Fit) -> list[ChannelNoise] | None:
 
 
 def _levelled(residuals: Sequence[Array], steps: Sequence[float], slow: float) -> ChannelNoise:
-    """The noise in residuals, at their own level where that is as near as spectra tell."""
+    """The noise in residuals; its level is their RMS if the spectral estimate is close to that."""
     noise = noise_of(residuals, steps, slow)
     every = np.concatenate(residuals)
     rms = float(np.sqrt(np.mean(every[every != 0] ** 2))) if every.any() else noise.level
@@ -66,7 +66,7 @@ def noise_of(
     """The noise in residuals (n,) of runs, in the units stated, 0 where there are no data.
 
     steps    between the samples of each, s
-    slowest  Hz; what is slower may be the machine
+    slowest  Hz; anything slower may be the machine's motion
     """
     fastest = 0.5 / max(steps)
     if fastest < _NEAR * slowest:
@@ -81,7 +81,7 @@ def noise_of(
         power = np.abs(np.fft.rfft(window * r)) ** 2 / weight
         at = np.digitize(np.fft.rfftfreq(r.size, step), edges) - 1
         for k in np.unique(at[(at >= 0) & (at < _BINS)]):
-            # The median of an exponential distribution, small samples' too.
+            # Mean power from the median of an exponential distribution, also of few values.
             few = np.sort(power[at == k])
             mean = float(np.median(few)) / _median(few.size)
             density[k].append(mean)
@@ -100,7 +100,7 @@ def noise_of(
 
 
 def _median(n: int) -> float:
-    """Of n values that are exponentially distributed with mean 1, on average."""
+    """Expected median of n exponentially distributed values with mean 1."""
     return (
         float(np.sum(1 / np.arange((n + 1) // 2, n + 1)))
         if n % 2

@@ -1,9 +1,9 @@
-"""What a fit leaves: where it enters, and what it depends on.
+"""The residual of a fit: where a missing input enters, and what it depends on.
 
-An unknown input, a force or a motion that the model lacks, is tried as a few functions of one
-variable at a time. A score test says how much likelier each makes the recordings; nothing has to
-be fitted. An input enters by a channel of the machine, a force or a motion. The channel whose input
-explains most is at fault; the others follow the motion.
+An unknown input, a force or motion that the model lacks, is expanded in a few functions of one
+variable at a time. A score test gives the gain in likelihood of each without fitting it. An input
+enters through a channel of the machine. The channel whose input explains most is at fault; the
+others follow the motion.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -25,9 +25,9 @@ from rr_opt.sysid.settings import SETTINGS
 class Dependence:
     """What a term explains.
 
-    gain   of the log likelihood ratio statistic (twice the log), chi-square with as many degrees of
-           freedom as the term has functions if nothing is missing
-    share  of the loss beyond the noise, 0 to 1, that goes with it
+    gain   likelihood ratio statistic (twice the log); if nothing is missing, chi-square with one
+           degree of freedom per function of the term
+    share  of the loss beyond the noise, 0 to 1, that it removes
     curve  the input as a function of the variable
     """
 
@@ -43,17 +43,17 @@ class Dependence:
 
     @property
     def variable(self) -> str:
-        """What it is a function of."""
+        """The variable that it is a function of."""
         return self.term.variable
 
     @property
     def degrees(self) -> int:
-        """Of freedom."""
+        """Degrees of freedom."""
         return len(self.term.columns)
 
     @property
     def surplus(self) -> float:
-        """Gain beyond what noise hardly ever gains; 0 if there is none."""
+        """Gain beyond the threshold that noise hardly ever reaches; 0 if below."""
         return max(self.gain - float(chdtri(self.degrees, SETTINGS.certain)), 0.0)
 
     @property
@@ -70,7 +70,7 @@ class Dependence:
 def dependences(
     fit: Fit, terms: Sequence[Term], parts: Mapping[Segment, Linearisation]
 ) -> list[Dependence]:
-    """What each term explains beside the fit; most first."""
+    """What each term explains of the fit's residual; most first."""
     if not terms:
         return []
     problem = fit.problem
@@ -102,7 +102,7 @@ def dependences(
     )
 
     def best(keep: NDArray[np.intp]) -> tuple[float, Array]:
-        # Within the quantities' bounds: what one would gain beyond its own is not explained.
+        # Bounded: a gain that takes a quantity beyond its bounds does not count as explained.
         own = H[np.ix_(keep, keep)]
         d = bounded_minimum(own, g[keep], low[keep], high[keep])
         return -float(2 * g[keep] @ d + d @ own @ d), d
@@ -127,8 +127,8 @@ def stages(
     """The best input of each channel.
 
     inputs  the channels, and each input in words
-    excess  RMS in sigma that there is to explain
-    faulty  whether anything is left out, so that the leading channel is at fault
+    excess  misfit to explain, RMS in sigma
+    faulty  whether anything is missing, so that the leading channel is at fault
     """
     best = {
         channel: max((one for one in found if one.channel == channel), key=lambda one: one.gain)
@@ -152,7 +152,7 @@ def stages(
 
 
 def where(one: Dependence, inputs: Mapping[str, str]) -> str:
-    """An input and what it depends on, in words; empty if it may be none."""
+    """An input and what it depends on, in words; empty if it is not significant."""
     if not one.certain:
         return ""
     if one.variable == CONSTANT:
@@ -162,7 +162,7 @@ def where(one: Dependence, inputs: Mapping[str, str]) -> str:
 
 
 def residues(found: Sequence[Dependence], inputs: Mapping[str, str]) -> Iterator[Residue]:
-    """What is left as functions of what it depends on, the two strongest."""
+    """The residual as a function of what it depends on: the two strongest dependences."""
     shown = [one for one in found if one.certain and one.curve.at.size]
     for one in shown[:2]:
         sentence = (

@@ -1,8 +1,8 @@
 """Score tests: what each smooth effect would gain, from one linearised pass for all of them.
 
-At a fit without an effect the likelihood's slope by the effect's quantities is its score. With the
-information matrix it says what a Newton step would gain, in likelihood, everything else refitted
-(Rao 1948), and where that step leads: a first guess. Only the few that promise most are fitted.
+At a fit without an effect, the log likelihood's gradient by the effect's quantities is its score.
+With the information matrix it gives the likelihood gain of a Newton step, everything else refitted
+(Rao 1948), and an initial guess. Only the few most promising effects are fitted.
 """
 
 import itertools
@@ -18,8 +18,8 @@ from rr_opt.sysid.model import Choice, Request
 
 @dataclass(frozen=True)
 class Score:
-    """What some effects promise beside a fit: -2 log likelihood gained less the price of their
-    quantities, and the values to begin with."""
+    """Expected gain of adding some effects to a fit, in -2 log likelihood less the Occam penalty of
+    their quantities, and initial values."""
 
     choices: tuple[Choice, ...]
     gain: float
@@ -27,7 +27,7 @@ class Score:
 
 
 def scores(fit: Fit, most: int = 2) -> list[Score]:
-    """Of all smooth effects that the fit has not, and of all pairs of them; best first."""
+    """Scores of all smooth effects that the fit lacks, and of all pairs of them; best first."""
     model, problem = fit.problem.model, fit.problem
     choices = [
         Choice(name, form)
@@ -85,7 +85,7 @@ class _Test:
     prior: Array
 
     def gain(self, own: Sequence[int]) -> tuple[float, Array]:
-        """Of -2 log marginal likelihood with some further columns, and the step."""
+        """Gain in -2 log marginal likelihood with some further columns, and the step."""
         keep = np.array([*range(self.fitted), *own], int)
         d = np.zeros(self.u.size)
         if not keep.size:

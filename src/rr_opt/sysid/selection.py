@@ -1,9 +1,9 @@
-"""Stepwise selection of effects, by how well recordings are predicted from one another.
+"""Stepwise selection of effects, by cross-validation over recordings.
 
-Effects of the drive come first, from the drive's own recording. Then forward steps: score tests
-promise, fits confirm, and the machine proposes where it takes more than a derivative to see an
-effect. Backward steps drop what the predictions do without. A model is complete when what its
-simulation of whole runs leaves is no more than machines differ from models of such effects.
+Effects of the drive come first, from the drive's own recording. In forward steps score tests
+suggest effects, fits confirm them, and the machine proposes those that no derivative reveals.
+Backward steps drop effects that the predictions do not need. A model is complete when the misfit
+of its whole-run simulation is within the form error of its effects.
 """
 
 from __future__ import annotations
@@ -44,19 +44,19 @@ class Selection:
 
     @classmethod
     def begun(cls, model: MachineModel, base: Candidate, progress: Progress) -> Selection:
-        """A search with the drive looked at."""
+        """A search that has begun with the effects of the drive."""
         selection = cls(model, base, progress)
         selection.drive()
         return selection
 
     def again(self, noise: Sequence[ChannelNoise]) -> Selection:
-        """From the beginning, with other noise."""
+        """Start over with other noise."""
         model = self.model.with_noise(noise)
         return self.begun(model, first(model, self.base.fit.problem.by_run), self.progress)
 
     def run(self) -> Candidate:
-        """Search; the candidate that was chosen."""
-        # The drive's own recording may show what the motion does not.
+        """Run the search; returns the chosen candidate."""
+        # The drive's own recording may show effects that the motion does not need.
         self._backward(self._better)
         seen: list[Candidate] = []
         while self.best not in seen and not self._enough(self.best):
@@ -72,13 +72,13 @@ class Selection:
         return self.best
 
     def complete(self, candidate: Candidate) -> bool:
-        """Whether its simulation leaves nothing: no more than is negligible, beside an effect as
-        much as is none, than machines of this kind differ by from any model, and than noise leaves
-        by chance. And, without effects, whether recordings agree on its values."""
+        """Whether its misfit over whole runs is insignificant: within the tolerance (`none` with
+        effects, `negligible` without), the machine's form error and chance together. Without
+        effects, recordings must also agree on its values."""
         chance = 2 * math.sqrt(2 / max(candidate.fit.samples, 1))
         least = SETTINGS.none if candidate.choices else SETTINGS.negligible
         most = least**2 + self.model.form_error**2 + chance
-        # Segments that need not join leave less than whole runs.
+        # Segments that need not join have a smaller misfit than whole runs.
         if candidate.fit.excess**2 > 2 * most or candidate.excess**2 > most:
             return False
         if candidate.choices:
@@ -86,12 +86,12 @@ class Selection:
         return constancy(candidate.fit, candidate.excess).probability > SETTINGS.named
 
     def _better(self, candidate: Candidate, other: Candidate) -> bool:
-        """Whether a larger candidate predicts better than one that leaves something."""
+        """Whether it predicts better than another one that is not good enough."""
         return candidate.predicts_better(other) and not self._enough(other)
 
     def _enough(self, candidate: Candidate) -> bool:
-        """Whether it is complete and, of the nominal model, predicts the recordings that were not
-        fitted: they may show plainly what the others hardly do."""
+        """Whether it is complete. The nominal model must also predict held-out recordings, as these
+        may show plainly what the fitted ones hardly do."""
         return self.complete(candidate) and (bool(candidate.choices) or self._foreseen)
 
     @cached_property
@@ -104,8 +104,8 @@ class Selection:
         return predicted(fit, held, fit.values).excess ** 2 <= most
 
     def needed(self, candidate: Candidate, other: Candidate) -> bool:
-        """Whether it also accounts for a good share of what the other leaves, which is more than
-        machines differ by from models of the other's effects."""
+        """Whether it also removes a good share of the other's misfit, and that misfit exceeds the
+        form error of the other's effects."""
         return (
             self._better(candidate, other)
             and not self._close(other)
@@ -113,7 +113,7 @@ class Selection:
         )
 
     def _close(self, candidate: Candidate) -> bool:
-        """Whether it leaves no more than machines differ by from models of its effects."""
+        """Whether its misfit is within the form error of its effects."""
         catalogue = self.model.catalogue
         form_error = max((catalogue[name].form_error for name in candidate.effects), default=0.0)
         return candidate.excess <= form_error * self.base.excess
@@ -124,7 +124,7 @@ class Selection:
         guesses: Sequence[Mapping[str, float]],
         parent: Candidate | None = None,
     ) -> Candidate:
-        """A candidate, fitted unless it was."""
+        """The candidate with these effects, fitted unless it was before."""
         key = tuple(sorted(choices))
         if key not in self.tried:
             self.progress("fitting " + (" and ".join(c.name for c in key) or "the parameters"))
@@ -134,8 +134,7 @@ class Selection:
         return self.tried[key]
 
     def _nested(self, key: Sequence[Choice]) -> Sequence[Mapping[str, float]]:
-        """The values of the best candidate of which this one is an extension, so that it fits no
-        worse."""
+        """Values of the best candidate that is nested in this one, so that it fits no worse."""
         names = {q.name for q in quantities_of(self.model, key)}
         nested = [
             one for one in self.tried.values() if one.choices and names > set(one.fit.problem.names)
@@ -144,7 +143,7 @@ class Selection:
         return [{q: best.fit.values[q] for q in best.fit.problem.names}] if best else []
 
     def drive(self) -> None:
-        """Effects of the drive, from its own recording."""
+        """Try effects of the drive, from its own recording."""
         self.progress("looking at the drive")
         self._upstream = [one for one in self.model.upstream() if one[0]]
         for choices, values in self._upstream:
@@ -153,7 +152,7 @@ class Selection:
                 self.best = one
 
     def _forward(self) -> None:
-        """A step; alternatives are sought until one is settled."""
+        """A forward step; the search is widened until one candidate clearly wins."""
         self.progress("testing what may be missing")
         found = [*self._scored()]
         if self._settled(found):
@@ -168,8 +167,8 @@ class Selection:
             self.best = best
 
     def _settled(self, found: Sequence[Candidate]) -> bool:
-        """Whether one effect leaves nothing and predicts better than all others, as what is not, or
-        what takes two, may be an imitation of something that was not tried yet."""
+        """Whether one more effect is complete and predicts better than all alternatives. If not, or
+        if it takes two, it may imitate an effect that was not tried yet."""
         best = _best(found)
         if best is None or not self.complete(best):
             return False
@@ -192,7 +191,7 @@ class Selection:
                 yield self.fitted((*parent.choices, *one.choices), [one.guess], parent)
 
     def _unscored(self) -> Iterator[Candidate]:
-        """Effects of usual size that a score test cannot see, lest an imitation be settled for."""
+        """Effects that a score test cannot detect, from their usual size, lest an imitation win."""
         parent = self.best
         for name, info in self.model.catalogue.items():
             form = info.forms[0]
@@ -229,12 +228,12 @@ class Selection:
             yield self.fitted((*parent.choices, choice), some, parent)
 
     def _refine(self) -> None:
-        """The forms of the effects that predict best, whether or not what is left is anything."""
+        """Choose the forms that predict best, even if the misfit is already insignificant."""
         fuller = [one for one in self._extended() if one.predicts_better(self.best)]
         self.best = max([self.best, *fuller], key=lambda one: one.elpd)
 
     def _substitute(self) -> None:
-        """Beside the rest of the answer, what else explains the drive's own recording."""
+        """Try other explanations of the drive's own recording beside the rest of the answer."""
         every = {choice for choices, _ in self._upstream for choice in choices}
         rest = [choice for choice in self.best.choices if choice not in every]
         if len(rest) < len(self.best.choices):
@@ -242,9 +241,8 @@ class Selection:
             self.best = _best((self.best, *others)) or self.best
 
     def _polish(self) -> None:
-        """Fit sets that leave nothing, and are not larger than the best, once more from where whole
-        runs are simulated best: a fit in segments may have stopped in a kink of an effect without
-        derivatives."""
+        """Refit complete sets that are no larger than the best, starting from their whole-run fits:
+        a fit in segments may have stalled at a kink of a non-smooth effect."""
         for key, one in [*self.tried.items()]:
             worse = one.elpd < self.best.elpd and not one.given_up
             if worse and len(key) <= len(self.best.choices) and self.complete(one):
@@ -274,7 +272,7 @@ class Selection:
         )
 
     def _backward(self, needed: Callable[[Candidate, Candidate], bool]) -> None:
-        """Drop effects, or parts of them, that are not needed: two may be that are not singly."""
+        """Drop effects, or parts, that the full set can spare: two may be needed only jointly."""
         whole = self.best
         while self.best.choices:
             fewer = [one for one in self._fewer(self.best) if not needed(whole, one)]
@@ -289,10 +287,10 @@ class Selection:
             yield self._part(candidate, tuple(c for c in candidate.choices if c is not choice))
 
     def _part(self, whole: Candidate, key: tuple[Choice, ...]) -> Candidate:
-        """A candidate with fewer effects; before it counts as worse, fitted from the whole's
-        values, as its own search may have ended in another minimum."""
+        """A candidate with fewer effects. Before it counts as worse it is also fitted from the
+        whole's values, as its own search may have ended in another minimum."""
         if key not in self.tried:
-            # It will be fitted from there.
+            # The fit below starts from there.
             self._compared.add((whole, key))
         part = self.fitted(key, [{}], whole)
         if part.given_up and self.complete(part):
@@ -312,7 +310,7 @@ class Selection:
                 yield self.fitted((*rest, Choice(choice.name, form)), [{}], candidate)
 
     def _forms(self, choice: Choice, *, fuller: bool) -> Iterator[tuple[int, set[str]]]:
-        """The next forms of an effect with more quantities, or fewer; and those of this one."""
+        """The next larger, or smaller, forms of an effect, and the present form's quantities."""
         forms = self.model.catalogue[choice.name].forms
         every = [{q.name for q in form.quantities} for form in forms]
         own = every[choice.form]
@@ -324,7 +322,7 @@ class Selection:
 
 
 def _best(candidates: Iterable[Candidate]) -> Candidate | None:
-    """The one that predicts best, of those whose fits were taken to their ends."""
+    """The one that predicts best, of those that were not given up."""
     ended = (one for one in candidates if not one.given_up)
     return max(ended, key=lambda one: one.elpd, default=None)
 
@@ -334,7 +332,7 @@ def _more(guess: Mapping[str, float], own: set[str]) -> dict[str, float]:
 
 
 def turned(model: MachineModel, candidate: Candidate) -> Candidate:
-    """The candidate with values that predict the same and are nearer to what was believed."""
+    """The candidate with equivalent values that are nearer to the nominal ones, if any."""
     values = model.equivalent(candidate.fit.values)
     if values is None:
         return candidate

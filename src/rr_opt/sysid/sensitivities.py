@@ -1,11 +1,11 @@
-"""How a predicted run depends on everything: the linearised motion along it.
+"""Sensitivities of a predicted run: the motion linearised along it.
 
-Its matrices are evaluated for all steps at once over NumPy arrays, which needs no compiler, and
+The matrices are evaluated for all steps at once over NumPy arrays, which needs no compiler, and
 then multiplied up along the run.
 
-A least-squares step needs J'J of the runs against what was recorded. J has the derivatives of what
-is seen, in sigmas, at every sample and channel with data: by the start, by what is asked for, any
-further columns, and last what the prediction is off.
+A least-squares step needs J'J. J has the derivatives of the outputs, in sigmas, at every sample and
+channel with data: by the initial state, by the wanted quantities, any further columns, and last the
+residual.
 """
 
 from __future__ import annotations
@@ -26,16 +26,16 @@ from rr_opt.sysid.shooting import DrivePath, Path, System, arrays_of, code_of
 Jacobian = tuple[Array, Array, Array]
 
 _STEPS_AT_ONCE = 4000
-"""Over which arrays are evaluated: fewer cost more calls, more of them memory."""
+"""Steps per array evaluation: fewer cost more calls, more cost memory."""
 
 
 @dataclass(frozen=True)
 class DriveSlopes:
-    """How the drive changes with what is asked for and moves it.
+    """Derivatives of the drive by those wanted quantities that move it.
 
     at       (size, samples, k) at the samples
     nodes    (size, 3, steps, k) at the beginning, in the middle and at the end of each step
-    columns  (k,) which of what is asked for
+    columns  (k,) indices of these quantities
     """
 
     at: Array
@@ -50,8 +50,8 @@ class DriveSlopes:
 
 @dataclass(frozen=True)
 class Slopes:
-    """How what is seen changes, (samples, channels, ...), with what is wanted, and with the start;
-    and how the last state does, (size, size + nw), with the start and with what is wanted."""
+    """Derivatives of the outputs, (samples, channels, ...), by wanted quantities and by the initial
+    state; and of the last state, (size, size + nw), by initial state and wanted quantities."""
 
     by_parameter: Array
     by_start: Array
@@ -60,9 +60,9 @@ class Slopes:
 
 @dataclass(frozen=True)
 class Hats:
-    """Rows of the drive that are moved at one sample each, falling to 0 at the next to either side.
+    """Rows of the drive that are moved by hat functions: 1 at one sample, 0 at its neighbours.
 
-    passed  (3, steps) how much of the time between two samples has passed at each node
+    passed  (3, steps) fraction of the time between two samples that has passed at each node
     """
 
     rows: NDArray[np.int_]
@@ -71,10 +71,10 @@ class Hats:
 
 @dataclass(frozen=True)
 class LinearMotion:
-    """The linearised motion from sample to sample, and of what is seen.
+    """The linearised motion from sample to sample, and the linearised outputs.
 
-    A (samples - 1, size, size);  B (samples - 1, size, nw) of what is asked for, and after that of
-    hats: of all at the earlier sample, then of all at the later
+    A (samples - 1, size, size);  B (samples - 1, size, nw) of the wanted quantities, followed by
+    hats: all at the earlier sample, then all at the later
     by_state (samples, channels, size);  by_drive (samples, channels, drive);  by_wanted (.., nw)
     """
 
@@ -87,8 +87,8 @@ class LinearMotion:
 
 @dataclass(frozen=True)
 class Part:
-    """A predicted path to linearise along, how the drive changes with what is asked for (None if it
-    does not), and what else moves the drive."""
+    """A predicted path to linearise along, the drive's derivatives by the wanted quantities (None
+    if it does not depend on them), and hats that move the drive."""
 
     path: DrivePath
     made: Path
@@ -99,10 +99,10 @@ class Part:
 def linear(
     system: System, parts: Sequence[Part], p: Array, wanted: Array
 ) -> Iterator[LinearMotion]:
-    """The motion linearised along predicted paths, of all or of none of which the drive changes,
-    with the same of what is wanted, and likewise with hats.
+    """The motion linearised along predicted paths. The drive depends on the same wanted quantities
+    along all of them or along none; likewise with hats.
 
-    wanted  (np, nw) how p changes with what is asked for
+    wanted  (np, nw) derivatives of p by the wanted quantities
     """
     for fine, alike in itertools.groupby(parts, lambda one: one.path.each >= FINE):
         how = _frozen if system.stiff else _chords if fine else _stages
@@ -111,7 +111,7 @@ def linear(
 
 
 def _at_once(parts: Iterable[Part]) -> Iterator[Sequence[Part]]:
-    """As many as fill an array that is worth a call, and no more memory than there is."""
+    """Batches that are large enough to be worth a call and small enough for memory."""
     some, steps = [], 0
     for one in parts:
         some.append(one)
@@ -165,7 +165,7 @@ def slopes(
     wanted: Array,
     drive_by: DriveSlopes | None,
 ) -> Slopes:
-    """How what is seen along a predicted path changes; see `linear`."""
+    """Derivatives of the outputs along a predicted path; see `linear`."""
     (by,) = linear(system, [Part(path, made, drive_by)], p, wanted)
     (samples, _, size), nw = by.by_state.shape, wanted.shape[1]
     carried = np.empty((samples, size, size + nw))
@@ -180,7 +180,7 @@ def slopes(
 
 @dataclass(frozen=True)
 class _Along:
-    """What is linearised, path after path, and by what."""
+    """Paths to linearise, one after the other, and what by."""
 
     system: System
     parts: Sequence[Part]
@@ -195,7 +195,7 @@ class _Along:
 
     @cached_property
     def h(self) -> Array:
-        """Of each step, s."""
+        """Length of each step, s."""
         return np.concatenate([one.path.h for one in self.parts])
 
     @cached_property
@@ -205,18 +205,18 @@ class _Along:
 
     @cached_property
     def drive_by(self) -> Array | None:
-        """How the drive changes (size, 3, steps, k)."""
+        """Derivatives of the drive (size, 3, steps, k)."""
         some = [one.drive_by.nodes for one in self.parts if one.drive_by]
         return _joined(some, 2) if some else None
 
     @cached_property
     def hats(self) -> Hats | None:
-        """Of all paths."""
+        """Hats of all paths."""
         some = [one.hats for one in self.parts if one.hats]
         return Hats(some[0].rows, np.hstack([one.passed for one in some])) if some else None
 
     def jacobian(self, at: Array, drive: Array) -> Jacobian:
-        """By state, drive and p, (n, size, ...) each, at states and drives (..., n)."""
+        """Of the rates by state, drive and p (n, size, ...) each, at states and drives (..., n)."""
         by = arrays_of(self.system, "rates_by")(*at, *drive, *self.p)
         return _split(by, len(at), len(drive), self.p.size, at.shape[1])
 
@@ -242,7 +242,7 @@ class _Along:
 def _stages(along: _Along) -> tuple[Array, Array]:
     """Transition matrices: the derivatives of the classical Runge-Kutta step itself.
 
-    Where a force sets in within a step, those of the motion between its ends are others.
+    Where a force sets in within a step, they differ from those of the exact motion.
     """
     x, h = along.ends[0], along.h
     slopes = [np.zeros_like(x)]
@@ -270,7 +270,7 @@ def _chords(along: _Along) -> tuple[Array, Array]:
 def _combined(h: Array, size: int, both: Callable[[int, float], Array]) -> tuple[Array, Array]:
     """The four stages of the classical Runge-Kutta method, linearised.
 
-    both  (stage, how much of the step it reaches) -> fx and f_w side by side
+    both  (stage, fraction of the step) -> fx and f_w side by side
     """
     h = h[:, None, None]
     first = both(0, 0.0)
@@ -290,10 +290,10 @@ def _combined(h: Array, size: int, both: Callable[[int, float], Array]) -> tuple
 
 
 def _frozen(along: _Along) -> tuple[Array, Array]:
-    """Transition matrices of fine steps where some states settle at once.
+    """Transition matrices of fine steps with stiff states.
 
-    The matrix z = h fx of the middle of the step is taken for all of it; exp(z) as its Pade
-    approximant (1 + z/3)/(1 - 2z/3 + z^2/6), which damps what settles at once.
+    The matrix z = h fx of the step's midpoint is held over the whole step; exp(z) is replaced by
+    its Pade approximant (1 + z/3)/(1 - 2z/3 + z^2/6), which damps stiff modes.
     """
     (before, after), h = along.ends, along.h[:, None, None]
     size = len(before)
@@ -335,7 +335,7 @@ class Recorded:
 
 @dataclass(frozen=True)
 class Sought:
-    """A predicted run, and by what it is to be differentiated; see `linear.linear`.
+    """A predicted run, and what to differentiate it by; see `linear`.
 
     more  (samples, channels, k) further columns
     """
@@ -350,8 +350,8 @@ class Sought:
 
 
 def grams(system: System, asked: Sequence[Sought]) -> list[tuple[Array, Array]]:
-    """J'J (n, n) of each run, without the samples where a prediction has left the numbers; and the
-    derivatives of its last state (size, size + nw) by the start and by what is wanted."""
+    """J'J (n, n) of each run, without samples where the prediction is not finite; and derivatives
+    of its last state (size, size + nw) by initial state and wanted quantities."""
     if not asked:
         return []
     code = code_of(system, 4 * sum(one.path.h.size for one in asked))

@@ -1,4 +1,4 @@
-"""Every number of the identification that was chosen, and why.
+"""Every tuning constant of the identification, and why it was chosen.
 
 `make settings` halves and doubles each on the same cases; `results/settings` shows what changes.
 """
@@ -11,60 +11,60 @@ class Settings:
     """correlation_time      s after which a model's errors count as independent: about a period
     effect_prior          prior standard deviation of an effect's quantities, in their usual sizes;
                           and of a value known to be wrong, in its stated sigmas
-    least_process_noise   lower end of the grid: less is as good as none
+    least_process_noise   lower end of the grid: anything less is as good as none
     most_process_noise    upper end of the grid, which has half decades: segments are independent
     stride                longest step in a quantity, in its scales
-    tolerance             nats of deviance that a step has to be expected to gain, or the fit has
+    tolerance             expected gain of a step, in nats of deviance, below which the fit has
                           converged: its values are within a thirtieth of a standard deviation
     search_tolerance      the same for candidates: a hundredth of what counts as evidence
-    known                 what simulations of whole runs leave is known to this share of what would
-                          be negligible,
-    known_share           or of itself: a fit that creeps on is not followed any further
-    trial_runs            how many runs, those explained worst, initial guesses are tried on
-    trial_starts          the best so many of them after one Gauss-Newton step
-    trial_steps           are taken so many further: a narrow minimum shows late
+    known                 whole-run fits stop once their misfit is known to this share of the
+                          negligible level,
+    known_share           or of itself: slow creep is not followed any further
+    trial_runs            number of runs, the worst explained ones, on which guesses are tried
+    trial_starts          number of guesses kept after one Gauss-Newton step
+    trial_steps           further steps taken from these: a narrow minimum shows late
     first_steps           steps of a fit before the process noise is estimated
     patience              a fit that is behind another is given up unless this many steps like its
                           last one would catch up
     steps                 most steps of a fit
-    negligible            RMS in sigma, beyond the noise, that the nominal model may leave
-    none                  the same with an effect, as no machine is its model of one
-    small                 share of the first excess misfit below which a remainder is small
-    accounted             an effect has to account for this share of what is left without it
+    negligible            RMS misfit beyond the noise, in sigma, allowed to the nominal model
+    none                  the same with effects, as no machine matches the model of an effect
+    small                 share of the initial excess misfit below which a remainder is small
+    accounted             share of the misfit without an effect that the effect has to remove
     slow                  Hz, below which motion may be the machine's; above it is noise
-    shown                 share of what is known of a combination of values, below which a recording
-                          says nothing of it
+    shown                 share of the total information on a combination of values below which a
+                          recording says nothing about it
     inconstant            largest factor by which an imitation's values vary more between recordings
                           than their uncertainty (mean square)
     further               prior odds of each further effect that the motion alone shows: several can
                           imitate anything
     form_errors           multiples of an effect's form error at which a remainder is as likely an
                           imitation's as a machine's
-    misstated             relative difference from which the level of the noise is not as stated
-    correlated            samples worth one independent sample, more than white noise has by chance
-    certain               p-value below which an unknown input is there
+    misstated             relative deviation from the stated noise level that contradicts it
+    correlated            samples per independent sample beyond which noise is not white by chance
+    certain               p-value below which an unknown input is significant
     most_effects          most effects sought at once, and most values that may be wrong
     promising             candidates fitted after a score test, of one effect and of two
     evidence              nats by which an effect has to improve the predictions of recordings,
-    standard_errors       and standard errors of that improvement over recordings
+    standard_errors       and by how many standard errors of that improvement over recordings
     named                 confidence above which an effect is named
-    false_alarm           chance that any value is called wrong where all are right
+    false_alarm           chance that any value is called wrong when all are right
     identifiable          posterior over prior standard deviation above which data say nothing
 
     Of machines:
 
-    form_error            share of the way travelled, and of a segment's speed, by which even a fine
-                          simulation of wheels that press on a floor is off
-    starting              s after a start from rest that are left out: the motor saturates
+    form_error            error of even a fine simulation of wheels pressed on a floor, as a share
+                          of the distance travelled and of a segment's speed
+    starting              s left out after a start from rest: the motor saturates
     bouncing              share of a period after a start from rest for which the joint's angle is
-                          left out: a joint with play bounces from stop to stop, how much is unknown
+                          left out: with backlash the joint bounces between stops unpredictably
     creeping              s in which the side speed of a creeping wheel decays
     growth                factor by which errors may grow within a window: e^2
-    input_share           what the noise of the inputs may leave in a window: this share of the
+    input_share           error that input noise may cause in a window: this share of the
                           motion in the longest windows (RMS),
     input_noise           or this RMS in sigma
-    modes                 modes of the errors that a missing force makes in a window, beside those
-                          that its initial state takes up
+    modes                 error modes that a missing force causes in a window, beside those that
+                          its initial state absorbs
     windows               windows in a part of a recording that is predicted from the others
     """
 

@@ -1,9 +1,8 @@
-"""Predict runs from their starts.
+"""Predict runs from their initial states.
 
-The state follows xdot = rates(x, drive, p) between samples, where the drive is known. It is stepped
-by CasADi's virtual machine, one function for all steps. A system that is used a lot is compiled,
-where there is a compiler, and then several runs are stepped at once. For how a prediction depends
-on everything see `linear`.
+The state follows xdot = rates(x, drive, p) with a known drive. It is stepped by CasADi's virtual
+machine, one function for all steps. A system that is used a lot is compiled, where there is a
+compiler, and then several runs are stepped at once. For derivatives see `sensitivities`.
 """
 
 from __future__ import annotations
@@ -20,8 +19,8 @@ from rr_opt.mechanics.code_generation import ArrayFunction, over_arrays
 from rr_opt.sysid.compiled import Compiled, found, source_of
 
 _FEW, _PAYS = 10_000, 100_000
-"""Steps, with derivatives counted fourfold, that take as long as to look for what was compiled
-before, and as long as to compile."""
+"""Steps, with derivatives counted fourfold, that take as long as a look into the compile cache,
+and as long as compiling."""
 
 Slope = Callable[[int, ca.SX], ca.SX]
 """d(state)/dt at the beginning (0), in the middle (1) or at the end (2) of a step."""
@@ -31,8 +30,8 @@ Slope = Callable[[int, ca.SX], ca.SX]
 class System:
     """rates(state, drive, p) -> d(state)/dt and seen(state, drive, p) -> channels.
 
-    stiff   how many states at the end of it settle at once, and need an implicit step
-    lasts   whether it is the same for other recordings, so that compiling it may be worth it
+    stiff   how many of the last states are stiff, and need an implicit step
+    lasts   whether it serves other recordings too, so that compiling it may pay
     """
 
     rates: ca.Function
@@ -70,7 +69,7 @@ class DrivePath:
 
 @dataclass(frozen=True)
 class Path:
-    """The states (size, steps + 1) of a run and what is seen of it (samples, channels)."""
+    """The states (size, steps + 1) of a run and its outputs (samples, channels)."""
 
     states: Array
     seen: Array
@@ -102,7 +101,7 @@ _used: dict[System, int] = {}
 
 
 def code_of(system: System, steps: int) -> Compiled | None:
-    """The system compiled: if it was before, or with these steps was used so much that it pays."""
+    """The compiled system, if cached or if, with these steps, it is used enough to pay."""
     if not system.lasts:
         return None
     used = _used[system] = _used.get(system, 0) + steps
@@ -161,7 +160,7 @@ def _rk4(f: Slope, x: ca.SX, h: ca.SX, _: int) -> ca.SX:
 def _rosenbrock(f: Slope, x: ca.SX, h: ca.SX, n: int) -> ca.SX:
     """ROS2 of Verwer, Spee, Blom and Hundsdorfer (1999): L-stable, and of order 2 with any matrix.
 
-    So the matrix holds the stiff states alone.
+    So the matrix need only contain the stiff states.
     """
     gamma = 1 - 1 / np.sqrt(2)
     y = ca.SX.sym("y", x.numel())

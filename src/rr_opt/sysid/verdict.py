@@ -1,8 +1,8 @@
-"""What a search amounts to: which effects are shown, how sure that is, and what is left.
+"""The outcome of a search: which effects are shown, with what confidence, and what remains.
 
-The verdict is graded. Effects are named that the recordings' predictions of one another call for
-and that leave no more than an imitation would not; what is left beside them is the remainder. Only
-where no effect is shown is the answer `unexplained`.
+The verdict is graded. An effect is named if cross-validation over recordings calls for it and its
+misfit is too small for an imitation; what remains is the remainder. Only if no effect is shown is
+the answer `unexplained`.
 """
 
 import math
@@ -30,10 +30,10 @@ from rr_opt.sysid.settings import SETTINGS
 class Identification:
     """What the diagnosis rests on.
 
-    best      the candidate that was chosen, with values that are wrong released
-    everywhere  the same fitted to all recordings, also those that are held out;  plain, the nominal
+    best      the chosen candidate, with the priors of wrong values released
+    everywhere  the same fitted to all recordings, held-out ones included;  plain, the nominal
                 model likewise
-    nominal, refitted, final   as believed; with the parameters fitted; with what is missing
+    nominal, refitted, final   nominal; with the parameters fitted; with the missing effects
     before, after  what unknown inputs would explain beside the nominal model and beside the answer
     """
 
@@ -53,8 +53,8 @@ class Identification:
 
     @cached_property
     def confidences(self) -> Mapping[str, float]:
-        """Of each effect: the weight of the candidates that have it, by how they predict
-        recordings, times the likelihood that it imitates nothing else."""
+        """Of each effect: the predictive weight of all candidates that have it, times the
+        probability that the answer is no imitation."""
         tried = self._ended
         own = list(zip(weights(tried), tried, strict=True))
         return {
@@ -64,15 +64,15 @@ class Identification:
 
     @cached_property
     def sound(self) -> float:
-        """How likely the answer's effects are no imitation of something else: recordings agree on
-        their values, those that were not fitted are predicted better with them, and what is left of
-        the misfit is no more than machines differ from models of such effects."""
+        """Probability that the answer's effects do not imitate something else: recordings agree on
+        their values, held-out recordings are predicted better with them, and the remaining misfit
+        is within the form error of such effects."""
         return self._constant * self._as_machines_differ * self._predicts
 
     @property
     def _constant(self) -> float:
-        """How likely the values are constant and those of what is there: of several effects that
-        the motion alone shows each further one makes an imitation easier."""
+        """Probability that the values are constant, and real: of several effects that the motion
+        alone shows, each further one makes an imitation easier."""
         catalogue = self.selection.model.catalogue
         seen = sum(not catalogue[name].upstream for name in self.best.effects)
         odds = self.constancy.odds * SETTINGS.further ** max(seen - 1, 0)
@@ -80,7 +80,7 @@ class Identification:
 
     @property
     def _as_machines_differ(self) -> float:
-        """How likely what is left is what machines differ by from models of such effects: fitted to
+        """Probability that the remaining misfit is due to the form error of such effects. Fitted to
         all recordings, as the motion after a start may depend on the values by more than they are
         known; whether recordings agree on them is another question."""
         slight = SETTINGS.none**2 + self.selection.model.form_error**2
@@ -90,8 +90,8 @@ class Identification:
 
     @property
     def doubt(self) -> str:
-        """What predicts best, and why it is not named, or where it shows; "" if nothing was found
-        to predict better than the nominal model."""
+        """What predicts best and why it is not named, or which recordings show it; "" if nothing
+        was found that predicts better than the nominal model."""
         if not self.best.choices and self.selection.complete(self.best):
             return "The recordings that were fitted show none of it: fit those that do."
         best = self.best if self.best.choices else max(self._ended, key=lambda one: one.elpd)
@@ -117,9 +117,8 @@ class Identification:
 
     @property
     def _predicts(self) -> float:
-        """How likely the answer is after the recordings that were not fitted: before them it has at
-        least the evidence that an effect needs. That is not asked where they leave no more than
-        machines differ from such models."""
+        """Probability of the answer given the held-out recordings, with prior log odds of the
+        evidence that an effect needs. Not tested if their misfit is within the form error."""
         if self.final.excess <= self._form_error * self.selection.base.excess:
             return 1.0
         runs = self.selection.model.runs
@@ -135,21 +134,21 @@ class Identification:
 
     @property
     def _form_error(self) -> float:
-        """The largest; without an effect, any."""
+        """The largest of them; inf without an effect."""
         return max(self._form_errors.values(), default=math.inf)
 
     @cached_property
     def constancy(self) -> Constancy:
         """How well recordings agree on the answer's values."""
         explained = {run: max(one.rms**2 - 1, 0.0) for run, one in enumerate(self.refitted.misfits)}
-        # Effects have form errors of their own.
+        # With effects, their own form errors count instead.
         left = 0.0 if self.best.choices else self.everywhere.excess
         return constancy(self.everywhere.fit, left, explained, self._form_errors)
 
     @property
     def shown(self) -> tuple[Choice, ...]:
-        """The effects that are missing with more likelihood than not: each, or another one of those
-        that are indistinguishable from it."""
+        """The effects that are more likely missing than not: each of them, or another one that is
+        indistinguishable from it."""
         tried, alike = self._ended, self.selection.alike()
         own = list(zip(weights(tried), tried, strict=True))
         return tuple(
@@ -161,9 +160,9 @@ class Identification:
 
     @property
     def explained(self) -> bool:
-        """Whether what the answer leaves, if it is fitted to all recordings, is no more than
-        machines differ from their models; or is as noise that is a little larger than stated,
-        which follows nothing. And whether recordings agree on its values."""
+        """Whether recordings agree on the answer's values and its misfit, also when fitted to all
+        recordings, is insignificant; or no more than slightly larger noise than stated, without
+        any significant dependence."""
         if self.constancy.probability <= SETTINGS.named:
             return False
         both = (self.best, self.everywhere)
@@ -175,15 +174,15 @@ class Identification:
 
     @property
     def share(self) -> float:
-        """What is left of the nominal model's misfit beyond the noise (mean square), 0 to 1, in
-        recordings that were not fitted where there are any."""
+        """Share of the nominal model's misfit beyond the noise (mean square) that remains, 0 to 1,
+        on held-out recordings if there are any."""
         before = max(self.nominal.excess, self.selection.base.excess)
         after = max(self.final.excess, 0.0)
         return float(np.clip((after / before) ** 2, 0.0, 1.0)) if before > 0 else 0.0
 
     @property
     def rivals(self) -> list[Candidate]:
-        """Candidates without one of the effects, the best first."""
+        """Candidates that lack one of the answer's effects, the best first."""
         own = set(self.best.effects)
         others = [one for one in self._ended if not own <= set(one.effects)]
         return sorted(others, key=lambda one: -one.elpd)
@@ -218,8 +217,8 @@ def findings(result: Identification) -> tuple[Finding, ...]:
 
 
 def wrong_values(result: Identification) -> tuple[Finding, ...]:
-    """The parameters that are not what they were believed to be, as likely as recordings agree on
-    the values."""
+    """The parameters whose nominal values are wrong; the confidence is the probability that
+    recordings agree on the values."""
     intervals, likely = estimates(result.best.fit), result.constancy.probability
     return tuple(
         Finding(q.name, likely, {q.name: intervals[q.name]}, 1.0) for q in wrong(result.best.fit)
@@ -227,7 +226,7 @@ def wrong_values(result: Identification) -> tuple[Finding, ...]:
 
 
 def remainder_of(result: Identification) -> Remainder:
-    """What is left with the answer's effects."""
+    """The misfit that remains with the answer's effects."""
     after = result.final.excess
     share = result.share
     large = "small" if share <= SETTINGS.small else "large"
@@ -236,7 +235,7 @@ def remainder_of(result: Identification) -> Remainder:
 
 
 def tried(selection: Selection, accepted: Candidate | None) -> tuple[Tried, ...]:
-    """All candidates; the score is twice the log predictive density lost against the best."""
+    """All candidates, the best first; the score is -2 log predictive density."""
     every = sorted(selection.tried.values(), key=lambda one: -one.elpd)
     return tuple(
         Tried(
@@ -251,7 +250,7 @@ def tried(selection: Selection, accepted: Candidate | None) -> tuple[Tried, ...]
 
 
 def _roughly(one: Candidate) -> float:
-    """What a candidate that was not simulated whole leaves with its process noise."""
+    """Misfit in segments, with process noise, of a candidate not simulated over whole runs."""
     return one.fit.excess
 
 
@@ -268,7 +267,7 @@ def alike(result: Identification) -> tuple[tuple[str, ...], ...]:
 
 
 def rival_of(result: Identification) -> tuple[str, Candidate] | None:
-    """The candidate that comes next, of those that a recording may yet tell from the answer."""
+    """The runner-up, if another recording might distinguish it from the answer."""
     for one in result.rivals[:1]:
         gain, error = result.best.advantage(one)
         if gain < max(4 * SETTINGS.evidence, error):

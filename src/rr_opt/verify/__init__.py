@@ -1,1 +1,1 @@
-"""Checking an optimum another way: a dense sweep, and a replay of the winner."""
+"""Independent checks of an optimum: a dense sweep, and a replay of the winner."""

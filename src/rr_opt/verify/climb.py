@@ -1,6 +1,6 @@
 """The local optimum next to a gait, by SLSQP on the sweep's own model.
 
-Every limit is a smooth row: the torque counts by its peak in each part of the cycle, as the largest
+Every limit is a smooth row. The torque counts by its peak in each part of the cycle, as the largest
 of several peaks has a kink where they change places, and by its logarithm, as it grows a
 hundredfold near the singular posture. Slopes are central differences, all of them in one call.
 """
@@ -19,18 +19,18 @@ from rr_opt.verify.grid import DECISIONS, boxes, loads_are_whole, reach
 from rr_opt.verify.speeds import PHASES, costs, model_of, motions
 
 _STEP = {True: 1e-5, False: 1e-3}
-"""Of a difference, in each decision's range; where friction is viscous (True) or not."""
+"""Step of a difference, relative to each decision's range; by whether friction is viscous."""
 _PARTS = 8
-"""Parts of the cycle, with a peak each."""
+"""Parts of the cycle, each with its own peak."""
 _LEAST = 1e-3
-"""Share of its limit below which a peak does not count."""
+"""Utilisation of a limit below which a peak does not count."""
 KEPT = 1e-8
-"""By so much, relative, a row may fail."""
+"""Largest relative violation of a row."""
 
 
 class _Care(NamedTuple):
-    """phases of a cycle; tolerance and iterations of a climb, and how often it is begun anew, as
-    peaks that limit a gait at its end need not be those of the start."""
+    """phases of a cycle; tolerance and iterations of a climb, and its number of restarts, as the
+    limiting peaks can change along it."""
 
     phases: int
     tolerance: float
@@ -47,11 +47,11 @@ _SLOWEST = 1e-12
 
 @dataclass(frozen=True)
 class Climbed:
-    """Where a climb ended.
+    """The result of a climb.
 
     decisions: amplitude, period, offset, ratio (NaN: the robot as it is), (4,); points: gaits
-    evaluated; kept: the end keeps every limit and turns as asked; value: what was climbed, less
-    where a row fails."""
+    evaluated; kept: the end satisfies every limit and the turn; value: the objective, less a
+    penalty for violated rows."""
 
     decisions: Array
     points: int
@@ -63,9 +63,8 @@ Aim = Literal["speed", "radius"]
 
 
 def climb(problem: Problem, start: Array, aim: Aim = "speed", *, rough: bool = False) -> Climbed:
-    """Climb to the best gait, or the tightest circle, from a start (4,), which need not keep the
-    limits."""
-    from scipy.optimize import minimize  # 0.1 s that a sweep alone can do without
+    """Climb to the best gait, or the tightest circle, from a start (4,) that may be infeasible."""
+    from scipy.optimize import minimize  # 0.1 s that a sweep alone does not need
 
     care = _ROUGH if rough else _FINE
     local = _Local(problem, np.asarray(start, float), aim, care.phases)
@@ -100,7 +99,7 @@ def cost_of_transport(problem: Problem, decisions: Array) -> float:
 
 
 class _Local:
-    """Aim and rows over the free decisions, each in its range, and their slopes."""
+    """Objective and rows over the free decisions, scaled to their ranges, and their slopes."""
 
     def __init__(self, problem: Problem, start: Array, aim: Aim, phases: int) -> None:
         inside = boxes(problem)
@@ -122,13 +121,13 @@ class _Local:
         self._rows = len(values) - 1
 
     def decisions(self, z: Array) -> Array:
-        """(4, K) of places (K, n)."""
+        """(4, K) of scaled points (K, n)."""
         found = np.repeat(self._start[:, None], len(z), axis=1)
         found[self._free] = self._low[self._free, None] + self._span[self._free, None] * z.T
         return found
 
     def inside(self, z: Array) -> Array:
-        """The nearest place that fails no row: SLSQP often ends a hair outside."""
+        """The nearest feasible point: SLSQP often ends slightly infeasible."""
         for _ in range(_STEPS):
             values, slopes = self.look(z)
             fails = np.concatenate([values[1:], -values[1 + self._rows - self._equal :]])
@@ -144,7 +143,7 @@ class _Local:
         return z
 
     def settles(self, z: Array) -> bool:
-        """Whether the gait and those around it have settled cycles."""
+        """Whether the gait and its neighbours have steady cycles."""
         return all(np.isfinite(part).all() for part in self.look(z))
 
     def keeps(self, z: Array) -> bool:
@@ -154,15 +153,14 @@ class _Local:
         return bool((less >= -KEPT).all() and (np.abs(equal) <= KEPT).all())
 
     def value(self, z: Array) -> float:
-        """The aim, less its size times what the rows fail by."""
+        """The objective, less its size times the violations."""
         value, rows = self.look(z)[0][0], self.look(z)[0][1:]
         less, equal = np.split(rows, [self._rows - self._equal])
         off = np.maximum(-less, 0.0).sum() + np.abs(equal).sum()
         return float(value - abs(value) * off)
 
     def look(self, z: Array) -> tuple[Array, Array]:
-        """Values and slopes of the aim and of rows that must not be negative or, the last ones,
-        must be 0."""
+        """Values and slopes of the objective, of rows >= 0 and, last, of rows = 0."""
         key = z.tobytes()
         if key not in self._known:
             n, h = len(z), self._step
@@ -177,7 +175,7 @@ class _Local:
         return self._known[key]
 
     def cost(self, z: Array) -> float:
-        """The aim, negative, in its size at the start."""
+        """The objective, negated and scaled by its size at the start."""
         return -float(self.look(z)[0][0]) / self._unit
 
     def cost_slope(self, z: Array) -> Array:
@@ -186,7 +184,7 @@ class _Local:
 
     @property
     def constraints(self) -> list[dict[str, Any]]:
-        """As SLSQP takes them."""
+        """In the form that SLSQP expects."""
         first = 1 + self._rows - self._equal
         kinds = {"ineq": slice(1, first), "eq": slice(first, None)}
         counts = {"ineq": first - 1, "eq": self._equal}
@@ -199,7 +197,7 @@ class _Local:
     def _part(self, which: int, rows: slice) -> Callable[[Array], Array]:
         return lambda z: self.look(z)[which][rows]
 
-    # A gait without a settled cycle has values that are not finite.
+    # A gait without a steady cycle has non-finite values.
     @np.errstate(divide="ignore", over="ignore", invalid="ignore")
     def _values(self, z: Array) -> Array:
         gaits, problem = self.decisions(z), self._problem
@@ -232,7 +230,7 @@ class _Local:
             rows.append((ahead if problem.direction == "forward" else -ahead) - _AHEAD)
         less, equal = turn_rows(problem, speed, found.turn, period)
         self._equal = len(equal)
-        # The square of a radius has no kink where it is 0.
+        # The square of a radius has no kink at 0.
         if self._aim == "radius":
             value = -((speed * period / found.turn) ** 2)
         return np.array([value, *rows, *less, *equal])
@@ -241,8 +239,8 @@ class _Local:
 def turn_rows(
     problem: Problem, speed: Array, turn: Array, period: Array
 ) -> tuple[list[Array], list[Array]]:
-    """What a problem asks of the turn, relative: rows that must not be negative, and rows that must
-    be 0. speed >= 0, m/s; turn in rad per period."""
+    """The requested turn, relative: rows that must be >= 0, and rows that must be 0. speed >= 0,
+    m/s; turn in rad per period."""
     less: list[Array] = []
     equal: list[Array] = []
     if problem.turn is None:

@@ -1,8 +1,8 @@
-"""Steady cycles of many sine gaits as machine code, where a C compiler is at hand.
+"""Steady cycles of many sine gaits as machine code, where a C compiler is available.
 
-Some points at a time in the processor's vector registers, on all processors that are free. For
-viscous friction the method is that of `steady_fourier`; other friction is solved as
-newton_cycles.c says. Where nothing can be compiled, NumPy does all of it.
+Vectorised over some points at a time, on all free processors. For viscous friction the method is
+that of `steady_fourier`; other friction is solved as described in newton_cycles.c. Without a
+compiler NumPy does all of it.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ class Steady(NamedTuple):
     peak_torque  largest |torque|, between the samples too, N m
     error        size of the fastest harmonics of the velocity, relative to the speed; inf where
                  no steady cycle was found
-    scale        what an error of the speed is relative to, m/s
+    scale        reference for a relative error of the speed, m/s
     """
 
     speed: Array
@@ -59,21 +59,21 @@ class Speeds(NamedTuple):
     converged: NDArray[np.bool_]
 
     def keep(self, where: _Where, found: Steady, good: NDArray[np.bool_]) -> None:
-        """Write the good ones of what was found to these places, and NaN to the others."""
+        """Write the good results to these places, and NaN to the others."""
         self.converged[where] = good
         for own, values in zip(self[:3], found[:3], strict=True):
             own[where] = np.where(good, values, np.nan)
 
 
 def viscous_source(powers: ca.Function) -> str:
-    """Around (phi, p) -> the powers of `steady_fourier`."""
+    """C code around (phi, p) -> the powers of `steady_fourier`."""
     return _source(in_stages(powers, "rr", (1, 0)), powers.nnz_in(1), "viscous")
 
 
 def newton_source(dynamics: Dynamics) -> str:
-    """Around a model's motion and its slope over v.
+    """C code around a model's motion and its slope over v.
 
-    Raises NotImplementedError for a model with an operation that has no C.
+    Raises NotImplementedError for a model with an operation that has no C equivalent.
     """
     outputs = ["vdot", "jac:vdot:v", "w", "side", "torque"]
     motion = dynamics.motion.factory("tried", dynamics.motion.name_in(), outputs)
@@ -89,7 +89,7 @@ def _source(stages: Stages, parameters: int, loops: str) -> str:
 
 @lru_cache
 def sines(most: int, straight: bool) -> Array:
-    """Of the phases of `most` samples, and as many more as their cosines need."""
+    """Sines at the phases of `most` samples, and at those needed for their cosines."""
     extra = most // (2 if straight else 4)
     return np.sin(np.arange(most + extra) * ((1 if straight else 2) * math.pi / most))
 
@@ -114,12 +114,12 @@ def table(n: int, straight: bool) -> tuple[Array, tuple[int, int, int]]:
 
 _FLAGS = ("-O3", "-march=native", "-fno-math-errno", "-fno-trapping-math", "-fPIC", "-shared")
 _PIECE = {True: 4096, False: 64}
-"""Points that a thread takes at a time, where friction is viscous (True) or not."""
+"""Points per thread and batch, by whether friction is viscous."""
 
 
 class Points(NamedTuple):
-    """K sine gaits, arrays (K,): amplitude, offset, rad, period, s, and which column of the robots'
-    parameters is that of each."""
+    """K sine gaits, arrays (K,): amplitude, offset, rad, period, s, and for each the column of its
+    robot's parameters."""
 
     amplitude: Array
     offset: Array
@@ -127,7 +127,7 @@ class Points(NamedTuple):
     which: NDArray[np.int_]
 
     def only(self, own: NDArray[np.int_]) -> Points:
-        """Some of them."""
+        """A subset of them."""
         amplitude, offset, period, which = self
         return Points(amplitude[own], offset[own], period[own], which[own])
 
@@ -136,7 +136,7 @@ class CompiledCycles:
     """The loops over the points, for the model of one set of effects."""
 
     most = 256
-    """Samples up to which matrices are faster than the transforms that NumPy has."""
+    """Samples up to which matrices are faster than NumPy's transforms."""
 
     def __init__(self, made: ctypes.CDLL, viscous: bool) -> None:
         whole, array = ctypes.c_longlong, ctypes.c_void_p
@@ -147,8 +147,8 @@ class CompiledCycles:
         self._piece = _PIECE[viscous]
 
     def viscous(self, points: Points, p: Array, n: int, straight: bool) -> Steady:
-        """What `SteadyFourier.cycles` returns, arrays (K,), from n samples where friction is
-        viscous; p the robots' parameters (len, R)."""
+        """As `SteadyFourier.cycles`, arrays (K,), from n samples where friction is viscous; p the
+        robots' parameters (len, R)."""
         known, sizes = table(n, straight)
         return self._run(points, p, straight, n, *sizes, known)
 
@@ -156,7 +156,7 @@ class CompiledCycles:
         self, points: Points, p: Array, first: int, most: int, straight: bool, tolerance: float
     ) -> Steady:
         """The same for any friction, from `first` samples to as many as the results need, or
-        `most`; the error is what the last doublings changed, relative."""
+        `most`; the error is the relative change at the last doublings."""
         known = sines(most, straight)
         return self._run(points, p, straight, first, most, tolerance, known)
 
@@ -183,8 +183,8 @@ class CompiledCycles:
 def compiled(
     dynamics: Dynamics, powers: ca.Function | None, *, make: bool
 ) -> CompiledCycles | None:
-    """The loops of a model that was compiled before, or is now if `make`; None where that cannot
-    be. powers: of `steady_fourier`, where the friction is viscous."""
+    """The loops of a model, if compiled before, or compiled now if `make`; None where impossible.
+    powers: of `steady_fourier`, where the friction is viscous."""
     try:
         source = newton_source(dynamics) if powers is None else viscous_source(powers)
     except NotImplementedError:

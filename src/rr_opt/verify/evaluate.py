@@ -1,4 +1,4 @@
-"""Speeds of a grid's points, which limits each keeps, and finer grids about the best."""
+"""Speeds of a grid's points, which limits each satisfies, and finer grids around the best."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -23,16 +23,16 @@ Progress = Callable[[int, int], None]
 LIMITS = ("rate", "angle", "singularity", "torque", "grip", "economy", "direction")
 
 _SLACK = 1e-8
-"""By so much, relative, a limit may be broken: by rounding."""
+"""Relative violation of a limit that counts as rounding."""
 
 _AIMS = (1e-3, 1e-4, 1e-6, 1e-7)
-"""How far below the torque limit each secant step aims, relative."""
+"""Relative distance below the torque limit that each secant step aims for."""
 
 _WORTH = 0.8
-"""Points so much slower than the best are not led to the torque limit."""
+"""Points slower than this fraction of the best are not moved to the torque limit."""
 
 _PHASES = 64
-"""Of the motions of which the cost of transport is known."""
+"""Phases of the motions from which the cost of transport is computed."""
 
 _ROWS = 4096
 """Rows of points between two reports of progress."""
@@ -40,10 +40,10 @@ _ROWS = 4096
 
 @dataclass(frozen=True)
 class Found:
-    """A gait that was found: offset >= 0 where phi0 and -phi0 do equally well.
+    """A gait found by the sweep: offset >= 0 where phi0 and -phi0 are equivalent.
 
-    ratio J20/J10 or None, speed signed, m/s; peak torque N m; turn rad per period; merit: what
-    the problem maximises
+    ratio J20/J10 or None, speed signed, m/s; peak torque N m; turn rad per period; merit: the
+    objective
     """
 
     gait: SineGait
@@ -55,7 +55,7 @@ class Found:
 
     @property
     def radius(self) -> float:
-        """Of its circle, m."""
+        """Radius of its circle, m."""
         return self.gait.period * abs(self.speed / self.turn) if self.turn else math.inf
 
 
@@ -64,13 +64,13 @@ class Evaluated:
     """K points; every array (K,).
 
     decisions    amplitude, period, offset, ratio (NaN: the robot as it is), (4, K)
-    speed        signed, m/s; NaN where a limit on the angle or the singular posture is broken
+    speed        signed, m/s; NaN where the limit on angle or singularity is violated
     peak_torque  N m; NaN there too
     turn         heading gained per period, rad; NaN there too
-    value        what is maximised: |speed|, or the inverse of the cost of transport; NaN there too
-    keeps        by limit's name: the point keeps it; torque and direction are not kept where
+    value        the objective: |speed|, or the inverse of the cost of transport; NaN there too
+    keeps        by limit's name: the point satisfies it; torque and direction are False where
                  the speed is NaN
-    failed       how many points that keep angle and singularity have no resolved cycle
+    failed       how many points within angle and singularity have no resolved cycle
     """
 
     decisions: Array
@@ -83,12 +83,12 @@ class Evaluated:
 
     @property
     def feasible(self) -> Mask:
-        """All limits are kept."""
+        """All limits are satisfied."""
         return np.logical_and.reduce([self.keeps[name] for name in (*LIMITS, "turn")])
 
     @property
     def merit(self) -> Array:
-        """The value where all limits are kept, else -inf."""
+        """The value where all limits are satisfied, else -inf."""
         return np.where(self.feasible, self.value, -np.inf)
 
     def found(self, index: int) -> Found:
@@ -152,7 +152,7 @@ def _evaluated(problem: Problem, points: Array, failed: int) -> Evaluated:
 def within(
     problem: Problem, amplitude: Array, offset: Array, slack: float = _SLACK
 ) -> dict[str, Mask]:
-    """Which gaits keep the limits on angle and singularity; slack: relative."""
+    """Which gaits satisfy the limits on angle and singularity; slack: relative."""
     limits, far = problem.limits, np.abs(amplitude) + np.abs(offset)
     S1 = least_S1(problem.robot, amplitude, offset)
     return {
@@ -162,8 +162,8 @@ def within(
 
 
 def kept_limits(problem: Problem, gaits: Array, found: Speeds, slack: float) -> dict[str, Mask]:
-    """By limit, which gaits keep it: amplitude, period and offset come first in `gaits`, and found
-    are their speeds. Not the limit on grip, which the model of the speeds leaves out."""
+    """By limit, which gaits satisfy it: amplitude, period and offset come first in `gaits`, and
+    found are their speeds. Excludes the grip, which the model of the speeds leaves out."""
     (amplitude, period, offset), limits, speed = gaits[:3], problem.limits, found.speed
     ahead = {"forward": speed > 0, "backward": speed < 0, "either": np.isfinite(speed)}
     return {
@@ -185,7 +185,7 @@ def _keeps(problem: Problem, decisions: Array, found: Speeds) -> dict[str, Mask]
     kept["economy"] = np.isfinite(found.speed)
     kept["grip"] = np.ones(len(found.speed), bool)
     if math.isfinite(limits.grip):
-        # Only points that keep all else are looked at.
+        # Only points that satisfy all other limits are evaluated.
         asked = np.flatnonzero(np.logical_and.reduce(list(kept.values())))
         for grip in motions(problem, decisions[:, asked], grip=True).grips:
             kept["grip"][asked] &= peak(grip, False) <= limits.grip * (1 + _SLACK)
@@ -197,10 +197,10 @@ def _torque_line(
 ) -> Array:
     """Points (7, K) on the torque limit: decisions, speed, peak torque, turn.
 
-    seen (7, A, F, R, B): the same of the grid's points; reached: the best merit among them. The
-    points lie between neighbours along the period, or the first free decision without it, of
-    which one keeps the limit and one is not much slower than the best; found by secants in the
-    logarithm of the torque.
+    seen (7, A, F, R, B): the same of the grid's points; reached: the best merit among them. Each
+    point lies between neighbours along the period (or, if that is fixed, the first free decision),
+    one within the limit and one not much slower than the best; found by secants in the logarithm of
+    the torque.
     """
     limit = problem.limits.torque
     axes = {"amplitude": 0, "offset": 1, "period": 3}

@@ -1,11 +1,11 @@
 """Calculus on samples of periodic functions by Fourier series, and linear equations with them.
 
 Samples x (n, K): n equal steps (n even) along the first axis, over one `span` (K,), s, of K
-functions. A span is what a function repeats after. Over half a period of a straight gait some
-functions repeat and some change sign; the latter are `flipping` and repeat after two spans.
+functions. A function repeats after its span. Over half a period of a straight gait some functions
+repeat and some change sign; the latter are `flipping` and repeat after two spans.
 
 The repeating solution of dv/dt = a v + b takes an integrating factor, exp(-A), where dA/dt is a
-less its mean and A is periodic. Two ways on: one exact for every harmonic, one that stays accurate
+less its mean and A is periodic. Two methods follow: one exact for every harmonic, one accurate
 however much A varies.
 """
 
@@ -22,17 +22,17 @@ Spectrum = NDArray[np.complex128]
 _Operation = Callable[[Array, bool], Array]
 
 _DENSE = 64
-"""Samples up to which one matrix product is faster than the transforms it stands for."""
+"""Samples up to which one matrix product is faster than the equivalent transforms."""
 
 _FINER = 4
-"""Factor of oversampling that shows where a function changes sign."""
+"""Oversampling factor that resolves changes of sign."""
 
 _SMOOTH = 256
-"""Samples from which on a peak is resolved well enough for a parabola."""
+"""Samples above which a peak is resolved well enough for a parabola."""
 
 
 def harmonics(x: Array) -> Spectrum:
-    """The spectrum (n/2 + 1, K) of x: its mean times n, then what goes with each frequency."""
+    """The spectrum (n/2 + 1, K) of x: n times its mean, then the coefficient of each frequency."""
     return np.asarray(rfft(x, axis=0))
 
 
@@ -66,8 +66,8 @@ def refined(x: Array) -> Array:
 def peak(x: Array, flipping: bool) -> Array:
     """Largest |x| (K,), between the samples too.
 
-    The spectrum padded with zeros gives samples at least four times as dense, a parabola
-    through the largest of them and its neighbours the rest.
+    The zero-padded spectrum gives samples at least four times as dense, and a parabola through the
+    largest of them and its neighbours gives the peak.
     """
     size = np.abs(_apply(_resampled, x, flipping))
     top, column = size.argmax(axis=0), np.arange(size.shape[1])
@@ -95,8 +95,8 @@ def peaks(x: Array, parts: int) -> Array:
 def positive_mean(x: Array) -> Array:
     """Mean of the positive part (K,) of functions that repeat after the span.
 
-    It is what the integral gains between a rise through zero and the fall after it. At a zero the
-    integral is stationary, so it hardly matters how exactly the zero is known.
+    It is the gain of the integral from each upward zero crossing to the next downward one. The
+    integral is stationary at a zero, so the zeros need little accuracy.
     """
     n = _FINER * len(x)
     fine = samples(harmonics(x), n) * _FINER if len(x) > 1 else np.repeat(x, n, axis=0)
@@ -107,7 +107,7 @@ def positive_mean(x: Array) -> Array:
     at = np.nonzero((fine > 0) != (after > 0))
     start, end = fine[at], after[at]
     s = start / (start - end)
-    # Hermite's cubic has the slopes of the integral, which are the function's values.
+    # The Hermite cubic has the slopes of the integral, which are the function's values.
     here = whole[at] * (1 + 2 * s) * (1 - s) ** 2 + gained[at] * s**2 * (3 - 2 * s)
     here += s * (1 - s) * ((1 - s) * start - s * end) / n
     turns = np.bincount(at[1], np.where(start > 0, here, -here), minlength=x.shape[1])
@@ -115,12 +115,12 @@ def positive_mean(x: Array) -> Array:
 
 
 def tail(x: Array, flipping: bool) -> Array:
-    """Size of the fastest eighth of the harmonics, (K,), in the unit of x."""
+    """Magnitude of the highest eighth of the harmonics, (K,), in the unit of x."""
     return np.abs(_apply(_tail, x, flipping)).max(axis=0)
 
 
 def matrices(n: int, flipping: bool) -> tuple[Array, Array, Array]:
-    """What stands behind `integral` over a span of 1, `tail` and `peak`, as matrices (.., n)."""
+    """`integral` over a span of 1, `tail` and `peak` as matrices (.., n)."""
     integral, fastest, dense = (
         _matrix(operation, n, flipping) for operation in (_integral, _tail, _resampled)
     )
@@ -165,18 +165,18 @@ def _tail(x: Array, flipping: bool) -> Array:
 
 
 _STIFF = 15.0
-"""Range of A beyond which rounding, which exp(A) magnifies, is more than `solve_stiff` errs."""
+"""Range of A beyond which rounding, amplified by exp(A), exceeds the error of `solve_stiff`."""
 _SHARE, _REPLACED = 0.8, 120
-"""To which an error falls from one to the next, at most, where `_by_replacing` goes on so often."""
+"""Largest contraction factor for which `_by_replacing` is used, and its most iterations."""
 _REACH = 1.0
-"""a times a step up to which `solve_stiff` resolves the step; beyond, its integrals are off."""
+"""Largest a times a step that `solve_stiff` resolves; beyond it, the integrals are inaccurate."""
 
 _NEAR = (-2, -1, 0, 1, 2, 3)
-"""Samples, counted from the start of a step, whose polynomial stands for the integrand."""
+"""Samples, relative to the start of a step, that interpolate the integrand."""
 
 
 def _weights() -> Array:
-    """Of the samples _NEAR in the integral over a step of length 1: exact for polynomials."""
+    """Quadrature weights of the samples _NEAR over a step of length 1: exact for polynomials."""
     powers = np.arange(len(_NEAR))
     moments = np.array(_NEAR, float) ** powers[:, None]
     return np.asarray(np.linalg.solve(moments, 1 / (powers + 1.0)), float)
@@ -186,8 +186,7 @@ _WEIGHTS = _weights()
 
 
 def solve(a: Array, b: Array, span: Array) -> tuple[Array, Array, Array]:
-    """v (n, K), the mean of a (K,), and what rounding makes of v, relative, (K,), harmonic by
-    harmonic.
+    """v (n, K), the mean of a (K,), and the relative rounding error of v, (K,), by harmonics.
 
     y = v exp(-A) obeys dy/dt = mean y + b exp(-A), whose coefficient is constant: every
     harmonic of y is that of b exp(-A) over (i omega - mean).
@@ -211,8 +210,8 @@ def solve(a: Array, b: Array, span: Array) -> tuple[Array, Array, Array]:
 
 
 def _by_replacing(a: Array, b: Array, span: Array) -> tuple[Array, Array]:
-    """v (n, K), and the constant (K,) that is put for a, again and again with what is left of a v
-    added to b: where a is never 0 the error falls each time by (most - least)/(most + least)."""
+    """v (n, K) by fixed-point iteration, and the constant (K,) that replaces a; the remainder times
+    v is added to b. Where a has one sign, the error contracts by (most - least)/(most + least)."""
     middle = (a.max(axis=0) + a.min(axis=0)) / 2
     divisor, rest, v = frequencies(len(a), span) - middle, a - middle, np.zeros_like(b)
     for _ in range(_REPLACED):
@@ -223,18 +222,18 @@ def _by_replacing(a: Array, b: Array, span: Array) -> tuple[Array, Array]:
 
 
 def solve_stiff(a: Array, b: Array, span: Array) -> tuple[Array, Array]:
-    """v (n, K), and the mean of a (K,), for an a that dry friction makes large and sudden.
+    """v (n, K), and the mean of a (K,), for an a that dry friction makes large and abrupt.
 
-    exp(A) may then span more orders of magnitude than a float has digits, but over one step it
+    exp(A) may then span more orders of magnitude than a float can represent, but over one step it
     does not. So each step from sample to sample becomes a map v -> gain v + shift, with the
-    integral in it of order six; the maps of 1, 2, 4 .. n steps from every sample follow by
-    joining pairs, and the last of them close the cycle. n is a power of two.
+    integral in it of order six; the maps over 1, 2, 4 .. n steps from every sample follow by
+    composing pairs, and the last of them close the cycle. n is a power of two.
     """
     n, h = len(a), span / len(a)
     A, mean = _exponent(a, frequencies(n, span))
-    # Clipped: where a step is stiffer, v is only as good as the samples are dense.
+    # Clipped: where a step is stiffer, the sampling density limits the accuracy of v.
     gain = np.exp(np.clip(_ahead(A, 1) - A + mean * h, -10.0, 1.0))
-    # exp of what a gathers from each near sample to the end of the step, one gain at a time.
+    # exp of the integral of a from each nearby sample to the end of the step, one gain at a time.
     next1, next2, last1, last2 = (_ahead(gain, k) for k in (1, 2, -1, -2))
     factors = (gain * last1 * last2, gain * last1, gain, 1.0, 1 / next1, 1 / (next1 * next2))
     shift = np.zeros_like(a)
@@ -251,7 +250,7 @@ def solve_stiff(a: Array, b: Array, span: Array) -> tuple[Array, Array]:
 
 
 def _ahead(x: Array, k: int) -> Array:
-    """The cyclic samples x (n, K) from k steps later; np.roll takes as long as the arithmetic."""
+    """The cyclic samples x (n, K), k steps ahead; np.roll takes as long as the arithmetic."""
     return np.concatenate([x[k:], x[:k]])
 
 

@@ -1,8 +1,8 @@
 """The points of a sweep: a product grid of the decisions, and the lines where limits are active.
 
-Optima tend to lie on limits, where a grid of evenly spaced values has hardly a point. So every
-grid is given, besides, the amplitude that the angle and the singular posture leave at each
-offset, and the period that the rate asks for at each amplitude.
+Optima tend to lie on limits, where an evenly spaced grid has hardly a point. So every grid also
+contains the largest amplitude that angle and singularity allow at each offset, and the shortest
+period that the rate allows at each amplitude.
 """
 
 import math
@@ -44,15 +44,15 @@ class Grid:
 
 
 def mirrored(problem: Problem) -> bool:
-    """Whether each gait's mirror image, phi0 and -phi0, is within bounds and does as well."""
+    """Whether each gait's mirror image, phi0 and -phi0, is within bounds and equivalent."""
     offset = problem.gait.offset
     symmetric = offset.low == -offset.high and problem.turn is None
     return symmetric and dynamics_of(problem.robot).mirrored
 
 
 def boxes(problem: Problem) -> dict[str, Interval]:
-    """The bounds of each decision. Where gaits at -phi0 are mirror images one half of the offsets
-    will do. Ratios that cannot be realised are left out; low > high if that is all of them."""
+    """The bounds of each decision. Where gaits at -phi0 are mirror images, one half of the offsets
+    suffices. Ratios that cannot be realised are left out; low > high if none can."""
     gait, choice = problem.gait, problem.inertia_ratio
     offset = gait.offset
     if mirrored(problem):
@@ -66,8 +66,8 @@ def boxes(problem: Problem) -> dict[str, Interval]:
 def grid_of(problem: Problem, counts: Mapping[str, int]) -> Grid:
     """The grid over the problem's own bounds, ends included.
 
-    counts: values of each decision that is not fixed, at least 2; where only whole loads exist
-    their number says it.
+    counts: values of each decision that is not fixed, at least 2; where only whole loads exist,
+    these determine the number.
     """
     inside = boxes(problem)
 
@@ -76,7 +76,7 @@ def grid_of(problem: Problem, counts: Mapping[str, int]) -> Grid:
         if not box.low < box.high:
             return np.array([box.low] if box.fixed else [])
         if name == "period":
-            # Ends exactly as given: a grid may not leave its bounds by rounding.
+            # Ends exactly as given: rounding must not take a grid outside its bounds.
             inner = np.geomspace(box.low, box.high, count)[1:-1]
             return np.array([box.low, *inner, box.high])
         return np.linspace(box.low, box.high, count)
@@ -101,7 +101,7 @@ def whole_loads(problem: Problem) -> Array:
 
 
 def free_decisions(problem: Problem) -> tuple[str, ...]:
-    """The decisions whose number of values is open."""
+    """The decisions whose number of values can be chosen."""
     inside = boxes(problem)
     free = [name for name in DECISIONS if inside[name].low < inside[name].high]
     if loads_are_whole(problem) and "ratio" in free:
@@ -125,8 +125,8 @@ def reach(problem: Problem) -> float:
 
 
 def points(problem: Problem, grid: Grid) -> tuple[Array, Array, Array, Array]:
-    """Amplitude, period, offset and ratio of all points: (A, F, R, B) each, by amplitude,
-    offset, ratio and period; amplitudes and periods increase, and NaN stands for no point.
+    """Amplitude, period, offset and ratio of all points: (A, F, R, B) each, by amplitude, offset,
+    ratio and period; amplitudes and periods increase, and NaN marks a missing point.
 
     The lines where limits are active are added as far as they lie between the grid's ends.
     """
@@ -171,11 +171,11 @@ def _loaded(robot: Robot, choice: RatioChoice, count: int) -> Robot:
 
 
 def _realisable(robot: Robot, choice: RatioChoice) -> Interval:
-    """The part of the ratio's bounds that loads, or a positive inertia I2, can give."""
+    """The part of the ratio's bounds that loads, or an inertia I2 > 0, can realise."""
     if choice.by == "loads":
         least = inertia_ratio(robot, choice.about)
     else:
-        # I2 > 0 by a margin that no real platform comes near.
+        # I2 > 0 by a margin far below any real platform.
         weightless = replace(robot, platform2=replace(robot.platform2, I=0.0))
         least = inertia_ratio(weightless, choice.about) + 1e-6
     return Interval(max(choice.bounds.low, least), choice.bounds.high)

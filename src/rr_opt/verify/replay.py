@@ -1,8 +1,8 @@
-"""Replay: the winner, simulated by cvodes at tight tolerance, as if nothing were known of it.
+"""Replay: the winner, simulated by CVODES at tight tolerance, independently of the optimiser.
 
-The steady cycle is found anew, the speed measured from P's path, and every limit looked at
-between the optimiser's nodes too, and on both sides of every jump of the torque. A turn is replayed
-for many periods on its circle, and from rest.
+The steady cycle is recomputed, the speed measured from P's path, and every limit checked between
+the optimiser's nodes too, and on both sides of every torque jump. A turn is replayed for many
+periods on its circle, and from rest.
 """
 
 import math
@@ -31,17 +31,17 @@ from rr_opt.motion.steady_cycle import (
 
 @dataclass(frozen=True)
 class Replay:
-    """What the simulation says.
+    """The result of the simulation.
 
     speed      m/s, signed
     error      |speed - claimed| / |claimed|
-    allowance  what a tolerance of it is multiplied by: CANCELLED of the largest speed along the
+    allowance  factor on the tolerance of the error: CANCELLED times the largest speed along the
                cycle over |claimed|, at least 1
     reached    extreme of each limited quantity over the cycle: rate (rad/s), angle (rad),
                torque (N m), singularity (least S1, m), grip (largest of both axles), and, where
                one of them is limited, power (W), cost_of_transport and speed (m/s)
     grip       of each axle: largest side force over the load on it
-    excess     by how much the worst limit is broken, relative to it; negative if all are kept
+    excess     largest relative violation of a limit; negative if all are satisfied
     """
 
     speed: float
@@ -86,24 +86,24 @@ LARGEST = 1e-4
 
 _SAMPLES = 128
 _TIGHT, _LOOSE = 1e-12, 1e-9
-"""Tolerances: from period to period errors of place and heading add up, to the circle that a start
-from rest comes to they do not."""
+"""Integration tolerances: on the circle, errors of place and heading accumulate from period to
+period; in the approach from rest they do not."""
 _SETTLED, _LONGEST = 1e-8, 2000
-"""What is left of the deviation at rest when the circle is looked at, and the most periods until
-then: where a robot turns on the spot, or hardly gains on each period, a deviation changes its
-circle a hundred times as much."""
+"""Residual deviation from the steady cycle at which the circle is evaluated, and most periods until
+then. Where a robot turns on the spot, or hardly advances per period, a deviation changes its circle
+a hundred times as much."""
 
 
 @dataclass(frozen=True)
 class CircleCheck:
-    """What the simulation says. All distances are relative to the claimed radius, or to the way
-    driven where that is shorter.
+    """The result of the simulation. Distances are relative to the claimed radius, or to the
+    distance driven if shorter.
 
-    ends       largest distance of P, at the end of a period, from where it should be by then
+    ends       largest distance of P, at the end of a period, from its expected place
     mean       largest difference between a period's mean circle and the claimed one
-    rest       the same of the last of `periods` periods from rest
+    rest       the same for the last of `periods` periods from rest
     curvature  claimed, 1/m
-    transient  how a start from rest comes to the circle
+    transient  how a start from rest approaches the circle
     """
 
     ends: float
@@ -115,7 +115,7 @@ class CircleCheck:
 
     @property
     def passed(self) -> bool:
-        """It stays on the circle, and comes to it from rest."""
+        """It stays on the circle, and converges to it from rest."""
         return max(self.ends, self.mean, self.rest) <= LARGEST
 
 
@@ -162,15 +162,15 @@ def _period(gait: Gait, x: Array, y: Array, psi: Array, i: int) -> Cycle:
 
 
 def _off(cycle: Cycle, curvature: float) -> float:
-    """Difference of the radii, relative; where the circle is wider than the way of a period
-    times 50, of the curvatures times that way."""
+    """Relative difference of the radii; if the radius exceeds the distance of 50 periods,
+    difference of the curvatures times that distance."""
     made = circle_of(cycle).curvature
     scale = max(abs(curvature), 1 / (PERIODS * abs(cycle.speed) * cycle.period))
     return abs(made - curvature) / scale
 
 
 def _predicted(cycle: Cycle, periods: int) -> Array:
-    """P at the ends of periods, (2, periods + 1): the rigid motion of one, again and again."""
+    """P at the ends of periods, (2, periods + 1): the rigid motion of one period, repeated."""
     at, heading, points = 0j, 0.0, [0j]
     for _ in range(periods):
         at += complex(cycle.dx, cycle.dy) * complex(math.cos(heading), math.sin(heading))

@@ -25,8 +25,8 @@ MOST = 16384
 """Samples of half a period where friction is not viscous."""
 
 SAFETY = 0.25
-"""Where friction turns suddenly, what a doubling of the samples changes depends on where they
-fall: the error may be larger. So much of the tolerance is what it may change."""
+"""Factor on the tolerance for friction with abrupt transitions, where the change from doubling the
+samples depends on where these fall, and may underestimate the error."""
 
 
 def by_series(
@@ -40,10 +40,10 @@ def by_series(
     at: _Places,
     into: Speeds,
 ) -> int:
-    """Viscous friction: written to the places `at` where the error is no worse than that.
+    """Viscous friction: written to the places `at` where the error is at most `worst`.
 
-    first: samples to begin with; fewest: without which a point is not resolved (K,). Returns with
-    how many samples NumPy has to go on with the rest.
+    first: initial samples; fewest: samples needed to resolve a point (K,). Returns the number of
+    samples with which NumPy is to continue for the rest.
     """
     pending, n = np.arange(len(points.period)), first
     while len(pending) and n <= compiled.most:
@@ -69,8 +69,8 @@ def by_newton(
     """Any friction: written to the places `at` where it is resolved to the tolerance."""
     pending, n = np.arange(len(points.period)), first
     while len(pending) and n < MOST * (1 if straight else 2):
-        # The few that need many samples are put together, as the points of a vector register
-        # all take as many as the worst of them.
+        # Points that need many samples are grouped, as all points of a vector register take as many
+        # as the worst.
         n *= 4
         found = compiled.newton(points.only(pending), p, first, n, straight, SAFETY * tolerance)
         into.keep((at[0][pending], at[1][pending]), found, found.error <= SAFETY * tolerance)
@@ -78,15 +78,15 @@ def by_newton(
 
 
 FEWEST, RESOLVE_MOST = 16, 4096
-"""Samples of half a period of a straight gait; of a whole period twice as many."""
+"""Samples per half period of a straight gait; per whole period twice as many."""
 
 _MARGIN = 10.0
-"""The fastest harmonics of the velocity may be this many times as large as the speed's error, which
-comes from their products where friction is viscous. Where it is not, those of the friction are
-stronger, and what doubling the samples changes is the error."""
+"""With viscous friction, the speed's error comes from products of the velocity's highest harmonics,
+which may be this many times larger. Other friction has stronger harmonics of its own, and the error
+is the change from doubling the samples."""
 
 _CHUNK = 16384
-"""Samples of shapes in one go, where NumPy does it."""
+"""Samples per batch in NumPy."""
 
 
 def resolved(
@@ -148,10 +148,10 @@ def least_S1(robot: Robot, amplitude: ArrayLike, offset: ArrayLike) -> Array:
 
 
 def _samples(robot: Robot, reach: Array) -> Array:
-    """Samples of half a period without which a gait that goes so far is not resolved.
+    """Samples per half period needed to resolve a gait of this reach.
 
     The motion is analytic in the complex phase up to where alpha sin(theta) reaches the singular
-    posture, y = arccosh(phi*/reach) off the real axis: its harmonics fall as exp(-k y).
+    posture, y = arccosh(phi*/reach) off the real axis: its harmonics decay as exp(-k y).
     """
     ratio = robot.singular_angle / np.maximum(reach, 1e-9)
     return 6.0 / np.arccosh(np.maximum(ratio, 1 + 1e-9))
@@ -188,11 +188,11 @@ def speeds(
     ratio: ArrayLike | None = None,
     tolerance: float = 1e-6,
 ) -> Speeds:
-    """Speed and peak torque of gaits that need not keep any limit, in their broadcast shape.
+    """Speed and peak torque of gaits, feasible or not, in their broadcast shape.
 
-    amplitude, offset in rad, period in s, ratio J20/J10 (None: the robot as it is).
-    tolerance: of the speed, relative. Fastest where the last axis is the period's alone. NaN
-    where the gait reaches the singular posture, and where the cycle is not resolved.
+    amplitude, offset in rad, period in s, ratio J20/J10 (None: the robot as it is). tolerance: of
+    the speed, relative. Fastest if the last axis is that of the period alone. NaN where the gait
+    reaches the singular posture, and where the cycle is not resolved.
     """
     ratios = np.asarray(np.nan if ratio is None else ratio, float)
     inputs = [np.asarray(part, float) for part in (amplitude, offset, ratios)]
@@ -216,7 +216,7 @@ def speeds(
 
 
 def _parameters(problem: Problem, ratio: Array | None) -> tuple[NDArray[np.int_] | None, Array]:
-    """The robots' parameter vectors as columns, and which of them each ratio has."""
+    """The robots' parameter vectors as columns, and the column of each ratio."""
     dynamics = dynamics_of(problem.robot)
     if ratio is None:
         return None, dynamics.values(problem.robot)[:, None]
@@ -231,7 +231,7 @@ PHASES, _BLOCK = 256, 64
 
 def motions(problem: Problem, gaits: Array, phases: int = PHASES, *, grip: bool = False) -> Motion:
     """Steady motions of sines, (4, K): amplitude, period, offset, ratio (NaN: as it is), and with
-    `grip` the grip that they need. Columns are NaN where none is found."""
+    `grip` the grip needed. Columns are NaN where none is found."""
     amplitude, period, offset, ratio = gaits
     which, p = _parameters(problem, None if np.isnan(ratio).all() else ratio)
     theta = np.arange(phases)[:, None] * (2 * math.pi / phases)
@@ -254,7 +254,7 @@ class Costs(NamedTuple):
 
 @np.errstate(divide="ignore", over="ignore", invalid="ignore")
 def costs(problem: Problem, gaits: Array, found: Motion) -> Costs:
-    """The costs of sines, (4, K) as in `motions`, of which that found the motion."""
+    """The costs of sines, (4, K) as in `motions`, with the motion found there."""
     amplitude, period, _, ratio = gaits
     n = len(found.torque)
     theta = np.arange(n)[:, None] * (2 * math.pi / n)
@@ -271,12 +271,12 @@ _SETTLED = 1e-6
 
 
 def speed_of(robot: Robot, gait: Gait) -> tuple[float, float]:
-    """The steady speed of a gait, signed, from more and more samples until more change nothing, and
-    what an error of it is relative to, m/s.
+    """The steady speed of a gait, signed, refined until more samples make no difference, and the
+    reference for its relative error, m/s.
 
-    The acceleration of a free gait jumps; a sample at a jump has the mean of both sides, with
-    which the error falls with the square of the number of samples. What twice the samples will
-    then change is added. NaN where the model finds no steady cycle.
+    The acceleration of a free gait jumps; a sample at a jump is the mean of both sides, so that the
+    error decreases with the square of the number of samples, and is extrapolated. NaN where the
+    model finds no steady cycle.
     """
     smooth = gait.pieces == 1
     before, samples = math.nan, _SAMPLES if smooth else 4 * gait.pieces
@@ -308,22 +308,22 @@ _DRAWN_TO = 1e-5
 
 @dataclass(frozen=True)
 class Drawn:
-    """What many robots, drawn at random from those that a file may mean, make of a gait: signed
-    speed, m/s, and largest |torque|, N m, (K,)."""
+    """A gait's performance over robots drawn at random from the uncertainty: signed speed, m/s, and
+    largest |torque|, N m, (K,)."""
 
     speed: Array
     torque: Array
 
     def reaching(self, speed: float) -> float:
-        """The share of them that go at least as fast the same way."""
+        """The share of them that go at least as fast in the same direction."""
         return float((self.speed * np.sign(speed) >= abs(speed)).mean())
 
     def keeping(self, torque: float) -> float:
-        """The share of them that need no more torque, N m."""
+        """The share of them within this torque, N m."""
         return float((self.torque <= torque).mean())
 
     def reached(self, share: float) -> float:
-        """The speed, m/s, that this share of them reaches, forward or backward as most go."""
+        """The speed, m/s, that this share of them reaches, in the direction that most take."""
         way = float(np.sign(np.median(self.speed)))
         return way * float(np.quantile(way * self.speed, 1 - share))
 
@@ -331,7 +331,7 @@ class Drawn:
 def drawn(
     robot: Robot, gait: SineGait, spreads: Spreads, scale: float = 1.0, seed: int = 1
 ) -> Drawn:
-    """DRAWN robots; scale: of all spreads."""
+    """DRAWN random robots; scale: of all spreads."""
     dynamics, rng, count = dynamics_of(robot), np.random.default_rng(seed), DRAWN
     p = np.repeat(dynamics.values(robot)[:, None], count, axis=1)
     for which, spread in spreads.of(dynamics.parameters).items():

@@ -1,11 +1,11 @@
 """Steady cycles of many gaits at once by Fourier series: the model behind the sweep.
 
 Where friction is viscous, vdot = a v + b with a and b known along the gait, and the periodic
-solution follows in closed form. Other friction is linearised about the current v, solved so,
-and the step repeated (Newton-Kantorovich).
+solution follows in closed form. Other friction is linearised about the current v and solved
+repeatedly (Newton-Kantorovich).
 
-On a robot whose two sides are alike the mirror image of a motion is a motion. A straight gait turns
-into its mirror image after half a period, so half a period says everything: v repeats, w, side and
+On a left-right symmetric robot the mirror image of a motion is a motion. A straight gait becomes
+its own mirror image after half a period, so half a period suffices: v repeats, while w, side and
 torque change sign.
 """
 
@@ -28,7 +28,7 @@ from rr_opt.verify.fourier import derivative, integral, peak, refined, solve, so
 
 
 class Doublings:
-    """What the last doublings changed of the cycles of G shapes at B periods."""
+    """Changes from the last doublings, for the cycles of G shapes at B periods."""
 
     def __init__(self, shape: tuple[int, ...]) -> None:
         self._before = np.full((3, *shape), np.nan)
@@ -39,7 +39,7 @@ class Doublings:
         of a shape were found in a row.
 
         One small change may be chance, as samples fall beside or into a sudden turn of friction: so
-        the change before it counts too, by the quarter that a doubling leaves at most of it.
+        the previous change counts too, by the quarter that a doubling leaves at most.
         """
         now = np.where(np.isfinite(found.error), np.array(found[:3]), np.nan)
         scales = (
@@ -56,21 +56,21 @@ class Doublings:
 
 
 _COARSE = 64
-"""Samples at which Newton's method starts; each doubling goes on from the last."""
+"""Samples at which Newton's method starts; each doubling is a warm start from the previous."""
 
 _STEPS, _COARSE_STEPS = 25, 8
 _TINY = 1e-12
-"""A speed below this, m/s, counts as this."""
+"""Slower speeds, m/s, count as this."""
 
 _DAMPED = -1e-9
-"""Logarithm by which a disturbance of v shrinks over a span, at least; else v never settles."""
+"""Log of the decay of a disturbance of v over a span, at least; else v never settles."""
 
 _BLOCK = {True: 4096, False: 16384}
-"""Samples in one go where friction is viscous (True) or not: so long that NumPy's own time per
-operation hardly counts, so short that some arrays fit the processor's cache."""
+"""Samples per batch, by whether friction is viscous: enough for NumPy's overhead per operation to
+hardly count, few enough for some arrays to fit the processor's cache."""
 
 _PAYS = {True: 200_000, False: 1000}
-"""Points from which on NumPy takes longer than to compile."""
+"""Points beyond which compiling pays off."""
 
 
 class _Angle(NamedTuple):
@@ -85,8 +85,8 @@ class _Angle(NamedTuple):
 
 _Means = tuple[Array, Array, Array]
 _Motion = tuple[Array, Array, Array, Array, Array]
-"""v, w, side and torque (n, G B); what rounding makes of v, relative, inf where v is no steady
-cycle (G B,)."""
+"""v, w, side and torque (n, G B); the relative rounding error of v, inf where v is no steady cycle
+(G B,)."""
 
 
 class Motion(NamedTuple):
@@ -95,7 +95,7 @@ class Motion(NamedTuple):
     velocity, heading   means in the frame that turns with the gait, m/s and 1, (2, K)
     turn                heading gained per period, rad, (K,)
     torque              N m, (n, K)
-    grips               side force of each axle over its load, (2, n, K); (0, n, K) if not asked
+    grips               side force of each axle over its load, (2, n, K), or (0, n, K) if not asked
     """
 
     velocity: Array
@@ -122,11 +122,11 @@ class SteadyFourier:
         )
 
     def compiled(self, points: int) -> CompiledCycles | None:
-        """The same as machine code, if there is a compiler and it pays, with this number of points
-        to come; what was compiled once is there at once."""
+        """The compiled loops, if there is a compiler and it pays for this number of points; what
+        was compiled before is available at once."""
         return self._code.code(points)
 
-    # What is not finite has no settled cycle, and comes out as such.
+    # Non-finite values mark gaits without a steady cycle, and are kept as such.
     @np.errstate(divide="ignore", over="ignore", invalid="ignore")
     def cycles(
         self,
@@ -156,7 +156,7 @@ class SteadyFourier:
         straight: bool,
         tolerance: float = 1e-6,
     ) -> Steady:
-        """Steady cycles along phi and its first two derivatives in 2 pi t/T, (n, G) each, rad, of
+        """Steady cycles along phi and its first two derivatives in 2 pi t/T, (n, G) each, rad, over
         half a period if straight: such a gait is its own mirror image half a period later."""
         n = len(angle[0])
         powers = self._powers(angle[0], p) if self.viscous else None
@@ -215,12 +215,12 @@ class SteadyFourier:
     def _newton(
         self, angle: Array, p: Array, span: Array, last: float, steps: int
     ) -> tuple[Array, NDArray[np.bool_]]:
-        """v (n, K) along phi, dphi, ddphi (3, n, K), and where the steps have died out (K,)."""
+        """v (n, K) along phi, dphi, ddphi (3, n, K), and where the iteration has converged (K,)."""
         if angle.shape[1] > _COARSE:
             coarse, _ = self._newton(angle[:, ::2], p, span, 1e-4, _COARSE_STEPS)
             v = np.where(np.isfinite(coarse).all(axis=0), refined(coarse), 0.0)
         else:
-            # The chord of vdot from v = -1 to 1 m/s: to it dry friction is a small matter.
+            # The secant of vdot from v = -1 to 1 m/s, on which dry friction has little effect.
             low, high = (self._motion(v, *angle, *p)[0] for v in (-1.0, 1.0))
             v = solve_stiff((high - low) / 2, (high + low) / 2, span)[0]
         columns, settled = np.arange(len(span)), np.zeros(len(span), bool)
@@ -243,14 +243,14 @@ class SteadyFourier:
 
 
 def _columns(x: Array, which: slice | NDArray[np.int_]) -> Array:
-    """The columns of x, which may have one that stands for all, or be a number."""
+    """The columns of x, which may have a single column for all, or be a scalar."""
     return x[:, which] if np.ndim(x) == 2 and x.shape[1] > 1 else x
 
 
 def _by_powers(powers: Powers, gaits: _Angle, span: Array) -> _Motion:
     c = Powers(*(np.asarray(part)[..., None] for part in powers))
     omega, q, r = gaits.omega, gaits.rate[..., None], gaits.bend[..., None]
-    # In powers of omega: what stands in brackets is computed once for all periods.
+    # In powers of omega: the bracketed terms are computed once for all periods.
     a = (c.a_vq * q) * omega + c.a_v
     b = ((c.a_qq * q**2 + c.a_r * r) * omega + c.a_q * q) * omega
     v, mean, rounding = solve(a.reshape(len(a), -1), b.reshape(len(b), -1), span)
@@ -266,14 +266,14 @@ def _by_powers(powers: Powers, gaits: _Angle, span: Array) -> _Motion:
 def _means(v: Array, w: Array, side: Array, span: Array, straight: bool) -> _Means:
     """V and E (2, K) and the heading gained in a period, rad, (K,).
 
-    chi = psi - turn t/T is periodic. V is the mean of P's velocity in the frame that turns with
-    the gait, E the mean heading there, which says what is forward.
+    chi = psi - turn t/T is periodic. V is the mean of P's velocity in the frame that turns with the
+    gait, E the mean heading there, which defines forward.
     """
     chi = integral(w, span, straight)
     cos, sin = np.cos(chi), np.sin(chi)
     V, E = [(cos * v - sin * side).mean(axis=0)], [cos.mean(axis=0)]
     if straight:
-        # In the mirror image sideways is the other way: Vy = Ey = 0 over the whole period.
+        # In the mirror image sideways is reversed, so Vy = Ey = 0 over the whole period.
         still = np.zeros_like(V[0])
         return np.array([*V, still]), np.array([*E, still]), still
     V, E = [*V, (sin * v + cos * side).mean(axis=0)], [*E, sin.mean(axis=0)]
@@ -335,7 +335,7 @@ class SpeedPowers:
         return Powers(*self._over_arrays(phi, *np.asarray(p)))
 
     def reproduce(self, dynamics: Dynamics) -> bool:
-        """Whether the polynomials are the motion, tried in numbers at states all over."""
+        """Whether the polynomials reproduce the motion, checked numerically at many states."""
         draw = np.random.default_rng(0)
         for _ in range(8):
             p = draw.uniform(0.5, 1.5, len(dynamics.parameters))

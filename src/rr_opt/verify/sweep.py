@@ -1,7 +1,7 @@
-"""The sweep: a dense grid over all decisions, which no optimum may fall short of.
+"""The sweep: a dense grid over all decisions, which every optimum must match or beat.
 
 It shares robot, problem and derived physics with the optimiser and nothing else: the steady
-cycle is found by Fourier series, the best point by looking everywhere.
+cycle is found by Fourier series, the best point by exhaustive search.
 """
 
 import math
@@ -21,8 +21,8 @@ from rr_opt.verify.grid import DECISIONS, Grid, boxes, free_decisions, grid_of, 
 from rr_opt.verify.speeds import model_of, robot_with, speed_of, speeds
 
 _SIDE, _TOLERANCE = {True: 120, False: 40}, {True: 1e-3, False: 3e-2}
-"""Gaits along each side, and tolerance of their speeds, relative. Other friction than viscous
-(False) takes some hundred times as long; contours drawn through fewer points look the same."""
+"""Gaits along each side, and relative tolerance of their speeds. Friction that is not viscous
+(False) takes some hundred times as long; contours through fewer points look the same."""
 
 
 class SpeedMap(NamedTuple):
@@ -39,8 +39,8 @@ class SpeedMap(NamedTuple):
 
 
 def speed_map(problem: Problem, robot: Robot, offset: float) -> SpeedMap:
-    """Speed of a grid of gaits over the problem's bounds of amplitude and period, on a robot
-    with its ratio, whether or not they keep the limits: for a figure."""
+    """Speed of a grid of gaits over the problem's bounds of amplitude and period, on a robot with
+    its ratio, feasible or not: for a figure."""
     inside, viscous = boxes(problem), model_of(robot).viscous
     n = _SIDE[viscous]
     amplitude, period = inside["amplitude"], inside["period"]
@@ -52,13 +52,13 @@ def speed_map(problem: Problem, robot: Robot, offset: float) -> SpeedMap:
 
 
 TOLERATED = 1e-4
-"""A claimed speed may differ by so much, relative, from the sweep's own of that gait."""
+"""Largest relative difference of a claimed speed from the sweep's own for that gait."""
 
 
 class _Effort(NamedTuple):
-    """points of a grid in all; tolerance of its speeds, and of the best one's, relative; how many
-    of its best points are climbed from, and how many where hardly one of them keeps the rows; and
-    what a climb may gain, relative, on a claim."""
+    """points of a grid in all; relative tolerance of its speeds, and of the best one's; number of
+    climbs from its best points, and where hardly any is feasible; and the relative gain over a
+    claim that is tolerated."""
 
     points: int
     tolerance: float
@@ -68,26 +68,26 @@ class _Effort(NamedTuple):
     gained: float
 
 
-# Other friction than viscous takes some hundred times as long.
+# Friction that is not viscous takes some hundred times as long.
 _EFFORT = {
     True: _Effort(10_000, 1e-4, 1e-8, 4, 12, 1e-6),
     False: _Effort(600, 0.03, 5e-5, 2, 2, 1e-4),
 }
 _FINALISTS, _ALIKE = 3, 1e-3
-"""Most climbs that go on to their ends, from gaits that differ by more than this in one decision's
+"""Most climbs that run to convergence, from gaits that differ by more than this in one decision's
 range."""
 _OFF, _MOST_OFF = 2.0, 5.0
-"""Share of the speed that an excess of 1, relative, costs a start, and the largest that counts."""
+"""Relative loss of speed for an excess of 1 at a start, and the largest excess that counts."""
 
 
 @dataclass(frozen=True)
 class SweepResult:
-    """What a sweep found.
+    """The result of a sweep.
 
     grid     the values of each decision
     found    all points evaluated, those on the lines where limits are active among them
-    best     the best point of them that keeps all limits, None if none does
-    refined  the best that climbs from the best few points led to
+    best     the best feasible point among them, None if there is none
+    refined  the best optimum of the climbs from the best few points
     points   how many points were evaluated in all
     """
 
@@ -102,18 +102,18 @@ class SweepResult:
 class SweepCheck:
     """A claimed optimum, compared with a sweep.
 
-    points         evaluated, near the claimed optimum and all over
-    best           that keeps all limits, offset >= 0 where gaits at phi0 and -phi0 do equally well;
+    points         evaluated, near the claimed optimum and over the whole box
+    best           feasible; offset >= 0 where gaits at phi0 and -phi0 are equivalent;
                    None if none was found
     gap            (claimed - best)/claimed, of speeds or of distances per energy: negative where
                    the sweep found something better
-    gained         what a climb on from the claimed gait gains, relative; NaN for another shape
-    tolerated      of either
+    gained         relative gain of a further climb from the claimed gait; NaN for another shape
+    tolerated      largest allowed value of either
     speed          of the claimed gait, by the sweep's model, signed, m/s
     error          |speed - claimed|/|claimed|; NaN where the model cannot follow the gait's shape
-    largest_error  tolerated of that; both tolerances grow where a mean speed is what is left of the
-                   way to and fro
-    cost           of transport of the claimed gait, by the sweep's model; NaN if it does not count
+    largest_error  largest allowed error; both tolerances grow where the mean speed is a small
+                   difference of forward and backward motion
+    cost           of transport of the claimed gait, by the sweep's model; NaN if not the objective
     """
 
     points: int
@@ -128,12 +128,12 @@ class SweepCheck:
 
     @property
     def better(self) -> Found | None:
-        """What refutes the claim."""
+        """The gait that refutes the claim, if any."""
         return None if self.gap >= -self.tolerated else self.best
 
     @property
     def passed(self) -> bool:
-        """Nothing better was found, and the claimed gait has the claimed speed."""
+        """Nothing better was found, and the claimed speed is confirmed."""
         return self.better is None and not self.error > self.largest_error
 
 
@@ -164,8 +164,8 @@ def sweep(
 
 
 def climbed(problem: Problem, starts: Array, aim: Aim = "speed") -> tuple[Found | None, int]:
-    """The best that climbs from gaits (4, K) lead to, None if none of the best keeps every limit;
-    and how many gaits were evaluated. All climb a little, and the best of them to their ends."""
+    """The best result of climbs from gaits (4, K), None if none of the best is feasible; and how
+    many gaits were evaluated. All climb a little, and the best of them to convergence."""
     rough = [climb(problem, start, aim, rough=True) for start in starts.T]
     fine = [climb(problem, end, aim) for end in _finalists(problem, rough)]
     ends = sorted((end for end in fine if end.kept), key=lambda end: -end.value)
@@ -174,7 +174,7 @@ def climbed(problem: Problem, starts: Array, aim: Aim = "speed") -> tuple[Found 
 
 
 def _finalists(problem: Problem, ends: Sequence[Climbed]) -> list[Array]:
-    """Of gaits that climbs led to the best few, (4,) each, no two of them alike."""
+    """The best few distinct gaits, (4,) each, that climbs led to."""
     spans = np.array([boxes(problem)[name].high - boxes(problem)[name].low for name in DECISIONS])
     chosen: list[Array] = []
     for end in sorted(ends, key=lambda end: -end.value):
@@ -185,7 +185,7 @@ def _finalists(problem: Problem, ends: Sequence[Climbed]) -> list[Array]:
 
 
 def _resolved(problem: Problem, decisions: Array) -> Found | None:
-    """A gait (4,) with its speed; None where that is not resolved or a peak was overlooked."""
+    """A gait (4,) with its speed; None where that is not resolved or a peak was missed."""
     viscous = model_of(problem.robot).viscous
     amplitude, period, offset, ratio = decisions.tolist()
     known = None if math.isnan(ratio) else ratio
@@ -208,14 +208,14 @@ def check_optimum(
     everywhere: SweepResult | None = None,
     cost: float = math.nan,
 ) -> SweepCheck:
-    """Compare a claimed optimum with a sweep of the whole problem and a climb on from it.
+    """Compare a claimed optimum with a sweep of the whole problem and a further climb from it.
 
-    A gait of another shape is compared with all sines, which no optimum of its family may fall
-    short of.
+    A gait of another shape is compared with all sines, which an optimum of its family must match or
+    beat.
 
     gait, ratio (J20/J10 in the problem's definition; read only if the problem has one) and
-    signed speed (m/s) as claimed, and cost of transport where it is the objective; everywhere: what
-    `sweep` found, where that is known.
+    signed speed (m/s) as claimed, and cost of transport where it is the objective; everywhere: the
+    result of `sweep`, if available.
     """
     effort = _EFFORT[model_of(problem.robot).viscous]
     if problem.inertia_ratio is None:
@@ -260,8 +260,8 @@ def _counts(
 
 
 def tops(found: Evaluated, merit: Array, grid: Grid, most: int) -> list[int]:
-    """Indices of the points with the most merit that are two spacings of the grid or more from
-    better ones, best first."""
+    """Indices of the points with the most merit that are at least two grid spacings from better
+    ones, best first."""
     spacing = {name: float(np.diff(grid.axis(name)).max()) for name in grid.free}
     apart = np.array([2.0 * spacing.get(name, math.inf) for name in DECISIONS])[:, None]
     chosen: list[int] = []
@@ -274,8 +274,8 @@ def tops(found: Evaluated, merit: Array, grid: Grid, most: int) -> list[int]:
 
 
 def _merit(problem: Problem, found: Evaluated) -> Array:
-    """The speed, less some of it for each row that fails where few points keep them all: those of
-    a turn, or limits that are tight."""
+    """The speed, less a penalty for each violated row where few points are feasible: for a turn, or
+    tight limits."""
     if found.feasible.any() and not problem.turn:
         return found.merit
     speed = np.abs(found.speed)

@@ -1,5 +1,5 @@
-"""The circles of a robot's gaits: curvature and speed over offset, the tightest of them, and the
-paper's claim that the offset alone decides on the circle."""
+"""The circles of a robot's gaits: curvature and speed over offset, the tightest circle, and the
+paper's claim that the offset alone determines the circle."""
 
 import math
 from collections.abc import Mapping
@@ -23,10 +23,10 @@ _TOLERANCE = 1e-6
 
 @dataclass(frozen=True)
 class TurnMap:
-    """Gaits at offsets phi0 >= 0; those at -phi0 are mirror images, if the robot is two-sided.
+    """Gaits at offsets phi0 >= 0; those at -phi0 are mirror images, if the robot is symmetric.
 
     amplitude (A,), offset (F,) in rad, period (T,) in s; all others (A, T, F): speed (m/s, signed),
-    heading per period (rad, positive to the left), peak torque (N m), keeps: every limit is kept
+    heading per period (rad, positive to the left), peak torque (N m), keeps: feasible
     """
 
     amplitude: Array
@@ -47,7 +47,7 @@ class TurnMap:
 
 def open_offsets(problem: Problem) -> float:
     """The largest offset that the limits, the least amplitude and the problem's own bounds on it
-    allow, rad; bounds of one value count as open."""
+    allow, rad; a fixed offset counts as free."""
     box = problem.gait.offset
     own = math.inf if box.fixed else max(abs(box.low), abs(box.high))
     return min(reach(problem) - problem.gait.amplitude.low, own, math.pi)
@@ -90,8 +90,8 @@ _CLIMBS = 3
 
 @dataclass(frozen=True)
 class Tightest:
-    """The smallest circle within the limits: its radius, m, how far two searches from different
-    grids differ, m, and the gait with its signed speed, m/s."""
+    """The smallest feasible circle: its radius, m, the difference between two searches from
+    different grids, m, and the gait with its signed speed, m/s."""
 
     radius: float
     error: float
@@ -100,7 +100,7 @@ class Tightest:
 
 
 def tightest(problem: Problem) -> Tightest | None:
-    """The smallest circle, by climbs from two grids; None if no gait of either keeps the limits."""
+    """The smallest circle, by climbs from two grids; None if neither has a feasible gait."""
     limit = open_offsets(problem)
     box = replace(problem.gait, offset=replace(problem.gait.offset, low=0.0, high=limit))
     posed = replace(problem, gait=box, turn=None, inertia_ratio=None)
@@ -114,7 +114,7 @@ def tightest(problem: Problem) -> Tightest | None:
 
 
 def _climbed(problem: Problem, counts: tuple[int, int, int]) -> Found | None:
-    """The tightest circle that climbs from the tightest ones of a grid lead to."""
+    """The tightest circle found by climbs from the tightest ones of a grid."""
     grid = grid_of(problem, dict(zip(("amplitude", "period", "offset"), counts, strict=True)))
     found = evaluate(problem, grid, _TOLERANCE)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -124,13 +124,13 @@ def _climbed(problem: Problem, counts: tuple[int, int, int]) -> Found | None:
 
 
 _LEVEL = 1e-5
-"""A radius has to grow by this much, relative, to count as growing."""
+"""Relative increase of a radius that counts as growth."""
 
 
 @dataclass(frozen=True)
 class SignClaim:
-    """Of the gaits at phi0 > 0 that keep every limit: how many there are, and how many of them
-    drive forward and turn left, and so on. The claim holds if all turn to one side.
+    """Of the feasible gaits at phi0 > 0: how many there are, and how many of them drive forward and
+    turn left, and so on. The claim holds if all turn to one side.
 
     exception   of the rarer side, the gait with the least offset; None if there is none
     """
@@ -155,7 +155,7 @@ class SignClaim:
 
     @property
     def holds_each_way(self) -> bool:
-        """Every offset of one sign turns to one side among the gaits that drive the same way."""
+        """For each direction of travel, every offset of one sign turns to one side."""
         return not (
             (self.forward_left and self.forward_right)
             or (self.backward_left and self.backward_right)
@@ -164,12 +164,12 @@ class SignClaim:
 
 @dataclass(frozen=True)
 class RadiusClaim:
-    """Of the curves of one amplitude and period: on how many the radius grows somewhere as the
-    offset does.
+    """For the curves of one amplitude and period: on how many the radius grows somewhere with the
+    offset.
 
     first    the least offset from which one grows, and its gait; None if none does
     factor   the most by which a radius exceeds the smallest at a lesser offset; inf where the
-             turn changes sides on the way
+             turn changes sides in between
     worst    the gait there
     """
 
@@ -211,7 +211,7 @@ def radius_claim(seen: TurnMap) -> RadiusClaim:
         if len(at) < 2:
             continue
         curves += 1
-        # Through straight the radius grows without bound before the turn changes sides.
+        # Passing through straight, the radius grows without bound before the turn changes sides.
         sides = np.sign(along[at])
         size = np.abs(along[at])
         grown = np.maximum.accumulate(size) / size

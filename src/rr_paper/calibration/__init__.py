@@ -1,4 +1,4 @@
-"""The calibration: what the nine averages say of the paper's robot, and of the models."""
+"""The calibration: what the nine averages imply about the paper's robot, and about the models."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -32,11 +32,11 @@ COVERAGE_SETS = 100
 """Simulated data sets on which the coverage of the intervals is counted."""
 
 REDUCED = {VISCOUS: {"log2_size": 14}, DRY: {"log2_size": 11, "slices": 3}}
-"""What is reduced for the other readings of J20/J10, by model."""
+"""Reduced effort for the other readings of J20/J10, by model."""
 
 
 def effort(model: Model) -> Effort:
-    """For a model."""
+    """The effort for a model."""
     if model.cost > 10:
         return _EXPENSIVE
     return _MEDIUM if model.cost > 2 else _CHEAP
@@ -76,12 +76,12 @@ class _Count:
         self._progress, self._total, self._done, self._words = progress, total, 0, ""
 
     def next(self, words: str) -> None:
-        """The next part begins."""
+        """Start the next part."""
         self._done, self._words = self._done + 1, words
         self.tick()
 
     def tick(self) -> None:
-        """Still at it."""
+        """Report progress within a part."""
         self._progress(f"{self._words} {self._done} of {self._total}")
 
 

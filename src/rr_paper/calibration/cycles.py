@@ -1,20 +1,20 @@
 """Mean speeds of straight steady cycles of thousands of robots, with any servo or friction.
 
-This is apart from `rr_opt.verify.speeds`, which also gives the torque, at five times the cost, and
-knows one robot, exact sines and the friction of the catalogue. The derived equation of motion is
-evaluated over arrays, as coefficients that depend on the posture alone. With q = dphi and
-r = ddphi viscous friction gives
+This is separate from `rr_opt.verify.speeds`, which also gives the torque, at five times the cost,
+for one robot, exact sines and the friction of the catalogue. The derived equation of motion is
+evaluated over arrays, as coefficients that depend on the posture alone. With q = dphi and r = ddphi
+viscous friction gives
 
     vdot = (a_vq q + a_v) v + a_qq q^2 + a_q q + a_r r,     w = w_v v + w_q q
 
 and wheel i rolls at u_i = p_i v + s_i q. Dry friction adds -sum F(u_i) p_i/inertia to vdot; then
-half a period is integrated, and Newton's method inside a bracket moves the initial speed until
-the final one meets it.
+half a period is integrated, and Newton's method inside a bracket adjusts the initial speed to match
+the final one.
 
 Angles that the servo makes of a commanded sine, in steady motion:
 
-lagging     behind a first-order lag: smaller by sqrt(1 + (tau omega)^2), and later, which does
-            not change a mean speed
+lagging     with a first-order lag: smaller by sqrt(1 + (tau omega)^2), and delayed, which does not
+            change a mean speed
 limited     dphi/dt = R tanh((command - phi)/(R tau)): like a lag of tau, but no faster than R. If
             commanded faster it runs at R all the time, and the angle becomes a triangle of
             amplitude R T/4 whatever the command.
@@ -87,17 +87,17 @@ TAU = 0.02
 corners, where the servo would otherwise have to reverse instantly."""
 
 _LEVELS = np.linspace(0.0, 1.4, 57)
-"""Commanded amplitudes between which the limited servo is interpolated, rad."""
+"""Commanded amplitudes of the interpolation table of the limited servo, rad."""
 _PERIODS, _STEPS_PER_SAMPLE = 12, 8
 
 
 def lagging(amplitude: Array, period: Array, lag: Array, n: int) -> Angle:
-    """The command behind a first-order lag (s, (G,))."""
+    """The command with a first-order lag (s, (G,))."""
     return sine(amplitude / np.hypot(1.0, lag * 2 * math.pi / period), period, n)
 
 
 def limited(amplitude: Array, period: Array, n: int) -> Angle:
-    """What the limited servo makes of the command; amplitudes up to 1.4 rad."""
+    """The response of the limited servo to the command; amplitudes up to 1.4 rad."""
     parts = np.empty((3, n, len(amplitude)))
     at = amplitude / _LEVELS[1]
     below = np.clip(at.astype(int), 0, len(_LEVELS) - 2)
@@ -132,13 +132,13 @@ def _response(period: float, n: int) -> Array:
             k2 = rate(t + h / 2, phi + h / 2 * k1)
             k3 = rate(t + h / 2, phi + h / 2 * k2)
             phi = phi + h / 6 * (k1 + 2 * k2 + 2 * k3 + rate(t + h, phi + h * k3))
-    # The last half period is a second half, which mirrors the first.
+    # The last half period is a second half, the mirror image of the first.
     return -samples
 
 
 _ITERATIONS = 30
 _CONVERGED = 3e-5
-"""A Newton step below this share of the largest |v| is the last."""
+"""The iteration ends with a Newton step below this share of the largest |v|."""
 _STILL = 1e-7  # m/s
 _FIRST_STEP = 0.1  # m/s
 
@@ -182,7 +182,7 @@ def dry_speed(angle: Angle, period: Array, p: Array, force: Array) -> Array:
 
 
 def _next_start(start: Array, move: Array, gap: Array, low: Array, high: Array) -> Array:
-    """Newton's, else the middle of the bracket, else further out."""
+    """The Newton step, else the middle of the bracket, else further out."""
     proposed = start + move
     further = start + np.copysign(np.maximum(_FIRST_STEP, np.abs(start)), gap)
     closed = np.isfinite(low) & np.isfinite(high)
@@ -192,7 +192,7 @@ def _next_start(start: Array, move: Array, gap: Array, low: Array, high: Array) 
 
 
 def _half_period(parts: tuple[Array, ...], start: Array, h: Array) -> tuple[Array, Array, Array]:
-    """v at mid-step (n, G), v at the end (G,), and how the end moves with the start (G,).
+    """v at mid-step (n, G), v at the end (G,), and its derivative by the start (G,).
 
     Each step is exact for the equation linearised at its beginning (Rosenbrock-Euler), with the
     coefficients of its middle: of order two, and stable however steep the friction is.

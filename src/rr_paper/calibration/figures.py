@@ -29,7 +29,7 @@ _TITLES: dict[Column, str] = {
 }
 _WORD_COLOURS = {"pinned down": "#00704f", "narrowed": style.INK}
 _EDGE = 2.4
-"""Half widths beyond which a mark is drawn at the edge, as an arrow."""
+"""Half widths beyond which a mark is drawn as an arrow at the edge."""
 _BINS = 24
 _TOP = 12.0
 """Deviance up to which a profile is drawn."""
@@ -47,7 +47,7 @@ def draw(found: Findings) -> dict[str, str]:
 
 
 def unknowns_figure(found: Findings) -> Figure:
-    """A column of panels for each unknown: above what is left of the box, below the profiles."""
+    """A column of panels for each unknown: above, the rest of the box; below, the profiles."""
     intervals = found.intervals()
     names = MODELS[VISCOUS].unknowns
     drawn = style.figure(2.35 * len(names), 5.2)
@@ -68,7 +68,7 @@ def unknowns_figure(found: Findings) -> Figure:
 
 
 def _posterior_panel(ax: Axes, found: Findings, here: Sequence[Interval]) -> None:
-    """Histograms over the box; the box itself is the flat grey at 1."""
+    """Histograms over the box; the box itself is uniform grey at 1."""
     unknown = here[0].unknown
     edges, top = np.linspace(0, 1, _BINS + 1), 1.4
     at = unknown.shown(unknown.value(edges))

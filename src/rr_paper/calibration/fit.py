@@ -24,7 +24,7 @@ from rr_opt.array import Array
 from rr_paper.publication import ROWS, RUNS, Column
 
 Distribution = Literal["student", "normal"]
-"""Of a row's error."""
+"""Error distribution of a row."""
 
 _FREEDOM = RUNS - 1
 
@@ -41,11 +41,11 @@ class Data:
         return Data(self.speed[which], self.error[which])
 
     def z(self, speeds: Array) -> Array:
-        """How far predicted speeds (..., 9) are off, in standard errors."""
+        """Deviation of predicted speeds (..., 9), in standard errors."""
         return (speeds - self.speed) / self.error
 
     def deviance(self, speeds: Array, distribution: Distribution = "student") -> Array:
-        """Of predicted speeds (..., 9), summed over the rows."""
+        """Deviance of predicted speeds (..., 9), summed over the rows."""
         return row_deviance(self.z(speeds), distribution).sum(axis=-1)
 
 
@@ -79,25 +79,25 @@ def weight(z: Array, distribution: Distribution) -> Array:
 
 
 def one_way(speeds: Array) -> Array:
-    """Signed speeds (..., 9) counted positive in the direction in which most of the sum drives.
+    """Signed speeds (..., 9), positive in the direction of most of their sum.
 
     The tables do not say which platform leads, but the text mentions gaits that drive the opposite
-    way and no printed speed has a minus sign, so all nine are taken to drive the same way. A row
-    that drives the other way comes out negative, far from what is printed.
+    way and no printed speed has a minus sign, so all nine are assumed to drive the same way. A row
+    that drives the other way comes out negative, far from the printed value.
     """
     return speeds * np.sign(speeds.sum(axis=-1, keepdims=True))
 
 
 _BLOCK = 4096
-"""Points between two calls of `tick`, which may be an interrupt."""
+"""Points between two calls of `tick`, which may raise an interrupt."""
 
 
 @dataclass(frozen=True)
 class Effort:
-    """How much of everything.
+    """The computational effort.
 
     log2_size  of the library, as a power of two
-    slices     of each unknown, from whose best points a fit starts
+    slices     of each unknown, whose best points are starts of a fit
     values     of a profile, with `starts` starts at each
     steps      of a descent
     sets       of simulated data in a bootstrap
@@ -113,15 +113,15 @@ class Effort:
 
 @dataclass(frozen=True)
 class Fit:
-    """point (unknowns,), shares of the boxes; speeds signed (9,), m/s; deviance of the rows that
-    counted."""
+    """point (unknowns,), shares of the boxes; speeds signed (9,), m/s; deviance of the included
+    rows."""
 
     point: Array
     speeds: Array
     deviance: float
 
     def z(self, data: Data) -> Array:
-        """How far each row is off, in standard errors, (9,)."""
+        """Deviation of each row, in standard errors, (9,)."""
         return data.z(one_way(self.speeds))
 
 
@@ -149,7 +149,7 @@ class Estimator:
         also: Array | None = None,
         counted: Array | None = None,
     ) -> Fit:
-        """The best fit, also from the starts `also` (K, unknowns).
+        """The best fit, with the additional starts `also` (K, unknowns).
 
         counted: (9,), 0 where a row is left out.
         """
@@ -158,7 +158,7 @@ class Estimator:
             starts = np.concatenate([also, starts])
         steps, options = self.effort.steps, {"distribution": distribution, "counted": counted}
         x, deviance = descend(self.predict, starts, data, steps, **options)
-        # Most starts end in side valleys: only the most promising go on to the bottom.
+        # Most starts end in side valleys: only the most promising are run to convergence.
         front = np.argsort(deviance)[: max(1, len(deviance) // 4)]
         x, deviance = descend(self.predict, x[front], data, 2 * steps, **options)
         best = int(deviance.argmin())
@@ -214,7 +214,7 @@ class Estimator:
     ) -> Array:
         """The library's best point in each slice of each unknown, (unknowns slices, unknowns).
 
-        The best points of all would lie in one valley.
+        The overall best points would all lie in one valley.
         """
         rows = row_deviance(data.z(self.speeds), distribution)
         deviance = rows.sum(axis=1) if counted is None else rows[:, counted > 0].sum(axis=1)
@@ -241,7 +241,7 @@ def estimator(
 
 _DIFFERENCE = 5e-3
 """Step of the difference quotients, as a share of the box: large compared with the integration
-errors of the motion with dry friction, which is as coarse as the noise allows."""
+errors of the motion with dry friction, which is only as accurate as the noise requires."""
 _DAMPING, _SOFTER, _HARDER, _GIVE_UP = 1e-2, 0.2, 6.0, 1e6
 
 
@@ -255,7 +255,7 @@ def descend(
     counted: ArrayLike | None = None,
     fixed: ArrayLike | None = None,
 ) -> tuple[Array, Array]:
-    """The points that the starts (K, unknowns) lead to, and their deviances (K,).
+    """The local optima reached from the starts (K, unknowns), and their deviances (K,).
 
     predict  points (N, unknowns) -> speeds (N, 9), counted one way
     data     one set for all starts, or K of them

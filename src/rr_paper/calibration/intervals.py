@@ -1,7 +1,7 @@
 """Profile likelihoods of the unknowns.
 
 A value is inside the 95 % interval if the deviance there, minimised over the other unknowns, is
-within 3.84 of the least. That holds asymptotically, for many data.
+within 3.84 of the least. This holds asymptotically.
 """
 
 import math
@@ -18,12 +18,12 @@ from rr_paper.calibration.models import Unknown
 LEVEL = float(chi2.ppf(0.95, 1))
 """3.84."""
 JOINT_LEVEL = float(chi2.ppf(0.95, 4))
-"""9.49: how far the deviance of four unknowns together may rise, if there were many data."""
+"""9.49: the same for four unknowns jointly, asymptotically."""
 
 _ROUNDS = 3
-"""How often the results are tried as starts at the neighbouring values."""
+"""Rounds in which results are used as starts at the neighbouring values."""
 _DISTANCE = 0.03
-"""Distance from a value, as a share of the box, that weighs like a deviance of 1."""
+"""Distance from a value, as a share of the box, equivalent to a deviance of 1."""
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ class Profile:
 
     points     where it is least, (M, unknowns)
     bottom     the least deviance of all
-    low, high  the 95 % interval, shares; 0 or 1 where the box and not the data ends it
+    low, high  the 95 % interval, shares; 0 or 1 where it is ended by the box, not the data
     """
 
     grid: Array
@@ -61,8 +61,8 @@ def profiles(
 ) -> tuple[Profile, ...]:
     """One for each of the unknowns, given by index.
 
-    The search at a value starts from the best points of the library near it. Its result is then
-    tried as a start at the neighbouring values, as one search alone may end in a side valley.
+    The search at a value starts from the best points of the library near it. Its result is then a
+    start at the neighbouring values, as a single search may end in a side valley.
     """
     effort = estimator.effort
     grid = np.linspace(0, 1, effort.values)
@@ -123,7 +123,7 @@ def _interval(grid: Array, rise: Array) -> tuple[float, float]:
 
 _KEEP_EVERY = 5
 _LONG_STEP_EVERY = 5
-"""Now and then a step is a whole difference, which carries a point from one valley to another."""
+"""Occasionally a step is a whole difference, which carries a point from one valley to another."""
 
 
 @dataclass(frozen=True)
@@ -205,10 +205,10 @@ def evolve(
 
 
 def _proposals(x: Array, others: Array, sweep: int, draw: np.random.Generator) -> Array:
-    """Where to go from x (S, k, unknowns); what leaves the box re-enters on the other side.
+    """Proposals from x (S, k, unknowns); points outside the box re-enter on the other side.
 
-    So a step and its opposite stay equally likely. Reflected at one side alone a step would turn
-    across the valley, and its opposite would not.
+    So a step and its opposite stay equally likely. Reflection at one side alone would turn a step
+    across the valley, but not its opposite.
     """
     sets, count, size = x.shape
     lent = others.shape[1]

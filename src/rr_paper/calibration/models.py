@@ -82,14 +82,14 @@ AMPLITUDE = np.array([np.nan if row.amplitude is None else row.amplitude for row
 """rad; NaN where the paper does not give it and the unknown `amplitude` is used."""
 
 _SMOOTH, _CORNERS, _DRY = 16, 64, 48
-"""Samples of half a period: where v is smooth, where the angle has corners, with dry friction."""
+"""Samples per half period: where v is smooth, where the angle has corners, with dry friction."""
 
 
 @dataclass(frozen=True)
 class Reading:
-    """How J20/J10 is defined, and by what it was changed.
+    """How J20/J10 is defined, and how it was changed.
 
-    spread  of the loads to either side of platform 2's axis, m
+    spread  of the loads on both sides of platform 2's axis, m
     """
 
     about: About = "joint"
@@ -150,7 +150,7 @@ def _platform2(reading: Reading) -> tuple[Array, Array, Array]:
 
 
 def _robot(p: Array) -> Robot:
-    """The robots as one whose numbers are arrays."""
+    """The robots as a single one with arrays of values."""
     m1, I1, c1, a1, b1, k1, m2, I2, c2, a2, b2, k2, h = p
     one: tuple[Any, ...] = (m1, I1, c1, a1, b1, k1 * h**2)
     two: tuple[Any, ...] = (m2, I2, c2, a2, b2, k2 * h**2)
@@ -159,11 +159,11 @@ def _robot(p: Array) -> Robot:
 
 @dataclass(frozen=True)
 class Model:
-    """A model and what is unknown in it.
+    """A model and its unknowns.
 
     speeds    (values by name, each (K,); reading) -> signed mean speeds (9 K,), m/s; NaN where a
               robot has none
-    cost      of a point, about, relative to the viscous model
+    cost      of a point, approximate, relative to the viscous model
     block     points evaluated at once: few enough for the processor's cache, enough for NumPy
     nested    it contains the viscous model, with its last unknown at the low end of its box
     profiled  the unknowns of which profiles are computed

@@ -231,8 +231,8 @@ def verdict(found: Findings) -> str:
 
 
 def conclusions(found: Findings) -> dict[str, tuple[str, ...]]:
-    """What follows (`conclusions`), what the rows determine instead of single values (`valleys`),
-    and whether the shipped robot's values are inside (`shipped`)."""
+    """Conclusions (`conclusions`), the combinations that the rows determine instead of single
+    values (`valleys`), and whether the shipped robot's values are inside (`shipped`)."""
     texts = prose(
         "rr_paper",
         "calibration.md",
@@ -354,7 +354,7 @@ def _sampling(found: Findings) -> tuple[str, str]:
 
 @dataclass(frozen=True, repr=False)
 class Calibration(Findings, Result):
-    """What the nine rows say, as a report."""
+    """The results of the nine rows, as a report."""
 
     FILE = "calibration.json"
     OTHERS = (

@@ -1,4 +1,4 @@
-"""What a calibration finds: models compared, intervals of the unknowns, and the shipped robot's."""
+"""The results of a calibration: models compared, intervals of the unknowns and shipped values."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ from rr_paper.calibration.models import MODELS, UNKNOWNS, VISCOUS, Model, Readin
 from rr_paper.publication import COLUMNS, Column
 
 _PINNED = 0.25
-"""Share of the box's own 95 % width below which an unknown counts as pinned down."""
+"""Width relative to the box's 95 % width below which an unknown is well determined."""
 
 ASSUMED = ("a1", "a2", "b", "k")
 """The unknowns for which the shipped robot file assumes a value."""
@@ -90,13 +90,13 @@ class Interval:
 
 @dataclass(frozen=True, repr=False)
 class Findings:
-    """What the nine rows say.
+    """The results from the nine rows.
 
     assessments      by model and column
     posterior        of the viscous model, by column
     normal_profiles  its profiles by the normal distribution, by column
     shipped          the shipped robot's values, by column
-    coverage         on data of known robots
+    coverage         on simulated data of known robots
     alternatives     other readings of J20/J10
     """
 
@@ -143,7 +143,7 @@ class Findings:
     def conditional(
         self, column: Column, known: str, value: float, within: float, wanted: str
     ) -> tuple[float, float]:
-        """95 % interval of one unknown (SI), were another known to be value +- within (SI)."""
+        """95 % interval of one unknown (SI), if another were known to be value +- within (SI)."""
         near = np.abs(UNKNOWNS[known].value(self.draws(column, known)) - value) <= within
         if not near.any():
             return float("nan"), float("nan")

@@ -1,5 +1,5 @@
-"""A study: one problem solved with many values of its keys, neighbours from neighbours' optima; and
-each optimum measured: how far it goes, what holds it, what it costs."""
+"""A study: one problem solved for many values of its keys, warm-started from neighbouring optima;
+and the quantities of each optimum: distance travelled, active limits, energy."""
 
 import math
 import time
@@ -20,15 +20,15 @@ from rr_opt.motion.steady_cycle import SteadyCycle, energy, grip_needed, peak_to
 from rr_opt.outcome import NotConvergedError, RollerRacerError, Status
 
 _SURPRISE = 0.01
-"""A speed beyond the expected ones by more, relative, is checked from cold starts."""
+"""A speed outside the expected range by more than this, relative, is checked by cold starts."""
 _SAME_SPEED = 1e-6
 
 
 @dataclass(frozen=True)
 class Task:
-    """A case to solve; without footholds, from cold starts.
+    """A case to solve; cold starts if it has no footholds.
 
-    expected  least and largest |speed| that the neighbours let expect, m/s
+    expected  range of |speed| predicted from the neighbours, m/s
     """
 
     problem: Problem
@@ -37,20 +37,20 @@ class Task:
 
 
 def solve_case(task: Task) -> Row:
-    """Solve a case. Whatever goes wrong is a row that says so."""
+    """Solve a case. Any failure is reported as a row."""
     begun = time.process_time()
     try:
         row = _solve(replace(task, problem=for_joint(task.problem)))
     except RollerRacerError as error:
         row = Row(Status.NOT_CONVERGED, str(error))
-    except Exception as error:  # a study of a thousand cases shall not end with one of them
+    except Exception as error:  # one failing case must not end a study of a thousand
         what = f"{type(error).__name__}: {error}"
         row = Row(Status.NOT_CONVERGED, f"The case ended in an error that is a defect: {what}.")
     return replace(row, seconds=time.process_time() - begun)
 
 
 def _solve(task: Task) -> Row:
-    # Neighbours foretell speeds, not costs.
+    # Neighbours predict speeds, not costs.
     warm = task.footholds and task.problem.objective == "speed"
     setting = _only_setting(task.problem) if warm else None
     if setting is None:
@@ -78,8 +78,8 @@ def _cases(footholds: Iterable[Foothold]) -> tuple[int, ...]:
 
 
 def _only_setting(problem: Problem) -> Setting | None:
-    """The problem made ready; None where there is no inside to continue in, or where whole
-    numbers of loads make it several problems."""
+    """The problem made ready; None where the interior is empty, or where whole numbers of loads
+    split it into several problems."""
     box = decisions(problem)
     if box.empty or box.amplitude_pinned:
         return None
@@ -88,7 +88,7 @@ def _only_setting(problem: Problem) -> Setting | None:
 
 
 def _continued(setting: Setting, foothold: Foothold) -> StartResult | None:
-    """The optimum that a neighbour's leads to, if it leads to one."""
+    """The optimum warm-started from a neighbour's; None if the solve fails."""
     wanted, shape = SIGNS[setting.problem.direction], setting.problem.gait.shape
     if foothold.sign not in wanted or foothold.gait.shape != shape:
         return None
@@ -100,7 +100,7 @@ def _continued(setting: Setting, foothold: Foothold) -> StartResult | None:
 
 
 def _best(setting: Setting, candidates: list[StartResult]) -> StartResult | None:
-    """The fastest of them, each optimum refined once."""
+    """The fastest candidate, each optimum refined once."""
     ranked = [(setting, one) for one in sorted(candidates, key=lambda one: one.rank)]
     refined = [refine(setting, one) for _, one in distinct(ranked)]
     good = [one for one in refined if one.feasible and one.success]
@@ -108,7 +108,7 @@ def _best(setting: Setting, candidates: list[StartResult]) -> StartResult | None
 
 
 def _doubtful(task: Task, row: Row, reached: list[StartResult]) -> bool:
-    """Whether neighbours disagree, or let expect another speed than was found."""
+    """Whether neighbours disagree, or predict a speed other than the one found."""
     if task.expected is None or len(reached) < len(task.footholds) or row.optimum is None:
         return True
     least, most = task.expected
@@ -117,8 +117,7 @@ def _doubtful(task: Task, row: Row, reached: list[StartResult]) -> bool:
 
 
 def _is(candidate: StartResult, row: Row) -> bool:
-    """Whether a candidate, not yet refined, is the optimum of a row; a gait and its mirror image
-    are one."""
+    """Whether an unrefined candidate is the optimum of a row; mirror images count as the same."""
     one, other = candidate.gait, row.optimum
     return other is not None and (
         candidate.sign == other.sign
@@ -130,7 +129,7 @@ def _is(candidate: StartResult, row: Row) -> bool:
 
 
 def _faster(warm: Row | None, cold: Row) -> Row:
-    """The faster row; the cold one if they are equal."""
+    """The faster row; the cold one on a tie."""
     if warm is None or warm.optimum is None:
         return cold
     if cold.optimum is None:
@@ -154,8 +153,8 @@ def _warm(setting: Setting, best: StartResult) -> Row:
 
 
 Solve = Callable[[Mapping[int, Task]], Iterator[tuple[int, Row | str]]]
-"""Solves tasks in any order, on one process or many, and yields each case's row as it is found,
-or a sentence where the process was lost that solved it."""
+"""Solves tasks in any order, on one process or many, and yields each case's row when it is found,
+or a sentence if its process was lost."""
 
 
 def solve_study(
@@ -166,9 +165,9 @@ def solve_study(
     *,
     cold: bool = False,
 ) -> Iterator[tuple[int, Row]]:
-    """The rows of all cases but those that are known, as they are found.
+    """The rows of all cases not yet known, as they are found.
 
-    cold: no case is continued from another. Rows do not depend on the order of work.
+    cold: use no warm starts. Rows do not depend on the order of work.
     """
     rows = dict(known)
 
@@ -196,7 +195,7 @@ def solve_study(
 
 
 def portable(problem: Problem) -> Problem:
-    """A problem that can be sent to another process, without what it does not need there."""
+    """A problem that can be sent to another process, stripped of what is not needed there."""
     physics = tuple(replace(use, values=dict(use.values)) for use in problem.robot.physics)
     return replace(problem, robot=replace(problem.robot, provenance={}, physics=physics))
 
@@ -205,11 +204,11 @@ UNITS = {
     **{"angle": "rad", "rate": "rad/s", "torque": "N m", "singularity": "m", "grip": ""},
     **{"power": "W", "cost_of_transport": "", "speed": "m/s"},
 }
-"""Of each limit, by its name in the problem."""
+"""The quantity of each limit, by the limit's name in the problem."""
 
 
 def reached(robot: Robot, steady: SteadyCycle) -> dict[str, float]:
-    """The extreme of what each limit bounds, SI: largest |phi|, |dphi/dt|, |torque|, least S1,
+    """The extreme of each limited quantity, SI: largest |phi|, |dphi/dt|, |torque|, least S1,
     largest side force over load, power, cost of transport and speed."""
     gait, work = steady.gait, energy(robot, steady)
     return {
@@ -225,15 +224,15 @@ def reached(robot: Robot, steady: SteadyCycle) -> dict[str, float]:
 
 
 _ON = 1e-4
-"""A limit holds a sine that comes this near to it, relative to the limit."""
+"""A limit is active for a sine within this distance of it, relative to the limit."""
 _PRICED = 1e-4
-"""A limit holds a gait of another shape if raising it by all of itself would, at its price, gain
-more than this, relative to the speed."""
+"""A limit is active for a gait of another shape if, at its shadow price, raising the limit by its
+own size would gain more than this, relative to the speed."""
 
 
 @dataclass(frozen=True)
 class Held:
-    """Names of what holds an optimum, and |speed| gained per unit by which each is raised."""
+    """Names of the active limits and bounds, and |speed| gained per unit of each."""
 
     names: tuple[str, ...]
     prices: Mapping[str, float]
@@ -241,7 +240,7 @@ class Held:
 
 
 def held(problem: Problem, best: StartResult, reached: Mapping[str, float], ratio: float) -> Held:
-    """What holds a candidate; reached: the extremes of what the limits bound."""
+    """The active constraints of a candidate; reached: extremes of the limited quantities."""
     prices = {
         name: best.prices[name]
         for name, value in reached.items()
@@ -261,8 +260,8 @@ def held(problem: Problem, best: StartResult, reached: Mapping[str, float], rati
 
 
 def _on_limit(problem: Problem, best: StartResult, name: str, value: float) -> bool:
-    """A sine that is held by a limit comes to it. Of another shape the angle stays a little short
-    of its limit, and so may the torque: there the price says it."""
+    """A sine reaches its active limits. With another shape the angle stays slightly short of its
+    limit, and so may the torque: there the shadow price decides."""
     limit = getattr(problem.limits, name)
     if not limit or not math.isfinite(limit):
         return False
@@ -273,7 +272,7 @@ def _on_limit(problem: Problem, best: StartResult, name: str, value: float) -> b
 
 
 def _matters(best: StartResult, price: float, size: float) -> bool:
-    """Whether a limit or bound of this size has a price that is no zero left by the solver."""
+    """Whether a price, for a limit or bound of this size, exceeds the solver's residual."""
     return abs(price) * abs(size) > _PRICED * abs(best.speed)
 
 
@@ -300,7 +299,7 @@ def _bounds(
 def _side(
     problem: Problem, best: StartResult, value: float, box: Interval, price: float | None
 ) -> str | None:
-    """`least` or `largest` if a range that leaves a choice holds the value at that end."""
+    """`least` or `largest` if the value is at that end of a range that leaves a choice."""
     size = max(abs(box.low), abs(box.high))
     if box.fixed:
         return None
@@ -312,16 +311,16 @@ def _side(
 
 
 _CLAIM = 1e-6
-"""Largest difference of a claimed speed from that of the steady cycle, relative."""
+"""Largest relative difference between the claimed speed and that of the steady cycle."""
 _STRAIGHT = 1e-7
 """Heading gained per period below which the robot goes straight, rad."""
 _SIDEWAYS = 1e-3
 
 
 def measured(problem: Problem, best: StartResult, robot: Robot, ratio: float) -> Row:
-    """The row of an optimum of a problem, with the robot and the J20/J10 that it chose.
+    """The row of an optimum of a problem, with its robot and J20/J10.
 
-    NOT_CONVERGED if the steady cycle has another speed than the optimiser claims, or breaks a
+    NOT_CONVERGED if the steady cycle differs in speed from the optimiser's claim, or violates a
     limit. Raises NotConvergedError if the gait has no steady cycle.
     """
     gait, steady = best.gait, steady_cycle(robot, best.gait)

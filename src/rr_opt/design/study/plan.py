@@ -1,16 +1,16 @@
-"""In which order the cases of a study are solved, and from which neighbours' optima.
+"""The order in which the cases of a study are solved, and which neighbouring optima warm-start
+each.
 
-A branch is a family of gaits that changes as the inputs do. Two neighbouring optima are of one
-branch if solving the one case from the other's optimum leads to its own, or, where this was not
-tried, if they look alike: the same direction, held by the same limits and bounds, their gaits near
-each other. A branch is all that is linked in this way.
+A branch is a family of gaits that varies continuously with the inputs. Two neighbouring optima
+belong to one branch if a warm start from one leads to the other, or, where this was not tried, if
+they look alike: same direction, same active limits and bounds, similar gaits. A branch is a
+connected component of these links.
 
 Along each ordered axis the two ends and about every third step between them are anchors. Cases
-that are anchors along all axes are solved from cold starts, which look at every gait. Each other
-case lies between anchors, next to one along every axis, and is continued from their optima. So a
-family of optima that is the best at three steps in a row is met by an anchor. Which case is
-solved from which does not depend on how many processes work or on how often the study was
-interrupted.
+that are anchors along all axes are solved from cold starts, which search all gaits. Each other
+case lies between anchors, next to one along every axis, and is warm-started from their optima. So a
+family that is best at three consecutive steps always includes an anchor. Which case warm-starts
+which does not depend on the number of processes or on interruptions of the study.
 """
 
 import itertools
@@ -27,13 +27,13 @@ from rr_opt.model.gait import Gait, SineGait
 from rr_opt.model.problem import Interval, Problem
 
 _FACTOR, _OFFSET = 3.0, 0.3
-# Amplitudes and periods of optima of one family differ by less than the factor from one case to
-# the next, offsets by less than this, rad.
+# Between neighbouring optima of one family, amplitudes and periods differ by less than this factor,
+# offsets by less than this, rad.
 
 
 @dataclass(frozen=True)
 class Foothold:
-    """Where to go on from: at or between the optima of the neighbours of one family."""
+    """A warm start: at or between the optima of the neighbours of one family."""
 
     cases: tuple[int, ...]
     sign: int
@@ -42,7 +42,7 @@ class Foothold:
 
 
 def footholds(donors: Sequence[tuple[int, float]], rows: Mapping[int, Row]) -> list[Foothold]:
-    """One foothold for each family of optima among the neighbours, that of the nearest first."""
+    """One foothold for each family among the neighbours' optima, that of the nearest first."""
     families: list[list[tuple[int, float, CaseOptimum]]] = []
     for case, weight in sorted(donors, key=lambda donor: -donor[1]):
         optimum = rows[case].optimum
@@ -57,7 +57,7 @@ def footholds(donors: Sequence[tuple[int, float]], rows: Mapping[int, Row]) -> l
 
 
 def _between(family: Sequence[tuple[int, float, CaseOptimum]]) -> Foothold:
-    """A start between the optima of a family, nearest first, where this case lies between them."""
+    """A start from the optima of a family, nearest first, interpolated where possible."""
     cases, given, optima = zip(*family, strict=True)
     nearest = optima[0]
     gait = gait_from(nearest.gait)
@@ -70,15 +70,15 @@ def _between(family: Sequence[tuple[int, float, CaseOptimum]]) -> Foothold:
         return math.exp(weights @ [math.log(getattr(one, name)) for one in optima])
 
     if isinstance(gait, SineGait):
-        # A gait and its mirror image, phi0 and -phi0, are one.
+        # A gait and its mirror image, phi0 and -phi0, count as the same.
         offset = math.copysign(mean("offset"), gait.offset)
         gait = SineGait(power_mean("amplitude"), power_mean("period"), offset)
     return Foothold(tuple(cases), nearest.sign, gait, mean("share"))
 
 
 def alike(one: CaseOptimum, other: CaseOptimum) -> bool:
-    """Whether two optima of neighbouring cases look like one family: the same direction, held by
-    the same limits and bounds or their gaits near each other."""
+    """Whether optima of neighbouring cases look like one family: same direction, and the same
+    active limits and bounds or similar gaits."""
 
     def near(a: float, b: float) -> bool:
         return max(a, b) < _FACTOR * min(a, b)
@@ -99,12 +99,11 @@ def expected_speed(
     rows: Mapping[int, Row],
     problems: Sequence[Problem],
 ) -> tuple[float, float] | None:
-    """The least and the largest |speed|, m/s, that the neighbours let expect; None if one of them
-    has no optimum.
+    """The range of |speed|, m/s, predicted from the neighbours; None if one of them has no optimum.
 
-    Their speeds can be interpolated, and so can the speeds that each of them foretells by its
-    shadow prices. A family whose speed goes with a power of the inputs is met by both; one whose
-    speed bends the same way all along lies between that chord and those tangents.
+    It spans the interpolation of their speeds and the extrapolation from each by its shadow prices.
+    Both are exact for a family whose speed is a power of the inputs; a speed that is convex or
+    concave throughout lies between that chord and those tangents.
     """
     chord = tangents = 0.0
     for case, weight in donors:
@@ -120,10 +119,10 @@ def expected_speed(
 
 
 def _gain(optimum: CaseOptimum, here: Problem, there: Problem) -> float:
-    """Gain of log |speed|, to first order, as limits and bounds move from one problem to another.
+    """Gain of log |speed|, to first order, as limits and bounds change from one problem to another.
 
-    First order in the logarithms of limits and bounds where they have one: speeds tend to go with
-    their powers.
+    First order in the logarithms of limits and bounds where these exist, as speeds tend to follow
+    power laws.
     """
     moved = [
         (price, getattr(here.limits, name), getattr(there.limits, name))
@@ -150,7 +149,7 @@ def _range(problem: Problem, name: str) -> Interval:
 
 
 def branches(rows: Sequence[Row], adjacent: Iterable[tuple[int, int]]) -> list[int | None]:
-    """The number of each row's branch, from 1 in the order of the rows; None without optimum."""
+    """The number of each row's branch, from 1 in the order of the rows; None without an optimum."""
     linked = [(case, other) for case, row in enumerate(rows) for other in row.continued]
     for one, other in adjacent:
         a, b = rows[one], rows[other]
@@ -170,7 +169,7 @@ def branches(rows: Sequence[Row], adjacent: Iterable[tuple[int, int]]) -> list[i
 _STRIDE = 3
 
 Numbers = Sequence[float] | None
-"""Where the steps of an axis lie; None if they have no order, such as words."""
+"""The values of an axis's steps; None if they have no order, such as words."""
 
 
 @dataclass(frozen=True)
@@ -178,7 +177,7 @@ class Plan:
     """The waves in which cases are solved.
 
     anchors    cases solved cold, in the first wave
-    donors     the anchors about each other case, with their weights in interpolation
+    donors     the anchors around each other case, with their interpolation weights
     adjacent   pairs of cases one step apart along one ordered axis
     """
 
@@ -210,7 +209,7 @@ def plan(axes: Sequence[Numbers], shape: Sequence[int]) -> Plan:
 
 
 def _around(numbers: Numbers, count: int) -> list[list[tuple[int, float]]]:
-    """For each step of an axis the anchors about it, itself alone if it is one, with weights."""
+    """For each step of an axis, the anchors around it, or itself if it is one, with weights."""
     if numbers is None:
         return [[(step, 1.0)] for step in range(count)]
     order = sorted(range(count), key=lambda step: numbers[step])
@@ -226,7 +225,7 @@ def _around(numbers: Numbers, count: int) -> list[list[tuple[int, float]]]:
 
 
 def _part(low: float, value: float, high: float) -> float:
-    """How far along a range a value is, 0 to 1: on a logarithmic scale if it has one."""
+    """Fractional position of a value in a range, 0 to 1: logarithmic where possible."""
     if low > 0:
         low, value, high = math.log(low), math.log(value), math.log(high)
     width = high - low

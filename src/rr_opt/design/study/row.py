@@ -1,4 +1,4 @@
-"""What a case of a study came to: one row of its table, plain enough to be kept as JSON."""
+"""The outcome of a study case: one row of its table, plain enough for JSON."""
 
 import sys
 from collections.abc import Mapping
@@ -19,16 +19,16 @@ class CaseOptimum:
     """The best gait of a case. SI throughout; every number is of the steady cycle.
 
     gait            its shape and parameters
-    share           where in its range the ballast is, 0 to 1
+    share           position of the ballast in its range, 0 to 1
     ratio           J20/J10 in the problem's definition (about P if it has none)
     cycle_length    of the path per period, m; turn: heading gained per period, rad
     radius          of the circle, m; None if the robot goes straight
     peak_*          largest |phi|, |dphi/dt|, |torque|, side force over load; least_s1: smallest S1
     energy          see `study_energy`, J/m and dimensionless
-    held            names of the limits and bounds it stands on, `rate` or `least period`
-    prices          speed gained per unit by which a limit that holds it is raised
-    bound_prices    the same for bounds
-    sideways        which way it goes is a matter of definition
+    held            names of the active limits and bounds, such as `rate` or `least period`
+    prices          speed gained per unit of an active limit
+    bound_prices    the same for active bounds
+    sideways        its direction is a matter of definition
     """
 
     gait: Mapping[str, Any]
@@ -62,10 +62,10 @@ class Row:
 
     optimum    None unless status is OPTIMAL
     started    from cold starts, from neighbours' optima (warm), or both
-    tried      neighbouring cases whose optima were continued into this case
-    continued  those of them from which this optimum was reached
-    expected   least and largest |speed| that the neighbours let expect, m/s
-    seconds    of CPU spent on it by its process
+    tried      neighbouring cases whose optima were used as warm starts
+    continued  those that led to this optimum
+    expected   range of |speed| predicted from the neighbours, m/s
+    seconds    CPU time spent on it by its process
     """
 
     status: Status
@@ -80,7 +80,7 @@ class Row:
 
 
 def gait_record(gait: Gait) -> dict[str, Any]:
-    """A gait under the names of its own parameters."""
+    """A gait's own parameters by name."""
     return {"shape": gait.shape, **asdict(gait)}  # type: ignore[call-overload]
 
 
@@ -101,7 +101,7 @@ def gait_from(record: Mapping[str, Any]) -> Gait:
 
 
 def row_record(row: Row) -> dict[str, Any]:
-    """A row as JSON can hold it."""
+    """A row as plain JSON data."""
     return asdict(row)
 
 
@@ -146,7 +146,7 @@ _PLAIN: dict[Any, str] = {str: "a text", bool: "true or false"}
 
 
 def _check_fields(kind: type, values: Mapping[str, Any]) -> None:
-    """Raise KeyError for a field that is missing, ValueError for a wrong number, text or truth."""
+    """Raise KeyError for a missing field, ValueError for a wrong number, text or boolean."""
     for one in fields(kind):
         value = values[one.name]
         if one.type in (float, int) or (one.type == float | None and value is not None):
@@ -177,7 +177,7 @@ def _check_number(name: str, value: Any, *, whole: bool = False) -> None:
 
 
 def _shown(value: Any) -> str:
-    """What was read, cut where it is long."""
+    """The value read, truncated if long."""
     text = "a number of very many digits" if _endless(value) else repr(value)
     return text if len(text) <= 60 else f"{text[:57]}..."
 

@@ -1,6 +1,6 @@
 """A car with two axles, as one wheel each; the speed along it is measured.
 
-Wheels press back sideways with 1/compliance per slip angle; without an effect they hardly slip.
+A wheel's side force is its slip angle over its compliance; without an effect it hardly slips.
 """
 
 from collections.abc import Mapping
@@ -21,10 +21,10 @@ from rr_opt.model.machine import (
 from rr_opt.model.parameters import Spread
 
 RIGID = 2e-3
-"""rad/N: so little do wheels slip that are taken not to; what an effect adds comes on top."""
+"""rad/N: compliance of wheels that are taken not to slip; an effect adds to it."""
 
 SLOW = 0.3
-"""m/s: a slip angle is that of a wheel that rolls at least so fast."""
+"""m/s: lower limit of the rolling speed in a slip angle."""
 
 
 def _rates(v: Names, add: Add) -> Mapping[str, Any]:
@@ -60,7 +60,7 @@ def _slip(v: Names, c: Names) -> ca.SX:
 
 
 def _constants(name: str, unit: str, size: float, high: float) -> tuple[Constant, ...]:
-    """Of both axles."""
+    """A constant for each axle."""
     return tuple(Constant(f"{axle}{name}", unit, lambda _: size, 0.0, high)
                  for axle in ("front", "rear"))  # fmt: skip
 

@@ -1,4 +1,4 @@
-"""A pendulum driven by a torque that is measured.
+"""A pendulum driven by a measured torque.
 
 J q'' = u - b q' - ml g sin q
 """

@@ -1,8 +1,8 @@
-"""What the joint's recorded angle says of the servo and of the clock, without any dynamics.
+"""What the joint's recorded angle says about the servo and the clock, without any dynamics.
 
 The angle follows from the command and the servo alone, so every effect of the servo or the clock,
-and every pair of them, is fitted to it directly. A rate limit or a play has many minima over whole
-motions; in the angle they are plain.
+and every pair of them, is fitted to it directly. Fitted to whole motions, a rate limit or backlash
+has many local minima; in the angle it is plain.
 """
 
 from __future__ import annotations
@@ -24,33 +24,33 @@ from rr_opt.sysid.model import Choice, Quantity
 from rr_opt.sysid.settings import SETTINGS
 
 _SAMPLES = 6000
-"""Of all runs together: more say no more."""
+"""Samples over all runs: more add nothing."""
 _TRIED = 14
-"""Initial values of an effect without derivatives, between next to nothing and a lot."""
+"""Initial values of a non-smooth effect, from next to nothing to a lot."""
 _PAIRED = 2
-"""Of the effects alone, how many are tried in pairs."""
+"""How many of the best single effects are tried in pairs."""
 _PARTS, _SIZES = (1.0, 0.5, 0.25), (0.25, 1.0, 4.0)
-"""Of what a simpler form took for its first quantity, and of the usual size of a new one."""
+"""Shares of a simpler form's first quantity, and multiples of a new one's usual size."""
 _DIFFERENCE = 1e-4
 """Relative step of a difference quotient."""
 _SCANNED = 3
 """Runs on which initial values are compared."""
 _OPEN = 4
-"""Sets that are handed on, at most."""
+"""Most sets that are returned."""
 
 
 @dataclass(frozen=True)
 class _RecordedAngle:
-    """The angle recorded in runs, and how likely sets of effects make it.
+    """The recorded angle of runs, and its likelihood under sets of effects.
 
-    at  samples of each run that are looked at
+    at  samples of each run that are used
     """
 
     racer: RacerModel
     at: Mapping[int, NDArray[np.intp]]
 
     def residuals(self, values: Mapping[str, float], effects: tuple[str, ...]) -> dict[int, Array]:
-        """In sigma, of each run."""
+        """Residuals of each run, in sigma."""
         self.prepared([values], effects)
         out = {}
         for run, k in self.at.items():
@@ -60,7 +60,7 @@ class _RecordedAngle:
         return out
 
     def prepared(self, every: Sequence[Mapping[str, float]], effects: tuple[str, ...]) -> None:
-        """Have the servo's angles ready for several values at once."""
+        """Compute the servo's angles for several sets of values at once."""
         simulator = self.racer.simulator
         given = [simulator.given(values) for values in every]
         simulator.drives.every(
@@ -68,7 +68,7 @@ class _RecordedAngle:
         )
 
     def samples(self, run: int) -> float:
-        """Independent ones of a run."""
+        """Effective number of independent samples of a run."""
         return self.at[run].size / float(np.broadcast_to(self.racer.runs[run].correlation, 4)[-1])
 
     def excess(self, residuals: Mapping[int, Array]) -> float:
@@ -76,7 +76,7 @@ class _RecordedAngle:
         return sum(float(r @ r) - self.samples(run) for run, r in residuals.items())
 
     def score(self, residuals: Mapping[int, Array], quantities: int) -> float:
-        """-2 log likelihood with a price for each quantity (BIC, counting correlation times)."""
+        """-2 log likelihood with a penalty per quantity (BIC, counting correlation times)."""
         total, every = 0.0, 0.0
         for run, r in residuals.items():
             times = max(self.racer.runs[run].duration / SETTINGS.correlation_time, 1.0)
@@ -86,14 +86,14 @@ class _RecordedAngle:
         return total + quantities * math.log(every)
 
     def explained(self, one: _Set) -> bool:
-        """Whether what a set leaves is nothing."""
+        """Whether a set leaves no significant misfit."""
         samples = sum(self.samples(run) for run in self.at)
         chance = 2 * math.sqrt(2 * samples)
         return one.excess < max(SETTINGS.negligible**2 * samples, chance)
 
     @cached_property
     def scanned(self) -> _RecordedAngle:
-        """A few of the runs."""
+        """The same on a few of the runs."""
         return replace(self, at=dict([*self.at.items()][:_SCANNED]))
 
 
@@ -134,7 +134,7 @@ def actuation_sets(
 
     alone: list[_Set] = []
     alone = best_first(tried(plain))
-    # Where one effect leaves next to nothing, only what costs next to nothing is tried beside it.
+    # Where one effect explains the angle, only cheap alternatives are tried.
     quick = angle.explained(alone[0])
     cheap = [one for one in fuller if racer.catalogue[one.name].smooth]
     alone = best_first([*alone, *tried(cheap if quick else fuller)])
@@ -151,7 +151,7 @@ def actuation_sets(
         sets.append(_fitted(angle, racer, pair, free, guesses))
     sets = best_first(sets)
     open_ = [one for one in sets if one.score < sets[0].score + 2 * SETTINGS.evidence]
-    # What one effect does, a pair with it does too: the pair has to pay.
+    # A pair fits at least as well as each of its effects: it has to earn its price.
     paying = [
         one
         for one in open_
@@ -176,7 +176,7 @@ def _guesses(racer: RacerModel, choice: Choice) -> list[dict[str, float]]:
 
 
 def _shared(racer: RacerModel, choice: Choice, found: Sequence[_Set]) -> Iterator[dict[str, float]]:
-    """What simpler forms of a set took for their first quantity is shared with a new one."""
+    """Guesses that split a simpler form's first quantity between it and a new one."""
     form = racer.catalogue[choice.name].forms[choice.form]
     first, names = form.quantities[0], {q.name for q in form.quantities}
     for simpler in found:

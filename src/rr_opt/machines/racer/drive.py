@@ -1,4 +1,4 @@
-"""The joint's angle in a run, its steps, and how it changes with what the servo does wrong."""
+"""The joint's angle in a run, its steps, and its derivatives by the servo's effects."""
 
 import math
 from collections import deque
@@ -17,20 +17,20 @@ from rr_opt.sysid.sensitivities import DriveSlopes
 from rr_opt.sysid.shooting import DrivePath
 
 _LONGEST, _SHARP, _STIFF = 0.012, 0.003, 0.0015
-"""A step is no longer, s; than the second where friction is dry; than the third where wheels slip:
-with twice that, derivatives across the onset of sliding are off by a factor."""
+"""Longest step, s: in general, with dry friction, and with wheels that slip: with twice the last,
+derivatives across the onset of sliding are off by a factor."""
 _APART = 1e-6
-"""A jump of dphi so near to an end of a step, s, is at it."""
+"""A jump of dphi this near to the end of a step, s, counts as at it."""
 _MOST = 3
-"""Between two samples; more of them are in a gap of the recording."""
+"""Most jumps between two samples; more occur only in gaps of the recording."""
 _KEPT, _SEEN, _WORTH = 1024, 12, 200
-"""Drives, and paths of them with so many samples at least."""
+"""Drives and paths that are cached, and the fewest samples of a path that is."""
 
 
 @dataclass(frozen=True)
 class Steps:
     """The steps of a prediction, `each` of them between two samples, with their `edges`, s, on the
-    recording's clock; `stiff` if some states settle at once."""
+    recording's clock; `stiff` if some states are stiff."""
 
     edges: Array
     each: int
@@ -42,7 +42,7 @@ def steps_of(
 ) -> Steps:
     """Steps between the samples t; where dphi jumps, one ends and the next begins.
 
-    Not where states settle at once: what a jump does to those is spread over its step.
+    Not with stiff states: there the effect of a jump is spread over its step.
     """
     longest = _STIFF if stiff else _SHARP if sharp else _LONGEST
     jumps = drive.jumps_within(t[0] + late, t[-1] + late) - late if not stiff else np.zeros(0)
@@ -72,7 +72,7 @@ def steps_of(
 
 
 def drive_path(drive: Drive, steps: Steps, late: float, *, mean: bool = False) -> DrivePath:
-    """The drive over the steps; `mean` takes one dphi for all of a step."""
+    """The drive over the steps; with `mean`, dphi is constant over each step."""
     edges = steps.edges + late
     h = np.diff(edges)
     at_edges, middle = drive.at(edges)[:2], drive.at(edges[:-1] + h / 2)[:2]
@@ -80,7 +80,7 @@ def drive_path(drive: Drive, steps: Steps, late: float, *, mean: bool = False) -
     if mean or (steps.stiff and not drive.smooth):
         nodes[1] = np.diff(at_edges[0]) / h
     elif not drive.smooth:
-        # Inside of the step, as dphi may jump at its ends.
+        # Evaluated inside the step, as dphi may jump at its ends.
         jumps = drive.jumps_within(edges[0] - _APART, edges[-1] + _APART)
         after = np.searchsorted(jumps, edges)
         near = np.append(jumps, np.inf)[after] - edges < 2 * _APART
@@ -101,7 +101,7 @@ Made = tuple[int, tuple[tuple[str, tuple[tuple[str, float], ...]], ...], FreeJoi
 
 
 class Drives:
-    """The drives of runs, each kept until others were asked for."""
+    """The drives of runs, the latest of which are cached."""
 
     def __init__(self, runs: Sequence[Run]) -> None:
         self._runs = runs
@@ -115,7 +115,7 @@ class Drives:
     def every(
         self, asked: Sequence[tuple[int, Mapping[str, float]]], effects: tuple[str, ...]
     ) -> list[Drive]:
-        """The same of several runs with their values; faster at once than one by one."""
+        """The same for several runs with their values; faster than one by one."""
         moving = [name for name in effects if CATALOGUE[name].actuate]
         free = any(CATALOGUE[name].frees_joint for name in moving)
         keys: list[Made] = [
@@ -136,7 +136,7 @@ class Drives:
         return found
 
     def _make(self, keys: Sequence[Made]) -> None:
-        """Make those that are not kept, from those without their last effect; all have the same
+        """Compute drives that are not cached, from those without the last effect; all have the same
         effects."""
         new = [key for key in dict.fromkeys(keys) if key not in self._kept]
         if not new:
@@ -158,8 +158,8 @@ class Drives:
         self._kept |= dict(zip(new, drives, strict=True))
 
     def _remembered(self, key: Made) -> Callable[[Array], Array]:
-        """What a drive is at the times that were asked for last: to see how it changes with values
-        of an effect, what the effect begins from is asked for again and again."""
+        """A drive cached at the times last asked for: difference quotients in an effect's values
+        evaluate the drive before that effect again and again."""
         at = self._kept[key].at
 
         def again(t: Array) -> Array:
@@ -184,7 +184,7 @@ def drive_slopes(
     effects: tuple[str, ...],
     wanted: tuple[str, ...],
 ) -> DriveSlopes | None:
-    """How the drive changes with what is wanted; None if it does not."""
+    """Derivatives of the drive by the wanted quantities; None if none moves it."""
     moving = [(k, name) for k, name in enumerate(wanted) if _moves(name, effects)]
     if not moving:
         return None
@@ -192,8 +192,8 @@ def drive_slopes(
     steps = steps_of(here, t, lateness(given, effects), **grain(effects))
 
     def path_at(values: Mapping[str, float]) -> DrivePath:
-        # The very steps that predict are moved, each at one rate where dphi jumps, so that a jump
-        # counts wherever in it it is.
+        # On the very steps used for prediction, with one rate per step where dphi jumps, so that a
+        # jump counts wherever it falls in its step.
         drive, late = drives.of(run, values, effects), lateness(values, effects)
         return drive_path(drive, steps, late, mean=not here.smooth)
 
@@ -206,15 +206,15 @@ def drive_slopes(
         at[:, :, k] = (ends[1].at - ends[0].at) / (high - low)
         nodes[:, :, :, k] = (ends[1].nodes - ends[0].nodes) / (high - low)
     if here.smooth and here.rest:
-        # How dphi sets in may change at once, and more than a step shows: what the first step
-        # integrates to is the change of phi.
+        # The onset of dphi may change within the first step: its integral has to be the change of
+        # phi.
         rise = (nodes[0, 2, 0] - nodes[0, 0, 0]) / path.h[0]
         at[1, 0] = nodes[1, :2, 0] = (6 * rise - nodes[1, 2, 0]) / 5
     return DriveSlopes(at, nodes, np.array([k for k, _ in moving]))
 
 
 def lateness(given: Mapping[str, float], effects: tuple[str, ...]) -> float:
-    """By how much the recording's clock is behind the command's, s."""
+    """Lag of the recording's clock behind the command's, s."""
     return sum(given[f"{n}.{CATALOGUE[n].delay}"] for n in effects if CATALOGUE[n].delay)
 
 
@@ -224,7 +224,7 @@ def joint_of(given: Mapping[str, float]) -> FreeJoint:
 
 
 def grain(effects: Sequence[str]) -> dict[str, bool]:
-    """Whether some states settle at once, and whether some forces jump with the speed."""
+    """Whether some states are stiff, and whether some forces jump with the speed."""
     every = [CATALOGUE[name] for name in effects]
     return {
         "stiff": any(one.stiff for one in every),
@@ -235,7 +235,7 @@ def grain(effects: Sequence[str]) -> dict[str, bool]:
 def neighbours(
     given: Mapping[str, float], effects: tuple[str, ...], wanted: tuple[str, ...]
 ) -> list[dict[str, float]]:
-    """The values whose drives `drive_slopes` compares."""
+    """The values between which `drive_slopes` takes differences."""
     return [
         {**given, name: value}
         for name in wanted

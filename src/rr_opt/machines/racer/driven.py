@@ -1,12 +1,11 @@
 """The fastest gait, as commanded, of a robot driven with all its effects.
 
-By the same simulation as predicts recordings, so that servo, contact and floor are what a diagnosis
-found them to be. One period is mapped onto the next until the speed repeats. Where the floor is
-tilted the speed depends on the heading: there a heading is kept, for one period is short, and all
-of them are tried. Where it differs from place to place no motion is steady; that effect is left
-out.
+It uses the simulation that predicts recordings, so that servo, contact and floor are as diagnosed.
+Periods are simulated until the speed repeats. On a tilted floor the speed depends on the heading:
+the heading is held fixed, as one period is short, and all headings are tried. On a floor that
+differs from place to place no motion is steady; that effect is left out.
 
-Multiple shooting knows no play, slip or tilt. Its optima are where a simplex method starts that
+The multiple-shooting optimiser does not model play, slip or tilt. From its optima a simplex search
 climbs on the speed of this simulation.
 """
 
@@ -36,22 +35,22 @@ from rr_opt.outcome import NotConvergedError
 from rr_opt.sysid.shooting import DrivePath, System, predict
 
 _SAMPLES = 256
-"""Of a period, with a step between two at least."""
+"""Samples per period, with at least one step between two."""
 _HEADINGS = 8
 _ROUNDS, _REPEATS = 60, 1e-7
-"""Periods at most, and the change of v over one, relative, that is none."""
+"""Most periods, and the relative change of v over one that counts as none."""
 _FIRST = 0.05
-"""m/s, the first change of v whose effect is tried."""
+"""m/s, the first step of the secant search for v."""
 
 
 @dataclass(frozen=True)
 class DrivenSpeed:
-    """What a gait comes to.
+    """The speed that a gait reaches.
 
     speeds    m/s, signed, at equally spaced headings; one where all are alike
     cycle     at the first heading
-    reached   the extreme of what each limit bounds, SI; the torque without the blows of play
-    effects   names of those that were driven; left_out: of those that depend on the place
+    reached   the extreme of what each limit bounds, SI; the torque without impacts of play
+    effects   names of those simulated; left_out: of those that depend on the place
     """
 
     speeds: tuple[float, ...]
@@ -115,8 +114,8 @@ def _depends(motion: FloorMotion, which: slice) -> bool:
 
 
 def _steady(system: System, path: DrivePath, p: Array, psi: float, size: int) -> Array:
-    """The states of the steady period. v at the start is found by secants; side speeds, if any,
-    settle by themselves."""
+    """The states of the steady period. The initial v is found by the secant method; side speeds, if
+    any, settle by themselves."""
     start = np.zeros(size)
     start[2] = psi
     before: tuple[float, float] | None = None
@@ -138,11 +137,11 @@ def _steady(system: System, path: DrivePath, p: Array, psi: float, size: int) ->
 class DrivenOptimum:
     """The fastest gait of a robot driven with all its effects.
 
-    beyond        names of the effects that multiple shooting does not know
+    beyond        names of the effects that multiple shooting does not model
     gait          as commanded
     robot, ratio  with the inertia ratio that goes with it
-    driven        what it comes to
-    start         what the optimum of multiple shooting comes to
+    driven        the speed that it reaches
+    start         the speed that the optimum of multiple shooting reaches
     """
 
     beyond: tuple[str, ...]
@@ -156,13 +155,13 @@ class DrivenOptimum:
 _STARTS = 3
 """Optima from which the simplex method starts."""
 _WORTH = 0.7
-"""Those so much slower than the best are left."""
+"""Optima slower than this share of the best are skipped."""
 _PENALTY = 3.0
-"""For an excess of 1 over a limit, in speeds of the gait."""
+"""For a relative excess of 1 over a limit, as a multiple of the gait's speed."""
 
 
 def unsteady_effects(robot: Robot) -> tuple[str, ...]:
-    """The robot's effects on its motion that the equations of a steady cycle do not have."""
+    """The robot's effects on its motion that the steady-cycle equations do not model."""
     return tuple(
         use.name
         for use in robot.physics
@@ -171,15 +170,15 @@ def unsteady_effects(robot: Robot) -> tuple[str, ...]:
 
 
 def beyond_optimiser(robot: Robot) -> tuple[str, ...]:
-    """Those of them that the optimiser does not make up for by the servo's response."""
+    """Those of them that the optimiser does not account for by the servo's response."""
     return tuple(name for name in unsteady_effects(robot) if not CATALOGUE[name].linear)
 
 
 def drive_optimum(optimum: Optimum) -> DrivenOptimum | None:
-    """Drive an optimum, and climb on from it where multiple shooting does not know all effects: not
-    from gaits that are no sines, nor round a turn.
+    """Simulate an optimum with all effects, and climb on from it if multiple shooting does not
+    model them all; only from sine gaits, and not round a turn.
 
-    None without an optimum, and where the optimum has all effects. Raises NotConvergedError as
+    None without an optimum, or if the optimum has all effects. Raises NotConvergedError as
     `driven_speed`.
     """
     best, robot, ratio = optimum.best, optimum.robot, optimum.ratio
@@ -227,7 +226,7 @@ def drive_optimum(optimum: Optimum) -> DrivenOptimum | None:
 
 
 _SHARE = 3
-"""Where the ballast stands among the decisions."""
+"""Index of the ballast among the decisions."""
 
 
 _SPAN, _RESTARTS, _GAIN = 0.05, 6, 1e-5
@@ -237,8 +236,8 @@ _WORST = 1e9
 def _polished(
     value: Callable[[Array], float], point: Array, free: list[int]
 ) -> tuple[Array, float]:
-    """The point (4,) that the simplex method leads to along the free coordinates, begun anew
-    until it gains nothing, and its value."""
+    """The point (4,) that the simplex method reaches along the free coordinates, restarted until
+    it gains nothing, and its value."""
     from scipy.optimize import minimize  # compiled code does without
 
     best, top = point.copy(), value(point)
@@ -246,7 +245,7 @@ def _polished(
     def cost(x: Array) -> float:
         there = best.copy()
         there[free] = x
-        # A number, or the simplex cannot be ordered.
+        # Must be finite, or the simplex cannot be ordered.
         return min(-value(there), _WORST)
 
     for _ in range(_RESTARTS if free else 0):

@@ -1,11 +1,11 @@
-"""What a patch of other floor would gain, wherever it lies, without a fit.
+"""The gain of a floor patch, wherever it lies, without a fit.
 
-Every piece of a recording is cut into moments. The drag of one wheel in one moment is a push of its
-own, and one linearised pass says what each changes of the motion. A patch brakes some wheels in
-some moments, so what it would gain, parameters and starts fitted with it, is a matter of adding up.
+Every segment of a recording is cut into moments. The drag of one wheel in one moment is an input of
+its own, and one linearised pass gives the effect of each on the motion. A patch brakes some wheels
+in some moments, so its gain, with parameters and initial states refitted, is a sum over these.
 
-Places and speeds are those recorded: with them a drag is right however strong it is, where
-predicted ones would have the robot drive on.
+Places and speeds are the recorded ones: with them a drag is right however strong it is, whereas a
+predicted robot would drive on.
 """
 
 import itertools
@@ -26,16 +26,16 @@ from rr_opt.sysid.estimation import Fit
 from rr_opt.sysid.settings import SETTINGS
 
 _MOMENTS = 50
-"""In each piece, at most."""
+"""Most moments in a segment."""
 
 _SAMPLES = 5
-"""In each moment, at least."""
+"""Fewest samples in a moment."""
 
 _LEAST, _MOST = 0.02, 100.0
-"""Multipliers that a patch may have."""
+"""Range of a patch's drag multiplier."""
 
 _AT_ONCE = 64
-"""Patches, lest memory run out."""
+"""Patches per batch, to bound the memory."""
 
 Depth = Callable[[Array, Array], Array]
 """How deep inside a patch the places x, y are, m."""
@@ -43,12 +43,12 @@ Depth = Callable[[Array, Array], Array]
 
 @dataclass(frozen=True)
 class FloorMap:
-    """The pushes of all wheels in all moments, a moment's four wheels side by side, and their cost.
+    """The inputs of all wheels in all moments, a moment's four wheels side by side, and their cost.
 
     places   of the wheels (2, 4, n), m;  begins  the sample in which each moment begins (moments,)
-    slope    (4 moments,), by shares of drag, everything else fitted
-    bends    second derivatives of each piece, to be weakened by `onto` (nq, 4 moments) as the
-             parameters are fitted again: weakened = onto' inverse onto
+    slope    (4 moments,), gradient by shares of drag, everything else fitted
+    bends    second derivatives of each segment; refitting the parameters reduces them by
+             onto' inverse onto, with `onto` (nq, 4 moments)
     """
 
     places: Array
@@ -59,19 +59,19 @@ class FloorMap:
     inverse: Array
 
     def at(self, depth: Depth) -> Array:
-        """How much of each moment each wheel is on a patch (4 moments,)."""
+        """The share of each moment for which each wheel is on a patch (4 moments,)."""
         inside = _inside(depth(*self.places))
         whole = np.add.reduceat(inside, self.begins, axis=1)
         lengths = np.diff(np.append(self.begins, inside.shape[1]))
         return (whole / lengths).T.ravel()
 
     def roughly(self, depth: Depth) -> Array:
-        """The same, from where the wheels are in the middle of the moments."""
+        """The same, from the wheels' places in the middle of the moments."""
         ends = np.append(self.begins[1:], self.places.shape[2])
         return _inside(depth(*self.places[:, :, (self.begins + ends) // 2])).T.ravel()
 
     def gains(self, shares: Array) -> tuple[Array, Array]:
-        """What patches gain in chi-square, each at its best multiplier, and that; (patches,).
+        """Gains of patches in chi-square, each at its best multiplier, and that; (patches,).
 
         shares  of the moments on each patch (patches, 4 moments)
         """
@@ -96,7 +96,7 @@ class FloorMap:
 
 
 def floor_map(racer: RacerModel, fit: Fit) -> FloorMap:
-    """The map beside a fit, over its segments, each with an initial state of its own."""
+    """The map for a fit, over its segments, each with an initial state of its own."""
     problem, values = fit.problem, fit.values
     nq, given = len(problem.names), racer.simulator.given(values)
     k = np.repeat([given["kappa1"], given["kappa2"]], 2) / given["h"] ** 2
@@ -122,7 +122,7 @@ def floor_map(racer: RacerModel, fit: Fit) -> FloorMap:
         bends.append(reduced[nq:-1, nq:-1])
         onto.append(reduced[:nq, nq:-1])
         slopes.append(reduced[nq:-1, -1])
-    # The pushes are each segment's own; the parameters, which all share, are fitted.
+    # Inputs belong to one segment each; the parameters, which all share, are fitted.
     inverse = np.asarray(np.linalg.pinv(shared, hermitian=True), float)
     across = np.hstack(onto)
     sizes = [one.t.size for one in along]
@@ -139,7 +139,7 @@ def floor_map(racer: RacerModel, fit: Fit) -> FloorMap:
 
 
 def _pushes(along: Along, k: Array, count: int) -> Array:
-    """(4 count, 7, n): each wheel's drag, N, in each moment, as much as all the floor has."""
+    """(4 count, 7, n): each wheel's drag, N, in each moment, as on the rest of the floor."""
     edges = _edges(along.t.size, count)
     out = np.zeros((count, 4, len(PUSHES), along.t.size))
     for moment in range(count):
@@ -158,29 +158,29 @@ def _inside(depth: Array) -> Array:
 
 
 _PLACES = 12
-"""Across the floor where wheels were, on which circles are tried."""
+"""Grid points across the floor where wheels were, at which circles are tried."""
 
 _RADII = (0.06, 0.1, 0.15, 0.22, 0.32, 0.45)
-"""Of that floor's longer side."""
+"""Radii of circles, relative to that floor's longer side."""
 
 _DIRECTIONS, _BORDERS = 36, 36
 
 _SEEDS, _BEST = 5, 2
-"""How many distinct ones are moved to where they gain most, and how many of those are proposed."""
+"""How many distinct patches are refined, and how many of those are proposed."""
 
 _ALIKE = 0.9
-"""The cosine between two that cover about the same."""
+"""The cosine above which two patches cover about the same."""
 
 _MOVES = 80
 
 
 @dataclass(frozen=True)
 class Shape:
-    """A kind of patch, of which each one is a few numbers.
+    """A kind of patch, each described by a few numbers.
 
     depth   how deep inside one places are, m
-    grid    those to try for wheels that were at (2, n), (shapes, numbers)
-    values  one's values as a robot file has them, m and rad, around the middle (2,) of the floor
+    grid    patches to try for wheels that were at (2, n), (shapes, numbers)
+    values  of a patch as a robot file has them, m and rad, around the middle (2,) of the floor
     """
 
     depth: Callable[[Array], Depth]
@@ -189,7 +189,7 @@ class Shape:
 
 
 def likely(floor: FloorMap, shape: Shape) -> list[tuple[float, Mapping[str, float]]]:
-    """The gains of those of a shape that gain most, unlike one another, and their values."""
+    """The patches of a shape that gain most, distinct from one another: gains and values."""
     places = floor.places.reshape(2, -1)
     grid = shape.grid(places)
     if not len(grid):
@@ -208,7 +208,7 @@ def likely(floor: FloorMap, shape: Shape) -> list[tuple[float, Mapping[str, floa
 
 
 def _unlike(shares: Array, order: NDArray[np.intp], most: int) -> list[int]:
-    """The first few in order, none much like one before it."""
+    """The first few in order, skipping any that resembles an earlier one."""
     found: list[int] = []
     length = np.linalg.norm(shares, axis=1)
     for k in order:
@@ -221,7 +221,7 @@ def _unlike(shares: Array, order: NDArray[np.intp], most: int) -> list[int]:
 
 
 def _moved(floor: FloorMap, shape: Shape, one: Array, size: float) -> Array:
-    """Where one gains most near by."""
+    """The patch refined to a local maximum of its gain."""
     around = np.vstack([one, one + size / 2 * np.eye(one.size)])
     best = minimize(
         lambda at: -float(floor.gains(floor.at(shape.depth(at))[None])[0][0]),

@@ -1,7 +1,7 @@
-"""What grip the wheels would need not to slip: where to look for wheels that do.
+"""The grip that the wheels would need not to slip: initial guesses of wheels that do.
 
-Wheels that slide do so where the side force over the load is largest, so a friction coefficient
-lies below the largest that was needed.
+Wheels that slide do so where the side force over the load is largest, so their friction coefficient
+is below the largest ratio that was needed.
 """
 
 from collections.abc import Mapping, Sequence
@@ -19,7 +19,7 @@ from rr_opt.motion.dynamics import assembled
 from rr_opt.sysid.estimation import Fit
 
 _FRACTIONS = (0.95, 0.6, 0.2, 0.03)
-"""Of the largest grip needed, that are tried: just grazed, to hardly any."""
+"""Fractions of the largest grip needed that are tried: from almost enough to hardly any."""
 
 
 @lru_cache
@@ -58,13 +58,13 @@ def grip_needed(racer: RacerModel, fit: Fit) -> float:
 
 
 def slips(racer: RacerModel, fit: Fit) -> Sequence[tuple[int, Mapping[str, float]]]:
-    """Values to begin with, by the form of `lateral_slip`."""
+    """Initial values, by the form of `lateral_slip`."""
     forms = racer.catalogue["lateral_slip"].forms
     (creep,) = forms[0].quantities
     most = grip_needed(racer, fit)
     creeping = [(0, {creep.name: size * creep.scale}) for size in (0.3, 3.0)]
     mu, gradual = "lateral_slip.mu", 0.3 * creep.scale
     sliding = [(1, {creep.name: gradual, mu: part * most}) for part in _FRACTIONS]
-    # Wheels that hardly hold creep easily too, and from there more is seen of how they slide.
+    # Wheels with hardly any grip also creep easily, and from there a fit sees more of the sliding.
     ice = (1, {creep.name: 300 * creep.scale, mu: _FRACTIONS[-1] * most})
     return [*creeping, *sliding, ice]

@@ -1,4 +1,4 @@
-"""The Roller Racer as a model that can be identified; answers `sysid.model.Model`."""
+"""The Roller Racer as a model that can be identified; implements `sysid.model.Model`."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -28,7 +28,7 @@ from rr_opt.sysid.settings import SETTINGS
 
 
 class RacerModel:
-    """An experiment with a Roller Racer: what was recorded, and what a simulation says of it."""
+    """An experiment with a Roller Racer: its recordings, and their simulation."""
 
     channels = CHANNELS
     segment_length = 5.0
@@ -42,15 +42,15 @@ class RacerModel:
     ) -> None:
         """The model of an experiment.
 
-        setting  what was asked of the robot; left out, it is seen from the runs
-        noise    of each channel, against what the experiment states
+        setting  operating range of the robot; taken from the runs if omitted
+        noise    of each channel, relative to what the experiment states
         """
         self.experiment = experiment
         self._given, self._noise = setting, noise
         self.nominal = nominal(experiment)
 
     def with_noise(self, noise: Sequence[ChannelNoise]) -> Self:
-        """The same with other noise, its levels in units of those here."""
+        """The same with other noise, its levels relative to the present ones."""
         of_stated = [
             replace(new, level=new.level * old.level)
             for new, old in zip(noise, self._noise, strict=True)
@@ -58,7 +58,7 @@ class RacerModel:
         return type(self)(self.experiment, self._given, of_stated)
 
     def beside(self, experiment: Experiment) -> Self:
-        """Another experiment with the same robot, and the same usual sizes of effects."""
+        """The model of another experiment with the same robot and usual sizes of effects."""
         return type(self)(experiment, self.setting, self._noise)
 
     @property
@@ -82,7 +82,7 @@ class RacerModel:
 
     @property
     def form_error(self) -> float:
-        """RMS in sigma over all channels by which robots of this kind differ from any model."""
+        """RMS in sigma over all channels by which robots of this kind deviate from any model."""
         return self._form_error
 
     @cached_property
@@ -91,7 +91,7 @@ class RacerModel:
             np.nanmean((SETTINGS.form_error * _travelled(run)[:, None] / run.sigma[:, :2]) ** 2)
             for run in self.runs
         ]
-        # In x and y together as much as along the way, in psi and phi nothing.
+        # x and y together have the error along the path, psi and phi none.
         return float(np.sqrt(np.mean(squares) / len(CHANNELS)))
 
     @property
@@ -118,7 +118,7 @@ class RacerModel:
 
     @property
     def setting(self) -> OperatingRange:
-        """What was asked of the robot, for the usual sizes of the effects."""
+        """The robot's operating range, for the usual sizes of the effects."""
         return self._given or self._told
 
     @cached_property
@@ -139,7 +139,7 @@ class RacerModel:
         self, segment: Segment, effects: tuple[str, ...], values: Mapping[str, float]
     ) -> Array:
         """x, y, psi as first recorded; for z, which swings less than v, the mean of v; side speeds
-        as they look in the first moments."""
+        estimated from the first samples."""
         data, run = self.runs[segment.run], self.experiment.runs[segment.run]
         t, recorded = data.t[segment.span], data.values[segment.span]
         first = [column[np.isfinite(column)][0] for column in recorded.T[:3]]
@@ -162,8 +162,8 @@ class RacerModel:
         return self.simulator.converted(request, before, effects)
 
     def state_scale(self, effects: tuple[str, ...]) -> Array:
-        """As much as the noise as far as it is slow; in speeds, as much as that makes in a second,
-        or in the moment for which a side speed lasts."""
+        """The slow part of the noise; for speeds, what adds up to as much in a second, or within
+        the decay time of a side speed."""
         place, heading = self._stated
         sides = [place / SETTINGS.creeping] * 2 if slips(self.simulator.every(effects)) else []
         return np.array([place, place, heading, place, *sides])
@@ -176,7 +176,7 @@ class RacerModel:
         return place, heading
 
     def least_process_noise(self, run: int, effects: tuple[str, ...]) -> Array:
-        """In the speed, the form error's share of its mean."""
+        """For the speed, the form error's share of its mean."""
         least = np.zeros(self.state_scale(effects).size)
         least[3] = SETTINGS.form_error * self._mean_speeds[run]
         return least
@@ -203,13 +203,13 @@ class RacerModel:
         return self.simulator.linearise(requests, effects, wanted)
 
     def predicted(self, request: Request, effects: tuple[str, ...]) -> Array:
-        """What would be recorded of a segment."""
+        """The predicted recording of a segment."""
         ((_, made, _, _),) = self.simulator.paths([request], effects)
         return made.seen
 
     @cached_property
     def simulator(self) -> Simulator:
-        """Of its runs."""
+        """The simulator of its runs."""
         given = frozenset(use.name for use in self.experiment.robot.physics)
         if any(name in self.experiment.uncertainty for name in ZEROS.values()):
             given |= {ZERO_OFFSET}
@@ -217,7 +217,7 @@ class RacerModel:
 
 
 def _travelled(data: Data) -> Array:
-    """The way so far, m (n,), from places half a second apart, so that noise does not count."""
+    """Distance travelled, m (n,), from places half a second apart, to suppress noise."""
     seen = np.isfinite(data.values[:, :2]).all(axis=1)
     at = np.arange(data.t[0], data.t[-1], 0.5)
     x, y = (np.interp(at, data.t[seen], data.values[seen, k]) for k in (0, 1))

@@ -1,9 +1,9 @@
-"""The recording that would tell most of what is still open.
+"""The recording that would best decide what is still open.
 
-Two candidate models predict a recording that is not made yet; what the rival, refitted to it and
-to all recordings there are, is still off tells the two apart (T-optimal design, Atkinson and
-Fedorov 1975). Where one candidate alone is left, the recording is sought that narrows down most the
-value that is known worst. Both are linearised: every gait that can be made is one linearised run.
+Two candidate models predict a recording that is not made yet; the misfit of the rival, refitted to
+it and to all existing recordings, discriminates between the two (T-optimal design, Atkinson and
+Fedorov 1975). With a single candidate left, the recording is sought that most narrows the least
+certain value. Both are linearised: every feasible gait is one linearised run.
 """
 
 import itertools
@@ -32,9 +32,9 @@ CLEARANCE = 0.25
 FIERCEST = 30.0
 """Peak of phi's acceleration, rad/s2, beyond which real wheels let go."""
 _RATE = 25.0
-"""Samples a second of a recording to be made; more add information, not an order."""
+"""Samples a second of a planned recording; more add information, but do not change the ranking."""
 _TOLD_APART = 0.3
-"""RMS in sigma by which a recording has to tell two candidates apart to be worth making for it."""
+"""RMS separation of two candidates, in sigma, that makes a recording worthwhile."""
 
 _STATE_STEPS = 3
 """Gauss-Newton steps for the initial states, as a poor guess of them counts as a difference."""
@@ -45,7 +45,7 @@ def next_experiment(
 ) -> NextExperiment | None:
     """The recording to make next.
 
-    rival  the candidate that comes next, and its name
+    rival  the runner-up, its name first
     """
     plans = _plans(racer)
     if not plans:
@@ -78,7 +78,7 @@ def next_experiment(
 
 
 class _Plan:
-    """A recording to be made: a gait, how long (s), from rest or running, heading (rad)."""
+    """A planned recording: its gait, length (s), start from rest or running, heading (rad)."""
 
     def __init__(self, gait: SineGait, seconds: float, start: Start, heading: float) -> None:
         self.gait, self.seconds, self.heading = gait, seconds, heading
@@ -100,7 +100,7 @@ def _names(fit: Fit) -> str:
 
 
 def _plans(racer: RacerModel) -> list[_Plan]:
-    """Every gait that the robot can make, as long as the recordings there are."""
+    """Every feasible gait of the robot, for as long as the existing recordings."""
     robot, runs = racer.experiment.robot, racer.experiment.runs
     seconds = round(float(np.median([run.recording.t[-1] - run.recording.t[0] for run in runs])))
     c1, c2 = robot.platform1.c, robot.platform2.c
@@ -157,7 +157,7 @@ def _whole(times: Sequence[Array]) -> list[Segment]:
 
 
 def _middle(racer: RacerModel) -> Array:
-    """Of the floor there is (2,), m."""
+    """Middle of the floor that was used (2,), m."""
     ends = np.vstack([run.values[np.isfinite(run.values[:, 0])][:, :2] for run in racer.runs])
     return (np.nanmin(ends, axis=0) + np.nanmax(ends, axis=0)) / 2
 
@@ -165,7 +165,7 @@ def _middle(racer: RacerModel) -> Array:
 def _begun(
     racer: RacerModel, best: Fit, empty: RacerModel, segment: Segment, plan: _Plan, middle: Array
 ) -> Array:
-    """In the middle of the floor; running robots are as fast as the recorded ones."""
+    """Initial state in the middle of the floor; running robots are as fast as recorded ones."""
     z = 0.0 if plan.start == "rest" else racer.setting.speed
     plain = Request(segment, best.values, np.array([*middle, plan.heading, z]))
     return empty.simulator.converted(plain, (), best.effects)
@@ -176,7 +176,7 @@ def _linearised(
 ) -> tuple[FitProblem, Mapping[int, tuple[Array, float, Array]]]:
     """H, g and value of every plan for the fit's quantities, its initial state eliminated.
 
-    begun  the initial states, where the plans are the fit's own predictions
+    begun  the initial states, if the plans are the fit's own predictions
     """
     cut = _whole([run.t for run in planned.runs])
     problem = replace(fit.problem, model=planned, segments=tuple(cut), robust=False)
@@ -187,7 +187,7 @@ def _linearised(
         requests = problem.requests(values, begun)
         return dict(zip(cut, planned.simulate(requests, problem.effects), strict=True))
 
-    # Of plans that are predictions the states are known, and an undivided run needs no more.
+    # For the fit's own predictions the states are known, and undivided runs need no simulation.
     made = {} if begun else made_from(states)
     for _ in range(0 if begun else _STATE_STEPS):
         linear = Linear.of(problem, values, states, made)
@@ -201,7 +201,7 @@ def _linearised(
 
 
 def _separations(planned: RacerModel, rival: Fit) -> Array:
-    """RMS in sigma that the rival leaves of each plan's recording after refitting, linearised."""
+    """RMS misfit of the rival on each plan's recording after refitting, in sigma, linearised."""
     problem, plans = _linearised(planned, rival)
     H0, _, _ = rival.information()
     low, high = problem.box
@@ -219,8 +219,8 @@ def _separations(planned: RacerModel, rival: Fit) -> Array:
 def _narrowed(
     planned: RacerModel, best: Fit, begun: Mapping[Segment, Array]
 ) -> tuple[int, str, float, float] | None:
-    """The plan that narrows most the value known worst, that value, by how much, and the size of
-    what it shows, RMS in sigma."""
+    """The plan that most narrows the least certain value; that value's name, the factor, and the
+    size of its effect in the recording, RMS in sigma."""
     if not best.u.size:
         return None
     _, plans = _linearised(planned, best, begun)

@@ -1,4 +1,4 @@
-"""The motion that was recorded of a Roller Racer: where its wheels went, and how fast."""
+"""The recorded motion of a Roller Racer: where its wheels went, and how fast."""
 
 from dataclasses import dataclass
 from functools import lru_cache
@@ -14,17 +14,17 @@ from rr_opt.motion.dynamics import assembled
 from rr_opt.sysid.model import Request
 
 _WINDOW = 0.5
-"""What the prediction is off changes little over so long a time, s."""
+"""The prediction's error changes little over this time, s."""
 
 
 @dataclass(frozen=True)
 class Along:
-    """What a push may depend on, along a predicted run of n samples.
+    """What an unknown input may depend on, along a predicted run of n samples.
 
     t (n,) s;  x, y (n,) m of the joint and psi (n,) rad;  phi, dphi, ddphi (n,) rad, rad/s, rad/s2
     u       rolling speed of the wheels (4, n), in the order of PUSHES, m/s
     w       yaw rate of platform 1 and 2 (2, n), rad/s
-    rolled  how far the wheels rolled since the recording began (4, n), m
+    rolled  distance rolled by the wheels since the recording began (4, n), m
     places  of the wheels on the floor (4, 2, n), m
     """
 
@@ -47,7 +47,7 @@ class Along:
 
 
 def observed(racer: RacerModel, request: Request, effects: tuple[str, ...]) -> Along:
-    """The motion that was recorded: the prediction, and the smooth part of what it is off."""
+    """The recorded motion: the prediction plus the smooth part of its error."""
     simulator, segment = racer.simulator, request.segment
     mechanical = simulator.every(effects)
     _, motion = driven(mechanical)
@@ -78,7 +78,7 @@ def observed(racer: RacerModel, request: Request, effects: tuple[str, ...]) -> A
 
 
 def _smooth(t: Array, predicted: Array, seen: Array) -> tuple[Array, Array]:
-    """What was seen (n, k), without its noise, and its rate of change, both (k, n)."""
+    """The recording (n, k) without its noise, and its rate of change, both (k, n)."""
     step = float(np.median(np.diff(t)))
     half = max(round(_WINDOW / step / 2), 2)
     off = seen - predicted

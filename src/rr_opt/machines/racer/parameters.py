@@ -1,4 +1,4 @@
-"""What may be fitted of a Roller Racer: its own values, and those of the effects."""
+"""What may be fitted for a Roller Racer: its own values, and those of the effects."""
 
 import itertools
 import math
@@ -30,7 +30,7 @@ ZEROS = {f"{ZERO_OFFSET}.{name}": f"{name}_zero" for name in ("psi", "phi")}
 
 
 def nominal(experiment: Experiment) -> dict[str, float]:
-    """Every value of the robot and of all effects, SI; an effect that it has not is neutral."""
+    """Every value of the robot and of all effects, SI; absent effects are neutral."""
     robot = experiment.robot
     neutral = {
         f"{effect.name}.{q.name}": q.neutral
@@ -77,7 +77,7 @@ def values_of(given: Mapping[str, float], parameters: tuple[str, ...]) -> Array:
 def values_by(
     given: dict[str, float], parameters: tuple[str, ...], wanted: tuple[str, ...]
 ) -> Array:
-    """How p changes with each quantity that is wanted, (np, nw)."""
+    """Derivatives of p by each wanted quantity, (np, nw)."""
     own_names = [ZEROS.get(own, own) for own in parameters]
     out = np.array([[float(own == name) for name in wanted] for own in own_names])
     out = out.reshape(len(parameters), len(wanted))
@@ -92,7 +92,7 @@ def values_by(
 
 
 def _present(use: EffectUse, setting: OperatingRange) -> Iterator[Quantity]:
-    """The values of an effect that the nominal robot has: how strong it is, is not known."""
+    """The values of an effect that the nominal robot has: its strength is not known."""
     for q in CATALOGUE[use.name].parameters:
         value = use.values.get(q.name, q.neutral)
         if value != q.neutral and not q.guess_from_data:
@@ -105,8 +105,8 @@ def _present(use: EffectUse, setting: OperatingRange) -> Iterator[Quantity]:
 def _parameter(name: str, value: float, known: Uncertainty) -> Quantity:
     unit = PARAMETERS[name].unit
     if known.factor:
-        # Counted as it is and not in its logarithm: the motion is nearly linear in kappa, and what
-        # is seen best is the sum of both.
+        # Not on a log scale: the motion is nearly linear in kappa, and best determines the sum of
+        # both.
         low, high = value / known.factor, value * known.factor
         return Quantity(name, unit, value, value, True, low, high, value, free=True)
     low = 0.0 if PARAMETERS[name].symbol == "a" else value / 3

@@ -1,4 +1,4 @@
-"""The Roller Racer as a machine that can be diagnosed; answers `sysid.machine.Machine`."""
+"""The Roller Racer as a machine to diagnose; implements `sysid.machine.MachineModel`."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -37,7 +37,7 @@ class RollerRacer(RacerModel):
     def proposals(
         self, fit: Fit, complete: Sequence[str]
     ) -> Sequence[tuple[Choice, Mapping[str, float]]]:
-        """Where wheels may slip, and where another floor may be."""
+        """Guesses of wheel slip and of floor patches."""
         out = []
         if "lateral_slip" in self.catalogue and "lateral_slip" not in complete:
             out += [(Choice("lateral_slip", k), guess) for k, guess in grip.slips(self, fit)]
@@ -50,9 +50,9 @@ class RollerRacer(RacerModel):
         return unknown_terms(self, fit)
 
     def equivalent(self, values: Mapping[str, float]) -> Mapping[str, float] | None:
-        """The other way to see two halves of a floor: which is the usual, and which the patch.
+        """The two halves of a floor exchanged: which is the usual one, and which the patch.
 
-        Or the same way, with an edge's direction in half a turn either way.
+        Or not exchanged, with the edge's direction wrapped to half a turn either way.
         """
         if "floor_patch.normal" not in values:
             return None
@@ -68,11 +68,11 @@ class RollerRacer(RacerModel):
         return {**values, **other, **{name: factor * values[name] for name in own}}
 
     def next_experiment(self, best: Fit, rival: tuple[str, Fit] | None) -> NextExperiment | None:
-        """The gait that would tell most."""
+        """The most informative gait."""
         return next_experiment(self, best, rival)
 
     def worth(self, before: Sequence[Misfit], after: Sequence[Misfit]) -> str:
-        """By how much the simulated place is off."""
+        """Errors of the simulated place."""
         return (
             f"the simulated place was {_off(before)} off (RMS beyond the noise) and is "
             f"{_off(after)} off now; "

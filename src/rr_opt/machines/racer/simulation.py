@@ -1,6 +1,6 @@
 """The recorded runs of a Roller Racer, simulated and linearised segment by segment.
 
-The state is x, y, psi and z = v - g dphi, which jumps of the servo's rate leave alone; where the
+The state is x, y, psi and z = v - g dphi, which does not jump with the servo's rate; where the
 axles may slip it is x, y, psi, v and both side speeds.
 """
 
@@ -35,7 +35,7 @@ from rr_opt.sysid.sensitivities import DriveSlopes, Recorded, Sought, grams
 from rr_opt.sysid.shooting import DrivePath, Path, System, predict_all
 
 V = 3
-"""Where z or v stands in the state."""
+"""Index of z or v in the state."""
 
 
 @lru_cache
@@ -46,7 +46,7 @@ def driven(effects: tuple[str, ...]) -> tuple[System, FloorMotion]:
 
 
 def stiff_states(motion: FloorMotion) -> int:
-    """How many states settle at once: the speeds of axles that slip."""
+    """Number of stiff states: the speeds of axles that slip."""
     return len(motion.free) if motion.slips else 0
 
 
@@ -56,7 +56,7 @@ def slips(effects: Sequence[str]) -> bool:
 
 
 _MOMENT = 0.25
-"""s, in which a parabola tells the speeds with which a segment begins."""
+"""s, over which a parabola estimates a segment's initial speeds."""
 
 
 def side_speeds(robot: Robot, gait: Gait, t: Array, values: Array) -> Array:
@@ -79,7 +79,7 @@ _Simulated = tuple[DrivePath, Path, Array, dict[str, float]]
 
 @dataclass(frozen=True)
 class _DrivenRun:
-    """A run's drive with some values, how late the recording's clock is, and its steps."""
+    """A run's drive with some values, the lag of the recording's clock, and the steps."""
 
     given: Mapping[str, float]
     drive: Drive
@@ -89,7 +89,7 @@ class _DrivenRun:
 
 
 def _same(some: Sequence[Request], others: Sequence[Request]) -> bool:
-    """Whether the same is asked for, from the very same states."""
+    """Whether the requests are the same, from the very same states."""
     return len(some) == len(others) and all(
         a.segment == b.segment and a.state is b.state and a.values == b.values
         for a, b in zip(some, others, strict=True)
@@ -99,8 +99,8 @@ def _same(some: Sequence[Request], others: Sequence[Request]) -> bool:
 class Simulator:
     """Simulates segments of the runs with any effects of the catalogue.
 
-    nominal   every value of the robot as it is believed to be and of all effects, SI
-    built_in  the effects that it has already
+    nominal   every value of the nominal robot and of all effects, SI
+    built_in  the effects of the nominal robot
     """
 
     def __init__(
@@ -118,20 +118,20 @@ class Simulator:
         self._last: tuple[tuple[str, ...], Sequence[Request], list[_Simulated]] | None = None
 
     def every(self, effects: tuple[str, ...]) -> tuple[str, ...]:
-        """The effects with those that the nominal robot has already, in the catalogue's order."""
+        """The effects and those of the nominal robot, in the catalogue's order."""
         return tuple(name for name in CATALOGUE if name in effects or name in self.built_in)
 
     def given(self, values: Mapping[str, float]) -> dict[str, float]:
-        """Every value, the nominal one where there is no other."""
+        """Every value, the nominal one where none is given."""
         return {**self._nominal, **values}
 
     @cached_property
     def drives(self) -> Drives:
-        """What the servo makes of the gaits."""
+        """The joint angles that the servo makes of the gaits."""
         return Drives(self._runs)
 
     def angle(self, run: int, values: Mapping[str, float], effects: tuple[str, ...]) -> Array:
-        """phi (n,) of a run as the servo makes it and it is recorded, rad, at the samples."""
+        """phi (n,) of a run as made by the servo and recorded, rad, at the samples."""
         mechanical, given = self.every(effects), self.given(values)
         drive = self.drives.of(run, given, mechanical)
         phi = drive.at(self._data[run].t + lateness(given, mechanical))[0]
@@ -169,7 +169,7 @@ class Simulator:
         effects: tuple[str, ...],
         wanted: tuple[str, ...],
     ) -> DriveSlopes | None:
-        """How the drive changes with what is wanted; None if it does not."""
+        """Derivatives of the drive by the wanted quantities; None if none moves it."""
         run, path = segment.run, self._whole(segment.run, given, effects).path
         own = tuple(given[name] for name in wanted if "." in name)
         kept = self._slopes.get(run)
@@ -223,8 +223,7 @@ class Simulator:
     def paths(self, requests: Sequence[Request], effects: tuple[str, ...]) -> list[_Simulated]:
         """Each segment's drive and simulation, the motion's parameters, and all values.
 
-        Those of the last call are kept: what has proved better is asked for again, to be
-        linearised.
+        The last call is cached: accepted points are requested again, to be linearised.
         """
         last = self._last
         if last is None or last[0] != effects or not _same(last[1], requests):
@@ -234,7 +233,7 @@ class Simulator:
     def _simulated(self, requests: Sequence[Request], effects: tuple[str, ...]) -> list[_Simulated]:
         mechanical = self.every(effects)
         system, motion = driven(mechanical)
-        # Most segments that are asked for at once are so with the same values.
+        # Most segments that are requested together have the same values.
         known = {}
         for values in {id(one.values): one.values for one in requests}.values():
             given = self.given(values)

@@ -1,10 +1,10 @@
-"""How the Roller Racer would move if something pushed it that the model lacks.
+"""The Roller Racer's response to inputs that the model lacks.
 
-A push is a rolling force at a wheel, a side speed of an axle, or an error of the angle, as a small
-function of time: what it does to a recording is linear in it. Any function of speed, place or
-anything else is a function of time along the recorded path, so the motion answers to all of them
-in one pass, the same way as it answers to the servo's drive. Each channel, a place where a force or
-a motion can enter, is tried with each variable, as a few functions of it along the recorded path.
+Such a push is a rolling force at a wheel, a side speed of an axle, or an error of the angle, as a
+small function of time: its effect on a recording is linear. Any function of speed, place or
+anything else is a function of time along the recorded path, so one linearised pass gives the
+response to all of them, as to the servo's drive. Each channel, a place where a force or a motion
+can enter, is tried with each variable, as a few functions of it along the recorded path.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ PUSHES = ("wheel1l", "wheel1r", "wheel2l", "wheel2r", "side1", "side2", "angle")
 """Rolling force at each wheel (N), side speed of each axle (m/s), error of the angle (rad)."""
 
 DRIVES = (*PUSHES[:6], "side1dot", "side2dot", "angle", "angledot")
-"""What drives the motion beside the servo, a side speed and an angle with their rates of change."""
+"""Drives of the motion beside the servo: side speeds and the angle with their rates of change."""
 
 FURTHER = 8
 """How many of them are not the servo's own."""
@@ -104,12 +104,12 @@ def linearised_inputs(
     wanted: tuple[str, ...],
     inputs: Sequence[Array],
 ) -> Iterator[Linearisation]:
-    """Segments, all with the same values, linearised where none of the inputs acts: in the start,
-    in what is wanted and in the inputs.
+    """Segments, all with the same values, linearised about zero inputs: in the initial state, the
+    wanted quantities and the inputs.
 
     inputs  (k, 7, n) of each segment, rows as PUSHES
 
-    One step from sample to sample is fine enough for what a push changes.
+    One step from sample to sample is fine enough for the response to a push.
     """
     simulator = racer.simulator
     mechanical = simulator.every(effects)
@@ -144,14 +144,14 @@ def linearised_inputs(
 
 
 _COLUMNS_AT_ONCE = 1000
-"""Of segments side by side, lest memory run out."""
+"""Columns of segments side by side, to bound the memory."""
 
 
 def _carried(
     every: Sequence[LinearMotion], drives: Sequence[Array]
 ) -> Iterator[tuple[Array, Array]]:
-    """Derivatives of what is seen of segments, (n, channels, ...), and of their last states, by the
-    start, by what is wanted, and by pushes with DRIVES (k, 10, n).
+    """Derivatives of segments' outputs, (n, channels, ...), and of their last states, by initial
+    state, wanted quantities, and pushes with DRIVES (k, 10, n).
 
     Segments, a few of them side by side, are padded to the same length.
     """
@@ -181,8 +181,8 @@ def _carried(
 
 
 def _forced(how: LinearMotion, drives: Array) -> tuple[Array, Array]:
-    """What is wanted and pushes with DRIVES (k, 10, n) add to the state from sample to sample
-    (n - 1, size, ...), and to what is seen at the samples (n, channels, ...)."""
+    """What wanted quantities and pushes with DRIVES (k, 10, n) add to the state from sample to
+    sample (n - 1, size, ...), and to the outputs at the samples (n, channels, ...)."""
     wanted = how.by_wanted.shape[2]
     at = np.ascontiguousarray(drives.transpose(2, 1, 0))
     earlier, later = np.split(how.B[:, :, wanted:], 2, axis=2)
@@ -195,7 +195,7 @@ def _forced(how: LinearMotion, drives: Array) -> tuple[Array, Array]:
 
 
 def _widened(own: DriveSlopes) -> DriveSlopes:
-    """How the servo's own part of the drive changes, with the pushes' rows, which do not."""
+    """Derivatives of the servo's part of the drive, with zero rows for the pushes."""
     at, nodes = (
         np.concatenate([part, np.zeros((FURTHER, *part.shape[1:]))]) for part in (own.at, own.nodes)
     )
@@ -211,7 +211,7 @@ def _sampled(nodes: Array, each: int) -> Array:
 
 
 def _passed(moments: Array) -> Array:
-    """How much of the time between two samples has passed at each node of the steps (3, steps)."""
+    """Fraction of the time between two samples passed at each node of the steps (3, steps)."""
     nodes = np.stack([moments[:-1:2], moments[1::2], moments[2::2]])
     return nodes - np.arange((moments.size - 1) // 2)
 
@@ -226,7 +226,7 @@ def _drives(pushes: Array, t: Array) -> Array:
 
 
 def _moments(path: DrivePath, t: Array) -> Array:
-    """Where beginning, middle and end of all steps are, counted in samples (2 steps + 1,)."""
+    """Beginning, middle and end of all steps, counted in samples (2 steps + 1,)."""
     edges = t[0] + np.append(0.0, np.cumsum(path.h))
     both = np.empty(2 * path.h.size + 1)
     both[::2], both[1::2] = edges, (edges[1:] + edges[:-1]) / 2
@@ -259,7 +259,7 @@ CHANNELS: Mapping[str, tuple[float, ...]] = {
     "constraint_axle2": (0, 0, 0, 0, 0, 1, 0),
     "actuation": (0, 0, 0, 0, 0, 0, 1),
 }
-"""What of PUSHES each channel moves; rolling forces along the wheels' directions."""
+"""Which of PUSHES each channel moves; rolling forces along the wheels' directions."""
 
 _SIDE_SIZE, _ANGLE_SIZE = 0.02, 0.02
 """Usual sizes: of a side speed, as a share of the robot's; of an error of the angle, rad."""
@@ -269,7 +269,7 @@ _SIDE_SIZE, _ANGLE_SIZE = 0.02, 0.02
 class _Variable:
     """A variable (n,) along a path, and functions (n,) of it that are of about unit size.
 
-    grid  where they are shown; empty where they are not functions of it alone
+    grid  where they are plotted; empty if they are not functions of it alone
     """
 
     unit: str
@@ -288,7 +288,7 @@ class _Moving:
 
     @property
     def speed(self) -> Array:
-        """Of the axles, over the usual one."""
+        """Speed of the axles, relative to the usual one."""
         return self.along.axles.mean(axis=0) / self.usual
 
 
@@ -360,7 +360,7 @@ def _terms(moving: _Moving, sizes: Array) -> tuple[list[Term], Array]:
             first, x = len(columns), variable.of(moving)
             columns += [shape[:, None] * f(x, moving) for f in variable.functions]
             own = tuple(range(first, len(columns)))
-            # A curve that is shown is of the variable alone, so that the path does not matter.
+            # A plotted curve depends on the variable alone, so the path does not matter.
             alone = np.zeros((0, len(own)))
             if variable.grid.size:
                 shown = [size * f(variable.grid, moving) for f in variable.functions]

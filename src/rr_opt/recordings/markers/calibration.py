@@ -41,16 +41,16 @@ _FRAMES = 2000
 _ROUNDS = 20
 _TRIES = 3
 _SETTLED = 1e-7
-"""A round that moves a shape by less is the last, m."""
+"""A round that moves the shapes by less than this is the last, m."""
 _VAGUE = 0.02
-"""A joint that is known no better than this is not known, m."""
+"""Standard deviation beyond which the joint counts as unknown, m."""
 
 
 @dataclass(frozen=True)
 class Axle:
     """An axle as seen from P.
 
-    direction  from the axes that headings are of, to the way from P to the axle, rad
+    direction  from P to the axle, in the axes whose heading is given, rad
     distance   m
     sigma      standard deviation of the direction, rad
     error      standard deviation of the distance, m
@@ -70,7 +70,7 @@ class Calibration:
              from P to the mean of its markers, platform 2's from the mean of its markers to P
     joint    standard deviation of P in the platforms' axes, m
     axles    of platform 1 and 2; None where the wheels do not show them
-    ordered  which platform is the first is known
+    ordered  whether it is known which platform is the first
     """
 
     layout: Layout
@@ -80,7 +80,7 @@ class Calibration:
 
     @property
     def notice(self) -> Notice:
-        """What was learnt, and how well it is known."""
+        """The result, and how well it is known."""
         both = self.layout.platform1, self.layout.platform2
         one, two = (", ".join(carriers([*places])) for places in both)
         known = {"one": one, "two": two, "joint": 1e3 * self.joint}
@@ -101,8 +101,8 @@ def calibration(
 ) -> Calibration:
     """The places of markers that recordings of one robot show together.
 
-    robot, gaits  what is known of it and of the commands, to tell the platforms apart; else the
-                  first label's is the first
+    robot, gaits  nominal robot and commands, which identify the platforms; otherwise the first
+                  label's platform is the first
 
     Raises InputError if the markers do not form two rigid platforms that move against each other,
     or do not show which is the first.
@@ -154,7 +154,7 @@ _BUILT = 2e-3
 _LIKELIER = 25.0
 """Chi squared by which distances have to be likelier than exchanged ones."""
 _FOLLOWS = 0.5
-"""Correlation from which on phi follows its command."""
+"""Least correlation of a phi that follows its command."""
 
 
 def _order(
@@ -210,8 +210,8 @@ def _shaped(labels: Sequence[str], seen: Array, up: str) -> tuple[Layout, float]
 
 
 _APART = 3.0
-"""How many times more a distance between platforms must change than one within a platform. Within,
-all change by the markers' noise, and a marker may have twice that of another."""
+"""Least ratio of the changes of distances between platforms to those within. The latter come from
+the markers' noise, and a marker may have twice the noise of another."""
 
 
 def rigid_groups(labels: Sequence[str], seen: Array) -> tuple[list[int], list[int]]:
@@ -328,11 +328,11 @@ _ROWS = (0.25, 1.0, 4.0)
 _BLOCKS = 20
 """Left out one at a time, for the standard deviations."""
 _SHOWN = 2.0
-"""Mean square that motion leaves, in noise, over that which rolling leaves of it, at least."""
+"""Least ratio of the mean square of the motion to that of the rolling residual, both in noise."""
 _SURE = 0.03
-"""A direction that is known no better than this is not known, rad."""
+"""Standard deviation beyond which a direction counts as unknown, rad."""
 _LEAST = np.array([1e-6, 1e-6, 1e-5])
-"""Noise that is taken at least: m, m, rad."""
+"""Least noise that is assumed: m, m, rad."""
 
 
 def axle_of(

@@ -65,15 +65,15 @@ def tilt(bodies: Bodies, height: Array) -> Array:
 _SAMPLE = 6000
 """Frames from which the noise is estimated, spread over the recording."""
 LEAST_NOISE = 1e-6
-"""Noise that no capture system goes below, m; what noise-free data are given."""
+"""Least noise of any capture system, m; assumed for noise-free data."""
 
 
 def robot_of(
     bodies: Bodies, seen: Array, noise_sigma: float | None
 ) -> tuple[Bodies, Array, Array, list[Swap], Ghosts]:
-    """Shapes first, as they set what fits; then names; and if there were any, both once more.
+    """Shapes first, as they decide what fits; then swapped names; if there were any, both again.
 
-    The second round has the noise that is left when nothing is swapped any more. Ghosts are last.
+    The second round uses the noise without swaps. Ghosts come last.
     """
     swaps: list[Swap] = []
     while True:
@@ -91,15 +91,15 @@ def robot_of(
 
 @dataclass(frozen=True)
 class MarkerFit:
-    """What was made of a marker file.
+    """The result of fitting a marker file.
 
     recording  the motion of P and both angles
-    bodies     the markers, where the recording has them
-    shift      (k, 2), by how much they are from where the layout has them, m
-    noise      of a marker's coordinate as the residuals have it, m; NaN if they do not determine it
+    bodies     the markers, at their places in the recording
+    shift      (k, 2), their distances from the layout's places, m
+    noise      of a marker's coordinate from the residuals, m; NaN if they do not determine it
     residual   (n,), root mean square of a frame's residuals per coordinate, corrected for the
                unknowns, m
-    whose      (k,), the same of a marker over all frames in which it was used, m
+    whose      (k,), the same for each marker over all frames in which it was used, m
     tilt       (n, 2), of each platform against its own mean, rad
     """
 
@@ -118,7 +118,7 @@ class MarkerFit:
 def fit_markers(
     data: MarkerData, known: Layout | Calibration | None, noise_sigma: float | None = None
 ) -> MarkerFit:
-    """The motion in a marker file, and all that was found, corrected and left out.
+    """The motion in a marker file, and all that was detected, corrected and left out.
 
     known: the layout, or where it was learnt; None: from the file itself.
     noise_sigma: standard deviation of one coordinate of a marker, m; None takes the residuals'.
@@ -160,7 +160,7 @@ def fit_markers(
 
 
 def _renamed(bodies: Bodies, order: Order) -> Bodies:
-    """The columns keep their names, and get the places of the markers that are in them."""
+    """The columns keep their names, and get the places of the markers that they hold."""
     places, platform, heights = (
         np.empty_like(one) for one in (bodies.places, bodies.platform, bodies.heights)
     )
@@ -201,11 +201,11 @@ def _recording(
 
 
 _MATTERS = 0.5
-"""Times the noise by which a marker must be off its place to be reported."""
+"""Least displacement of a marker that is reported, relative to the noise."""
 _STATED = 1.5
-"""Times the stated noise from which on the residuals contradict it."""
+"""Ratio of the residuals to the stated noise from which they contradict it."""
 _TILTS = 6.0
-"""Times the typical tilt from which on a frame's is reported."""
+"""Ratio to the typical tilt from which a frame's tilt is reported."""
 
 
 def _of_layout(
@@ -254,7 +254,7 @@ def _of_ghosts(data: MarkerData, made: MarkerFit) -> Iterator[Notice]:
 
 
 def _off(made: MarkerFit, i: int, rows: NDArray[np.int_]) -> str:
-    """By how much the marker is off, as a part of a sentence."""
+    """The marker's displacement, as part of a sentence."""
     where, values = made.bodies.platform[i], made.recording.values
     heading = values["psi"] + (values["phi"] if where else 0.0)
     forward, left = made.bodies.places[i]
@@ -270,7 +270,7 @@ def _of_noise(made: MarkerFit, noise_sigma: float | None) -> Iterator[Notice]:
 
 
 def _of_tilt(data: MarkerData, made: MarkerFit) -> Iterator[Notice]:
-    """Of frames in which a platform leans more than it usually does."""
+    """A notice on frames in which a platform leans more than it usually does."""
     for one in (0, 1):
         lean = np.degrees(made.tilt[:, one])
         known = np.isfinite(lean)

@@ -15,11 +15,11 @@ complex numbers, and there is no loop over frames.
 A pose is one point, the body's origin, and a heading that was measured by itself: with the noise of
 a place over that of an angle, L, it has S = 1 and T = |b|^2 + L^2.
 
-The platforms' shapes are the recording's, as a layout is measured by hand. Where the markers sit a
-millimetre from where the layout says, their residuals have a mean in the platform's axes. Put
-right, the fit no longer jumps when a marker goes missing. Axes and origin stay the layout's: the
-residuals of a least-squares fit have no mean shift or turn of a platform that would not pull P
-apart.
+The platforms' shapes are taken from the recording, as a layout is measured by hand. If a marker is
+a millimetre off its place in the layout, its residuals have a mean in the platform's axes. With
+places corrected, the fit no longer jumps when a marker goes missing. Axes and origin stay the
+layout's: the residuals of a least-squares fit have no mean shift or turn of a platform that would
+not pull P apart.
 """
 
 from collections.abc import Sequence
@@ -62,8 +62,8 @@ class Bodies:
 
     @property
     def placing(self) -> NDArray[np.bool_]:
-        """(k,), which of them say where a platform is: all, or of a pose its origin, which is the
-        first column of a body."""
+        """(k,), which of them locate a platform: all, or for poses the origin, which is the first
+        column of a body."""
         if self.lever is None:
             return np.ones(len(self.labels), bool)
         first = [self.columns[self.of(one)].min(initial=self.columns.max()) for one in (0, 1)]
@@ -128,17 +128,17 @@ def seen_from_above(positions: Array, up: str) -> tuple[Array, Array]:
 
 
 _FARTHEST = 1e12
-"""Places beyond this, m, are no places, and would overflow where they are squared."""
+"""Coordinates beyond this, m, are invalid, and their squares would overflow."""
 
 
 def places_of(data: MarkerData) -> Array:
-    """The positions (n, k, 3) of a file's markers, without those that are none."""
+    """The positions (n, k, 3) of a file's markers, NaN for invalid ones."""
     return np.where(np.abs(data.positions) < _FARTHEST, data.positions, np.nan)
 
 
 _SCALED = 500
 _AS_SAID = 1.5
-"""The usual factor between a distance and the layout's from which on it is another layout."""
+"""Typical ratio of distances to the layout's from which it is another layout."""
 _UNITS = (
     (1000.0, "It looks like millimetres, of which the file or the layout says metres."),
     (0.001, "It looks like metres, of which the file or the layout says millimetres."),
@@ -180,8 +180,7 @@ class RigidFit:
               per m), for markers whose two coordinates have noise of 1 m
     residual  (n, k), seen less fitted, x + iy, m; NaN where a marker was not used
     squares   (n,), sum of the squared residuals, m^2
-    freedom   (n,), how many more coordinates than unknowns; squares/freedom estimates the noise's
-              variance
+    freedom   (n,), coordinates less unknowns; squares/freedom estimates the noise's variance
     """
 
     joint: Array
@@ -205,7 +204,7 @@ def fit(bodies: Bodies, seen: Array) -> RigidFit:
 def _fit(bodies: Bodies, z: Complex) -> RigidFit:
     b, used, placing = bodies.places @ np.array([1, 1j]), np.isfinite(z), bodies.placing
     known = np.where(used, z, 0)
-    # By platform: whether it is there, its heading and P alone, S, 1/T, u and l.
+    # By platform: whether it is seen, its own heading and P, S, 1/T, u and l.
     there, heading, own, S, per_T, u = [], [], [], [], [], []
     for one in (0, 1):
         mine = used & (bodies.platform == one)
@@ -270,7 +269,7 @@ def _fit(bodies: Bodies, z: Complex) -> RigidFit:
 
 
 FALSE_ALARM = 1e-6
-"""The share of good frames, with Gaussian noise, whose squares are larger than they may be."""
+"""The share of good frames, with Gaussian noise, whose squares exceed the limit."""
 
 
 def marker_noise(fit: RigidFit) -> float:
@@ -290,7 +289,7 @@ def marker_noise(fit: RigidFit) -> float:
 def beyond(fit: RigidFit, sigma: float) -> NDArray[np.bool_]:
     """The frames (n,) whose markers do not fit two rigid platforms with noise sigma, m."""
     most = sigma**2 * chdtri(np.maximum(fit.freedom, 1), FALSE_ALARM)
-    # Noise-free data keep to their digits only.
+    # Noise-free data agree to their printed digits only.
     return (fit.freedom > 0) & (fit.squares > np.maximum(most, 1e-18))
 
 
@@ -300,16 +299,16 @@ _SAMPLE = 6000
 _FEWEST = 20
 """Frames in which a marker must have been seen for its mean to be taken."""
 _SURE = 5.0
-"""Standard errors from which on a mean is no chance."""
+"""Standard errors beyond which a mean is significant."""
 _ENOUGH = 1.0
-"""Standard errors that a round must move a marker by for another round; one alone corrects the part
-of an error that the fit has not taken up."""
+"""Standard errors by which a round must move a marker for another round to follow; a single round
+corrects only the part of an error that the fit has not absorbed."""
 
 
 def refined(bodies: Bodies, seen: Array) -> tuple[Bodies, Array]:
-    """The bodies with their markers where the recording has them, and by how much they moved.
+    """The bodies with their markers at their places in the recording, and their shifts.
 
-    seen: (n, k, 2), m, labels put right. The shifts are (k, 2), m, in the platform's axes; zero
+    seen: (n, k, 2), m, labels corrected. The shifts are (k, 2), m, in the platform's axes; zero
     where the layout was right within five standard errors.
     """
     now, seen = bodies, seen[:: max(1, len(seen) // _SAMPLE)]

@@ -1,9 +1,9 @@
-"""Markers whose names the capture system exchanged, put right, and single ones that are elsewhere.
+"""Corrects markers whose names the capture system exchanged, and drops misplaced single ones.
 
 Names: two are exchanged back in the frames that do not fit; where a frame then fits, they were
 swapped. A name that sits on another marker while its own is missing is found in the same way. In
-frames that no pair mends, and no single marker is to blame for, three names in a ring and two pairs
-at once are tried. Nothing depends on the frames before, so a swap may last to the end of the file.
+frames that no pair fixes, and for which no single marker is to blame, three names in a ring and two
+pairs at once are tried. Frames are independent, so a swap may last to the end of the file.
 
 Ghosts, reflections, jumps: in a frame that still does not fit, each marker is left out in turn,
 then each pair. The smallest set whose absence makes the frame fit is to blame. Where several of one
@@ -21,7 +21,7 @@ from rr_opt.array import Array
 from rr_opt.recordings.markers.rigid import Bodies, beyond, fit, marker_noise
 
 Order = tuple[int, ...]
-"""For each marker the column that it is in; in its own place otherwise."""
+"""For each marker the column that holds it."""
 
 _MOST = 12
 """Of more markers, three or four exchanged at once are not sought: there are too many ways."""
@@ -43,7 +43,7 @@ def members(order: Order) -> tuple[int, ...]:
 
 
 _AS_GOOD = 20.0
-"""Sums of squares, over the variance, that are closer than this do not distinguish two sets."""
+"""Difference in the sum of squares, over the variance, needed to distinguish two sets."""
 
 
 @dataclass(frozen=True)
@@ -105,9 +105,9 @@ _SAMPLE, _FEW = 200, 20
 """Frames on which the exchanges are ranked, the likeliest to be tried first; where there are many
 exchanges, fewer frames."""
 _BETTER = 5.0
-"""How many times smaller an exchange must make the noise of a whole recording to be believed."""
+"""Factor by which an exchange must reduce the noise of a whole recording to be accepted."""
 _ROUGH = 2e-3
-"""Markers that keep to their platforms no better are exchanged, or wrong in the layout, m."""
+"""Noise beyond which markers must be exchanged, or wrong in the layout, m."""
 
 
 @dataclass(frozen=True)
@@ -119,7 +119,7 @@ class Swap:
 
 
 def swapped_throughout(bodies: Bodies, seen: Array) -> Order | None:
-    """An exchange that is there in most of the recording, or in the layout."""
+    """An exchange that lasts for most of the recording, or is in the layout."""
     rows = np.flatnonzero(np.isfinite(seen[..., 0]).sum(axis=1) > 3)
     sample = seen[rows[:: max(1, len(rows) // _SAMPLE)]]
     if not len(sample):
@@ -140,7 +140,7 @@ def _quietest(bodies: Bodies, seen: Array, orders: Iterator[Order], own: float) 
 
 
 def put_right(bodies: Bodies, seen: Array, sigma: float) -> tuple[Array, list[Swap]]:
-    """The markers (n, k, 2) with the names put right, and what was exchanged.
+    """The markers (n, k, 2) with the names corrected, and what was exchanged.
 
     sigma: of a marker's coordinate, m.
     """
@@ -155,8 +155,8 @@ def put_right(bodies: Bodies, seen: Array, sigma: float) -> tuple[Array, list[Sw
     def exchanged(
         left: NDArray[np.int_], orders: Iterator[Order], sample: int, least: int
     ) -> NDArray[np.int_]:
-        """The frames that are left once orders are tried, those that mend most of a sample first;
-        least: how many they have to mend of it."""
+        """The frames still unexplained after trying orders, in the order of how many frames of a
+        sample they fix; least: how many of it they have to fix."""
         rows = left[:: max(1, len(left) // sample)]
         mends = {order: int(mended(rows, order).sum()) for order in orders} if len(rows) else {}
         for order in sorted(mends, key=lambda one: -mends[one]):

@@ -1,9 +1,9 @@
 """The catalogue of nuisances: what goes wrong between a motion and its recording, by name.
 
-A nuisance is a `look` in a module here, a function from the Evidence of a recording to notices.
-Wheels that roll tie place, heading and joint angle together at every instant, whatever the
-forces are, and the command ties the angle to the clock. So a nuisance shows in the kinematics, and
-an effect of the robot's physics, which obeys them or nearly so, does not pass for one.
+A nuisance is a `look` in a module here, a function from an ExaminedRecording to notices. Rolling
+wheels tie place, heading and joint angle together at every instant, whatever the forces are, and
+the command ties the angle to the clock. So a nuisance shows in the kinematics, and an effect of the
+robot's physics, which obeys these constraints or nearly so, is not mistaken for one.
 """
 
 from rr_opt.recordings.nuisances import command, frame, plausible, push, start
@@ -21,11 +21,11 @@ CATALOGUE: tuple[Look, ...] = (
     push.look,
     start.look,
 )
-"""Asked in this order until one finds what makes the others mean nothing."""
+"""Run in this order until one finds a problem that makes the others meaningless."""
 
 
 def nuisances(evidence: ExaminedRecording) -> tuple[Notice, ...]:
-    """What is found in a recording that moves."""
+    """All notices on a recording of a moving robot."""
     found: list[Notice] = []
     for look in CATALOGUE:
         found += look(evidence)

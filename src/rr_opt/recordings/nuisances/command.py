@@ -1,6 +1,6 @@
-"""An angle that is not that of its command: another gait, unit or sign, or a clock that is off.
+"""An angle that contradicts its command: another gait, unit or sign, or an offset of the clock.
 
-Or whose rate changes while the robot drives on as before.
+Or a clock that changes its rate while the robot drives on as before.
 """
 
 from collections.abc import Iterator
@@ -15,14 +15,14 @@ from rr_opt.recordings.warnings import Notice, notice
 _LENGTHS = (3.0, 2.0)
 """Of a window, in periods: the first resolves slow periods, the second has more windows."""
 _LEAST = 0.1
-"""By which part of itself a period changes, at least."""
+"""Least relative change of a period."""
 _STEADY = 0.05
 _FEWEST = 3
 """Windows to either side of the change."""
 _GAP = 0.25
-"""Of a period without data, at most, within a window: a line across it is no sine."""
+"""Longest gap in a window, in periods: a line across it is no sine."""
 _SINE = 0.75
-"""Of phi's variance in a window that a sine explains, where the angle is that of a gait."""
+"""Share of phi's variance in a window that a sine explains if the robot drives a gait."""
 
 
 def look_at_clock(given: ExaminedRecording) -> Iterator[Notice]:
@@ -75,7 +75,7 @@ def _change(size: Array) -> int:
 
 
 def _moment(t: Array, phi: Array, before: float, after: float, first: float) -> float:
-    """When, from about a time on, the period changes, s: two sines are then nearest to phi."""
+    """The time, s, near `first` at which the period changes: where two sines fit phi best."""
     last = first + max(_LENGTHS) * before + 2 * after
     near = np.isfinite(phi) & (t > first - before) & (t < last)
     t, phi = t[near], phi[near]
@@ -91,17 +91,17 @@ def _moment(t: Array, phi: Array, before: float, after: float, first: float) -> 
 
 
 _PADDED = 8
-"""Times as many samples as there are, so that the peak lies near one of the rates."""
+"""Factor of zero-padding, so that the peak is near one of the frequencies."""
 _LONGEST = 60.0
-"""Of a recording that are looked at for a period, s."""
+"""Length of a recording that is searched for a period, s."""
 _FINEST = 4096
-"""Samples that are looked at."""
+"""Most samples that are used."""
 
 
 def dominant(t: Array, y: Array) -> tuple[float, float]:
-    """The period of the sine that explains most of y (n,) at t (n,), s, and how much that is.
+    """The period, s, of the sine that explains most of y (n,) at t (n,), s, and its share.
 
-    NaN is no sample. The second is the part of y's variance; both are NaN where there are too few.
+    NaN is no sample. The share is of y's variance; both are NaN where there are too few samples.
     """
     period = period_of(t, y)
     return period, explained(*_looked_at(t, y), period) if np.isfinite(period) else np.nan
@@ -113,7 +113,7 @@ def _looked_at(t: Array, y: Array) -> tuple[Array, Array]:
 
 
 def period_of(t: Array, y: Array) -> float:
-    """The first of `dominant` alone."""
+    """The period of `dominant` alone."""
     t, y = _looked_at(t, y)
     n = min(len(t), _FINEST)
     if n < 8:
@@ -135,7 +135,7 @@ def period_of(t: Array, y: Array) -> float:
 
 
 def explained(t: Array, y: Array, period: float) -> float:
-    """Of y's variance, what a constant and a sine of a period explain."""
+    """The share of y's variance that a constant and a sine of a period explain."""
     turn = 2 * np.pi * (t - t[0]) / period
     A = np.column_stack([np.ones(len(t)), np.sin(turn), np.cos(turn)])
     left = y - A @ np.linalg.lstsq(A, y, rcond=None)[0]
@@ -143,11 +143,11 @@ def explained(t: Array, y: Array, period: float) -> float:
 
 
 _ALIKE, _OTHER = 0.5, 0.8
-"""Of phi's variance, what is the gait's where it was driven, and a sine's of another period."""
+"""Least shares of phi's variance that its own gait, or a sine of another period, explains."""
 _SIZE = 20.0
-"""Times as far as commanded, or as little, phi moves in another unit only."""
+"""Ratio of phi's swing to the command's, or inverse, that only another unit explains."""
 _LATE = 1e-3
-"""An offset smaller than this matters to nobody, s."""
+"""A smaller offset is negligible, s."""
 _SURE = 3.0
 _LESS = 0.01
 _BIASED = 2e-3
@@ -212,7 +212,7 @@ def _late(given: ExaminedRecording, fit: ClockFit) -> str:
 
 
 def follows(given: ExaminedRecording, phi: Array) -> bool:
-    """Whether an angle (n,) is less than a quarter of a period off its command, if that shows."""
+    """Whether an angle (n,) is within a quarter of a period of its command, if that shows."""
     if given.gait is None:
         return True
     known = np.isfinite(phi)

@@ -1,4 +1,4 @@
-"""What nuisances are judged by: the channels, and how far they are from wheels that roll.
+"""The evidence on nuisances: the channels, and their deviation from rolling wheels.
 
 Over a stride the joint P moves by (dx, dy), the heading psi by dpsi and phi by dphi. Without side
 slip, with the mean headings h and h2 = h + phi,
@@ -6,7 +6,7 @@ slip, with the mean headings h and h2 = h + phi,
     axle 1:  -sin(h) dx + cos(h) dy + c1 dpsi = 0
     axle 2:  -sin(h2) dx + cos(h2) dy - c2 (dpsi + dphi) = 0
 
-hold whatever forces act. Both are linear in the noise, so what is left of them has a known size.
+hold whatever forces act. Both are linear in the noise, so their residuals have a known size.
 """
 
 from __future__ import annotations
@@ -34,17 +34,17 @@ Motion = tuple[Array, Array, Array, Array]
 _SHARE, _STRIDE = 0.1, 0.1
 """A stride in periods of the gait, and in s where no gait is known."""
 _SHORTEST, _LONGEST = 1e-3, 1.0
-"""Between which c1 and c2 lie where no robot is known, m."""
+"""Range of c1 and c2 where no robot is known, m."""
 _BULK = 0.8
 _WITHIN = float(ndtri((1 + _BULK) / 2))
 """Standard deviations that hold this share of a normal distribution."""
 _MOST = 20_000
-"""Strides that are looked at, spread over the recording."""
+"""Most strides that are used, spread over the recording."""
 
 
 @dataclass(frozen=True)
 class Slip:
-    """What is left of both axles' constraints (n - stride,), m, and what noise leaves of them, m.
+    """Residuals of both axles' constraints (n - stride,), m, and their noise, m.
 
     along  how far axle 1 rolls, m
     """
@@ -56,9 +56,9 @@ class Slip:
 
     @cached_property
     def size(self) -> float:
-        """Root mean square, in noise; what is off for a moment counts as three times the usual.
+        """Root mean square, in noise; momentary outliers are clipped to three times the usual.
 
-        0 where no stride shows it.
+        0 without any usable stride.
         """
         squares = []
         for row, noise in zip((self.first, self.second), self.noise, strict=True):
@@ -73,10 +73,10 @@ class Slip:
 
 @dataclass(frozen=True)
 class ExaminedRecording:
-    """A cleaned recording, and what is known of how it was made; None: not known.
+    """A cleaned recording, and what is known about how it was made; None: not known.
 
     clock_known  the offset of the recording's clock is known from a servo's log
-    framed       the zeros of psi and phi, and which platform is the first, are those of the robot
+    framed       the zeros of psi and phi, and the platforms' order, are those of the robot
     """
 
     recording: Recording
@@ -93,18 +93,18 @@ class ExaminedRecording:
 
     @cached_property
     def step(self) -> float:
-        """The usual one of time, s."""
+        """The usual time step, s."""
         return time_step(self.t)
 
     @cached_property
     def motion(self) -> Motion:
-        """What is taken as data."""
+        """The values that are taken as data."""
         x, y, psi, phi = (self.recording.data(name) for name in CHANNELS)
         return x, y, psi, phi
 
     @cached_property
     def sigma(self) -> Array:
-        """Noise of the four channels: as stated, or as they scatter if that is more."""
+        """Noise of the four channels: the larger of the stated and the estimated one."""
         stated = [float(np.nanmedian(self.recording.sigma[name])) for name in CHANNELS]
         seen = [noise_of(values).sigma for values in self.motion]
         return np.fmax(np.fmax(stated, seen), 1e-9)
@@ -125,7 +125,7 @@ class ExaminedRecording:
 
     @cached_property
     def slip(self) -> Slip:
-        """Of the recording as it is."""
+        """The slip of the recording as it is."""
         return self.slip_of(self.motion)
 
     def _strides(self, motion: Iterable[Array], every: int = 1) -> list[Array]:
@@ -135,9 +135,9 @@ class ExaminedRecording:
         return [*moved, *((first + last) / 2 for first, last in ends[2:])]
 
     def slip_of(self, motion: Iterable[Array], every: int = 1, scale: float = 1.0) -> Slip:
-        """Of a motion that may have been, at every `every`-th stride.
+        """The slip of a hypothetical motion, at every `every`-th stride.
 
-        scale: of x and y, and so of their noise, in the motion against the recording.
+        scale: of x and y, and so of their noise, relative to the recording.
         """
         dx, dy, dpsi, dphi, h, turn = self._strides(motion, every)
         side1, along = np.cos(h) * dy - np.sin(h) * dx, np.cos(h) * dx + np.sin(h) * dy
@@ -151,8 +151,8 @@ class ExaminedRecording:
 
     @cached_property
     def forgiven(self) -> Slip:
-        """What is left of the recording as it is if small faults are taken out of it that any
-        laboratory has: a point tracked beside the joint, zeros of psi and phi, and lengths."""
+        """The slip of the recording once small faults that any laboratory has are removed: a point
+        tracked beside the joint, zeros of psi and phi, and lengths."""
         dx, dy, dpsi, dphi, h, turn = self._strides(self.motion)
         along2 = np.cos(h + turn) * dx + np.sin(h + turn) * dy
         beside = dpsi * np.cos(turn), dpsi * np.sin(turn)
@@ -165,7 +165,7 @@ class ExaminedRecording:
 
     @cached_property
     def sideways(self) -> float:
-        """How far a turn of platform 1 takes the joint sideways, m per rad: c1, if all is right."""
+        """Sideways motion of the joint per turn of platform 1, m per rad: c1, if all is right."""
         dx, dy, dpsi, _, h, _ = self._strides(self.motion)
         return _lever(np.cos(h) * dy - np.sin(h) * dx, dpsi)
 
@@ -189,21 +189,21 @@ class ExaminedRecording:
         return then if sure and (rolls or now > FAR * then) else np.inf
 
     def is_wrong(self, best: float) -> bool:
-        """Whether wheels that roll contradict the recording, against a motion that leaves such a
-        slip: by far, or whatever small faults are forgiven."""
+        """Whether rolling wheels contradict the recording, compared with a motion of this slip: by
+        far, or even if small faults are forgiven."""
         left = self.forgiven.size
         rolls = best < ROLLING < left and self._likelier(left, best) > _SURE
         return rolls or self.slip.size > FAR * best
 
     def likely(self, left: Mapping[Name, float]) -> list[Name]:
-        """Those that explain a recording about as well as the best, by the slip they leave."""
+        """Names whose slip is about as small as the best one's."""
         best = min(left.values(), default=np.inf)
         if not np.isfinite(best):
             return []
         return [name for name, one in left.items() if self._likelier(one, best) < _UNSURE]
 
     def _likelier(self, now: float, then: float) -> float:
-        """By how much of log likelihood a smaller slip is likelier; strides are independent."""
+        """Gain in log likelihood from a smaller slip; strides are independent."""
         return len(self.t) / self.stride * float(np.log(max(now, 1e-9) / max(then, 1e-9)))
 
 
@@ -215,17 +215,17 @@ def _lever(side: Array, turned: Array) -> float:
 
 
 def _rest(row: Array, *causes: Array) -> Array:
-    """What is left of a row (n,) beyond the multiples of its causes that fit it best."""
+    """The residual of a row (n,) after a least-squares fit of its causes."""
     A = np.column_stack(causes)
     known = np.isfinite(row) & np.isfinite(A).all(axis=1)
     return row - A @ np.linalg.lstsq(A[known], row[known], rcond=None)[0]
 
 
 ROLLING, CLEAN, FAR = 1.1, 1.3, 3.0
-"""Slip that wheels leave that roll, in noise; with some uncertainty of c; and times as much slip as
-there is in a motion that is right, where wheels slide."""
+"""Slip of rolling wheels, in noise; the same with c uncertain; and ratio to the slip of the right
+motion where wheels slide."""
 _SURE, _UNSURE = 15.0, 5.0
-"""Log likelihood by which another motion must be likelier, and by which it may not be."""
+"""Log likelihood by which another motion must be likelier, and by which it must not be."""
 
 Name = TypeVar("Name")
 

@@ -1,6 +1,6 @@
 """A frame, a zero or a sign that is wrong, platforms that were mistaken for each other, or a delay.
 
-Each is undone on trial: wheels that roll say whether the motion then is the likelier one.
+Each is undone on trial: rolling wheels decide whether the resulting motion is likelier.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -25,16 +25,16 @@ _UNDONE: Mapping[str, Callable[[Array, Array, Array, Array], Motion]] = {
     "phi is off by 180 deg": lambda x, y, psi, phi: (x, y, psi, phi + np.pi),
     "platforms 1 and 2 are exchanged": lambda x, y, psi, phi: (x, y, psi + phi + np.pi, -phi),
 }
-"""What may be wrong, and the motion as it then was.
+"""What may be wrong, and the true motion in that case.
 
-The axes run from P towards axle 1, and from axle 2 towards P: of exchanged platforms both are the
-other way round, which leaves phi without a half turn.
+The axes run from P towards axle 1, and from axle 2 towards P: with platforms exchanged both are
+reversed, so that phi needs no half turn.
 """
 
 
 _TOO_FAR, _NOT_FAR = 10.0, 0.05
-"""Times as far sideways as a turn takes the joint, or as little, in another unit only. Wheels that
-slide leave 0.7."""
+"""Ratios to the joint's expected sideways motion per turn that only another unit explains. Wheels
+that slide have 0.7."""
 
 
 def look(given: ExaminedRecording) -> Iterator[Notice]:
@@ -43,7 +43,7 @@ def look(given: ExaminedRecording) -> Iterator[Notice]:
 
 
 def look_twice(given: ExaminedRecording) -> Iterator[Notice]:
-    """For two at once."""
+    """Two of these at once."""
     return _found(
         given,
         {
@@ -77,9 +77,9 @@ def _found(
 
 _PARTS = {"x and y": (0, 1), "psi": (2,), "phi": (3,)}
 _FARTHEST, _TRIES = 0.25, 41
-"""How late a channel may be, in periods or s, and how many delays begin the search."""
+"""Longest delay of a channel, in periods or s, and number of delays that start the search."""
 _SHORTEST = 0.02
-"""Delays that are told, s: wrong lengths, or wheels that creep sideways, look like shorter ones."""
+"""Shortest delay reported, s: wrong lengths, or wheels that creep sideways, mimic shorter ones."""
 
 
 def look_at_delays(given: ExaminedRecording) -> Iterator[Notice]:
@@ -99,13 +99,13 @@ def look_at_delays(given: ExaminedRecording) -> Iterator[Notice]:
 
 
 def _best(given: ExaminedRecording, columns: tuple[int, ...]) -> tuple[float, float]:
-    """What is left if some channels are late, in noise, and by how much they are, s."""
+    """The slip, in noise, if some channels are late, and their best delay, s."""
     most = _FARTHEST * (given.gait.period if given.gait else 1.0) / given.step
 
     def left(steps: float) -> float:
         return given.slip_of(_earlier(given, columns, steps * given.step)).size
 
-    # By whole steps: in between, the noise is smoothed, which looks like a better fit.
+    # Whole steps only: interpolation smooths the noise, which looks like a better fit.
     best, apart = 0.0, max(most, 1.0)
     while True:
         grid = np.unique(np.round(best + np.linspace(-apart, apart, _TRIES)))
@@ -129,7 +129,7 @@ def _earlier(given: ExaminedRecording, columns: tuple[int, ...], late: float) ->
 
 
 def _at(u: Array, t: Array, y: Array) -> Array:
-    """y (n,), seen at t, at the times u; NaN where it is not known."""
+    """y (n,), sampled at t, at the times u; NaN where it is not known."""
     known = np.isfinite(y)
     whole = np.interp(u, t, known.astype(float), left=0.0, right=0.0) > 0.999
     return np.where(whole, np.interp(u, t, np.where(known, y, 0.0)), np.nan)

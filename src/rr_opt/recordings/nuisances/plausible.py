@@ -1,4 +1,4 @@
-"""What no robot makes, and what says nothing of one: empty, short, full of gaps, still, noisy."""
+"""Implausible or uninformative recordings: empty, short, full of gaps, still, noisy."""
 
 from collections.abc import Iterator
 
@@ -15,11 +15,11 @@ _FEWEST = 50
 _PERIODS = 2.0
 """A shorter recording shows a start and no more."""
 _LARGEST_GAP = 4.0
-"""Seconds without any data of a channel; the motion in between is then nobody's."""
+"""Seconds without any data of a channel beyond which the motion in between is unknown."""
 _STILL = 10.0
-"""What moves by less, in sigma of the noise, over 98 % of the samples, stands still."""
+"""A range, in sigma of the noise, over 98 % of the samples, below which a channel stands still."""
 _COMMANDED = 0.2
-"""A servo that moves that much of its amplitude follows its command, whatever the noise."""
+"""A servo that moves by this share of its amplitude follows its command, whatever the noise."""
 _HARDLY = 0.02
 """A path shorter than this shows little of friction, m."""
 
@@ -71,9 +71,9 @@ def _range(values: Array) -> float:
 
 
 _ROOM, _NO_ROOM = 50.0, 1e5
-"""No floor on which a small robot is recorded is as long in m, nor in mm."""
+"""No floor on which a small robot is recorded is this long in m, or in mm."""
 _NO_ANGLE = 1000.0
-"""No servo turns so far in rad, nor in degrees."""
+"""No servo turns this far in rad, or in degrees."""
 _SLOWEST = 0.5
 """Capture systems sample more often than this, s."""
 _LATEST = 1e6

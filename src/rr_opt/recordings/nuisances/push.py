@@ -1,4 +1,4 @@
-"""A push: the robot moves, for a moment, as its wheels cannot roll, or surges and is slow again."""
+"""A push: for a moment the robot moves as its wheels cannot roll, or surges and slows again."""
 
 from collections.abc import Iterator
 
@@ -14,12 +14,12 @@ _WINDOW = 0.5
 _UNSEEN = 0.2
 """Gaps that are bridged, s."""
 _FAR = (0.02, 0.06)
-"""How far a push takes the robot across its wheels, and along them, m. Wheels that slide make 1 cm
+"""Least displacement by a push across the wheels, and along them, m. Wheels that slide cause 1 cm
 of the first, and a tilted floor 4 cm of the second."""
 _RARE = 10.0
-"""Times the usual size over the recording."""
+"""Least ratio to the usual size over the recording."""
 _MOST = 3
-"""Of one recording that are reported."""
+"""Most pushes of one recording that are reported."""
 
 
 def look(given: ExaminedRecording) -> Iterator[Notice]:
@@ -27,13 +27,13 @@ def look(given: ExaminedRecording) -> Iterator[Notice]:
     width = max(1, round(_WINDOW / given.step))
     if not given.framed or len(given.t) < 4 * width:
         return
-    # A push may come while nothing is seen for a moment.
+    # A push may coincide with a short gap.
     slip = given.slip_of([bridged(given.t, one, _UNSEEN) for one in given.motion])
     across = (slip.first, slip.second)
     looks = [("push.robot", _FAR[0], across)]
     if given.gait is not None:
         looks += [
-            # Wheels that slide do it in every period, and hide a push in what is usual.
+            # Wheels that slide do so in every period, and hide a push in the usual size.
             ("push.robot", _FAR[0], tuple(_unusual(given, one) for one in across)),
             ("push.surge", _FAR[1], (_unusual(given, slip.along),)),
         ]
@@ -60,7 +60,7 @@ def _moved(each: Array, width: int) -> Array:
 
 
 def _unusual(given: ExaminedRecording, moved: Array) -> Array:
-    """By how much it moves farther than at the same phase of the periods before and after, m."""
+    """Excess motion over the same phase of the periods before and after, m."""
     period = round(given.gait.period / given.step) if given.gait else 0
     if not 0 < 2 * period < len(moved):
         return np.zeros_like(moved)
@@ -74,7 +74,7 @@ def _unusual(given: ExaminedRecording, moved: Array) -> Array:
 
 
 def _events(far: Array, least: float, width: int) -> list[int]:
-    """The rows at which it is farthest, of windows apart."""
+    """The rows of the largest displacements, at least a window apart."""
     usual = 1.4826 * float(np.median(far))
     found: list[int] = []
     for at in np.argsort(-far, kind="stable")[: len(far) // 4].tolist():

@@ -1,9 +1,9 @@
-"""A start from rest that is said of a robot that drives already.
+"""A stated start from rest of a robot that is already driving.
 
-Friction hardly matters in the first half period. So the nominal robot says how axle 1 drives from
-rest, and what an initial speed adds. What else the robot may have is fitted with it: more or less
-of the motion from rest, later, and a steady acceleration. From rest the initial speed is nil, or
-what the jump of the joint's rate gives to a robot whose joint is not straight, or in between.
+Friction hardly matters in the first half period. So the nominal robot predicts how axle 1 moves
+from rest, and what an initial speed adds. Other deviations are fitted with it: a scale and a delay
+of the motion from rest, and a steady acceleration. From rest the initial speed is zero, or what the
+jump of the joint's rate gives a robot whose joint is not straight, or in between.
 """
 
 from collections.abc import Iterator
@@ -21,31 +21,31 @@ from rr_opt.recordings.nuisances.evidence import CLEAN, ExaminedRecording
 from rr_opt.recordings.warnings import Notice, notice
 
 _BEGINNING = 0.5
-"""Of a period, in which the motion depends on inertia much more than on friction."""
+"""Share of a period in which the motion depends much more on inertia than on friction."""
 _UNSEEN = 0.2
 """Gaps that are bridged, s."""
 _ACCURACY, _DELAY = 0.3, 0.05
-"""By how much the nominal robot may be wrong, of its speed, and the servo late, s; 1 sigma."""
+"""Relative error of the nominal robot's speed, and delay of the servo, s; 1 sigma."""
 _STEADY = 0.1
-"""Of the largest speed from rest, what a steady acceleration adds by the end, 1 sigma. Random
-robots with unknown friction had 0.06."""
+"""Speed that a steady acceleration adds by the end, relative to the largest from rest, 1 sigma.
+Random robots with unknown friction had 0.06."""
 _OTHER = 2.0
 """Sigmas beyond which the model does not describe the robot."""
 _SURE_SPEED = 4.0
 """Sigmas beyond which an initial speed is reported: by chance once in 10,000 recordings."""
 _STEPS, _SPEED = 200, 0.1
-"""Of a period, and an initial speed with which the model is driven, m/s."""
+"""Steps per period, and an initial speed for the model's derivative, m/s."""
 
 _PART = 0.25
-"""Of a period whose length of way is compared."""
+"""Share of a period over which distances are compared."""
 _SURE = 5.0
 _MOST = 0.4
-"""Of the way that its later speed would add, a start from rest lacks 0.65 and more, also where
-friction is strong, and 0.44 where the centres of mass are 3 cm off the axes. A robot that has
-driven for a few periods only lacks as much, and is not noticed."""
+"""A start from rest lacks 0.65 or more of the distance that its later speed would add, also with
+strong friction, and 0.44 with centres of mass 3 cm off the axes. A robot that has driven for only a
+few periods lacks as much, and is not detected."""
 _FEWEST = 4
 _FASTEST = 1e3
-"""What goes farther or faster is not the motion of a robot, m or m/s."""
+"""Anything farther or faster is not the motion of a robot, m or m/s."""
 
 
 def look(given: ExaminedRecording) -> Iterator[Notice]:
@@ -56,7 +56,7 @@ def look(given: ExaminedRecording) -> Iterator[Notice]:
         yield notice("clock.start", first=given.t[0])
         return
     if given.slip.size > CLEAN:
-        # Not the joint itself is seen, or the wheels slide: how far axle 1 rolls does not show.
+        # The tracked point is not the joint, or the wheels slide: axle 1's rolling is unknown.
         return
     if given.robot is not None:
         found = initial(given, given.robot, given.gait)
@@ -68,20 +68,20 @@ def look(given: ExaminedRecording) -> Iterator[Notice]:
 
 @dataclass(frozen=True)
 class Initial:
-    """The speed of axle 1 at t = 0, m/s, and those of a start from rest with their doubt, 1 sigma:
-    nil, and what the jump of the joint gives."""
+    """The speed of axle 1 at t = 0, m/s, and those of a start from rest with their uncertainty,
+    1 sigma: zero, and what the jump of the joint gives."""
 
     speed: float
     allowed: tuple[tuple[float, float], ...]
 
     def drives(self, speed: float) -> bool:
-        """Whether such a speed is beyond all that rest allows."""
+        """Whether such a speed is beyond anything that rest allows."""
         beyond = [(speed - one) / doubt for one, doubt in self.allowed]
         return min(beyond) > _SURE_SPEED or max(beyond) < -_SURE_SPEED
 
 
 def initial(given: ExaminedRecording, robot: Robot, gait: Gait) -> Initial | None:
-    """The initial speed; None where the data are too few or the model is not of that robot."""
+    """The initial speed; None with too few data, or if the model does not describe the robot."""
     n = int(np.searchsorted(given.t, _BEGINNING * gait.period))
     t = given.t[:n]
     x, y, psi = (bridged(given.t, one, _UNSEEN)[:n] for one in given.motion[:3])
@@ -104,7 +104,7 @@ def initial(given: ExaminedRecording, robot: Robot, gait: Gait) -> Initial | Non
     covariance = np.linalg.pinv(A.T @ A)
     if abs(found[1]) > _OTHER * _ACCURACY:
         return None  # it is not that robot
-    # More of the motion from rest is more of its jump too.
+    # The scale of the motion from rest also scales its jump.
     allowed = []
     for jump in (0.0, _jump(robot, gait)):
         of = np.array([1.0, -jump, 0.0, 0.0, 0.0])
@@ -113,13 +113,13 @@ def initial(given: ExaminedRecording, robot: Robot, gait: Gait) -> Initial | Non
 
 
 def _ways(t: Array, speed: Array) -> Array:
-    """How far something has come at t (n,), s, with a speed (n,), m/s, that changes linearly: what
-    SciPy has in a package that takes a fifth of a second to load."""
+    """Distance travelled at t (n,), s, at a speed (n,), m/s, that changes linearly: SciPy's package
+    for this takes a fifth of a second to load."""
     return np.concatenate([[0.0], np.cumsum(np.diff(t) * (speed[1:] + speed[:-1]) / 2)])
 
 
 def _jump(robot: Robot, gait: Gait) -> float:
-    """The speed that axle 1 has from rest when the joint has taken its rate at once, m/s."""
+    """The speed of axle 1 after the joint has jumped from rest to its rate, m/s."""
     dynamics = dynamics_of(robot)
     phi, p = float(gait.angle([0.0])[0]), dynamics.values(robot)
     with_, without = (float(dynamics.motion(0.0, phi, 0.0, one, p)[0]) for one in (1.0, 0.0))
@@ -127,13 +127,13 @@ def _jump(robot: Robot, gait: Gait) -> float:
 
 
 def _against_later(given: ExaminedRecording, period: float) -> Iterator[Notice]:
-    """Where no robot is known: against the way in later periods."""
+    """Without a known robot: compared with the distance in later periods."""
     ways, speeds = _periods(given, period)
     if len(ways) < _FEWEST:
         return
     late = slice(len(ways) // 2, None)
     part = _PART * period
-    # From rest the speed lacks, all along, what the robot has later when a period begins.
+    # From rest, the speed that later periods begin with is missing throughout.
     lacking = float(np.median(speeds[late])) * part
     first = float(ways[0] - np.median(ways[late]))
     spread = 1.4826 * float(np.median(np.abs(ways[late] - np.median(ways[late]))))

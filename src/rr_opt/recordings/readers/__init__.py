@@ -1,4 +1,4 @@
-"""Files of recordings, read by what they hold; a format is a module here with a READER."""
+"""Files of recordings, read by their content; each format is a module here with a READER."""
 
 from pathlib import Path
 from typing import NoReturn
@@ -34,7 +34,7 @@ READERS: tuple[Reader, ...] = (
     plain_csv.LOG,
     plain_csv.MOTION,
 )
-"""Asked in this order whether a file is theirs."""
+"""In the order in which they are tried on a file."""
 
 
 def read_file(

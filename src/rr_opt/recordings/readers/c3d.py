@@ -2,9 +2,9 @@
 
 A header of 512 bytes, the parameters, then frame after frame the points and the analog samples. The
 parameters are groups of named numbers and texts, a chain of entries, each with the distance to the
-next; nothing in a damaged chain is followed out of the file or backwards. It is read here, and not
-by a library: the usual one ends the program on damaged files, and reads no more than 65535 frames,
-11 minutes at 100 Hz.
+next; a damaged chain is never followed out of the file or backwards. It is read here, not by a
+library: the usual one ends the program on damaged files, and reads no more than 65535 frames, 11
+minutes at 100 Hz.
 """
 
 from collections.abc import Mapping
@@ -21,7 +21,7 @@ from rr_opt.recordings.readers.text import Reader, ReadOptions
 from rr_opt.recordings.warnings import Notice, notice
 
 INTEL, DEC, MIPS = 84, 85, 86
-"""The processors whose numbers a file may hold, as byte 4 of the parameters names them."""
+"""Number formats by processor, as given by byte 4 of the parameters."""
 _BLOCK = 512
 _LAST_COUNT = 65535
 """The largest frame number that the header can hold."""
@@ -34,7 +34,7 @@ Parameters = Mapping[str, tuple[Any, ...]]
 
 @dataclass(frozen=True)
 class Bytes:
-    """The content of a file, and the processor in whose form its numbers are."""
+    """The content of a file, and the processor whose number format it uses."""
 
     content: bytes
     processor: int
@@ -191,7 +191,7 @@ def points_of(
 _KEY = 0x50
 """The second byte of every C3D file."""
 _NOT_MARKERS = ("ANGLES", "FORCES", "MOMENTS", "POWERS", "SCALARS")
-"""Parameters of the group POINT that list points which are no places."""
+"""Parameters of the group POINT that list points which are not positions."""
 
 
 def sniff(content: bytes) -> bool:

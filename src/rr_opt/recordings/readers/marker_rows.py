@@ -96,7 +96,7 @@ def frames_of(table: NumberTable, column: int, file: str, header: int) -> NDArra
 
 
 def count_notice(stated: str, frames: NDArray[np.int64]) -> list[Notice]:
-    """One, where a header states another number of frames."""
+    """A notice if a header states another number of frames."""
     if not stated.isdecimal() or int(stated) == len(frames):
         return []
     return [notice("file.frames", stated=int(stated), count=len(frames))]
@@ -128,8 +128,8 @@ def marker_data(
     unit_place what states the unit, and in which line
     up, lever  as of MarkerData
 
-    Exact zeros are missing markers. Of frames that stand there twice and say different things no
-    position is kept. Raises InvalidFileError if the unit is not one of length, or the rate not one
+    Exact zeros are missing markers. Of frames that appear twice with different values no position
+    is kept. Raises InvalidFileError if the unit is not one of length, or the rate not one
     of a recording.
     """
     file = source["file"]
@@ -193,7 +193,7 @@ def carriers(labels: Sequence[str]) -> list[str]:
 
 
 def clean_labels(written: Sequence[str]) -> tuple[tuple[str, ...], str, list[Notice]]:
-    """Names that are each there once, the subject that they share, and what was changed.
+    """Unique names, the subject that they share, and what was changed.
 
     `Subject:Marker` becomes `Marker` if all that have a subject have the same one.
     """
@@ -265,7 +265,7 @@ def _directions(turned: Array, up: int) -> list[tuple[int, Array]]:
         return [(0, nothing), (1, nothing)]
     first = turned[known[0]]
     across, ahead = (up + 1) % 3, (up + 2) % 3
-    # What is left of a rotation, once the first is undone, is a turn about `up` and some tilt.
+    # A rotation relative to the first one is a turn about `up` and some tilt.
     since = turned @ first.T
     angle = np.arctan2(
         since[:, ahead, across] - since[:, across, ahead],

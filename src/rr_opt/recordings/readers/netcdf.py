@@ -109,7 +109,7 @@ def to_dataset(recording: Recording, gait: Gait | None = None) -> xarray.Dataset
 
 
 _NO_NOISE = 1e6
-"""Nothing is measured with as much noise, in m, rad or N m."""
+"""No measurement has this much noise, in m, rad or N m."""
 
 
 def from_dataset(data: xarray.Dataset, file: str, noise: Noise | None = None) -> Recording:
@@ -200,7 +200,7 @@ def write_netcdf(path: Path, recording: Recording, gait: Gait | None = None) -> 
     renames. Raises InputError if an extra is missing.
     """
     data = to_dataset(recording, gait)
-    # NaN is itself, and no number stands for it.
+    # NaN is stored as itself, without a fill value.
     plain = {name: {"_FillValue": None} for name in data.variables}
     data.to_netcdf(path, engine="h5netcdf", encoding=plain)
     return path
@@ -245,7 +245,7 @@ def _opened(path: Path) -> Any:
     except InputError:
         raise
     except Exception as error:
-        # Whatever a damaged file makes the library say.
+        # Any error that a damaged file causes in the library.
         refuse(str(path), f"The netCDF file cannot be read: {error}. Write it once more.")
 
 

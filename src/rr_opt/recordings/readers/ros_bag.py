@@ -25,7 +25,7 @@ from rr_opt.recordings.warnings import Notice, notice
 
 _STARTS = (b"#ROSBAG V2.0", b"\x89MCAP0\r\n", b"SQLite format 3\x00")
 _MOST = 5_000_000
-"""Messages that are read."""
+"""Most messages that are read."""
 
 
 def sniff(content: bytes) -> bool:
@@ -88,7 +88,7 @@ def _messages(path: Path) -> tuple[dict[str, list[Any]], dict[str, list[Any]]]:
                     row = (t, at.x, at.y, at.z, turn.x, turn.y, turn.z, turn.w)
                     poses.setdefault(name.strip("/"), []).append(row)
     except Exception as error:
-        # Whatever a damaged bag makes the library say.
+        # Any error that a damaged bag causes in the library.
         why = str(error).splitlines()[0] if str(error) else type(error).__name__
         refuse(
             str(path),

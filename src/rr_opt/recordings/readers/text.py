@@ -1,4 +1,4 @@
-"""What readers share: the bytes of a file, its lines whatever its encoding, and its columns."""
+"""Shared by readers: the bytes of a file, its lines in any encoding, and its columns."""
 
 import codecs
 import re
@@ -18,12 +18,12 @@ from rr_opt.recordings.warnings import Notice, notice
 
 @dataclass(frozen=True)
 class ReadOptions:
-    """What the files of recordings do not say themselves.
+    """What the files of recordings do not state themselves.
 
     noise    standard deviations of motion that states none; None: they are NaN
     counts   what the counts of a servo's log mean
     columns  by channel, the column that it is in, where a text file names it otherwise
-    log      the file is to be the servo's log, if it holds one beside other things
+    log      read the file as the servo's log, if it holds one besides other data
     """
 
     noise: Noise | None = None
@@ -36,7 +36,7 @@ class ReadOptions:
 class Reader:
     """A format.
 
-    sniff   whether some content is of it: bytes if it is binary, else Text and the options
+    sniff   whether content has this format: bytes if it is binary, else Text and the options
     read    the data of a file, from its name, its content and the options. Raises InvalidFileError
     binary  whether it is no text
     """

@@ -104,7 +104,7 @@ def read_head(text: Text, start: int) -> Head:
 
 
 def _begins(roles: list[str], columns: str) -> list[int]:
-    """Where the places begin that stand at the end of some columns in a row."""
+    """Where the positions begin at the end of each run of these columns."""
     wanted = columns.split()
     starts = range(len(roles) - len(wanted) + 1)
     return [at + len(wanted) - 3 for at in starts if roles[at : at + len(wanted)] == wanted]
@@ -175,7 +175,7 @@ def _end(text: Text, first: int, separator: str) -> int:
     blank = separator + " \t"
     for at in range(first, len(text.lines)):
         line = text.lines[at]
-        # Rows begin with a number, which is cheaper to see than that nothing follows.
+        # Rows begin with a number, which is cheaper to check than whether the line is blank.
         if not line[:1].isdigit() and (not line.strip(blank) or _title(line) in _SECTIONS):
             return at
     return len(text.lines)

@@ -18,11 +18,11 @@ from rr_opt.sysid.diagnosis import Curve, Misfit, Residue
 
 _SYMBOLS = {"psi": "ψ", "phi": "φ"}
 _MOST = 4
-"""Recordings in the bands."""
+"""Most recordings in the bands."""
 _WIDE = 8.0
-"""With more sigma than this a linear axis would hide the noise."""
+"""Sigma above which a linear axis would hide the noise."""
 _LINEAR = 4.0
-"""Up to this many sigma a stretched axis is linear."""
+"""Range in sigma over which a stretched axis is linear."""
 _MARKS = (0, *(sign * 10**power for power in range(1, 7) for sign in (-1, 1)))
 _Z, _ENDS = 1.96, (2.5, 97.5)
 
@@ -117,7 +117,7 @@ _MOST_PATHS, _MOST_CURVES = 4, 8
 
 
 def draw(one: ExplainedExperiment) -> dict[str, tuple[str, str]]:
-    """SVG text and caption by name, of the figures for which there is something."""
+    """SVG text and caption by name, of the figures that have content."""
     makers = {
         "evidence": _evidence,
         "paths": _paths,
@@ -243,7 +243,7 @@ _BAR = 0.45
 
 
 def _loss(one: ExplainedExperiment) -> tuple[Figure, str] | None:
-    """A bar each, mm/s, in either direction, with its speed above it and its gait inside."""
+    """Two bars, mm/s, in either direction, labelled with their speed and gait."""
     loss, nominal, found = one.loss, style.NOMINAL, style.FOUND
     if not isinstance(loss, Loss):
         return None
@@ -266,7 +266,7 @@ def _loss(one: ExplainedExperiment) -> tuple[Figure, str] | None:
 
 
 _MOST_PARTS, _MOST_POINTS = 12, 2000
-"""Parts of recordings, the held-out ones if there are any; points of a line in all."""
+"""Most parts of recordings, held-out ones if any; most points of a line."""
 
 
 def draw_machine(one: ExplainedMachine) -> dict[str, str]:

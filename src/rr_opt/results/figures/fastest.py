@@ -1,4 +1,4 @@
-"""The figures of a fastest gait, as SVG text by name: among them what each limit costs."""
+"""The figures of a fastest gait, as SVG text by name, including the price of each limit."""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -43,12 +43,12 @@ def draw(result: FastestGait) -> dict[str, str]:
     if result.robust and result.problem.robust:
         robust = result.robust
         drawn["robust"] = style.panel(3.4, lambda ax: certainty(ax, robust))
-    # The map is one of sines.
+    # The map is for sines only.
     return {"speed-map": _speed_map(result, gait), **drawn} if isinstance(gait, SineGait) else drawn
 
 
 def certainty(ax: Axes, robust: Robust) -> None:
-    """What 95 % of the robots reach, mm/s, over the size of all spreads, with both gaits."""
+    """Speed reached by 95 % of the robots, mm/s, over a factor on all spreads, for both gaits."""
     for curve, colour, label in zip(
         robust.curves, (style.FORWARD, style.GREY), ("robust gait", "nominal gait"), strict=True
     ):
@@ -93,7 +93,7 @@ class Gain:
 
 
 def gains(limits: Iterable[LimitRow], bounds: Iterable[BoundRow]) -> list[Gain]:
-    """The lines, the largest gain first; inactive limits follow with how much of them is used."""
+    """The lines, the largest gain first; inactive limits follow with their utilisation."""
     active, idle = [], []
     for row in limits:
         if row.active:
@@ -192,7 +192,7 @@ def map_data(problem: Problem, robot: Robot, best: SineGait) -> SpeedMap:
 
 
 def uses(data: SpeedMap, problem: Problem, robot: Robot, offset: float) -> dict[str, Array]:
-    """How much of each limit every gait of the map uses, (A, T): more than 1 exceeds it."""
+    """Utilisation of each limit by every gait of the map, (A, T): more than 1 exceeds it."""
     one, two, limits = robot.platform1, robot.platform2, problem.limits
     cosine = (limits.singularity - two.c) / one.c
     posture = math.acos(min(max(cosine, -1.0), 1.0)) if cosine > -1 else math.inf
@@ -221,7 +221,7 @@ def speed_map(
     *,
     others: Sequence[SineGait] = (),
 ) -> None:
-    """Filled contours of the speed where all limits are respected; hatched where one is not.
+    """Filled contours of the speed where all limits are satisfied; hatched elsewhere.
 
     best is marked with a star, others with rings.
     """
@@ -231,8 +231,8 @@ def speed_map(
     top = max(-low, high, 1e-9)
     levels = np.linspace(low if low < 0 else -1e-3 * top, high if high > 0 else 1e-3 * top, 31)
     style.hatched(ax)
-    # Colours beyond a limit are covered below, so the speed is only clipped there: a contour
-    # that ended at the limit's line would end in steps.
+    # Colours beyond a limit are covered below, so the speed is only clipped there: a contour that
+    # ended at the limit would end in steps.
     shown = np.clip(1e3 * data.speed, low, high)
     fill = ax.contourf(
         data.period,
@@ -243,7 +243,7 @@ def speed_map(
         norm=style.signed(top),
         zorder=1,
     )
-    # Each band has an edge of its colour, or thin white seams would show between them.
+    # Each band has an edge in its own colour, to avoid thin white seams between them.
     fill.set(edgecolor="face", linewidth=0.5)
     shares = uses(data, problem, robot, best.offset)
     worst = np.clip(np.max(list(shares.values()), axis=0), 0.0, 2.0)
@@ -266,7 +266,7 @@ def label(ax: Axes) -> None:
 
 
 def _edges(ax: Axes, data: SpeedMap, shares: dict[str, Array], limits: Limits) -> None:
-    """The edges of what is allowed, each with its name."""
+    """The boundaries of the feasible region, with their names."""
     texts = {
         "rate": f"rate {number(limits.rate * 30 / math.pi, 3)} rpm",
         "torque": f"torque {number(limits.torque, 3)} N m",
@@ -276,7 +276,7 @@ def _edges(ax: Axes, data: SpeedMap, shares: dict[str, Array], limits: Limits) -
     halo = [withStroke(linewidth=3, foreground=style.PAPER, alpha=0.85)]
     regular = np.maximum(shares["singularity"], shares["angle"]) <= 1
     for name, share in shares.items():
-        # The torque is known among gaits short of the limits on the angle.
+        # The torque is known only among gaits short of the limits on the angle.
         known = np.where(regular, share, np.nan) if name == "torque" else share
         if not np.nanmin(known, initial=2.0) < 1 < np.nanmax(known, initial=0.0):
             continue
@@ -305,10 +305,10 @@ _MANY = 2000
 
 
 def draw_sweep(result: Sweep) -> dict[str, str]:
-    """A dot for each gait that respects every limit, the fastest on top; a faint cross for any
-    other. Many dots become one picture inside the SVG, to keep it small.
+    """A dot for each feasible gait, the fastest on top; a faint cross for any other. Many dots are
+    rasterised inside the SVG, to keep it small.
 
-    Gaits of several offsets and inertia ratios share a place: what is seen is the fastest.
+    Gaits of several offsets and inertia ratios coincide: the fastest is visible.
     """
     found, best = result.found.found, result.best
     amplitude, period = found.decisions[:2]

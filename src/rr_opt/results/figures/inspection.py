@@ -23,9 +23,9 @@ _PLACES = re.compile(r'\b(?:d|x|y)="[^"]*"')
 
 
 def thinned(t: Array, y: Array, most: int = _MOST) -> tuple[Array, Array]:
-    """t and y (n,) with at most about `most` points: the least and the largest of every piece.
+    """t and y (n,) reduced to some `most` points: the least and the largest of every piece.
 
-    A piece with NaN keeps one, so that a gap stays a gap.
+    A piece with NaN keeps one, so that a gap remains a gap.
     """
     if len(y) <= most:
         return t, y
@@ -40,7 +40,7 @@ def thinned(t: Array, y: Array, most: int = _MOST) -> tuple[Array, Array]:
 
 
 def small(svg: str) -> str:
-    """The SVG text with places to a hundredth of a point, which no screen shows."""
+    """The SVG text with coordinates rounded to a hundredth of a point, below screen resolution."""
     return _PLACES.sub(lambda found: _DIGITS.sub(r"\1", found.group()), svg)
 
 
@@ -102,10 +102,10 @@ _DOT = 2e-4
 
 
 def folded(ax: Axes, t: Array, phi: Array, gait: Gait, fit: ClockFit | None) -> None:
-    """Every sample of phi, rad, at its phase of the period, over the command as a line."""
+    """Every sample of phi, rad, against its phase in the period, over the command as a line."""
     known = np.flatnonzero(np.isfinite(phi))
     known = known[:: max(1, len(known) // _POINTS)]
-    # One path of dashes as short as dots: with markers the file is several times as large.
+    # One path of dashes as short as dots: markers would make the file several times larger.
     dash = gait.period * _DOT
     phase = t[known] % gait.period
     x = np.stack([phase - dash, phase + dash, np.full(len(known), np.nan)], 1).ravel()
@@ -136,7 +136,7 @@ def difference(ax: Axes, t: Array, phi: Array, gait: Gait) -> None:
 def noise(ax: Axes, found: Mapping[str, NoiseEstimate], stated: Mapping[str, float]) -> None:
     """The estimate over the stated value, with its 95 % interval; 1 where nothing was stated.
 
-    Beside it the noise at half the frequency, which is the same if the noise is white.
+    Beside it the noise at half the frequency, which is the same for white noise.
     """
     names = [name for name, one in found.items() if one.sigma > 0]
     for row, name in enumerate(names):
@@ -190,7 +190,7 @@ def path(ax: Axes, recording: Recording, gait: Gait | None) -> None:
 
 
 def _mean_over(t: Array, values: Array, period: float) -> Array:
-    """The mean (n,) over a period round each sample of even steps; NaN near ends and gaps."""
+    """The mean (n,) over a period around each of evenly spaced samples; NaN near ends and gaps."""
     size = max(1, round(period * (len(t) - 1) / (t[-1] - t[0])))
     mean = np.full(len(values), np.nan)
     if len(values) > size:
@@ -201,11 +201,11 @@ def _mean_over(t: Array, values: Array, period: float) -> Array:
 
 
 _CUT = 8.0
-"""Times the noise at which the axis ends, if something is beyond."""
+"""Axis limit, in units of the noise, if anything lies beyond."""
 
 
 def over_time(ax: Axes, fit: MarkerFit) -> None:
-    """Root mean square residual of each frame, mm; put right and left out frames marked below."""
+    """Root mean square residual of each frame, mm; corrected and rejected frames marked below."""
     t = fit.recording.t
     ax.plot(*thinned(t, 1e3 * fit.residual), color=style.INK, lw=0.7)
     swapped = np.unique(np.concatenate([[], *(swap.frames for swap in fit.swaps)])).astype(int)
@@ -237,7 +237,7 @@ def by_marker(ax: Axes, fit: MarkerFit) -> None:
 
 
 def draw(found: Inspection) -> dict[str, str]:
-    """SVG texts by name: `path`, `channels`, `noise`, and `command` and `rigid` where they are."""
+    """SVG texts by name: `path`, `channels`, `noise`, and, if available, `command` and `rigid`."""
     recording, gait, markers = found.recording, found.gait, found.markers
     stated = {name: float(np.median(recording.sigma[name])) for name in recording.channels}
     count = len(recording.channels)

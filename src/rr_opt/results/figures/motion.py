@@ -40,7 +40,7 @@ def robot_length(robot: Robot) -> float:
 def draw_robot(ax: Axes, robot: Robot, motion: Trajectory, i: int, *, alpha: float = 1.0) -> list:
     """Draw the robot at instant i of a motion, less opaque with a smaller alpha.
 
-    Returns the artists, in order, so that an animation can take them away again.
+    Returns the artists, in order, so that an animation can remove them again.
     """
     joint = complex(motion.x[i], motion.y[i])
     psi, phi, h = float(motion.psi[i]), float(motion.phi[i]), robot.h
@@ -54,7 +54,7 @@ def draw_robot(ax: Axes, robot: Robot, motion: Trajectory, i: int, *, alpha: flo
         (robot.platform1, np.exp(1j * psi), style.PLATFORM1),
         (robot.platform2, -np.exp(1j * (psi + phi)), style.PLATFORM2),
     ):
-        # Along the platform from the joint, and 1j times as far to the side.
+        # Along the platform from the joint; 1j times the distance to the side.
         wide = 0.72 * one.b
         tail, nose = -0.25 * one.b, one.c + 0.35 * h
         hull = np.array([tail + 0.55j * wide, nose + 1j * wide, nose - 1j * wide,
@@ -86,13 +86,13 @@ def cycles_to_show(robot: Robot, cycle: Cycle) -> int:
 
 
 _POINTS = 6000
-"""Of a path that is drawn."""
+"""Most points of a path that is drawn."""
 _POSES = 20
-"""Of the robot, along the diagonal of what is drawn."""
+"""Most poses of the robot, along the diagonal of the picture."""
 
 
 def path(ax: Axes, robot: Robot, motion: Trajectory, speed: float, period: float) -> None:
-    """The path of P (m) and the robot at its last instant and at some before.
+    """The path of P (m) and the robot at its last instant and at some earlier ones.
 
     motion: turned as it should be drawn; speed: signed, m/s, gives the colour; period: of the
     gait, s, over which the arrow takes its direction.
@@ -113,7 +113,7 @@ def path(ax: Axes, robot: Robot, motion: Trajectory, speed: float, period: float
 def instants(motion: Trajectory, length: float) -> list[int]:
     """Indices of poses at least 1.3 robot lengths apart, the last among them.
 
-    On a long way they are farther apart: many hide the path, and take seconds to draw.
+    They are farther apart on a long path: many poses hide the path, and take seconds to draw.
     """
     last = len(motion.x) - 1
     size = math.hypot(np.ptp(motion.x), np.ptp(motion.y))
@@ -127,7 +127,7 @@ def instants(motion: Trajectory, length: float) -> list[int]:
 
 
 def along_travel(motion: Trajectory) -> Trajectory:
-    """The motion turned so that it leads along x from the origin."""
+    """The motion rotated so that it leads along x from the origin."""
     way = (motion.x - motion.x[0]) + 1j * (motion.y - motion.y[0])
     angle = float(np.angle(way[-1]))
     way = way * np.exp(-1j * angle)
@@ -135,7 +135,7 @@ def along_travel(motion: Trajectory) -> Trajectory:
 
 
 def _arrow(ax: Axes, robot: Robot, motion: Trajectory, speed: float, period: float) -> None:
-    """Which way it goes, ahead of the last pose."""
+    """An arrow in the direction of travel, ahead of the last pose."""
     before = int(np.searchsorted(motion.t, motion.t[-1] - period * (1 + 1e-9)))
     last = np.array([motion.x[-1], motion.y[-1]])
     step = last - np.array([motion.x[before], motion.y[before]])
@@ -192,7 +192,7 @@ def _view(ax: Axes, robot: Robot, trajectory: Trajectory) -> None:
 
 
 def _height(robot: Robot, trajectory: Trajectory) -> float:
-    """Inches that suit the path's shape; an even number of pixels, as video needs."""
+    """Inches to suit the path's shape; an even number of pixels, as video needs."""
     margin = 1.5 * robot_length(robot)
     wide, high = np.ptp(trajectory.x) + margin, np.ptp(trajectory.y) + margin
     return round(_DPI / 2 * min(max((_WIDTH - 0.8) * high / wide + 0.9, 2.6), 8.0)) / (_DPI / 2)
@@ -328,7 +328,7 @@ def write_film(
 
 
 def _gif(path: Path, pictures: Iterator[NDArray], rate: int, fullest: NDArray) -> None:
-    """One palette, of the fullest picture: colours then stay the same from frame to frame."""
+    """One palette for all frames, of the fullest picture, so that colours do not change."""
     palette = Image.fromarray(fullest).quantize(128, method=Image.Quantize.MAXCOVERAGE)
     indexed = (
         Image.fromarray(picture).quantize(palette=palette, dither=Image.Dither.NONE)
@@ -358,7 +358,7 @@ def _mp4(path: Path, pictures: Iterator[NDArray], rate: int) -> None:
 
 
 def _feed(pipe: IO[bytes] | None, pictures: Iterable[NDArray]) -> None:
-    # A pipe that breaks is ffmpeg giving up: its own words say why.
+    # A broken pipe means that ffmpeg gave up: its own message says why.
     with suppress(BrokenPipeError):
         for picture in pictures:
             if pipe is not None:

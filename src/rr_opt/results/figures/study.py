@@ -1,4 +1,4 @@
-"""The figures of a study: what it varies as axes, maps of the speed and of what limits it."""
+"""The figures of a study: its varied keys as axes, maps of the speed and of the active limits."""
 
 import itertools
 from collections import Counter
@@ -22,16 +22,16 @@ from rr_opt.results.study_table import axis_words, held_words, unit_of, value_te
 
 _EVEN = 0.05
 _WIDEST = 60
-"""Letters of names that fit side by side under a figure."""
+"""Most letters of names that fit side by side under a figure."""
 
 
 @dataclass(frozen=True)
 class Scale:
-    """The steps of an axis in the unit that people think in, and their names.
+    """The steps of an axis in the customary unit, and their names.
 
     factor   how many of that unit are one SI unit
-    ordered  steps are numbers with a place on a scale, logarithmic if `log`. If one is none, or is
-             infinite, they are named and stand side by side, at 1, 2, 3 ..: the finite ones by
+    ordered  steps are numbers on a scale, logarithmic if `log`. If one is not a number, or is
+             infinite, they are named and equally spaced at 1, 2, 3 ..: the finite ones by
              size, infinity last
     """
 
@@ -64,7 +64,7 @@ class Scale:
         ticks = getattr(ax, f"set_{which}ticks")
         if self.log:
             getattr(ax, f"set_{which}scale")("log")
-            # At the steps themselves, at most six of them: powers of ten alone are too few.
+            # At most six steps: ticks at powers of ten alone are too few.
             ordered = np.sort(self.steps)
             chosen = ordered[np.unique(np.linspace(0, len(ordered) - 1, 6).round().astype(int))]
             ticks(chosen, [number(step, 2) for step in chosen])
@@ -76,7 +76,7 @@ class Scale:
 
 
 def scale_of(axis: Axis) -> Scale:
-    """How to show an axis; keys that are varied in step are shown by the first."""
+    """How to show an axis; keys that are varied together are represented by the first."""
     line = next((line for line in axis.lines if line.numbers is not None), axis.lines[0])
     unit, factor = unit_of(line.key)
     name, numbers = axis_words(axis), line.numbers
@@ -100,7 +100,7 @@ def _even_in_log(steps: Array) -> bool:
 
 @dataclass(frozen=True)
 class StudyGrid:
-    """cases (Y, X): of those that share a place, that with the fastest optimum."""
+    """cases (Y, X): where several coincide, the one with the fastest optimum."""
 
     x: Scale
     y: Scale
@@ -140,11 +140,11 @@ def grid_of(result: SolvedStudy) -> StudyGrid | None:
 
 
 _LEAST_CELLS = 4
-"""Along each axis, for lines of equal speed."""
+"""Fewest cells along each axis for contour lines."""
 
 
 def study_map(ax: Axes, result: SolvedStudy, grid: StudyGrid) -> None:
-    """A cell for each case, the colour its signed speed; lines part branches; the star is the
+    """A cell for each case, coloured by signed speed; lines separate branches; the star is the
     fastest. Hatched: no optimum."""
     speed = 1e3 * result.values("speed")[grid.cases]
     top = float(np.nanmax(np.abs(speed), initial=1e-9))
@@ -163,7 +163,7 @@ def study_map(ax: Axes, result: SolvedStudy, grid: StudyGrid) -> None:
 
 
 def _contours(ax: Axes, speed: np.ndarray, grid: StudyGrid) -> None:
-    """Lines of equal speed, where there are cells enough, on scales, to draw them between."""
+    """Contour lines of the speed, if there are enough ordered cells."""
     if min(speed.shape) < _LEAST_CELLS or not (grid.x.ordered and grid.y.ordered):
         return
     lines = ax.contour(*grid.centres, speed, levels=7, colors=style.INK, linewidths=0.7, alpha=0.75,
@@ -205,7 +205,7 @@ def active_lanes(ax: Axes, result: SolvedStudy) -> None:
 
 
 def active_areas(ax: Axes, result: SolvedStudy, grid: StudyGrid) -> None:
-    """Each case in the colour of what limits it; the rarest share a grey. Hatched: no optimum."""
+    """Each case coloured by its active limits; the rarest share a grey. Hatched: no optimum."""
     sets = [
         None if one.optimum is None else " + ".join(held_words(one.optimum.held))
         for one in result.rows
@@ -236,7 +236,7 @@ _COSTS = (("peak_torque", "largest servo torque, N m"), ("cost_of_transport", "c
 
 
 def draw(result: SolvedStudy) -> dict[str, str]:
-    """Draw all figures that the study has something to show in; none without an optimum."""
+    """All figures with content; none without an optimum."""
     if result.fastest is None:
         return {}
     axes = [at for at, n in enumerate(result.study.shape) if n > 1] or [0]
@@ -261,8 +261,8 @@ def draw(result: SolvedStudy) -> dict[str, str]:
 
 
 def pareto(ax: Axes, result: SolvedStudy, name: str, label: str) -> None:
-    """A dot for each case, blue forward and orange backward; ringed, on the line: no other case is
-    both faster and cheaper. name: the number of the optimum that is the cost."""
+    """A dot for each case, blue forward and orange backward; ringed, on the line: the Pareto front
+    of speed and cost. name: the number of the optimum that is the cost."""
     cost, speed = result.values(name), 1e3 * result.speed
     forward = result.values("speed") > 0
     for way, colour, word in (
@@ -292,17 +292,17 @@ FAMILY = LinearSegmentedColormap.from_list(
 """Five hues in order, dark to warm, that colour-blind readers can distinguish."""
 _MOST_NAMED = 7
 _PRICED = 0.22
-"""Half the length of a shadow price's tangent, in gaps between steps."""
+"""Half the length of a shadow price's tangent, relative to the spacing of steps."""
 
 
 def speed(ax: Axes, result: SolvedStudy, along: int) -> None:
-    """|speed| over the axis `along`. A line is broken where the branch changes; triangles point
-    up for forward, down for backward; a short tangent is the limit's shadow price."""
+    """|speed| over the axis `along`. A line is broken where the branch changes; triangles point up
+    for forward, down for backward; a short tangent is the limit's shadow price."""
     axes = [scale_of(axis) for axis in result.study.axes]
     mine, others = axes[along], [scale for at, scale in enumerate(axes) if at != along]
     x, left_out = mine.steps[mine.order], 0
     lines = list(_lines(result, along, mine.order))
-    # The first are the widest, so that lines which lie on one another are all seen.
+    # The first are the widest, so that coincident lines are all visible.
     widths = np.linspace(1.6 + 0.7 * min(len(lines) - 1, 5), 1.6, len(lines))
     for (fixed, cases), width in zip(lines, widths, strict=True):
         y = 1e3 * result.speed[cases]
@@ -321,7 +321,7 @@ def speed(ax: Axes, result: SolvedStudy, along: int) -> None:
             _tangents(ax, result, cases, mine)
     if left_out:
         words = f"{counted(left_out, 'case')} without an optimum {'is' if left_out == 1 else 'are'}"
-        # Above the axes: within them it would lie over curves.
+        # Above the axes: inside, it would cover curves.
         ax.set_title(f"{words} left out", loc="right", fontsize=9.0, fontweight="normal",
                      color=style.GREY)  # fmt: skip
     mine.apply(ax)

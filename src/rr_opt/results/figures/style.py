@@ -1,7 +1,7 @@
-"""How every figure looks: colours that colour-blind readers can distinguish, one type size.
+"""The style of all figures: colours that colour-blind readers can distinguish, one type size.
 
-What a figure shows stands as numbers inside its SVG, from which a page tells the values at a
-pointer. A JSON text in the SVG's `metadata`: for each axes its place, in shares of the picture from
+The plotted values are stored inside the SVG, from which a page shows the values under a pointer. A
+JSON text in the SVG's `metadata` has for each axes: its place, as fractions of the picture from
 the left and from the top; both scales; and the lines, bands and cells drawn on it.
 """
 
@@ -76,7 +76,7 @@ _STYLE: dict[Any, Any] = {
 
 @contextmanager
 def styled() -> Iterator[None]:
-    """Within it every new figure follows the style."""
+    """New figures within this context follow the style."""
     with mpl.rc_context(_STYLE):
         yield
 
@@ -86,12 +86,12 @@ WIDTH = 5.2
 
 
 def figure(width: float = WIDTH, height: float = 4.4) -> Figure:
-    """An empty figure, inches, that lays itself out; not known to pyplot."""
+    """An empty figure, inches, with automatic layout; not registered with pyplot."""
     return Figure(figsize=(width, height), layout="constrained")
 
 
 def svg(drawn: Figure) -> str:
-    """The figure as SVG text, the same for the same data, with the values it shows."""
+    """The figure as SVG text, reproducible, with the values it shows."""
     text = io.StringIO()
     FigureCanvasSVG(drawn).print_svg(
         text, metadata=dict.fromkeys(("Date", "Creator", "Format", "Type"))
@@ -124,17 +124,17 @@ STAR: dict[str, Any] = {"ls": "", "marker": "*", "mfc": OPTIMUM, "mec": INK, "cl
 """The mark of an optimum."""
 GROUND = "#eceff2"
 HATCHED: dict[str, Any] = {"facecolor": GROUND, "edgecolor": "#b4bdc6", "hatch": "////", "lw": 0}
-"""How what is not allowed, or has no optimum, looks."""
+"""The look of an infeasible region, or one without an optimum."""
 
 
 def hatched(ax: Axes) -> None:
-    """Hatch the ground of a map, to be seen where nothing is drawn over it."""
+    """Hatch the background of a map, visible where nothing is drawn over it."""
     ax.set_facecolor(GROUND)
     ax.fill_between([0, 1], 0, 1, transform=ax.transAxes, zorder=0, **HATCHED)
 
 
 def signed(top: float) -> TwoSlopeNorm:
-    """The norm of signed speeds up to `top` either way."""
+    """The norm of signed speeds up to `top` in both directions."""
     return TwoSlopeNorm(0.0, -top, top)
 
 
@@ -156,7 +156,7 @@ def lanes(ax: Axes, names: Sequence[str], pad: float = 0.0) -> None:
 
 
 def note(ax: Axes, text: str, x: float = 0.985, y: float = 0.96, **style: object) -> None:
-    """A remark inside the axes, at a place in fractions of them, on a faint ground."""
+    """A remark inside the axes, at a position in axes fractions, on a faint background."""
     options = {"ha": "right", "va": "top", "fontsize": 9.0, "color": GREY, **style}
     box = {"facecolor": PAPER, "edgecolor": "none", "alpha": 0.8, "pad": 1.5}
     ax.text(x, y, text, transform=ax.transAxes, bbox=box, **options)  # type: ignore[arg-type]
@@ -171,27 +171,27 @@ def grid(drawn: Figure, count: int, columns: int) -> list[Axes]:
 
 
 def legend_below(drawn: Figure, ax: Axes) -> None:
-    """What the axes label, below all axes."""
+    """The legend of the axes, below all axes."""
     drawn.legend(*ax.get_legend_handles_labels(), loc="outside lower center", ncols=3)
 
 
 _STEPS = 32
-"""Of a scale: between them it is taken for linear, whether it is or not."""
+"""Steps of a scale, which is taken as linear in between."""
 _MOST, _FINEST = 600, 100
-"""Points of a line, and cells along an axis."""
+"""Most points of a line, and most cells along an axis."""
 
 _CELLS: WeakKeyDictionary[Axes, dict[str, Any]] = WeakKeyDictionary()
 
 
 def cells(ax: Axes, x: Array, y: Array, values: Array, label: str) -> None:
-    """Have the values (len(y), len(x)) of a map shown at a pointer; label: `speed, mm/s`."""
+    """Show the values (len(y), len(x)) of a map under a pointer; label: `speed, mm/s`."""
     across, up = (max(1, -(-len(one) // _FINEST)) for one in (x, y))
     rows = [_numbers(row) for row in values[::up, ::across]]
     _CELLS[ax] = {"label": label, "x": _numbers(x[::across]), "y": _numbers(y[::up]), "z": rows}
 
 
 def readout(drawn: Figure) -> str:
-    """The metadata of a figure that has been laid out; empty if it has nothing to tell."""
+    """The metadata of a figure after layout; empty if it has no values."""
     shown = [found for ax in drawn.axes if (found := _of_axes(ax))]
     if not shown:
         return ""
@@ -221,7 +221,7 @@ def _of_axes(ax: Axes) -> dict[str, Any] | None:
 
 
 def _of_line(ax: Axes, line: Line2D) -> dict[str, Any] | None:
-    """A line or marks in the axes' own coordinates; None of a rule or an arrow."""
+    """A line or marks in the axes' own coordinates; None for a rule or an arrow."""
     x, y = np.asarray(line.get_xdata(), float), np.asarray(line.get_ydata(), float)
     if line.get_transform() != ax.transData or (len(x) < 3 and line.get_marker() in ("None", "")):
         return None
@@ -234,13 +234,13 @@ def _of_line(ax: Axes, line: Line2D) -> dict[str, Any] | None:
 
 
 def _shared(ax: Axes) -> str:
-    """The label of x, which axes above others leave to the lowest."""
+    """The x label, which stacked axes leave to the lowest."""
     siblings = ax.get_shared_x_axes().get_siblings(ax)
     return ax.get_xlabel() or next((one.get_xlabel() for one in siblings if one.get_xlabel()), "")
 
 
 def _scale(axis: Axis, ends: tuple[float, float], label: str) -> dict[str, Any]:
-    """Label, and the values at equal steps along the axis; its words where ticks have names."""
+    """Label, and the values at equal steps along the axis; tick labels if these are names."""
     transform = axis.get_transform()
     first, last = transform.transform(np.asarray(ends))
     at = transform.inverted().transform(np.linspace(first, last, _STEPS + 1))
@@ -253,7 +253,7 @@ def _scale(axis: Axis, ends: tuple[float, float], label: str) -> dict[str, Any]:
 
 
 def _name(label: object) -> str:
-    """The label, which an underscore keeps from legends; empty of one that matplotlib gave."""
+    """The label without the underscore that hides it from legends; empty if matplotlib set it."""
     text = str(label)
     return "" if text.startswith("_child") else text.lstrip("_")
 

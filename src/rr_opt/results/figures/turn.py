@@ -1,4 +1,4 @@
-"""The figures of a turn: those of a fastest gait, with the circle that was asked for."""
+"""The figures of a turn: those of a fastest gait, with the requested circle."""
 
 import math
 
@@ -54,9 +54,9 @@ def _centre(steady: SteadyCycle) -> complex:
 
 
 _SAMPLES = 200_000
-"""Of a turn that is drawn."""
+"""Samples of a turn that is drawn."""
 _WIDEST = 20.0
-"""m; wider circles are left out of the picture."""
+"""m; wider circles are not drawn."""
 
 
 def draw_chart(chart: TurnChart) -> dict[str, str]:
