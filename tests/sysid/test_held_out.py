@@ -1,7 +1,6 @@
 """Held-out recordings are asked only where the answer leaves more than machines differ by; each
 further effect that the motion alone shows counts against the answer."""
 
-import math
 from types import SimpleNamespace
 from typing import Any
 
@@ -53,8 +52,7 @@ def test_further_effects_that_the_motion_alone_shows(effects, further):
 
 
 @pytest.mark.parametrize(
-    ("left", "likely"),
-    [(0.0, 1.0), (SETTINGS.none, 1.0), (12.0, 0.5), (50.0, 0.0)],
+    ("left", "likely"), [(0.0, 1.0), (SETTINGS.none, 1.0), (12.0, 0.5), (50.0, 0.0)]
 )
 def test_what_is_left_of_all_recordings(left, likely):
     """Not by the values that the fitted ones have: in a held-out one those may go astray."""
