@@ -60,12 +60,12 @@ class Candidate:
 
     def accounts(self, other: Candidate) -> float:
         """Share of the other's excess misfit over whole runs (mean square) that it removes."""
-        return 1 - self.excess**2 / max(other.excess**2, 1e-12)
+        return _explained(self.excess, other.excess)
 
     def advances(self, other: Candidate) -> bool:
         """Whether it removes a good share of that misfit, or of the misfit in segments, where the
         errors it still has accumulate less. If neither, it only absorbs errors of another kind."""
-        in_segments = 1 - self.fit.excess**2 / max(other.fit.excess**2, 1e-12)
+        in_segments = _explained(self.fit.excess, other.fit.excess)
         return in_segments > SETTINGS.accounted or self.accounts(other) > SETTINGS.accounted
 
     def predicts_better(self, other: Candidate) -> bool:
@@ -74,6 +74,10 @@ class Candidate:
             return False
         gain, error = self.advantage(other)
         return gain > max(SETTINGS.evidence, SETTINGS.standard_errors * error)
+
+
+def _explained(excess: float, other: float) -> float:
+    return 1 - excess**2 / max(other**2, 1e-12)
 
 
 def quantities_of(model: Model, choices: Sequence[Choice]) -> tuple[Quantity, ...]:

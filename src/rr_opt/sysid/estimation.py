@@ -82,15 +82,13 @@ class Evidence:
         """The evidence if the run's scaled quantities deviate from the common ones by one sigma."""
         if not sigma.any() or math.isinf(self.value):
             return self
-        H = self.H
+        across = self.H * sigma
         try:
-            factor = cholesky(np.eye(sigma.size) + sigma[:, None] * H * sigma, lower=True)
+            factor = cholesky(np.eye(sigma.size) + sigma[:, None] * across, lower=True)
         except LinAlgError:
-            # Negative curvature left by elimination carries no information.
-            w, V = np.linalg.eigh(H)
-            H = (V * np.maximum(w, 0)) @ V.T
-            factor = cholesky(np.eye(sigma.size) + sigma[:, None] * H * sigma, lower=True)
-        across = H * sigma
+            # Directions that elimination left with negative curvature say nothing.
+            w, V = np.linalg.eigh(self.H)
+            return replace(self, H=(V * np.maximum(w, 0)) @ V.T).spread(sigma)
         half = solve_triangular(factor, across.T, lower=True)
         pull = solve_triangular(factor, sigma * self.g, lower=True)
         return replace(
@@ -98,7 +96,7 @@ class Evidence:
             value=self.value - float(pull @ pull),
             log=self.log + 2 * float(np.sum(np.log(np.diag(factor)))),
             g=self.g - half.T @ pull,
-            H=H - half.T @ half,
+            H=self.H - half.T @ half,
         )
 
 
