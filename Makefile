@@ -13,6 +13,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP = PIP_DISABLE_PIP_VERSION_CHECK=1 PYTHONWARNINGS=ignore $(BIN)/python -m pip --no-input
 INSTALL = $(PIP) install -qq
+BENCH_INSTALL = $(subst $(BIN)/,$(BENCH_VENV)/bin/,$(INSTALL))
 
 # The sections of requirements.lock: a heading `# [NAME]`, then pins up to an empty line.
 section = sed -n '/^\# \[$(1)\]/,/^$$/p' requirements.lock
@@ -164,10 +165,9 @@ $(DOCS): $(RUN)
 	@$(call section,docs) | $(INSTALL) -r /dev/stdin
 	@touch $@
 
-$(BENCH): BIN := $(BENCH_VENV)/bin
 $(BENCH): | $(RUN)
 	@echo "Installing what to measure against, into $(BENCH_VENV) ..."
 	@$(VENV)/bin/python -m venv --clear $(BENCH_VENV)
-	@$(call section,bench) | $(INSTALL) --no-deps -r /dev/stdin
-	@$(INSTALL) --no-deps --no-build-isolation -e .
+	@$(call section,bench) | $(BENCH_INSTALL) --no-deps -r /dev/stdin
+	@$(BENCH_INSTALL) --no-deps --no-build-isolation -e .
 	@touch $@
