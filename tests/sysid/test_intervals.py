@@ -6,8 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from rr_opt.sysid import intervals
 from rr_opt.sysid.estimation import fitted, initial
-from rr_opt.sysid.intervals import estimates
+from rr_opt.sysid.intervals import estimates, released, wrong
 from tests.sysid.linear_model import LinearModel
 
 FIRST = {"a": 0.0, "b": 0.0}
@@ -50,3 +51,20 @@ def test_where_nothing_was_fitted_there_is_no_interval():
     model = LinearModel()
     problem, states = initial(model, (), (), FIRST, [0])
     assert estimates(fitted(problem, FIRST, states)) == {}
+
+
+EXCUSES = {(): (3.5, 3.4), ("a",): (1.9, 4.2), ("a", "b"): (0.9, 1.1), ("b",): (2.7, 5.2)}
+"""Surprises of a and b by which of them are released; b is wrong, and a is nearly as good."""
+
+
+def test_a_value_is_not_wrong_because_another_was_released_first(monkeypatch):
+    model = LinearModel()
+    stated = tuple(replace(q, known=True) for q in model.parameters)
+    problem, states = initial(model, (), stated, FIRST, range(3))
+    fit = fitted(problem, FIRST, states)
+
+    def scripted(one):
+        return np.array(EXCUSES[tuple(q.name for q in one.problem.quantities if q.free)])
+
+    monkeypatch.setattr(intervals, "surprises", scripted)
+    assert [q.name for q in wrong(released(fit))] == ["b"]

@@ -83,20 +83,40 @@ def wrong(fit: Fit) -> list[Quantity]:
 
 def released(fit: Fit) -> Fit:
     """The fit without the priors of values that are certainly wrong, released one at a time: priors
-    spread one large deviation over several values, so each wrong value biases others."""
-    for _ in range(SETTINGS.most_effects):
-        held = np.array([not q.free for q in fit.problem.quantities], bool)
-        size = np.abs(surprises(fit)) * held
-        if not size.size or size.max() <= limit(fit):
+    spread one large deviation over several values, so each wrong value biases others.
+
+    Stepwise: when another value is released, an earlier one may turn out to be right after all. It
+    gets its prior back, or each of the two would excuse the other.
+    """
+    nominal = {q.name: q for q in fit.problem.quantities}
+    once: list[str] = []
+    while len(once) < SETTINGS.most_effects:
+        size = _sizes(fit)
+        held = [q.name for q in fit.problem.quantities if not q.free and q.name not in once]
+        worst = max(held, key=size.__getitem__, default="")
+        if not held or size[worst] <= limit(fit):
             break
-        worst = int(np.argmax(size))
-        quantities = tuple(
-            replace(q, scale=q.scale * SETTINGS.effect_prior, free=True) if k == worst else q
-            for k, q in enumerate(fit.problem.quantities)
-        )
-        problem = replace(fit.problem, quantities=quantities)
-        fit = fitted(problem, fit.values, fit.states)
+        own = nominal[worst]
+        fit = _with(fit, replace(own, scale=own.scale * SETTINGS.effect_prior, free=True))
+        size = _sizes(fit)
+        doubtful = [q.name for q in fit.problem.quantities if q.free and q.name in once]
+        least = min(doubtful, key=size.__getitem__, default="")
+        if doubtful and size[least] <= limit(fit):
+            fit = _with(fit, nominal[least])
+        once.append(worst)
     return fit
+
+
+def _sizes(fit: Fit) -> dict[str, float]:
+    names = [q.name for q in fit.problem.quantities]
+    return dict(zip(names, np.abs(surprises(fit)).tolist(), strict=True))
+
+
+def _with(fit: Fit, quantity: Quantity) -> Fit:
+    """The fit with another prior of a quantity."""
+    every = fit.problem.quantities
+    quantities = tuple(quantity if q.name == quantity.name else q for q in every)
+    return fitted(replace(fit.problem, quantities=quantities), fit.values, fit.states)
 
 
 def named(fit: Fit, prefix: str) -> Mapping[str, Estimate]:
