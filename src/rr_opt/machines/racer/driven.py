@@ -34,13 +34,15 @@ from rr_opt.motion.steady_cycle import Cycle, cycle_of
 from rr_opt.outcome import NotConvergedError
 from rr_opt.sysid.shooting import DrivePath, System, predict
 
-_SAMPLES = 256
-"""Samples per period, with at least one step between two."""
+_SAMPLES, _OF_SLIP = 256, 1024
+"""Samples per period, with at least one step between two; more with slip, as wheels that hold
+chatter if steps are long against the time in which a slip dies out."""
 _HEADINGS = 8
-_ROUNDS, _REPEATS = 60, 1e-7
+_ROUNDS, _REPEATS = 500, 1e-7
 """Most periods, and the relative change of v over one that counts as none."""
-_FIRST = 0.05
-"""m/s, the first step of the secant search for v."""
+_FIRST, _NEARER = 0.05, 0.9
+"""m/s, the first step of the secant search for v; and the share of the gap that a step may leave,
+for the next one to take the slope between the two."""
 
 
 @dataclass(frozen=True)
@@ -76,7 +78,8 @@ def driven_speed(robot: Robot, gait: Gait) -> DrivenSpeed:
     effects = tuple(name for name in names if name not in placed)
     robot = replace(robot, physics=tuple(u for u in robot.physics if u.name in effects))
     system, motion = driven(effects)
-    drive, t = servo_drive(robot, gait), np.linspace(0.0, gait.period, _SAMPLES + 1)
+    drive = servo_drive(robot, gait)
+    t = np.linspace(0.0, gait.period, (_OF_SLIP if motion.slips else _SAMPLES) + 1)
     path = drive_path(drive, steps_of(drive, t, 0.0, **grain(effects)), 0.0)
     p = values_of(robot, motion.parameters)
     tried = _HEADINGS if _depends(motion, slice(2, 3)) else 1
@@ -118,7 +121,7 @@ def _steady(system: System, path: DrivePath, p: Array, psi: float, size: int) ->
     any, settle by themselves."""
     start = np.zeros(size)
     start[2] = psi
-    before: tuple[float, float] | None = None
+    before, slope = (math.nan, math.nan), math.nan
     for _ in range(_ROUNDS):
         states = predict(system, path, start, p).states
         v, gap = float(start[V]), float(states[V, -1] - start[V])
@@ -126,10 +129,14 @@ def _steady(system: System, path: DrivePath, p: Array, psi: float, size: int) ->
             break
         if abs(gap) <= _REPEATS * np.abs(states[V]).max():
             return states
-        slope = (gap - before[1]) / (v - before[0]) if before and v != before[0] else math.nan
+        # Side speeds that have not settled disturb the gap: a slope that friction cannot have, or
+        # one that would lead far away, is theirs.
+        secant = (gap - before[1]) / (v - before[0]) if v != before[0] else math.nan
+        if -1 <= secant < 0 and (math.isnan(slope) or gap / before[1] < _NEARER):
+            slope = secant
         before = v, gap
         start[V:] = states[V:, -1]
-        start[V] = v - gap / slope if slope < 0 else v + math.copysign(_FIRST, gap)
+        start[V] = v + (math.copysign(_FIRST, gap) if math.isnan(slope) else -gap / slope)
     raise NotConvergedError("Driven with all its effects the robot's speed does not repeat.")
 
 
