@@ -233,7 +233,7 @@ def test_bodies_that_are_stamped_apart_are_put_on_one_clock(tmp_path):
     path = bag(tmp_path, "mcap", late=0.004)
     read = read_file(path)
     assert read.doubts == (
-        "Not stamped together with the first body, and put on its times: 'front'.",
+        "Not time-stamped together with the first body, so put on its times: 'front'.",
     )
     here, there = (read.positions[1:-1, read.labels.index(one)] for one in ("rear", "front"))
     np.testing.assert_allclose(here, poses()["rear"][0][1:-1], atol=1e-9)

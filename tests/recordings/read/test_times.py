@@ -37,7 +37,7 @@ def test_rows_out_of_order_are_sorted_and_flagged(write):
     assert run.t.tolist() == sorted(times)
     assert run.values["x"].tolist() == [0, 1, 3, 4, 2, 5]
     assert run.flags["x"].tolist() == [0, 0, 0, 0, Flag.OUT_OF_ORDER, 0]
-    assert run.doubts == ("Out of order, and sorted by time: line 4.",)
+    assert run.doubts == ("Out of order, now sorted by time: line 4.",)
 
 
 def test_a_clock_that_jumps_once_does_not_spoil_what_follows(write):
@@ -54,7 +54,7 @@ def test_a_row_that_is_there_twice_is_left_out(write):
     run = read_file(write(text.replace(line, f"{line}\n{line}")))
     assert run.values["x"].tolist() == [0, 1, 2, 3, 4]
     assert not run.flags["x"].any()
-    assert run.doubts == ("Left out, with the time of another row: line 5.",)
+    assert run.doubts == ("Dropped, same time as another row: line 5.",)
 
 
 def test_two_rows_of_one_time_that_disagree_are_no_data(write):
@@ -67,7 +67,7 @@ def test_two_rows_of_one_time_that_disagree_are_no_data(write):
 def test_a_row_without_a_time_is_left_out_and_told(write):
     run = read_file(write(csv(np.arange(5) / 100).replace("0.0200", "")))
     assert run.values["x"].tolist() == [0, 1, 3, 4]
-    assert "Left out, without a time: line 4." in run.doubts
+    assert "Dropped, no time: line 4." in run.doubts
 
 
 def test_an_uneven_rate_is_told(write):

@@ -130,7 +130,7 @@ def _steady(system: System, path: DrivePath, p: Array, psi: float, size: int) ->
         before = v, gap
         start[V:] = states[V:, -1]
         start[V] = v - gap / slope if slope < 0 else v + math.copysign(_FIRST, gap)
-    raise NotConvergedError("Driven with all its effects the robot's speed does not repeat.")
+    raise NotConvergedError("With all its effects, the robot does not settle to a periodic speed.")
 
 
 @dataclass(frozen=True)
