@@ -159,7 +159,7 @@ def test_every_mistake_at_once(experiment):
     assert found["recordings[0].file"].message == (
         "Read 'three.csv'. There is no such file. Check its name and folder."
     )
-    assert "which is recordings[1] too" in found["recordings[2].file"].message
+    assert "which is also recordings[1]" in found["recordings[2].file"].message
     assert "on both platforms" in found["markers.platform2.B"].message
 
 

@@ -296,7 +296,7 @@ def test_an_experiment_learns_from_its_recordings_where_the_bodies_are(write, tm
     for run in experiment.runs:
         for channel, true in zip(("x", "y", "psi", "phi"), motion(N)[1:], strict=True):
             np.testing.assert_allclose(run.recording.values[channel], true, atol=2e-3)
-    learnt = [issue.message for issue in issues if "was learnt" in issue.message]
+    learnt = [issue.message for issue in issues if "was estimated" in issue.message]
     assert len(learnt) == 1
     assert "platform 1 carries rear," in learnt[0]
     assert experiment.uncertainty["psi_zero"].sigma > 0.05

@@ -72,7 +72,7 @@ def test_a_row_without_a_time_is_left_out_and_told(write):
 
 def test_an_uneven_rate_is_told(write):
     times = np.cumsum(np.random.default_rng(5).uniform(0.0075, 0.0125, 200))
-    assert any("constant rate" in doubt for doubt in read_file(write(csv(times))).doubts)
+    assert any("interval is not constant" in doubt for doubt in read_file(write(csv(times))).doubts)
 
 
 @pytest.mark.parametrize("apart", [0.0, 1e-320, 1e-10])
@@ -101,7 +101,7 @@ def test_times_that_jitter_keep_their_rate_and_lack_no_row(write):
     t = np.arange(2000) / 100 + np.random.default_rng(0).uniform(-0.003, 0.003, 2000)
     run = read_file(write(csv(np.sort(t))))
     assert float(run.source["rate"].split()[0]) == pytest.approx(100, rel=1e-3)
-    assert any("constant rate" in doubt for doubt in run.doubts)
+    assert any("interval is not constant" in doubt for doubt in run.doubts)
     assert not any("missing" in doubt for doubt in run.doubts)
 
 
