@@ -74,7 +74,7 @@ def test_the_command(file, tmp_path):
         ("routes: []", "routes"),
         ("routes: [none.yaml]", "none.yaml"),
         ("routes: [ahead.yaml, ahead.yaml]", "Read ahead twice"),
-        ("routes: [ahead.yaml]\nvary: {limits.rate: [1, 2]}", "Read `vary` beside `routes`"),
+        ("routes: [ahead.yaml]\nvary: {limits.rate: [1, 2]}", "Read `vary` as well as `routes`"),
     ],
 )
 def test_a_wrong_file(file, text, expected):

@@ -54,7 +54,7 @@ def test_without_a_rival_it_narrows_down_a_value(case):
     told = next_experiment(model, coulomb, None)
     assert told is not None
     assert told.between[1] in coulomb.problem.names
-    narrower = float(told.sentence.split(", ")[-1].split()[0])
+    narrower = float(told.sentence.rpartition("a factor of ")[2].removesuffix("."))
     assert narrower > 1.2
 
 
